@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Looks into a compiled program for calls out of the loops that are compiled for vector instructions: a function that was not inlined there takes the
-# instructions of the baseline and passes all registers through memory, which makes loops up to three times slower and fails no test. Calls that end the program
-# (panics), copies of memory, calls through pointers and expm1 (coefficients of viscous points, once a point and step, not a bond) are not counted. Independent of the machine's speed.
+# Searches a compiled program for calls in loops that are compiled for vector instructions. A function that is not inlined there uses baseline
+# instructions and passes all registers through memory, which makes loops up to three times slower without a failing test. Panics, memory copies,
+# indirect calls and expm1 (coefficients of viscous points, once per point and step, not per bond) are ignored. The result does not depend on the machine's speed.
 #
 #     .ci/inlined.sh target/release/pericles
 set -euo pipefail

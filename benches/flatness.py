@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Time per bond over the size of a block, as a picture of the book.
+"""Plots the time per bond as a function of the size of a block, for the book.
 
     benches/flatness.py PROGRAM [ROUNDS]
 
-runs `PROGRAM bench block-N` for blocks of 1e5 to 1e7 points in double and single precision, on one thread and on all, ROUNDS times in turn (default 3), and
-writes book/src/theory/flatness.svg from the fastest of each: other users of a machine only ever add time.
+runs `PROGRAM bench block-N` for blocks of 1e5 to 1e7 points in double and single precision, on one thread and on all, ROUNDS times in alternation (default 3), and
+writes book/src/theory/flatness.svg with the fastest times: other users of a machine can only increase them.
 """
 
 import json

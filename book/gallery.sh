@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Runs the examples and puts their pictures into the book: book/gallery.sh [PERICLES]. Takes some minutes. Pictures above 200 kB are made smaller, which needs python3 with Pillow.
+# Runs the examples and copies their pictures into the book: book/gallery.sh [PERICLES]. Takes a few minutes. Pictures above 200 kB are reduced, which needs python3 with Pillow.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 pericles=${1:-target/release/pericles}
 place=$(mktemp -d)
 trap 'rm -rf "$place"' EXIT
 
-# picture EXAMPLE FILE NAME: the file from the pictures of a run of the example.
+# picture EXAMPLE FILE NAME: copies FILE from the pictures of a run of EXAMPLE.
 picture() {
     local out="$place/${1//\//-}"
     [ -d "$out" ] || "$pericles" run "examples/$1.toml" --out "$out" --quiet

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Writes book/src/verification.md and a page per topic in book/src/verification/: what is tested, how, and the numbers of every study as a build computes them.
+"""Writes book/src/verification.md, a summary of one page, and a page per topic in book/src/verification/ with all numbers of the studies as a build computes them.
 
     book/verification.py [PROGRAM] [SECONDS]
 
-PROGRAM is the release build (default target/release/pericles), SECONDS the longest a study may take (default 600). Studies that take longer are named as such. Rows that fail are on the page
-itself, all rows on the pages of the topics.
+PROGRAM is the release build (default target/release/pericles), SECONDS the time limit of a study (default 600). Studies that exceed it are listed as not run. Rows that fail are on the summary,
+all rows on the pages of the topics. A new topic needs an entry in TITLES and in src/SUMMARY.md.
 """
 
 import json
@@ -17,6 +17,18 @@ import time
 HERE = pathlib.Path(__file__).parent
 ROOT = HERE.parent
 PAGES = HERE / "src/verification"
+TITLES = {
+    "absorbing-boundaries": "Absorbing boundaries",
+    "dispersion": "Dispersion",
+    "fracture": "Fracture",
+    "manifolds": "Manifolds",
+    "multi-time-step": "Multirate time integration",
+    "nonlocal-wave": "The nonlocal wave equation",
+    "numerics": "Numerical methods",
+    "state-based": "State-based materials",
+    "statics": "Static equilibrium",
+}
+STUDIES = "| study | content | source | rows | pass | s |\n|---|---|---|---|---|---|\n"
 COLUMNS = "| case | printed | expected | computed | tolerance | |\n|---|---|---|---|---|---|\n"
 
 
@@ -29,7 +41,7 @@ def number(value):
 
 
 def row(entry):
-    verdict = {True: "holds", False: "**fails**", None: ""}[entry["pass"]]
+    verdict = {True: "pass", False: "**fails**", None: ""}[entry["pass"]]
     tolerance = ""
     if entry["tolerance"] is not None and entry["expected"] is not None:
         tolerance = "± " + (number(entry["tolerance"]) if entry["absolute"] else f"{100 * entry['tolerance']:.3g} %")
@@ -71,23 +83,35 @@ class Study:
     def failing(self):
         return [entry for entry in self.judged if not entry["pass"]]
 
-    def summary(self, page):
-        name = f"[{self.name}]({page})"
+    def summary(self):
+        name = f"[{self.name}](#{self.name.replace('/', '')})"
         if self.results is None:
-            return f"| {name} | {self.title} | | | not run: it takes longer | |\n"
+            return f"| {name} | {self.title} | | | not run: time limit | |\n"
         held = len(self.judged) - len(self.failing)
         return f"| {name} | {self.title} | {self.paper} | {len(self.rows)} | {held} of {len(self.judged)} | {self.seconds:.1f} |\n"
 
 
+def title(topic):
+    return TITLES.get(topic, topic.replace("-", " ").capitalize())
+
+
 def topic_page(topic, studies):
-    text = f"# {topic.replace('-', ' ').capitalize()}\n\nAll rows of these studies, as `book/verification.py` computed them. SI units. Rows without a tolerance are information; printed is the number in the paper.\n"
+    text = f"# {title(topic)}\n\n[Summary](../verification.md) of all topics. SI units. Rows without a tolerance are for information; *printed* is the number in the paper.\n\n"
+    text += STUDIES + "".join(study.summary() for study in studies)
     for study in studies:
         text += f"\n## {study.name}\n\n{study.title} ({study.paper}).\n\n"
         if study.results is None:
-            text += "Not run here: it takes longer than a study was given.\n"
+            text += "Not run: the study exceeds the time limit.\n"
             continue
         text += COLUMNS + "".join(map(row, study.rows))
     (PAGES / f"{topic}.md").write_text(text)
+
+
+def topic_row(topic, studies):
+    """A row of the summary."""
+    judged, failing = sum(len(study.judged) for study in studies), sum(len(study.failing) for study in studies)
+    papers = "; ".join(dict.fromkeys(study.paper for study in studies if study.paper))
+    return f"| [{title(topic)}](verification/{topic}.md) | {papers} | {len(studies)} | {judged} | {judged - failing} |\n"
 
 
 def main():
@@ -107,11 +131,11 @@ def main():
     done = [study for study in studies if study.results is not None]
     judged, failing = sum(len(study.judged) for study in done), sum(len(study.failing) for study in done)
     text = (HERE / "verification-head.md").read_text()
-    text += f"\n## Studies of papers\n\n{judged - failing} of {judged} judged rows of {len(done)} studies hold, computed by {version} on {time.strftime('%d %B %Y')}; a study was given {limit:.0f} s. "
-    text += "The names lead to all rows.\n\n| study | shows | paper | rows | hold | s |\n|---|---|---|---|---|---|\n"
-    text += "".join(study.summary(f"verification/{study.topic}.md") for study in studies)
+    text += f"\n## Results\n\n{judged - failing} of {judged} comparisons in {len(done)} studies pass, computed by {version} on {time.strftime('%d %B %Y')}; the time limit of a study was {limit:.0f} s.\n\n"
+    text += "| topic | source | studies | comparisons | pass |\n|---|---|---|---|---|\n"
+    text += "".join(topic_row(topic, [study for study in studies if study.topic == topic]) for topic in topics)
     if failing:
-        text += "\nThe rows that do not hold:\n\n" + COLUMNS
+        text += "\nComparisons that do not pass:\n\n" + COLUMNS
         text += "".join(row({**entry, "case": f"{study.name}: {entry['case']}"}) for study in done for entry in study.failing)
     (HERE / "src/verification.md").write_text(text)
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes fuzz/seeds: small valid files of every format that Pericles reads. The files are kept; run this again only to change them."""
+"""Writes fuzz/seeds: small valid files of every format that Pericles reads. The files are in the repository; run this script only to change them."""
 
 import base64
 import json
@@ -154,7 +154,7 @@ def outline():
 
 def checkpoint():
     entry = {"name": "u", "type": "u8", "len": 4, "stored": 0, "crc32": 0, "codec": "shuffle+lz4"}
-    # An LZ4 frame that holds its bytes as they are: header, one block marked as uncompressed, end mark.
+    # An LZ4 frame with uncompressed data: header, one block marked as uncompressed, end mark.
     frame = bytes.fromhex("04224d18604082") + struct.pack("<I", 4 | 1 << 31) + b"abcd" + bytes(4)
     header = {"metadata": {"step": 1}, "sections": [dict(entry, stored=len(frame)), dict(entry, name="v", stored=len(frame))]}
     write("checkpoint", "two", json.dumps(header, separators=(",", ":")).encode() + b"\n" + frame + frame)
@@ -173,7 +173,7 @@ crack = [{ segment = [[0, 2], [2, 2]] }]
 sets.left = { layer = { side = "-x", cells = 2 } }
 sets.top = { layer = { side = "+y", cells = 1 } }
 sets.bottom = { layer = { side = "-y", cells = 1 } }
-prescribe = [{ set = "top", velocity = ["free", 0.1] }, { set = "bottom", velocity = ["free", -0.1] }]
+constraint = [{ set = "top", velocity = ["free", 0.1] }, { set = "bottom", velocity = ["free", -0.1] }]
 time = { end = 2, dt = 0.1, SCHEME }
 """
 
@@ -186,12 +186,12 @@ time = { end = 1, dt = 0.01, SCHEME }
 ENDS = """boundary = [{ kind = "absorbing", side = "-x", HISTORY }, { kind = "absorbing", side = "+x", HISTORY }]
 """
 
-# One deck of every scheme, operator and boundary that keeps a state.
+# One deck for every scheme, operator and boundary with state.
 MODELS = {
     "list-verlet": (PLATE, 'bonds = "list"', 'scheme = "velocity-verlet"', ""),
     "grid-rk4": (PLATE, 'bonds = "grid"', 'scheme = "rk4"', ""),
-    "list-rk4-mts": (PLATE, 'bonds = "list"', 'scheme = "rk4-mts", ratio = 2, adaptive = { every = 2, layers = 1 }', ""),
-    "grid-rk3-mts": (PLATE, 'bonds = "grid"', 'scheme = "rk3-mts", ratio = 3, fine = ["left"]', ""),
+    "list-rk4-mts": (PLATE, 'bonds = "list"', 'scheme = "multirate-rk4", ratio = 2, adaptive = { every = 2, layers = 1 }', ""),
+    "grid-rk3-mts": (PLATE, 'bonds = "grid"', 'scheme = "multirate-rk3", ratio = 3, fine = ["left"]', ""),
     "list-respa": (PLATE, 'bonds = "list"', 'scheme = "respa", ratio = 2, adaptive = { every = 1, layers = 1 }', ""),
     "list-anderson": (PLATE, 'bonds = "list"', 'scheme = "newmark", solver = "anderson"', ""),
     "dormand-prince": (BAR, 'model = "linear"', 'scheme = "dormand-prince"', ""),
@@ -214,12 +214,12 @@ def models():
 
 def texts():
     expressions = ["1e-3 * exp(-(x/0.01)^2)", "sin(2*pi*x) + t^2/(1+t)", "x > 0 && (y < 1 || block == 2)", "-x^2^0.5*step(t-1)", "0 < x <= 1", "!(x == 3)"]
-    # The first byte says where an expression stands.
+    # The first byte selects the place of an expression.
     for k, text in enumerate(expressions):
         write("expression", f"{k}", ("0" if set("<>=") & set(text) else str(1 + k % 2)) + text)
     for k, text in enumerate(["72 GPa", "0.25 mm", "135 J/m2", "kg/m3", "2440 kg·m^-3", "1e-3 N/m²", "5 %", "90 min", "1/s", "-.5e-3 µs"]):
         write("quantity", f"{k}", text)
-    # The first byte names a deck or a way to spoil.
+    # The first byte selects a deck or a modification.
     for target in ["resume", "cache"]:
         for k in range(len(MODELS)):
             write(target, f"{k}", bytes([k]) + bytes(range(1, 20)))

@@ -5,7 +5,7 @@
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use pericles::Interrupt;
 use pericles::family::pairs_within;
-use pericles::operator::{BondForm, On};
+use pericles::operator::{BondForm, PointSubset};
 use pericles::time::{Integrator, VelocityVerlet};
 use pericles_bench::Case;
 
@@ -38,7 +38,7 @@ fn operators(criterion: &mut Criterion) {
         group.bench_function(BenchmarkId::from_parameter(&name), |b| {
             b.iter(|| {
                 let operator = system.operator();
-                operator.add_force(0.0, &state.u, On::All, &mut out);
+                operator.add_force(0.0, &state.u, PointSubset::All, &mut out);
             });
         });
         group.finish();

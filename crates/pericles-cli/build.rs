@@ -1,15 +1,15 @@
-//! Puts the files under `examples/` into the program, so that `pericles new` can write them anywhere.
+//! Embeds the files under `examples/` in the program for `pericles new`.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 
-/// What is for readers and tests of the repository only.
+/// Files that are not part of an example.
 const LEFT_OUT: [&str; 2] = ["README.md", "expected.toml"];
 
 fn main() -> io::Result<()> {
     let variable = |name| env::var_os(name).map(PathBuf::from).unwrap_or_default();
-    let examples = variable("CARGO_MANIFEST_DIR").join("../../examples");
+    let examples = variable("CARGO_MANIFEST_DIR").join("decks");
     println!("cargo::rerun-if-changed={}", examples.display());
     let mut table = String::from("&[\n");
     for topic in sorted(&examples)?.iter().filter(|path| path.is_dir()) {

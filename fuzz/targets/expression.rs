@@ -12,7 +12,7 @@ pericles_fuzz::target!(|content: &[u8]| {
     let use_of_it = match first % 3 {
         0 => format!("sets.some = {{ where = {quoted} }}"),
         1 => format!("initial = [{{ displacement = [{{ expression = {quoted} }}] }}]"),
-        _ => format!("prescribe = [{{ set = \"all\", displacement = [{{ expression = {quoted} }}] }}]"),
+        _ => format!("constraint = [{{ set = \"all\", displacement = [{{ expression = {quoted} }}] }}]"),
     };
     let deck = format!(
         r#"body = {{ shape = "bar", length = 8, spacing = 1 }}

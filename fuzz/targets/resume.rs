@@ -4,7 +4,7 @@
 
 use std::cell::RefCell;
 
-use pericles::{Archive, Saved, Simulation};
+use pericles::{Archive, Checkpointed, Simulation};
 use pericles_deck::Deck;
 use pericles_run::{Resources, build};
 use pericles_fuzz::{Choices, advance, decks};

@@ -71,17 +71,17 @@ first = boxes("first", 0.35, 1)
 boxes("second", 0.5, 2)
 mesh = meshio.read(first)
 cells = np.vstack([block.data for block in mesh.cells if block.type == "tetra"])
-# A tetrahedron of two groups stands twice in meshio's blocks.
+# A tetrahedron in two groups appears twice in meshio's blocks.
 cells = np.unique(cells, axis=0)
 plain = meshio.Mesh(mesh.points, [("tetra", cells)])
 meshio.write(folder / "meshio.vtu", plain)
-# meshio writes netCDF-4, which Pericles reads if it is built with the feature netcdf4, and else refuses with the command that converts it: written again as CDF-1, CDF-2 and CDF-5 here.
+# meshio writes netCDF-4. Pericles reads it with the feature netcdf4, and otherwise rejects it and prints the conversion command. Here it is converted to CDF-1, CDF-2 and CDF-5.
 meshio.write(folder / "meshio.exo", plain, file_format="exodus")
 answer = subprocess.run([program, str(folder / "meshio.exo")], capture_output=True, text=True, check=True).stdout
 paths = [folder / "meshio.vtu"]
 if "refused" in answer:
     assert "nccopy -k cdf5" in answer and "feature netcdf4" in answer, answer
-    print("meshio.exo: netCDF-4, refused with the command that converts it")
+    print("meshio.exo: netCDF-4, rejected with the conversion command")
 else:
     paths.append(folder / "meshio.exo")
 source = netCDF4.Dataset(folder / "meshio.exo")
@@ -123,7 +123,7 @@ for name, mode, compressed in (("ascii", 0, True), ("binary", 1, True), ("append
     assert count == 2 and abs(volume - 1.5) < 1e-14
     print(f"vtk-{name}.vtu: 2 points, volume as expected")
 
-# VTK's writer of Exodus, in a program of its own: the parallel writer, which `import vtk` puts in the place of the serial one, crashes without a controller.
+# VTK's Exodus writer, in a separate process: `import vtk` replaces the serial writer by the parallel one, which crashes without a controller.
 subprocess.run([sys.executable, str(Path(__file__).with_name("vtk_exodus.py")), str(folder)], check=True)
 for name in ("grid", "blocks"):
     count, volume, sets = report(folder / f"vtk-{name}.exo")

@@ -1,4 +1,4 @@
-"""Times of the readers beside those of meshio, in alternation: compare_readers.py MESH_INFO [ROUNDS], the program of the example mesh_info of pericles-mesh.
+"""Compares the reading times of Pericles and meshio, measured in alternation: compare_readers.py MESH_INFO [ROUNDS], the program of the example mesh_info of pericles-mesh.
 
 A cube of 6 · 50³ tetrahedra as Gmsh 4.1 (binary), Gmsh 2.2 (text), Abaqus, and Exodus (CDF-2 for Pericles; netCDF-4 for meshio, which writes no other). Prints the median of the ratios.
 """

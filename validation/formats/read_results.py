@@ -1,4 +1,4 @@
-"""Checks what VTK, h5py and netCDF read of the files that the example result_files of pericles-mesh writes: read_results.py FOLDER."""
+"""Checks that VTK, h5py and netCDF read the files of the example result_files of pericles-mesh: read_results.py FOLDER."""
 import sys
 from pathlib import Path
 
@@ -64,7 +64,7 @@ for ending, kind in (("64", np.float64), ("32", np.float32)):
     print(f"Exodus {ending}: VTK {vtk.VTK_VERSION} and netCDF read all; blocks {sizes}; node sets",
           [reader.GetObjectName(vtk.vtkExodusIIReader.NODE_SET, s) for s in range(reader.GetNumberOfObjects(vtk.vtkExodusIIReader.NODE_SET))])
 
-    # meshio reads the first output only, and knows no volumes of spheres.
+    # meshio reads the first output only, without volumes of spheres.
     mesh = meshio.read(folder / f"run{ending}.exo", file_format="exodus")
     check("points", mesh.points, positions)
     check("damage", mesh.point_data["Damage"], damage(0))

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Judges decks by the schema that Pericles writes, with a validator that knows nothing of Pericles.
+"""Validates decks against the schema of Pericles with an independent validator.
 
     pericles schema > schema.json; python3 validation/schema/check.py schema.json
 
@@ -19,7 +19,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 COMPLETE = ROOT / "crates/pericles-deck/tests/complete.toml"
 
-# What stands in the complete deck, and what an editor should mark in its place.
+# Text of the complete deck, and an invalid replacement that the schema must reject.
 WRONG = [
     ('dx = "0.25 mm"', 'dy = "0.25 mm"'),
     ('dx = "0.25 mm"', 'dx = "a quarter"'),
@@ -45,10 +45,10 @@ WRONG = [
 
 
 def in_environment(folder):
-    """Runs this script again inside a virtual environment that has the validator, making it the first time."""
+    """Runs this script again inside a virtual environment that has the validator, created on first use."""
     python = folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
     if not python.exists():
-        print(f"making a virtual environment in {folder}", file=sys.stderr)
+        print(f"creating a virtual environment in {folder}", file=sys.stderr)
         venv.create(folder, with_pip=True)
     if subprocess.run([python, "-c", "import jsonschema"], capture_output=True).returncode:
         if subprocess.run([python, "-m", "pip", "install", "--quiet", "jsonschema"]).returncode:

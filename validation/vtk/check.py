@@ -17,14 +17,15 @@ import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 PACKAGES = ["vtk", "meshio", "numpy"]
-VERTEX = 1  # VTK's cell type of a single point
+# VTK's and meshio's names of the cells that Pericles writes.
+CELL_TYPES = {1: "vertex", 3: "line", 5: "triangle", 9: "quad", 12: "hexahedron"}
 
 
 def in_environment(folder):
-    """Runs this script again inside a virtual environment that has the readers, making it the first time."""
+    """Runs this script again inside a virtual environment that has the readers, created on first use."""
     python = folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
     if not python.exists():
-        print(f"making a virtual environment in {folder}", file=sys.stderr)
+        print(f"creating a virtual environment in {folder}", file=sys.stderr)
         venv.create(folder, with_pip=True)
     if subprocess.run([python, "-c", "import vtk, meshio, numpy"], capture_output=True).returncode:
         if subprocess.run([python, "-m", "pip", "install", "--quiet", *PACKAGES]).returncode:
@@ -34,7 +35,7 @@ def in_environment(folder):
 
 
 def read_with_vtk(path):
-    """Time, points, cell types and fields as VTK sees them."""
+    """Time, points, cell types and fields read by VTK."""
     from vtkmodules.util.numpy_support import vtk_to_numpy
     from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
@@ -48,30 +49,34 @@ def read_with_vtk(path):
     time = grid.GetFieldData().GetArray("TimeValue")
     if time is None:
         complaints.append("VTK finds no TimeValue")
-    data = grid.GetPointData()
-    fields = {
-        data.GetArrayName(k): vtk_to_numpy(data.GetArray(k)) for k in range(data.GetNumberOfArrays())
-    }
+    fields = {}
+    for place, data in [("point", grid.GetPointData()), ("cell", grid.GetCellData())]:
+        for k in range(data.GetNumberOfArrays()):
+            fields[place, data.GetArrayName(k)] = vtk_to_numpy(data.GetArray(k))
     points = grid.GetPoints()
     return {
         "time": time.GetValue(0) if time is not None else None,
         "points": vtk_to_numpy(points.GetData()) if points else None,
-        "cells": [grid.GetCellType(k) for k in range(grid.GetNumberOfCells())],
+        "cells": [CELL_TYPES.get(grid.GetCellType(k)) for k in range(grid.GetNumberOfCells())],
         "fields": fields,
     }, complaints
 
 
 def read_with_meshio(path):
-    """The same as meshio sees them."""
+    """The same, read by meshio."""
     import meshio
+    import numpy
 
     mesh = meshio.read(path)
     cells = [block.type for block in mesh.cells for _ in block.data]
-    return {"points": mesh.points, "cells": cells, "fields": mesh.point_data}
+    fields = {("point", name): values for name, values in mesh.point_data.items()}
+    for name, blocks in mesh.cell_data.items():
+        fields["cell", name] = numpy.concatenate(blocks)
+    return {"points": mesh.points, "cells": cells, "fields": fields}
 
 
 def check_file(path, time):
-    """Rows of the table and complaints about one output."""
+    """Table rows and errors of one output."""
     import numpy
 
     by_vtk, complaints = read_with_vtk(path)
@@ -80,17 +85,18 @@ def check_file(path, time):
         return [], complaints + ["VTK finds no points"]
     if by_vtk["time"] != time:
         complaints.append(f"TimeValue is {by_vtk['time']!r}, the collection says {time!r}")
-    count = len(by_vtk["points"])
-    if by_vtk["cells"] != [VERTEX] * count or by_meshio["cells"] != ["vertex"] * count:
-        complaints.append("the cells are not one vertex per point")
+    counts = {"point": len(by_vtk["points"]), "cell": len(by_vtk["cells"])}
+    if by_vtk["cells"] != by_meshio["cells"] or None in by_vtk["cells"]:
+        complaints.append("VTK and meshio find different cells, or cells of an unexpected type")
     names = list(by_vtk["fields"])
     if sorted(names) != sorted(by_meshio["fields"]):
         complaints.append(f"VTK finds the fields {names}, meshio {list(by_meshio['fields'])}")
 
     rows = []
-    pairs = [("(points)", by_vtk["points"], by_meshio["points"])]
+    pairs = [(("point", "(points)"), by_vtk["points"], by_meshio["points"])]
     pairs += [(name, by_vtk["fields"][name], by_meshio["fields"].get(name)) for name in names]
-    for name, one, other in pairs:
+    for (place, name), one, other in pairs:
+        count = counts[place]
         other = numpy.zeros(0) if other is None else numpy.asarray(other)
         one = numpy.asarray(one)
         equal = (
@@ -100,13 +106,13 @@ def check_file(path, time):
         )
         finite = bool(numpy.isfinite(one).all())
         if len(one) != count:
-            complaints.append(f"{name} has {len(one)} values for {count} points")
+            complaints.append(f"{name} has {len(one)} values for {count} {place}s")
         if not equal:
             complaints.append(f"VTK and meshio read {name} differently")
         if not finite:
             complaints.append(f"{name} holds values that are not finite")
         span = (one.min(), one.max()) if one.size else (numpy.nan, numpy.nan)
-        rows.append((name, str(one.dtype), "×".join(map(str, one.shape)), *span, equal, finite))
+        rows.append((f"{name} ({place})", str(one.dtype), "×".join(map(str, one.shape)), *span, equal, finite))
     return rows, complaints
 
 
@@ -132,7 +138,7 @@ def main():
         "--venv",
         type=Path,
         default=Path(tempfile.gettempdir()) / "pericles-vtk-check",
-        help="virtual environment for the readers, made if missing (default: %(default)s)",
+        help="virtual environment for the readers, created if missing (default: %(default)s)",
     )
     arguments = parser.parse_args()
     try:
@@ -147,7 +153,7 @@ def main():
     try:
         outputs, complaints = read_collection(arguments.series)
     except (OSError, ElementTree.ParseError, AttributeError) as error:
-        print(f"{arguments.series} is no collection that can be read: {error}", file=sys.stderr)
+        print(f"{arguments.series} cannot be read as a PVD collection: {error}", file=sys.stderr)
         sys.exit(2)
     for complaint in complaints:
         print(f"  WRONG: {complaint}")
@@ -165,7 +171,7 @@ def main():
             rows, complaints = [], [f"the file cannot be read: {error}"]
         for name, kind, shape, low, high, equal, finite in rows:
             verdict = "equal" if equal and finite else "WRONG"
-            print(f"  {name:<24} {kind:<8} {shape:>12}  {low:>13.6g} … {high:<13.6g} {verdict}")
+            print(f"  {name:<32} {kind:<8} {shape:>12}  {low:>13.6g} … {high:<13.6g} {verdict}")
         these = [row[:3] for row in rows]
         if layout is not None and these != layout:
             complaints.append("fields or sizes differ from those of the first output")

@@ -1,17 +1,18 @@
-//! Bodies whose bonds depend on their ends, and stress, on a stencil against a list: CPU time per directed bond of one thread, the forms in turn, medians.
+//! CPU time per directed bond of one thread for bodies with bond-dependent factors and state-based materials,
+//! stencil against list: the forms alternate, medians are reported.
 //!
-//! `cargo bench -p pericles-bench --bench composite [CELLS]`, 32 cells a side by default.
+//! `cargo bench -p pericles-bench --bench composite [CELLS]`; the default is 32 cells per side.
 
 use std::sync::Arc;
 
 use pericles::family::VolumeCorrection;
 use pericles::kernel::Influence;
 use pericles::material::{
-    BondMaterial, Calibration, ElasticModulus, Fracture, InterfaceRule, Modulus, PairClasses,
+    BondMaterial, Calibration, ElasticModulus, Fracture, InterfaceRule, MaterialPairs, Modulus,
     PairLaw, StressState, SurfaceCorrection,
 };
 use pericles::observe::Field;
-use pericles::operator::{BondBody, BondForm, CompositeBody, Force, On};
+use pericles::operator::{BondBody, BondForm, CompositeBody, Force, PointSubset};
 use pericles::space::{Grid, PointCloud, Shape};
 use pericles::time::{State, VelocityVerlet};
 use pericles::{PointScalar, Simulation, System};
@@ -35,7 +36,7 @@ fn material(law: PairLaw, young: f64) -> BondMaterial {
     }
 }
 
-/// What the body is made of.
+/// Composition of the body.
 #[derive(Clone, Copy)]
 enum Parts {
     One,
@@ -83,7 +84,8 @@ fn operator(cloud: &Arc<PointCloud>, parts: Parts, cells: f64, form: BondForm) -
         .each_ref()
         .map(|one| one.constants(cloud, StressState::Spatial).unwrap());
     let numbers = (0..cloud.len()).map(|i| parts.material_of(cloud.point(i), cells));
-    let classes = PairClasses::new(numbers.collect(), &constants, InterfaceRule::Harmonic).unwrap();
+    let classes =
+        MaterialPairs::new(numbers.collect(), &constants, InterfaceRule::Harmonic).unwrap();
     let several = matches!(parts, Parts::Halves | Parts::Grains);
     let body = CompositeBody {
         classes: several.then_some(&classes),
@@ -142,7 +144,7 @@ fn main() {
             let mut times = [Vec::new(), Vec::new()];
             for _ in 0..ROUNDS {
                 for (force, times) in forces.iter().zip(&mut times) {
-                    let work = || force.add_force(0.0, &u, On::All, &mut out);
+                    let work = || force.add_force(0.0, &u, PointSubset::All, &mut out);
                     times.push(ns_per_bond(force.directed_bonds(), work));
                 }
             }

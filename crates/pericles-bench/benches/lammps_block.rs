@@ -1,7 +1,9 @@
-//! Our side of the comparison in `benches/lammps`, run by its script.
+//! The Pericles part of the comparison in `benches/lammps`, run by its script.
 //!
-//! `time CASE ROUNDS` prints one line of JSON with wall and CPU time per directed bond; `forces CELLS [grid|grid-f32|list]` prints cells and force
-//! densities of a deformed block, `i j k fx fy fz` a line; `fracture CELLS STEPS [grid|grid-f32|list]` one line of JSON on a block torn in two.
+//! `time CASE ROUNDS` prints one line of JSON with wall and CPU time per directed bond;
+//! `forces CELLS [grid|grid-f32|list]` prints cells and force densities of a deformed block, one line
+//! `i j k fx fy fz` per point; `fracture CELLS STEPS [grid|grid-f32|list]` prints one line of JSON for a
+//! block pulled apart.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -9,7 +11,7 @@ use std::sync::Arc;
 use pericles::Interrupt;
 use pericles::boundary::{MotionKind, PrescribedMotion, TimeFunction};
 use pericles::material::StressState;
-use pericles::operator::{BondBody, BondForm, On};
+use pericles::operator::{BondBody, BondForm, PointSubset};
 use pericles::time::{Integrator, State, VelocityVerlet};
 use pericles_bench::{Case, Timing, cpu_seconds, run, run_by_clock};
 
@@ -31,7 +33,7 @@ fn time(case: &Case, rounds: usize) -> pericles::Result<()> {
     Ok(())
 }
 
-/// The displacement of `in.forces`: strains of about one per cent that vary over the block.
+/// Displacement of `in.forces`: strains of about one per cent that vary over the block.
 fn displacement(cell: [f64; 3], length: f64, spacing: f64) -> [f64; 3] {
     let x = cell.map(|k| k * spacing);
     let wave = |x: f64| TAU * x / length;
@@ -59,7 +61,7 @@ fn forces(cells: usize, form: BondForm) -> pericles::Result<()> {
         (0..3).for_each(|c| u[c * n + i] = moved[c]);
     }
     let mut force = vec![0.0; 3 * n];
-    operator.add_force(0.0, &u, On::All, &mut force);
+    operator.add_force(0.0, &u, PointSubset::All, &mut force);
     println!("{}", operator.directed_bonds());
     for i in 0..n {
         let [x, y, z] = cell(i);
@@ -69,7 +71,8 @@ fn forces(cells: usize, form: BondForm) -> pericles::Result<()> {
     Ok(())
 }
 
-/// The block of `in.fracture`, torn in two by its end layers: CPU nanoseconds per step and bond there was at the start, and the mean damage.
+/// The block of `in.fracture`, pulled apart by its end layers: CPU nanoseconds per step and initial bond, and
+/// the mean damage.
 fn fracture(cells: usize, steps: usize, form: BondForm) -> pericles::Result<()> {
     let case = Case {
         critical_stretch: 0.002,
@@ -150,7 +153,7 @@ fn main() -> pericles::Result<()> {
             Some(case) => time(&case, number(2, 5)),
             None => {
                 eprintln!(
-                    "no such case; there are {:?}",
+                    "unknown case; allowed: {:?}",
                     Case::all().into_iter().map(|c| c.name).collect::<Vec<_>>()
                 );
                 Ok(())
@@ -158,7 +161,7 @@ fn main() -> pericles::Result<()> {
         },
         _ => {
             println!(
-                "time CASE ROUNDS | forces CELLS [grid|list] | fracture CELLS STEPS [grid|list]; see benches/lammps"
+                "usage: time CASE ROUNDS | forces CELLS [grid|list] | fracture CELLS STEPS [grid|list]; see benches/lammps"
             );
             Ok(())
         }

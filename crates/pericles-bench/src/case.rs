@@ -1,4 +1,4 @@
-//! The problems that are timed.
+//! Benchmark problems.
 
 use std::sync::Arc;
 
@@ -17,28 +17,29 @@ use pericles::{PointScalar, Result, System};
 
 use crate::StoredList;
 
-/// A problem to be timed.
+/// A benchmark problem.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Case {
-    /// Name, as in the results: see [`Case::named`].
+    /// Name in the results, see [`Case::named`].
     pub name: String,
-    /// Cells of the box along each axis; one to three.
+    /// Cells of the box along each axis, for one to three axes.
     pub cells: Vec<usize>,
     /// Form of the operator.
     pub form: BondForm,
-    /// What the loops are compiled for, if the machine has it.
+    /// Instruction set of the loops, if the machine supports it.
     pub instruction_set: InstructionSet,
-    /// Critical stretch; no case that is timed by name reaches it.
+    /// Critical stretch; the named cases do not reach it.
     pub critical_stretch: f64,
-    /// Every point is moved off its lattice node, so that no two bonds are alike.
+    /// Whether every point is displaced from its lattice node, so that no two bonds are equal.
     pub moved: bool,
-    /// Not an operator of the engine but the plain loop that it is set against: see [`StoredList`](crate::StoredList).
+    /// Whether the reference loop is timed instead of an operator of the engine, see
+    /// [`StoredList`](crate::StoredList).
     pub scalar: bool,
-    /// Bonds of a linear peridynamic solid in place of bond-based ones: two passes.
+    /// Whether the material is a linear peridynamic solid (two passes) instead of bond-based.
     pub state_based: bool,
 }
 
-/// Cases that are timed if none is asked for.
+/// Default cases.
 const NAMES: [&str; 14] = [
     "block-46",
     "block-46-avx2",
@@ -63,12 +64,12 @@ const SPACING: f64 = 1e-3;
 const DENSITY: f64 = 2235.0;
 
 impl Case {
-    /// The cases that are timed if none is asked for.
+    /// Returns the default cases.
     pub fn all() -> Vec<Self> {
         NAMES.into_iter().filter_map(Self::named).collect()
     }
 
-    /// A box of cells on its lattice, with the best instructions of the machine.
+    /// Creates a box of cells on its lattice, with the best instruction set of the machine.
     pub fn new(name: &str, cells: Vec<usize>, form: BondForm) -> Self {
         Self {
             name: name.to_owned(),
@@ -82,8 +83,10 @@ impl Case {
         }
     }
 
-    /// The case of this name: `bar-N`, `plate-N` or `block-N` with N cells along every axis, by the grid operator; then any of `-list` (by the list operator), `-f32` (by the grid operator in floats), `-scalar` (by
-    /// the plain loop), `-lps` (a linear peridynamic solid), `-avx2` (without AVX-512) and `-moved` (points off the lattice, hence a list). None of a name without a case.
+    /// Returns the case with this name: `bar-N`, `plate-N` or `block-N` with N cells along every axis and the
+    /// grid operator; then any of the suffixes `-list` (list operator), `-f32` (grid operator in single
+    /// precision), `-scalar` (reference loop), `-lps` (linear peridynamic solid), `-avx2` (without AVX-512)
+    /// and `-moved` (points displaced from the lattice, hence a list). Returns `None` for an unknown name.
     pub fn named(name: &str) -> Option<Self> {
         let mut words = name.split('-');
         let dimension = match words.next()? {
@@ -112,10 +115,10 @@ impl Case {
         (!(case.state_based && pairs_only)).then_some(case)
     }
 
-    /// The points.
+    /// Creates the points.
     ///
     /// # Errors
-    /// A box without or with too many cells.
+    /// Returns an error for a box with no or too many cells.
     pub fn cloud(&self) -> Result<Arc<PointCloud>> {
         let size = self.cells.iter().map(|&count| count as f64 * SPACING);
         let grid = Grid {
@@ -140,7 +143,7 @@ impl Case {
         )?))
     }
 
-    /// The state of stress in the case's dimension.
+    /// Returns the stress state for the dimension of the case.
     fn stress_state(&self) -> StressState {
         match self.cells.len() {
             1 => StressState::Uniaxial,
@@ -149,7 +152,8 @@ impl Case {
         }
     }
 
-    /// Glass with a horizon of 3.015 spacings, linear partial volumes and the case's critical stretch.
+    /// Returns glass with a horizon of 3.015 spacings, linear partial volumes and the critical stretch of the
+    /// case.
     pub fn material(&self) -> BondMaterial {
         BondMaterial {
             law: PairLaw::BondStretch,
@@ -165,15 +169,16 @@ impl Case {
         }
     }
 
-    /// The constants of the material in the case's dimension.
+    /// Returns the constants of the material in the dimension of the case.
     ///
     /// # Errors
-    /// A horizon of no neighbours.
+    /// Returns an error if the horizon contains no neighbours.
     pub fn constants(&self, cloud: &PointCloud) -> Result<BondConstants> {
         self.material().constants(cloud, self.stress_state())
     }
 
-    /// The same glass as a linear peridynamic solid, with the influence function of LAMMPS (peri/lps), one over the length.
+    /// Returns the same glass as a linear peridynamic solid, with the influence function of LAMMPS
+    /// (peri/lps), one over the bond length.
     pub fn solid(&self) -> LinearSolid {
         LinearSolid {
             density: DENSITY,
@@ -189,7 +194,7 @@ impl Case {
         }
     }
 
-    /// The operator on the case's points.
+    /// Creates the operator on the points of the case.
     fn operator(&self, cloud: &Arc<PointCloud>) -> Result<Box<dyn Force>> {
         let damage = DamageMeasure {
             count: true,
@@ -212,10 +217,10 @@ impl Case {
         Ok(body.operator(self.form)?.operator)
     }
 
-    /// The body with its operator, moving smoothly.
+    /// Creates the body with its operator and a smooth initial velocity.
     ///
     /// # Errors
-    /// See [`Case::cloud`].
+    /// The same as for [`Case::cloud`].
     pub fn system(&self) -> Result<(System, State)> {
         let cloud = self.cloud()?;
         let mut operator = self.operator(&cloud)?;
@@ -225,23 +230,23 @@ impl Case {
         Ok((system, start))
     }
 
-    /// The same body as a plain loop over stored numbers, moving likewise.
+    /// Creates the same body and motion for the reference loop.
     ///
     /// # Errors
-    /// See [`Case::cloud`].
+    /// The same as for [`Case::cloud`].
     pub fn stored_list(&self) -> Result<(StoredList, State)> {
         let cloud = self.cloud()?;
         let list = StoredList::new(&cloud, &self.material(), &self.constants(&cloud)?);
         Ok((list, moving(&cloud)))
     }
 
-    /// Bonds of a point inside the body.
+    /// Returns the number of bonds of an interior point.
     pub(crate) fn family(&self) -> f64 {
         [6.0, 28.0, 122.0][self.cells.len() - 1]
     }
 }
 
-/// A state at rest that starts to move in long waves.
+/// Returns a state at rest with a long-wave initial velocity.
 fn moving(cloud: &PointCloud) -> State {
     let (n, dimension) = (cloud.len(), cloud.dimension());
     let mut start = State::at_rest(n * dimension);
@@ -259,7 +264,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_say_what_is_timed() {
+    fn names_define_the_case() {
         assert_eq!(Case::all().len(), NAMES.len());
         let case = Case::named("plate-30-list-avx2").unwrap();
         assert_eq!((case.cells, case.form), (vec![30; 2], BondForm::List));

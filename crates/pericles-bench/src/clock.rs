@@ -1,6 +1,6 @@
-//! A clock for machines that others use too.
+//! CPU time, for measurements on shared machines.
 
-/// CPU time of all threads of this process, s.
+/// Returns the CPU time of all threads of this process, s.
 pub fn cpu_seconds() -> f64 {
     let tasks = std::fs::read_dir("/proc/self/task").into_iter().flatten();
     let nanoseconds = tasks.flatten().filter_map(|task| {

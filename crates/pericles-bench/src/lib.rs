@@ -1,11 +1,13 @@
-//! Timing of whole steps on fixed bodies, and how close they come to what the machine can do.
+//! Timing of complete time steps on fixed bodies, relative to the limits of the machine.
 //!
-//! A case is a small problem with bonds that could break but do not. Its time is the median of several rounds of velocity Verlet, per directed bond
-//! (an entry of a family: each bond counts twice) and thread. It is set against
+//! A case is a small problem whose bonds may break but do not. Its time is the median over several rounds of
+//! velocity Verlet, per directed bond (an entry of a family: each bond counts twice) and thread. It is
+//! compared with
 //!
-//! * the arithmetic roofline: 28 operations per eight bonds (sixteen in floats) and pass (two for state-based materials) at the measured rate of independent multiply–adds of the vector width, with
-//!   the lanes that row ends and missing bonds leave idle;
-//! * the memory traffic that a step cannot do without, as GB/s.
+//! * the arithmetic roofline: 28 operations per eight bonds (sixteen in single precision) and pass (two
+//!   passes for state-based materials) at the measured rate of independent multiply–adds of the vector width,
+//!   including lanes left idle by row ends and missing bonds;
+//! * the minimum memory traffic of a step, in GB/s.
 //!
 //! ```
 //! use pericles_bench::{Case, run};
@@ -33,50 +35,51 @@ pub use clock::cpu_seconds;
 pub use machine::{fma_seconds, read};
 pub use scalar::StoredList;
 
-/// What a case took.
+/// Timing of a case.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Timing {
     /// Name of the case.
     pub case: String,
-    /// Form of the operator, or what stands in its place.
+    /// Form of the operator, or the name of the reference loop.
     pub form: &'static str,
-    /// What the loops are compiled for.
+    /// Instruction set of the loops.
     pub instruction_set: InstructionSet,
-    /// Points.
+    /// Number of points.
     pub points: usize,
-    /// Entries of all families.
+    /// Number of directed bonds: entries of all families.
     pub directed_bonds: u64,
-    /// Threads.
+    /// Number of threads.
     pub threads: usize,
     /// Nanoseconds per directed bond of a full step, median over the rounds.
     pub ns_per_bond: f64,
-    /// The same of the fastest round.
+    /// Nanoseconds per directed bond in the fastest round.
     pub best_ns_per_bond: f64,
-    /// Nanoseconds per directed bond and thread that the roofline allows.
+    /// Nanoseconds per directed bond and thread at the roofline.
     pub roofline_ns: f64,
-    /// Roofline time over time.
+    /// Roofline time divided by measured time.
     pub roofline_fraction: f64,
-    /// Traffic of a step that nothing can avoid over its time, GB/s: u, v, a read and written once, and a bit per bond.
+    /// Minimum memory traffic of a step divided by its time, GB/s: u, v, a read and written once, and one bit
+    /// per bond.
     pub gigabytes_per_second: f64,
     /// Memory of operator, points, displacement, velocity and acceleration per point, bytes.
     pub bytes_per_point: f64,
-    /// Building the operator, s.
+    /// Time to build the operator, s.
     pub build_seconds: f64,
 }
 
 impl Timing {
-    /// Directed bonds a second.
+    /// Returns the number of directed bonds per second.
     pub fn bonds_per_second(&self) -> f64 {
         1e9 / self.ns_per_bond
     }
 }
 
-/// Steps in a round: as many as take a tenth of a second at about 1 ns per bond.
+/// Returns the number of steps in a round, which takes a tenth of a second at about 1 ns per bond.
 fn steps_per_round(directed_bonds: u64) -> usize {
     (100_000_000 / directed_bonds.max(1)).clamp(1, 1000) as usize
 }
 
-/// A case ready to be stepped.
+/// A case with its assembled body.
 struct Prepared {
     step: Box<dyn FnMut() -> Result<()>>,
     form: &'static str,
@@ -87,18 +90,18 @@ struct Prepared {
     bytes: usize,
 }
 
-/// A case that is being timed.
+/// A case during timing.
 struct Running<'a> {
     case: &'a Case,
     prepared: Prepared,
     build_seconds: f64,
     /// Nanoseconds per directed bond of each round.
     times: Vec<f64>,
-    /// Seconds of a multiply–add, the shortest seen.
+    /// Shortest measured time of a multiply–add, s.
     fma: f64,
 }
 
-/// Length of a step, s: far below the stable one.
+/// Time step, s: far below the stable one.
 const DT: f64 = 1e-7;
 
 impl Prepared {
@@ -135,28 +138,28 @@ impl Prepared {
     }
 }
 
-/// Times a case on the current thread pool in `rounds` rounds, one more for warming up, by the clock on the wall.
+/// Times a case on the current thread pool in `rounds` rounds after one warm-up round, by wall-clock time.
 ///
 /// # Errors
-/// See [`Case::cloud`].
+/// The same as for [`Case::cloud`].
 pub fn run(case: &Case, rounds: usize) -> Result<Timing> {
     let begin = Instant::now();
     run_by_clock(case, rounds, &|| begin.elapsed().as_secs_f64())
 }
 
-/// The same by any clock that gives seconds: the process's CPU time tells more on a machine that others use too.
+/// Times a case by any clock in seconds: the CPU time of the process is more reliable on a shared machine.
 ///
 /// # Errors
-/// See [`Case::cloud`].
+/// The same as for [`Case::cloud`].
 pub fn run_by_clock(case: &Case, rounds: usize, clock: &dyn Fn() -> f64) -> Result<Timing> {
     let mut timings = run_in_turn(std::slice::from_ref(case), rounds, clock)?;
     Ok(timings.remove(0))
 }
 
-/// Times several cases round by round in turn, so that all of them meet the same load.
+/// Times several cases alternately, round by round, so that all of them are subject to the same load.
 ///
 /// # Errors
-/// See [`Case::cloud`].
+/// The same as for [`Case::cloud`].
 pub fn run_in_turn(cases: &[Case], rounds: usize, clock: &dyn Fn() -> f64) -> Result<Vec<Timing>> {
     let mut running = cases
         .iter()
@@ -185,7 +188,7 @@ impl<'a> Running<'a> {
         })
     }
 
-    /// Steps for a while; nanoseconds per directed bond.
+    /// Runs one round; returns nanoseconds per directed bond.
     fn round(&mut self, clock: &dyn Fn() -> f64) -> Result<f64> {
         let bonds = self.prepared.directed_bonds;
         let steps = steps_per_round(bonds);
@@ -201,7 +204,7 @@ impl<'a> Running<'a> {
     fn timing(mut self) -> Timing {
         self.times.sort_by(f64::total_cmp);
         let (case, prepared) = (self.case, self.prepared);
-        // The plain loop knows no threads.
+        // The reference loop is serial.
         let threads = if case.scalar {
             1
         } else {
@@ -238,10 +241,11 @@ impl<'a> Running<'a> {
     }
 }
 
-/// Operations per pass and eight bonds that count as the work of a step, whatever a kernel really does.
+/// Operations per pass and eight bonds that count as the work of a step, independent of the kernel.
 const OPERATIONS: f64 = 28.0;
 
-/// Lanes computed over bonds there are: rows padded to whole chunks, and full families at the boundary.
+/// Returns the computed lanes divided by the existing bonds: rows are padded to whole chunks, and families at
+/// the boundary to full size.
 fn idle_lanes(case: &Case, directed_bonds: u64) -> f64 {
     let rows: usize = case.cells[1..].iter().product();
     let places = case.cells[0].next_multiple_of(LANES) * rows;
@@ -253,7 +257,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_block_is_the_one_of_the_comparison() {
+    fn the_block_case_equals_the_block_of_the_comparison_with_lammps() {
         let case = Case::named("block-46").unwrap();
         let system = case.system().unwrap().0;
         assert_eq!(system.points(), 97_336);

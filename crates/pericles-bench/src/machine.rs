@@ -1,4 +1,4 @@
-//! What the machine can do: the rates of arithmetic and of reading that steps are set against.
+//! Machine limits: rates of arithmetic and memory reads.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -7,9 +7,10 @@ use pericles::lanes::{LANES, Lanes, for_each_instruction_set};
 use pericles::operator::InstructionSet;
 use pericles::operator::prefetch::prefetch;
 
-/// Seconds that one multiply–add of eight numbers takes where none waits for another.
+/// Measures the time of one multiply–add of eight numbers without dependencies, s.
 ///
-/// Measured on twelve independent chains, more than any machine's latency times its pipes, the fastest of some rounds.
+/// Twelve independent chains exceed the product of latency and number of pipes of any machine; the fastest of
+/// several rounds counts.
 pub fn fma_seconds(set: InstructionSet) -> f64 {
     const REPEATS: usize = 20_000;
     let mut best = f64::INFINITY;
@@ -51,7 +52,8 @@ for_each_instruction_set! {
     ) = multiply_add_body on lanes
 }
 
-/// The sum of numbers, read as fast as the memory gives them: eight chains of eight, and lines asked for ahead. Loops over stored bonds are set against it.
+/// Sums numbers at the full rate of the memory: eight chains of eight, with prefetching. Loops over stored
+/// bonds are compared with it.
 pub fn read(set: InstructionSet, numbers: &[f64]) -> f64 {
     let mut sum = 0.0;
     sum_numbers(set, numbers, &mut sum);
@@ -82,7 +84,7 @@ fn sum_numbers_body<T: Lanes>(numbers: &[f64], sum: &mut f64) {
 const ROW: usize = 64;
 
 for_each_instruction_set! {
-    /// Adds the numbers up.
+    /// Sums the numbers.
     fn sum_numbers [] <> (numbers: &[f64], sum: &mut f64) = sum_numbers_body on lanes
 }
 
@@ -91,7 +93,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_number_is_read() {
+    fn every_number_is_summed() {
         let numbers: Vec<f64> = (1..=1000).map(f64::from).collect();
         for set in InstructionSet::available() {
             assert_eq!(read(set, &numbers), 500_500.0);
@@ -99,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn the_rate_of_every_set_is_measured() {
+    fn the_rate_of_every_instruction_set_is_measured() {
         let times: Vec<f64> = InstructionSet::available()
             .into_iter()
             .map(fma_seconds)

@@ -1,4 +1,4 @@
-//! The plain loop that fast operators are set against.
+//! Reference loop with which operators are compared.
 
 use pericles::family::pairs_within;
 use pericles::material::{BondConstants, BondMaterial};
@@ -6,10 +6,12 @@ use pericles::parallel::{components, components_mut};
 use pericles::space::PointCloud;
 use pericles::time::State;
 
-/// Bond-stretch peridynamics as it is usually written: for every entry of a family its neighbour's number, length at rest, stiffness c α κ V and whether it is
-/// intact, and a loop with root and division over them, on one thread.
+/// Bond-stretch peridynamics as a plain loop: for every entry of a family it stores the neighbour, the
+/// reference length, the stiffness c α κ V and whether the bond is intact, and computes a square root and a
+/// division, on one thread.
 ///
-/// f_i = Σ_j c α κ V_j s y/|y|, s = (|y| − |ξ|)/|ξ|, with y between deformed positions; entries stretched beyond s₀ are gone. 21 bytes an entry.
+/// f_i = Σ_j c α κ V_j s y/|y|, s = (|y| − |ξ|)/|ξ|, with y between deformed positions; bonds stretched
+/// beyond s₀ are broken. Memory: 21 bytes per entry.
 #[derive(Debug, Clone)]
 pub struct StoredList {
     dimension: usize,
@@ -24,7 +26,7 @@ pub struct StoredList {
 }
 
 impl StoredList {
-    /// The families of a body of one material.
+    /// Creates the families of a body of one material.
     pub fn new(cloud: &PointCloud, material: &BondMaterial, constants: &BondConstants) -> Self {
         let spacing = cloud.spacing();
         let correction = material.volume_correction;
@@ -58,18 +60,18 @@ impl StoredList {
         list
     }
 
-    /// Entries of all families.
+    /// Returns the number of directed bonds: entries of all families.
     pub fn directed_bonds(&self) -> u64 {
         self.neighbours.len() as u64
     }
 
-    /// Memory, bytes.
+    /// Returns the memory, bytes.
     pub fn bytes(&self) -> usize {
         let entry = size_of::<u32>() + 2 * size_of::<f64>() + size_of::<bool>();
         self.neighbours.len() * entry + self.start.len() * size_of::<usize>()
     }
 
-    /// `out` = force density at u, N/m³, after entries stretched beyond the limit are gone.
+    /// Computes the force density at u in `out`, N/m³, after breaking bonds stretched beyond the limit.
     pub fn break_and_force(&mut self, u: &[f64], out: &mut [f64]) {
         match self.dimension {
             1 => self.sweep::<1>(u, out),
@@ -109,7 +111,7 @@ impl StoredList {
         }
     }
 
-    /// A step of velocity Verlet without loads.
+    /// Advances one step of velocity Verlet without loads.
     pub fn step(&mut self, state: &mut State, dt: f64) {
         let State { t, step, u, v, a } = state;
         for ((u, v), a) in u.iter_mut().zip(v.iter_mut()).zip(a.iter()) {
@@ -129,11 +131,11 @@ impl StoredList {
 #[cfg(test)]
 mod tests {
     use crate::Case;
-    use pericles::operator::On;
+    use pericles::operator::PointSubset;
     use pericles::sum::max_norm;
 
     #[test]
-    fn the_plain_loop_finds_the_forces_of_the_operators() {
+    fn the_reference_loop_gives_the_forces_of_the_operators() {
         for name in ["bar-40", "plate-14", "block-9", "block-9-moved"] {
             let case = Case::named(name).unwrap();
             let (mut list, mut state) = case.stored_list().unwrap();
@@ -145,10 +147,10 @@ mod tests {
             }
             let (mut plain, mut fast) = (vec![0.0; state.u.len()], vec![0.0; state.u.len()]);
             list.break_and_force(&state.u, &mut plain);
-            operator.add_force(0.0, &state.u, On::All, &mut fast);
+            operator.add_force(0.0, &state.u, PointSubset::All, &mut fast);
             let largest = max_norm(&fast);
             for (a, b) in plain.iter().zip(&fast) {
-                // The plain loop takes the difference of two lengths.
+                // The reference loop computes the difference of two lengths.
                 assert!((a - b).abs() < 1e-10 * largest, "{name}: {a:e} {b:e}");
             }
         }

@@ -1,16 +1,17 @@
-//! The fast loops are fast: a check that does not depend on the machine's speed.
+//! Speed of the operators relative to a reference loop, independent of the machine.
 //!
-//! Times are CPU times of one process that does nothing else, taken in turn with those of the plain loop on the same body, the best of several rounds; only their
-//! ratio counts. The bounds are half of what is measured on a quiet machine, so that they fail if loops lose their vector instructions and not if somebody else is busy.
+//! CPU times of this process are measured alternately with those of the reference loop on the same body, as
+//! the minimum over several rounds; only their ratio counts. The bounds are half of the ratios measured on an
+//! idle machine, so that they fail if loops lose their vector instructions but not on a busy machine.
 
 use pericles::operator::InstructionSet;
 use pericles_bench::{Case, cpu_seconds, run_in_turn};
 
 #[test]
 #[cfg_attr(debug_assertions, ignore = "measures optimised loops: --release")]
-fn the_operators_outrun_the_plain_loop() {
+fn the_operators_are_faster_than_the_reference_loop() {
     if InstructionSet::detect() == InstructionSet::Baseline {
-        eprintln!("no vector instructions here: nothing to compare");
+        eprintln!("the machine has no vector instructions: test skipped");
         return;
     }
     let names = [
@@ -28,12 +29,12 @@ fn the_operators_outrun_the_plain_loop() {
         .expect("a thread");
     let timings = pool
         .install(|| run_in_turn(&cases, 4, &cpu_seconds))
-        .expect("the cases are sound");
+        .expect("the cases are valid");
     for body in timings.chunks(3) {
         let best: Vec<f64> = body.iter().map(|case| case.best_ns_per_bond).collect();
         let (grid, list) = (best[0] / best[1], best[0] / best[2]);
         println!(
-            "{}: {grid:.2} times by grid, {list:.2} by list",
+            "{}: speed-up {grid:.2} (grid), {list:.2} (list)",
             body[0].case
         );
         assert!(grid > 1.6, "{body:?}");

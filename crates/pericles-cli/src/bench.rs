@@ -1,4 +1,4 @@
-//! `bench`: how fast the operators are on this machine.
+//! `bench`: performance of the force operators on this machine.
 
 use std::path::Path;
 
@@ -11,10 +11,10 @@ use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
 
-/// Rounds whose median is told.
+/// Number of rounds; the median is reported.
 const ROUNDS: usize = 9;
 
-/// The results as JSON.
+/// The JSON output.
 #[derive(Serialize)]
 struct Results {
     machine: String,
@@ -54,10 +54,10 @@ impl From<&Timing> for CaseResult {
     }
 }
 
-/// Times one case, or all.
+/// Measures one case, or all.
 ///
 /// # Errors
-/// An unknown case, output that cannot be written.
+/// The case is unknown, or output cannot be written.
 pub(crate) fn bench(args: &BenchArgs) -> Result<Exit, CliError> {
     let cases = match &args.case {
         None => Case::all(),
@@ -65,7 +65,7 @@ pub(crate) fn bench(args: &BenchArgs) -> Result<Exit, CliError> {
             let cases = Case::all();
             let names: Vec<&str> = cases.iter().map(|case| case.name.as_str()).collect();
             let all = format!(
-                "bar-N, plate-N or block-N with N cells an axis, then any of -list, -lps, -f32, -scalar, -avx2, -moved: {} …",
+                "bar-N, plate-N or block-N with N cells per axis, followed by any of -list, -lps, -f32, -scalar, -avx2, -moved, such as {}",
                 names.join(", ")
             );
             RunError::unknown("case", name, names, &all)
@@ -78,7 +78,7 @@ pub(crate) fn bench(args: &BenchArgs) -> Result<Exit, CliError> {
         console::print(format_args!(
             "{machine}; {threads} threads\n{:<20} {:>8} {:>8} {:>10} {:>12} {:>8} {:>11} {:>6} {:>9} {:>8}",
             "case",
-            "form",
+            "kernel",
             "isa",
             "points",
             "bonds (dir.)",

@@ -1,6 +1,7 @@
-//! The book and the pages of the repository hold: their decks are built, their command lines are read.
+//! Tests of the book and the Markdown pages: their decks are built, their command lines are parsed.
 //!
-//! A block of TOML is marked as `deck` (a whole deck) or with the name of a deck in `book/decks/` that it is a part of: its keys then replace those of that deck.
+//! A TOML block is marked as `deck` (a complete deck) or with the name of a deck in `book/decks/`, whose keys it
+//! replaces.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -17,7 +18,7 @@ struct Block {
     place: String,
     /// `toml`, `sh`, …
     language: String,
-    /// What the language is followed by.
+    /// The mark after the language.
     mark: String,
     text: String,
 }
@@ -73,11 +74,11 @@ fn blocks(page: &Path) -> Vec<Block> {
             block.text.push('\n');
         }
     }
-    assert!(!inside, "{}: a block has no end", page.display());
+    assert!(!inside, "{}: unterminated block", page.display());
     found
 }
 
-/// Puts a part of a deck in the place of what the whole has under the same keys.
+/// Replaces keys of a deck by those of a fragment.
 fn put(part: toml::Table, whole: &mut toml::Table) {
     for (key, value) in part {
         match (value, whole.get_mut(&key)) {
@@ -93,7 +94,7 @@ fn put(part: toml::Table, whole: &mut toml::Table) {
     }
 }
 
-/// The whole deck of a block.
+/// Returns the complete deck of a block.
 fn deck(block: &Block) -> String {
     if block.mark == "deck" {
         return block.text.clone();
@@ -101,8 +102,12 @@ fn deck(block: &Block) -> String {
     let base = root()
         .join("book/decks")
         .join(format!("{}.toml", block.mark));
-    let base = fs::read_to_string(base)
-        .unwrap_or_else(|_| panic!("{}: mark it as a deck or a part of one", block.place));
+    let base = fs::read_to_string(base).unwrap_or_else(|_| {
+        panic!(
+            "{}: mark it as `deck`, or with the name of a deck in book/decks",
+            block.place
+        )
+    });
     let mut whole: toml::Table = base.parse().unwrap();
     let part = block.text.parse();
     let part = part.unwrap_or_else(|error| panic!("{}: {error}", block.place));
@@ -111,7 +116,7 @@ fn deck(block: &Block) -> String {
 }
 
 #[test]
-fn decks_of_the_book_are_built() {
+fn decks_of_the_book_are_valid() {
     let mut count = 0;
     for page in pages()
         .iter()
@@ -119,7 +124,7 @@ fn decks_of_the_book_are_built() {
     {
         for block in blocks(page).iter().filter(|block| block.language == "toml") {
             let (place, text) = (&block.place, deck(block));
-            // Files that a deck names are those of the examples.
+            // Files are read from the folder of the examples.
             let name = root().join("examples/geometry/page.toml");
             let deck = Deck::parse(&text, &name.display().to_string(), &[]);
             let deck = deck.unwrap_or_else(|error| panic!("{place}: {error}\n{text}"));
@@ -132,7 +137,7 @@ fn decks_of_the_book_are_built() {
     assert!(count > 20, "{count}");
 }
 
-/// The deck a command line names: an example, wherever it has been copied.
+/// Returns the example of the same name as the deck of a command line.
 fn example(deck: &Path) -> Option<PathBuf> {
     let name = deck.file_name()?;
     let topics = fs::read_dir(root().join("examples")).unwrap();
@@ -142,7 +147,7 @@ fn example(deck: &Path) -> Option<PathBuf> {
 }
 
 #[test]
-fn command_lines_of_the_pages_are_read() {
+fn command_lines_of_the_pages_are_valid() {
     let mut count = 0;
     for page in pages() {
         for block in blocks(&page).iter().filter(|block| block.language == "sh") {
@@ -178,10 +183,45 @@ fn command_lines_of_the_pages_are_read() {
 }
 
 #[test]
-fn the_page_of_the_deck_is_what_the_program_writes() {
+fn the_deck_reference_is_up_to_date() {
     let page = fs::read_to_string(root().join("book/src/deck.md")).unwrap();
     assert!(
         page.trim_end() == pericles_deck::reference().trim_end(),
-        "write it again: pericles schema --markdown > book/src/deck.md"
+        "regenerate it: pericles schema --markdown > book/src/deck.md"
     );
+}
+
+/// Returns the example that the comments at the start of a deck name: `pericles run examples/…`.
+fn named_example(deck: &str) -> Option<PathBuf> {
+    deck.lines()
+        .take_while(|line| line.starts_with('#'))
+        .filter_map(|line| line.strip_prefix("#   pericles run"))
+        .find_map(|arguments| arguments.trim_start().strip_prefix("examples/"))
+        .and_then(|arguments| arguments.split_whitespace().next())
+        .map(|name| root().join("examples").join(name))
+}
+
+/// Examples on a page equal their files.
+#[test]
+fn examples_in_the_book_are_up_to_date() {
+    let mut count = 0;
+    for page in pages()
+        .iter()
+        .filter(|page| page.starts_with(root().join("book")))
+    {
+        for block in blocks(page).iter().filter(|block| block.mark == "deck") {
+            let Some(path) = named_example(&block.text) else {
+                continue;
+            };
+            let text = fs::read_to_string(&path).unwrap();
+            assert!(
+                block.text.trim_end() == text.trim_end(),
+                "{} differs from {}: run book/tutorials.py --decks",
+                block.place,
+                path.display()
+            );
+            count += 1;
+        }
+    }
+    assert!(count >= 6, "{count}");
 }

@@ -1,11 +1,12 @@
-//! What a bug looks like from outside: a panic anywhere in the program is one message and exit status 1, at once.
+//! Panic handling: a panic in any thread prints one message and ends the program with exit status 1.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::console;
 use crate::exit::Exit;
 
-/// Ends the program at the first panic of any thread. Files are written beside their places and renamed, so that those begun are as if they had never been.
+/// Ends the program at the first panic of any thread. Files are written under a temporary name and renamed, so that
+/// incomplete files do not replace complete ones.
 pub(crate) fn end_at_panics() {
     static SPOKEN: AtomicBool = AtomicBool::new(false);
     std::panic::set_hook(Box::new(|panic| {
@@ -31,9 +32,9 @@ mod tests {
 
     const FOLDER: &str = "PERICLES_TEST_FOLDER";
 
-    /// What the test below runs in a process of its own: no deck is known that makes the program panic.
+    /// The child process of the test below. It panics by itself because no deck is known that makes the program panic.
     #[test]
-    #[ignore = "ends its process; run by the test below"]
+    #[ignore = "ends its process; started by the test below"]
     fn child() {
         end_at_panics();
         let Some(folder) = std::env::var_os(FOLDER) else {
@@ -42,15 +43,15 @@ mod tests {
         let path = PathBuf::from(folder).join("results.csv");
         let _ = pericles_io::write_atomically(&path, |file| {
             file.write_all(b"step,time\n")?;
-            // On all threads at once, as a bug of a loop would.
-            rayon::broadcast(|_| assert!(std::hint::black_box(false), "the sky has fallen"));
+            // On all threads at once, like a bug in a parallel loop.
+            rayon::broadcast(|_| assert!(std::hint::black_box(false), "deliberate panic"));
             Ok(())
         });
         unreachable!("the hook ends the process");
     }
 
     #[test]
-    fn a_panic_is_one_message_and_status_1_and_no_file() {
+    fn a_panic_prints_one_message_exits_with_1_and_leaves_files_unchanged() {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("results.csv"), "old").unwrap();
         let output = Command::new(std::env::current_exe().unwrap())
@@ -61,7 +62,7 @@ mod tests {
             .unwrap();
         let told = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(1), "{told}");
-        assert_eq!(told.matches("the sky has fallen").count(), 1, "{told}");
+        assert_eq!(told.matches("deliberate panic").count(), 1, "{told}");
         assert_eq!(
             told.matches("This is a bug in Pericles").count(),
             1,
@@ -69,7 +70,7 @@ mod tests {
         );
         assert!(told.contains("src/bug.rs:"), "{told}");
         assert!(!told.contains("RUST_BACKTRACE"), "{told}");
-        // The file is as it was; what was begun beside it is swept up by the next run.
+        // The file is unchanged; the temporary file beside it is removed by the next run.
         let path = folder.path().join("results.csv");
         assert_eq!(std::fs::read_to_string(path).unwrap(), "old");
     }

@@ -1,28 +1,28 @@
-//! The columns of a table as charts over time: one per unit.
+//! Charts of table columns over time, one per unit.
 
 use std::path::Path;
 
 use pericles_io::{Axis, Curve, IoError, LineChart, read_csv};
 
-/// More curves cannot be told apart.
+/// Most curves per chart: more are not distinguishable.
 const MOST_CURVES: usize = 8;
-/// More points than a chart has pixels across show nothing more.
+/// Most points per curve: more than the width of a chart in pixels are not visible.
 const MOST_POINTS: usize = 4000;
 
 /// Curves of one unit over time.
 pub(crate) struct Chart {
-    /// What its curves have in common: `energy`, or the name of the only one.
+    /// Common name of the curves, such as `energy`, or the name of a single curve.
     pub(crate) name: String,
     /// The unit of the curves.
     pub(crate) unit: String,
-    /// s
+    /// Times, s.
     pub(crate) time: Vec<f64>,
-    /// Names and numbers.
+    /// Names and values.
     pub(crate) curves: Vec<(String, Vec<f64>)>,
 }
 
 impl Chart {
-    /// As a picture.
+    /// Returns the chart as a picture.
     pub(crate) fn drawn(&self) -> LineChart {
         let axes = (
             Axis::new("time", "s"),
@@ -37,12 +37,11 @@ impl Chart {
     }
 }
 
-/// The charts of the wanted columns of a table with a column `time`; none of a table without one, or with fewer than two rows.
-///
-/// Columns that never change and counters of steps are left out: a line along the axis says nothing.
+/// Returns charts of the selected columns of a table over its column `time`. A table without this column or with fewer
+/// than two rows has no charts. Constant columns and step numbers are omitted.
 ///
 /// # Errors
-/// A table that cannot be read.
+/// The table cannot be read.
 pub(crate) fn of_table(
     path: &Path,
     mut wanted: impl FnMut(&str) -> bool,
@@ -59,7 +58,7 @@ pub(crate) fn of_table(
             continue;
         }
         let curve = (column.name().to_owned(), thinned(values, stride));
-        // Pure numbers have no common scale: a count beside a ratio hides the ratio.
+        // Dimensionless columns have no common scale: a ratio would be invisible beside a count.
         let alike = |chart: &&mut Chart| {
             let unit = column.unit();
             !unit.is_empty() && chart.unit == unit && chart.curves.len() < MOST_CURVES
@@ -88,7 +87,7 @@ fn thinned(values: &[f64], stride: usize) -> Vec<f64> {
     values.iter().copied().step_by(stride).collect()
 }
 
-/// The words that names end with or begin with in common; if there are none, what the unit measures.
+/// Returns the common last or first words of the names or, without any, the quantity that the unit measures.
 fn common_words(names: &[&str], unit: &str) -> String {
     let words: Vec<Vec<&str>> = names.iter().map(|name| name.split('_').collect()).collect();
     let Some(first) = words.first() else {
@@ -119,7 +118,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn charts_are_named_after_what_their_curves_share() {
+    fn charts_are_named_after_the_common_words_of_their_curves() {
         assert_eq!(
             common_words(&["kinetic_energy", "elastic_energy"], "J"),
             "energy"
@@ -130,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn units_make_charts_and_what_stands_still_makes_none() {
+    fn columns_are_grouped_by_unit_and_constant_columns_are_omitted() {
         let place = tempfile::tempdir().unwrap();
         let path = place.path().join("a.csv");
         let text = "step,time [s],a [J],b [J],c [N],still [N],ratio,count\n0,0,1,2,3,7,0,0\n1,1,2,3,4,7,0.5,9\n";

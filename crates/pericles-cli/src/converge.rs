@@ -1,7 +1,7 @@
-//! `converge`: one number of a deck's runs on finer and finer grids, with the observed order.
+//! `converge`: convergence study of a scalar over successively finer grids, with the observed order.
 
 use pericles_run::DeckText;
-use pericles_run::convergence::{Convergence, Question};
+use pericles_run::convergence::{Convergence, Limit, Question};
 use pericles_run::sweep::{Axis, Plan};
 
 use crate::args::ConvergeArgs;
@@ -12,13 +12,19 @@ use crate::folder::output_folder;
 use crate::given;
 use crate::sweep;
 
-/// Runs the deck and judges how the number converges.
+/// Runs the deck on all grids or with all time steps and evaluates the convergence of the scalar.
 ///
 /// # Errors
-/// Values that the deck refuses, a number that runs do not have, output that cannot be written.
+/// The deck is invalid for one of the values, the runs do not have the scalar, or output cannot be written.
 pub(crate) fn converge(args: &ConvergeArgs) -> Result<Exit, CliError> {
     let mut overrides = args.overrides.set.clone();
+    let limit = match (&args.horizon, args.dt.is_empty()) {
+        (_, false) => Limit::Time,
+        (Some(_), true) => Limit::Nonlocal,
+        (None, true) => Limit::Local,
+    };
     let axes = match &args.horizon {
+        _ if limit == Limit::Time => vec![axis("time.dt", args.dt.iter().cloned())],
         Some(horizon) => {
             overrides.push(format!("material.horizon={}", horizon.text));
             let spacings = args.m.iter().map(|m| horizon.metres / m);
@@ -41,16 +47,16 @@ pub(crate) fn converge(args: &ConvergeArgs) -> Result<Exit, CliError> {
     let question = Question {
         scalar: args.scalar.clone(),
         reference: args.reference,
-        one_horizon: args.horizon.is_some(),
+        limit,
     };
-    let found = Convergence::of(&runs, question)?;
+    let found = Convergence::of(runs.found(), question)?;
     found.write(&runs.folder().file("convergence.csv"))?;
     found.chart().write(runs.folder().file("convergence.png"))?;
     for line in found.lines() {
         console::print(format_args!("{line}"))?;
     }
     console::print(format_args!(
-        "convergence.csv and convergence.png in {}",
+        "Results in {}: convergence.csv, convergence.png",
         runs.folder().path().display()
     ))?;
     Ok(Exit::Done)

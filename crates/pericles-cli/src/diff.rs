@@ -1,7 +1,9 @@
-//! `diff`: two results compared field by field and column by column.
+//! `diff`: compare two results field by field and column by column.
 //!
-//! Two values a, b of a field or column differ by |a − b| / s, where s is the largest size of the field at that time, or of the whole column, in either result: what is small against
-//! it is not blown up. States, and rows of tables, are compared where both results have one at the same time but for rounding; the others are counted. Pictures, checkpoints and run.json are left out: they say no more than the numbers, or differ from run to run.
+//! The relative difference of two values a, b of a field or column is |a − b| / s, where s is the largest magnitude
+//! of the field at that time, or of the whole column, in either result. States and rows of tables are compared if
+//! both results have one at the same time (up to rounding); the others are counted. Pictures, checkpoints and
+//! run.json are not compared: they contain no further numbers, or differ from run to run.
 
 mod times;
 
@@ -21,16 +23,16 @@ use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
 
-/// What two results have in common and how far they are apart.
+/// The differences between two results.
 #[derive(Debug, Serialize)]
 struct Comparison {
     a: PathBuf,
     b: PathBuf,
     tolerance: f64,
     rows: Vec<Row>,
-    /// What one of them lacks, and counts or times that differ.
+    /// Missing items, and counts or times that differ.
     unlike: Vec<String>,
-    /// States and rows that were not compared, because the other result has none at their time or of their size.
+    /// Number of states and rows without a counterpart of the same time and size.
     skipped: usize,
     equal: bool,
 }
@@ -41,22 +43,22 @@ struct Row {
     /// `fields` or the table's file.
     place: String,
     name: String,
-    /// How many numbers were compared.
+    /// Number of values compared.
     values: usize,
-    /// How many of them are not the same.
+    /// Number of values that differ.
     different: usize,
-    /// The largest difference over the size of the field or column.
+    /// Largest relative difference.
     relative: f64,
-    /// The largest difference, SI units.
+    /// Largest absolute difference, SI units.
     absolute: f64,
-    /// Where the relative difference is largest.
+    /// Location of the largest relative difference.
     at: String,
 }
 
 /// Compares two folders.
 ///
 /// # Errors
-/// Folders without results, files that are damaged.
+/// A folder has no results, or a file is damaged.
 pub(crate) fn diff(args: &DiffArgs) -> Result<Exit, CliError> {
     let (a, b) = (Results::open(&args.a)?, Results::open(&args.b)?);
     let mut unlike = Unlike::default();
@@ -99,12 +101,12 @@ impl Comparison {
         let (places, names) = (width(|row| &row.place), width(|row| &row.name));
         for row in &different {
             let beyond = if row.relative > self.tolerance {
-                "beyond"
+                "exceeds"
             } else {
                 "within"
             };
             console::print(format_args!(
-                "{:<places$}  {:<names$}  {:.1e} of the largest, {:.1e} at the most; {} of {} values differ; {} — {beyond} {:.0e}",
+                "{:<places$}  {:<names$}  relative difference {:.1e}, absolute {:.1e}; {} of {} values differ; {} — {beyond} {:.0e}",
                 row.place,
                 row.name,
                 row.relative,
@@ -118,7 +120,7 @@ impl Comparison {
         let values: usize = self.rows.iter().map(|row| row.values).sum();
         let (fields, same) = (self.rows.len(), self.rows.len() - different.len());
         let verdict = match (self.equal, different.is_empty()) {
-            (true, true) => "the same, bit for bit",
+            (true, true) => "bitwise identical",
             (true, false) => "equal within the tolerance",
             (false, _) => "different",
         };
@@ -128,12 +130,12 @@ impl Comparison {
             skipped => format!("; {skipped} states and rows were not compared"),
         };
         console::print(format_args!(
-            "{verdict}: {same} of {fields} fields and columns are the same in all {values} values compared{skipped}"
+            "{verdict}: {same} of {fields} fields and columns are identical; {values} values compared{skipped}"
         ))
     }
 }
 
-/// What only one of two results has.
+/// Items that only one of the two results has.
 #[derive(Default)]
 struct Unlike {
     words: Vec<String>,
@@ -141,14 +143,14 @@ struct Unlike {
 }
 
 impl Unlike {
-    /// Notes something, once.
+    /// Adds a message unless it is already present.
     fn note(&mut self, words: String) {
         if !self.words.contains(&words) {
             self.words.push(words);
         }
     }
 
-    /// Notes what stands alone; `times` are those of the two results.
+    /// Reports states or rows without a counterpart; `times` are those of the two results.
     fn note_alone(&mut self, place: &str, what: &str, matches: &Matches, times: [&[f64]; 2]) {
         let results = [("first", "second"), ("second", "first")];
         for ((alone, times), (has, lacks)) in matches.alone.iter().zip(times).zip(results) {
@@ -157,7 +159,7 @@ impl Unlike {
             };
             self.skipped += alone.len();
             self.note(format!(
-                "{place}: {} of the {} {what}s of the {has}, from t = {} on, not compared: the {lacks} has none at the same time",
+                "{place}: {} of the {} {what}s of the {has} result, from t = {}, not compared: the {lacks} has none at the same time",
                 alone.len(),
                 times.len(),
                 quantity(times[first], "s"),
@@ -166,7 +168,7 @@ impl Unlike {
     }
 }
 
-/// Pairs of numbers, gathered into a row.
+/// Accumulates differences into a row.
 struct Tally {
     row: Row,
 }
@@ -186,13 +188,13 @@ impl Tally {
         }
     }
 
-    /// Adds values that share one size; `place` names the k-th of them.
+    /// Adds values that are scaled by the same magnitude; `place` names the k-th one.
     fn add(&mut self, a: &[f64], b: &[f64], place: impl Fn(usize) -> String) {
         let finite = |values: &[f64]| max_norm(values.iter().filter(|x| x.is_finite()));
         let size = finite(a).max(finite(b));
         self.row.values += a.len().min(b.len());
         for (k, (&a, &b)) in a.iter().zip(b).enumerate() {
-            // Empty cells, and infinities of one sign, are the same.
+            // Empty cells and infinities of the same sign are equal.
             if a == b || (a.is_nan() && b.is_nan()) {
                 continue;
             }
@@ -218,7 +220,7 @@ fn compare_fields(a: &Results, b: &Results, unlike: &mut Unlike) -> Result<Vec<R
     let (times_a, times_b) = (times(&series_a), times(&series_b));
     if series_a.len() != series_b.len() {
         unlike.note(format!(
-            "fields: {} states against {}",
+            "fields: {} states in the first, {} in the second",
             series_a.len(),
             series_b.len()
         ));
@@ -232,7 +234,7 @@ fn compare_fields(a: &Results, b: &Results, unlike: &mut Unlike) -> Result<Vec<R
     Ok(tallies.into_values().map(|tally| tally.row).collect())
 }
 
-/// Compares the fields that both states have.
+/// Compares the common fields of two states.
 fn compare_state(
     one: &FieldFile,
     other: &FieldFile,
@@ -243,7 +245,7 @@ fn compare_state(
     if a.points.len() != b.points.len() {
         unlike.skipped += 1;
         unlike.note(format!(
-            "fields: {} points against {}",
+            "fields: {} points in the first, {} in the second",
             a.points.len() / 3,
             b.points.len() / 3
         ));
@@ -256,7 +258,9 @@ fn compare_state(
             .or_insert_with(|| Tally::new("fields", name));
         tally.add(a, b, |k| format!("at t = {time}, point {}", k / components));
     };
-    tally("Points", 3, &a.points, &b.points);
+    if a.is_on_cells == b.is_on_cells || !are_near(&a.points, &b.points) {
+        tally("Points", 3, &a.points, &b.points);
+    }
     let names = |data: &pericles_io::FieldData| {
         data.fields
             .iter()
@@ -270,6 +274,15 @@ fn compare_state(
         }
     }
     Ok(())
+}
+
+/// Whether points are the same to rounding: those of a file on cells are centroids.
+fn are_near(a: &[f64], b: &[f64]) -> bool {
+    /// Rounding of a mean of eight corners, with a margin.
+    const ROUNDING: f64 = 1e-12;
+    let size = max_norm(a.iter().chain(b));
+    let mut pairs = a.iter().zip(b);
+    pairs.all(|(a, b)| (a - b).abs() <= ROUNDING * size)
 }
 
 fn compare_tables(a: &Results, b: &Results, unlike: &mut Unlike) -> Result<Vec<Row>, CliError> {
@@ -294,7 +307,7 @@ fn compare_tables(a: &Results, b: &Results, unlike: &mut Unlike) -> Result<Vec<R
         let (one, other) = (read_csv(path)?, read_csv(twin)?);
         if one.rows() != other.rows() {
             unlike.note(format!(
-                "{file}: {} rows against {}",
+                "{file}: {} rows in the first, {} in the second",
                 one.rows(),
                 other.rows()
             ));
@@ -305,7 +318,7 @@ fn compare_tables(a: &Results, b: &Results, unlike: &mut Unlike) -> Result<Vec<R
                 unlike.note_alone(&file, "row", &matches, [a, b]);
                 matches
             }
-            // Without times, rows of the same number belong together.
+            // Without times, rows are matched by number.
             _ => {
                 unlike.skipped += one.rows().abs_diff(other.rows());
                 let common = one.rows().min(other.rows());
@@ -336,7 +349,7 @@ fn compare_tables(a: &Results, b: &Results, unlike: &mut Unlike) -> Result<Vec<R
     Ok(rows)
 }
 
-/// Notes the names that only one of two has.
+/// Reports names that only one of the two results has.
 fn note_missing(place: &str, a: &[String], b: &[String], unlike: &mut Unlike) {
     for (have, lack, which) in [(a, b, "first"), (b, a, "second")] {
         for name in have.iter().filter(|name| !lack.contains(name)) {
@@ -361,7 +374,7 @@ mod tests {
     }
 
     #[test]
-    fn a_number_that_is_none_differs_from_every_other() {
+    fn nan_and_infinity_differ_from_every_other_value() {
         let mut tally = Tally::new("a.csv", "x");
         let (nan, infinity) = (f64::NAN, f64::INFINITY);
         tally.add(

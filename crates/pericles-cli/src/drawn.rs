@@ -1,5 +1,5 @@
-//! Errors as they look on a terminal, with the places in the deck marked. What comes from users holds no control characters: those of the report itself are
-//! its colours.
+//! Errors on a terminal, with the locations in the deck marked. Control characters in users' texts are escaped; those
+//! of the report itself are its colours.
 
 use std::fmt::{self, Display, Formatter};
 
@@ -7,7 +7,7 @@ use miette::{Diagnostic, LabeledSpan, MietteHandler, ReportHandler, Severity, So
 
 use crate::console::printable;
 
-/// A diagnostic as it looks on a terminal.
+/// A diagnostic, formatted for a terminal.
 pub(crate) struct Drawn<'a>(pub(crate) &'a dyn Diagnostic);
 
 impl Display for Drawn<'_> {
@@ -70,8 +70,8 @@ mod tests {
     use pericles_deck::Deck;
 
     #[test]
-    fn a_drawn_error_holds_no_commands_to_the_terminal() {
-        // One in a key that is read, one in the text, one in the name of the file.
+    fn reported_errors_contain_no_terminal_commands() {
+        // Control characters in a key, in the text and in the file name.
         let deck = "title = \"\u{9b}31m\"\n[\"bo\\u001b[2Jdy\"]\nshape = 1\n";
         let error = Deck::parse(deck, "a\u{1b}[1m.toml", &[]).unwrap_err();
         let drawn: String = error

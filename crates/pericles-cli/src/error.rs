@@ -1,4 +1,4 @@
-//! What can go wrong on the way from the command line to the results, and how it is reported.
+//! Errors of the command-line program and how they are reported.
 
 use std::borrow::Borrow;
 use std::fmt::{self, Display, Formatter};
@@ -16,42 +16,42 @@ use crate::console;
 use crate::drawn::Drawn;
 use crate::exit::Exit;
 
-/// Everything that ends a command early.
+/// An error that ends a command.
 #[derive(Debug, thiserror::Error, Diagnostic)]
 #[non_exhaustive]
 pub(crate) enum CliError {
-    /// A run cannot begin or go on, or its results cannot be read.
+    /// A run cannot start or continue, or its results cannot be read.
     #[error(transparent)]
     #[diagnostic(transparent)]
     Run(OfRun<RunError>),
-    /// There is no deck to read.
+    /// The deck cannot be read.
     #[error("cannot read the deck {}: {reason}", path.display())]
     NoDeck {
         /// The file.
         path: PathBuf,
         /// Why.
         reason: String,
-        /// What may have been meant.
+        /// A suggestion.
         #[help]
         hint: Option<String>,
     },
-    /// The output folder is taken.
-    #[error("{} exists already", path.display())]
+    /// The output folder exists.
+    #[error("{} already exists", path.display())]
     OutExists {
         /// The folder.
         path: PathBuf,
-        /// What to do.
+        /// The advice.
         #[help]
         help: &'static str,
     },
-    /// A file that would be replaced.
-    #[error("{} exists already", path.display())]
-    #[diagnostic(help("give another name, or move the file away"))]
+    /// A file would be overwritten.
+    #[error("{} already exists", path.display())]
+    #[diagnostic(help("choose another name, or move the file"))]
     FileExists {
         /// The file.
         path: PathBuf,
     },
-    /// A surface that cannot be used.
+    /// A surface is not usable.
     #[error("{name}: {source}")]
     Surface {
         /// The file or shape.
@@ -59,47 +59,54 @@ pub(crate) enum CliError {
         /// Why.
         source: SurfaceError,
     },
-    /// A mesh that gives no points.
+    /// A mesh has no usable elements.
     #[error("{}: {problem}", file.display())]
     Mesh {
         /// The file.
         file: PathBuf,
-        /// What is wrong.
+        /// The problem.
         problem: String,
     },
-    /// A run without fields.
-    #[error("{} holds no field files", folder.display())]
-    #[diagnostic(help("the deck wrote none: see [output] fields"))]
+    /// Columns of a chart are in different tables.
+    #[error("no table contains all of the columns {columns}")]
+    #[diagnostic(help("choose columns of one table; `pericles info DIR` lists them"))]
+    NoCommonTable {
+        /// The columns.
+        columns: String,
+    },
+    /// A run has no field files.
+    #[error("{} contains no field files", folder.display())]
+    #[diagnostic(help("the deck requested none; add `fields` to [output] and run it again"))]
     NoFields {
         /// The folder of the run.
         folder: PathBuf,
     },
-    /// A spectrum of a lattice whose waves grow.
+    /// The spectrum of an unstable lattice cannot be measured.
     #[error(
-        "the spectrum cannot be measured: the kernel is unstable on this grid, some waves grow"
+        "the spectrum cannot be measured: the kernel is unstable on this grid (some waves grow exponentially)"
     )]
-    #[diagnostic(help("leave --measure out, or use a stable kernel"))]
+    #[diagnostic(help("omit --measure, or use a stable kernel"))]
     UnstableSpectrum,
-    /// A prestress that is not static.
-    #[error("--prestress needs a static run; the scheme of the deck is \"{scheme}\"")]
-    #[diagnostic(help("use time.scheme = \"static\", or leave --prestress out"))]
+    /// The scheme for `--prestress` is not static.
+    #[error("--prestress requires a static scheme; the deck has time.scheme = \"{scheme}\"")]
+    #[diagnostic(help("use time.scheme = \"static\", or omit --prestress"))]
     NotStatic {
         /// The scheme of the deck.
         scheme: &'static str,
     },
-    /// A vector with more components than the body has dimensions.
+    /// A vector has more components than the body has dimensions.
     #[error("{option} has {given} components; the body has {dimension} dimension(s)")]
-    #[diagnostic(help("give one component for each dimension of the body"))]
+    #[diagnostic(help("give at most one component per dimension of the body"))]
     Components {
         /// The option.
         option: &'static str,
-        /// Components given.
+        /// Number of components given.
         given: usize,
-        /// Of the body.
+        /// Dimension of the body.
         dimension: usize,
     },
-    /// A word that is neither a shape nor a file.
-    #[error("\"{given}\" is no shape")]
+    /// A word is neither a shape nor a file.
+    #[error("unknown shape \"{given}\"")]
     UnknownShape {
         /// The word.
         given: String,
@@ -107,21 +114,21 @@ pub(crate) enum CliError {
         #[help]
         allowed: &'static str,
     },
-    /// A vertex that a surface does not have.
-    #[error("the surface has no vertex {number}; its {vertices} vertices are numbered from 0 to {}", vertices.saturating_sub(1))]
+    /// A vertex number is out of range.
+    #[error("the surface has no vertex {number}; its {vertices} vertices are numbered 0 to {}", vertices.saturating_sub(1))]
     NoVertex {
         /// The number given.
         number: usize,
-        /// How many there are.
+        /// Number of vertices.
         vertices: usize,
     },
-    /// The system refuses signal handlers.
-    #[error("Ctrl-C and SIGTERM cannot be watched: {0}")]
+    /// Signal handlers cannot be installed.
+    #[error("cannot install handlers for Ctrl-C and SIGTERM: {0}")]
     Signals(#[source] std::io::Error),
 }
 
 impl CliError {
-    /// The exit status it leads to.
+    /// Returns the exit status.
     pub(crate) fn exit(&self) -> Exit {
         match self {
             Self::Run(OfRun(error)) => exit_of(error),
@@ -130,6 +137,7 @@ impl CliError {
             | Self::NotStatic { .. }
             | Self::Surface { .. }
             | Self::Mesh { .. }
+            | Self::NoCommonTable { .. }
             | Self::NoFields { .. } => Exit::Input,
             Self::UnknownShape { .. } | Self::NoVertex { .. } | Self::Components { .. } => {
                 Exit::Usage
@@ -139,7 +147,7 @@ impl CliError {
         }
     }
 
-    /// Reports on the standard error.
+    /// Reports the error on standard error.
     pub(crate) fn report(&self) {
         match self {
             Self::Run(OfRun(error)) => report(error),
@@ -148,7 +156,7 @@ impl CliError {
     }
 }
 
-/// The exit status that an error of a run leads to.
+/// Returns the exit status for an error of a run.
 pub(crate) fn exit_of(error: &RunError) -> Exit {
     match error {
         RunError::Deck(error) if error.is_too_large() => Exit::Memory,
@@ -170,19 +178,20 @@ pub(crate) fn exit_of(error: &RunError) -> Exit {
         RunError::Unstable { .. } => Exit::Numerical,
         RunError::Simulation(SimulationError::Misfit(_)) => Exit::Input,
         RunError::Unknown { .. } => Exit::Usage,
-        // Those left are the simulation's own faults, threads and JSON.
+        // Internal errors of the simulation, thread pool and JSON.
         _ => Exit::Internal,
     }
 }
 
-/// Reports an error of a run on the standard error: with the places in the deck marked on a terminal, in plain lines otherwise.
+/// Reports an error of a run on standard error: with the locations in the deck marked on a terminal, otherwise as plain
+/// lines.
 pub(crate) fn report(error: &RunError) {
     match error {
-        // One by one: the error as a whole would list them all a second time.
+        // One by one: the message of the whole error would list them all again.
         RunError::Deck(error)
             if !error.problems().is_empty() && std::io::stderr().is_terminal() =>
         {
-            /// Lines that are longer fill the screen.
+            /// Longer lines would fill the screen.
             const LONGEST: usize = 500;
             for problem in error.problems().iter().take(DeckError::SHOWN) {
                 if problem.location().line_length() > LONGEST {
@@ -211,7 +220,7 @@ fn report_diagnostic(error: &dyn Diagnostic) {
     }
 }
 
-/// An error of a run, owned or borrowed, with what the program advises.
+/// An error of a run, owned or borrowed, with advice.
 #[derive(Debug)]
 pub(crate) struct OfRun<E>(E);
 
@@ -233,13 +242,13 @@ impl<E: Borrow<RunError> + fmt::Debug> Diagnostic for OfRun<E> {
             RunError::Unstable { left, .. } => Box::new(left),
             RunError::Unknown { hint, .. } => Box::new(hint),
             RunError::Checkpoint { .. } => Box::new(
-                "the folder may have been changed since the run stopped; run the deck again",
+                "the folder may have been modified since the run stopped; run the deck again",
             ),
             RunError::InputChanged { .. } => {
-                Box::new("put the file back as it was, or start a new run")
+                Box::new("restore the original file, or start a new run")
             }
             RunError::NoResults { .. } | RunError::NoRun { .. } => {
-                Box::new("give the folder that `pericles run` made, such as ./branching")
+                Box::new("give the output folder of `pericles run`, such as ./branching")
             }
             _ => return None,
         })
@@ -260,7 +269,7 @@ impl<E: Borrow<RunError> + fmt::Debug> Diagnostic for OfRun<E> {
     }
 }
 
-/// Errors that are those of a run wherever they happen.
+/// Converts errors of the libraries into errors of a run.
 macro_rules! of_run {
     ($($error:ty),*) => {$(
         impl From<$error> for CliError {
@@ -287,7 +296,7 @@ mod tests {
     use std::path::Path;
 
     #[test]
-    fn exit_statuses_tell_whose_fault_it_is() {
+    fn errors_map_to_exit_statuses() {
         let path = || PathBuf::from("out");
         let io = |kind| IoError::writing(Path::new("out/a.csv"), io::Error::from(kind));
         let observed = |error: IoError| {
@@ -299,7 +308,7 @@ mod tests {
         let unstable = SimulationError::Unstable {
             step: 20,
             t: 1e-6,
-            cause: pericles::Cause::NotANumber,
+            cause: pericles::InstabilityCause::NotANumber,
             point: 0,
             place: [0.0; 3],
             speed: f64::INFINITY,

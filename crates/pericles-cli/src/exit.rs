@@ -1,8 +1,8 @@
-//! How the program ends: one status per kind of ending.
+//! Exit statuses of the program.
 
 use std::process::ExitCode;
 
-/// Exit statuses. Scripts may rely on them.
+/// Exit statuses; scripts may rely on them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub(crate) enum Exit {
@@ -22,7 +22,7 @@ pub(crate) enum Exit {
 }
 
 impl Exit {
-    /// All statuses in the order of their numbers.
+    /// All statuses in ascending order.
     const ALL: [Self; 13] = [
         Self::Done,
         Self::Internal,
@@ -39,32 +39,30 @@ impl Exit {
         Self::Terminated,
     ];
 
-    /// The number the shell sees.
+    /// Returns the number that the shell receives.
     pub(crate) fn status(self) -> u8 {
         self as u8
     }
 
     fn meaning(self) -> &'static str {
         match self {
-            Self::Done => "done",
+            Self::Done => "success",
             Self::Internal => "internal error: a bug in Pericles",
-            Self::Usage => "wrong command line, or an unknown study",
-            Self::Input => "the deck or another input is refused",
-            Self::Numerical => "numerical stop: the run became unstable",
-            Self::Comparison => "a comparison failed (reproduce, diff)",
-            Self::Output => "the output cannot be written, is full or in use",
-            Self::StoppedEarly => "stopped early at a limit, with a checkpoint",
-            Self::Memory => {
-                "more memory would be needed than there is, or than --max-memory allows"
-            }
-            Self::Interrupted => "Ctrl-C, with a checkpoint (a second one ends at once)",
-            Self::HungUp => "SIGHUP (the terminal was closed), with a checkpoint",
-            Self::Warned => "SIGUSR1 (such as the warning of a batch system), with a checkpoint",
+            Self::Usage => "invalid command line or unknown study",
+            Self::Input => "invalid deck or other input",
+            Self::Numerical => "numerical failure: the run became unstable",
+            Self::Comparison => "comparison failed (reproduce, diff)",
+            Self::Output => "output cannot be written: disk full, or folder exists or in use",
+            Self::StoppedEarly => "stopped at the --wall-time limit, with a checkpoint",
+            Self::Memory => "estimated memory exceeds --max-memory or the available memory",
+            Self::Interrupted => "Ctrl-C, with a checkpoint (a second Ctrl-C exits immediately)",
+            Self::HungUp => "SIGHUP (terminal closed), with a checkpoint",
+            Self::Warned => "SIGUSR1 (for example from a batch system), with a checkpoint",
             Self::Terminated => "SIGTERM, with a checkpoint",
         }
     }
 
-    /// The table for the help page.
+    /// Returns the table of exit statuses for the help text.
     pub(crate) fn table() -> String {
         let mut table = String::from("Exit status:\n");
         for exit in Self::ALL {
@@ -85,7 +83,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_help_page_lists_every_status_once() {
+    fn help_lists_every_exit_status_once() {
         let table = Exit::table();
         for status in [0, 1, 2, 3, 4, 5, 6, 7, 8, 129, 130, 138, 143] {
             let line = format!("\n  {status:>3}  ");

@@ -1,4 +1,4 @@
-//! `export`: the fields of a run in another format.
+//! `export`: convert the fields of a run to another format.
 
 use pericles_run::units::count;
 use pericles_run::{ExportFormat, Results};
@@ -11,7 +11,7 @@ use crate::exit::Exit;
 /// Converts the fields of a run.
 ///
 /// # Errors
-/// A folder without fields, a file that exists already, files that cannot be read or written.
+/// The folder has no fields, the file already exists, or files cannot be read or written.
 pub(crate) fn export(args: &ExportArgs) -> Result<Exit, CliError> {
     let results = Results::open(&args.dir)?;
     if results.fields()?.is_empty() {
@@ -31,7 +31,7 @@ pub(crate) fn export(args: &ExportArgs) -> Result<Exit, CliError> {
     }
     let outputs = pericles_run::export(&results, format, &path)?;
     console::print(format_args!(
-        "{}: {} outputs",
+        "{}: {} output times",
         path.display(),
         count(outputs as u64)
     ))?;

@@ -1,4 +1,4 @@
-//! The folder that a command writes into.
+//! The output folder of a command.
 
 use std::path::Path;
 
@@ -6,10 +6,11 @@ use pericles_io::{IoError, OutputFolder};
 
 use crate::error::CliError;
 
-/// The folder asked for; without one the first free of `./<deck's name><suffix>`, the same with `-2`, `-3` …
+/// Creates the requested folder or, by default, the first free one of `./<deck's name><suffix>` and the same with `-2`,
+/// `-3`, ...
 ///
 /// # Errors
-/// A folder that exists, unless `force` lets its results be replaced; one that cannot be made.
+/// The folder exists and `force` does not allow to replace its results, or it cannot be created.
 pub(crate) fn output_folder(
     out: Option<&Path>,
     force: Option<bool>,
@@ -18,7 +19,7 @@ pub(crate) fn output_folder(
 ) -> Result<OutputFolder, CliError> {
     let help = match force {
         Some(_) => "choose another --out, or replace the results in it with --force",
-        None => "choose another --out, or move the folder away",
+        None => "choose another --out, or move the folder",
     };
     let Some(path) = out else {
         let mut name = deck.file_stem().unwrap_or("run".as_ref()).to_owned();

@@ -1,24 +1,25 @@
-//! Which of the written states are meant.
+//! Selection of output times.
 
 use std::str::FromStr;
 
 use pericles_run::FieldFile;
 
-/// States by time.
+/// A selection of output times.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Frames {
-    /// Every one.
+    /// All.
     All,
     /// The first.
     First,
     /// The last.
     Last,
-    /// Those nearest to these times, s.
+    /// The output times nearest to these times, s.
     Near(Vec<f64>),
 }
 
 impl Frames {
-    /// Their numbers among states that are ordered in time; each once, in the order of the states.
+    /// Returns the indices of the selected states, in ascending order and without repetition; `states` are ordered in
+    /// time.
     pub(crate) fn among(&self, states: &[FieldFile]) -> Vec<usize> {
         let Some(last) = states.len().checked_sub(1) else {
             return Vec::new();
@@ -49,7 +50,7 @@ impl FromStr for Frames {
             ("first", _) => Ok(Self::First),
             ("last", _) => Ok(Self::Last),
             (_, Some(times)) => Ok(Self::Near(times)),
-            _ => Err("all, first, last, or times such as \"20 us\" or 1e-5,2e-5".into()),
+            _ => Err("expected all, first, last, or times such as \"20 us\" or 1e-5,2e-5".into()),
         }
     }
 }
@@ -59,7 +60,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn states_are_found_by_time_and_each_once() {
+    fn output_times_are_selected_once_each() {
         let states: Vec<FieldFile> = [0.0, 1e-6, 2e-6, 3e-6]
             .map(|time| FieldFile {
                 time,

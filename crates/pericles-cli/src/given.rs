@@ -1,4 +1,4 @@
-//! The deck that a command line names.
+//! Reading of the deck given on the command line.
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use crate::new;
 /// Reads a deck with overrides.
 ///
 /// # Errors
-/// A file that cannot be read, with what may have been meant; everything that is wrong in it.
+/// The file cannot be read (with a suggestion), or the deck is invalid.
 pub(crate) fn deck(path: &Path, overrides: &[String]) -> Result<Deck, CliError> {
     Deck::read(path, overrides).map_err(|error| match error {
         DeckError::Unreadable { path, reason } => CliError::NoDeck {
@@ -31,19 +31,19 @@ fn hint(path: &Path, kind: ErrorKind) -> Option<String> {
     let shown = path.display();
     match kind {
         ErrorKind::IsADirectory if path.join("run.json").exists() => Some(format!(
-            "it holds the results of a run: `pericles info {shown}` tells of them, `pericles resume {shown}` goes on"
+            "the folder contains the results of a run: show them with `pericles info {shown}`, or resume the run with `pericles resume {shown}`"
         )),
         ErrorKind::IsADirectory => beside(&path.join("deck.toml"), 0.0)
             .map(|found| format!("did you mean {}?", found.display())),
         ErrorKind::NotFound => {
-            /// Below this two names have little in common.
+            /// Names with a lower similarity are not suggested.
             const ALIKE: f64 = 0.8;
             let example = new::id_of(&path.to_string_lossy());
             let found =
                 beside(path, ALIKE).map(|found| format!("did you mean {}?", found.display()));
             found.or_else(|| {
                 Some(format!(
-                    "an example has this name; `pericles new {}` writes it here",
+                    "an example has this name; copy it here with `pericles new {}`",
                     example?
                 ))
             })
@@ -52,7 +52,7 @@ fn hint(path: &Path, kind: ErrorKind) -> Option<String> {
     }
 }
 
-/// The deck in the same folder whose name is most like that of the path.
+/// Returns the deck in the same folder with the most similar name.
 fn beside(path: &Path, least: f64) -> Option<PathBuf> {
     let folder = path.parent()?;
     let name = path.file_stem()?.to_string_lossy().into_owned();
@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn what_may_have_been_meant_is_said() {
+    fn missing_decks_lead_to_suggestions() {
         let place = tempfile::tempdir().unwrap();
         for name in ["mode-one.toml", "other.toml", "notes.txt"] {
             std::fs::write(place.path().join(name), "").unwrap();
@@ -109,6 +109,6 @@ mod tests {
         let alone = message(Path::new("fracture/branching"));
         assert!(alone.contains("pericles new fracture/branching"), "{alone}");
         std::fs::write(place.path().join("run.json"), "{}").unwrap();
-        says("", "holds the results of a run");
+        says("", "contains the results of a run");
     }
 }

@@ -1,8 +1,9 @@
-//! `info`: what an output folder holds.
+//! `info`: contents of an output folder and status of the run.
 
 use std::path::Path;
 
 use pericles_io::read_csv;
+use pericles_run::sweep::{SweepResults, is_sweep};
 use pericles_run::units::{bytes, count, duration, percent, quantity, threads};
 use pericles_run::{Results, file_name};
 
@@ -14,30 +15,13 @@ use crate::exit::Exit;
 /// Describes the results of a run.
 ///
 /// # Errors
-/// A folder that holds none, files of it that are damaged.
+/// The folder contains no results, or damaged files.
 pub(crate) fn info(args: &InfoArgs) -> Result<Exit, CliError> {
+    if is_sweep(&args.dir) {
+        return sweep(&SweepResults::open(&args.dir)?);
+    }
     let results = Results::open(&args.dir)?;
-    let mut lines = vec![("status", status(&results))];
-    lines.extend(origin(&results));
-    lines.push(("fields", fields(&results)?));
-    for table in results.tables() {
-        lines.push(("table", described(&table)?));
-    }
-    let pictures = results.pictures();
-    if let (Some(first), Some(last)) = (pictures.first(), pictures.last()) {
-        let text = format!(
-            "{} in pictures/, {} to {}",
-            pictures.len(),
-            file_name(first),
-            file_name(last)
-        );
-        lines.push(("pictures", text));
-    }
-    let steps: Vec<String> = results.checkpoints().into_iter().map(count).collect();
-    if !steps.is_empty() {
-        lines.push(("checkpoints", format!("of step {}", steps.join(" and "))));
-    }
-    lines.extend(audit(&results));
+    let mut lines = lines(&results)?;
     for warning in results.texts("/model/warnings") {
         lines.push(("warning", warning.to_owned()));
     }
@@ -53,8 +37,59 @@ pub(crate) fn info(args: &InfoArgs) -> Result<Exit, CliError> {
     Ok(Exit::Done)
 }
 
-/// How far the run came, and what to do if it did not come to its end.
-pub(crate) fn status(results: &Results) -> String {
+/// Returns name and text of each line about a run, without its warnings.
+///
+/// # Errors
+/// The folder has damaged files.
+pub(crate) fn lines(results: &Results) -> Result<Vec<(&'static str, String)>, CliError> {
+    let mut lines = vec![("status", status(results))];
+    lines.extend(origin(results));
+    lines.push(("fields", fields(results)?));
+    for table in results.tables() {
+        lines.push(("table", described(&table)?));
+    }
+    let pictures = results.pictures();
+    if let (Some(first), Some(last)) = (pictures.first(), pictures.last()) {
+        let text = format!(
+            "{} in pictures/, {} to {}",
+            pictures.len(),
+            file_name(first),
+            file_name(last)
+        );
+        lines.push(("pictures", text));
+    }
+    let steps: Vec<String> = results.checkpoints().into_iter().map(count).collect();
+    if !steps.is_empty() {
+        lines.push(("checkpoints", format!("at step {}", steps.join(" and "))));
+    }
+    lines.extend(audit(results));
+    Ok(lines)
+}
+
+/// Describes a sweep: deck, keys and the table of its runs.
+fn sweep(sweep: &SweepResults) -> Result<Exit, CliError> {
+    let folder = sweep.folder().display();
+    let mut text = format!("{folder}: parameter sweep of {}", sweep.deck_file());
+    for (key, values) in sweep.keys() {
+        text += &format!("\n  {:<12} {key} = {}", "key", values.join(", "));
+    }
+    let finished = sweep.runs().filter(
+        |(_, results)| matches!(results, Some(results) if results.text("/status") == "finished"),
+    );
+    let (finished, runs) = (finished.count(), sweep.runs().count());
+    text += &format!("\n  {:<12} {finished} of {runs} finished", "runs");
+    if finished < runs {
+        text += &format!("; resume the others with: pericles resume {folder}");
+    }
+    for line in sweep.table().lines() {
+        text += &format!("\n  {line}");
+    }
+    console::print(format_args!("{text}"))?;
+    Ok(Exit::Done)
+}
+
+/// Returns the progress of the run and, if it has not finished, how to continue.
+fn status(results: &Results) -> String {
     let status = results.text("/status");
     let seconds = results.number("/progress/wall_seconds").unwrap_or(f64::NAN);
     let mut text = format!(
@@ -67,9 +102,11 @@ pub(crate) fn status(results: &Results) -> String {
     let folder = results.folder().display();
     match status {
         "failed" => text += &format!("\n{:15}{}", "", results.text("/error")),
-        "stopped" => text += &format!("; go on with: pericles resume {folder}"),
+        "stopped" => text += &format!("; resume with `pericles resume {folder}`"),
         // Its process may have died: run.json is written at the start and at the end.
-        "running" => text = format!("running, or ended by force; then: pericles resume {folder}"),
+        "running" => {
+            text = format!("running, or killed; if killed, resume with `pericles resume {folder}`")
+        }
         _ => {}
     }
     text
@@ -82,7 +119,7 @@ fn origin(results: &Results) -> Vec<(&'static str, String)> {
         Some(_) => ("deck", format!("{}{overrides}", results.text("/deck/file"))),
         None => (
             "model",
-            "written by a program; run.json has it under model_data".into(),
+            "built by a program; stored in run.json under model_data".into(),
         ),
     };
     let used = results.count("/program/threads");
@@ -101,7 +138,7 @@ fn origin(results: &Results) -> Vec<(&'static str, String)> {
         (
             "body",
             format!(
-                "{}D, {} points, {} bonds as a {}, spacing {}, horizon {}",
+                "{}D, {} points, {} bonds (force kernel: {}), spacing {}, horizon {}",
                 results.count("/model/dimension"),
                 count(results.count("/model/points")),
                 count(results.count("/model/bonds")),
@@ -135,7 +172,7 @@ fn fields(results: &Results) -> Result<String, CliError> {
         .collect();
     let size = |path: &Path| path.metadata().map_or(0, |data| data.len());
     Ok(format!(
-        "{} states from {} to {}, {}: {}; open fields.pvd in ParaView",
+        "{} output times from {} to {}, {}: {}; open fields.pvd in ParaView",
         files.len(),
         quantity(first.time, "s"),
         quantity(last.time, "s"),
@@ -162,9 +199,9 @@ fn audit(results: &Results) -> Option<(&'static str, String)> {
         quantity(value.unwrap_or(f64::NAN), "J")
     };
     Some((
-        "audit",
+        "energy",
         format!(
-            "kinetic {}, elastic {}, dissipated {}, work {}; off by {}; {} bonds broken",
+            "kinetic {}, elastic {}, dissipated {}, external work {}; balance error {}; {} bonds broken",
             energy("kinetic_energy"),
             energy("elastic_energy"),
             energy("dissipated_energy"),

@@ -1,9 +1,11 @@
 //! The program `pericles`: peridynamics from a deck.
 //!
-//! `run`, `check`, `dispersion` and `resume` act on decks and output folders, [`sweep`] and [`converge`] on one deck at several values, `info`, `plot`,
-//! `diff` and `report` ([`page`]) on results, `reproduce` on the studies inside the program, `modes` on decks, `geodesics` on surfaces, `mesh` on files of meshes, `export` on results, `bench` on fixed bodies. Each command
-//! is one module; it reads arguments, calls a library and prints. What they share are the console, what is shown of a run ([`screen`]), the signals,
-//! and errors, which end in one message and one exit status ([`exit`]).
+//! Each command is one module, which reads its arguments, calls a library and prints the results. `run`, `check`,
+//! `modes`, `dispersion` and `resume` act on decks and output folders; [`sweep`] and [`converge`] on one deck with
+//! several values; `info`, `plot`, `diff`, `export` and `report` ([`page`]) on results; `reproduce` on the built-in
+//! studies; `geodesics` on surfaces; `mesh` on mesh files; `bench` on fixed bodies. The commands share the console,
+//! the display of a run ([`screen`]), signal handling, and errors, each of which leads to one message and one exit
+//! status ([`exit`]).
 
 mod args;
 mod bench;
@@ -50,14 +52,14 @@ use pericles::operator::InstructionSet;
 use args::{Cli, Command};
 use exit::Exit;
 
-/// The command line. Who gives a deck alone is told how to run it.
+/// Parses the command line. If a deck is given without a command, advises `pericles run`.
 fn parsed() -> Cli {
     Cli::try_parse().unwrap_or_else(|error| {
         let word = std::env::args().nth(1).unwrap_or_default();
-        // Nobody is left to hear that this could not be said.
+        // A failed write to standard error cannot be reported.
         let _ = error.print();
         if error.kind() == ErrorKind::InvalidSubcommand && word.ends_with(".toml") {
-            console::note(format_args!("A deck is run by: pericles run {word}"));
+            console::note(format_args!("To run a deck, use `pericles run {word}`."));
         }
         std::process::exit(error.exit_code())
     })
@@ -70,7 +72,7 @@ fn main() -> ExitCode {
         let name = set.name();
         let available = InstructionSet::detect().name();
         console::note(format_args!(
-            "--instruction-set {name} is not available: this machine has {available} and the sets below it."
+            "error: --instruction-set {name} is not available: this machine supports {available} and smaller sets."
         ));
         return Exit::Usage.into();
     }
@@ -93,7 +95,7 @@ fn main() -> ExitCode {
         Command::New(args) => new::new(&args),
         Command::Schema(args) => schema::schema(&args),
         Command::Completions(args) => manual::completions(&args),
-        Command::Man => manual::man(),
+        Command::Man(args) => manual::man(&args),
     };
     let exit = outcome.unwrap_or_else(|error| {
         let exit = error.exit();

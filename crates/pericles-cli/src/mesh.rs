@@ -1,4 +1,4 @@
-//! `mesh`: what a file of a mesh or a surface contains.
+//! `mesh`: report the contents of a mesh or surface file.
 
 use std::path::Path;
 
@@ -13,27 +13,27 @@ use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
 
-/// The results as JSON, in SI units.
+/// The JSON output, in SI units.
 #[derive(Serialize)]
 struct Results {
     file: String,
-    /// The unit of the file, m.
+    /// Length unit of the file, m.
     unit: f64,
     nodes: usize,
-    /// Elements of each kind.
+    /// Number of elements by type.
     elements: Vec<Count>,
-    /// Elements of types that are not used.
+    /// Number of elements of unsupported or unused types.
     left_out: Vec<Count>,
-    /// Elements that become points; none of a surface of triangles.
+    /// Elements that become points; 0 for a triangulated surface.
     points: usize,
-    /// Points in no group of elements.
+    /// Points that belong to no element group.
     in_no_group: usize,
-    /// m³; of a surface what it encloses.
+    /// Volume, for a surface the enclosed volume, m³.
     volume: f64,
-    /// Lower and upper corner, m.
+    /// Lower and upper corner of the bounding box, m.
     #[serde(rename = "box")]
     bounds: [[f64; 3]; 2],
-    /// Least, mean and largest size of an element, m; none of a surface.
+    /// Smallest, mean and largest element size, m; `None` for a surface.
     cell_size: Option<[f64; 3]>,
     sets: Vec<Set>,
     problems: Vec<String>,
@@ -43,7 +43,7 @@ struct Results {
 struct Count {
     kind: String,
     count: usize,
-    /// The word for so many, for people.
+    /// Singular or plural of the type, for the text output.
     #[serde(skip)]
     word: String,
 }
@@ -53,14 +53,14 @@ struct Set {
     name: String,
     kind: &'static str,
     points: usize,
-    /// m²
+    /// Area, m².
     area: Option<f64>,
 }
 
-/// Reports what is in a mesh.
+/// Reports the contents of a mesh.
 ///
 /// # Errors
-/// A file that cannot be read or is no mesh, output that cannot be written.
+/// The file cannot be read or is not a mesh, or output cannot be written.
 pub(crate) fn mesh(args: &MeshArgs) -> Result<Exit, CliError> {
     let mesh = read_mesh(&args.file, args.memory.bytes())?;
     let unit = args.unit.metres;
@@ -75,7 +75,7 @@ pub(crate) fn mesh(args: &MeshArgs) -> Result<Exit, CliError> {
     };
     let results = match mesh.points(&options) {
         Ok(points) => of_points(&args.file, Summary::new(&mesh, &points, unit), unit),
-        // Triangles in space: a surface, to be filled.
+        // Triangles that do not lie in a plane: a surface to be filled.
         Err(Problem::NotPlane { .. }) if options.blocks.is_none() => {
             let surface = TriangleSurface::of_mesh(&mesh, unit);
             let surface = surface.map_err(|error| refused(error.to_string()))?;
@@ -125,10 +125,10 @@ fn of_surface(file: &Path, mesh: &RawMesh, surface: &TriangleSurface, unit: f64)
     let open = surface.unmatched_edges();
     if open > 0 {
         problems.push(format!(
-            "the surface is not closed: {open} edges of triangles lack an opposite neighbour; shape = \"solid\" needs open = true"
+            "the surface is not closed: {open} triangle edges have no opposite neighbour; shape = \"solid\" requires open = true"
         ));
     } else if volume < 0.0 {
-        problems.push("all triangles look inwards".to_owned());
+        problems.push("all triangle normals point inwards".to_owned());
     }
     Results {
         file: file.display().to_string(),
@@ -155,7 +155,7 @@ fn kinds(all: &[(CellKind, usize)]) -> Vec<Count> {
     all.iter().map(one).collect()
 }
 
-/// Elements of types by their names in the file.
+/// Counts of elements by the type names in the file.
 fn types(all: Vec<(String, usize)>) -> Vec<Count> {
     let one = |(kind, count): (String, usize)| Count {
         word: kind.clone(),
@@ -188,7 +188,7 @@ fn text(results: &Results) -> String {
         Some([least, mean, most]) => {
             let outside = match results.in_no_group {
                 0 => String::new(),
-                some => format!(", {} in no group of elements", number(some)),
+                some => format!(", {} in no element group", number(some)),
             };
             line("points", format!("{}{outside}", number(results.points)));
             let [least, mean, most] = [least, mean, most].map(|size| quantity(size, "m"));
@@ -196,7 +196,7 @@ fn text(results: &Results) -> String {
         }
         None => line(
             "points",
-            "none: a surface, filled by shape = \"solid\"".into(),
+            "none: a surface, to be filled with shape = \"solid\"".into(),
         ),
     }
     line("volume", format!("{} m³", significant(results.volume, 5)));

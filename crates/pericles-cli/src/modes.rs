@@ -1,4 +1,4 @@
-//! `modes`: the lowest natural frequencies and mode shapes of a body.
+//! `modes`: compute the lowest natural frequencies and mode shapes of a body.
 
 use std::path::Path;
 
@@ -15,22 +15,22 @@ use crate::exit::Exit;
 use crate::folder::output_folder;
 use crate::given;
 
-/// The results as JSON.
+/// The JSON output.
 #[derive(Serialize)]
 struct Results<'a> {
     title: Option<&'a str>,
     points: usize,
     prestressed: bool,
-    /// Rigid-body motions that no support prevents.
+    /// Number of rigid-body modes.
     rigid_modes: usize,
-    /// Modes of equal frequency together, by ascending frequency.
+    /// Groups of equal frequency, in ascending order.
     modes: Vec<Group>,
     iterations: u32,
-    /// Products with the stiffness matrix.
+    /// Number of products with the stiffness matrix.
     products: u64,
 }
 
-/// Modes of equal frequency.
+/// A group of modes of equal frequency.
 #[derive(Serialize)]
 struct Group {
     frequency_hz: f64,
@@ -48,10 +48,11 @@ impl From<ModeGroup> for Group {
     }
 }
 
-/// Finds the modes of a deck's body, prints them and writes their shapes.
+/// Computes the modes of the body of a deck, prints them and writes the mode shapes.
 ///
 /// # Errors
-/// A deck that is refused, a prestress that is not static, modes that do not converge, output that cannot be written.
+/// The deck is invalid, the scheme for a prestress is not static, the modes do not converge, or output cannot be
+/// written.
 pub(crate) fn modes(args: &ModesArgs) -> Result<Exit, CliError> {
     args.execution.threads.start()?;
     let deck = given::deck(&args.deck, &args.overrides.set)?;
@@ -100,7 +101,7 @@ pub(crate) fn modes(args: &ModesArgs) -> Result<Exit, CliError> {
 
 fn print(results: &Results<'_>, folder: &Path) -> Result<(), IoError> {
     console::print(format_args!(
-        "{} points, {} rigid-body modes; {} iterations with {} products",
+        "{} points, {} rigid-body modes; {} iterations with {} matrix-vector products",
         count(results.points as u64),
         results.rigid_modes,
         results.iterations,

@@ -1,4 +1,4 @@
-//! `new`: example decks, carried inside the program, as starting points for one's own.
+//! `new`: list or copy the built-in example decks.
 
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -19,10 +19,10 @@ struct File {
     content: &'static [u8],
 }
 
-/// All of them but pages and expected numbers, by topic and name.
+/// All files except pages and expected values, by topic and name.
 const FILES: &[File] = include!(concat!(env!("OUT_DIR"), "/examples.rs"));
 
-/// A deck among the files.
+/// An example deck.
 struct Example {
     file: &'static File,
     text: &'static str,
@@ -36,19 +36,19 @@ impl Example {
         })
     }
 
-    /// `topic/name` without the ending.
+    /// Returns `topic/name` without the extension.
     fn id(&self) -> String {
         let name = self.file.name.trim_end_matches(".toml");
         format!("{}/{name}", self.file.topic)
     }
 
-    /// The sentence that the deck begins with.
+    /// Returns the first line of the deck, which describes it.
     fn sentence(&self) -> &'static str {
         let first = self.text.lines().next().unwrap_or_default();
         first.trim_start_matches(['#', ' '])
     }
 
-    /// The files of the topic that the deck names: meshes, points, tables.
+    /// Returns the files that the deck reads: meshes, points, tables.
     fn companions(&self) -> impl Iterator<Item = &'static File> {
         let (topic, text) = (self.file.topic, self.text);
         FILES.iter().filter(move |file| {
@@ -57,10 +57,10 @@ impl Example {
     }
 }
 
-/// Lists the examples, or writes one with the files it reads.
+/// Lists the examples, or copies one with the files it reads.
 ///
 /// # Errors
-/// An unknown example; a file that exists already or cannot be written.
+/// The example is unknown, or a file already exists or cannot be written.
 pub(crate) fn new(args: &NewArgs) -> Result<Exit, CliError> {
     let Some(id) = &args.example else {
         return list();
@@ -79,7 +79,7 @@ pub(crate) fn new(args: &NewArgs) -> Result<Exit, CliError> {
         .companions()
         .map(|file| (folder.join(file.name), file.content))
         .collect();
-    // All or nothing: a deck without its files is of no use.
+    // All or nothing: the deck needs its files.
     let taken = companions.iter().map(|(path, _)| path).chain([&deck]);
     if let Some(path) = taken.into_iter().find(|path| path.exists()) {
         return Err(CliError::FileExists { path: path.clone() });
@@ -90,7 +90,7 @@ pub(crate) fn new(args: &NewArgs) -> Result<Exit, CliError> {
     write(&deck, example.text.as_bytes())?;
     let deck = deck.display();
     console::print(format_args!(
-        "{deck}: {}\nchange it, then: pericles check {deck}; pericles run {deck}",
+        "{deck}: {}\nEdit it, then run `pericles check {deck}` and `pericles run {deck}`.",
         example.sentence()
     ))?;
     Ok(Exit::Done)
@@ -104,13 +104,13 @@ fn list() -> Result<Exit, CliError> {
         text += &format!("{id:<width$}  {}\n", example.sentence());
     }
     console::print(format_args!(
-        "{text}\nwrite one into the present folder with: pericles new {}",
+        "{text}\nCopy one to the current folder with `pericles new NAME`, such as `pericles new {}`.",
         Example::all().next().map(|e| e.id()).unwrap_or_default()
     ))?;
     Ok(Exit::Done)
 }
 
-/// The example that a path may mean.
+/// Returns the example that a path may refer to.
 pub(crate) fn id_of(path: &str) -> Option<String> {
     let wanted = path.trim_start_matches("examples/");
     find(wanted).ok().map(|example| example.id())
@@ -118,18 +118,18 @@ pub(crate) fn id_of(path: &str) -> Option<String> {
 
 fn find(id: &str) -> Result<Example, RunError> {
     let wanted = id.trim_end_matches(".toml");
-    // The name alone is enough where only one topic has it.
+    // The name alone suffices if it is unique.
     let named = |example: &Example| {
         example.id() == wanted || example.file.name.trim_end_matches(".toml") == wanted
     };
     let mut found: Vec<Example> = Example::all().filter(named).collect();
-    let all = "`pericles new` lists all examples";
+    let all = "list all examples with `pericles new`";
     if found.len() > 1 {
         let ids: Vec<String> = found.iter().map(Example::id).collect();
         return Err(RunError::Unknown {
-            kind: "single example",
+            kind: "unique example",
             name: id.to_owned(),
-            hint: format!("{}? {all}", ids.join(" or ")),
+            hint: format!("did you mean {}? {all}", ids.join(" or ")),
         });
     }
     if let Some(example) = found.pop() {
@@ -139,7 +139,7 @@ fn find(id: &str) -> Result<Example, RunError> {
     Err(RunError::unknown("example", id, ids, all))
 }
 
-/// Writes a file that must not exist.
+/// Writes a new file.
 fn write(path: &Path, content: &[u8]) -> Result<(), CliError> {
     let written = fs::OpenOptions::new()
         .write(true)
@@ -157,7 +157,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_deck_of_the_repository_is_inside_and_says_what_it_shows() {
+    fn every_example_deck_is_built_in_and_starts_with_a_description() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
         let mut decks = 0;
         for topic in fs::read_dir(&root).unwrap() {
@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn names_are_found_with_and_without_topic_and_slips_are_recognised() {
+    fn examples_are_found_with_and_without_topic_and_typos_lead_to_suggestions() {
         assert_eq!(
             find("fracture/branching").map(|e| e.id()).unwrap(),
             "fracture/branching"

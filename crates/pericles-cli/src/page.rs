@@ -1,4 +1,4 @@
-//! `report`: a run on one page of HTML that needs no other file, to be mailed or kept.
+//! `report`: a self-contained HTML page about a run.
 
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 
 use base64::prelude::{BASE64_STANDARD, Engine as _};
 use pericles_io::{IoError, escaped, write_atomically};
+use pericles_run::sweep::{SweepResults, is_sweep};
+use pericles_run::units::{bytes, count, quantity, significant};
 use pericles_run::{Results, file_name};
 use serde_json::Value;
 
@@ -15,81 +17,118 @@ use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
 use crate::info;
+use crate::plot;
 
-/// Pictures of one field on the page; of more, so many evenly spread ones.
+/// Most pictures per field; of more, evenly spaced ones are shown.
 const MOST_PICTURES: usize = 6;
 
 const STYLE: &str = "\
 body { font: 16px/1.5 system-ui, sans-serif; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; color: #222; }
-h1 { margin-bottom: 0; } h2 { margin-top: 2.5rem; border-bottom: 1px solid #ccc; }
+h1 { margin-bottom: .5rem; } h2 { margin-top: 2.5rem; border-bottom: 1px solid #ccc; }
 img { max-width: 100%; } figure { margin: 1rem 0; } figcaption { color: #555; }
-table { border-collapse: collapse; } td { padding: .15rem 1rem .15rem 0; vertical-align: top; } td:first-child { color: #555; white-space: nowrap; }
-pre { background: #f6f6f6; padding: 1rem; overflow-x: auto; font-size: 14px; } .warning { background: #fff4d6; padding: .5rem 1rem; margin: .5rem 0; }";
+.thumbnails { display: grid; grid-template-columns: repeat(3, 1fr); gap: 1rem; } .thumbnails figure { margin: 0; font-size: 14px; }
+table { border-collapse: collapse; } td, th { padding: .15rem 1rem .15rem 0; vertical-align: top; text-align: left; }
+td:first-child { color: #555; white-space: nowrap; } .runs td { white-space: nowrap; }
+nav a { margin-right: 1rem; } .wide { overflow-x: auto; }
+pre { background: #f6f6f6; padding: 1rem; overflow-x: auto; font-size: 14px; } .warning { background: #fff4d6; padding: .5rem 1rem; margin: .5rem 0; }
+@media print { body { max-width: none; margin: 0; font-size: 11px; } nav { display: none; } figure, tr, .warning { break-inside: avoid; } h2 { break-after: avoid; } pre { white-space: pre-wrap; } }";
 
-/// Writes the page.
+/// Writes the report of a run or a parameter sweep.
 ///
 /// # Errors
-/// A folder without results, files of it that are damaged, a page that exists or cannot be written.
+/// The folder has no results or damaged files, or the page cannot be written.
 pub(crate) fn report(args: &ReportArgs) -> Result<Exit, CliError> {
-    let results = Results::open(&args.dir)?;
+    let page = match is_sweep(&args.dir) {
+        true => of_sweep(&SweepResults::open(&args.dir)?)?,
+        false => of_run(&Results::open(&args.dir)?)?,
+    };
     let path = args
         .out
         .clone()
         .unwrap_or_else(|| args.dir.join("report.html"));
-    let page = page(&results)?;
     write_atomically(&path, |file| file.write_all(page.as_bytes()))?;
     console::print(format_args!("{}", path.display()))?;
     Ok(Exit::Done)
 }
 
-fn page(results: &Results) -> Result<String, CliError> {
+/// Returns the report of a run: summary, warnings, pictures, time histories, energy balance, model, deck, machine.
+fn of_run(results: &Results) -> Result<String, CliError> {
     let title = match results.text("/title") {
         "" => results.folder().display().to_string(),
         title => title.to_owned(),
     };
     let mut page = Page::default();
-    page.text(format_args!(
-        "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<title>{0}</title>\n<style>\n{STYLE}\n</style>\n<h1>{0}</h1>\n",
-        escaped(&title)
-    ));
-    page.text(format_args!("<p>{}</p>\n", escaped(&info::status(results))));
-    for warning in results.texts("/model/warnings") {
-        page.text(format_args!(
-            "<p class=\"warning\">Warning: {}</p>\n",
-            escaped(warning)
-        ));
+    page.summary(&info::lines(results)?);
+    let warnings = ["/model/warnings", "/audit/warnings"];
+    let warnings = warnings
+        .iter()
+        .flat_map(|pointer| results.texts(pointer))
+        .map(|warning| format!("<p class=\"warning\">{}</p>\n", escaped(warning)));
+    let warnings: Vec<String> = warnings.collect();
+    if !warnings.is_empty() {
+        page.heading("Warnings");
+        page.html += &warnings.concat();
     }
     page.pictures(results)?;
     page.histories(results)?;
-    page.heading("Model");
-    page.values(results.value("/model"));
     if results.value("/audit").is_some_and(Value::is_object) {
-        page.heading("Audit of energy and momentum (SI units)");
+        page.heading("Energy balance");
         page.values(results.value("/audit"));
     }
+    page.heading("Model");
+    page.values(results.value("/model"));
     page.source(results);
     page.heading("Machine");
     page.values(results.value("/program"));
     page.values(results.value("/progress"));
-    page.text(format_args!("</html>\n"));
-    Ok(page.html)
+    Ok(page.finished(&title))
 }
 
-/// A page that grows.
+/// Returns the report of a sweep: summary, table of the runs, charts of scalars, last pictures of the runs.
+fn of_sweep(sweep: &SweepResults) -> Result<String, CliError> {
+    let mut page = Page::default();
+    let mut lines = vec![("deck", sweep.deck_file().to_owned())];
+    lines.extend(
+        sweep
+            .keys()
+            .map(|(key, values)| ("key", format!("{key} = {}", values.join(", ")))),
+    );
+    page.summary(&lines);
+    page.heading("Runs");
+    page.table(sweep.table().rows());
+    page.heading("Charts");
+    for scalar in plot::usual_scalars(sweep) {
+        let chart = sweep.chart(None, &scalar)?;
+        let png = chart.width(1000).to_png("chart")?;
+        page.figure(&png, &format!("{} of each run", scalar.replace('_', " ")));
+    }
+    let last = sweep
+        .runs()
+        .filter_map(|(name, results)| Some((name.to_owned(), results?.pictures().pop()?)));
+    let last: Vec<(String, PathBuf)> = last.collect();
+    if !last.is_empty() {
+        page.heading("Pictures");
+        page.thumbnails(
+            last.iter()
+                .map(|(name, path)| (name.clone(), path.as_path())),
+        )?;
+    }
+    Ok(page.finished(&format!("Parameter sweep of {}", sweep.deck_file())))
+}
+
+/// The HTML text after the title.
 #[derive(Default)]
 struct Page {
     html: String,
+    headings: Vec<&'static str>,
 }
 
 impl Page {
-    /// The deck as it was given, or the model as JSON.
+    /// Adds the deck with its overrides, or the model as JSON.
     fn source(&mut self, results: &Results) {
         if let Some(model) = results.value("/model_data/model") {
             self.heading("Model data");
-            self.text(format_args!(
-                "<pre>{}</pre>\n",
-                escaped(&format!("{model:#}"))
-            ));
+            self.values(Some(model));
             return;
         }
         self.heading("Deck");
@@ -100,7 +139,7 @@ impl Page {
         ));
         if !overrides.is_empty() {
             self.text(format_args!(
-                "<p>Changed on the command line: {}</p>\n",
+                "<p>Overrides on the command line: {}</p>\n",
                 escaped(&overrides.join(", "))
             ));
         }
@@ -111,12 +150,68 @@ impl Page {
     }
 
     fn text(&mut self, text: std::fmt::Arguments<'_>) {
-        // A string takes any text.
+        // Writing to a string does not fail.
         let _ = self.html.write_fmt(text);
     }
 
-    fn heading(&mut self, heading: &str) {
-        self.text(format_args!("<h2>{}</h2>\n", escaped(heading)));
+    fn heading(&mut self, heading: &'static str) {
+        self.text(format_args!("<h2 id=\"{0}\">{0}</h2>\n", escaped(heading)));
+        self.headings.push(heading);
+    }
+
+    /// Adds the summary, which comes first.
+    fn summary(&mut self, lines: &[(&str, String)]) {
+        self.text(format_args!("<table>\n"));
+        for (name, value) in lines {
+            let value = escaped(value).replace('\n', "<br>");
+            self.text(format_args!("<tr><td>{name}</td><td>{value}</td></tr>\n"));
+        }
+        self.text(format_args!("</table>\n"));
+    }
+
+    /// Completes the page with its title and contents.
+    fn finished(self, title: &str) -> String {
+        let title = escaped(title);
+        let links = self.headings.iter();
+        let links = links.map(|heading| format!("<a href=\"#{0}\">{0}</a>", escaped(heading)));
+        let links: Vec<String> = links.collect();
+        format!(
+            "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<title>{title}</title>\n<style>\n{STYLE}\n</style>\n<h1>{title}</h1>\n<nav>{}</nav>\n{}</html>\n",
+            links.join("\n"),
+            self.html
+        )
+    }
+
+    /// Adds a table with a header.
+    fn table(&mut self, rows: &[Vec<String>]) {
+        self.text(format_args!("<div class=\"wide\"><table class=\"runs\">\n"));
+        for (number, row) in rows.iter().enumerate() {
+            let cell = if number == 0 { "th" } else { "td" };
+            let cells = row.iter().map(|text| {
+                let text = match text.parse::<f64>() {
+                    Ok(value) if value.fract() != 0.0 => significant(value, 4),
+                    _ => text.clone(),
+                };
+                format!("<{cell}>{}</{cell}>", escaped(&text))
+            });
+            let cells: String = cells.collect();
+            self.text(format_args!("<tr>{cells}</tr>\n"));
+        }
+        self.text(format_args!("</table></div>\n"));
+    }
+
+    /// Adds small pictures side by side.
+    fn thumbnails<'a>(
+        &mut self,
+        pictures: impl Iterator<Item = (String, &'a Path)>,
+    ) -> Result<(), CliError> {
+        self.text(format_args!("<div class=\"thumbnails\">\n"));
+        for (caption, path) in pictures {
+            let png = std::fs::read(path).map_err(|error| IoError::reading(path, error))?;
+            self.figure(&png, &caption);
+        }
+        self.text(format_args!("</div>\n"));
+        Ok(())
     }
 
     fn figure(&mut self, png: &[u8], caption: &str) {
@@ -127,7 +222,7 @@ impl Page {
         ));
     }
 
-    /// The pictures of every field, evenly spread in time.
+    /// Adds the pictures of every field, evenly spaced in time, the last one first.
     fn pictures(&mut self, results: &Results) -> Result<(), CliError> {
         let mut series: Vec<(String, Vec<PathBuf>)> = Vec::new();
         for path in results.pictures() {
@@ -149,28 +244,38 @@ impl Page {
             self.heading("Pictures");
         }
         for (field, paths) in series {
-            // The last one is the one to see first.
-            for path in spread(&paths).into_iter().rev() {
-                let png = std::fs::read(path).map_err(|error| IoError::reading(path, error))?;
-                let name = file_name(path);
-                self.figure(&png, &format!("{} ({name})", field.replace('_', " ")));
+            let caption =
+                |path: &Path| format!("{} ({})", field.replace('_', " "), file_name(path));
+            // The last one large, earlier ones as thumbnails.
+            let shown = spread(&paths);
+            let Some((last, earlier)) = shown.split_last() else {
+                continue;
+            };
+            let png = std::fs::read(last).map_err(|error| IoError::reading(last, error))?;
+            self.figure(&png, &caption(last));
+            if !earlier.is_empty() {
+                self.thumbnails(earlier.iter().map(|path| (caption(path), *path)))?;
             }
             if paths.len() > MOST_PICTURES {
-                let text = format!("{MOST_PICTURES} of {} pictures of {field}", paths.len());
+                let text = format!(
+                    "{MOST_PICTURES} of {} pictures of {field} shown; all are in the folder pictures/",
+                    paths.len()
+                );
                 self.text(format_args!("<p>{}</p>\n", escaped(&text)));
             }
         }
         Ok(())
     }
 
+    /// Adds the charts of all tables.
     fn histories(&mut self, results: &Results) -> Result<(), CliError> {
+        let mut is_first = true;
         for table in results.tables() {
             let file = file_name(&table);
-            let charts = charts::of_table(&table, |_| true)?;
-            if !charts.is_empty() {
-                self.heading(&file);
-            }
-            for chart in charts {
+            for chart in charts::of_table(&table, |_| true)? {
+                if std::mem::take(&mut is_first) {
+                    self.heading("Time histories");
+                }
                 let png = chart.drawn().width(1000).to_png(&file)?;
                 self.figure(&png, &format!("{} ({file})", chart.name));
             }
@@ -178,7 +283,7 @@ impl Page {
         Ok(())
     }
 
-    /// The values of an object, those of objects in it behind a dot.
+    /// Adds a table of the values of an object, rounded and with units; keys of nested objects follow a comma.
     fn values(&mut self, object: Option<&Value>) {
         let mut rows = Vec::new();
         collect(object.unwrap_or(&Value::Null), "", &mut rows);
@@ -198,30 +303,81 @@ fn collect(value: &Value, name: &str, rows: &mut Vec<(String, String)>) {
     let text = match value {
         Value::Object(object) => {
             for (key, value) in object {
-                let key = key.replace('_', " ");
-                let name = if name.is_empty() {
-                    key
-                } else {
-                    format!("{name}, {key}")
+                let name = match name {
+                    "" => key.clone(),
+                    outer => format!("{outer}, {key}"),
                 };
                 collect(value, &name, rows);
             }
             return;
         }
         Value::Null => return,
-        Value::String(text) => text.clone(),
         Value::Array(items) if items.is_empty() => return,
-        Value::Array(items) => items
-            .iter()
-            .map(Value::to_string)
-            .collect::<Vec<_>>()
-            .join(", "),
-        other => other.to_string(),
+        Value::Array(items) => {
+            let items: Vec<String> = items.iter().map(|item| shown(name, item)).collect();
+            items.join(", ")
+        }
+        other => shown(name, other),
     };
-    rows.push((name.to_owned(), text));
+    rows.push((name.replace('_', " "), text));
 }
 
-/// At most so many of a list, evenly spread, the first and the last among them.
+/// Returns a rounded value with the unit of its key.
+fn shown(name: &str, value: &Value) -> String {
+    let key = name.rsplit(", ").next().unwrap_or(name);
+    match value {
+        Value::String(text) => text.clone(),
+        Value::Number(number) => match (number.as_u64(), number.as_f64(), unit_of(key)) {
+            (Some(whole), _, "B") => bytes(whole),
+            (Some(whole), _, "") => count(whole),
+            (_, Some(x), "") => significant(x, 4),
+            (_, Some(x), unit) => quantity(x, unit),
+            _ => number.to_string(),
+        },
+        Value::Bool(true) => "yes".into(),
+        Value::Bool(false) => "no".into(),
+        other => other.to_string(),
+    }
+}
+
+/// Returns the SI unit of a number of `run.json`; empty if it has none.
+fn unit_of(key: &str) -> &'static str {
+    const UNITS: [(&str, &[&str]); 9] = [
+        ("m", &["spacing", "horizon"]),
+        ("s", &["dt", "stable_step", "t", "wall_seconds"]),
+        (
+            "rad/s",
+            &[
+                "highest_frequency",
+                "highest_frequency_bound",
+                "limiting_frequency",
+                "limiting_frequency_bound",
+            ],
+        ),
+        ("Pa", &["youngs_modulus", "bulk_modulus", "shear_modulus"]),
+        ("J/m²", &["fracture_energy"]),
+        (
+            "J",
+            &[
+                "kinetic_energy",
+                "elastic_energy",
+                "dissipated_energy",
+                "external_work",
+                "initial_energy",
+                "scheme_correction",
+                "balance",
+                "largest_balance",
+            ],
+        ),
+        ("kg m/s", &["momentum", "impulse", "momentum_error"]),
+        ("B", &["memory_estimate", "peak_memory"]),
+        ("1/s", &["directed_bond_updates_per_second"]),
+    ];
+    let found = UNITS.iter().find(|(_, keys)| keys.contains(&key));
+    found.map_or("", |(unit, _)| unit)
+}
+
+/// Returns at most [`MOST_PICTURES`] evenly spaced entries, including the first and the last.
 fn spread(paths: &[PathBuf]) -> Vec<&Path> {
     if paths.len() <= MOST_PICTURES {
         return paths.iter().map(PathBuf::as_path).collect();

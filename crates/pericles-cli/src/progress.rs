@@ -1,14 +1,15 @@
-//! How far a run is: a bar on a terminal, a line every tenth otherwise.
+//! Progress of a run: a bar on a terminal, otherwise a line every 10 %. Steps that take seconds also report their iterations.
 
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use pericles_run::units::{duration, quantity};
+use pericles::IterationProgress;
+use pericles_run::units::{count, duration, quantity, significant};
 
 use crate::console;
 
-/// Shows on the standard error how far a run is.
+/// Shows the progress of a run on standard error.
 pub(crate) struct Progress {
     style: Style,
     first: u64,
@@ -21,17 +22,21 @@ enum Style {
         bar: ProgressBar,
         shown: Instant,
     },
-    /// The next tenth that is worth a line.
+    /// The next tenth to report.
     Lines {
         next: u64,
+        /// When the last line was printed.
+        printed: Instant,
     },
 }
 
-/// Between two changes of the text beside the bar.
+/// Interval between two lines about iterations.
+const BETWEEN_LINES: Duration = Duration::from_secs(1);
+/// Interval between updates of the text beside the bar.
 const REFRESH: Duration = Duration::from_millis(200);
 
 impl Progress {
-    /// A run from step `first` to step `steps`.
+    /// Starts the display of a run from step `first` to step `steps`.
     pub(crate) fn new(first: u64, steps: u64) -> Self {
         let now = Instant::now();
         let style = if std::io::stderr().is_terminal() {
@@ -45,6 +50,7 @@ impl Progress {
         } else {
             Style::Lines {
                 next: tenth(first, steps) + 1,
+                printed: now,
             }
         };
         Self {
@@ -55,7 +61,7 @@ impl Progress {
         }
     }
 
-    /// After a step.
+    /// Updates the display after a step.
     pub(crate) fn step(&mut self, step: u64, t: f64) {
         match &mut self.style {
             Style::Bar { bar, shown } => {
@@ -65,10 +71,11 @@ impl Progress {
                     *shown = Instant::now();
                 }
             }
-            Style::Lines { next } => {
+            Style::Lines { next, printed } => {
                 let reached = tenth(step, self.steps);
                 if reached >= *next && step < self.steps {
                     *next = reached + 1;
+                    *printed = Instant::now();
                     let done = (step - self.first) as f64;
                     let left = (self.steps - step) as f64;
                     let seconds = self.began.elapsed().as_secs_f64() / done * left;
@@ -84,7 +91,34 @@ impl Progress {
         }
     }
 
-    /// Prints a line on the standard error, above the bar.
+    /// Reports an iteration within a step.
+    pub(crate) fn iteration(&mut self, progress: IterationProgress) {
+        let IterationProgress {
+            iteration,
+            residual,
+            tolerance,
+            evaluations,
+        } = progress;
+        let text = format!(
+            "iteration {iteration}: residual {} of {}, {} evaluations",
+            significant(residual, 2),
+            significant(tolerance, 2),
+            count(evaluations)
+        );
+        match &mut self.style {
+            Style::Bar { bar, shown } if shown.elapsed() >= REFRESH => {
+                bar.set_message(text);
+                *shown = Instant::now();
+            }
+            Style::Lines { printed, .. } if printed.elapsed() >= BETWEEN_LINES => {
+                console::note(format_args!("step in progress, {text}"));
+                *printed = Instant::now();
+            }
+            _ => {}
+        }
+    }
+
+    /// Prints a line on standard error, above the bar.
     pub(crate) fn note(&self, line: std::fmt::Arguments<'_>) {
         match &self.style {
             Style::Bar { bar, .. } => bar.suspend(|| console::note(line)),
@@ -92,7 +126,7 @@ impl Progress {
         }
     }
 
-    /// Takes the bar away.
+    /// Removes the bar.
     pub(crate) fn finish(&self) {
         if let Style::Bar { bar, .. } = &self.style {
             bar.finish_and_clear();
@@ -100,7 +134,7 @@ impl Progress {
     }
 }
 
-/// Whole tenths of the way.
+/// Returns the completed tenths of a run.
 fn tenth(step: u64, steps: u64) -> u64 {
     (u128::from(step) * 10 / u128::from(steps.max(1))) as u64
 }
@@ -110,7 +144,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn tenths() {
+    fn completed_tenths_are_rounded_down() {
         assert_eq!([0, 9, 10, 99, 100].map(|k| tenth(k, 100)), [0, 0, 1, 9, 10]);
         assert_eq!(tenth(3, 0), 30);
         assert_eq!(tenth(u64::MAX, u64::MAX), 10);

@@ -1,4 +1,4 @@
-//! `reproduce`: studies of papers, computed again and compared with the published numbers.
+//! `reproduce`: recompute published results and compare.
 
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ use crate::error::CliError;
 use crate::exit::Exit;
 use crate::screen::Screen;
 
-/// The results as JSON.
+/// The JSON output.
 #[derive(Serialize)]
 struct Results<'a> {
     study: &'a str,
@@ -25,10 +25,10 @@ struct Results<'a> {
     seconds: f64,
 }
 
-/// Runs a study, or lists all.
+/// Runs a study, or lists all of them.
 ///
 /// # Errors
-/// An unknown study, output that cannot be written, and what can go wrong with a run.
+/// The study is unknown, output cannot be written, or a run fails.
 pub(crate) fn reproduce(args: &ReproduceArgs) -> Result<Exit, CliError> {
     let Some(id) = &args.id else {
         return list();
@@ -36,7 +36,7 @@ pub(crate) fn reproduce(args: &ReproduceArgs) -> Result<Exit, CliError> {
     let study = find(id)?;
     args.execution.threads.start()?;
     let json_only = args.json.as_deref() == Some(Path::new("-"));
-    // Made first: nobody wants to wait for a study and lose its figures.
+    // Created first, so that a long study does not fail at the end.
     let folder = match &args.out {
         Some(path) => Some(OutputFolder::create(path, false)?),
         None if json_only => None,
@@ -72,14 +72,14 @@ pub(crate) fn reproduce(args: &ReproduceArgs) -> Result<Exit, CliError> {
         let judged = rows.iter().filter_map(Row::pass).count();
         let failed = rows.iter().filter(|row| row.pass() == Some(false)).count();
         console::print(format_args!(
-            "{} of {judged} judged rows hold; {}",
+            "{} of {judged} rows with a tolerance pass; {}",
             judged - failed,
             duration(seconds)
         ))?;
     }
     if let (Some(folder), false, false) = (&folder, quiet, json_only) {
         let path = folder.path().display();
-        console::print(format_args!("figures in {path}"))?;
+        console::print(format_args!("Figures in {path}"))?;
     }
     Ok(if pass { Exit::Done } else { Exit::Comparison })
 }
@@ -105,7 +105,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_make_folders() {
+    fn study_names_map_to_single_folders() {
         for study in studies() {
             let folder = default_folder(study.id);
             assert_eq!(folder.components().count(), 2, "{}", folder.display());

@@ -1,4 +1,4 @@
-//! `run` and `resume`: a simulation in its folder, from a first step to its end or to a signal.
+//! `run` and `resume`: run a simulation in its output folder until its end, a signal or the time limit.
 
 use pericles_run::sweep::is_sweep;
 use pericles_run::units::{count, quantity};
@@ -20,7 +20,7 @@ use crate::text_chart::TextChart;
 /// Runs a deck.
 ///
 /// # Errors
-/// A deck that is refused, output that cannot be written, an unstable run.
+/// The deck is invalid, output cannot be written, or the run becomes unstable.
 pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
     if !args.sweep.is_empty() {
         return sweep::run(args);
@@ -34,7 +34,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
         console::note(format_args!("{file}: building the model"));
     }
     let source = Source::of_deck(deck, file);
-    // The folder is made once nothing in the deck can be wrong any more.
+    // The folder is created only after the deck has been validated.
     let mut screen = Screen::new(quiet);
     let means = args.options.means();
     let assembled = Assembled::of(&source, &means, &mut |event| screen.show(event))?;
@@ -43,10 +43,10 @@ pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
     drive(run, deadline, quiet, args.chart)
 }
 
-/// Goes on with a run from its last checkpoint.
+/// Resumes a run from its last checkpoint.
 ///
 /// # Errors
-/// No usable checkpoint, and what can go wrong with a run.
+/// No usable checkpoint, and the errors of [`run`].
 pub(crate) fn resume(args: &ResumeArgs) -> Result<Exit, CliError> {
     if is_sweep(&args.dir) {
         return sweep::resume(args);
@@ -60,7 +60,7 @@ pub(crate) fn resume(args: &ResumeArgs) -> Result<Exit, CliError> {
         if !quiet {
             let path = args.dir.display();
             console::print(format_args!(
-                "{path}: the run has finished; nothing to resume"
+                "{path}: the run has finished; there is nothing to resume"
             ))?;
         }
         return Ok(Exit::Done);
@@ -69,7 +69,7 @@ pub(crate) fn resume(args: &ResumeArgs) -> Result<Exit, CliError> {
         let path = run.folder().display();
         let (state, steps) = (run.simulation().state(), run.simulation().steps());
         console::note(format_args!(
-            "{path}: going on from step {} of {}, t = {}",
+            "{path}: resuming at step {} of {}, t = {}",
             count(state.step),
             count(steps),
             quantity(state.t, "s")
@@ -78,10 +78,10 @@ pub(crate) fn resume(args: &ResumeArgs) -> Result<Exit, CliError> {
     drive(run, deadline, quiet, args.chart)
 }
 
-/// Drives a run to its end, to a signal or close to the deadline, and says how it went.
+/// Drives a run to its end, a signal or the deadline, and prints a summary.
 ///
 /// # Errors
-/// Output that cannot be written, an unstable run.
+/// Output cannot be written, or the run becomes unstable.
 fn drive(
     mut run: Run,
     deadline: Option<Deadline>,

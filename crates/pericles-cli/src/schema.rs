@@ -1,4 +1,4 @@
-//! `schema`: what a deck may hold, for editors and for people.
+//! `schema`: print the JSON Schema of decks, or their reference as Markdown.
 
 use crate::args::SchemaArgs;
 use crate::console;
@@ -8,7 +8,7 @@ use crate::exit::Exit;
 /// Prints the schema.
 ///
 /// # Errors
-/// An output that cannot be written.
+/// Output cannot be written.
 pub(crate) fn schema(args: &SchemaArgs) -> Result<Exit, CliError> {
     let text = if args.markdown {
         pericles_deck::reference()

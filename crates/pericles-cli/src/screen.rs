@@ -1,4 +1,4 @@
-//! What is shown of a run while it goes on.
+//! Terminal output during a run.
 
 use pericles_run::Event;
 
@@ -6,14 +6,14 @@ use crate::console;
 use crate::progress::Progress;
 use crate::summary;
 
-/// Shows the events of a run on the standard error.
+/// Shows the events of a run on standard error.
 pub(crate) struct Screen {
     quiet: bool,
     progress: Option<Progress>,
 }
 
 impl Screen {
-    /// For one run; a quiet one shows notes of the cache only.
+    /// Creates the display of one run; in quiet mode only notes about the cache are shown.
     pub(crate) fn new(quiet: bool) -> Self {
         Self {
             quiet,
@@ -38,6 +38,11 @@ impl Screen {
             Event::Step { step, t } => {
                 if let Some(progress) = &mut self.progress {
                     progress.step(step, t);
+                }
+            }
+            Event::Iteration(iteration) => {
+                if let Some(progress) = &mut self.progress {
+                    progress.iteration(iteration);
                 }
             }
             Event::Warning(warning) => match &self.progress {

@@ -1,6 +1,7 @@
-//! Ctrl-C, SIGTERM, SIGHUP (a closed terminal) and SIGUSR1 (the warning of batch systems): the first asks the run to stop, the second ends the process at once.
+//! Handling of Ctrl-C, SIGTERM, SIGHUP (closed terminal) and SIGUSR1 (batch systems): the first signal stops the run
+//! with a checkpoint, the second one ends the process immediately.
 //!
-//! A SIGHUP that is ignored when the program starts, as under `nohup`, stays ignored.
+//! If SIGHUP is ignored when the program starts, as under `nohup`, it stays ignored.
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -11,7 +12,7 @@ use signal_hook::flag;
 
 use crate::exit::Exit;
 
-/// Signals that stop a run with a checkpoint, and how the program then ends.
+/// Signals that stop a run with a checkpoint, and the exit statuses.
 const STOPPING: [(i32, Exit); 4] = [
     (SIGINT, Exit::Interrupted),
     (SIGTERM, Exit::Terminated),
@@ -19,7 +20,7 @@ const STOPPING: [(i32, Exit); 4] = [
     (SIGUSR1, Exit::Warned),
 ];
 
-/// Whether a signal is ignored, as the kernel reports it; false where it does not.
+/// Returns whether a signal is ignored according to `/proc`; false where this is not available.
 fn is_ignored(signal: i32) -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
@@ -27,18 +28,18 @@ fn is_ignored(signal: i32) -> bool {
     mask.is_some_and(|mask| mask >> (signal - 1) & 1 == 1)
 }
 
-/// What has been asked for so far.
+/// The signals received so far.
 #[derive(Debug, Default)]
 pub(crate) struct Signals {
-    /// Cancelled for the number of the last signal.
+    /// Cancelled with the number of the last signal as the reason.
     cancel: Cancel,
 }
 
 impl Signals {
-    /// Takes the signals over for the rest of the process's life.
+    /// Installs the handlers for the lifetime of the process.
     ///
     /// # Errors
-    /// The system refuses.
+    /// The system does not allow it.
     pub(crate) fn watch() -> std::io::Result<Self> {
         let signals = Self::default();
         let asked = Arc::new(AtomicBool::new(false));
@@ -46,7 +47,7 @@ impl Signals {
             if signal == SIGHUP && is_ignored(SIGHUP) {
                 continue;
             }
-            // In this order: the first signal finds `asked` unset, the second one set.
+            // The order matters: at the first signal `asked` is unset, at the second one set.
             let status = i32::from(exit.status());
             flag::register_conditional_shutdown(signal, status, Arc::clone(&asked))?;
             flag::register(signal, Arc::clone(&asked))?;
@@ -56,12 +57,12 @@ impl Signals {
         Ok(signals)
     }
 
-    /// What tells a run of them.
+    /// Returns the flag that stops a run.
     pub(crate) fn cancel(&self) -> &Cancel {
         &self.cancel
     }
 
-    /// The exit status that a run leads to.
+    /// Returns the exit status for the end of a run.
     pub(crate) fn exit_of(&self, ending: Ending) -> Exit {
         match ending {
             Ending::Finished => Exit::Done,
@@ -70,7 +71,7 @@ impl Signals {
         }
     }
 
-    /// How the program is to end, if it was asked to.
+    /// Returns the exit status of the last signal, if there was one.
     pub(crate) fn asked(&self) -> Option<Exit> {
         let last = i32::try_from(self.cancel.reason()?.get()).unwrap_or_default();
         let asked = STOPPING.iter().find(|(signal, _)| *signal == last);

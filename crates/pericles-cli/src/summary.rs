@@ -1,4 +1,4 @@
-//! What a run says about itself to people.
+//! Text output of `run` and `resume`: sizes before the first step, results after the last one.
 
 use std::path::Path;
 
@@ -8,11 +8,11 @@ use pericles_run::{Audit, Report, Status};
 
 use crate::console;
 
-/// Before the first step.
+/// Prints the size of the model before the first step.
 pub(crate) fn opening(report: &Report, folder: &Path) {
     let model = &report.model;
     console::note(format_args!(
-        "{} points, {} bonds, {} steps of {}, about {}; results in {}",
+        "{} points, {} bonds, {} steps of {}, about {} of memory; results in {}",
         count(model.points as u64),
         count(model.bonds),
         count(model.steps),
@@ -22,10 +22,10 @@ pub(crate) fn opening(report: &Report, folder: &Path) {
     ));
 }
 
-/// After the last step.
+/// Prints the results after the last step.
 ///
 /// # Errors
-/// A standard output that cannot be written.
+/// Standard output cannot be written.
 pub(crate) fn closing(report: &Report, place: &Path) -> Result<(), IoError> {
     let (model, progress) = (&report.model, &report.progress);
     let folder = place.display();
@@ -44,13 +44,13 @@ pub(crate) fn closing(report: &Report, place: &Path) -> Result<(), IoError> {
         model.instruction_set,
     ))?;
     if let Some(reason) = &report.stop_reason {
-        console::print(format_args!("ended by a stop condition: {reason}"))?;
+        console::print(format_args!("stop condition reached: {reason}"))?;
     }
     if let Some(audit) = &report.audit {
         energies(audit)?;
         if let Some(error) = audit.force_rounding {
             console::print(format_args!(
-                "forces in single precision: off by {} of the largest at the end",
+                "rounding error of single-precision forces at the end: {} of the largest force",
                 significant(error, 2)
             ))?;
         }
@@ -65,7 +65,7 @@ pub(crate) fn closing(report: &Report, place: &Path) -> Result<(), IoError> {
         }
     }
     if report.status == Status::Stopped {
-        console::print(format_args!("go on with: pericles resume {folder}"))?;
+        console::print(format_args!("Resume with `pericles resume {folder}`."))?;
     }
     let files = [
         ("history.csv", "history.csv"),
@@ -83,7 +83,7 @@ pub(crate) fn closing(report: &Report, place: &Path) -> Result<(), IoError> {
 
 fn energies(audit: &Audit) -> Result<(), IoError> {
     console::print(format_args!(
-        "energy: kinetic {}, elastic {}, dissipated {}; work done on the body {}",
+        "energy: kinetic {}, elastic {}, dissipated {}; external work {}",
         quantity(audit.kinetic_energy, "J"),
         quantity(audit.elastic_energy, "J"),
         quantity(audit.dissipated_energy, "J"),
@@ -91,13 +91,18 @@ fn energies(audit: &Audit) -> Result<(), IoError> {
     ))?;
     let forces = match &audit.static_balance {
         Some(balance) => format!(
-            ", residual {:.1e}, resultant force {:.1e} and moment {:.1e} of loads and reactions",
-            balance.residual, balance.force_relative, balance.moment_relative
+            "; residual {}, resultant force {} and moment {} of loads and reactions (relative)",
+            significant(balance.residual, 2),
+            significant(balance.force_relative, 2),
+            significant(balance.moment_relative, 2)
         ),
-        None => format!(", momentum by {:.1e} kg m/s", audit.momentum_error),
+        None => format!(
+            "; momentum error {} kg m/s",
+            significant(audit.momentum_error, 2)
+        ),
     };
     console::print(format_args!(
-        "audit: energy off by {} ({}){forces}; {} bonds broken, largest damage {:.2}",
+        "energy balance: error {} ({}){forces}; {} bonds broken, largest damage {:.2}",
         quantity(audit.balance, "J"),
         percent(audit.energy_drift),
         count(audit.broken_bonds),

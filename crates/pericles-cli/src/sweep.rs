@@ -1,4 +1,4 @@
-//! `run --sweep`: one deck at several values of its keys, each run in a folder of its own.
+//! `run --sweep`: parameter sweeps; each run has its own folder.
 
 use pericles_run::sweep::{Plan, Settings, Sweep, SweepEvent};
 use pericles_run::units::threads;
@@ -12,31 +12,31 @@ use crate::folder::output_folder;
 use crate::given;
 use crate::signals::Signals;
 
-/// Runs a deck at all combinations of values.
+/// Runs a deck for all combinations of values.
 ///
 /// # Errors
-/// Values that the deck refuses, before anything is run; output that cannot be written.
+/// The deck is invalid for one of the values (before anything is run), or output cannot be written.
 pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
     let deck = given::deck(&args.deck, &args.overrides.set)?;
     let text = DeckText::of(&deck, args.deck.display().to_string());
-    // Before the folder is made: nobody wants half a sweep.
+    // Before the folder is created, so that invalid values do not leave half a sweep.
     let plan = Plan::new(text, args.sweep.clone())?;
     let folder = output_folder(args.out.as_deref(), None, &args.deck, "-sweep")?;
     drive(&plan.begin(folder)?, &args.options)
 }
 
-/// Goes on with a sweep: runs that have finished stay, others go on from their checkpoint or begin.
+/// Resumes a sweep: finished runs are kept, others continue from their checkpoint or start.
 ///
 /// # Errors
-/// A folder that is none of a sweep, output that cannot be written.
+/// The folder does not contain a sweep, or output cannot be written.
 pub(crate) fn resume(args: &ResumeArgs) -> Result<Exit, CliError> {
     drive(&Sweep::open(&args.dir)?, &args.options)
 }
 
-/// Runs what has not finished, and shows the values and how the runs ended; one thread a run unless the command line says otherwise.
+/// Runs all unfinished runs, by default on one thread each, and prints the table of values and outcomes.
 ///
 /// # Errors
-/// Output that cannot be written.
+/// Output cannot be written.
 pub(crate) fn drive(sweep: &Sweep, options: &RunOptions) -> Result<Exit, CliError> {
     let settings = Settings {
         threads: options.execution.threads.count_or(1),
@@ -51,14 +51,14 @@ pub(crate) fn drive(sweep: &Sweep, options: &RunOptions) -> Result<Exit, CliErro
         for line in end.table.lines() {
             console::print(format_args!("{line}"))?;
         }
-        console::print(format_args!("all of it in {}", end.table.path().display()))?;
+        console::print(format_args!("Summary in {}", end.table.path().display()))?;
     }
     Ok(signals
         .asked()
         .unwrap_or_else(|| exit_of(&end.worst, &signals)))
 }
 
-/// The exit status that a run of a sweep leads to.
+/// Returns the exit status for a run of a sweep.
 fn exit_of(how: &Result<Ending, RunError>, signals: &Signals) -> Exit {
     match how {
         Ok(ending) => signals.exit_of(*ending),

@@ -1,4 +1,4 @@
-//! A chart in letters, for terminals.
+//! Terminal plots.
 
 use std::fmt;
 
@@ -6,14 +6,14 @@ use pericles_io::quantity;
 
 use crate::charts::Chart;
 
-/// Characters across and down, axes not counted.
+/// Width and height in characters, without axes.
 const WIDTH: usize = 68;
 const HEIGHT: usize = 16;
 
-/// What marks a curve; more curves begin again.
+/// Markers of the curves, repeated for more curves.
 const MARKS: [char; 8] = ['*', '+', 'o', 'x', '#', '%', '@', '='];
 
-/// Curves over time as characters.
+/// A terminal plot of curves over time.
 pub(crate) struct TextChart<'a> {
     chart: &'a Chart,
 }
@@ -23,7 +23,7 @@ impl<'a> TextChart<'a> {
         Self { chart }
     }
 
-    /// Rows from the top; later curves over earlier ones.
+    /// Returns the rows from top to bottom; later curves cover earlier ones.
     fn rows(&self, time: (f64, f64), range: (f64, f64)) -> Vec<[char; WIDTH]> {
         let mut rows = vec![[' '; WIDTH]; HEIGHT];
         let place = |value: f64, (low, high): (f64, f64), cells: usize| {
@@ -86,7 +86,7 @@ impl fmt::Display for TextChart<'_> {
     }
 }
 
-/// The least and the greatest number.
+/// Returns the smallest and the largest finite value.
 fn extent(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let finite = values.filter(|value| value.is_finite());
     finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
@@ -99,7 +99,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_line_runs_from_corner_to_corner_and_curves_have_their_marks() {
+    fn straight_lines_connect_the_corners_and_curves_have_markers() {
         let time: Vec<f64> = (0..=100).map(|k| f64::from(k) * 1e-6).collect();
         let up: Vec<f64> = time.iter().map(|t| 2e6 * t).collect();
         let down: Vec<f64> = up.iter().map(|x| 200.0 - x).collect();
@@ -120,7 +120,7 @@ mod tests {
         assert!(lines[HEIGHT].trim_start().starts_with("0 J |*"), "{text}");
         assert!(lines[HEIGHT].ends_with('+'));
         assert!(lines[HEIGHT + 2].ends_with("100 µs"));
-        // The curves cross in the middle, where the later one is seen.
+        // At the crossing in the middle the later curve is visible.
         assert!(lines[HEIGHT / 2].contains('+'));
     }
 }

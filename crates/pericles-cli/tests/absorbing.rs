@@ -1,4 +1,4 @@
-//! Absorbing ends in the program: kernels from the cache, studies, what `check` says.
+//! Absorbing boundaries: cached kernels, studies, output of `check`.
 
 mod common;
 
@@ -45,7 +45,7 @@ fn history(place: &Path, out: &str) -> (Vec<u8>, String) {
 }
 
 #[test]
-fn a_cut_file_of_the_cache_is_computed_again() {
+fn a_truncated_cache_file_is_recomputed() {
     let place = tempfile::tempdir().unwrap();
     let place = place.path();
     fs::write(place.join("bar.toml"), BAR).unwrap();
@@ -55,25 +55,33 @@ fn a_cut_file_of_the_cache_is_computed_again() {
         .map(|entry| entry.unwrap().path())
         .filter(|path| path.to_string_lossy().contains("absorbing-kernels"))
         .collect();
-    assert_eq!(stored.len(), 1, "both ends share their kernels: {stored:?}");
+    assert_eq!(
+        stored.len(),
+        1,
+        "both boundaries share their kernels: {stored:?}"
+    );
     let bytes = fs::read(&stored[0]).unwrap();
     fs::write(&stored[0], &bytes[..bytes.len() / 2]).unwrap();
     let (second, notes) = history(place, "second");
     assert_eq!(first, second);
     assert!(notes.contains("cache"), "{notes}");
-    assert_eq!(fs::read(&stored[0]).unwrap(), bytes, "stored anew");
+    assert_eq!(
+        fs::read(&stored[0]).unwrap(),
+        bytes,
+        "the cache file is not rewritten"
+    );
     let (third, _) = history(place, "third");
     assert_eq!(first, third);
 }
 
 #[test]
-fn check_says_how_ends_are_made() {
+fn check_reports_the_type_of_absorbing_boundaries() {
     let place = tempfile::tempdir().unwrap();
     fs::write(place.path().join("bar.toml"), BAR).unwrap();
     let says = text(&succeed(place.path(), "check bar.toml --no-cache").stdout);
     let lines: Vec<&str> = says
         .lines()
-        .filter(|line| line.contains("absorbing end"))
+        .filter(|line| line.contains("absorbing boundary"))
         .collect();
     assert_eq!(lines.len(), 2, "{says}");
     assert!(lines[0].contains("-x: blocked"), "{says}");
@@ -82,7 +90,7 @@ fn check_says_how_ends_are_made() {
 }
 
 #[test]
-fn the_kernels_of_the_beam_are_those_of_the_table() {
+fn the_kernels_of_the_beam_reproduce_the_published_table() {
     let place = tempfile::tempdir().unwrap();
     let line = "reproduce absorbing-boundaries/table-1 --json -";
     let results: Value = serde_json::from_str(&text(&succeed(place.path(), line).stdout)).unwrap();

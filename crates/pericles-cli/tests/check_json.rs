@@ -1,4 +1,4 @@
-//! `pericles check --json`: every number that is printed, in SI units.
+//! `pericles check --json` contains every printed number in SI units.
 
 mod common;
 
@@ -7,7 +7,7 @@ use std::path::Path;
 use common::{PLATE, report, succeed, text};
 use serde_json::Value;
 
-/// All numbers of a JSON value.
+/// Collects all numbers of a JSON value.
 fn numbers(value: &Value, found: &mut Vec<f64>) {
     match value {
         Value::Number(number) => found.extend(number.as_f64()),
@@ -17,9 +17,9 @@ fn numbers(value: &Value, found: &mut Vec<f64>) {
     }
 }
 
-/// The numbers of a printed text, each with the value of one unit in its last digit.
+/// Returns the numbers of a printed text, each with the value of one unit in its last digit.
 fn printed(text: &str) -> Vec<(f64, f64)> {
-    // Digits are grouped by blanks: `1 234 567`.
+    // Digits are grouped by spaces: `1 234 567`.
     let characters: Vec<char> = text.chars().collect();
     let digit = |k: usize| characters.get(k).is_some_and(char::is_ascii_digit);
     let group = |k: usize| {
@@ -61,7 +61,7 @@ fn printed(text: &str) -> Vec<(f64, f64)> {
     found
 }
 
-/// Whether a printed number is one of those of the JSON, with the factor of a prefix or of percent.
+/// Returns whether a printed number is in the JSON, up to the factor of a unit prefix or of percent.
 fn is_held(printed: f64, last: f64, numbers: &[f64]) -> bool {
     let factors = (-6..=6).map(|k| 1000f64.powi(k)).chain([0.01]);
     factors.into_iter().any(|factor| {
@@ -70,7 +70,7 @@ fn is_held(printed: f64, last: f64, numbers: &[f64]) -> bool {
     })
 }
 
-/// A line without Miller indices such as `(10)`, which are names.
+/// Removes Miller indices such as `(10)` from a line: they are names.
 fn without_planes(line: &str, json: &Value) -> String {
     let planes = json["crack_planes"].as_array().into_iter().flatten();
     let names = planes.filter_map(|plane| plane["plane"].as_str());
@@ -85,8 +85,8 @@ fn assert_json_holds_what_is_printed(folder: &Path, deck: &str) -> Value {
     numbers(&json, &mut held);
     let said = text(&succeed(folder, &format!("check {deck}")).stdout);
     for line in said.lines().skip(1) {
-        // A time of the clock differs from call to call.
-        if ["run time", "their cost", "do they pay"]
+        // Measured times differ from call to call.
+        if ["run time", "multirate cost", "net speed-up"]
             .iter()
             .any(|name| line.trim().starts_with(name))
         {
@@ -103,7 +103,7 @@ fn assert_json_holds_what_is_printed(folder: &Path, deck: &str) -> Value {
 }
 
 #[test]
-fn the_scanner_reads_numbers_as_they_are_printed() {
+fn the_scanner_parses_printed_numbers() {
     let found = printed("1 234 567 bonds (2.50 GPa), 46.0 ns of 3D; 1.5e-3 and 12 345");
     let expected = [
         (1234567.0, 1.0),
@@ -126,7 +126,7 @@ fn the_scanner_reads_numbers_as_they_are_printed() {
 }
 
 #[test]
-fn the_json_of_check_holds_every_number_that_is_printed() {
+fn the_json_of_check_contains_every_printed_number() {
     let place = tempfile::tempdir().unwrap();
     let folder = place.path();
     std::fs::write(folder.join("plate.toml"), PLATE).unwrap();
@@ -157,7 +157,7 @@ fn the_json_of_check_holds_every_number_that_is_printed() {
 }
 
 #[test]
-fn the_json_on_the_standard_output_stands_alone_and_has_the_keys_of_run_json() {
+fn json_on_standard_output_is_the_only_output_and_has_the_keys_of_run_json() {
     let place = tempfile::tempdir().unwrap();
     std::fs::write(place.path().join("plate.toml"), PLATE).unwrap();
     let said = text(&succeed(place.path(), "check plate.toml --json -").stdout);
@@ -165,7 +165,7 @@ fn the_json_on_the_standard_output_stands_alone_and_has_the_keys_of_run_json() {
     succeed(place.path(), "run plate.toml --quiet --set time.end=1us");
     let run = report(&place.path().join("plate"));
     for (key, value) in run["model"].as_object().unwrap() {
-        // The run is shorter, and so may be warned of less.
+        // The run is shorter and may have fewer warnings.
         if !["steps", "warnings"].contains(&key.as_str()) {
             assert_eq!(json[key], *value, "{key}");
         }

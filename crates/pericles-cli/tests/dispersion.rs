@@ -8,7 +8,7 @@ use common::{PLATE, fail, succeed};
 use serde_json::Value;
 
 #[test]
-fn curves_classes_and_a_summary() {
+fn curves_bond_classes_and_a_summary_are_written() {
     let place = tempfile::tempdir().unwrap();
     fs::write(place.path().join("plate.toml"), PLATE).unwrap();
     succeed(place.path(), "dispersion plate.toml");
@@ -23,7 +23,7 @@ fn curves_classes_and_a_summary() {
     assert!((number("dt_max") * number("omega_max") - 2.0).abs() < 1e-12);
     assert!(number("dt") < number("dt_max"));
 
-    // Every number of the curves obeys (2/dt) asin(ω dt/2).
+    // All values of the curves satisfy ω_d = (2/dt) asin(ω dt/2).
     let csv = pericles_io::read_csv(folder.join("curves.csv")).unwrap();
     let column = |name: &str| csv.column(name).unwrap().to_vec();
     for branch in ["p", "s"] {
@@ -40,7 +40,7 @@ fn curves_classes_and_a_summary() {
 }
 
 #[test]
-fn directions_and_refusals() {
+fn directions_are_checked_and_existing_folders_are_kept() {
     let place = tempfile::tempdir().unwrap();
     fs::write(place.path().join("plate.toml"), PLATE).unwrap();
     succeed(
@@ -57,7 +57,7 @@ fn directions_and_refusals() {
     let (status, message) = fail(place.path(), "dispersion plate.toml --out ray");
     assert_eq!(status, 6);
     assert!(
-        message.contains("move the folder away") && !message.contains("--force"),
+        message.contains("move the folder") && !message.contains("--force"),
         "{message}"
     );
     let (status, message) = fail(place.path(), "dispersion plate.toml --direction 1,2,3");
@@ -74,7 +74,7 @@ fn directions_and_refusals() {
 }
 
 #[test]
-fn cells_longer_along_one_axis() {
+fn anisotropic_spacing_is_analysed() {
     let place = tempfile::tempdir().unwrap();
     let text = PLATE
         .replace("spacing = \"1 mm\"", "spacing = [\"1 mm\", \"0.75 mm\"]")
@@ -88,16 +88,16 @@ fn cells_longer_along_one_axis() {
         let column = curves.column(name).unwrap();
         column.iter().copied().fold(0.0, f64::max)
     };
-    // The zone ends at π over each spacing.
+    // The boundary of the Brillouin zone is at π over each spacing.
     assert!((largest("k_x") / (std::f64::consts::PI / 1e-3) - 1.0).abs() < 1e-12);
     assert!((largest("k_y") / (std::f64::consts::PI / 0.75e-3) - 1.0).abs() < 1e-12);
     assert!(largest("omega_x") > 0.0 && largest("omega_y") > 0.0);
-    // Bonds up to three of the larger spacings and half a cell, one of each pair.
+    // Bonds up to three and a half of the larger spacing, one of each pair.
     let bonds = read("classes.csv");
     let length = bonds.column("length").unwrap();
     let reach = 3e-3 + 0.5 * 0.75f64.sqrt() * 1e-3;
     assert!(length.iter().all(|r| *r <= reach) && length.len() > 14);
-    // The slender cells run, too.
+    // The deck with anisotropic spacing also runs.
     succeed(place.path(), "run plate.toml --quiet --out run");
 }
 
@@ -140,14 +140,14 @@ end = 1
     let (status, message) = fail(place.path(), "dispersion points.toml --out none");
     assert_eq!(status, 3);
     assert!(
-        message.contains("points.toml:2:1: the points lie on no regular grid"),
+        message.contains("points.toml:2:1: plane waves are available for regular grids only"),
         "{message}"
     );
     assert!(!place.path().join("none").exists());
 }
 
 #[test]
-fn tuned_coefficients_wave_vectors_and_what_is_left_out() {
+fn tuned_coefficients_wave_vectors_and_parts_not_included_are_reported() {
     let place = tempfile::tempdir().unwrap();
     let text = r#"
 [body]
@@ -182,7 +182,7 @@ end = 1
     assert_eq!(tuning["functionals"].as_array().unwrap().len(), 4);
     assert_eq!(tuning["functionals"][0].as_array().unwrap().len(), 2);
     assert!((tuning["error_ratio"].as_f64().unwrap() - 0.3951).abs() < 1e-3);
-    // Long waves: 1.2^(1/2) and 0.4^(1/2), in this table to 1 % at |k| D = 0.25.
+    // Long-wave speeds 1.2^(1/2) and 0.4^(1/2), with this table to 1 % at |k| D = 0.25.
     let long = &summary["wavevectors"][1]["modes"];
     for (mode, speed) in [(0, 1.2f64.sqrt()), (1, 0.4f64.sqrt())] {
         let found = long[mode]["phase_velocity"].as_f64().unwrap();
@@ -190,7 +190,7 @@ end = 1
         let omega = long[mode]["omega"].as_f64().unwrap();
         assert!((omega - 0.5 * found).abs() < 1e-12);
     }
-    // The curves hold the same numbers: k = 1.5 lies on the first segment.
+    // The curves contain the same values: k = 1.5 lies on the first segment.
     let table = pericles_io::read_csv(folder.join("wavevectors.csv")).unwrap();
     assert_eq!(table.column("omega").unwrap().len(), 4);
     let omega = summary["wavevectors"][0]["modes"][0]["omega"]
@@ -204,7 +204,7 @@ end = 1
     let near = (0..201).find(|&i| k[i] >= 1.5).unwrap();
     assert!(p[near - 1] <= omega && omega <= p[near], "{omega}");
 
-    // What plane waves of the first material know nothing of.
+    // Parts of the deck that the analysis of the first material does not include.
     let two = text.replace(
         "[time]",
         "[material.inclusion]\n[sets]\nleft = { layer = { side = \"-x\", cells = 3 } }\n[time]",
@@ -221,11 +221,11 @@ end = 1
     let output = succeed(place.path(), "dispersion two.toml --quiet --out two");
     let said = common::text(&output.stderr);
     assert!(
-        said.contains("one assigned stiffness is left out"),
+        said.contains("1 assigned stiffness is not included"),
         "{said}"
     );
     assert!(
-        said.contains("the surface correction is left out"),
+        said.contains("the surface correction is not included"),
         "{said}"
     );
 }

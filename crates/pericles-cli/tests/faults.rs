@@ -1,4 +1,5 @@
-//! What happens to a run when the machine fails it: full disks, read-only folders, folders that go, impatient users. Nothing is corrupted, and the message says what to do.
+//! Runs under faults of the machine: full disks, read-only and removed folders, repeated interrupts. No file is
+//! corrupted, and the message says what to do.
 
 mod common;
 
@@ -8,7 +9,7 @@ use std::process::{Command, Stdio};
 
 use common::{Background, assert_same_results, fail, pericles, report, succeed, text, with_plate};
 
-/// A file system in memory for as long as a test runs; none, with the reason printed, where this user may not make one.
+/// A temporary file system in memory; `None`, with the reason printed, if the user is not allowed to mount one.
 struct SmallDisk<'a>(&'a Path);
 
 impl<'a> SmallDisk<'a> {
@@ -44,7 +45,7 @@ impl Drop for SmallDisk<'_> {
 }
 
 #[test]
-fn a_full_disk_ends_a_run_that_goes_on_once_there_is_room() {
+fn a_run_stopped_by_a_full_disk_can_be_resumed() {
     let place = with_plate();
     succeed(place.path(), "run plate.toml --quiet --out whole");
     let disk = place.path().join("disk");
@@ -54,7 +55,7 @@ fn a_full_disk_ends_a_run_that_goes_on_once_there_is_room() {
     let (status, message) = fail(place.path(), "run plate.toml --out disk/results");
     assert_eq!(status, 6, "{message}");
     assert!(
-        message.contains("no room to write") && message.contains("free some space"),
+        message.contains("not enough space to write") && message.contains("free some space"),
         "{message}"
     );
     disk.remount("size=64m");
@@ -66,9 +67,9 @@ fn a_full_disk_ends_a_run_that_goes_on_once_there_is_room() {
 }
 
 #[test]
-fn a_file_that_may_not_grow_is_a_full_disk() {
+fn a_file_size_limit_is_reported_as_a_full_disk() {
     let place = with_plate();
-    // The shell hands on that the signal is ignored, so that writing fails instead.
+    // The ignored signal is inherited from the shell, so that writing fails instead.
     let line = format!(
         "trap '' XFSZ; ulimit -f 52; exec {} run plate.toml --out results",
         env!("CARGO_BIN_EXE_pericles")
@@ -80,14 +81,14 @@ fn a_file_that_may_not_grow_is_a_full_disk() {
         .unwrap();
     let message = text(&output.stderr);
     assert_eq!(output.status.code(), Some(6), "{message}");
-    assert!(message.contains("no room to write"), "{message}");
-    // What was written before can be gone on from.
+    assert!(message.contains("not enough space to write"), "{message}");
+    // The run can be resumed from what was written before.
     succeed(place.path(), "resume results --quiet");
     assert_eq!(report(&place.path().join("results"))["status"], "finished");
 }
 
 #[test]
-fn a_read_only_place_is_told() {
+fn a_read_only_folder_is_reported() {
     let place = with_plate();
     let disk = place.path().join("disk");
     let Some(_disk) = SmallDisk::mounted(&disk, "ro") else {
@@ -102,14 +103,14 @@ fn a_read_only_place_is_told() {
 }
 
 #[test]
-fn a_disk_that_turns_read_only_ends_a_run_that_goes_on_later() {
+fn a_run_stopped_by_a_read_only_disk_can_be_resumed() {
     let place = with_plate();
     succeed(place.path(), "run plate.toml --quiet --out whole");
     let disk = place.path().join("disk");
     let Some(disk) = SmallDisk::mounted(&disk, "size=64m") else {
         return;
     };
-    // It stops by itself, and finds a disk that is read-only when it goes on.
+    // The run stops at its time limit; the disk is read-only when it is resumed.
     let line = "run plate.toml --quiet --out disk/results --wall-time 0.01s";
     assert_eq!(common::run(place.path(), line).status.code(), Some(7));
     disk.remount("ro");
@@ -124,7 +125,7 @@ fn a_disk_that_turns_read_only_ends_a_run_that_goes_on_later() {
     );
 }
 
-/// Long enough for something to happen to it.
+/// A run that is long enough to be disturbed.
 const LONG: &str = "run plate.toml --threads 1 --set time.end=1e-2 --set output.fields.every=100000 --set output.history.every=50 \
                     --set output.picture.1.every=100000 --set checkpoint.every=500";
 
@@ -132,24 +133,21 @@ const LONG: &str = "run plate.toml --threads 1 --set time.end=1e-2 --set output.
 fn a_folder_that_is_removed_ends_the_run() {
     let place = with_plate();
     let run = Background::start(place.path(), &format!("{LONG} --out gone"), "gone");
-    // The run may be about to write: what it makes between two removals is removed by the next.
+    // The run may be writing: files created between two removals are removed by the next.
     while place.path().join("gone").exists() {
         let _ = fs::remove_dir_all(place.path().join("gone"));
     }
     let output = run.finish();
     let message = text(&output.stderr);
     assert_eq!(output.status.code(), Some(6), "{message}");
-    assert!(
-        message.contains("its folder is not there any more"),
-        "{message}"
-    );
+    assert!(message.contains("its folder has been removed"), "{message}");
     assert!(!place.path().join("gone").exists());
 }
 
 #[test]
-fn a_second_ctrl_c_ends_the_run_at_once() {
+fn a_second_ctrl_c_ends_the_run_immediately() {
     let place = with_plate();
-    // One coarse step of a thousand fine ones, which are not interrupted.
+    // One coarse step of a thousand fine ones, which cannot be interrupted.
     let line = "run plate.toml --threads 1 --set body.spacing=2e-5 --set sets.top.layer.cells=300 --set material.critical_stretch=0.1 \
                 --set time.scheme=respa --set time.ratio=1000 --set time.fine=top --set time.dt=1e-9 --out twice";
     let first = place.path().join("twice/checkpoints/step-000000000000.chk");
@@ -161,12 +159,12 @@ fn a_second_ctrl_c_ends_the_run_at_once() {
         .unwrap();
     let run = Background::waiting(child, || first.is_file());
     run.signal("INT");
-    // Signals that come before the first is seen are one.
+    // Signals that arrive before the first one is handled count as one.
     std::thread::sleep(std::time::Duration::from_millis(200));
     run.signal("INT");
     let output = run.finish();
     assert_eq!(output.status.code(), Some(130), "{}", text(&output.stderr));
-    // No time for a report or another checkpoint; the first one is there.
+    // Neither the report nor another checkpoint is written; the first checkpoint exists.
     assert_eq!(report(&place.path().join("twice"))["status"], "running");
     assert!(first.is_file());
 }

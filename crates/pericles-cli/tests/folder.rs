@@ -1,4 +1,4 @@
-//! Where results go, and who may write there.
+//! Output folders: names, replacement, permissions.
 
 mod common;
 
@@ -33,7 +33,7 @@ fn folders_are_named_after_the_deck_and_numbered() {
 }
 
 #[test]
-fn out_is_refused_if_it_exists_and_replaced_by_force() {
+fn an_existing_output_folder_is_replaced_only_with_force() {
     let place = with_plate();
     let line = "run plate.toml --out results --quiet --set time.end=1e-6";
     succeed(place.path(), line);
@@ -56,7 +56,7 @@ fn out_is_refused_if_it_exists_and_replaced_by_force() {
 }
 
 #[test]
-fn every_file_of_a_run_is_on_record_and_force_takes_nothing_else() {
+fn force_removes_exactly_the_files_written_by_the_run() {
     let place = with_plate();
     let line = "run plate.toml --out results --quiet --set time.end=1e-6 --set output.fragments.every=5 \
                 --set output.picture.0.animation=true";
@@ -75,7 +75,7 @@ fn every_file_of_a_run_is_on_record_and_force_takes_nothing_else() {
     }
     let before = common::results(&folder);
     assert!(before.len() > 15, "{before:?}");
-    // A run that writes nothing beyond what every run does: all files of the first one are gone.
+    // A run with minimal output: all files of the first one are removed.
     fs::write(
         place.path().join("bar.toml"),
         "[body]\nshape = \"bar\"\nlength = 10\nspacing = 1\n[material]\ndensity = 1\nyoungs_modulus = 1\nhorizon = 3\n\
@@ -89,7 +89,7 @@ fn every_file_of_a_run_is_on_record_and_force_takes_nothing_else() {
         .filter(|name| ![".manifest", "history.csv"].contains(&name.as_str()))
         .collect();
     let mut expected = mine.to_vec();
-    // Checkpoints are not among the results.
+    // Checkpoints are not listed among the results.
     expected.retain(|name| !name.starts_with("checkpoints"));
     expected.sort_unstable();
     assert_eq!(left, expected);
@@ -98,7 +98,7 @@ fn every_file_of_a_run_is_on_record_and_force_takes_nothing_else() {
 }
 
 #[test]
-fn force_is_no_permission_for_a_folder_with_the_run_json_of_another_program() {
+fn force_does_not_replace_a_folder_with_the_run_json_of_another_program() {
     let place = with_plate();
     let folder = place.path().join("other");
     fs::create_dir(&folder).unwrap();
@@ -107,14 +107,14 @@ fn force_is_no_permission_for_a_folder_with_the_run_json_of_another_program() {
     let (status, message) = fail(place.path(), "run plate.toml --out other --force");
     assert_eq!(status, 6, "{message}");
     assert!(
-        message.contains("holds other files and no results of Pericles"),
+        message.contains("contains files but no Pericles results"),
         "{message}"
     );
     assert_eq!(fs::read_dir(&folder).unwrap().count(), 2);
 }
 
 #[test]
-fn force_never_empties_a_folder_of_other_things() {
+fn force_does_not_replace_a_folder_without_results() {
     let place = with_plate();
     fs::create_dir(place.path().join("thesis")).unwrap();
     fs::write(place.path().join("thesis/chapter.tex"), "words").unwrap();
@@ -127,9 +127,9 @@ fn force_never_empties_a_folder_of_other_things() {
 }
 
 #[test]
-fn a_place_that_cannot_be_written_is_status_6() {
+fn an_unwritable_output_folder_is_status_6() {
     let place = with_plate();
-    // A path that leads through a file: not writable for the superuser either.
+    // A path through a file is not writable even for the superuser.
     let (status, message) = fail(place.path(), "run plate.toml --out plate.toml/results");
     assert_eq!(status, 6, "{message}");
     assert!(message.contains("cannot write"), "{message}");
@@ -141,7 +141,7 @@ fn a_place_that_cannot_be_written_is_status_6() {
 }
 
 #[test]
-fn nothing_is_written_for_a_refused_deck_or_a_check() {
+fn check_and_invalid_decks_write_no_files() {
     let place = with_plate();
     succeed(place.path(), "check plate.toml");
     assert_eq!(fail(place.path(), "run plate.toml --set time.dt=1").0, 3);
@@ -149,7 +149,7 @@ fn nothing_is_written_for_a_refused_deck_or_a_check() {
 }
 
 #[test]
-fn quiet_says_nothing_and_plain_lines_replace_the_bar() {
+fn quiet_runs_print_nothing_and_progress_is_printed_as_lines() {
     let place = with_plate();
     let quiet = succeed(place.path(), "run plate.toml --quiet --set time.end=1e-6");
     assert_eq!((quiet.stdout.len(), quiet.stderr.len()), (0, 0));
@@ -161,7 +161,7 @@ fn quiet_says_nothing_and_plain_lines_replace_the_bar() {
 }
 
 #[test]
-fn a_closed_pipe_ends_quietly() {
+fn a_closed_pipe_is_not_an_error() {
     let place = with_plate();
     for line in [
         "run plate.toml",
@@ -175,7 +175,7 @@ fn a_closed_pipe_ends_quietly() {
             .stderr(Stdio::piped())
             .spawn()
             .unwrap();
-        // Nobody listens from the start.
+        // The pipe is closed from the start.
         drop(child.stdout.take());
         if line.starts_with("run") {
             drop(child.stderr.take());
@@ -188,7 +188,7 @@ fn a_closed_pipe_ends_quietly() {
 }
 
 #[test]
-fn run_json_tells_what_was_run_and_how_it_went() {
+fn run_json_contains_deck_model_and_results() {
     let place = with_plate();
     succeed(
         place.path(),
@@ -213,7 +213,7 @@ fn run_json_tells_what_was_run_and_how_it_went() {
 }
 
 #[test]
-fn check_tells_the_numbers_of_a_deck() {
+fn check_reports_the_numbers_of_a_deck() {
     let place = with_plate();
     let output = succeed(
         place.path(),

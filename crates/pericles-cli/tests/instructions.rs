@@ -1,4 +1,4 @@
-//! Runs with every instruction set.
+//! Runs with each instruction set.
 
 mod common;
 

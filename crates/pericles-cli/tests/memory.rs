@@ -1,4 +1,4 @@
-//! Memory: refused before it is taken, and estimated well enough to trust the refusal.
+//! The memory limit is checked before allocation, with a sufficiently accurate estimate.
 
 mod common;
 
@@ -7,7 +7,7 @@ use std::fs;
 use common::{fail, report, run, succeed, with_plate};
 
 #[test]
-fn a_run_that_does_not_fit_is_status_8_and_leaves_nothing() {
+fn a_run_above_the_memory_limit_is_status_8_and_leaves_no_files() {
     let place = with_plate();
     for command in ["run", "check"] {
         let line = format!("{command} plate.toml --max-memory 50kB");
@@ -15,10 +15,10 @@ fn a_run_that_does_not_fit_is_status_8_and_leaves_nothing() {
         assert_eq!(status, 8, "{message}");
         // Line 6 is the spacing.
         assert!(message.contains("plate.toml:6:"), "{message}");
-        assert!(message.contains("50.0 kB may be taken"), "{message}");
+        assert!(message.contains("the limit is 50.0 kB"), "{message}");
     }
     assert_eq!(fs::read_dir(place.path()).unwrap().count(), 1);
-    // Without a limit it is what the machine has.
+    // The default limit is the memory of the machine.
     let huge = "run plate.toml --set body.spacing=5e-7";
     let (status, message) = fail(place.path(), huge);
     assert_eq!(status, 8, "{message}");
@@ -29,7 +29,7 @@ fn a_run_that_does_not_fit_is_status_8_and_leaves_nothing() {
         place.path(),
         "run plate.toml --quiet --out a --max-memory 1MB --set checkpoint.every=100",
     );
-    // A run that is gone on with is measured again.
+    // The limit also applies to resumed runs.
     let text = fs::read_to_string(place.path().join("a/run.json")).unwrap();
     fs::write(
         place.path().join("a/run.json"),
@@ -40,7 +40,7 @@ fn a_run_that_does_not_fit_is_status_8_and_leaves_nothing() {
     succeed(place.path(), "resume a --quiet");
 }
 
-/// A body with the rest of its deck.
+/// Returns a complete deck of a body.
 fn body(body: &str, material: &str, time: &str) -> String {
     format!(
         "body = {{ {body} }}\n\
@@ -50,7 +50,7 @@ fn body(body: &str, material: &str, time: &str) -> String {
     )
 }
 
-/// A bar with an absorbing end and so many steps.
+/// Returns a bar with an absorbing boundary and `steps` steps.
 fn end(history: &str, steps: u32) -> String {
     let boundary = format!(
         "boundary = [{{ kind = \"absorbing\", side = \"+x\", history = \"{history}\" }}]\n"
@@ -65,7 +65,7 @@ fn end(history: &str, steps: u32) -> String {
 }
 
 #[test]
-fn the_estimate_is_within_a_factor_of_what_is_taken() {
+fn the_memory_estimate_is_within_a_factor_of_the_peak() {
     let place = tempfile::tempdir().unwrap();
     let block = "shape = \"block\", size = [40, 40, 40], spacing = 1";
     let plate = "shape = \"plate\", size = [150, 150], spacing = 1, plane = \"stress\"";
@@ -78,7 +78,7 @@ fn the_estimate_is_within_a_factor_of_what_is_taken() {
                   material = { density = 1, alpha = 0.25, p = 2, horizon = 0.4 }\n\
                   time = { end = 0.001, dt = 0.001 }\n\
                   output = { fields = { count = 1 } }\n";
-    // With the memory that lets the part that is estimated first pass.
+    // With a memory limit that the part estimated first satisfies.
     let cases = [
         (body(block, "bonds = \"grid\"", verlet), "1kB"),
         (body(block, "bonds = \"list\"", verlet), "1kB"),
@@ -102,11 +102,11 @@ fn the_estimate_is_within_a_factor_of_what_is_taken() {
         (end("blocked", 60_000), "100kB"),
         (end("direct", 20_000), "100kB"),
     ];
-    // What the program takes without a body.
+    // Memory of the program without a body.
     let none = body(block, "bonds = \"grid\"", verlet).replace("[40, 40, 40]", "[4, 4, 4]");
     fs::write(place.path().join("none.toml"), none).unwrap();
     let peak = |deck: &str| {
-        // Steps are not what is measured.
+        // The time steps are not measured.
         let line =
             format!("run {deck}.toml --quiet --no-cache --threads 1 --out {deck} --wall-time 1s");
         let status = run(place.path(), &line).status.code();
@@ -121,7 +121,12 @@ fn the_estimate_is_within_a_factor_of_what_is_taken() {
         fs::write(place.path().join(format!("{deck}.toml")), text).unwrap();
         let line = format!("check {deck}.toml --max-memory {limit}");
         let (_, message) = fail(place.path(), &line);
-        let words: Vec<&str> = message.split("some ").nth(1).unwrap().split(' ').collect();
+        let words: Vec<&str> = message
+            .split("needs about ")
+            .nth(1)
+            .unwrap()
+            .split(' ')
+            .collect();
         assert_eq!(words[1], "MB", "{message}");
         let estimate = 1e6 * words[0].parse::<f64>().unwrap();
         let taken = peak(&deck) - base;

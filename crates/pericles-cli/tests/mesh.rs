@@ -1,4 +1,4 @@
-//! Meshes and results in other formats, by the program.
+//! The commands `mesh` and `export`.
 
 mod common;
 
@@ -24,7 +24,7 @@ fn json(folder: &Path, arguments: &str) -> Value {
 }
 
 #[test]
-fn a_mesh_is_described_for_scripts_in_si_units() {
+fn mesh_reports_json_in_si_units() {
     let place = tempfile::tempdir().unwrap();
     let file = example("dogbone.msh");
     let arguments = format!("mesh {file} --unit mm --thickness 2mm --json -");
@@ -32,7 +32,8 @@ fn a_mesh_is_described_for_scripts_in_si_units() {
     let number = |pointer: &str| mesh.pointer(pointer).and_then(Value::as_f64).unwrap();
     let close = |a: f64, b: f64, relative: f64| assert!((a / b - 1.0).abs() < relative, "{a} {b}");
     assert_eq!(mesh["points"], 2296);
-    // The area of the drawing: grips, fillets with radius 20 mm by their circular segments, gauge section; chords of the mesh cut off a little.
+    // Area of the drawing: clamping areas, fillets with radius 20 mm by their circular segments, gauge section. The
+    // chords of the mesh make it slightly smaller.
     let run = (20.0f64.powi(2) - 15.0f64.powi(2)).sqrt();
     let angle = (run / 20.0).asin();
     let under_fillet = 23.0 * run - 0.5 * (run * 15.0 + 400.0 * angle);
@@ -45,7 +46,7 @@ fn a_mesh_is_described_for_scripts_in_si_units() {
     let left = sets.iter().find(|set| set["name"] == "left").unwrap();
     close(left["area"].as_f64().unwrap(), 16e-3 * 2e-3, 1e-12);
     assert_eq!(mesh["problems"].as_array().unwrap().len(), 0);
-    // For people.
+    // Text output.
     let output = succeed(place.path(), &format!("mesh {file} --unit mm"));
     let words = text(&output.stdout);
     assert!(
@@ -55,7 +56,7 @@ fn a_mesh_is_described_for_scripts_in_si_units() {
 }
 
 #[test]
-fn a_surface_is_described_by_what_it_encloses() {
+fn mesh_reports_the_enclosed_volume_of_a_surface() {
     let place = tempfile::tempdir().unwrap();
     let file = example("bracket.stl");
     let surface = json(place.path(), &format!("mesh {file} --unit mm --json -"));
@@ -72,14 +73,14 @@ fn a_surface_is_described_by_what_it_encloses() {
 }
 
 #[test]
-fn files_that_are_no_meshes_are_refused() {
+fn invalid_mesh_files_are_rejected() {
     let place = tempfile::tempdir().unwrap();
     fs::write(place.path().join("a.inp"), "*NODE\n1, 0, 0, 0\n").unwrap();
     for (arguments, status, part) in [
         ("mesh a.inp", 3, "elements of dimension 2 or 3"),
         ("mesh none.msh", 3, "none.msh"),
-        ("mesh a.txt", 3, "meshes are read from files"),
-        ("mesh a.inp --unit parsec", 2, "a unit of length"),
+        ("mesh a.txt", 3, "unknown mesh format"),
+        ("mesh a.inp --unit parsec", 2, "expected a length unit"),
         ("export . --to npz", 3, "run.json"),
     ] {
         let (found, words) = fail(place.path(), arguments);
@@ -89,7 +90,7 @@ fn files_that_are_no_meshes_are_refused() {
 }
 
 #[test]
-fn fields_are_exported_once_in_every_format() {
+fn fields_are_exported_to_every_format_without_overwriting() {
     let place = tempfile::tempdir().unwrap();
     let folder = place.path();
     fs::write(folder.join("plate.toml"), common::PLATE).unwrap();
@@ -105,7 +106,7 @@ fn fields_are_exported_once_in_every_format() {
         assert!(folder.join("plate").join(file).exists());
         let (status, words) = fail(folder, &arguments);
         assert_eq!(status, 6);
-        assert!(words.contains("exists already"), "{words}");
+        assert!(words.contains("already exists"), "{words}");
     }
     let archive = fs::read(folder.join("plate/fields.npz")).unwrap();
     assert_eq!(&archive[..4], b"PK\x03\x04");

@@ -1,4 +1,4 @@
-//! What is said when something is wrong, and with which exit status.
+//! Error messages and exit statuses.
 
 mod common;
 
@@ -26,7 +26,7 @@ fn usage_errors_are_status_2() {
 }
 
 #[test]
-fn a_wrong_deck_is_status_3_and_shown_where() {
+fn an_invalid_deck_is_status_3_with_locations() {
     let place = with_plate();
     let deck = common::PLATE
         .replace("72 GPa", "72 GPA")
@@ -58,14 +58,18 @@ fn missing_inputs_are_status_3() {
     fs::create_dir(place.path().join("other")).unwrap();
     let (status, message) = fail(place.path(), "resume other");
     assert_eq!(status, 3);
-    assert!(message.contains("no output folder of a run"), "{message}");
+    assert!(
+        message.contains("not the output folder of a run"),
+        "{message}"
+    );
     assert_eq!(fs::read_dir(place.path().join("other")).unwrap().count(), 0);
 }
 
 #[test]
 fn an_unstable_run_is_status_4_and_keeps_its_state() {
     let place = with_plate();
-    // Three times the stable step, in a plate that cannot break. Growth is only warned of; the end of numbers is not.
+    // Three times the stable step in an unbreakable plate. Growth of the energy leads to a warning, infinity stops
+    // the run.
     let line = "run plate.toml --set time.dt=1e-6 --set time.allow_unstable=true --set time.end=1e-3 \
                 --set material.critical_stretch=1e200 --set checkpoint.every=1000000";
     let (status, message) = fail(place.path(), line);
@@ -75,7 +79,7 @@ fn an_unstable_run_is_status_4_and_keeps_its_state() {
     assert!(message.contains("pericles resume ./plate"), "{message}");
     assert!(
         message.contains("warning: "),
-        "the step was known to be large: {message}"
+        "a warning about the large step is expected: {message}"
     );
     let folder = place.path().join("plate");
     let report = report(&folder);

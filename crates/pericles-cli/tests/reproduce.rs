@@ -1,4 +1,4 @@
-//! The studies of papers: their rows hold, and their output is what scripts expect.
+//! `pericles reproduce`: the rows pass, and the output has the form that scripts expect.
 
 mod common;
 
@@ -7,7 +7,7 @@ use std::fs;
 use common::{fail, succeed, text};
 use serde_json::Value;
 
-/// Wants every judged row to hold.
+/// Asserts that every row with a tolerance passes.
 fn assert_holds(results: &Value, id: &str) {
     let failed: Vec<&Value> = rows(results)
         .iter()
@@ -27,7 +27,7 @@ fn branching_as_json_alone() {
     let place = tempfile::tempdir().unwrap();
     let output = succeed(place.path(), "reproduce fracture/branching --json -");
     let out = text(&output.stdout);
-    // Nothing but JSON there, and without --out no figures.
+    // Only JSON on standard output and, without --out, no figures.
     let results: Value = serde_json::from_str(&out).unwrap_or_else(|_| panic!("{out}"));
     assert_eq!(fs::read_dir(place.path()).unwrap().count(), 0);
     assert_holds(&results, "fracture/branching");
@@ -58,7 +58,7 @@ fn branching_as_json_alone() {
     }
     let judged = rows(&results).iter().filter(|row| row["pass"] == true);
     assert!(judged.count() >= 10);
-    // The printed critical stretch does not reproduce; the row says so and is judged by the formula.
+    // The published critical stretch is not reproducible; the row compares with the formula instead.
     let stretch = &rows(&results)[0];
     assert_eq!(stretch["printed"], 0.0013);
     assert_eq!(stretch["expected"], 1.809e-3);

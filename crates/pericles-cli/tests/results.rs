@@ -1,4 +1,4 @@
-//! Looking at results, and starting from an example.
+//! The commands on results, `new`, and sweeps.
 
 mod common;
 
@@ -11,7 +11,7 @@ use pericles_run::{Assembled, Cancel, Ending, Event, Means, Run, Source};
 use serde_json::Value;
 
 #[test]
-fn an_example_is_written_once_and_is_a_deck() {
+fn an_example_is_copied_without_overwriting_and_is_a_valid_deck() {
     let place = tempfile::tempdir().unwrap();
     let list = text(&succeed(place.path(), "new").stdout);
     assert!(list.contains("\nfracture/branching  "), "{list}");
@@ -20,14 +20,14 @@ fn an_example_is_written_once_and_is_a_deck() {
     succeed(place.path(), "check bar.toml");
     let (status, message) = fail(place.path(), "new wave/bar");
     assert_eq!(status, 6, "{message}");
-    assert!(message.contains("bar.toml exists already"), "{message}");
+    assert!(message.contains("bar.toml already exists"), "{message}");
     succeed(place.path(), "new wave/bar mine.toml");
     let shown = succeed(place.path(), "new wave/bar -").stdout;
     assert_eq!(
         text(&shown),
         fs::read_to_string(place.path().join("mine.toml")).unwrap()
     );
-    // The name alone is enough where only one topic has it.
+    // The name alone suffices if it is unique.
     succeed(place.path(), "new branching");
     let (status, message) = fail(place.path(), "new bar");
     assert_eq!(status, 2);
@@ -38,7 +38,7 @@ fn an_example_is_written_once_and_is_a_deck() {
 }
 
 #[test]
-fn info_tells_how_a_run_stands_and_what_there_is() {
+fn info_shows_status_and_contents() {
     let place = with_plate();
     succeed(
         place.path(),
@@ -49,7 +49,7 @@ fn info_tells_how_a_run_stands_and_what_there_is() {
         "plate: Short",
         "finished; step 90 of 90, t = 9.00 µs",
         "plate.toml --set title=\"Short\"",
-        "2 states from 0 s to 9.00 µs",
+        "2 output times from 0 s to 9.00 µs",
         "Damage",
         "history.csv, 14 rows: step, time",
         "pictures/",
@@ -66,7 +66,7 @@ fn info_tells_how_a_run_stands_and_what_there_is() {
 }
 
 #[test]
-fn diff_finds_what_differs_and_how_much() {
+fn diff_reports_differences_and_their_size() {
     let place = with_plate();
     let start = |out: &str, more: &str| {
         let line = format!("run plate.toml --quiet --out {out} --set time.end=\"9us\" {more}");
@@ -74,11 +74,11 @@ fn diff_finds_what_differs_and_how_much() {
     };
     start("a", "--threads 1");
     start("b", "--threads 2");
-    // A load that is larger by a millionth.
+    // A load larger by 1e-6 (relative).
     start("c", "--set load.0.traction=[1.000001e6,0]");
     start("d", "--set output.history.every=3");
     let same = text(&succeed(place.path(), "diff a b").stdout);
-    assert!(same.contains("the same, bit for bit"), "{same}");
+    assert!(same.contains("bitwise identical"), "{same}");
 
     let differ = run(place.path(), "diff a c");
     assert_eq!(differ.status.code(), Some(5));
@@ -86,7 +86,7 @@ fn diff_finds_what_differs_and_how_much() {
     assert!(said.contains("Displacement"), "{said}");
     assert!(said.contains("history.csv"), "{said}");
     assert!(said.contains("at t = 9.00 µs, point"), "{said}");
-    // The response is linear but for what breaks: a millionth, or a little more where velocities of the ends prevail.
+    // The response is linear except for broken bonds: relative differences of about 1e-6.
     succeed(place.path(), "diff a c --tolerance 1e-4");
     let json = succeed(place.path(), "diff a c --tolerance 1e-4 --json -").stdout;
     let report: Value = serde_json::from_slice(&json).unwrap();
@@ -102,11 +102,11 @@ fn diff_finds_what_differs_and_how_much() {
     let differ = run(place.path(), "diff a d --tolerance 1");
     assert_eq!(differ.status.code(), Some(5));
     assert!(
-        text(&differ.stdout).contains("14 rows against 31"),
+        text(&differ.stdout).contains("14 rows in the first, 31 in the second"),
         "{}",
         text(&differ.stdout)
     );
-    // Two of three rows of d have none in a at their time; the others are compared.
+    // Two of three rows of d have no row in a at the same time; the others are compared.
     let json = run(place.path(), "diff a d --json -").stdout;
     let report: Value = serde_json::from_slice(&json).unwrap();
     assert!(report["skipped"].as_u64() > Some(20), "{report:#}");
@@ -129,7 +129,7 @@ fn diff_finds_what_differs_and_how_much() {
 }
 
 #[test]
-fn diff_compares_states_whose_times_differ_by_rounding_and_counts_the_others() {
+fn diff_matches_times_up_to_rounding_and_counts_the_others() {
     let place = with_plate();
     succeed(
         place.path(),
@@ -154,7 +154,7 @@ fn diff_compares_states_whose_times_differ_by_rounding_and_counts_the_others() {
     fs::write(&series, moved(f64::from_bits(last.to_bits() + 1))).unwrap();
     let said = text(&succeed(place.path(), "diff a b").stdout);
     assert!(
-        said.contains("the same, bit for bit") && !said.contains("not compared"),
+        said.contains("bitwise identical") && !said.contains("not compared"),
         "{said}"
     );
 
@@ -163,8 +163,8 @@ fn diff_compares_states_whose_times_differ_by_rounding_and_counts_the_others() {
     assert_eq!(differ.status.code(), Some(5));
     let said = text(&differ.stdout);
     for words in [
-        "fields: 1 of the 4 states of the first, from t = 9.00 µs on, not compared: the second has none at the same time",
-        "fields: 1 of the 4 states of the second, from t = 9.90 µs on, not compared: the first has none at the same time",
+        "fields: 1 of the 4 states of the first result, from t = 9.00 µs, not compared: the second has none at the same time",
+        "fields: 1 of the 4 states of the second result, from t = 9.90 µs, not compared: the first has none at the same time",
         "; 2 states and rows were not compared",
     ] {
         assert!(said.contains(words), "{words}: {said}");
@@ -172,7 +172,7 @@ fn diff_compares_states_whose_times_differ_by_rounding_and_counts_the_others() {
 }
 
 #[test]
-fn shells_and_manuals_get_what_they_read() {
+fn completions_and_the_manual_page_are_printed() {
     let place = tempfile::tempdir().unwrap();
     for shell in ["bash", "zsh", "fish"] {
         let script = text(&succeed(place.path(), &format!("completions {shell}")).stdout);
@@ -201,7 +201,7 @@ fn a_report_does_not_follow_links() {
 }
 
 #[test]
-fn titles_and_names_reach_no_terminal_as_commands() {
+fn control_characters_in_titles_and_names_are_escaped() {
     let place = with_plate();
     let deck = common::PLATE.replace("Torn plate", "Torn\\u001b[2J plate\\u0007");
     fs::write(place.path().join("plate.toml"), deck).unwrap();
@@ -218,7 +218,7 @@ fn titles_and_names_reach_no_terminal_as_commands() {
 }
 
 #[test]
-fn a_report_is_one_page_with_everything() {
+fn a_report_is_a_self_contained_page() {
     let place = with_plate();
     let deck = common::PLATE.replace("Torn plate", "Torn <plate>");
     fs::write(place.path().join("plate.toml"), deck).unwrap();
@@ -237,13 +237,13 @@ fn a_report_is_one_page_with_everything() {
     ] {
         assert!(page.contains(words), "{words}");
     }
-    // Nothing is fetched: every picture is in the page.
+    // All pictures are embedded in the page.
     assert_eq!(
         page.matches("<img ").count(),
         page.matches("src=\"data:image/png;base64,iVBOR").count()
     );
     assert!(!page.contains("http"), "a link");
-    // It belongs to the results, and goes with them.
+    // The page is one of the files of the run and is replaced with them.
     succeed(
         place.path(),
         "run plate.toml --quiet --set time.end=1e-6 --out plate --force",
@@ -252,7 +252,7 @@ fn a_report_is_one_page_with_everything() {
 }
 
 #[test]
-fn a_sweep_runs_every_value_and_goes_on_where_it_was_stopped() {
+fn a_sweep_runs_every_value_and_can_be_resumed() {
     let place = with_plate();
     let line = "run plate.toml --quiet --set time.end=\"9us\" --sweep material.horizon_ratio=2,3 --sweep load.0.traction=[1e6,0],[2e6,0]";
     succeed(place.path(), line);
@@ -269,7 +269,7 @@ fn a_sweep_runs_every_value_and_goes_on_where_it_was_stopped() {
         rows[4].starts_with("\"horizon_ratio=3,traction=_2e6,0_\",3,\"[2e6,0]\",finished,288,"),
         "{table}"
     );
-    // A run of a sweep is the run that one would do by hand.
+    // A run of a sweep is identical to the single run.
     let one = "run plate.toml --quiet --out one --set time.end=\"9us\" --set material.horizon_ratio=3 --set load.0.traction=[2e6,0]";
     succeed(place.path(), one);
     common::assert_same_results(
@@ -277,7 +277,7 @@ fn a_sweep_runs_every_value_and_goes_on_where_it_was_stopped() {
         &sweep.join("horizon_ratio=3,traction=_2e6,0_"),
     );
 
-    // One run is lost, one was stopped early.
+    // One run is missing, one was stopped early.
     fs::remove_dir_all(sweep.join("horizon_ratio=2,traction=_1e6,0_")).unwrap();
     let stopped = sweep.join("horizon_ratio=2,traction=_2e6,0_/run.json");
     let text = fs::read_to_string(&stopped).unwrap();
@@ -299,7 +299,7 @@ fn a_sweep_runs_every_value_and_goes_on_where_it_was_stopped() {
 }
 
 #[test]
-fn the_history_holds_the_extremes_that_are_asked_for_and_files_the_volumes() {
+fn extremes_in_the_history_and_volumes_in_field_files_are_written_on_request() {
     let place = with_plate();
     succeed(
         place.path(),
@@ -313,7 +313,7 @@ fn the_history_holds_the_extremes_that_are_asked_for_and_files_the_volumes() {
         u64::MAX,
     )
     .unwrap();
-    // The fourth output is that of step 360, as is the fifth row.
+    // The fourth output is at step 360, like the fifth row.
     assert_eq!(column("step")[4], 360.0);
     let field = |name: &str| states.field(name).unwrap().values.clone();
     let most = |values: &[f64]| values.iter().fold(f64::NEG_INFINITY, |a: f64, b| a.max(*b));
@@ -331,13 +331,13 @@ fn the_history_holds_the_extremes_that_are_asked_for_and_files_the_volumes() {
         .collect();
     let ratio = column("max_Displacement")[4] / most(&size);
     assert!((ratio - 1.0).abs() < 1e-14, "{ratio}");
-    // Cells of 1 mm, 1 m thick.
+    // Cells of 1 mm × 1 mm × 1 m.
     let volume: f64 = field("Volume").iter().sum();
     assert!((volume / (0.024 * 0.012) - 1.0).abs() < 1e-12, "{volume}");
 }
 
 #[test]
-fn a_run_json_of_another_program_is_no_result() {
+fn the_run_json_of_another_program_is_rejected() {
     let place = tempfile::tempdir().unwrap();
     fs::write(place.path().join("run.json"), "{}").unwrap();
     for command in ["info .", "report .", "plot ."] {
@@ -351,11 +351,11 @@ fn a_run_json_of_another_program_is_no_result() {
 }
 
 #[test]
-fn more_threads_than_a_machine_can_use_are_refused() {
+fn too_many_threads_are_rejected() {
     let place = with_plate();
     let (status, message) = fail(place.path(), "check plate.toml --threads 8000");
     assert_eq!(status, 2, "{message}");
-    assert!(message.contains("a whole number from 1 to"), "{message}");
+    assert!(message.contains("an integer from 1 to"), "{message}");
 }
 
 #[test]
@@ -366,7 +366,7 @@ fn commands_work_on_the_folder_of_a_model_without_a_deck() {
         place.path(),
         "run plate.toml --quiet --set time.end=\"9us\"",
     );
-    // A program begins the same run, and stops it.
+    // A program starts the same run and stops it.
     let deck = Deck::read(place.path().join("plate.toml"), &short).unwrap();
     let source = Source::of_model(deck.model, place.path());
     let assembled = Assembled::of(&source, &Means::default(), &mut |_| {}).unwrap();
@@ -386,7 +386,7 @@ fn commands_work_on_the_folder_of_a_model_without_a_deck() {
     for words in [
         "model: Torn plate",
         "finished; step 90 of 90",
-        "written by a program",
+        "built by a program",
     ] {
         assert!(said.contains(words), "{words}: {said}");
     }

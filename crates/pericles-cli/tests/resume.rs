@@ -1,4 +1,4 @@
-//! Stopped and resumed runs, and runs on other numbers of threads: the same bytes.
+//! Stopped and resumed runs, and runs with different numbers of threads, give bitwise identical results.
 
 mod common;
 
@@ -9,13 +9,13 @@ use std::time::{Duration, Instant};
 
 use common::{Background, assert_same_results, fail, report, succeed, text, with_plate};
 
-/// Long enough to be stopped in its middle: some hundred thousand bytes of history, and a second of time.
+/// A run long enough to be stopped midway: about a second, with some 100 kB of history.
 const LONG: &str = "run plate.toml --threads 1 --set time.end=3e-3 --set output.fields.every=5000 \
                     --set output.history.every=100 --set output.cracks.every=1000 --set output.picture.1.every=9000 \
                     --set checkpoint.every=777";
 
 #[test]
-fn one_and_two_threads_give_the_same_bytes() {
+fn one_and_two_threads_give_identical_results() {
     let place = with_plate();
     for threads in [1, 2] {
         let line = format!("run plate.toml --quiet --threads {threads} --out on-{threads}");
@@ -28,7 +28,7 @@ fn one_and_two_threads_give_the_same_bytes() {
 }
 
 #[test]
-fn a_killed_run_goes_on_to_the_same_bytes() {
+fn a_killed_run_resumes_to_identical_results() {
     let place = with_plate();
     succeed(place.path(), &format!("{LONG} --out whole"));
     let run = Background::start(place.path(), &format!("{LONG} --out killed"), "killed");
@@ -36,7 +36,7 @@ fn a_killed_run_goes_on_to_the_same_bytes() {
     assert_eq!(run.finish().status.code(), None);
     let killed = place.path().join("killed");
     assert_eq!(report(&killed)["status"], "running");
-    // The newest checkpoint may be the victim of a disk: the one before it must do.
+    // The newest checkpoint is damaged: the one before it is used.
     let mut checkpoints: Vec<_> = fs::read_dir(killed.join("checkpoints"))
         .unwrap()
         .map(|entry| entry.unwrap().path())
@@ -51,12 +51,12 @@ fn a_killed_run_goes_on_to_the_same_bytes() {
         fs::write(newest, bytes).unwrap();
         damaged += 1;
     }
-    // The deck may have gone: the checkpoint has it. Another number of threads makes no difference.
+    // The deck file is removed: the checkpoint contains it. The number of threads does not matter.
     fs::remove_file(place.path().join("plate.toml")).unwrap();
     let output = succeed(place.path(), "resume killed --threads 2");
     let err = text(&output.stderr);
     assert_eq!(
-        err.matches("the checkpoint before it is used").count(),
+        err.matches("the previous checkpoint is used").count(),
         damaged,
         "{err}"
     );
@@ -71,7 +71,7 @@ fn ctrl_c_and_sigterm_stop_with_a_checkpoint() {
     let out = place.path().join("stopped");
     let run = Background::start(place.path(), &format!("{LONG} --out stopped"), "stopped");
 
-    // While it runs nobody else may write there.
+    // During the run no other run may write to the folder.
     let (status, message) = fail(place.path(), "resume stopped");
     assert_eq!(status, 6, "{message}");
     assert!(message.contains("in use by another run"), "{message}");
@@ -81,7 +81,7 @@ fn ctrl_c_and_sigterm_stop_with_a_checkpoint() {
     assert_eq!(output.status.code(), Some(130), "{}", text(&output.stderr));
     let said = text(&output.stdout);
     assert!(
-        said.contains("go on with: pericles resume stopped"),
+        said.contains("Resume with `pericles resume stopped`"),
         "{said}"
     );
     let stopped = report(&out);
@@ -114,20 +114,20 @@ fn ctrl_c_and_sigterm_stop_with_a_checkpoint() {
 }
 
 #[test]
-fn a_run_stops_in_time_and_goes_on_to_the_same_bytes() {
+fn a_run_stopped_at_its_time_limit_resumes_to_identical_results() {
     let place = with_plate();
     succeed(place.path(), &format!("{LONG} --out whole"));
     let late = common::run(place.path(), &format!("{LONG} --out late --wall-time=0.5s"));
     assert_eq!(late.status.code(), Some(7), "{}", text(&late.stderr));
     let out = place.path().join("late");
     assert_eq!(report(&out)["status"], "stopped");
-    assert!(text(&late.stdout).contains("go on with: pericles resume late"));
+    assert!(text(&late.stdout).contains("Resume with `pericles resume late`"));
     succeed(place.path(), "resume late --wall-time 1h");
     assert_same_results(&place.path().join("whole"), &out);
 }
 
 #[test]
-fn resuming_at_the_very_start_repeats_nothing() {
+fn resuming_at_the_start_does_not_repeat_output() {
     let place = with_plate();
     succeed(place.path(), "run plate.toml --quiet --out whole");
     succeed(
@@ -146,7 +146,7 @@ fn resuming_at_the_very_start_repeats_nothing() {
 }
 
 #[test]
-fn a_run_that_does_not_fit_its_files_is_refused() {
+fn a_checkpoint_that_does_not_match_the_output_files_is_rejected() {
     let place = with_plate();
     succeed(place.path(), "run plate.toml --quiet --out a");
     let folder = place.path().join("a");
@@ -158,16 +158,16 @@ fn a_run_that_does_not_fit_its_files_is_refused() {
 }
 
 #[test]
-fn a_relaxation_goes_on_to_the_same_bytes() {
+fn a_static_run_resumes_to_identical_results() {
     let place = with_plate();
-    let statics = "run plate.toml --quiet --set time={scheme='relaxation',load_steps=8,end=4e-6} --set checkpoint.every=3 --set load.0.traction=[0,0] \
+    let statics = "run plate.toml --quiet --set time={scheme='adaptive-dynamic-relaxation',load_steps=8,end=4e-6} --set checkpoint.every=3 --set load.0.traction=[0,0] \
                    --set output.fields.every=2 --set output.history.every=1 --set output.cracks.every=1 --set output.picture.1.every=4";
     for name in ["whole", "begun"] {
         succeed(place.path(), &format!("{statics} --out {name}"));
     }
     let begun = place.path().join("begun");
     assert!(report(&begun)["audit"]["broken_bonds"].as_u64().unwrap() > 0);
-    // As if it had died after an earlier checkpoint, in the middle of its load steps.
+    // As if the run had been killed after an earlier checkpoint, between load steps.
     let mut checkpoints: Vec<_> = fs::read_dir(begun.join("checkpoints"))
         .unwrap()
         .map(|entry| entry.unwrap().path())
@@ -201,14 +201,14 @@ fn a_relaxation_goes_on_to_the_same_bytes() {
     }
 }
 
-/// A plate whose static state takes far longer to find than any test may.
-const SLOW: &str = "run plate.toml --threads 1 --set time={scheme='relaxation',damping=1e-6,tolerance=1e-11,iterations=100000000,end=4e-6} \
+/// A plate whose static state takes much longer to compute than a test may run.
+const SLOW: &str = "run plate.toml --threads 1 --set time={scheme='adaptive-dynamic-relaxation',damping=1e-6,tolerance=1e-11,iterations=100000000,end=4e-6} \
                     --set load.0.traction=[0,0] --set material.critical_stretch=0.5";
 
 #[test]
-fn a_load_step_is_stopped_in_its_midst() {
+fn a_load_step_can_be_interrupted() {
     let place = with_plate();
-    // By the clock.
+    // By the time limit.
     let begun = Instant::now();
     let late = common::run(place.path(), &format!("{SLOW} --out late --wall-time=1s"));
     assert_eq!(late.status.code(), Some(7), "{}", text(&late.stderr));
@@ -232,14 +232,14 @@ fn a_load_step_is_stopped_in_its_midst() {
     for name in ["late", "asked"] {
         let report = report(&place.path().join(name));
         assert_eq!(report["status"], "stopped");
-        // The load step under way is undone.
+        // The interrupted load step is undone.
         assert_eq!(report["progress"]["last_step"], 0);
         assert_eq!(report["audit"]["elastic_energy"], 0.0);
     }
 }
 
 #[test]
-fn hangups_and_warnings_of_batch_systems_stop_with_a_checkpoint() {
+fn sighup_and_sigusr1_stop_with_a_checkpoint() {
     let place = with_plate();
     succeed(place.path(), &format!("{LONG} --out whole"));
     let out = place.path().join("stopped");
@@ -257,7 +257,7 @@ fn hangups_and_warnings_of_batch_systems_stop_with_a_checkpoint() {
         .spawn()
         .unwrap();
     let run = Background::waiting(child, || rows() > before + 3);
-    // Where hangups are ignored, as under nohup, they stay ignored.
+    // An ignored SIGHUP, as under nohup, stays ignored.
     if is_ignored("HUP") {
         run.signal("TERM");
         run.finish();
@@ -271,7 +271,7 @@ fn hangups_and_warnings_of_batch_systems_stop_with_a_checkpoint() {
 }
 
 #[test]
-fn an_ignored_hangup_stays_ignored() {
+fn an_ignored_sighup_stays_ignored() {
     let place = with_plate();
     let line = format!(
         "trap '' HUP; exec {} {LONG} --quiet --out kept",
@@ -290,7 +290,7 @@ fn an_ignored_hangup_stays_ignored() {
     assert_eq!(run.finish().status.code(), Some(0));
 }
 
-/// Whether a shell that this process starts would find a signal ignored.
+/// Returns whether child processes inherit the signal as ignored.
 fn is_ignored(name: &str) -> bool {
     let script = format!("trap - {name}; kill -{name} $$; exit 0");
     let status = std::process::Command::new("sh")
@@ -299,13 +299,13 @@ fn is_ignored(name: &str) -> bool {
     status.unwrap().success()
 }
 
-/// The plate is torn statically; the run ends once nothing holds it any more.
-const TORN: &str = "run plate.toml --quiet --set time={scheme='relaxation',load_steps=16,end=8e-6,stop_when=[{set='top',reaction_below=0.6}]} \
+/// Quasi-static fracture of the plate; the run ends when it no longer carries load.
+const TORN: &str = "run plate.toml --quiet --set time={scheme='adaptive-dynamic-relaxation',load_steps=16,end=8e-6,stop_when=[{set='top',reaction_below=0.6}]} \
                     --set checkpoint.every=3 --set load.0.traction=[0,0] --set output.fields.every=2 --set output.history.every=1 --set output.cracks.every=1 \
                     --set output.picture.1.every=4";
 
 #[test]
-fn a_stop_condition_ends_a_run_the_same_way_after_a_resume() {
+fn a_stop_condition_ends_a_resumed_run_at_the_same_step() {
     let place = with_plate();
     for name in ["whole", "begun"] {
         succeed(place.path(), &format!("{TORN} --out {name}"));
@@ -319,7 +319,7 @@ fn a_stop_condition_ends_a_run_the_same_way_after_a_resume() {
         reason.starts_with("the reaction of `top` has fallen to"),
         "{reason}"
     );
-    // The last state is in the files.
+    // The final state is written to the files.
     let history = fs::read_to_string(place.path().join("whole/history.csv")).unwrap();
     assert!(
         history
@@ -328,7 +328,7 @@ fn a_stop_condition_ends_a_run_the_same_way_after_a_resume() {
             .unwrap()
             .starts_with(&format!("{last},"))
     );
-    // As if it had died before the load step in which the plate failed: the peak lies before that.
+    // As if the run had been killed before the load step in which the plate failed: the peak load lies before.
     let begun = place.path().join("begun");
     for entry in fs::read_dir(begun.join("checkpoints")).unwrap() {
         let path = entry.unwrap().path();
@@ -347,7 +347,7 @@ fn a_stop_condition_ends_a_run_the_same_way_after_a_resume() {
     .unwrap();
     let said = text(&succeed(place.path(), "resume begun").stdout);
     assert!(
-        said.contains("ended by a stop condition: the reaction of `top`"),
+        said.contains("stop condition reached: the reaction of `top`"),
         "{said}"
     );
     assert_eq!(report(&begun)["stop_reason"], reason);
@@ -356,7 +356,8 @@ fn a_stop_condition_ends_a_run_the_same_way_after_a_resume() {
     assert!(text(&again.stdout).contains("has finished"));
 }
 
-/// A ring of listed points that starts with the velocities of a file, stopped between its checkpoint and its end: the last status is taken back.
+/// A ring of listed points with initial velocities from a file, as if stopped between a checkpoint and its end: the
+/// final status is reset.
 fn stopped_ring(place: &Path, out: &str) {
     let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/points");
     for file in ["ring.toml", "ring.txt"] {
@@ -396,7 +397,7 @@ fn a_run_is_resumed_from_another_folder() {
     assert_eq!(inputs[0]["file"], "ring.txt");
     assert_eq!(inputs[1]["file"], "start.txt");
     assert_eq!(inputs[0]["sha256"].as_str().unwrap().len(), 64);
-    // Results are drawn again from there, too.
+    // Results can also be re-rendered from there.
     succeed(
         elsewhere.path(),
         &format!("plot {} --field Velocity", folder.display()),
@@ -404,18 +405,18 @@ fn a_run_is_resumed_from_another_folder() {
 }
 
 #[test]
-fn a_file_that_has_changed_since_the_run_began_is_refused_by_its_name() {
+fn a_changed_input_file_is_reported_by_name() {
     let place = tempfile::tempdir().unwrap();
     stopped_ring(place.path(), "ring");
     let refused = |command: &str, file: &str, says: &str| {
         let (status, message) = fail(place.path(), command);
         assert_eq!(status, 3, "{message}");
         assert!(
-            message.contains(&format!("{file} is read by the run: {says}")),
+            message.contains(&format!("{file} of the run cannot be used: {says}")),
             "{message}"
         );
         assert!(
-            message.contains("put the file back as it was, or start a new run"),
+            message.contains("restore the original file, or start a new run"),
             "{message}"
         );
     };
@@ -441,7 +442,7 @@ fn a_file_that_has_changed_since_the_run_began_is_refused_by_its_name() {
         refused(
             "resume ring",
             file,
-            "its content has changed since the run began",
+            "its content has changed since the run started",
         );
         refused(
             "plot ring --field Velocity",
@@ -449,14 +450,14 @@ fn a_file_that_has_changed_since_the_run_began_is_refused_by_its_name() {
             "its content has changed",
         );
         fs::remove_file(&path).unwrap();
-        refused("resume ring", file, "it does not exist any more");
+        refused("resume ring", file, "it no longer exists");
         fs::write(&path, before).unwrap();
     }
     succeed(place.path(), "resume ring");
 }
 
 #[test]
-fn field_files_that_are_gone_or_cut_short_are_reported_when_a_run_is_resumed() {
+fn missing_or_truncated_field_files_are_reported_on_resume() {
     let place = tempfile::tempdir().unwrap();
     stopped_ring(place.path(), "ring");
     let fields = place.path().join("ring/fields");
@@ -468,7 +469,7 @@ fn field_files_that_are_gone_or_cut_short_are_reported_when_a_run_is_resumed() {
     fs::remove_file(fields.join("fields_000001.vtu")).unwrap();
     let said = text(&succeed(place.path(), "resume ring").stderr);
     assert!(
-        said.contains("2 of the 11 field files of the run so far are missing or cut short, the first of them fields/fields_000001.vtu at t = 1.00 µs"),
+        said.contains("2 of the 11 field files written so far are missing or truncated, first fields/fields_000001.vtu at t = 1.00 µs"),
         "{said}"
     );
 }

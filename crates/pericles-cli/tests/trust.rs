@@ -1,6 +1,8 @@
-//! The promises of the README over the examples: the same bytes on any number of threads, after a resume, after a death at any time.
+//! Reproducibility of all examples: bitwise identical results for any number of threads, after a resume, and after the
+//! process is killed at any time.
 //!
-//! Long; run with `cargo test --release --workspace --test trust -- --ignored --nocapture`, which prints a table. The quick twins in `resume.rs` always run.
+//! Long; run with `cargo test --release --workspace --test trust -- --ignored --nocapture`, which prints a table. Short
+//! versions in `resume.rs` always run.
 
 mod common;
 
@@ -12,7 +14,7 @@ use std::time::Duration;
 
 use common::{assert_same_results, fail, pericles, report, results, succeed};
 
-/// The decks under `examples/`.
+/// Returns the decks under `examples/`.
 fn decks() -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
     let list = |folder: &Path| -> Vec<PathBuf> {
@@ -39,19 +41,20 @@ fn fingerprint(folder: &Path) -> u64 {
     hasher.finish()
 }
 
-/// Lets a finished run look as if it had died after its last checkpoint but one.
+/// Makes a finished run look as if it had been killed after its second last checkpoint.
 fn undo(folder: &Path) {
     let path = folder.join("run.json");
     let text = fs::read_to_string(&path).unwrap();
     fs::write(&path, text.replace("\"finished\"", "\"running\"")).unwrap();
 }
 
-/// Seconds that a run of an example may take; PERICLES_SECONDS in place of the default.
+/// Time limit for the run of an example in seconds; PERICLES_SECONDS overrides the default.
 fn seconds() -> f64 {
     std::env::var("PERICLES_SECONDS").map_or(10.0, |seconds| seconds.parse().unwrap())
 }
 
-/// What to add to the command line so that a run of a deck on one thread fits into [`seconds`]: nothing, or an earlier end, the time that a run came to within them.
+/// Returns the override that shortens the run of a deck on one thread to [`seconds`]: none, or the end time reached
+/// within the limit.
 fn cut(place: &Path, deck: &Path) -> String {
     let line = format!(
         "run {} --quiet --no-cache --threads 1 --out probe --force --wall-time {}s",
@@ -71,7 +74,7 @@ fn cut(place: &Path, deck: &Path) -> String {
 
 #[test]
 #[ignore = "minutes: every example on 1, 2, 3 and 7 threads, run and resumed"]
-fn every_example_gives_the_same_bytes_on_any_number_of_threads_and_after_a_resume() {
+fn every_example_is_reproducible_for_any_number_of_threads_and_after_a_resume() {
     let place = tempfile::tempdir().unwrap();
     println!(
         "A run that takes longer than {} s on one thread is cut to the steps that fit.\n\n\
@@ -134,7 +137,7 @@ fn every_example_gives_the_same_bytes_on_any_number_of_threads_and_after_a_resum
     assert!(wrong.is_empty(), "{wrong:?}");
 }
 
-/// Numbers that look random and are the same every time (Steele, Lea and Flood's SplitMix64).
+/// Reproducible pseudo-random numbers (SplitMix64, Steele, Lea and Flood).
 struct Dice(u64);
 
 impl Dice {
@@ -149,7 +152,7 @@ impl Dice {
 
 #[test]
 #[ignore = "minutes: 300 kills (or PERICLES_KILLS of them) over three decks"]
-fn runs_that_are_killed_at_random_end_as_if_they_had_not_been() {
+fn runs_killed_at_random_times_resume_to_identical_results() {
     let kills: u64 = std::env::var("PERICLES_KILLS").map_or(300, |kills| kills.parse().unwrap());
     let place = tempfile::tempdir().unwrap();
     let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
@@ -164,7 +167,7 @@ fn runs_that_are_killed_at_random_end_as_if_they_had_not_been() {
     for (number, case) in cases.iter().enumerate() {
         let whole = format!("whole-{number}");
         let run = format!("run {case} --quiet --threads 1 --force --out {whole}");
-        // The first run fills the cache; the second takes as long as those that are killed would.
+        // The first run fills the cache; the second one measures the run time.
         succeed(place.path(), &run);
         let began = std::time::Instant::now();
         succeed(place.path(), &run);
@@ -174,7 +177,7 @@ fn runs_that_are_killed_at_random_end_as_if_they_had_not_been() {
             let out = format!("killed-{number}");
             let _ = fs::remove_dir_all(place.path().join(&out));
             let mut line = format!("run {case} --quiet --out {out}");
-            // A run is killed at moments between nothing and its whole time, again and again until it ends.
+            // The run is killed at random times up to its run time, repeatedly until it finishes.
             loop {
                 let threads = 1 + dice.below(2);
                 let arguments = format!("{line} --threads {threads}");
@@ -194,7 +197,7 @@ fn runs_that_are_killed_at_random_end_as_if_they_had_not_been() {
                     break;
                 }
                 done += 1;
-                // Before its first checkpoint a run has nothing to go on from, and says so.
+                // Before its first checkpoint a run cannot be resumed; this is reported.
                 let begun = fs::read_dir(folder.join("checkpoints")).is_ok_and(|files| {
                     files.flatten().any(|file| {
                         file.path()
@@ -215,15 +218,16 @@ fn runs_that_are_killed_at_random_end_as_if_they_had_not_been() {
             runs += 1;
         }
         println!(
-            "case {number}: {done} kills in {lives} lives of {runs} runs, every one ended with the same bytes"
+            "case {number}: {runs} runs, killed {done} times in {lives} processes; all results are identical"
         );
     }
 }
 
 #[test]
 #[ignore = "minutes: a million steps"]
-fn a_million_steps_lose_no_energy_and_take_no_memory() {
-    // A free bar that rings: velocity Verlet keeps its own energy but for rounding, whose sum over N steps grows at most as N, as √N where errors are random.
+fn a_million_steps_conserve_energy_without_growing_memory() {
+    // A vibrating free bar: velocity Verlet conserves a discrete energy up to rounding, whose sum over N steps grows
+    // at most like N, or like √N for random errors.
     const DECK: &str = r#"
 [body]
 shape = "bar"
@@ -268,7 +272,7 @@ every = 100000
     let (last, most) = drift.fold((0.0, 0.0f64), |(_, most), d| (d, most.max(d.abs())));
     let grown = peak("long") - peak("short");
     println!(
-        "a million steps: energy off by {last:e} at the end, {most:e} at most, of the energy there was; memory {:.1} MB, {:.1} MB more than of a thousand steps",
+        "a million steps: relative energy error {last:e} at the end, at most {most:e}; memory {:.1} MB, {:.1} MB more than for a thousand steps",
         1e-6 * peak("long"),
         1e-6 * grown
     );

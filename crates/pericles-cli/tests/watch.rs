@@ -1,4 +1,4 @@
-//! The physics watch: each of its warnings on a run that deserves it, and the same run done better without.
+//! Warnings about finished runs: each one for a run with the problem, and none for the corrected run.
 
 mod common;
 
@@ -7,7 +7,7 @@ use std::path::Path;
 
 use common::{report, run, succeed, text};
 
-/// Runs a deck; the warnings of the audit.
+/// Runs a deck and returns the warnings in `run.json`.
 fn warnings(place: &Path, deck: &str, more: &str) -> Vec<String> {
     fs::write(place.join("deck.toml"), deck).unwrap();
     let output = succeed(place, &format!("run deck.toml --out out --force {more}"));
@@ -17,7 +17,7 @@ fn warnings(place: &Path, deck: &str, more: &str) -> Vec<String> {
         .iter()
         .map(|warning| warning.as_str().unwrap().to_owned())
         .collect();
-    // What is in the report is on the screen.
+    // The warnings of the report are also printed.
     let shown = text(&output.stderr) + &text(&output.stdout);
     let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
     for warning in &list {
@@ -29,7 +29,7 @@ fn warnings(place: &Path, deck: &str, more: &str) -> Vec<String> {
     list
 }
 
-/// Wants exactly one warning, which says this, of a run, and none with the changes.
+/// Asserts that a run has exactly one warning with the given text, and none with the overrides.
 fn warned_of(deck: &str, says: &[&str], cure: &str) {
     let place = tempfile::tempdir().unwrap();
     let found = warnings(place.path(), deck, "");
@@ -42,7 +42,7 @@ fn warned_of(deck: &str, says: &[&str], cure: &str) {
 }
 
 #[test]
-fn energy_that_a_scheme_loses() {
+fn energy_loss_of_the_scheme_is_reported() {
     // A fourth-order scheme damps short waves: by (ω dt)⁶/72 a step.
     let deck = r#"
 body = { shape = "bar", length = 40, spacing = 1 }
@@ -52,46 +52,47 @@ time = { scheme = "rk4", end = 50, dt = 1 }
 output = { fields = "never", history = "never" }
 "#;
     let says = [
-        "the energy account is off by up to",
+        "the error of the energy balance reaches",
         "%",
-        "smaller time step",
+        "reduce the time step",
     ];
     warned_of(deck, &says, "--set time.dt=0.1");
 }
 
 #[test]
-fn momentum_of_a_support_that_moves() {
-    // The impulse of a support is booked by its reactions at the ends of steps, what the body feels is that of the stages between.
+fn momentum_error_at_a_moving_constraint_is_reported() {
+    // The impulse of a constraint is computed from its reactions at the ends of the steps; the body receives that of
+    // the intermediate stages.
     let deck = r#"
 body = { shape = "bar", length = 10, spacing = 1 }
 material = { model = "linear", density = 1, youngs_modulus = 1, horizon_ratio = 3 }
 sets.left = { layer = { side = "-x", cells = 3 } }
-prescribe = [{ set = "left", displacement = [{ expression = "0.01*sin(t)^2" }] }]
+constraint = [{ set = "left", displacement = [{ expression = "0.01*sin(t)^2" }] }]
 time = { scheme = "rk4", end = 50, dt = 0.4 }
 output = { fields = "never" }
 "#;
     let says = [
-        "the momentum account is off by",
-        "what the energy could have made",
+        "the momentum error is",
+        "√(2 · energy · mass)",
         "smaller time step",
     ];
     warned_of(deck, &says, "--set time.dt=0.05");
 }
 
-/// A bar that is held at one end and pulled by a load that acts at once.
+/// A bar, fixed at one end, under a suddenly applied load.
 const DEAD: &str = r#"
 body = { shape = "bar", length = 40, spacing = 1 }
 material = { density = 1, youngs_modulus = 1, horizon_ratio = 3 }
 sets.left = { layer = { side = "-x", cells = 3 } }
 sets.right = { layer = { side = "+x", cells = 3 } }
-prescribe = [{ set = "left", displacement = [0] }]
+constraint = [{ set = "left", displacement = [0] }]
 load = [{ set = "right", traction = [1e-3] }]
-time = { scheme = "relaxation", tolerance = 1e-9 }
+time = { scheme = "adaptive-dynamic-relaxation", tolerance = 1e-9 }
 output = { fields = "never" }
 "#;
 
 #[test]
-fn a_dead_load_in_one_load_step_does_the_work_that_is_stored() {
+fn the_work_of_a_dead_load_in_one_load_step_equals_the_stored_energy() {
     let place = tempfile::tempdir().unwrap();
     assert_eq!(warnings(place.path(), DEAD, ""), [""; 0]);
     let audit = report(&place.path().join("out"))["audit"].clone();
@@ -106,12 +107,12 @@ fn a_dead_load_in_one_load_step_does_the_work_that_is_stored() {
     assert!(audit["momentum_error"].is_null());
     let shown = text(&succeed(place.path(), "run deck.toml --out out --force").stdout);
     assert!(
-        shown.contains("audit: energy off by") && !shown.contains("momentum"),
+        shown.contains("energy balance: error") && !shown.contains("momentum"),
         "{shown}"
     );
-    // Supports that are displaced at once, and an initial displacement that relaxes.
+    // Suddenly prescribed displacements, and an initial displacement that relaxes.
     for more in [
-        "--set load=[] --set prescribe=[{set='left',displacement=[0]},{set='right',displacement=[0.04]}]",
+        "--set load=[] --set constraint=[{set='left',displacement=[0]},{set='right',displacement=[0.04]}]",
         "--set initial=[{displacement=[{expression='1e-3*sin(x)'}]}]",
         "--set time.load_steps=5",
     ] {
@@ -125,11 +126,11 @@ fn a_dead_load_in_one_load_step_does_the_work_that_is_stored() {
 }
 
 #[test]
-fn work_between_static_states_that_are_far_apart() {
-    // The force is far from linear between rest and a strain of a quarter.
+fn large_load_steps_of_a_nonlinear_body_are_reported() {
+    // The force is strongly nonlinear up to a strain of 0.25.
     let says = [
-        "the energy balance of the static states is off by up to",
-        "grow over more load steps",
+        "the error of the energy balance of the static states reaches",
+        "over more load steps",
         "time.load_steps",
     ];
     let stiff = DEAD
@@ -142,7 +143,7 @@ fn work_between_static_states_that_are_far_apart() {
     );
 }
 
-/// Mirror images that a run has: axis, whether with the opposite sign, and the error at its end.
+/// Returns the mirror symmetries of a run: axis, whether antisymmetric, and the error at the end.
 fn images(place: &Path, deck: &str, more: &str) -> Vec<(String, bool, f64)> {
     warnings(place, deck, more);
     let report = report(&place.join("out"));
@@ -157,7 +158,7 @@ fn images(place: &Path, deck: &str, more: &str) -> Vec<(String, bool, f64)> {
         .collect()
 }
 
-/// A plate that is pulled at both ends, and bends in the middle if its middle line moves.
+/// A plate pulled at both ends, which bends if its centre line moves.
 const PULLED: &str = r#"
 body = { shape = "plate", size = [24, 8], spacing = 1, plane = "stress" }
 material = { density = 1, youngs_modulus = 1, horizon_ratio = 3, critical_stretch = 0.1 }
@@ -169,7 +170,7 @@ output = { fields = "never" }
 "#;
 
 #[test]
-fn images_are_found_and_kept() {
+fn mirror_symmetries_are_detected_and_preserved() {
     let place = tempfile::tempdir().unwrap();
     let axes = |deck: &str| -> Vec<String> {
         let found = images(place.path(), deck, "");
@@ -180,7 +181,8 @@ fn images_are_found_and_kept() {
         found.into_iter().map(|image| image.0).collect()
     };
     assert_eq!(axes(PULLED), ["x", "y"]);
-    // What is different on one side: a load that comes later, a support, a velocity, a crack, what breaks, the material.
+    // Differences between the sides: a delayed load, a constraint, a velocity, a crack, the failure criterion, the
+    // material.
     let others = [
         (
             "load = [",
@@ -189,7 +191,7 @@ fn images_are_found_and_kept() {
         ),
         (
             "time =",
-            "prescribe = [{ set = \"left\", displacement = [0, 0] }]\ntime =",
+            "constraint = [{ set = \"left\", displacement = [0, 0] }]\ntime =",
             &["y"],
         ),
         (
@@ -225,7 +227,7 @@ fn images_are_found_and_kept() {
 }
 
 #[test]
-fn a_hump_in_a_bar_is_its_image_with_the_opposite_sign() {
+fn a_symmetric_pulse_in_a_bar_is_antisymmetric_in_displacement() {
     let deck = r#"
 body = { shape = "bar", length = 40, spacing = 1 }
 material = { model = "linear", density = 1, youngs_modulus = 1, horizon_ratio = 3 }
@@ -242,8 +244,8 @@ output = { fields = "never" }
 }
 
 #[test]
-fn images_that_are_lost() {
-    // Ends that meet: the plate buckles to the side that rounding chooses.
+fn loss_of_mirror_symmetry_is_reported() {
+    // Compressed ends: rounding determines the direction in which the plate buckles.
     let deck = r#"
 body = { shape = "plate", size = [48, 4], spacing = 1, plane = "stress" }
 material = { density = 1, youngs_modulus = 1, horizon_ratio = 3 }
@@ -253,32 +255,32 @@ load = [{ set = "left", traction = [0.04, 0] }, { set = "right", traction = [-0.
 time = { end = 1000, dt = 0.5 }
 output = { fields = "never" }
 "#;
-    let says = [
-        "its own mirror image in x and y and is none any more",
-        "buckle",
-    ];
+    let says = ["the data are mirror-symmetric about x and y", "buckling"];
     warned_of(deck, &says, "--set time.end=20");
 }
 
 #[test]
-fn a_static_state_that_is_none() {
+fn a_residual_above_the_tolerance_is_reported() {
     let deck = r#"
 body = { shape = "bar", length = 40, spacing = 1 }
 material = { model = "linear", density = 1, youngs_modulus = 1, horizon_ratio = 3 }
 sets.left = { layer = { side = "-x", cells = 3 } }
 sets.right = { layer = { side = "+x", cells = 3 } }
-prescribe = [{ set = "left", displacement = [0] }]
+constraint = [{ set = "left", displacement = [0] }]
 load = [{ set = "right", traction = [1e-3] }]
-time = { scheme = "relaxation", tolerance = 0.1 }
+time = { scheme = "adaptive-dynamic-relaxation", tolerance = 0.1 }
 output = { fields = "never" }
 "#;
-    let says = ["loads and reactions differ by", "smaller tolerance"];
+    let says = [
+        "loads and reactions are not in equilibrium",
+        "smaller tolerance",
+    ];
     warned_of(deck, &says, "--set time.tolerance=1e-8");
 }
 
 #[test]
-fn bonds_about_to_break() {
-    // A uniform strain of 19/20 of what a bond stands.
+fn bonds_close_to_failure_are_reported() {
+    // A uniform strain of 0.95 times the critical stretch.
     let deck = r#"
 body = { shape = "plate", size = [20, 10], spacing = 1, plane = "stress" }
 material = { density = 1, youngs_modulus = 1, horizon_ratio = 3, critical_stretch = 0.01 }
@@ -286,13 +288,13 @@ initial = [{ displacement = [{ expression = "0.0095*x" }, 0] }]
 time = { end = 0.1, dt = 0.1 }
 output = { fields = "never" }
 "#;
-    let says = ["of the points have bonds beyond 90", "none broke"];
+    let says = ["of the points have bonds above 90", "no bond broke"];
     warned_of(deck, &says, "--set material.critical_stretch=0.02");
 }
 
 #[test]
-fn waves_that_the_grid_does_not_carry() {
-    // Two cells a wave, and twenty.
+fn waves_not_resolved_by_the_grid_are_reported() {
+    // Two and twenty cells per wavelength.
     let deck = |waves: f64| {
         format!(
             r#"
@@ -319,8 +321,8 @@ output = {{ fields = "never" }}
 }
 
 #[test]
-fn bonds_that_break_in_masses() {
-    // A bar that is torn to pieces by a spread of speeds.
+fn breaking_of_most_bonds_is_reported() {
+    // A bar that fragments because of its initial velocities.
     let deck = r#"
 body = { shape = "bar", length = 40, spacing = 1 }
 material = { density = 1, youngs_modulus = 1, horizon_ratio = 3, critical_stretch = 0.01 }
@@ -337,14 +339,14 @@ output = { fields = "never", history = "never" }
         );
         let report = report(&place.path().join("out"));
         let warnings = report["model"]["warnings"].as_array().unwrap();
-        let in_masses = |text: &str| text.matches("falls apart in masses").count();
+        let in_masses = |text: &str| text.matches("disintegrates").count();
         let kept = warnings.iter().filter_map(|warning| warning.as_str());
         (
             in_masses(&text(&output.stderr)),
             kept.map(in_masses).sum::<usize>(),
         )
     };
-    // One warning, on the screen and in the report.
+    // One warning, on standard error and in the report.
     assert_eq!(shown(""), (1, 1));
     assert_eq!(shown("--quiet"), (0, 1));
     assert_eq!(shown("--set material.critical_stretch=30"), (0, 0));

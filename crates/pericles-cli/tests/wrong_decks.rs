@@ -1,7 +1,8 @@
-//! What a person is told who has made a mistake: every deck in `tests/wrong/` with the whole of what the program says.
+//! Complete error output for the invalid decks in `tests/wrong/`.
 //!
-//! A deck begins with a sentence about its mistake, and with the command line if that is not `pericles check DECK`. Beside it stands the answer, exit
-//! status first. After a change of messages `PERICLES_REWRITE=1 cargo test --test wrong_decks` writes the answers again: read them.
+//! A deck begins with a sentence about its mistake, and with the command line if it is not `pericles check DECK`. The
+//! file `.answer` beside it has the exit status and the output. After a change of messages, regenerate these files
+//! with `PERICLES_REWRITE=1 cargo test --test wrong_decks` and read them.
 
 mod common;
 
@@ -22,7 +23,7 @@ fn answer(folder: &Path, deck: &Path) -> String {
 }
 
 #[test]
-fn every_mistake_is_explained_word_for_word() {
+fn messages_of_invalid_decks_match_the_answer_files() {
     let rewrite = std::env::var_os("PERICLES_REWRITE").is_some();
     let wrong = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/wrong");
     let folder = tempfile::tempdir().unwrap();

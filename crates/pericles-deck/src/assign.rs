@@ -7,28 +7,30 @@ use crate::reader::Table;
 use crate::set::SetNames;
 use crate::vocabulary::ASSIGNED;
 
-/// What the points of some sets have in place of the body's. Later assignments replace earlier ones, each for what it gives.
+/// Material or relative stiffness of sets of points. Later assignments replace earlier ones, separately for
+/// material and stiffness.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Assignment {
-    /// The sets, at least one.
+    /// Names of the sets, at least one.
     pub sets: Vec<String>,
-    /// The name of their material, if it is assigned: that of an entry of [`Model::materials`](crate::Model::materials), or
-    /// [`Material::name`](method@crate::Material::name) of the body's.
+    /// Name of the material, if one is assigned: that of an entry of [`Model::materials`](crate::Model::materials), or
+    /// [`Material::name`](method@crate::Material::name) of the body's material.
     #[serde(default)]
     pub material: Option<String>,
-    /// Stiffness over that of the points' material, if it is assigned; a bond has the mean of its ends. Density and critical stretch are the material's.
+    /// Stiffness relative to the point's material, if it is assigned; a bond has the mean of its end points.
+    /// Density and critical stretch are unchanged.
     #[serde(default)]
     pub stiffness: Option<f64>,
 }
 
-/// What may be assigned to the points of a body.
+/// Kinds of assignment that a body allows.
 pub(crate) enum Assignable<'m> {
-    /// Bond-based materials of these names, and stiffnesses.
+    /// Bond-based materials with these names, and stiffnesses.
     Bonds(&'m [String]),
-    /// State-based or correspondence materials of these names.
+    /// State-based or correspondence materials with these names.
     StateBased(&'m [String]),
-    /// Stiffnesses.
+    /// Stiffnesses only.
     Surface,
 }
 
@@ -45,7 +47,7 @@ pub(crate) fn read(
     }
     let material = match assignable {
         Assignable::Surface => {
-            table.forbid("material", "a surface has one material; give `stiffness`");
+            table.forbid("material", "a 2-manifold has one material; set `stiffness`");
             Some(None)
         }
         Assignable::Bonds(names) | Assignable::StateBased(names) => {
@@ -63,7 +65,7 @@ pub(crate) fn read(
         Assignable::StateBased(_) => {
             table.forbid(
                 "stiffness",
-                "it scales the constant of bonds, which state-based and correspondence materials do not have; assign a material with elastic constants of its own",
+                "it scales the bond constant, which state-based and correspondence materials do not have; assign a material with other elastic constants",
             );
             Some(None)
         }

@@ -1,40 +1,40 @@
-//! `[[boundary]]`: ends and sides through which waves leave.
+//! `[[boundary]]`: absorbing boundaries.
 
 use pericles::space::Face;
 use pericles_waves::absorbing::history::HistoryForm;
-use pericles_waves::absorbing::{EndPlan, KernelMethod, Side};
+use pericles_waves::absorbing::{AbsorbingBoundaryPlan, KernelMethod, Side};
 use serde::{Deserialize, Serialize};
 
 use crate::quantity::Quantity;
 use crate::reader::Table;
 use crate::words::Worded;
 
-/// A boundary with memory.
+/// An absorbing boundary.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum BoundaryCondition {
-    /// An exact absorbing end of a bar.
+    /// An exact non-reflecting boundary at an end of a bar.
     Absorbing {
-        /// The end.
+        /// The end of the bar.
         #[serde(with = "crate::form")]
         side: Side,
-        /// Its kernels, and how its history is kept.
+        /// Kernels and form of the history.
         #[serde(with = "crate::form")]
-        plan: EndPlan,
-        /// How far the initial fields go on beyond the end, m; none where nothing moves there.
-        #[serde(default)]
-        exterior_data: Option<f64>,
+        plan: AbsorbingBoundaryPlan,
+        /// Distance over which the initial fields continue beyond the end, m; none if they are zero there.
+        #[serde(default, alias = "exterior_data")]
+        exterior_extent: Option<f64>,
     },
-    /// A layer in which motion dies away, of any body.
+    /// A damping layer at a side of any body.
     DampingLayer {
-        /// The side.
+        /// The side of the body.
         #[serde(rename = "side", with = "crate::form")]
         face: Face,
-        /// Its depth, m.
+        /// Thickness, m.
         thickness: f64,
-        /// Share of the amplitude of a long wave, head on, that comes back.
+        /// Reflection coefficient (amplitude) of a long wave at normal incidence.
         reflection: f64,
-        /// The power with which the damping grows.
+        /// Exponent of the damping profile.
         power: f64,
     },
 }
@@ -55,7 +55,7 @@ pub(crate) fn read(table: Table<'_>) -> Option<BoundaryCondition> {
         .and_then(|item| item.choice("kind of boundary", &kinds));
     match kind {
         Some(Kind::DampingLayer) => damping_layer(table),
-        // Of a kind that nobody knows, the rest is read as of the first.
+        // The keys of an unknown kind are read as those of the first.
         _ => absorbing(table).filter(|_| kind.is_some()),
     }
 }
@@ -79,13 +79,13 @@ fn absorbing(table: Table<'_>) -> Option<BoundaryCondition> {
     let discrete = method == Some(KernelMethod::Discrete);
     let (mut tolerance, mut verify) = (Some(None), Some(false));
     if form.is_some_and(exact) || !discrete {
-        let why = "it belongs to exponentials (history = \"auto\" or \"exponentials\", method = \"discrete\"); the other histories are exact";
+        let why = "it requires exponentials (history = \"auto\" or \"exponentials\", method = \"discrete\"); all other histories are exact";
         table.forbid("tolerance", why);
         table.forbid("verify", why);
         if form == Some(Some(HistoryForm::Exponentials)) && method.is_some() {
             table.forbid(
                 "history",
-                "\"auto\", \"blocked\" or \"direct\": exponentials are fitted to method = \"discrete\" only",
+                "use \"auto\", \"blocked\" or \"direct\"; exponentials require method = \"discrete\"",
             );
         }
     } else {
@@ -101,29 +101,29 @@ fn absorbing(table: Table<'_>) -> Option<BoundaryCondition> {
         verify = table.or("verify", false, |item| {
             let verify = item.boolean()?;
             if verify && !fitted {
-                item.out_of_range("false, or a `tolerance` beside it: without one the history is exact, and there are no exponentials to compare");
+                item.out_of_range("false, or true with a `tolerance`; without it the history is exact and has no exponentials to compare");
                 return None;
             }
             Some(verify)
         });
     }
-    let exterior_data = match method {
+    let exterior_extent = match method {
         Some(KernelMethod::SemiDiscrete | KernelMethod::Historical) => {
-            table.forbid("exterior_data", "it belongs to method = \"discrete\"");
+            table.forbid("exterior_extent", "it requires method = \"discrete\"");
             Some(None)
         }
-        _ => table.maybe("exterior_data", |item| item.positive(Quantity::Length)),
+        _ => table.maybe("exterior_extent", |item| item.positive(Quantity::Length)),
     };
     table.finish();
     Some(BoundaryCondition::Absorbing {
         side: side?,
-        plan: EndPlan {
+        plan: AbsorbingBoundaryPlan {
             method: method?,
             form: form?,
             tolerance: tolerance?,
             verify: verify?,
         },
-        exterior_data: exterior_data?,
+        exterior_extent: exterior_extent?,
     })
 }
 

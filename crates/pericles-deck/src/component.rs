@@ -1,4 +1,4 @@
-//! Vectors whose entries are numbers or expressions.
+//! Vector components given as numbers or expressions.
 
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -8,17 +8,17 @@ use crate::fault::Fault;
 use crate::quantity::Quantity;
 use crate::reader::Item;
 
-/// An entry of a vector, in SI units.
+/// A vector component in SI units.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(from = "ComponentForm", into = "ComponentForm")]
 pub enum Component {
-    /// The same everywhere and always.
+    /// A constant.
     Number(f64),
-    /// A function of place, and of time where that makes sense.
+    /// A function of position, and of time where allowed.
     Expression(Expression),
 }
 
-/// As in decks: a number, or `{ expression = "…" }`.
+/// The form in decks: a number, or `{ expression = "…" }`.
 #[derive(Serialize, Deserialize)]
 #[serde(untagged)]
 enum ComponentForm {
@@ -51,7 +51,7 @@ impl From<f64> for Component {
 }
 
 impl Component {
-    /// The value at a place (m) and time (s).
+    /// Returns the value at a position (m) and time (s).
     pub fn value(&self, place: [f64; 3], t: f64) -> f64 {
         match self {
             Self::Number(value) => *value,
@@ -59,7 +59,7 @@ impl Component {
         }
     }
 
-    /// The number, if it is one.
+    /// Returns the number, if it is a constant.
     pub fn number(&self) -> Option<f64> {
         match self {
             Self::Number(value) => Some(*value),
@@ -67,7 +67,7 @@ impl Component {
         }
     }
 
-    /// Whether it changes with time.
+    /// Returns whether it depends on time.
     pub fn depends_on_time(&self) -> bool {
         matches!(self, Self::Expression(expression) if expression.depends_on_time())
     }
@@ -76,12 +76,13 @@ impl Component {
 /// A vector of the body's dimension; components beyond it are zero.
 pub type VectorField = [Component; 3];
 
-/// The variables that expressions may use.
+/// Variables that expressions may use.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Variables {
-    /// x, y, z as far as the body has them; all if its dimension is not known for an error made elsewhere.
+    /// Dimension of the body, which determines the allowed coordinates; all are allowed if another error
+    /// makes it unknown.
     pub(crate) dimension: Option<usize>,
-    /// Whether t is one of them.
+    /// Whether t is allowed.
     pub(crate) time: bool,
 }
 
@@ -95,7 +96,7 @@ impl Variables {
     }
 }
 
-/// A number with a unit, or `{ expression = "…" }`.
+/// Reads a number with a unit, or `{ expression = "…" }`.
 pub(crate) fn component(
     item: &Item<'_>,
     quantity: Quantity,
@@ -113,7 +114,7 @@ pub(crate) fn component(
     expression.map(Component::Expression)
 }
 
-/// An expression of these variables.
+/// Reads an expression of these variables.
 pub(crate) fn expression(item: &Item<'_>, variables: &[&str]) -> Option<Expression> {
     let text = item.text()?;
     match Expression::parse(&text, variables) {
@@ -131,7 +132,7 @@ pub(crate) fn expression(item: &Item<'_>, variables: &[&str]) -> Option<Expressi
     }
 }
 
-/// A vector with one entry per dimension.
+/// Reads a vector with one entry per dimension.
 pub(crate) fn vector_field(
     item: &Item<'_>,
     quantity: Quantity,
@@ -140,7 +141,7 @@ pub(crate) fn vector_field(
     let items = item.components(variables.dimension, &quantity.expected())?;
     let mut field = Some([0.0; 3].map(Component::Number));
     for (c, item) in items.iter().enumerate() {
-        // Go on after a bad entry: the others may be bad as well.
+        // Continue after an invalid entry to report all of them.
         match (component(item, quantity, variables), &mut field) {
             (Some(component), Some(field)) => field[c] = component,
             _ => field = None,

@@ -1,4 +1,4 @@
-//! Elastic moduli and strengths in a deck, and how the constants of bonds follow from them.
+//! Elastic moduli and strengths, and how bond constants follow from them.
 
 use pericles::kernel::{Influence, InfluenceFunction};
 use pericles::material::{
@@ -12,18 +12,18 @@ use crate::reader::Table;
 use crate::vocabulary::{MODULI, STRENGTHS};
 use crate::words::Worded;
 
-/// How the constants of bonds follow from moduli and fracture energies.
+/// Rules by which bond constants follow from moduli and fracture energies.
 pub(crate) struct ConstantRules {
-    /// The state of stress.
+    /// Stress state.
     pub(crate) state: Option<StressState>,
-    /// How the modulus may be calibrated.
+    /// Allowed calibrations of the modulus.
     pub(crate) sums: Sums,
-    /// How critical stretches follow from fracture energies; none if it is not given rightly.
+    /// How critical stretches follow from fracture energies; none if invalid.
     pub(crate) fracture: Option<FractureCalibration>,
 }
 
 impl ConstantRules {
-    /// The modulus as read, if its calibration can be had; tables per class take the lattice's where none is given.
+    /// Checks the calibration of a modulus; influence functions per lattice class default to the lattice calibration.
     pub(crate) fn modulus(&self, table: &Table<'_>, read: Option<Modulus>) -> Option<Modulus> {
         let read = read?;
         let given = table.optional("modulus");
@@ -37,17 +37,17 @@ impl ConstantRules {
             }
             (Sums::Lattice, Calibration::Continuum | Calibration::Unmodified, Some(item)) => {
                 item.out_of_range(
-                    "\"lattice\": coefficients per class of bonds (`classes`, `tuned`) have no integrals",
+                    "\"lattice\"; the influence functions `lattice-classes` and `tuned` have no integrals",
                 );
                 None
             }
             (Sums::Spectral | Sums::Gauss, Calibration::Lattice, Some(item)) => {
                 item.out_of_range(match self.sums {
                     Sums::Gauss => {
-                        "\"continuum\" or \"unmodified\": the Gauss nodes of a bar are no lattice"
+                        "\"continuum\" or \"unmodified\"; Gauss nodes are not a lattice"
                     }
                     _ => {
-                        "\"continuum\" or \"unmodified\": bonds = \"spectral\" takes integrals, no sums over a lattice"
+                        "\"continuum\" or \"unmodified\"; bonds = \"spectral\" uses integrals instead of lattice sums"
                     }
                 });
                 None
@@ -56,7 +56,7 @@ impl ConstantRules {
         }
     }
 
-    /// The fracture as read, with the body's calibration.
+    /// Sets the body's calibration of the fracture energy.
     pub(crate) fn fracture(&self, read: Option<Fracture>) -> Option<Fracture> {
         Some(match read? {
             Fracture::Energy { energy, .. } => Fracture::Energy {
@@ -71,19 +71,19 @@ impl ConstantRules {
         if matches!(self.sums, Sums::Spectral) {
             table.forbid(
                 "volume_correction",
-                "bonds = \"spectral\" integrates up to the horizon exactly: no cells are cut; leave it out",
+                "bonds = \"spectral\" integrates exactly up to the horizon, without partial cells; remove the key",
             );
         }
     }
 }
 
-/// The sums or integrals that the modulus of a body's bonds may follow from.
+/// Sums or integrals from which bond constants follow.
 #[derive(Clone, Copy)]
 pub(crate) enum Sums {
     Any,
-    /// A table per class has no integrals.
+    /// Lattice sums only: influence functions per lattice class.
     Lattice,
-    /// The spectrum of an integral operator.
+    /// Fourier symbol of an integral operator.
     Spectral,
     /// Sums over Gauss nodes.
     Gauss,
@@ -105,7 +105,7 @@ impl Sums {
     }
 }
 
-/// The modulus with the calibration as written; see [`ConstantRules::modulus`].
+/// Reads the modulus with its calibration, unchecked; see [`ConstantRules::modulus`].
 pub(crate) fn modulus(table: &Table<'_>, state: Option<StressState>) -> Option<Modulus> {
     let value = table.exactly_one(MODULI).and_then(|(kind, item)| {
         let number = item.positive(Quantity::Modulus)?;
@@ -126,7 +126,8 @@ pub(crate) fn modulus(table: &Table<'_>, state: Option<StressState>) -> Option<M
     })
 }
 
-/// How critical stretches follow from fracture energies. `shared`: other materials take it over, so that it has a meaning even where the bonds of this one never break.
+/// Reads `fracture_calibration`. `shared`: other materials inherit it, so that it is allowed even if the
+/// bonds of this one never break.
 pub(crate) fn fracture_calibration(
     table: &Table<'_>,
     body: &BodyRead,
@@ -150,18 +151,18 @@ pub(crate) fn fracture_calibration(
     };
     let given = item.choice("fracture calibration", &FractureCalibration::words())?;
     if listed && given == FractureCalibration::Lattice {
-        item.out_of_range("\"continuum\": points listed in a file have no lattice planes");
+        item.out_of_range("\"continuum\"; listed points have no lattice planes");
         return None;
     }
     Some(given)
 }
 
-/// Checks Poisson's ratio against the one that bonds have.
+/// Checks Poisson's ratio against the value of bond-based models.
 pub(crate) fn poisson_ratio(table: &Table<'_>, state: Option<StressState>) {
     if state == Some(StressState::Uniaxial) {
         table.forbid(
             "poisson_ratio",
-            "a bar contracts across its axis without any effect on its motion; leave it out",
+            "the motion of a bar does not depend on Poisson's ratio; remove the key",
         );
         return;
     }
@@ -173,7 +174,7 @@ pub(crate) fn poisson_ratio(table: &Table<'_>, state: Option<StressState>) {
     }
 }
 
-/// When bonds break; how the critical stretch follows from a fracture energy is the body's matter ([`ConstantRules::fracture`]).
+/// Reads `fracture_energy` or `critical_stretch`; [`ConstantRules::fracture`] sets the calibration.
 pub(crate) fn fracture(table: &Table<'_>) -> Option<Fracture> {
     match table.at_most_one(STRENGTHS)? {
         None => Some(Fracture::Unbreakable),

@@ -1,4 +1,4 @@
-//! Functions of time: `function = { kind = … }`.
+//! Time functions: `function = { kind = … }`.
 
 use std::num::NonZeroUsize;
 use std::sync::{Arc, LazyLock};
@@ -13,38 +13,38 @@ use crate::fault::Fault;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 
-/// A function of time g(t), by which loads and motions are multiplied.
+/// A time function g(t) that multiplies the amplitude of a load or constraint.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum TimeHistory {
     /// g = 1.
     #[default]
     Constant,
-    /// From 0 to 1, linear.
+    /// g = (t − start)/duration, limited to 0 ≤ g ≤ 1.
     Ramp {
-        /// s
+        /// Start time, s.
         start: f64,
-        /// s
+        /// Duration, s.
         duration: f64,
     },
-    /// sin² from 0 to 1 and back.
+    /// g = sin²(π (t − start)/duration) within the duration, otherwise 0.
     Pulse {
-        /// s
+        /// Start time, s.
         start: f64,
-        /// s
+        /// Duration, s.
         duration: f64,
     },
-    /// Linear between rows (time in s, value).
+    /// Piecewise linear between rows (time in s, value).
     Table(Vec<(f64, f64)>),
-    /// An expression of t.
+    /// An expression of t (s).
     Expression(Expression),
 }
 
 impl TimeHistory {
-    /// The function that the engine evaluates.
+    /// Returns the function that the engine evaluates.
     ///
     /// # Errors
-    /// A table without rows, or with times that do not rise.
+    /// A table without rows, or with times that do not increase.
     pub fn function(&self) -> Result<TimeFunction, Fault> {
         Ok(match self {
             Self::Constant => TimeFunction::Constant,
@@ -55,7 +55,7 @@ impl TimeHistory {
         })
     }
 
-    /// The same for a prescribed motion, whose acceleration is its derivative.
+    /// Returns the function for a prescribed motion, whose acceleration is its derivative.
     ///
     /// # Errors
     /// As [`TimeHistory::function`]; an expression with jumps or kinks.
@@ -79,12 +79,12 @@ enum Kind {
     Expression,
 }
 
-/// Of a load.
+/// Reads the time function of a load.
 pub(crate) fn function(table: &Table<'_>) -> Option<TimeHistory> {
     read(table, false)
 }
 
-/// Of a prescribed motion, whose acceleration is its derivative.
+/// Reads the time function of a prescribed motion, whose acceleration is its derivative.
 pub(crate) fn smooth_function(table: &Table<'_>) -> Option<TimeHistory> {
     read(table, true)
 }
@@ -99,7 +99,7 @@ fn read(table: &Table<'_>, smooth: bool) -> Option<TimeHistory> {
     ];
     let table = table.table_or_empty("function")?;
     table.define("function");
-    let kind = table.choice_or_first("kind", "function of time", &KINDS)?;
+    let kind = table.choice_or_first("kind", "time function", &KINDS)?;
     let function = match kind {
         Kind::Constant => Some(TimeHistory::Constant),
         Kind::Ramp | Kind::Pulse => {
@@ -130,7 +130,7 @@ fn read(table: &Table<'_>, smooth: bool) -> Option<TimeHistory> {
     function
 }
 
-/// `[[time, value], …]`
+/// Reads `[[time, value], …]`.
 fn rows(item: &Item<'_>) -> Option<TimeHistory> {
     let mut rows = Some(Vec::new());
     for row in item.list("a list of rows, each [time, value]")? {
@@ -149,22 +149,23 @@ fn rows(item: &Item<'_>) -> Option<TimeHistory> {
     Some(TimeHistory::Table(rows))
 }
 
-/// A function of time given as an expression.
+/// A time function given as an expression.
 #[derive(Debug)]
 pub struct Course {
     value: Expression,
-    /// As far as there are any.
+    /// Derivatives; none if the expression has jumps or kinks.
     rates: Option<Rates>,
 }
 
 impl Course {
-    /// The function of an expression of t, or of place and t.
+    /// From an expression of t, or of position and t.
     pub fn new(value: Expression) -> Self {
         let rates = value.rates();
         Self { value, rates }
     }
 
-    /// The function (order 0), its integral from t = 0 (−1) or one of its first two derivatives (1, 2) at a place. NaN for a derivative that does not exist.
+    /// Returns the function (order 0), its integral from t = 0 (−1) or one of its first two derivatives (1,
+    /// 2) at a position. NaN for a derivative that does not exist.
     pub fn at(&self, order: i32, place: [f64; 3], t: f64) -> f64 {
         match order {
             -1 => integral(|t| self.value.value(place, t), t),
@@ -176,17 +177,17 @@ impl Course {
         }
     }
 
-    /// The fault of a prescribed motion that has jumps or kinks.
+    /// Returns the error for a prescribed motion with jumps or kinks.
     pub fn rough(&self) -> Fault {
         Fault::BadExpression {
             text: self.value.text().into(),
-            reason: "it has no derivative in time where abs, ceil, floor, round, sign or step of t has a jump or kink, and a prescribed motion needs one; allowed: a smooth expression, or \
-                     function = { kind = \"table\", rows = [[time, value], …] }, linear between its rows, which moves the support as the expression would"
+            reason: "it has no derivative in time at jumps or kinks of abs, ceil, floor, round, sign or step of t, but a prescribed motion needs one; use a smooth expression, or the piecewise \
+                     linear function = { kind = \"table\", rows = [[time, value], …] }"
                 .into(),
         }
     }
 
-    /// Whether it has derivatives.
+    /// Returns whether it has derivatives.
     pub fn has_rates(&self) -> bool {
         self.rates.is_some()
     }
@@ -210,11 +211,11 @@ impl TimeCourse for Course {
     }
 }
 
-/// Nodes of a panel.
+/// Gauss nodes per panel.
 const NODES: NonZeroUsize = NonZeroUsize::new(5).unwrap();
 
-/// ∫₀ᵗ f by Gauss's rule on equal panels, twice as many until two results agree to 1e-13 of the integral of |f|. A function of t alone: no call
-/// depends on an earlier one.
+/// Computes ∫₀ᵗ f by Gauss quadrature on equal panels, doubled until two results agree to 1e-13 of the integral of |f|.
+/// The result depends on t only, not on earlier calls.
 fn integral(f: impl Fn(f64) -> f64, t: f64) -> f64 {
     if t == 0.0 {
         return 0.0;
@@ -231,7 +232,7 @@ fn integral(f: impl Fn(f64) -> f64, t: f64) -> f64 {
                 magnitude += value.abs();
                 value
             });
-            // The nodes' weights are alike enough for a size.
+            // Equal weights are accurate enough for a scale.
             size += width.abs() * magnitude / NODES.get() as f64;
         }
         (sum, size)
@@ -253,7 +254,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn integrals_and_derivatives_belong_to_the_expression() {
+    fn integrals_and_derivatives_match_the_expression() {
         let course = |text| Course::new(Expression::parse(text, &["t"]).unwrap());
         let wave = course("sin(200*t)*exp(-t)");
         assert!(wave.has_rates());

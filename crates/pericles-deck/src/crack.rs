@@ -1,4 +1,4 @@
-//! `[[crack]]`: surfaces that cut bonds before the run.
+//! `[[crack]]`: pre-cracks, which cut bonds before the run.
 
 use std::path::{Path, PathBuf};
 
@@ -10,13 +10,13 @@ use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 use crate::region::{self, Frame};
 
-/// A pre-crack with the rule at its border.
+/// A pre-crack.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PreCrack {
     /// The surface.
     pub surface: CrackSurface,
-    /// What happens to bonds through its border.
+    /// Treatment of bonds through the crack edge.
     #[serde(default, with = "crate::form")]
     pub ends: EndRule,
 }
@@ -25,14 +25,14 @@ pub struct PreCrack {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum CrackSurface {
-    /// A plane surface.
+    /// A planar crack.
     Plane(#[serde(with = "crate::form")] Crack),
-    /// Triangles in a file.
+    /// Triangles from a file.
     File {
-        /// The file; a relative path starts at the folder of the deck.
+        /// Path of the file; a relative path starts at the deck's folder.
         #[serde(rename = "file")]
         path: PathBuf,
-        /// The file's unit of length, m.
+        /// Unit of length of the file, m.
         unit: f64,
     },
 }
@@ -44,7 +44,7 @@ impl From<Crack> for CrackSurface {
 }
 
 impl CrackSurface {
-    /// The file that it is read from.
+    /// Returns the path of the file, if there is one.
     pub fn file(&self) -> Option<&Path> {
         match self {
             Self::Plane(_) => None,
@@ -53,17 +53,13 @@ impl CrackSurface {
     }
 }
 
-/// The kinds of crack with the dimension they belong to.
+/// Keys of cracks, with the required dimension of the body and the advice.
 const KINDS: [(&str, usize, &str); 5] = [
-    ("section", 1, "a section cuts a bar (1D)"),
-    ("segment", 2, "a segment cuts a body of two dimensions"),
-    ("polygon", 3, "a polygon cuts a body of three dimensions"),
-    ("disc", 3, "a disc cuts a body of three dimensions"),
-    (
-        "file",
-        3,
-        "a surface of triangles cuts a body of three dimensions",
-    ),
+    ("section", 1, "`section` requires a bar (1D)"),
+    ("segment", 2, "`segment` requires a 2D body"),
+    ("polygon", 3, "`polygon` requires a 3D body"),
+    ("disc", 3, "`disc` requires a 3D body"),
+    ("file", 3, "`file` requires a 3D body"),
 ];
 
 pub(crate) fn read(table: Table<'_>, frame: Frame) -> Option<PreCrack> {
@@ -86,7 +82,7 @@ pub(crate) fn read(table: Table<'_>, frame: Frame) -> Option<PreCrack> {
                 _ => spatial(&table),
             }
         }
-        // The body is refused already: only keep its kinds of crack from being reported as unknown.
+        // The body is invalid: mark all kinds of crack as known.
         None => {
             for (kind, ..) in KINDS {
                 table.optional(kind);
@@ -95,14 +91,14 @@ pub(crate) fn read(table: Table<'_>, frame: Frame) -> Option<PreCrack> {
         }
     };
     if table.has("file") {
-        table.forbid("ends", "the border of a surface of triangles is part of it");
+        table.forbid("ends", "a crack from a `file` always includes its edges");
     } else {
-        table.forbid("unit", "only a surface of triangles from a `file` has one");
+        table.forbid("unit", "it requires `file`");
     }
     let ends = table.worded("ends", "end rule");
     let crack = surface.zip(ends);
     if let (Some((CrackSurface::Plane(surface), ends)), Some(spacing)) = (&crack, frame.spacing) {
-        // The same tolerance as when bonds are cut.
+        // The tolerance must be the one with which bonds are cut.
         table.accept(surface.cutter(*ends, 1e-9 * spacing))?;
     }
     table.finish();

@@ -1,18 +1,18 @@
-//! `[damping]`: damping of motion in proportion to mass and stiffness.
+//! `[damping]`: Rayleigh damping.
 
 use serde::{Deserialize, Serialize};
 
 use crate::quantity::Quantity;
 use crate::reader::Table;
 
-/// Damping of motion, α ρ u_t + β K u_t.
+/// Rayleigh damping, α ρ u_t + β K u_t.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Damping {
-    /// α, 1/s.
+    /// Mass-proportional coefficient α, 1/s.
     #[serde(default)]
     pub mass: f64,
-    /// β, s.
+    /// Stiffness-proportional coefficient β, s.
     #[serde(default)]
     pub stiffness: f64,
 }
@@ -20,9 +20,7 @@ pub struct Damping {
 pub(crate) fn read(table: Table<'_>) -> Option<Damping> {
     let factor = |key, quantity| {
         table.or(key, 0.0, |item| {
-            item.within(quantity, "a number that is not negative", |value| {
-                value >= 0.0
-            })
+            item.within(quantity, "zero or a positive number", |value| value >= 0.0)
         })
     };
     if !table.has("mass") && !table.has("stiffness") {

@@ -1,5 +1,6 @@
-//! The deck as a whole.
+//! The deck: text, model and the location of every value.
 
+use std::collections::HashSet;
 use std::path::{Path as FilePath, PathBuf};
 
 use serde_json::Value as Json;
@@ -8,7 +9,7 @@ use crate::assign::{self, Assignable, Assignment};
 use crate::body::{self, BodyRead, SurfaceRead};
 use crate::boundary;
 use crate::caution::Caution;
-use crate::conditions::{self, Prescribe};
+use crate::conditions::{self, Constraint};
 use crate::crack;
 use crate::damping;
 use crate::document::{self, Node};
@@ -28,30 +29,37 @@ use crate::region::Frame;
 use crate::remark::{BuildError, Remark};
 use crate::set::{self, SetNames};
 use crate::source::Sources;
+use crate::spelling::{self, Renamed};
 use crate::subject::Subject;
 use crate::surface::{self, SurfaceBody};
 use crate::thermal::{self, Thermal};
 use crate::time;
 
-/// A deck: the model it describes, and where in the text each value stands.
+/// A deck: the model and the location of every value in the text.
 #[derive(Debug, Clone)]
 pub struct Deck {
-    /// What the deck says, as plain data.
+    /// The model, as plain data.
     pub model: Model,
     record: Record,
-    /// Tables of former releases that it has.
-    former: Option<Former>,
+    outdated: Outdated,
 }
 
-/// The document of a deck with its overrides, in the present form.
+/// Deprecated names and tables in a deck.
+#[derive(Debug, Clone)]
+pub(crate) struct Outdated {
+    renamed: Vec<Renamed>,
+    tables: Option<Former>,
+}
+
+/// The document of a deck with its overrides, with deprecated names and tables replaced.
 pub(crate) struct Document {
     pub(crate) root: Node,
     pub(crate) sources: Sources,
-    pub(crate) former: Option<Former>,
+    pub(crate) outdated: Outdated,
 }
 
 impl Deck {
-    /// Adds what the reader asks of a deck to a survey.
+    /// Reads a deck and adds the keys that the reader requests to a survey.
     pub(crate) fn survey(
         text: &str,
         overrides: &[String],
@@ -59,7 +67,7 @@ impl Deck {
     ) -> Result<Survey, DeckError> {
         let document = Document::of(text, "specimen", overrides)?;
         let ledger = Ledger::surveyed(document.sources, survey);
-        let (_, survey) = Self::read_with(ledger, &document.root, document.former)?;
+        let (_, survey) = Self::read_with(ledger, &document.root, document.outdated)?;
         Ok(survey)
     }
 
@@ -67,7 +75,7 @@ impl Deck {
     pub(crate) fn read_with(
         ledger: Ledger,
         root: &Node,
-        former: Option<Former>,
+        outdated: Outdated,
     ) -> Result<(Self, Survey), DeckError> {
         let model = ledger.root(root).and_then(model);
         let closed = ledger.close();
@@ -76,7 +84,7 @@ impl Deck {
                 let deck = Self {
                     model,
                     record: closed.record,
-                    former,
+                    outdated,
                 };
                 Ok((deck, closed.survey))
             }
@@ -84,63 +92,74 @@ impl Deck {
         }
     }
 
-    /// The deck as it was read: every key with its value in SI units, and what was left out with its default.
+    /// Returns all keys with their values in SI units, including defaults.
     pub fn to_json(&self) -> &Json {
         &self.record.json
     }
 
-    /// Whether the deck, or an override, gives the value of a key such as `material.modulus`, instead of leaving it to its default.
+    /// Returns whether the deck or an override sets a key such as `material.modulus`.
     pub fn gives(&self, key: &str) -> bool {
         self.record.is_given(&key.into())
     }
 
-    /// The text it was read from, without overrides.
+    /// Returns the text, without overrides.
     pub fn source(&self) -> &str {
         self.record.sources.text(0)
     }
 
-    /// The folder of the deck, where relative paths of the model start; empty for the present folder.
+    /// Returns the folder of the deck, to which paths are relative; empty for the current folder.
     pub fn folder(&self) -> &FilePath {
         let folder = FilePath::new(self.record.sources.name()).parent();
         folder.unwrap_or(FilePath::new(""))
     }
 
-    /// Where a file is that the deck names: a relative path starts at the deck's folder.
+    /// Resolves a path in the deck; a relative path starts at the deck's folder.
     pub fn beside(&self, path: &FilePath) -> PathBuf {
         self.folder().join(path)
     }
 
-    /// The overrides that were applied.
+    /// Returns the overrides.
     pub fn overrides(&self) -> impl Iterator<Item = &str> {
         (1..self.record.sources.count()).map(|k| self.record.sources.text(k))
     }
 
-    /// Warnings about the text itself: tables in a form of former releases.
+    /// Returns warnings about the text itself: deprecated names and tables.
     pub fn warnings(&self) -> Vec<Warning> {
-        let former = self.former.iter().map(|former| {
+        let locate = |caution, place| Finding::new(caution, self.record.sources.locate(place));
+        let renamed = &self.outdated.renamed;
+        let names = renamed.first().map(|first| {
+            let mut names: Vec<_> = renamed
+                .iter()
+                .map(|one| (one.former, one.present))
+                .collect();
+            let mut seen = HashSet::new();
+            names.retain(|name| seen.insert(*name));
+            locate(Caution::FormerNames { names }, first.place)
+        });
+        let tables = self.outdated.tables.as_ref().map(|former| {
             let caution = Caution::FormerTables {
                 tables: former.tables.clone(),
                 text: former.text.clone(),
             };
-            Finding::new(caution, self.record.sources.locate(former.place))
+            locate(caution, former.place)
         });
-        former.collect()
+        names.into_iter().chain(tables).collect()
     }
 
-    /// What was found in the model, with the place in the text that it concerns.
+    /// Adds the location in the text to a finding about the model.
     pub fn located<S: Subject>(&self, remark: Remark<S>) -> Finding<S> {
         let (keys, subject) = remark.into_parts();
         let place = self.record.place_of_any(&keys);
         Finding::new(subject, self.record.sources.locate(place))
     }
 
-    /// The refusal of the model, with the places in the text that it concerns.
+    /// Adds locations in the text to the errors of a model.
     pub fn refusal(&self, error: BuildError) -> DeckError {
         let problems = error.into_problems().into_iter();
         DeckError::refused(problems.map(|problem| self.located(problem)).collect())
     }
 
-    /// Refuses tuned coefficients with which waves grow, unless `time.allow_unstable` accepts them.
+    /// Refuses tuned coefficients that make the lattice unstable, unless `time.allow_unstable` is set.
     pub(crate) fn refuse_unstable_table(&self) -> Result<(), DeckError> {
         let solid = self.model.body.solid();
         match solid.and_then(|solid| solid.material.tuned.as_ref()) {
@@ -157,7 +176,7 @@ impl Deck {
     }
 }
 
-/// The model of a document. All tables are read before it gives up, so that all problems are found.
+/// Reads the model. All tables are read even after an error, so that all problems are reported.
 fn model(root: Table<'_>) -> Option<Model> {
     let title = root.maybe("title", |item| item.text());
     let body = body::read(root.required("body").and_then(|item| item.table()));
@@ -167,13 +186,16 @@ fn model(root: Table<'_>) -> Option<Model> {
         Some(read) => {
             let surface = surface_of(&root, read, frame, &names);
             let several = surface_assignments(&root, &names);
-            root.forbid("thermal", "surfaces do not expand with temperature");
+            root.forbid(
+                "thermal",
+                "thermal expansion of 2-manifolds is not supported",
+            );
             (surface.map(Body::Surface), Some(None), several, Some(None))
         }
         None => {
             root.forbid(
                 "geodesics",
-                "only surfaces (shape = \"icosphere\", \"torus\" …) have distances along them",
+                "it requires a 2-manifold (shape = \"icosphere\", \"torus\" …)",
             );
             let materials = material::read(&root, &body, &names);
             let gaussian = materials.own.as_ref().map(exact::gaussian_length);
@@ -188,8 +210,8 @@ fn model(root: Table<'_>) -> Option<Model> {
     let initial = each(&root, "initial", |table| {
         conditions::initial(table, frame.dimension, &names)
     });
-    let prescribe = each(&root, "prescribe", |table| {
-        conditions::prescribe(table, frame.dimension, &names)
+    let constraints = each(&root, "constraint", |table| {
+        conditions::constraint(table, frame.dimension, &names)
     });
     let loads = each(&root, "load", |table| {
         conditions::load(table, frame.dimension, &names)
@@ -204,13 +226,14 @@ fn model(root: Table<'_>) -> Option<Model> {
         .required("time")
         .and_then(|item| time::read(item.table()?, &names));
     let output = root.table_or_empty("output").and_then(|table| {
-        let driven = prescribe.iter().flatten().any(Prescribe::moves);
+        let driven = constraints.iter().flatten().any(Constraint::moves);
         output::read(
             table,
             frame.dimension,
             driven,
             body.surface.is_some(),
             frame.mesh,
+            &names,
         )
     });
     let checkpoint = root
@@ -227,7 +250,7 @@ fn model(root: Table<'_>) -> Option<Model> {
         sets: sets?,
         cracks: cracks?,
         initial: initial?,
-        prescribe: prescribe?,
+        constraints: constraints?,
         loads: loads?,
         boundaries: boundaries?,
         probes: probes?,
@@ -247,20 +270,23 @@ impl Document {
         for text in overrides {
             overrides::apply(&mut root, text, &mut sources)?;
         }
-        let former = former::rewrite(&mut root, &sources);
+        let outdated = Outdated {
+            renamed: spelling::modernise(&mut root),
+            tables: former::rewrite(&mut root, &sources),
+        };
         inherit(&mut root);
         Ok(Self {
             root,
             sources,
-            former,
+            outdated,
         })
     }
 }
 
-/// Materials beside the body's, assignments and interfaces.
+/// Further materials, assignments and interfaces.
 type Several = (Vec<NamedMaterial>, Vec<Assignment>, Vec<MaterialInterface>);
 
-/// What a body has of materials beside its own.
+/// Reads further materials, assignments and interfaces.
 fn several_of(
     root: &Table<'_>,
     materials: &Materials,
@@ -279,14 +305,14 @@ fn several_of(
         Some(_) => each(root, "assign", |table| {
             assign::read(table, &assignable, sets)
         }),
-        // What may be assigned is not known.
+        // The allowed assignments are unknown.
         None => root.optional("assign").and(None),
     };
     let interfaces = match materials.others.as_deref() {
         Some([]) => {
             root.forbid(
                 "interface",
-                "only a body of several materials ([materials.NAME], [[assign]]) has interfaces",
+                "interfaces require several materials ([materials.NAME], [[assign]])",
             );
             Some(Vec::new())
         }
@@ -295,17 +321,17 @@ fn several_of(
     Some((materials.others.clone()?, assignments?, interfaces?))
 }
 
-/// Thermal expansion, if the deck has it.
+/// Reads `[thermal]`, if the deck has it.
 fn thermal_of(root: &Table<'_>, materials: &Materials, body: &BodyRead) -> Option<Option<Thermal>> {
     root.maybe("thermal", |item| {
         thermal::read(item.table()?, body.frame.dimension, &materials.names)
     })
 }
 
-/// The assignments of a surface.
+/// Reads the assignments of a 2-manifold.
 fn surface_assignments(root: &Table<'_>, sets: &SetNames) -> Option<Several> {
     for key in ["materials", "interface"] {
-        root.forbid(key, "surfaces have one material");
+        root.forbid(key, "a 2-manifold has one material");
     }
     let assignments = each(root, "assign", |table| {
         assign::read(table, &Assignable::Surface, sets)
@@ -313,7 +339,7 @@ fn surface_assignments(root: &Table<'_>, sets: &SetNames) -> Option<Several> {
     Some((Vec::new(), assignments?, Vec::new()))
 }
 
-/// A body of points with volumes, as far as it and its material could be read.
+/// Assembles a solid body, if it and its material could be read.
 fn solid_of(body: &BodyRead, material: Option<Material>) -> Option<Solid> {
     Some(Solid {
         shape: body.shape.clone()?,
@@ -322,14 +348,14 @@ fn solid_of(body: &BodyRead, material: Option<Material>) -> Option<Solid> {
     })
 }
 
-/// What is said of a surface outside `[body]`.
+/// Reads the tables of a 2-manifold other than `[body]`.
 fn surface_of(
     root: &Table<'_>,
     read: &SurfaceRead,
     frame: Frame,
     names: &SetNames,
 ) -> Option<SurfaceBody> {
-    root.forbid("crack", "surfaces have no pre-cracks");
+    root.forbid("crack", "pre-cracks in 2-manifolds are not supported");
     let geodesics = root
         .table_or_empty("geodesics")
         .and_then(surface::geodesics);

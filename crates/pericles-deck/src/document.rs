@@ -1,4 +1,4 @@
-//! The TOML document as an owned tree in which every key and value knows its place.
+//! The TOML document as an owned tree with the location of every key and value.
 
 use toml::de::{DeTable, DeValue};
 
@@ -7,14 +7,14 @@ use crate::fault::Fault;
 use crate::finding::Problem;
 use crate::source::{Place, Sources};
 
-/// A value with its place.
+/// A value with its location.
 #[derive(Debug, Clone)]
 pub(crate) struct Node {
     pub(crate) place: Place,
     pub(crate) value: Value,
 }
 
-/// What a value is.
+/// The kind and content of a value.
 #[derive(Debug, Clone)]
 pub(crate) enum Value {
     Text(String),
@@ -35,7 +35,7 @@ pub(crate) struct Entry {
 }
 
 impl Value {
-    /// What it is, in words.
+    /// Returns the type in words.
     pub(crate) fn kind(&self) -> &'static str {
         match self {
             Self::Text(_) => "a string",
@@ -48,7 +48,7 @@ impl Value {
     }
 }
 
-/// Reads a document; the first error of its syntax refuses it, for what follows one is mostly its consequence.
+/// Parses a document. Only the first syntax error is reported, because later ones are mostly its consequences.
 pub(crate) fn parse(sources: &Sources) -> Result<Node, DeckError> {
     let text = sources.text(0);
     match DeTable::parse(text) {
@@ -78,7 +78,7 @@ pub(crate) fn parse(sources: &Sources) -> Result<Node, DeckError> {
     }
 }
 
-/// A single value, standing `offset` bytes after the start of its source; none if the text is no TOML value.
+/// Parses a single value that starts `offset` bytes into its source; none if the text is not a TOML value.
 pub(crate) fn parse_value(text: &str, source: usize, offset: usize) -> Option<Node> {
     let value = DeValue::parse(text).ok()?;
     Some(node(value.get_ref(), value.span(), source, offset))
@@ -100,7 +100,7 @@ fn node(value: &DeValue<'_>, span: std::ops::Range<usize>, source: usize, offset
         DeValue::String(text) => Value::Text(text.to_string()),
         DeValue::Integer(integer) => match i64::from_str_radix(integer.as_str(), integer.radix()) {
             Ok(integer) => Value::Integer(integer),
-            // Beyond 64 bits: only its size matters, and the reader refuses what is not finite.
+            // Beyond 64 bits: only the magnitude matters; the reader refuses infinite numbers.
             Err(_) => Value::Float(integer.as_str().parse().unwrap_or(f64::INFINITY)),
         },
         DeValue::Float(float) => Value::Float(float.as_str().parse().unwrap_or(f64::NAN)),
@@ -128,7 +128,7 @@ fn place(span: std::ops::Range<usize>, source: usize, offset: usize) -> Place {
     }
 }
 
-/// Puts entries into the order of the text: the parser returns them by name.
+/// Sorts entries into the order of the text; the parser returns them by name.
 fn sort(entries: &mut [Entry]) {
     entries.sort_by_key(|entry| entry.key_place.start);
     for entry in entries {

@@ -1,4 +1,4 @@
-//! Why a deck cannot be used.
+//! Errors of reading a deck.
 
 use std::path::PathBuf;
 
@@ -6,22 +6,22 @@ use miette::{Diagnostic, LabeledSpan, SourceCode};
 
 use crate::finding::Problem;
 
-/// Why a deck cannot be used.
+/// Errors of reading a deck.
 ///
-/// The text of the error names every problem as `file:line:column: what is wrong; what is allowed`. A program with a graphical reporter
-/// hands it the [`problems`](Self::problems) one by one: each carries the text it points into.
+/// The message lists every problem as `file:line:column: what is wrong; what is allowed`. For graphical
+/// reporters, each of the [`problems`](Self::problems) carries its source text.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum DeckError {
     /// The file cannot be read.
     #[error("cannot read the deck {}: {reason}", path.display())]
     Unreadable {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         reason: std::io::Error,
     },
-    /// The deck is refused.
+    /// The deck has errors.
     #[error("{}", listed(problems))]
     Refused {
         /// At least one problem, in the order of the text.
@@ -30,16 +30,16 @@ pub enum DeckError {
 }
 
 impl DeckError {
-    /// A message names so many problems; of more it gives the number.
+    /// Largest number of problems that a message lists.
     pub const SHOWN: usize = 50;
 
-    /// A refusal; problems are put into the order of the text.
+    /// Sorts the problems into the order of the text.
     pub(crate) fn refused(mut problems: Vec<Problem>) -> Self {
         problems.sort_by_key(|problem| problem.location().order());
         Self::Refused { problems }
     }
 
-    /// What is wrong, place by place; empty if the file cannot be read.
+    /// Returns the problems in the order of the text; empty if the file cannot be read.
     pub fn problems(&self) -> &[Problem] {
         match self {
             Self::Refused { problems } => problems,
@@ -47,7 +47,7 @@ impl DeckError {
         }
     }
 
-    /// Whether nothing is wrong with the deck but that it needs more memory than it may have.
+    /// Returns whether exceeding the memory limit is the only problem.
     pub fn is_too_large(&self) -> bool {
         let mut problems = self.problems().iter();
         !self.problems().is_empty() && problems.all(|problem| problem.subject().is_too_large())

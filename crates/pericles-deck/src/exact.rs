@@ -1,4 +1,4 @@
-//! `[exact]`: a known solution, from which the distance is written.
+//! `[exact]`: analytical solutions with which a run is compared.
 
 use pericles::kernel::{ActsOn, InfluenceFunction};
 use serde::{Deserialize, Serialize};
@@ -8,58 +8,58 @@ use crate::material::Material;
 use crate::quantity::Quantity;
 use crate::reader::Table;
 
-/// A solution to compare with.
+/// Comparison with an analytical solution.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Exact {
-    /// Which.
+    /// The solution.
     pub solution: KnownSolution,
-    /// Points that count: those within this distance of the pulse's middle or of the origin, m; all if none.
+    /// Half-width of the window of comparison around the centre of the pulse or the origin, m; none for all points.
     #[serde(default)]
     pub window: Option<f64>,
-    /// Whether the body starts as the solution does.
+    /// Whether the initial displacement is that of the solution.
     #[serde(default)]
     pub start: bool,
 }
 
-/// Solutions of bars and lines; modulus, density and micromodulus are those of the material.
+/// Analytical solutions of finite and infinite bars with the modulus, density and micromodulus of the material.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum KnownSolution {
-    /// A Gaussian start on the line with a Gaussian micromodulus of this length.
+    /// Gaussian initial displacement on an infinite nonlocal bar with a Gaussian micromodulus.
     NonlocalPulse {
-        /// The start.
+        /// The initial displacement.
         pulse: Pulse,
-        /// The length of the micromodulus, m.
+        /// Length of the micromodulus, m.
         length: f64,
     },
-    /// The same start on the local string.
+    /// The same for the local wave equation.
     LocalPulse(Pulse),
-    /// The local bar released from uniform strain, held at x = 0.
+    /// Local bar fixed at x = 0, released from a uniform strain.
     StretchedBar {
-        /// Its length, m.
+        /// Length of the bar, m.
         length: f64,
-        /// The strain.
+        /// Initial strain.
         strain: f64,
     },
-    /// Its slowest vibration.
+    /// The lowest vibration mode of that bar.
     BarMode {
-        /// Its length, m.
+        /// Length of the bar, m.
         length: f64,
-        /// The height, m.
+        /// Amplitude, m.
         amplitude: f64,
     },
 }
 
-/// u = amplitude · exp(−((x − centre)/width)²), at rest.
+/// u = amplitude · exp(−((x − centre)/width)²), initially at rest.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Pulse {
-    /// m
+    /// Width, m.
     pub width: f64,
-    /// m
+    /// Amplitude, m.
     pub amplitude: f64,
-    /// m
+    /// Position of the maximum, m.
     pub centre: f64,
 }
 
@@ -71,7 +71,8 @@ enum Kind {
     BarMode,
 }
 
-/// `[exact]`; `gaussian` is the length of the Gaussian micromodulus, none of a body that has another one, and unknown if the material could not be read.
+/// Reads `[exact]`. `gaussian`: the length of the Gaussian micromodulus, `Some(None)` for other micromoduli,
+/// none if the material could not be read.
 pub(crate) fn read(
     table: Table<'_>,
     dimension: Option<usize>,
@@ -85,7 +86,7 @@ pub(crate) fn read(
     ];
     if dimension.is_some_and(|dimension| dimension != 1) {
         table.report(Fault::NoExactSolution {
-            reason: "they are known for bars only",
+            reason: "exact solutions are available for bars only",
         });
     }
     let item = table.required("solution")?;
@@ -118,7 +119,7 @@ pub(crate) fn read(
             let length = gaussian.and_then(|length| {
                 if length.is_none() {
                     item.report(Fault::NoExactSolution {
-                        reason: "it belongs to model = \"linear\" with influence = { function = \"gaussian\", acts_on = \"displacement\" } and horizon = \"infinite\"",
+                        reason: "it requires model = \"linear\" with influence = { function = \"gaussian\", acts_on = \"displacement\" } and horizon = \"infinite\"",
                     });
                 }
                 length
@@ -151,9 +152,9 @@ pub(crate) fn read(
     })
 }
 
-/// The length of a Gaussian micromodulus that is nowhere cut.
+/// Returns the length of a Gaussian micromodulus without a significant cutoff.
 pub(crate) fn gaussian_length(material: &Material) -> Option<f64> {
-    /// Lengths beyond which the Gaussian is below 1e-16 of its height.
+    /// Number of lengths beyond which the Gaussian is below 1e-16.
     const ALL: f64 = 6.1;
     let bonds = material.bonds()?;
     match &bonds.influence.function {

@@ -1,4 +1,4 @@
-//! What was found at one place of a deck: a problem or a warning.
+//! Findings: problems and warnings with their location in a deck.
 
 use std::error::Error;
 use std::fmt::{self, Display};
@@ -10,13 +10,13 @@ use crate::fault::Fault;
 use crate::source::Location;
 use crate::subject::Subject;
 
-/// Something wrong, for which the deck is refused.
+/// An error in a deck.
 pub type Problem = Finding<Fault>;
 
-/// Something odd, with which a run may still be meant.
+/// A warning about a deck.
 pub type Warning = Finding<Caution>;
 
-/// Something found at one place of a deck. Its text says what; its help says what is allowed.
+/// A finding at a location in a deck. The message says what was found; the help says what is allowed or what to do.
 #[derive(Debug)]
 pub struct Finding<S> {
     subject: S,
@@ -28,17 +28,18 @@ impl<S: Subject> Finding<S> {
         Self { subject, at }
     }
 
-    /// What was found.
+    /// Returns what was found.
     pub fn subject(&self) -> &S {
         &self.subject
     }
 
-    /// Where.
+    /// Returns the location.
     pub fn location(&self) -> &Location {
         &self.at
     }
 
-    /// All in one line, for terminals without a graphical reporter: `file:line:column: what; what is allowed`.
+    /// Returns the finding in one line, for terminals without a graphical reporter: `file:line:column: what;
+    /// what is allowed`.
     pub fn line(&self) -> String {
         match self.subject.advice() {
             Some(advice) => format!("{}: {self}; {advice}", self.at),
@@ -55,7 +56,7 @@ impl<S: Subject> Display for Finding<S> {
 
 impl<S: Subject> Error for Finding<S> {
     fn source(&self) -> Option<&(dyn Error + 'static)> {
-        // The finding's own text is the subject's: hand on what lies behind it.
+        // The message is the subject's own, so that the next source is the subject's source.
         self.subject.source()
     }
 }

@@ -1,29 +1,30 @@
-//! Tables of former releases, rewritten in the present form before a deck is read.
+//! Deprecated tables, replaced by their present form before a deck is read.
 //!
-//! | former | present |
+//! | deprecated | present |
 //! |---|---|
 //! | `[[material.part]]` with `name`, `set` | `[materials.NAME]`, `[[assign]]` with `set`, `material` |
-//! | `[[material.part]]` with `block` | the same with a set of the block |
+//! | `[[material.part]]` with `block` | the same, with a set of the block |
 //! | `[[material.inclusion]]` | `[[assign]]` with `set`, `stiffness` |
 //! | `[material.interface]` with `rule`, `pair` | `[[interface]]` without and with `between` |
 //!
-//! The rewritten tables keep their places in the text. What is not of these forms stays where it is, and is refused by the reader.
+//! The new tables keep their locations in the text. Tables of another form are left unchanged and refused by
+//! the reader.
 
 use crate::document::{Entry, Node, Value};
 use crate::source::{Place, Sources};
 
-/// The former tables of a deck in the present form.
+/// The deprecated tables of a deck.
 #[derive(Debug, Clone)]
 pub(crate) struct Former {
-    /// Where the first of them stands.
+    /// Location of the first one.
     pub(crate) place: Place,
-    /// As they are written in a deck.
+    /// Their headings.
     pub(crate) tables: Vec<&'static str>,
-    /// What takes their place, as text.
+    /// The equivalent present tables, as text.
     pub(crate) text: String,
 }
 
-/// Rewrites the former tables of a deck; none if it has none.
+/// Replaces the deprecated tables of a deck; none if it has none.
 pub(crate) fn rewrite(root: &mut Node, sources: &Sources) -> Option<Former> {
     let Value::Table(entries) = &mut root.value else {
         return None;
@@ -71,7 +72,7 @@ struct Rewritten {
     interface: Vec<Node>,
 }
 
-/// `[[material.part]]`; none if one of them has not the form of a part.
+/// Converts `[[material.part]]`; none if a table has another form.
 fn parts(node: &Node, rewritten: &mut Rewritten) -> Option<()> {
     let mut made = Rewritten::default();
     for part in tables(node)? {
@@ -141,14 +142,14 @@ fn interface(node: &Node, rewritten: &mut Rewritten) -> Option<()> {
     Some(())
 }
 
-/// A table of a list of tables.
+/// An entry of a list of tables.
 struct Part<'n> {
     place: Place,
     entries: &'n [Entry],
 }
 
 impl Part<'_> {
-    /// A table in its place.
+    /// Returns a table at the same location.
     fn with(&self, entries: Vec<Entry>) -> Node {
         Node {
             place: self.place,
@@ -157,7 +158,7 @@ impl Part<'_> {
     }
 }
 
-/// The tables of a list of tables; none if it is something else.
+/// Returns the tables of a list of tables; none for other values.
 fn tables(node: &Node) -> Option<Vec<Part<'_>>> {
     let Value::Array(items) = &node.value else {
         return None;
@@ -173,7 +174,7 @@ fn tables(node: &Node) -> Option<Vec<Part<'_>>> {
 }
 
 impl Rewritten {
-    /// A key `set` with a new set of the points of some blocks.
+    /// Returns a key `set` with a new set of the points of some blocks.
     fn set_of(&mut self, block: &Entry) -> Entry {
         let numbers = match &block.node.value {
             Value::Integer(number) => number.to_string(),
@@ -202,7 +203,7 @@ impl Rewritten {
         }
     }
 
-    /// Adds the tables to those of a deck, assignments and interfaces before its own.
+    /// Adds the tables to a deck, assignments and interfaces before its own.
     fn add_to(self, entries: &mut Vec<Entry>) {
         for (key, added) in [("sets", self.sets), ("materials", self.materials)] {
             let Some(first) = added.first() else { continue };
@@ -222,7 +223,7 @@ impl Rewritten {
         }
     }
 
-    /// The tables as a deck writes them.
+    /// Returns the tables as TOML.
     fn text(&self, sources: &Sources) -> String {
         let mut text = String::new();
         let mut table = |heading: String, entries: &[Entry]| {
@@ -252,7 +253,7 @@ impl Rewritten {
     }
 }
 
-/// The value under a key of the deck, which is made if it is not there.
+/// Returns the value of a key of the deck, inserting it if it is missing.
 fn entry_of<'n>(
     entries: &'n mut Vec<Entry>,
     key: &str,
@@ -271,17 +272,17 @@ fn entry_of<'n>(
     &mut entries[at].node
 }
 
-/// A value as it is written in the deck.
+/// Returns a value as written in the deck.
 fn written(node: &Node, sources: &Sources) -> String {
     let excerpt = sources.locate(node.place).excerpt().to_owned();
     match &node.value {
-        // A name made here stands nowhere; an override needs no quotes.
+        // Generated names are not in the text, and overrides may lack quotes.
         Value::Text(text) if !excerpt.starts_with(['"', '\'']) => format!("{text:?}"),
         _ => excerpt,
     }
 }
 
-/// A key with quotes where it needs them.
+/// Returns a key, with quotes if needed.
 fn quoted(key: &str) -> String {
     let bare = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_');
     match !key.is_empty() && key.chars().all(bare) {

@@ -9,17 +9,17 @@ use crate::fault::Fault;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 
-/// What a function is made for; none where the deck does not say it rightly.
+/// Discretisation for which an influence function is made; none where the deck is invalid.
 pub(crate) struct Setting {
     pub(crate) dimension: Option<usize>,
     pub(crate) state: Option<StressState>,
-    /// m
+    /// Spacing, m.
     pub(crate) spacing: Option<f64>,
-    /// Whether the spacing is not known before a mesh is read.
+    /// Whether the spacing is unknown before a mesh is read.
     pub(crate) automatic: bool,
     /// Whether all cells are squares or cubes of one size.
     pub(crate) cells: bool,
-    /// m
+    /// Horizon, m.
     pub(crate) horizon: Option<f64>,
     pub(crate) correction: Option<VolumeCorrection>,
 }
@@ -27,17 +27,17 @@ pub(crate) struct Setting {
 /// The influence function of a material.
 pub(crate) struct InfluenceRead {
     pub(crate) influence: Influence,
-    /// How its coefficients were found, if they are tuned.
+    /// The tuning result, if it is tuned.
     pub(crate) tuned: Option<TunedTable>,
 }
 
-/// The influence function in a material's table.
+/// Reads the influence function of a material.
 pub(crate) fn influence(table: &Table<'_>, setting: &Setting) -> Option<InfluenceRead> {
     let table = table.table_or_empty("influence")?;
     let mut tuned = None;
     let function = function(&table, setting, &mut tuned);
     let acts_on = table.worded("acts_on", "argument");
-    // Without the function nobody knows which other keys belong here.
+    // Without the function, the allowed keys are unknown.
     let influence = Influence {
         function: function?,
         acts_on: acts_on?,
@@ -49,7 +49,8 @@ pub(crate) fn influence(table: &Table<'_>, setting: &Setting) -> Option<Influenc
     Some(InfluenceRead { influence, tuned })
 }
 
-/// The influence function of a state-based material; none is taken for the conical one, which is nearest to isotropic on most lattices.
+/// Reads the influence function of a state-based material. The default is the conical one, which is nearest
+/// to isotropic on most lattices.
 pub(crate) fn state_influence(table: &Table<'_>, setting: &Setting) -> Option<StateInfluence> {
     const FORMS: [(&str, Option<Form>); 7] = [
         ("conical", Some(Form::Conical)),
@@ -63,7 +64,7 @@ pub(crate) fn state_influence(table: &Table<'_>, setting: &Setting) -> Option<St
     let table = table.table_or_empty("influence")?;
     table.forbid(
         "acts_on",
-        "the influence function of a state-based material weighs the extensions of bonds; leave it out",
+        "the influence function of a state-based material multiplies the bond extension; remove the key",
     );
     let form = table.choice_or_first("function", "influence function", &FORMS);
     let influence = match form? {
@@ -110,14 +111,14 @@ fn function(
         ("gaussian", Form::Gaussian),
         ("tabulated", Form::Tabulated),
         ("cosines", Form::Cosines),
-        ("classes", Form::Classes),
+        ("lattice-classes", Form::Classes),
         ("tuned", Form::Tuned),
     ];
     let form = table.choice_or_first("function", "influence function", &FORMS)?;
     of_form(form, table, setting, tuned_table)
 }
 
-/// A function of a form, with its own keys.
+/// Reads the keys of a kind of function.
 fn of_form(
     form: Form,
     table: &Table<'_>,
@@ -146,7 +147,7 @@ fn of_form(
         Form::Classes | Form::Tuned if !setting.cells => {
             if let Some(item) = table.optional("function") {
                 item.out_of_range(
-                    "a function of the length: classes of bonds belong to square and cubic cells, one `spacing` for all axes",
+                    "a function of the bond length; bond classes require square and cubic cells, with one `spacing` for all axes",
                 );
             }
             None
@@ -161,7 +162,7 @@ fn of_form(
     }
 }
 
-/// The unit of lengths in a table, m, and what numbers in it are.
+/// Reads the unit of lengths in a table, m, and the quantity of its numbers.
 fn unit(table: &Table<'_>, setting: &Setting) -> Option<(Option<f64>, Quantity)> {
     const UNITS: [(&str, usize); 3] = [("length", 0), ("spacing", 1), ("horizon", 2)];
     let unit = table.choice_or_first("r", "unit of lengths", &UNITS)?;
@@ -177,17 +178,17 @@ fn unit(table: &Table<'_>, setting: &Setting) -> Option<(Option<f64>, Quantity)>
     ))
 }
 
-/// Refuses lengths that count spacings where the spacing is not known before a mesh is read.
+/// Refuses lengths in spacings if the spacing is unknown before a mesh is read.
 fn refuse_spacing(table: &Table<'_>, setting: &Setting, counts_spacings: bool) {
     if setting.automatic && counts_spacings {
         table.report(Fault::OutOfRange {
             value: "spacing".into(),
-            allowed: "another unit `r`, or `spacing` in [body]: that of this mesh is not known before it is read".into(),
+            allowed: "another unit `r`, or a `spacing` in [body]; the spacing of this mesh is unknown before the mesh is read".into(),
         });
     }
 }
 
-/// A table whose first column is a length, or counts spacings or horizons.
+/// Reads a table whose first column is a length, in metres, spacings or horizons.
 fn tabulated(table: &Table<'_>, setting: &Setting) -> Option<InfluenceFunction> {
     let unit = unit(table, setting);
     let rows = table
@@ -202,7 +203,7 @@ fn tabulated(table: &Table<'_>, setting: &Setting) -> Option<InfluenceFunction> 
     })
 }
 
-/// a₀ + Σ a_j cos(j w r/unit)
+/// Reads a₀ + Σ a_j cos(j w r/unit).
 fn cosines(table: &Table<'_>, setting: &Setting) -> Option<InfluenceFunction> {
     const UNITS: [(&str, usize); 2] = [("spacing", 0), ("horizon", 1)];
     let unit = table.choice_or_first("r", "unit of lengths", &UNITS);
@@ -225,7 +226,7 @@ fn cosines(table: &Table<'_>, setting: &Setting) -> Option<InfluenceFunction> {
     })
 }
 
-/// A value for every class of bonds, such as [[[1, 0], 3.7], [[1, 1], 2.9]].
+/// Reads a value per class of lattice bonds, such as `[[[1, 0], 3.7], [[1, 1], 2.9]]`.
 fn classes(table: &Table<'_>, setting: &Setting) -> Option<InfluenceFunction> {
     let rows = table
         .required("table")?
@@ -241,7 +242,7 @@ fn classes(table: &Table<'_>, setting: &Setting) -> Option<InfluenceFunction> {
 fn class(row: &Item<'_>, setting: &Setting) -> Option<(ClassOffset, f64)> {
     let items = row.exactly(2, "a pair [[i, j, …], value]")?;
     let value = items[1].quantity(Quantity::Number);
-    let steps = items[0].exactly(setting.dimension?, "one whole number for every axis")?;
+    let steps = items[0].exactly(setting.dimension?, "one whole number per axis")?;
     let mut offset = [0; 3];
     for (step, item) in offset.iter_mut().zip(&steps) {
         let whole = item.within(
@@ -254,26 +255,26 @@ fn class(row: &Item<'_>, setting: &Setting) -> Option<(ClassOffset, f64)> {
     Some((offset, value?))
 }
 
-/// The least coefficient of a tuned kernel.
+/// Lower bound of the coefficients of a tuned kernel.
 #[derive(Clone, Copy)]
 enum LowerBound {
-    /// None if the kernel is stable without, else zero.
+    /// No bound if the kernel is stable without one, otherwise zero.
     Auto,
     None,
     Value(f64),
 }
 
-/// Coefficients tuned against dispersion for this very grid.
+/// Reads the tuning options and optimises the coefficients for this grid.
 fn tuned(table: &Table<'_>, setting: &Setting) -> Option<TunedTable> {
     const NONE: &str = "none";
     const AUTO: &str = "auto";
-    let method = table.worded("method", "method of tuning");
-    let combination = table.worded("combination", "combination of branches");
+    let method = table.worded("method", "tuning method");
+    let combination = table.worded("combination", "combination of wave types");
     let weight = |key| {
         if setting.dimension == Some(1) {
             table.forbid(
                 key,
-                "a bar has one kind of waves, so that weights change nothing",
+                "weights have no effect on a bar, which has pressure waves only",
             );
             return Some(1.0);
         }

@@ -1,13 +1,16 @@
-//! What the tables of `[materials]` and `[[interface]]` take over from the first material, before a deck is read.
+//! Keys that `[materials]` and `[[interface]]` inherit from the first material.
 //!
-//! The keys are copied into these tables, so that every table is read by itself and messages point to where a key was written.
+//! The keys are copied into these tables before a deck is read, so that every table is read by itself and
+//! messages point to the original key.
 
 use crate::document::{Entry, Node, Value};
 use crate::vocabulary::{FAILURE_RULES, OWN_CONSTANTS, canonical, replaces};
 
-/// Copies what is said of all bonds of a body into the tables of its materials, and how limits follow from a fracture energy into those and the interfaces.
+/// Copies the keys shared by all bonds into the tables of materials, and failure rules into those of
+/// materials and interfaces.
 ///
-/// It is taken from [material]. If that has constants of its own, it is the material of the body; otherwise [materials.default] is, or the first of [materials], and what it says of all bonds is taken as well.
+/// The keys come from `[material]`. If it has constants of its own, it is the body's material; otherwise
+/// `[materials.default]` or the first of `[materials]` is, and its shared keys are copied as well.
 pub(crate) fn inherit(root: &mut Node) {
     let Value::Table(entries) = &mut root.value else {
         return;
@@ -46,13 +49,14 @@ pub(crate) fn inherit(root: &mut Node) {
     }
 }
 
-/// Whether a rule of failure has a meaning in a table: with a fracture energy, and the definition of the critical stretch with the criterion it belongs to.
+/// Returns whether a failure rule applies to a table: it needs a fracture energy, and `stretch_definition`
+/// its failure criterion.
 fn counts(own: &[Entry], rule: &Entry) -> bool {
     let has = |key: &str| own.iter().any(|entry| canonical(&entry.key) == key);
     has("fracture_energy") && (rule.key != "stretch_definition" || !has("failure"))
 }
 
-/// Adds entries of another table that are no constants of one material and that this one does not give itself.
+/// Adds entries of another table, except for constants of one material and keys that the table already has.
 fn take_over(own: &mut Vec<Entry>, from: &[Entry], wanted: impl Fn(&[Entry], &Entry) -> bool) {
     let missing = from.iter().filter(|entry| {
         let given = own.iter().any(|one| replaces(&one.key, &entry.key));
@@ -66,7 +70,7 @@ fn is_one_of(keys: &[&str], entry: &Entry) -> bool {
     keys.contains(&canonical(&entry.key))
 }
 
-/// The entries of a table of the deck.
+/// Returns the entries of a table of the deck.
 fn table<'n>(entries: &'n mut [Entry], key: &str) -> Option<&'n mut Vec<Entry>> {
     let found = entries.iter_mut().find(|entry| entry.key == key)?;
     match &mut found.node.value {

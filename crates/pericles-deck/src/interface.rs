@@ -13,33 +13,33 @@ use crate::state_based::SolidRules;
 use crate::vocabulary::{INTERFACE_KEYS, INTERFACE_STIFFNESSES, MODULI, STRENGTHS};
 use crate::words::Worded;
 
-/// What bonds between two materials have in place of what follows from both.
+/// Properties of bonds between two materials.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MaterialInterface {
-    /// The names of the materials; none for all pairs of which no other interface says the same.
+    /// Names of the materials; none for all pairs without an interface of their own.
     #[serde(default)]
     pub between: Option<[String; 2]>,
-    /// What the constant of bond-based bonds follows from; the harmonic mean of both materials' constants if nothing is given.
+    /// Source of the bond constant of bond-based materials; none for the harmonic mean of both materials' constants.
     #[serde(default, with = "crate::form")]
     pub stiffness: Option<InterfaceStiffness>,
-    /// When the bonds break; at the lower limit of both materials if nothing is given.
+    /// Failure of the bonds; none for the lower limit of both materials.
     #[serde(default)]
     pub failure: Option<InterfaceFailure>,
 }
 
-/// When bonds between two materials break, by the kind of the materials.
+/// Failure of bonds between two materials, by material model.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum InterfaceFailure {
-    /// Of bond-based materials.
+    /// Bond-based materials.
     Bonds(#[serde(with = "crate::form")] Fracture),
-    /// Of state-based and correspondence materials.
+    /// State-based and correspondence materials.
     StateBased(#[serde(with = "crate::form")] BondFailure),
 }
 
 impl MaterialInterface {
-    /// Whether it is about bonds between two materials.
+    /// Returns whether it applies to a pair of materials.
     pub fn joins(&self, pair: [&str; 2]) -> bool {
         let same = |[a, b]: [&str; 2]| a == pair[0] && b == pair[1];
         match &self.between {
@@ -49,7 +49,7 @@ impl MaterialInterface {
     }
 }
 
-/// All interfaces of a body whose materials have these names; `material` is the first of them.
+/// Reads all interfaces of a body with these materials; `material` is the first of them.
 pub(crate) fn read(
     tables: Vec<Table<'_>>,
     names: &[String],
@@ -93,7 +93,7 @@ fn interface(
     let (stiffness, failure) = match &material.model {
         MaterialModel::Bonds(bonds) => {
             for key in ["failure", "stretch_definition"] {
-                table.forbid(key, "it belongs to model = \"state-based\"");
+                table.forbid(key, "it requires model = \"state-based\"");
             }
             let rules = ConstantRules {
                 state,
@@ -108,13 +108,13 @@ fn interface(
             for key in INTERFACE_STIFFNESSES {
                 table.forbid(
                     key,
-                    "each end of a bond has the constants of its own material: there is nothing to average",
+                    "each end point of a bond contributes the constants of its own material",
                 );
             }
             let failure = match model {
                 MaterialModel::Correspondence(_) => {
                     for key in ["failure", "stretch_definition"] {
-                        table.forbid(key, "it belongs to model = \"state-based\"");
+                        table.forbid(key, "it requires model = \"state-based\"");
                     }
                     SolidRules::closing(state, calibration).failure(&table)
                 }
@@ -139,19 +139,19 @@ fn state_based_failure(
     SolidRules::read(table, state, calibration, false).failure(table)
 }
 
-/// The rule or the modulus from which the constant of bonds follows.
+/// Reads the rule or modulus from which the bond constant follows.
 fn stiffness(table: &Table<'_>, rules: &ConstantRules) -> Option<Option<InterfaceStiffness>> {
     let found = table.at_most_one(INTERFACE_STIFFNESSES)?;
     if !MODULI.iter().any(|key| table.has(key)) {
         table.forbid(
             "modulus",
-            "it says how the bond constant follows from `youngs_modulus`, `bulk_modulus` or `shear_modulus`",
+            "it requires `youngs_modulus`, `bulk_modulus` or `shear_modulus`",
         );
     }
     Some(match found {
         None => None,
         Some(("rule", item)) => {
-            let rule = item.choice("rule of interfaces", &InterfaceRule::words())?;
+            let rule = item.choice("interface rule", &InterfaceRule::words())?;
             Some(InterfaceStiffness::Rule(rule))
         }
         Some(_) => {
@@ -161,9 +161,9 @@ fn stiffness(table: &Table<'_>, rules: &ConstantRules) -> Option<Option<Interfac
     })
 }
 
-/// Two different names of materials.
+/// Reads two different material names.
 fn pair(item: &Item<'_>, names: &[String]) -> Option<[String; 2]> {
-    let items = item.exactly(2, "two names of materials")?;
+    let items = item.exactly(2, "two material names")?;
     let known = |item: &Item<'_>| {
         let name = item.text()?;
         if names.contains(&name) {
@@ -175,7 +175,7 @@ fn pair(item: &Item<'_>, names: &[String]) -> Option<[String; 2]> {
     let (first, second) = (known(&items[0]), known(&items[1]));
     let pair = [first?, second?];
     if pair[0] == pair[1] {
-        item.out_of_range("two different names of materials");
+        item.out_of_range("two different material names");
         return None;
     }
     Some(pair)

@@ -1,37 +1,37 @@
-//! The way from the root of a deck to a value.
+//! Paths from the root of a deck to a value.
 
 use std::fmt;
 
-/// One step down.
+/// One step of a path.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Step {
     Key(String),
     Index(usize),
 }
 
-/// The place of a value in a deck or model: steps from the root, with keys under their first names and entries of lists by their numbers
-/// from zero, such as `load.0.traction`.
+/// The path of a value in a deck or model: keys under their first names and indices of list entries from zero, such as
+/// `load.0.traction`.
 #[derive(Debug, Clone, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct KeyPath(Vec<Step>);
 
 impl KeyPath {
-    /// The place of a key in this table.
+    /// Returns the path of a key in this table.
     pub fn key(&self, key: &str) -> Self {
         self.then(Step::Key(key.into()))
     }
 
-    /// The place of an entry of this list, counted from zero.
+    /// Returns the path of an entry of this list, counted from zero.
     pub fn index(&self, index: usize) -> Self {
         self.then(Step::Index(index))
     }
 
-    /// The table or list that holds the value; none for the root.
+    /// Returns the path of the table or list that contains the value; none for the root.
     pub fn parent(&self) -> Option<Self> {
         let (_, steps) = self.0.split_last()?;
         Some(Self(steps.to_vec()))
     }
 
-    /// The same place below another table; none if it is not below this one.
+    /// Returns the path with the prefix `from` replaced by `to`; none if it does not start with `from`.
     pub(crate) fn moved(&self, from: &Self, to: &Self) -> Option<Self> {
         let rest = self.0.strip_prefix(&from.0[..])?;
         Some(Self(to.0.iter().chain(rest).cloned().collect()))
@@ -41,7 +41,7 @@ impl KeyPath {
         &self.0
     }
 
-    /// The keys joined by dots, as in an override.
+    /// Returns the keys joined by dots, as in an override.
     pub fn dotted(&self) -> String {
         let steps: Vec<String> = self.0.iter().map(Step::to_string).collect();
         steps.join(".")
@@ -55,7 +55,7 @@ impl KeyPath {
 }
 
 impl From<&str> for KeyPath {
-    /// From keys joined by dots, for paths fixed in the program.
+    /// Parses keys joined by dots, for paths fixed in the program.
     fn from(dotted: &str) -> Self {
         dotted
             .split('.')
@@ -73,7 +73,7 @@ impl fmt::Display for Step {
 }
 
 impl fmt::Display for KeyPath {
-    /// As the name of a table in messages: `[load.0]`.
+    /// Formats the path as the name of a table in messages: `[load.0]`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.0.is_empty() {
             return f.write_str("the deck");

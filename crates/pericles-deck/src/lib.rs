@@ -1,9 +1,10 @@
-//! Pericles decks: TOML in, a checked model out.
+//! Pericles decks: reads TOML decks into checked models.
 //!
-//! A deck is one TOML file. [`Deck::read`] turns it into a [`Model`]: plain data in SI units, which `pericles-run` discretises, assembles
-//! and runs. Reading is strict: unknown keys, wrong units, vectors of the wrong length or names of sets that do not exist are errors which
-//! point at the file, line and column and say what is allowed; one reading finds all of them. What is refused later, while the model is
-//! discretised and assembled, is a [`BuildError`] that names keys; [`Deck::refusal`] points into the text for it as well.
+//! A deck is one TOML file. [`Deck::read`] converts it to a [`Model`]: plain data in SI units, which
+//! `pericles-run` discretises, assembles and runs. Reading is strict: unknown keys, wrong units, vectors of
+//! the wrong length and undefined set names are errors that report file, line, column and what is allowed;
+//! all errors are reported at once. Errors found later, while the model is discretised and assembled, are a
+//! [`BuildError`] that names keys; [`Deck::refusal`] adds their locations in the text.
 //!
 //! ```
 //! use pericles_deck::Deck;
@@ -48,7 +49,7 @@
 //! horizon_ratio = 3                      # or horizon = "0.75 mm"
 //! fracture_energy = "135 J/m2"
 //!
-//! [sets.top]                             # named sets of points: a region, a condition or blocks; "all" is always there
+//! [sets.top]                             # named sets of points: a region, a condition or blocks; "all" always exists
 //! layer = { side = "+y", cells = 1 }
 //! [sets.bottom]
 //! layer = { side = "-y", cells = 1 }
@@ -56,7 +57,7 @@
 //! [[crack]]                              # cuts bonds before the run
 //! segment = [["0 mm", "20 mm"], ["50 mm", "20 mm"]]
 //!
-//! [[load]]                               # beside it [[initial]], [[prescribe]] and [[boundary]]
+//! [[load]]                               # beside it [[initial]], [[constraint]] and [[boundary]]
 //! set = "top"
 //! traction = [0, "12 MPa"]
 //! [[load]]
@@ -69,7 +70,8 @@
 //! [output]
 //! fields = { count = 20 }
 //! ```
-//! All keys with their units, ranges and defaults are in [`reference()`], which the reader writes itself (`pericles schema --markdown`, the page "Deck" of the book), and in [`json_schema`].
+//! [`reference()`] lists all keys with their units, ranges and defaults (`pericles schema --markdown`, the page
+//! "Deck" of the book); so does [`json_schema`]. Both are generated from the reader.
 //!
 #![doc = include_str!("language.md")]
 
@@ -114,6 +116,7 @@ mod schema;
 mod scheme;
 mod set;
 mod source;
+mod spelling;
 mod state_based;
 mod statics;
 mod stop;
@@ -134,7 +137,7 @@ pub use body::{
 pub use boundary::BoundaryCondition;
 pub use caution::{AreaDoubt, Caution};
 pub use component::{Component, VectorField};
-pub use conditions::{Initial, Load, LoadAmplitude, Prescribe, Probe, ProbePlace, RandomVelocity};
+pub use conditions::{Constraint, Initial, Load, LoadAmplitude, Probe, ProbePlace, RandomVelocity};
 pub use correspondence::Correspondence;
 pub use course::{Course, TimeHistory};
 pub use crack::{CrackSurface, PreCrack};
@@ -147,10 +150,14 @@ pub use fault::Fault;
 pub use finding::{Finding, Problem, Warning};
 pub use interface::{InterfaceFailure, MaterialInterface};
 pub use key_path::KeyPath;
-pub use material::{Material, MaterialModel, NamedMaterial, Scatter, ScatteredStrength};
+pub use material::{
+    BondSoftening, Material, MaterialModel, NamedMaterial, Scatter, ScatteredStrength,
+    SofteningWord,
+};
 pub use model::{Body, Model, Solid};
 pub use output::{
-    Checkpoint, CrackOutput, FieldBlocks, FieldFormat, FragmentOutput, Output, Picture, Precision,
+    CellChoice, Checkpoint, CrackOutput, FieldBlocks, FieldFormat, FragmentOutput, Output, Picture,
+    PointNumber, Precision, Profile,
 };
 pub use quantity::{metres, seconds};
 pub use remark::{BuildError, Keys, ModelProblem, ModelWarning, Remark};

@@ -1,4 +1,4 @@
-//! The model: everything that is simulated, as plain data.
+//! The model: a complete simulation as plain data.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::assign::Assignment;
 use crate::body::{SolidShape, SurfaceShape};
 use crate::boundary::BoundaryCondition;
-use crate::conditions::{Initial, Load, Prescribe, Probe};
+use crate::conditions::{Constraint, Initial, Load, Probe};
 use crate::crack::PreCrack;
 use crate::damping::Damping;
 use crate::exact::Exact;
@@ -20,10 +20,11 @@ use crate::surface::SurfaceBody;
 use crate::thermal::Thermal;
 use crate::time::Time;
 
-/// What is simulated and what is written, as plain data in SI units: what a [`Deck`](crate::Deck) says, without its text.
+/// A simulation and its output as plain data in SI units: the content of a [`Deck`](crate::Deck), without its text.
 ///
-/// A program can write a model itself, and serialise it, for example as JSON; keys and words are those of decks where decks have them.
-/// What is wrong with it is refused, with the key that it concerns, when it is discretised and assembled ([`Model::check`]).
+/// Programs can construct models themselves and serialise them, for example as JSON; keys and words are those
+/// of decks where they exist there. Errors are reported with their keys when a model is discretised and
+/// assembled ([`Model::check`]).
 ///
 /// ```
 /// use pericles::family::VolumeCorrection;
@@ -81,10 +82,10 @@ use crate::time::Time;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Model {
-    /// A title for people.
+    /// Title of the run.
     #[serde(default)]
     pub title: Option<String>,
-    /// `[body]` and `[material]`, of a surface `[geodesics]` as well.
+    /// `[body]` and `[material]`, for 2-manifolds also `[geodesics]`.
     pub body: Body,
     /// `[materials]`, without the body's own material.
     #[serde(default)]
@@ -104,9 +105,9 @@ pub struct Model {
     /// `[[initial]]`
     #[serde(default)]
     pub initial: Vec<Initial>,
-    /// `[[prescribe]]`
-    #[serde(default)]
-    pub prescribe: Vec<Prescribe>,
+    /// `[[constraint]]`
+    #[serde(default, rename = "constraint", alias = "prescribe")]
+    pub constraints: Vec<Constraint>,
     /// `[[load]]`
     #[serde(default, rename = "load")]
     pub loads: Vec<Load>,
@@ -135,14 +136,17 @@ pub struct Model {
     pub checkpoint: Checkpoint,
 }
 
-/// The body, with what it is made of.
+/// The body with its material.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[expect(clippy::large_enum_variant, reason = "a program has few models")]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "programs hold few models at a time"
+)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Body {
-    /// Points with volumes and bonds along straight lines.
+    /// Points with volumes and straight bonds.
     Solid(Solid),
-    /// The vertices of a surface, with bonds along it.
+    /// Vertices of a 2-manifold, with bonds along the surface.
     Surface(SurfaceBody),
 }
 
@@ -150,9 +154,9 @@ pub enum Body {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Solid {
-    /// Where its points are.
+    /// Source of the points.
     pub shape: SolidShape,
-    /// Stress state, which follows from the dimension and, in two dimensions, from `plane`.
+    /// Stress state, from the dimension and, in 2D, `plane`.
     #[serde(with = "crate::form")]
     pub state: StressState,
     /// `[material]`
@@ -160,7 +164,7 @@ pub struct Solid {
 }
 
 impl Body {
-    /// The body, if it is one of points with volumes.
+    /// Returns the body, if it consists of points with volumes.
     pub fn solid(&self) -> Option<&Solid> {
         match self {
             Self::Solid(solid) => Some(solid),
@@ -168,7 +172,7 @@ impl Body {
         }
     }
 
-    /// The body, if it is one of points with volumes, to change it.
+    /// Returns the body mutably, if it consists of points with volumes.
     pub fn solid_mut(&mut self) -> Option<&mut Solid> {
         match self {
             Self::Solid(solid) => Some(solid),
@@ -176,7 +180,7 @@ impl Body {
         }
     }
 
-    /// The surface, if it is one.
+    /// Returns the 2-manifold, if it is one.
     pub fn surface(&self) -> Option<&SurfaceBody> {
         match self {
             Self::Solid(_) => None,
@@ -184,7 +188,7 @@ impl Body {
         }
     }
 
-    /// Dimension of the space that the body is in.
+    /// Returns the dimension of space.
     pub fn dimension(&self) -> usize {
         match self {
             Self::Solid(solid) => solid.shape.dimension(),
@@ -192,7 +196,7 @@ impl Body {
         }
     }
 
-    /// Horizon of the bonds, m.
+    /// Returns the horizon, m.
     pub fn horizon(&self) -> f64 {
         match self {
             Self::Solid(solid) => solid.material.horizon(),
@@ -200,7 +204,7 @@ impl Body {
         }
     }
 
-    /// Sets whose bonds never break.
+    /// Returns the sets whose bonds never break.
     pub fn no_fail(&self) -> &[String] {
         match self {
             Self::Solid(solid) => &solid.material.no_fail,
@@ -208,7 +212,7 @@ impl Body {
         }
     }
 
-    /// The file that the points come from.
+    /// Returns the path of the file of the points, if there is one.
     fn file(&self) -> Option<&Path> {
         match self {
             Self::Solid(solid) => solid.shape.file(),
@@ -222,7 +226,7 @@ impl Body {
 }
 
 impl Model {
-    /// A body at rest, over time, without conditions, and with the output of a deck that leaves it out.
+    /// Creates a model of a body at rest, without conditions and with default output.
     pub fn new(body: Body, time: Time) -> Self {
         Self {
             title: None,
@@ -233,7 +237,7 @@ impl Model {
             sets: Vec::new(),
             cracks: Vec::new(),
             initial: Vec::new(),
-            prescribe: Vec::new(),
+            constraints: Vec::new(),
             loads: Vec::new(),
             boundaries: Vec::new(),
             probes: Vec::new(),
@@ -246,7 +250,7 @@ impl Model {
         }
     }
 
-    /// The files that the model names. A relative path starts at the folder of the deck.
+    /// Returns the paths of all input files of the model; relative paths start at the deck's folder.
     pub fn files(&self) -> Vec<&Path> {
         let initial = self.initial.iter();
         let initial = initial.filter_map(|initial| initial.file.as_deref());

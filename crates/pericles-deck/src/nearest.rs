@@ -1,6 +1,6 @@
 //! "Did you mean …": the nearest allowed word.
 
-/// The allowed word nearest to what was written, if one is near enough to be meant; the first of equally near ones.
+/// Returns the allowed word most similar to a given one, if it is similar enough; the first of equally similar ones.
 pub(crate) fn nearest<'a>(
     written: &str,
     allowed: impl IntoIterator<Item = &'a str>,
@@ -8,7 +8,7 @@ pub(crate) fn nearest<'a>(
     let plain = |word: &str| word.to_lowercase().replace(['-', ' '], "_");
     let target = plain(written);
     let length = target.chars().count();
-    // A wrong letter in three: enough for slips, too little for unrelated words.
+    // One wrong letter in three: enough for typos, too few for unrelated words.
     let limit = (length / 3).max(1);
     allowed
         .into_iter()
@@ -20,7 +20,7 @@ pub(crate) fn nearest<'a>(
             let begins = length >= 3 && candidate.starts_with(&target);
             (shared && distance <= limit || begins).then_some((distance.min(limit), word))
         })
-        // `min_by_key` keeps the first of equals.
+        // `min_by_key` returns the first minimum.
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, word)| word)
 }
@@ -30,7 +30,7 @@ mod tests {
     use super::nearest;
 
     #[test]
-    fn slips_are_recognised_and_strangers_are_not() {
+    fn typos_are_recognised_and_unrelated_words_are_not() {
         let allowed = ["spacing", "shape", "size", "volume_correction", "E"];
         let near = |word| nearest(word, allowed);
         assert_eq!(near("spaceing"), Some("spacing"));

@@ -1,11 +1,11 @@
-//! The options of `scheme = "newmark"`.
+//! Options of `scheme = "newmark"`.
 
 use pericles::time::{InnerSolver, NewmarkOptions};
 
 use crate::quantity::Quantity;
 use crate::reader::Table;
 
-/// Keys that belong to the scheme alone.
+/// Keys of this scheme only.
 pub(crate) const KEYS: [&str; 6] = ["beta", "gamma", "norm", "iterations", "solver", "depth"];
 
 pub(crate) fn read(table: &Table<'_>) -> Option<NewmarkOptions> {
@@ -72,7 +72,7 @@ fn solver(table: &Table<'_>) -> Option<InnerSolver> {
         return Some(InnerSolver::Anderson { depth: depth? });
     }
     if solver.is_some() {
-        table.forbid("depth", "a depth belongs to solver = \"anderson\"");
+        table.forbid("depth", "it requires solver = \"anderson\"");
     } else {
         table.optional("depth");
     }

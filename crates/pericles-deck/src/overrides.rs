@@ -1,22 +1,23 @@
 //! `--set key=value`: changes to a deck before it is read.
 //!
-//! The key is a dotted path with indices from zero, such as `time.dt`, `crack.0.ends` or `load.0.traction`; the value is TOML if it
-//! parses as such, else a string. A key replaces the same key under another name, and the alternatives of which only one may be given:
-//! `material.K=…` replaces a deck's `youngs_modulus`. Tables that are missing are made.
+//! The key is a dotted path with indices from zero, such as `time.dt`, `crack.0.ends` or `load.0.traction`.
+//! The value is TOML if it parses as TOML, otherwise a string. A key replaces its synonyms and mutually
+//! exclusive keys: `material.K=…` replaces a deck's `youngs_modulus`. Missing tables are created.
 
 use crate::document::{self, Entry, Node, Value};
 use crate::error::DeckError;
 use crate::fault::Fault;
 use crate::finding::Problem;
 use crate::source::{Place, Sources};
+use crate::spelling::present;
 use crate::vocabulary::{canonical, replaces};
 
-/// Far more than any deck is deep.
+/// Larger than the nesting depth of any deck.
 const DEEPEST: usize = 16;
 
 /// Applies one override to the document.
 pub(crate) fn apply(root: &mut Node, text: &str, sources: &mut Sources) -> Result<(), DeckError> {
-    // Messages name the key, so that one override is told from another.
+    // Messages name the key to identify the override.
     let key = text.split('=').next().unwrap_or_default().trim();
     let source = sources.add(&format!("--set {key}"), text);
     set(root, text, source).map_err(|refusal| {
@@ -61,6 +62,7 @@ fn set(root: &mut Node, text: &str, source: usize) -> Result<(), Refusal> {
     }
     let new = value(written, source, path.len() + 1);
     let mut node = root;
+    let mut table = Vec::new();
     for (k, (step, start)) in steps.iter().enumerate() {
         let place = Place {
             source,
@@ -69,15 +71,19 @@ fn set(root: &mut Node, text: &str, source: usize) -> Result<(), Refusal> {
         };
         let last = k + 1 == steps.len();
         node = match &mut node.value {
-            Value::Table(entries) => descend(entries, step, place, last),
+            Value::Table(entries) => {
+                let found = descend(entries, (&table, step), place, last);
+                table.push(present(&table, step));
+                found
+            }
             Value::Array(items) => {
                 let count = items.len();
                 let item = step.parse::<usize>().ok().and_then(|k| items.get_mut(k));
                 item.ok_or_else(|| Refusal {
-                    reason: format!("`{step}` is not the number of an entry"),
+                    reason: format!("`{step}` is not the index of an entry"),
                     allowed: match count {
                         0 => "the list is empty".into(),
-                        1 => "allowed: 0, for the list has one entry".into(),
+                        1 => "allowed: 0, the list has one entry".into(),
                         _ => format!("allowed: 0 to {}", count - 1),
                     },
                     start: place.start,
@@ -86,7 +92,7 @@ fn set(root: &mut Node, text: &str, source: usize) -> Result<(), Refusal> {
             }
             other => {
                 return Err(Refusal {
-                    reason: format!("`{step}` is looked for in {}", other.kind()),
+                    reason: format!("`{step}` cannot be a key of {}", other.kind()),
                     allowed: "only tables and lists have parts".into(),
                     start: place.start,
                     end: place.end,
@@ -98,7 +104,7 @@ fn set(root: &mut Node, text: &str, source: usize) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// The parts of a dotted key with their places.
+/// Splits a dotted key into its parts with their offsets.
 fn steps(path: &str) -> Vec<(&str, usize)> {
     let mut start = 0;
     path.split('.')
@@ -125,13 +131,19 @@ fn value(written: &str, source: usize, offset: usize) -> Node {
     })
 }
 
-/// The value under a key, which is made if it is not there.
-fn descend<'n>(entries: &'n mut Vec<Entry>, step: &str, place: Place, last: bool) -> &'n mut Node {
+/// Returns the value of a key of a table, inserting it if it is missing.
+fn descend<'n>(
+    entries: &'n mut Vec<Entry>,
+    (table, step): (&[&str], &str),
+    place: Place,
+    last: bool,
+) -> &'n mut Node {
+    let name = present(table, step);
     let known = entries
         .iter()
-        .position(|entry| canonical(&entry.key) == canonical(step));
+        .position(|entry| canonical(present(table, &entry.key)) == canonical(name));
     if last {
-        entries.retain(|entry| !replaces(step, &entry.key));
+        entries.retain(|entry| !replaces(name, present(table, &entry.key)));
     } else if let Some(known) = known {
         return &mut entries[known].node;
     }

@@ -1,4 +1,4 @@
-//! From the text of a deck to its data.
+//! Reads decks from files and texts.
 
 use std::path::Path;
 
@@ -8,10 +8,10 @@ use crate::reader::Ledger;
 use crate::schema::home_of;
 
 impl Deck {
-    /// Reads a deck from a file and applies overrides `key=value` to it, in their order.
+    /// Reads a deck from a file and applies overrides `key=value` in order.
     ///
     /// # Errors
-    /// A file that cannot be read; everything that is wrong in it.
+    /// The file cannot be read, or has errors; all errors are reported.
     pub fn read(path: impl AsRef<Path>, overrides: &[String]) -> Result<Self, DeckError> {
         let path = path.as_ref();
         let text = std::fs::read_to_string(path).map_err(|reason| DeckError::Unreadable {
@@ -21,14 +21,14 @@ impl Deck {
         Self::parse(&text, &path.display().to_string(), overrides)
     }
 
-    /// Reads a deck from a text; `file_name` is what messages call it.
+    /// Reads a deck from a text; `file_name` is used in messages.
     ///
     /// # Errors
-    /// Everything that is wrong in it.
+    /// The text has errors; all errors are reported.
     pub fn parse(text: &str, file_name: &str, overrides: &[String]) -> Result<Self, DeckError> {
         let document = Document::of(text, file_name, overrides)?;
         let ledger = Ledger::new(document.sources, home_of);
-        let (deck, _) = Self::read_with(ledger, &document.root, document.former)?;
+        let (deck, _) = Self::read_with(ledger, &document.root, document.outdated)?;
         deck.refuse_unstable_table()?;
         Ok(deck)
     }

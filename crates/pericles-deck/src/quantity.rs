@@ -1,4 +1,4 @@
-//! What a number in a deck stands for.
+//! Physical quantities of numbers in decks.
 
 use crate::units::{self, Dimension};
 
@@ -41,7 +41,7 @@ impl Quantity {
         }
     }
 
-    /// In words, with an article.
+    /// Returns the name with an article.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Number => "a number without a unit",
@@ -62,7 +62,7 @@ impl Quantity {
         }
     }
 
-    /// In words, without an article.
+    /// Returns the name without an article.
     pub(crate) fn noun(self) -> &'static str {
         match self {
             Self::Number => "number",
@@ -73,7 +73,7 @@ impl Quantity {
         }
     }
 
-    /// One as decks write it.
+    /// Returns an example as in decks.
     pub(crate) fn example(self) -> &'static str {
         match self {
             Self::Number => "25 %",
@@ -94,7 +94,7 @@ impl Quantity {
         }
     }
 
-    /// The unit that plain numbers have; empty if there is none.
+    /// Returns the unit of plain numbers; empty for dimensionless numbers.
     pub(crate) fn unit(self) -> &'static str {
         match self {
             Self::Number => "",
@@ -114,7 +114,7 @@ impl Quantity {
         }
     }
 
-    /// What is allowed, with an example: `a length such as "0.25 mm" or a plain number in m`.
+    /// Returns what is allowed, with an example: `a length such as "0.25 mm" or a plain number in m`.
     pub(crate) fn expected(self) -> String {
         let example = self.example();
         match self {
@@ -128,7 +128,7 @@ impl Quantity {
     }
 }
 
-/// Reads a time as decks write it: `"2h"`, `"90 min"`, or a plain number of seconds. None if it is something else.
+/// Parses a time as in decks: `"2h"`, `"90 min"`, or a plain number of seconds. None for other texts.
 ///
 /// ```
 /// assert_eq!(pericles_deck::seconds("2h"), Some(7200.0));
@@ -138,7 +138,7 @@ pub fn seconds(text: &str) -> Option<f64> {
     measured(text, Quantity::Time)
 }
 
-/// Reads a length as decks write it: `"0.5 mm"`, or a plain number of metres. None if it is something else.
+/// Parses a length as in decks: `"0.5 mm"`, or a plain number of metres. None for other texts.
 pub fn metres(text: &str) -> Option<f64> {
     measured(text, Quantity::Length)
 }
@@ -154,7 +154,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_examples_have_the_dimension_they_explain() {
+    fn examples_have_the_right_dimension() {
         use Quantity::*;
         for quantity in [
             Length,

@@ -1,4 +1,4 @@
-//! Regions of space, in sets and holes.
+//! Regions of space in sets, holes and refinements.
 
 use pericles::PericlesError;
 use pericles::space::{Face, Point, Region};
@@ -8,33 +8,33 @@ use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 use crate::vocabulary::{DEPTHS, REGIONS};
 
-/// What a region is measured against.
+/// Reference of a region: dimension and spacing of the body.
 #[derive(Clone, Copy)]
 pub(crate) struct Frame {
-    /// Dimension of the body; unknown if the body could not be read.
+    /// Dimension of the body; none if the body could not be read.
     pub(crate) dimension: Option<usize>,
     /// Spacing, m.
     pub(crate) spacing: Option<f64>,
-    /// Whether there are cells to count, all of one size.
+    /// Whether all cells have one size, so that lengths may be given in cells.
     pub(crate) cells: bool,
-    /// Whether the body is a mesh, whose file has its sets and, unless it is given, its spacing.
+    /// Whether the body is a mesh, whose file defines sets and, by default, the spacing.
     pub(crate) mesh: bool,
 }
 
 impl Frame {
-    /// Whether the spacing is not known before a mesh is read.
+    /// Returns whether the spacing is unknown before a mesh is read.
     pub(crate) fn is_automatic(&self) -> bool {
         self.mesh && self.spacing.is_none()
     }
 }
 
-/// A table with exactly one key, the kind of region.
+/// Reads a table with exactly one key, the kind of region.
 pub(crate) fn read(table: Table<'_>, frame: Frame) -> Option<Region> {
     table.define("region");
     read_among_others(table, frame)
 }
 
-/// The kind of region in a table that has had its other keys read.
+/// Reads the kind of region in a table with other keys.
 pub(crate) fn read_among_others(table: Table<'_>, frame: Frame) -> Option<Region> {
     let found = table.exactly_one(REGIONS);
     table.finish();
@@ -42,7 +42,7 @@ pub(crate) fn read_among_others(table: Table<'_>, frame: Frame) -> Option<Region
     of_kind(kind, &item, frame)
 }
 
-/// A region of a kind.
+/// Reads a region of a kind.
 pub(crate) fn of_kind(kind: &'static str, item: &Item<'_>, frame: Frame) -> Option<Region> {
     item.define(kind);
     match kind {
@@ -63,7 +63,7 @@ fn everything(item: &Item<'_>) -> Option<Region> {
     if item.boolean()? {
         return Some(Region::All);
     }
-    item.out_of_range("true; leave the table out for no region");
+    item.out_of_range("true; remove the table for no region");
     None
 }
 
@@ -99,13 +99,13 @@ fn axis_parallel_box(table: Table<'_>, frame: Frame) -> Option<Region> {
     if let Some(item) = upper
         && (0..3).any(|c| min[c] > max[c])
     {
-        item.out_of_range("an upper corner `max` that lies nowhere below the lower corner `min`");
+        item.out_of_range("an upper corner `max` not below the lower corner `min` along any axis");
         return None;
     }
     Some(Region::Box { min, max })
 }
 
-/// A corner whose entries may be open.
+/// Reads a corner whose entries may be open.
 fn bounds(item: &Item<'_>, frame: Frame, open: f64) -> Option<Point> {
     let items = item.components(
         frame.dimension,
@@ -172,7 +172,7 @@ fn cylinder(item: &Item<'_>, frame: Frame) -> Option<Region> {
     })
 }
 
-/// The axis of a cylinder, z if it is not given.
+/// Reads the axis of a cylinder; the default is z.
 pub(crate) fn axis(table: &Table<'_>) -> Option<usize> {
     table.choice_or_first("axis", "axis", &[("z", 2), ("x", 0), ("y", 1)])
 }
@@ -189,11 +189,11 @@ fn half_space(table: Table<'_>, frame: Frame) -> Option<Region> {
     })
 }
 
-/// A vector other than zero.
+/// Reads a nonzero vector.
 pub(crate) fn direction(item: &Item<'_>, dimension: Option<usize>) -> Option<Point> {
     let vector = item.vector(Quantity::Number, dimension)?;
     if vector == [0.0; 3] {
-        item.out_of_range("a vector other than zero, of any length");
+        item.out_of_range("a nonzero vector, of any length");
         return None;
     }
     Some(vector)
@@ -208,7 +208,7 @@ fn layer(table: Table<'_>, frame: Frame) -> Option<Region> {
         ("-z", 3),
         ("+z", 3),
     ];
-    // Only the sides that the body has are on offer.
+    // Only sides within the dimension of the body are allowed.
     let sides: Vec<(&'static str, &'static str)> = SIDES
         .iter()
         .filter(|(_, needs)| *needs <= frame.dimension.unwrap_or(3))
@@ -222,7 +222,7 @@ fn layer(table: Table<'_>, frame: Frame) -> Option<Region> {
         .and_then(|(kind, item)| match kind {
             "depth" => item.positive(Quantity::Length),
             _ if !frame.cells => {
-                item.out_of_range("a `depth` instead: this body has no cells of one size to count");
+                item.out_of_range("`depth` instead; this body has no uniform spacing");
                 None
             }
             _ => Some(item.positive(Quantity::Number)? * frame.spacing?),
@@ -258,7 +258,7 @@ fn polygon(item: &Item<'_>, frame: Frame) -> Option<Region> {
     Some(Region::Polygon { corners: flat })
 }
 
-/// At least three points.
+/// Reads at least three points.
 pub(crate) fn corners(item: &Item<'_>, dimension: Option<usize>) -> Option<Vec<Point>> {
     let items = item.list("a list of corners, each a list of coordinates")?;
     if items.len() < 3 {

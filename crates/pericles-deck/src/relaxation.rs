@@ -1,17 +1,17 @@
-//! The options of `scheme = "relaxation"`.
+//! Options of `scheme = "adaptive-dynamic-relaxation"`.
 
 use pericles::time::{Damping, RelaxationOptions};
 
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 
-/// Keys that belong to the scheme alone.
+/// Keys of this scheme only.
 pub(crate) const KEYS: [&str; 1] = ["damping"];
 
-/// The key of static schemes for the number of static states.
+/// The key of static schemes for the number of load steps.
 pub(crate) const LOAD_STEPS: &str = "load_steps";
 
-/// The pseudo-time at which all loads have their final values, if the deck does not say.
+/// Default pseudo-time at which all loads have their final values.
 pub(crate) const END: f64 = 1.0;
 
 pub(crate) fn read(table: &Table<'_>) -> Option<RelaxationOptions> {
@@ -26,7 +26,7 @@ pub(crate) fn read(table: &Table<'_>) -> Option<RelaxationOptions> {
     let tolerance = table.or("tolerance", default.tolerance, |item| {
         item.within(
             Quantity::Number,
-            "a number from 1e-12 to 0.1, the forces out of balance over those that act",
+            "a number from 1e-12 to 0.1, the residual relative to loads and reactions",
             |tolerance| (1e-12..=0.1).contains(&tolerance),
         )
     });
@@ -65,13 +65,10 @@ fn damping(item: &Item<'_>) -> Option<Damping> {
     }
 }
 
-/// The number of static states on the way to the end.
+/// Reads the number of load steps up to the end.
 pub(crate) fn load_steps(table: &Table<'_>) -> Option<u64> {
     for key in ["dt", "safety"] {
-        table.forbid(
-            key,
-            "the scheme goes from static state to static state: give load_steps",
-        );
+        table.forbid(key, "static schemes have no time step: set load_steps");
     }
     table.or(LOAD_STEPS, 1, |item| item.count())
 }

@@ -1,4 +1,4 @@
-//! What was found in a model: a problem or a warning, with the key it concerns.
+//! Remarks: problems and warnings about a model, with the key that they concern.
 
 use std::error::Error;
 use std::fmt::{self, Display};
@@ -8,21 +8,22 @@ use crate::fault::Fault;
 use crate::key_path::KeyPath;
 use crate::subject::Subject;
 
-/// Something wrong in a model, for which it is refused.
+/// An error in a model.
 pub type ModelProblem = Remark<Fault>;
 
-/// Something odd in a model, with which a run may still be meant.
+/// A warning about a model.
 pub type ModelWarning = Remark<Caution>;
 
-/// Something found in a model. It names the key it concerns; [`Deck::located`](crate::Deck::located) turns it into a finding that points into the text of
-/// the deck.
+/// A problem or warning about a model, with the key that it concerns. [`Deck::located`](crate::Deck::located)
+/// adds its location in the text of the deck.
 #[derive(Debug, Clone)]
 pub struct Remark<S> {
     keys: Vec<KeyPath>,
     subject: S,
 }
 
-/// The keys under which a deck may give one value, at least one: a deck that gives none of them is taken to leave out the last.
+/// The keys under which a deck may give a value, at least one. If a deck gives none of them, the last one
+/// counts as missing.
 #[derive(Debug, Clone)]
 pub struct Keys(Vec<KeyPath>);
 
@@ -39,7 +40,7 @@ impl From<&KeyPath> for Keys {
 }
 
 impl From<&str> for Keys {
-    /// From keys joined by dots.
+    /// Parses keys joined by dots.
     fn from(dotted: &str) -> Self {
         KeyPath::from(dotted).into()
     }
@@ -52,28 +53,28 @@ impl<K: Into<KeyPath>> From<[K; 2]> for Keys {
 }
 
 impl<S: Subject> Remark<S> {
-    /// A remark about a value.
+    /// Creates a remark about a value.
     pub fn new(keys: impl Into<Keys>, subject: S) -> Self {
         let Keys(keys) = keys.into();
         Self { keys, subject }
     }
 
-    /// The keys under which a deck may give the value, at least one.
+    /// Returns the keys under which a deck may give the value, at least one.
     pub fn keys(&self) -> &[KeyPath] {
         &self.keys
     }
 
-    /// What was found.
+    /// Returns what was found.
     pub fn subject(&self) -> &S {
         &self.subject
     }
 
-    /// The parts: keys and subject.
+    /// Returns keys and subject.
     pub(crate) fn into_parts(self) -> (Vec<KeyPath>, S) {
         (self.keys, self.subject)
     }
 
-    /// All in one line: `key: what was found; what is allowed`.
+    /// Returns the remark in one line: `key: what was found; what is allowed`.
     pub fn line(&self) -> String {
         let keys: Vec<String> = self.keys.iter().map(KeyPath::dotted).collect();
         let keys = keys.join(" or ");
@@ -96,7 +97,7 @@ impl<S: Subject> Error for Remark<S> {
     }
 }
 
-/// Why a model cannot be discretised or assembled: at least one problem. The text of the error names every problem in a line of its own, as
+/// Errors of discretising or assembling a model, at least one. The message has one line per problem:
 /// `key: what is wrong; what is allowed`.
 #[derive(Debug, thiserror::Error)]
 #[error("{}", listed(problems))]
@@ -105,23 +106,23 @@ pub struct BuildError {
 }
 
 impl BuildError {
-    /// Of several problems.
+    /// Creates an error from several problems.
     pub fn of(problems: Vec<ModelProblem>) -> Self {
         Self { problems }
     }
 
-    /// What is wrong, key by key.
+    /// Returns the problems.
     pub fn problems(&self) -> &[ModelProblem] {
         &self.problems
     }
 
-    /// Whether nothing is wrong with the model but that it needs more memory than it may have.
+    /// Returns whether exceeding the memory limit is the only problem.
     pub fn is_too_large(&self) -> bool {
         let mut problems = self.problems.iter();
         problems.all(|problem| problem.subject.is_too_large())
     }
 
-    /// The problems, by value.
+    /// Returns the problems by value.
     pub fn into_problems(self) -> Vec<ModelProblem> {
         self.problems
     }

@@ -14,110 +14,110 @@ use crate::set::SetNames;
 use crate::statics::{self, RigidModes, Statics};
 use crate::vocabulary::FINE_REGIONS;
 
-/// Schemes of time integration.
+/// Time integration schemes.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Scheme {
     /// Velocity Verlet.
     #[default]
     VelocityVerlet,
-    /// Runge–Kutta of order three with the parameter α.
+    /// Third-order Runge–Kutta with the parameter α.
     RungeKutta3 {
         /// α.
         alpha: f64,
     },
-    /// The classical Runge–Kutta method.
+    /// Classical Runge–Kutta method of order four.
     RungeKutta4,
-    /// The Dormand–Prince pair: sub-steps within each step, as the tolerance asks for.
+    /// Dormand–Prince pair with adaptive sub-steps in each step.
     DormandPrince {
         /// Relative error of a sub-step.
         tolerance: f64,
     },
-    /// Runge–Kutta of order three with two time steps.
+    /// Multirate third-order Runge–Kutta.
     MultiTimeStep3 {
         /// α.
         alpha: f64,
-        /// Where and how fine.
+        /// Fine time step.
         fine: FineStep,
-        /// How the two talk.
+        /// Coupling of fine and coarse points.
         interface: Interface,
     },
-    /// The classical Runge–Kutta method with two time steps.
+    /// Multirate classical Runge–Kutta method.
     MultiTimeStep4 {
-        /// Where and how fine.
+        /// Fine time step.
         fine: FineStep,
-        /// How the two talk.
+        /// Coupling of fine and coarse points.
         interface: Interface,
     },
-    /// The implicit midpoint or the trapezoidal rule.
+    /// Implicit midpoint or trapezoidal rule.
     Implicit {
-        /// Which.
+        /// The rule.
         #[serde(with = "crate::form")]
         rule: ImplicitRule,
-        /// Of the steps of linear bodies.
+        /// Solver for linear bodies.
         #[serde(default, with = "crate::form")]
         solver: LinearSolver,
     },
-    /// The exact flow of the linear part.
+    /// Trigonometric integrator: exact flow of the linear part.
     Trigonometric(#[serde(with = "crate::form")] TrigonometricOptions),
     /// Newmark's method.
     Newmark(#[serde(with = "crate::form")] NewmarkOptions),
-    /// Discrete gradients, which conserve energy.
+    /// Discrete-gradient method, which conserves energy.
     DiscreteGradient {
-        /// Relative error of the energy in a step.
+        /// Relative energy error of a step.
         tolerance: f64,
     },
-    /// Static states by dynamic relaxation.
+    /// Static states by adaptive dynamic relaxation.
     Relaxation(#[serde(with = "crate::form")] RelaxationOptions),
     /// Static states by Newton's method.
     Static(Statics),
-    /// r-RESPA.
+    /// Multirate r-RESPA.
     Respa {
-        /// Where and how fine.
+        /// Fine time step.
         fine: FineStep,
     },
 }
 
 impl Scheme {
-    /// Whether its states are static: true time plays no part.
+    /// Returns whether the scheme computes static states.
     pub fn is_static(&self) -> bool {
         matches!(self, Self::Relaxation(_) | Self::Static(_))
     }
 
-    /// Whether it takes out rigid-body motions that no support prevents.
+    /// Returns whether it removes rigid-body modes that no support prevents.
     pub fn removes_rigid_modes(&self) -> bool {
         matches!(self, Self::Static(options) if options.rigid_modes == RigidModes::Fix)
     }
 }
 
-/// The smaller of two time steps.
+/// The fine time step of a multirate scheme.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FineStep {
-    /// Fine steps in a coarse one.
+    /// Number of fine steps per coarse step.
     pub ratio: u32,
-    /// The points that take them.
+    /// Points with the fine step.
     pub region: FineRegion,
 }
 
-/// The points with the smaller step.
+/// Points with the fine step.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FineRegion {
-    /// Those of these sets.
+    /// Points of these sets.
     Sets(Vec<String>),
-    /// Those near to where bonds break or are about to.
+    /// Points near bonds that break or are about to break.
     Adaptive(#[serde(with = "crate::form")] Follow),
 }
 
-/// What coarse and fine points know of each other between their steps.
+/// Coupling of coarse and fine points within steps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Interface {
-    /// Of fine points at coarse stages.
+    /// Prediction of fine points at coarse stages.
     #[serde(default, with = "crate::form")]
     pub predictor: Predictor,
-    /// Of coarse points at fine stages.
+    /// Interpolation of coarse points at fine stages.
     #[serde(default, with = "crate::form")]
     pub interpolant: Interpolant,
 }
@@ -139,7 +139,7 @@ enum Kind {
     Static,
 }
 
-/// The scheme by its name.
+/// Reads the name of the scheme.
 fn kind(table: &Table<'_>) -> Option<Kind> {
     let kind = table.choice_or_first(
         "scheme",
@@ -149,8 +149,8 @@ fn kind(table: &Table<'_>) -> Option<Kind> {
             ("rk3", Kind::Rk3),
             ("rk4", Kind::Rk4),
             ("dormand-prince", Kind::DormandPrince),
-            ("rk3-mts", Kind::Rk3Mts),
-            ("rk4-mts", Kind::Rk4Mts),
+            ("multirate-rk3", Kind::Rk3Mts),
+            ("multirate-rk4", Kind::Rk4Mts),
             ("respa", Kind::Respa),
             (
                 ImplicitRule::Midpoint.name(),
@@ -163,12 +163,12 @@ fn kind(table: &Table<'_>) -> Option<Kind> {
             ("trigonometric", Kind::Trigonometric),
             ("newmark", Kind::Newmark),
             ("discrete-gradient", Kind::DiscreteGradient),
-            ("relaxation", Kind::Relaxation),
+            ("adaptive-dynamic-relaxation", Kind::Relaxation),
             ("static", Kind::Static),
         ],
     );
     if kind.is_none() {
-        // Which of these belong to the scheme is not known: none of them is an error of its own.
+        // The scheme is unknown, so that none of these keys is reported.
         for key in [
             "alpha",
             "tolerance",
@@ -200,7 +200,7 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
         matches!(kind, Kind::Rk3 | Kind::Rk3Mts),
         table,
         &["alpha"],
-        "α is the parameter of rk3 and rk3-mts",
+        "it requires scheme = \"rk3\" or \"multirate-rk3\"",
         alpha,
     );
     let newmark_keys: Vec<&'static str> = newmark::KEYS
@@ -211,38 +211,38 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
         kind == Kind::Newmark,
         table,
         &newmark_keys,
-        "it belongs to scheme = \"newmark\"",
+        "it requires scheme = \"newmark\"",
         newmark::read,
     );
     let relaxation = only(
         kind == Kind::Relaxation,
         table,
         &relaxation::KEYS,
-        "it belongs to scheme = \"relaxation\"",
+        "it requires scheme = \"adaptive-dynamic-relaxation\"",
         relaxation::read,
     );
     let statics = only(
         kind == Kind::Static,
         table,
         &statics::KEYS,
-        "it belongs to scheme = \"static\"",
+        "it requires scheme = \"static\"",
         statics::read,
     );
     if !matches!(kind, Kind::Relaxation | Kind::Static) {
         table.forbid(
             relaxation::LOAD_STEPS,
-            "it belongs to scheme = \"relaxation\" or scheme = \"static\"",
+            "it requires scheme = \"adaptive-dynamic-relaxation\" or scheme = \"static\"",
         );
     }
     let tolerance = match kind {
         Kind::DormandPrince => tolerance(table).map(Some),
         Kind::DiscreteGradient => energy_tolerance(table).map(Some),
-        // Their own, of other quantities.
+        // These read tolerances of their own.
         Kind::Newmark | Kind::Relaxation | Kind::Static => Some(None),
         _ => {
             table.forbid(
                 "tolerance",
-                "a tolerance belongs to scheme = \"dormand-prince\", \"newmark\", \"discrete-gradient\", \"relaxation\" or \"static\"",
+                "it requires scheme = \"dormand-prince\", \"newmark\", \"discrete-gradient\", \"adaptive-dynamic-relaxation\" or \"static\"",
             );
             Some(None)
         }
@@ -251,28 +251,28 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
         matches!(kind, Kind::Rk3Mts | Kind::Rk4Mts | Kind::Respa),
         table,
         &["ratio", "fine", "adaptive"],
-        "two time steps need scheme = \"rk3-mts\", \"rk4-mts\" or \"respa\"",
+        "it requires a multirate scheme: \"multirate-rk3\", \"multirate-rk4\" or \"respa\"",
         |table| fine_step(table, names),
     );
     let interface = only(
         matches!(kind, Kind::Rk3Mts | Kind::Rk4Mts),
         table,
         &["predictor", "interpolant"],
-        "it belongs to scheme = \"rk3-mts\" or \"rk4-mts\"",
+        "it requires scheme = \"multirate-rk3\" or \"multirate-rk4\"",
         interface,
     );
     let exact = only(
         kind == Kind::Trigonometric,
         table,
         &["functions", "loads", "regularisation"],
-        "it belongs to scheme = \"trigonometric\"",
+        "it requires scheme = \"trigonometric\"",
         trigonometric,
     );
     let solver = only(
         matches!(kind, Kind::Implicit(_)),
         table,
         &["linear_solver"],
-        "it belongs to scheme = \"implicit-midpoint\" or \"trapezoidal\"",
+        "it requires scheme = \"implicit-midpoint\" or \"trapezoidal\"",
         linear_solver,
     );
     let (alpha, tolerance, fine, interface) = (alpha?, tolerance?, fine?, interface?);
@@ -309,7 +309,7 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
     })
 }
 
-/// Reads what belongs to some schemes only, and forbids its keys to the others. The outer option is none if something is wrong.
+/// Reads keys of some schemes only and refuses them for other schemes. The outer option is none after an error.
 fn only<T>(
     belongs: bool,
     table: &Table<'_>,
@@ -354,12 +354,12 @@ fn tolerance(table: &Table<'_>) -> Option<f64> {
 }
 
 fn trigonometric(table: &Table<'_>) -> Option<TrigonometricOptions> {
-    let functions = table.worded("functions", "way of computing functions");
-    let load_rule = table.worded("loads", "rule for loads");
+    let functions = table.worded("functions", "method for matrix functions");
+    let load_rule = table.worded("loads", "load quadrature");
     let regularisation = table.or("regularisation", 0.0, |item| {
         item.within(
             Quantity::Number,
-            "zero (the default, and always right) or a positive number, in 1/s²",
+            "zero (the default) or a positive number, in 1/s²",
             |value| value >= 0.0,
         )
     });
@@ -395,7 +395,7 @@ fn fine_step(table: &Table<'_>, names: &SetNames) -> Option<FineStep> {
     })
 }
 
-/// A whole number from 1 to a thousand.
+/// Reads a whole number from 1 to 1000.
 fn small_count(item: &Item<'_>) -> Option<u32> {
     const MOST: u64 = 1000;
     let count = item.count()?;
@@ -413,12 +413,12 @@ fn follow(table: Table<'_>) -> Option<Follow> {
     let threshold = table.or("threshold", default.threshold, |item| {
         item.within(
             Quantity::Number,
-            "a part of the critical stretch, above 0 and below 1",
+            "a fraction of the critical stretch, above 0 and below 1",
             |part| part > 0.0 && part < 1.0,
         )
     });
     let layers = table.or("layers", default.layers, |item| small_count(&item));
-    let hold = table.or("hold", default.hold, |item| {
+    let keep_checks = table.or("keep_checks", default.keep_checks, |item| {
         let looks = item.within(Quantity::Number, "a whole number from 0 to 200", |looks| {
             (0.0..=200.0).contains(&looks) && looks.fract() == 0.0
         })?;
@@ -429,7 +429,7 @@ fn follow(table: Table<'_>) -> Option<Follow> {
         every: every?,
         threshold: threshold?,
         layers: layers?,
-        hold: hold?,
+        keep_checks: keep_checks?,
     })
 }
 

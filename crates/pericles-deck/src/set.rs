@@ -1,4 +1,4 @@
-//! `[sets.NAME]`: named sets of points, and the use of their names.
+//! `[sets.NAME]`: named sets of points and references to them.
 
 use pericles::space::{PointCloud, PointSet, Region};
 use serde::{Deserialize, Serialize};
@@ -10,39 +10,39 @@ use crate::reader::{Item, Table};
 use crate::region::{self, Frame};
 use crate::vocabulary::{DEPTHS, SELECTIONS};
 
-/// The name of the set of all points, which is always there.
+/// Name of the set of all points, which always exists.
 pub const ALL: &str = "all";
 
 /// A named set of points.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NamedSet {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Which points it has.
+    /// Its points.
     pub members: Members,
 }
 
-/// Which points a set has.
+/// Selection of the points of a set.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Members {
-    /// Those in a region.
+    /// Points in a region.
     Region(#[serde(with = "crate::form")] Region),
-    /// Those for which a condition on x, y, z and block holds.
+    /// Points that satisfy a condition on x, y, z and block.
     Where(Condition),
-    /// Those of some blocks.
+    /// Points of some blocks.
     Blocks(Vec<u32>),
-    /// Those near the faces of a face set of a mesh.
+    /// Points near the faces of a face set of a mesh.
     NearFaces {
-        /// The face set, by its name in the mesh.
+        /// Name of the face set in the mesh.
         faces: String,
-        /// How near.
+        /// Largest distance.
         depth: Depth,
     },
 }
 
-/// A depth below the faces of a mesh.
+/// A distance from the faces of a mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Depth {
@@ -53,7 +53,7 @@ pub enum Depth {
 }
 
 impl Depth {
-    /// The depth in metres, for points of a spacing (m).
+    /// Returns the depth in metres for a given spacing (m).
     pub fn length(self, spacing: f64) -> f64 {
         match self {
             Self::Length(length) => length,
@@ -63,7 +63,7 @@ impl Depth {
 }
 
 impl Members {
-    /// The points of a cloud, except for those near the faces of a mesh, which a cloud does not know.
+    /// Returns the points of a cloud; none for points near faces of a mesh, which a cloud does not know.
     pub fn of(&self, cloud: &PointCloud) -> Option<PointSet> {
         let those = |belongs: &dyn Fn(usize) -> bool| {
             let all = 0..cloud.len() as u32;
@@ -77,7 +77,7 @@ impl Members {
         })
     }
 
-    /// The region, if it is one.
+    /// Returns the region, if it is one.
     pub fn region(&self) -> Option<&Region> {
         match self {
             Self::Region(region) => Some(region),
@@ -86,15 +86,15 @@ impl Members {
     }
 }
 
-/// The names that may be used, whether or not their regions could be read.
+/// Defined set names, including sets that could not be read.
 pub(crate) struct SetNames {
     names: Vec<String>,
-    /// Whether there are others, which are known once a mesh is read.
+    /// Whether a mesh may define further names.
     open: bool,
 }
 
 impl SetNames {
-    /// A name that must be defined.
+    /// Reads a defined set name.
     pub(crate) fn reference(&self, item: &Item<'_>) -> Option<String> {
         let name = item.text()?;
         if self.open || self.names.contains(&name) {
@@ -104,13 +104,22 @@ impl SetNames {
         None
     }
 
-    /// A list of names that must be defined; a single name may stand without brackets.
+    /// Reports an undefined set name that is part of the text of the item.
+    pub(crate) fn check(&self, item: &Item<'_>, name: &str) -> Option<()> {
+        if self.open || self.names.iter().any(|known| known == name) {
+            return Some(());
+        }
+        item.unknown_word("set", name, self.names.iter().map(String::as_str));
+        None
+    }
+
+    /// Reads a list of defined set names; a single name may omit the brackets.
     pub(crate) fn references(&self, item: &Item<'_>) -> Option<Vec<String>> {
         if item.word().is_some() {
             return Some(vec![self.reference(item)?]);
         }
         let names: Vec<Option<String>> = item
-            .list("a list of names of sets")?
+            .list("a list of set names")?
             .iter()
             .map(|name| self.reference(name))
             .collect();
@@ -144,7 +153,7 @@ pub(crate) fn read(table: Option<Table<'_>>, frame: Frame) -> (Option<Vec<NamedS
     (sets, names)
 }
 
-/// A table with exactly one key: a kind of region, `where` or `block`.
+/// Reads a table with exactly one key: a kind of region, `where`, `block` or `near_faces`.
 fn members(table: Table<'_>, frame: Frame) -> Option<Members> {
     let found = table.exactly_one(SELECTIONS);
     table.finish();
@@ -157,11 +166,11 @@ fn members(table: Table<'_>, frame: Frame) -> Option<Members> {
     }
 }
 
-/// A depth below the faces of a mesh.
+/// A distance from the faces of a mesh.
 fn near_faces(item: &Item<'_>, frame: Frame) -> Option<Members> {
     if frame.dimension.is_some() && !frame.mesh {
         item.out_of_range(
-            "another kind of set, such as `layer`: only a mesh (shape = \"mesh\") has faces",
+            "another kind of set, such as `layer`; `near_faces` requires shape = \"mesh\"",
         );
         return None;
     }
@@ -192,10 +201,10 @@ fn condition(item: &Item<'_>, dimension: Option<usize>) -> Option<Condition> {
     .ok()
 }
 
-/// A number of a block, or a list of them.
+/// Reads a block number or a list of block numbers.
 pub(crate) fn blocks(item: &Item<'_>) -> Option<Vec<u32>> {
     let block = |item: &Item<'_>| {
-        let allowed = "a whole number from 0 on, or a list of them";
+        let allowed = "a whole number of at least 0, or a list of such numbers";
         let number = item.within(Quantity::Number, allowed, |number| {
             number.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&number)
         })?;
@@ -204,19 +213,19 @@ pub(crate) fn blocks(item: &Item<'_>) -> Option<Vec<u32>> {
     if !item.is_list() {
         return Some(vec![block(item)?]);
     }
-    let items = item.list("a list of numbers of blocks")?;
+    let items = item.list("a list of block numbers")?;
     let numbers: Vec<Option<u32>> = items.iter().map(block).collect();
     numbers.into_iter().collect()
 }
 
-/// Why a name cannot be used for a set or a probe: it becomes part of a column's name in tables.
+/// Returns the fault of an invalid name of a set or probe; such names become part of column names.
 pub(crate) fn bad_name(name: &str) -> Option<impl Fn() -> Fault + use<>> {
     let reason = if name == ALL {
-        "it always means all points"
+        "it is reserved for the set of all points"
     } else if name.is_empty() {
         "it is empty"
     } else if name.contains(|c: char| c.is_control() || matches!(c, ',' | ';' | '"' | '\'')) {
-        "it holds a comma, a semicolon, a quotation mark or a control character"
+        "it contains a comma, a semicolon, a quotation mark or a control character"
     } else {
         return None;
     };

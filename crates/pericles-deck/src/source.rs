@@ -1,10 +1,10 @@
-//! Where in which text a value stands.
+//! Locations of values in decks and overrides.
 
 use std::sync::Arc;
 
 use miette::{LabeledSpan, NamedSource, SourceSpan};
 
-/// A stretch of one of the texts a deck is read from: number 0 is the deck, the following are the overrides.
+/// A byte range in one of the texts of a deck: source 0 is the deck, the following are the overrides.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub(crate) struct Place {
     pub(crate) source: usize,
@@ -12,11 +12,11 @@ pub(crate) struct Place {
     pub(crate) end: usize,
 }
 
-/// A place as a person looks for it.
+/// A location as file, line and column.
 #[derive(Debug, Clone)]
 pub struct Location {
     text: Arc<NamedSource<String>>,
-    /// Length of the line, bytes.
+    /// Length of the line in bytes.
     line_length: usize,
     source: usize,
     start: usize,
@@ -26,32 +26,32 @@ pub struct Location {
 }
 
 impl Location {
-    /// The file's name as it was given, or `--set key` for an override.
+    /// Returns the name of the file as given, or `--set key` for an override.
     pub fn file(&self) -> &str {
         self.text.name()
     }
 
-    /// The line, from 1.
+    /// Returns the line, from 1.
     pub fn line(&self) -> usize {
         self.line
     }
 
-    /// The column in characters, from 1.
+    /// Returns the column in characters, from 1.
     pub fn column(&self) -> usize {
         self.column
     }
 
-    /// The length of the line in bytes: very long lines are better not shown.
+    /// Returns the length of the line in bytes; very long lines should not be shown.
     pub fn line_length(&self) -> usize {
         self.line_length
     }
 
-    /// The stretch in bytes.
+    /// Returns the byte range.
     pub fn span(&self) -> SourceSpan {
         (self.start, self.length).into()
     }
 
-    /// The text that stands there.
+    /// Returns the text at the location.
     pub fn excerpt(&self) -> &str {
         self.text
             .inner()
@@ -67,7 +67,7 @@ impl Location {
         LabeledSpan::new(Some(words.into()), self.start, self.length)
     }
 
-    /// Sorts by text (overrides after the deck) and place.
+    /// Sort key: source (overrides after the deck) and position.
     pub(crate) fn order(&self) -> (usize, usize) {
         (self.source, self.start)
     }
@@ -79,16 +79,17 @@ impl std::fmt::Display for Location {
     }
 }
 
-/// The texts a deck is read from.
+/// The texts of a deck: the file and its overrides.
 #[derive(Debug, Clone)]
 pub(crate) struct Sources(Vec<Source>);
 
-/// A text with its name, and the places where its lines start, so that a place is found without reading all that stands before it.
+/// A text with its name and the offsets of its lines.
 #[derive(Debug, Clone)]
 struct Source {
     name: String,
     text: String,
-    /// Both as reports show them: control characters, which terminals may take for commands, are others of the same length.
+    /// Name and text as shown in reports: control characters, which terminals may interpret, are replaced by
+    /// characters of equal length.
     shown: Arc<NamedSource<String>>,
     lines: Arc<[usize]>,
 }
@@ -105,7 +106,7 @@ impl Source {
     }
 }
 
-/// A text with a blank for each control character of one byte and `¿` for each of two; line ends and tabs stay.
+/// Replaces control characters of one byte by a blank and those of two bytes by `¿`, except for line ends and tabs.
 fn visible(text: &str) -> String {
     let shown = |c: char| match c {
         '\n' | '\r' | '\t' => c,
@@ -117,7 +118,7 @@ fn visible(text: &str) -> String {
 }
 
 impl Default for Sources {
-    /// One empty text.
+    /// Returns a single empty text.
     fn default() -> Self {
         Self::new("", "")
     }
@@ -128,13 +129,13 @@ impl Sources {
         Self(vec![Source::new(name, text)])
     }
 
-    /// Adds a text; returns its number.
+    /// Adds a text and returns its number.
     pub(crate) fn add(&mut self, name: &str, text: &str) -> usize {
         self.0.push(Source::new(name, text));
         self.0.len() - 1
     }
 
-    /// The name of the deck's file.
+    /// Returns the name of the deck's file.
     pub(crate) fn name(&self) -> &str {
         self.0.first().map_or("", |source| &source.name)
     }
@@ -195,7 +196,7 @@ mod tests {
         assert_eq!((value.line(), value.column()), (2, 5));
         assert_eq!(value.excerpt(), "\"ü\"");
         assert_eq!(value.to_string(), "a.toml:2:5");
-        // Control characters are not shown, and change no place.
+        // Control characters are hidden without changing locations.
         let odd = Sources::new("a\u{1b}[1m.toml", "µ\u{9b}\u{1b} = 1\n");
         assert_eq!(odd.text(0), "µ\u{9b}\u{1b} = 1\n");
         let value = odd.locate(Place {
@@ -205,7 +206,7 @@ mod tests {
         });
         assert_eq!((value.excerpt(), value.file()), ("1", "a [1m.toml"));
         assert_eq!(value.text().inner(), "µ¿  = 1\n");
-        // Between the bytes of a letter, and beyond the end.
+        // Positions within a character, and beyond the end.
         assert_eq!(at(7, 8).column(), 1);
         assert_eq!(at(999, 1000).excerpt(), "");
         assert_eq!(at(999, 1000).line(), 3);

@@ -11,17 +11,17 @@ use crate::quantity::Quantity;
 use crate::reader::Table;
 use crate::vocabulary::{MODULI, STRENGTHS};
 
-/// A state-based material, with how its extensions follow from displacements.
+/// A state-based material.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StateBased {
     /// Elastic constants, horizon, influence function and failure.
     #[serde(with = "crate::form")]
     pub solid: LinearSolid,
-    /// Finite or small displacements.
+    /// Bond extensions for finite or small strains.
     #[serde(default, with = "crate::form")]
     pub strains: Strains,
-    /// Viscosity or plasticity of its shear.
+    /// Viscoelastic or plastic shear behaviour.
     #[serde(
         default,
         with = "crate::form",
@@ -31,7 +31,7 @@ pub struct StateBased {
 }
 
 impl StateBased {
-    /// The influence function as a function of the bond's length; none if it is computed from the lattice.
+    /// Returns the influence function of the bond length; none if it follows from the lattice.
     pub fn given_influence(&self) -> Option<pericles::kernel::Influence> {
         match &self.solid.influence {
             StateInfluence::Isotropic => None,
@@ -43,7 +43,7 @@ impl StateBased {
     }
 }
 
-/// How the constants of state-based materials are read.
+/// Rules for reading the constants of state-based materials.
 pub(crate) struct SolidRules {
     state: Option<StressState>,
     criterion: Option<Criterion>,
@@ -58,7 +58,7 @@ enum Criterion {
 }
 
 impl SolidRules {
-    /// The rules in a material's table; `calibration` follows from the body. `shared`: other materials take them over.
+    /// Reads the rules of a material; `calibration` follows from the body. `shared`: other materials inherit them.
     pub(crate) fn read(
         table: &Table<'_>,
         state: Option<StressState>,
@@ -88,7 +88,7 @@ impl SolidRules {
             Some(Criterion::BondEnergy) => {
                 table.forbid(
                     "stretch_definition",
-                    "it belongs to failure = \"stretch\": the critical bond energy does not depend on it",
+                    "it requires failure = \"stretch\"; the critical bond energy does not depend on it",
                 );
                 Some(StretchDefinition::default())
             }
@@ -102,7 +102,7 @@ impl SolidRules {
         }
     }
 
-    /// The rules of materials whose bonds break by their stretch in the closing deformation, and whose tables do not say so.
+    /// Returns the fixed rules of materials whose bonds break by stretch, with the definition `closing`.
     pub(crate) fn closing(
         state: Option<StressState>,
         calibration: Option<FractureCalibration>,
@@ -115,19 +115,19 @@ impl SolidRules {
         }
     }
 
-    /// The elastic constants in a table: two of four, of a bar Young's modulus.
+    /// Reads the elastic constants: two of four, or Young's modulus of a bar.
     pub(crate) fn elastic(&self, table: &Table<'_>) -> Option<GivenConstants> {
         table.together(MODULI);
         let modulus = |key| table.maybe(key, |item| item.positive(Quantity::Modulus));
         let [young, bulk, shear] = ["youngs_modulus", "bulk_modulus", "shear_modulus"].map(modulus);
         table.forbid(
             "modulus",
-            "a state-based material has the stiffness of its elastic constants: its bulk stiffness is exact on every lattice, and influence = { function = \"isotropic\" } makes shear exact too",
+            "the bulk stiffness of a state-based material is exact on every lattice; use influence = { function = \"isotropic\" } for exact shear",
         );
         let poisson_ratio = if self.state == Some(StressState::Uniaxial) {
             table.forbid(
                 "poisson_ratio",
-                "a bar contracts across its axis without any effect on its motion; leave it out",
+                "the motion of a bar does not depend on Poisson's ratio; remove the key",
             );
             Some(None)
         } else {
@@ -149,12 +149,12 @@ impl SolidRules {
         Some(given)
     }
 
-    /// When the bonds of the material in a table break.
+    /// Reads the failure of bonds.
     pub(crate) fn failure(&self, table: &Table<'_>) -> Option<BondFailure> {
         if self.criterion == Some(Criterion::BondEnergy) {
             table.forbid(
                 "critical_stretch",
-                "failure = \"bond-energy\" needs `fracture_energy`, from which the critical bond energy follows",
+                "failure = \"bond-energy\" requires `fracture_energy`, which determines the critical bond energy",
             );
         }
         let fracture = constants::fracture(table)?;
@@ -174,20 +174,17 @@ impl SolidRules {
     }
 }
 
-/// `yield_stress` and `hardening`, of any model.
+/// Reads `yield_stress` and `hardening` of any model.
 pub(crate) fn read_yield(table: &Table<'_>) -> Option<Option<Yield>> {
     let stress = table.maybe("yield_stress", |item| item.positive(Quantity::Modulus));
     if !table.has("yield_stress") {
-        table.forbid(
-            "hardening",
-            "it is the slope of the yield stress: give `yield_stress`",
-        );
+        table.forbid("hardening", "it requires `yield_stress`");
         return Some(None);
     }
     let hardening = table.or("hardening", 0.0, |item| {
         item.within(
             Quantity::Modulus,
-            "zero or a positive modulus: softening needs a length that the model does not have",
+            "zero or a positive modulus; softening is not supported because the model has no length scale for it",
             |hardening| hardening >= 0.0,
         )
     });

@@ -1,50 +1,50 @@
-//! The options of `scheme = "static"`.
+//! Options of `scheme = "static"`.
 
 use serde::{Deserialize, Serialize};
 
 use crate::quantity::Quantity;
 use crate::reader::Table;
 
-/// Keys that belong to the scheme alone.
+/// Keys of this scheme only.
 pub(crate) const KEYS: [&str; 3] = ["newton_steps", "rigid_modes", "breaking"];
 
-/// How static states are found.
+/// Options of the static solver.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Statics {
-    /// Norm of the residual over that of loads or reactions, the larger.
+    /// Residual norm relative to the larger norm of loads and reactions.
     pub tolerance: f64,
-    /// The most steps of Newton's method for one state.
+    /// Largest number of Newton iterations per static state.
     pub newton_steps: u32,
-    /// What is done with rigid-body motions that no support prevents.
+    /// Treatment of rigid-body modes that no support prevents.
     #[serde(default)]
     pub rigid_modes: RigidModes,
-    /// Which over-stretched bonds break at a static state.
+    /// Breaking rule for bonds beyond their critical stretch.
     #[serde(default)]
     pub breaking: StaticBreaking,
 }
 
-/// Which over-stretched bonds break at a static state.
+/// Breaking rule for bonds beyond their critical stretch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum StaticBreaking {
-    /// Those with the largest stretch over the critical one.
+    /// Bonds with the largest ratio of stretch to critical stretch.
     #[default]
     WorstFirst,
-    /// All at once.
+    /// All such bonds at once.
     All,
-    /// One after the other, at the load at which each reaches its limit.
+    /// One bond after the other, each at the load at which it reaches its critical stretch.
     Event,
 }
 
-/// What is done with rigid-body motions that no support prevents.
+/// Treatment of rigid-body modes that no support prevents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RigidModes {
     /// The body is refused.
     #[default]
     Refuse,
-    /// They are taken out; loads must be in balance.
+    /// They are removed; loads must be in equilibrium.
     Fix,
 }
 
@@ -64,7 +64,7 @@ pub(crate) fn read(table: &Table<'_>) -> Option<Statics> {
     let tolerance = table.or("tolerance", default.tolerance, |item| {
         item.within(
             Quantity::Number,
-            "a number from 1e-12 to 0.1, the residual over loads and reactions",
+            "a number from 1e-12 to 0.1, the residual relative to loads and reactions",
             |tolerance| (1e-12..=0.1).contains(&tolerance),
         )
     });
@@ -79,12 +79,12 @@ pub(crate) fn read(table: &Table<'_>) -> Option<Statics> {
     });
     let rigid_modes = table.choice_or_first(
         "rigid_modes",
-        "treatment of rigid-body motions",
+        "treatment of rigid-body modes",
         &[("refuse", RigidModes::Refuse), ("fix", RigidModes::Fix)],
     );
     let breaking = table.choice_or_first(
         "breaking",
-        "rule for breaking",
+        "breaking rule",
         &[
             ("worst-first", StaticBreaking::WorstFirst),
             ("all", StaticBreaking::All),

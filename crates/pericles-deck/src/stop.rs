@@ -6,23 +6,23 @@ use crate::quantity::Quantity;
 use crate::reader::Table;
 use crate::set::SetNames;
 
-/// A condition on a set of points; the run ends after the first step that meets one of them.
+/// A stop condition on a set of points; the run ends after the first step at which one is met.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StopWhen {
-    /// The set.
+    /// Name of the set.
     pub set: String,
-    /// What it must have come to.
+    /// The condition.
     pub condition: StopCondition,
 }
 
-/// What a set must have come to.
+/// Kinds of stop conditions.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum StopCondition {
-    /// The reaction is below this share of its peak.
+    /// The reaction is below this fraction of its maximum.
     ReactionBelow(f64),
-    /// The damage of a point is above this value.
+    /// The damage of any point is above this value.
     DamageAbove(f64),
 }
 
@@ -34,7 +34,7 @@ pub(crate) fn stop_when(table: Table<'_>, sets: &SetNames) -> Option<StopWhen> {
             if key == "reaction_below" {
                 let share = item.within(
                     Quantity::Number,
-                    "a number above 0 and below 1, the share of the largest reaction so far",
+                    "a number above 0 and below 1, a fraction of the largest reaction so far",
                     |share| share > 0.0 && share < 1.0,
                 );
                 share.map(StopCondition::ReactionBelow)

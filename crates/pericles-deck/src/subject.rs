@@ -1,17 +1,17 @@
-//! What a finding can be about: a fault or a caution.
+//! Common interface of faults and cautions.
 
 use std::error::Error;
 
 use miette::Severity;
 
-/// What a finding can be about.
+/// A fault or a caution.
 pub trait Subject: Error + 'static {
-    /// How bad it is.
+    /// Severity.
     const SEVERITY: Severity;
 
-    /// What is allowed instead or can be done, if the text of the subject does not say so itself.
+    /// Returns what is allowed or what to do, unless the message contains it.
     fn advice(&self) -> Option<String>;
 
-    /// A few words beside the marked text.
+    /// Returns the label beside the marked text.
     fn label(&self) -> &'static str;
 }

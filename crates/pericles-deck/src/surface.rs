@@ -1,4 +1,4 @@
-//! Material and distances of bodies that are surfaces.
+//! Materials and geodesic distances of 2-manifolds.
 
 use pericles_manifold::geodesic::{Ball, GeodesicMethod};
 use pericles_manifold::{PowerMaterial, SurfaceBond};
@@ -10,7 +10,7 @@ use crate::quantity::Quantity;
 use crate::reader::Table;
 use crate::set::SetNames;
 
-/// A surface with its material.
+/// A 2-manifold with its material.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SurfaceBody {
@@ -24,15 +24,15 @@ pub struct SurfaceBody {
     /// Sets whose bonds never break.
     #[serde(default)]
     pub no_fail: Vec<String>,
-    /// How distances along the surface are found.
+    /// Algorithm for geodesic distances.
     #[serde(default, with = "crate::form")]
     pub method: GeodesicMethod,
-    /// Which vertices are bonded.
+    /// Definition of neighbours.
     #[serde(default, with = "crate::form")]
     pub ball: Ball,
 }
 
-/// `[geodesics]`.
+/// Reads `[geodesics]`.
 pub(crate) fn geodesics(table: Table<'_>) -> Option<(GeodesicMethod, Ball)> {
     let method = match table.optional("method") {
         None => {
@@ -53,7 +53,7 @@ pub(crate) fn geodesics(table: Table<'_>) -> Option<(GeodesicMethod, Ball)> {
     Some((method?, ball?))
 }
 
-/// `[material]` of a surface.
+/// Reads `[material]` of a 2-manifold.
 pub(crate) fn material(
     table: Table<'_>,
     spacing: Option<f64>,
@@ -76,22 +76,20 @@ pub(crate) fn material(
     let horizon = table.required("horizon").and_then(|item| {
         item.within(
             Quantity::Length,
-            "a length larger than the mean distance of vertices (usual: 3 times that)",
+            "a length above the mean edge length (usual: 3 times the mean edge length)",
             |horizon| horizon > 0.0 && spacing.is_none_or(|spacing| horizon > spacing),
         )
     });
     let bond = table.worded("bond", "bond");
-    let self_cell = table.optional("self_cell").map_or_else(
+    let self_interaction = table.optional("self_interaction").map_or_else(
         || {
-            table.record("self_cell", false);
+            table.record("self_interaction", false);
             Some(false)
         },
         |item| {
             let wanted = item.boolean()?;
             if wanted && (p.is_some_and(|p| p != 2.0) || bond == Some(SurfaceBond::Chord)) {
-                item.out_of_range(
-                    "false, unless p = 2 and bond = \"displacement\": the term is a Laplacian",
-                );
+                item.out_of_range("false, or true with p = 2 and bond = \"displacement\"");
                 return None;
             }
             Some(wanted)
@@ -112,7 +110,7 @@ pub(crate) fn material(
             p: p?,
             horizon: horizon?,
             bond: bond?,
-            self_cell: self_cell?,
+            self_interaction: self_interaction?,
             critical_stretch: critical_stretch?,
         },
         no_fail?,

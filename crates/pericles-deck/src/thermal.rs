@@ -6,18 +6,18 @@ use crate::component::{Component, Variables, component};
 use crate::quantity::Quantity;
 use crate::reader::Table;
 
-/// Thermal expansion of a body whose temperature is prescribed.
+/// Thermal expansion under a prescribed temperature.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Thermal {
-    /// Coefficient of thermal expansion α, 1/K, of all materials that have none of their own.
+    /// Coefficient of thermal expansion α, 1/K, of all materials without their own.
     pub expansion: f64,
-    /// Materials with a coefficient of their own.
+    /// Coefficients by material.
     #[serde(default, rename = "material")]
     pub materials: Vec<MaterialExpansion>,
     /// Temperature, K.
     pub temperature: Component,
-    /// Stress-free temperature, K.
+    /// Reference temperature without thermal strain, K.
     pub reference: f64,
 }
 
@@ -31,7 +31,7 @@ pub struct MaterialExpansion {
     pub expansion: f64,
 }
 
-/// A coefficient above that of any solid, 1/K.
+/// Largest allowed coefficient, above that of any solid, 1/K.
 pub(crate) const LARGEST: f64 = 0.01;
 
 pub(crate) fn read(

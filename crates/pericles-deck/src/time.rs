@@ -1,4 +1,4 @@
-//! `[time]`: how far, how fine and by which scheme.
+//! `[time]`: end time, time step and scheme.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,28 +9,28 @@ use crate::scheme::{self, Scheme};
 use crate::set::SetNames;
 use crate::stop::{StopWhen, stop_when};
 
-/// The course of the run.
+/// Time integration of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Time {
-    /// End, s.
+    /// End time, s.
     pub end: f64,
-    /// The step.
+    /// Time step.
     #[serde(default)]
     pub step: TimeStep,
-    /// The scheme.
+    /// Scheme.
     #[serde(default)]
     pub scheme: Scheme,
-    /// Whether a step beyond the stable limit is accepted.
+    /// Whether an unstable time step is accepted.
     #[serde(default)]
     pub allow_unstable: bool,
-    /// Conditions that end the run before its end.
+    /// Conditions that end the run early.
     #[serde(default)]
     pub stop_when: Vec<StopWhen>,
 }
 
 impl Time {
-    /// A run to `end` (s) by velocity Verlet with the largest stable step.
+    /// Velocity Verlet up to `end` (s) with the largest stable step.
     pub fn to(end: f64) -> Self {
         Self {
             end,
@@ -46,22 +46,22 @@ impl Time {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum TimeStep {
-    /// The largest stable step times this factor.
+    /// The largest stable step times a safety factor.
     Auto {
         /// Safety factor, in (0, 1].
         safety: f64,
     },
-    /// This step, s.
+    /// A fixed step, s.
     Fixed(f64),
-    /// So many to the end.
+    /// A number of equal steps.
     Equal(u64),
 }
 
-/// Margin for stiffening under load, which the frequency of the reference state does not see.
+/// Margin for stiffening under load, which the highest frequency of the reference state does not include.
 const SAFETY: f64 = 0.95;
 
 impl Default for TimeStep {
-    /// The largest stable step with a margin.
+    /// The largest stable step with the default margin.
     fn default() -> Self {
         Self::Auto { safety: SAFETY }
     }
@@ -125,7 +125,7 @@ fn step(table: &Table<'_>) -> Option<TimeStep> {
             Some(TimeStep::Auto { safety: safety? })
         }
         Some(Some(dt)) => {
-            table.forbid("safety", "a safety factor belongs to dt = \"auto\"");
+            table.forbid("safety", "it requires dt = \"auto\"");
             Some(TimeStep::Fixed(dt))
         }
         None => {

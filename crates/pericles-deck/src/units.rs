@@ -1,8 +1,9 @@
 //! Numbers with units: `"72 GPa"`, `"0.25 mm"`, `"135 J/m2"`.
 //!
-//! A quantity is a number, a space or none, and a unit. A unit is a product (`*`, `·`) and quotient (`/`, read from left to right) of
-//! prefixed symbols with integer powers: `kg/m3`, `kg·m^-3`, `N/m²`, `1/s`. Powers of ten are added to the number's own exponent before it is
-//! rounded to binary, so that `"0.25 mm"` is exactly the number `0.25e-3`.
+//! A quantity is a number, an optional space, and a unit. A unit is a product (`*`, `·`) and quotient (`/`,
+//! from left to right) of prefixed symbols with integer powers: `kg/m3`, `kg·m^-3`, `N/m²`, `1/s`. Powers of
+//! ten are added to the exponent of the number before it is rounded to binary, so that `"0.25 mm"` is the
+//! same double as `0.25e-3`.
 
 /// Powers of kilogram, metre, second and kelvin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -38,28 +39,28 @@ impl Dimension {
     }
 }
 
-/// A number in SI units and the dimension of the unit it carried; none if it carried no unit.
+/// A number in SI units and the dimension of its unit; none without a unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Measure {
     pub(crate) value: f64,
     pub(crate) dimension: Option<Dimension>,
 }
 
-/// Why a text is no quantity.
+/// Errors of parsing a quantity.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum UnitError {
-    /// It does not begin with a number.
+    /// The text does not begin with a number.
     NoNumber,
     /// The number is too large for a double.
     TooLarge,
-    /// A symbol that is no unit, with the nearest that is.
+    /// An unknown symbol, with the most similar unit.
     Unknown {
         symbol: String,
         nearest: Option<String>,
     },
-    /// A unit that is not written as a product of powers.
+    /// A unit that is not a product of powers.
     Malformed { unit: String },
-    /// A number with a comma in place of the point.
+    /// A number with a decimal comma.
     Comma,
 }
 
@@ -131,11 +132,12 @@ const PREFIXES: [(&str, i32); 14] = [
     ("T", 12),
 ];
 
-/// The largest power of a symbol and the largest number of them: far beyond use, and small enough for exact bookkeeping.
+/// Largest power of a symbol and largest number of symbols: beyond practical use, and small enough for exact
+/// arithmetic.
 const LARGEST_POWER: i32 = 9;
 const MOST_FACTORS: usize = 16;
 
-/// Reads a number with an optional unit.
+/// Parses a number with an optional unit.
 pub(crate) fn parse(text: &str) -> Result<Measure, UnitError> {
     let text = text.trim();
     let (number, rest) = split_number(text).ok_or(UnitError::NoNumber)?;
@@ -151,7 +153,7 @@ pub(crate) fn parse(text: &str) -> Result<Measure, UnitError> {
     }
     let scale = parse_unit(rest)?;
     let (mantissa, exponent) = match number.split_once(['e', 'E']) {
-        // An exponent beyond i32 is no number that a double can hold, except for a zero mantissa: no deck needs either.
+        // Exponents beyond i32 exceed the range of doubles, except for a zero mantissa, which no deck needs.
         Some((mantissa, exponent)) => (
             mantissa,
             exponent.parse::<i32>().map_err(|_| UnitError::TooLarge)?,
@@ -175,7 +177,7 @@ fn finite(value: Result<f64, std::num::ParseFloatError>) -> Result<f64, UnitErro
     }
 }
 
-/// The longest decimal number at the beginning, and what follows it.
+/// Splits off the longest decimal number at the beginning.
 fn split_number(text: &str) -> Option<(&str, &str)> {
     let bytes = text.as_bytes();
     let digits = |from: usize| {
@@ -227,7 +229,7 @@ fn parse_unit(text: &str) -> Result<Scale, UnitError> {
         let end = rest.find(['*', '·', '⋅', '/']).unwrap_or(rest.len());
         let (factor, tail) = rest.split_at(end);
         let factor = factor.trim();
-        // "1/s": only the first factor can be a bare one.
+        // "1/s": only the first factor may be a plain 1.
         if !(factor == "1" && count == 0 && tail.starts_with('/')) {
             let (symbol, power) = split_power(factor).ok_or_else(malformed)?;
             let (unit, prefix) = lookup(symbol)?;
@@ -246,7 +248,7 @@ fn parse_unit(text: &str) -> Result<Scale, UnitError> {
     Err(malformed())
 }
 
-/// `m2`, `m^2`, `m²`, `s^-1`, `s⁻¹`.
+/// Splits a symbol and its power: `m2`, `m^2`, `m²`, `s^-1`, `s⁻¹`.
 fn split_power(factor: &str) -> Option<(&str, i32)> {
     let is_power =
         |c: char| c.is_ascii_digit() || matches!(c, '^' | '-' | '+') || superscript(c).is_some();
@@ -291,7 +293,7 @@ fn lookup(symbol: &str) -> Result<(&'static Unit, i32), UnitError> {
         })
 }
 
-/// Names that people use for units, and what to write for them.
+/// Common names of units, with the symbol to write.
 const OTHER_NAMES: [(&str, &str); 22] = [
     ("sec", "s"),
     ("second", "s"),
@@ -323,7 +325,7 @@ fn nearest_symbol(symbol: &str) -> Option<String> {
     if let Some((_, unit)) = known {
         return Some((*unit).into());
     }
-    // Prefixes that decks use come first, so that they win among equally near ones.
+    // Common prefixes come first, so that they win among equally similar ones.
     let names: Vec<String> = ["", "M", "m", "k", "G", "n", "u", "c"]
         .iter()
         .flat_map(|prefix| {
@@ -333,7 +335,7 @@ fn nearest_symbol(symbol: &str) -> Option<String> {
                 .map(move |unit| format!("{prefix}{}", unit.symbol))
         })
         .collect();
-    // A capital M is a mega, whatever the rest is like.
+    // A capital M means mega, regardless of the rest.
     let first = symbol.chars().next();
     let alike = names
         .iter()
@@ -401,12 +403,12 @@ mod tests {
         assert_eq!(dimension("1 Pa"), dimension("1 J/m3"));
         assert_eq!(dimension("3 %"), Some(Dimension::NONE));
         assert_eq!(dimension("3"), None);
-        // Quotients are read from the left.
+        // Quotients are evaluated from the left.
         assert_eq!(dimension("1 J/m*s"), dimension("1 N*s"));
     }
 
     #[test]
-    fn what_is_no_quantity() {
+    fn invalid_quantities_are_refused() {
         assert_eq!(parse(""), Err(UnitError::NoNumber));
         assert_eq!(parse("mm"), Err(UnitError::NoNumber));
         assert_eq!(parse("nan m"), Err(UnitError::NoNumber));
@@ -448,12 +450,12 @@ mod tests {
 
     proptest! {
         #[test]
-        fn any_text_is_answered(text in ".*") {
+        fn arbitrary_text_never_panics(text in ".*") {
             let _ = parse(&text);
         }
 
         #[test]
-        fn texts_like_quantities_are_answered(text in "[-+]?[0-9]{0,3}\\.?[0-9]{0,3}([eE][-+]?[0-9]{0,12})? ?[a-zA-Zµ%0-9^*/·²⁻¹ -]{0,12}") {
+        fn quantity_like_text_never_panics(text in "[-+]?[0-9]{0,3}\\.?[0-9]{0,3}([eE][-+]?[0-9]{0,12})? ?[a-zA-Zµ%0-9^*/·²⁻¹ -]{0,12}") {
             if let Ok(measure) = parse(&text) {
                 prop_assert!(measure.value.is_finite());
             }
@@ -470,7 +472,7 @@ mod tests {
         }
 
         #[test]
-        fn plain_numbers_survive(number in proptest::num::f64::NORMAL) {
+        fn plain_numbers_are_unchanged(number in proptest::num::f64::NORMAL) {
             prop_assert_eq!(value(&format!("{number}")), number);
             prop_assert_eq!(value(&format!("{number:e}")), number);
         }

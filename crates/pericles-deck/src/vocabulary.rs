@@ -1,6 +1,6 @@
-//! Words of the deck that mean the same, and words of which only one may be given.
+//! Synonyms and mutually exclusive keys of decks.
 
-/// A key with the other names it is known by.
+/// Keys with their synonyms.
 const SYNONYMS: [(&str, &[&str]); 10] = [
     ("spacing", &["dx"]),
     ("centre", &["center"]),
@@ -14,7 +14,7 @@ const SYNONYMS: [(&str, &[&str]); 10] = [
     ("critical_stretch", &["s0"]),
 ];
 
-/// What makes a set: a region, a condition, blocks, faces of a mesh.
+/// Keys that define a set: regions, a condition, blocks, faces of a mesh.
 pub(crate) const SELECTIONS: &[&str] = &[
     "all",
     "box",
@@ -30,15 +30,15 @@ pub(crate) const SELECTIONS: &[&str] = &[
     "block",
     "near_faces",
 ];
-/// The kinds of region: what makes a set, less conditions, blocks and faces, which need the body's points.
+/// Kinds of region: keys that define a set, without conditions, blocks and faces, which need the points of the body.
 pub(crate) const REGIONS: &[&str] = SELECTIONS.split_at(SELECTIONS.len() - 3).0;
-/// The elastic modulus.
+/// Elastic moduli.
 pub(crate) const MODULI: &[&str] = &["youngs_modulus", "bulk_modulus", "shear_modulus"];
-/// The horizon.
+/// Keys of the horizon.
 pub(crate) const HORIZONS: &[&str] = &["horizon", "horizon_ratio"];
-/// The strength of bonds.
+/// Keys of the strength of bonds.
 pub(crate) const STRENGTHS: &[&str] = &["fracture_energy", "critical_stretch"];
-/// What each of several materials gives for itself; all else in its table is said of all bonds of the body.
+/// Keys of which each material has its own value; all other keys are shared by all bonds of the body.
 pub(crate) const OWN_CONSTANTS: &[&str] = &[
     "name",
     "density",
@@ -49,19 +49,20 @@ pub(crate) const OWN_CONSTANTS: &[&str] = &[
     "modulus",
     "fracture_energy",
     "critical_stretch",
+    "strength",
     "viscosity",
     "yield_stress",
     "hardening",
 ];
-/// How limits follow from a fracture energy: a material or interface that gives one takes these over from the first material.
+/// Failure rules that materials and interfaces with a fracture energy inherit from the first material.
 pub(crate) const FAILURE_RULES: &[&str] =
     &["fracture_calibration", "failure", "stretch_definition"];
-/// What may be assigned to sets.
+/// Keys that may be assigned to sets.
 pub(crate) const ASSIGNED: &[&str] = &["material", "stiffness"];
-/// What the constant of bonds between two materials follows from.
+/// Keys that determine the bond constant between two materials.
 pub(crate) const INTERFACE_STIFFNESSES: &[&str] =
     &["rule", "youngs_modulus", "bulk_modulus", "shear_modulus"];
-/// What an interface is about.
+/// Keys of an interface, of which at least one is required.
 pub(crate) const INTERFACE_KEYS: &[&str] = &[
     "rule",
     "youngs_modulus",
@@ -70,19 +71,19 @@ pub(crate) const INTERFACE_KEYS: &[&str] = &[
     "fracture_energy",
     "critical_stretch",
 ];
-/// When output is due.
+/// Keys of output schedules.
 pub(crate) const SCHEDULES: &[&str] = &["interval", "every", "count"];
-/// When a checkpoint is due.
+/// Keys of checkpoint schedules.
 pub(crate) const CHECKPOINTS: &[&str] = &["wall", "every", "interval"];
-/// The depth of a layer.
+/// Keys of the depth of a layer.
 pub(crate) const DEPTHS: &[&str] = &["depth", "cells"];
-/// A load.
+/// Keys of the amplitude of a load.
 pub(crate) const LOADS: &[&str] = &["body_force", "traction", "pressure"];
 
-/// The points with the smaller time step.
+/// Keys of the points with the fine time step.
 pub(crate) const FINE_REGIONS: &[&str] = &["fine", "adaptive"];
 
-/// The other names of a key.
+/// Returns the synonyms of a key.
 pub(crate) fn synonyms(key: &str) -> &'static [&'static str] {
     SYNONYMS
         .iter()
@@ -90,7 +91,7 @@ pub(crate) fn synonyms(key: &str) -> &'static [&'static str] {
         .map_or(&[], |(_, others)| others)
 }
 
-/// The key that a name stands for.
+/// Returns the first name of a key.
 pub(crate) fn canonical(name: &str) -> &str {
     SYNONYMS
         .iter()
@@ -98,8 +99,8 @@ pub(crate) fn canonical(name: &str) -> &str {
         .map_or(name, |(key, _)| key)
 }
 
-/// Whether a value under the key `given` takes the place of one under `other` when it comes from an override: the same key under another
-/// name, or the other choice where only one may be given.
+/// Returns whether an override of the key `given` replaces a value under `other`: a synonym or a mutually
+/// exclusive key.
 pub(crate) fn replaces(given: &str, other: &str) -> bool {
     let (given, other) = (canonical(given), canonical(other));
     let alternatives = [
@@ -124,7 +125,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_and_alternatives() {
+    fn synonyms_and_exclusive_keys() {
         assert_eq!(canonical("dx"), "spacing");
         assert_eq!(canonical("unheard_of"), "unheard_of");
         assert_eq!(synonyms("fracture_energy"), ["Gc", "G0"]);

@@ -1,8 +1,8 @@
-//! Numbers, places and lists as messages write them.
+//! Formatting of numbers, positions and lists in messages.
 
 use pericles::units;
 
-/// A number of things, in groups of three digits; rounded where it is an estimate that nobody would count.
+/// Formats a count in groups of three digits; two significant digits from 1e9.
 pub(crate) fn count(number: f64) -> String {
     if (0.0..1e9).contains(&number) {
         units::count(number.round_ties_even() as u64)
@@ -11,7 +11,7 @@ pub(crate) fn count(number: f64) -> String {
     }
 }
 
-/// A text as messages quote it: the beginning of a long one.
+/// Returns a text for quotation in messages; long texts are cut.
 pub(crate) fn shortened(text: &str) -> String {
     const LONGEST: usize = 60;
     match text.char_indices().nth(LONGEST) {
@@ -20,12 +20,12 @@ pub(crate) fn shortened(text: &str) -> String {
     }
 }
 
-/// `a`, `b` and `c`
+/// Formats a list: `a`, `b` and `c`.
 pub(crate) fn names(words: &[String]) -> String {
     joined(words, '`')
 }
 
-/// "a", "b" and "c"
+/// Formats a list: "a", "b" and "c".
 pub(crate) fn quoted(words: &[String]) -> String {
     joined(words, '"')
 }
@@ -42,7 +42,7 @@ fn joined(words: &[String], mark: char) -> String {
     }
 }
 
-/// A number of bytes in words.
+/// Formats a number of bytes.
 pub(crate) fn bytes(count: f64) -> String {
     let units = [(1e12, "TB"), (1e9, "GB"), (1e6, "MB"), (1e3, "kB")];
     match units.into_iter().find(|(size, _)| count >= *size) {
@@ -51,14 +51,14 @@ pub(crate) fn bytes(count: f64) -> String {
     }
 }
 
-/// 12.3 %
+/// Formats a percentage: `12.3 %`.
 pub(crate) fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     let rounded: f64 = format!("{percent:.2e}").parse().unwrap_or(percent);
     format!("{rounded} %")
 }
 
-/// `4.21 mm`, `0.812 µs`: three digits with the prefix that keeps the number between 1 and 1000.
+/// Formats three digits with the prefix that keeps the number between 1 and 1000: `4.21 mm`, `812 ns`.
 pub(crate) fn prefixed(value: f64, unit: &str) -> String {
     const PREFIXES: [(f64, &str); 7] = [
         (1.0, ""),
@@ -80,18 +80,18 @@ pub(crate) fn prefixed(value: f64, unit: &str) -> String {
     }
 }
 
-/// (1e-3, 2e-3)
+/// Formats a position: `(0.001, 0.002)`.
 pub(crate) fn spot(place: &[f64]) -> String {
     let numbers: Vec<String> = place.iter().map(|x| short(*x)).collect();
     format!("({})", numbers.join(", "))
 }
 
-/// from (0, 0) to (0.1, 0.04) m
+/// Formats an extent: `from (0, 0) to (0.1, 0.04) m`.
 pub(crate) fn reach(low: &[f64], high: &[f64]) -> String {
     format!("from {} to {} m", spot(low), spot(high))
 }
 
-/// Four digits are enough to find a place.
+/// Formats a number with four digits.
 pub(crate) fn short(x: f64) -> String {
     let rounded: f64 = format!("{x:.3e}").parse().unwrap_or(x);
     format!("{rounded}")

@@ -1,11 +1,11 @@
-//! The words of decks for values of the engine: the one list from which the reader, its messages, the schema and the serialised model take them.
+//! Words of decks for values of the engine, used by the reader, its messages, the schema and the serialised model.
 
 use pericles::boundary::MotionKind;
 use pericles::family::{EndRule, VolumeCorrection};
 use pericles::kernel::ActsOn;
 use pericles::material::{
-    Calibration, CubicLaw, FractureCalibration, InterfaceRule, PairLaw, Strains, StressState,
-    StretchDefinition, SurfaceCorrection, Treatment,
+    Approximation, Calibration, CubicLaw, FractureCalibration, InterfaceRule, PairLaw, Strains,
+    StressState, StretchDefinition, SurfaceCorrection,
 };
 use pericles::observe::Field;
 use pericles::space::Face;
@@ -23,9 +23,9 @@ use serde::{Deserialize, Deserializer, Serializer};
 
 use crate::form::Described;
 
-/// A type whose values are words in decks.
+/// Types whose values are words in decks.
 pub(crate) trait Worded: Copy + PartialEq + 'static {
-    /// All words with their values; where a key may be left out, the first is its default.
+    /// Returns all words with their values; the first is the default of optional keys.
     fn words() -> Vec<(&'static str, Self)>;
 }
 
@@ -52,12 +52,14 @@ macro_rules! words {
 fn write<T: Worded, S: Serializer>(value: T, serializer: S) -> Result<S::Ok, S::Error> {
     let words = T::words();
     let word = words.iter().find(|(_, known)| *known == value);
-    let (word, _) = word.ok_or_else(|| serde::ser::Error::custom("a value without a word"))?;
+    let (word, _) =
+        word.ok_or_else(|| serde::ser::Error::custom("this value has no word in decks"))?;
     serializer.serialize_str(word)
 }
 
 fn read<'de, T: Worded, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
-    let word = String::deserialize(deserializer)?;
+    // The deprecated word of the law, alone and with an approximation.
+    let word = String::deserialize(deserializer)?.replace("literal57", "cubic-softening");
     let words = T::words();
     let found = words.iter().find(|(known, _)| *known == word);
     found.map(|(_, value)| *value).ok_or_else(|| {
@@ -108,16 +110,16 @@ words! {
         ("arithmetic", InterfaceRule::Arithmetic),
         ("weaker", InterfaceRule::Weaker),
     ];
-    // The word of `model`, with that of `treatment`.
+    // The word of `model`, followed by that of `approximation`.
     PairLaw: [
         ("linear", PairLaw::Linear),
         ("bond-stretch", PairLaw::BondStretch),
         ("green-strain", PairLaw::GreenStrain),
-        ("literal57", PairLaw::Literal57),
-        ("green-strain taylor-2", PairLaw::Treated(CubicLaw::GreenStrain, Treatment::SecondOrder)),
-        ("green-strain trapezoidal", PairLaw::Treated(CubicLaw::GreenStrain, Treatment::Trapezoidal)),
-        ("literal57 taylor-2", PairLaw::Treated(CubicLaw::Literal57, Treatment::SecondOrder)),
-        ("literal57 trapezoidal", PairLaw::Treated(CubicLaw::Literal57, Treatment::Trapezoidal)),
+        ("cubic-softening", PairLaw::CubicSoftening),
+        ("green-strain taylor-2", PairLaw::Approximated(CubicLaw::GreenStrain, Approximation::SecondOrder)),
+        ("green-strain trapezoidal", PairLaw::Approximated(CubicLaw::GreenStrain, Approximation::Trapezoidal)),
+        ("cubic-softening taylor-2", PairLaw::Approximated(CubicLaw::CubicSoftening, Approximation::SecondOrder)),
+        ("cubic-softening trapezoidal", PairLaw::Approximated(CubicLaw::CubicSoftening, Approximation::Trapezoidal)),
     ];
     StressState: [
         ("uniaxial", StressState::Uniaxial),
@@ -129,6 +131,7 @@ words! {
         ("none", SurfaceCorrection::None),
         ("volume", SurfaceCorrection::Volume),
         ("energy", SurfaceCorrection::Energy),
+        ("ghosts", SurfaceCorrection::Ghosts),
     ];
     Field: Field::ALL.map(|field| (field.name(), field));
     Face: ["-x", "+x", "-y", "+y", "-z", "+z"]

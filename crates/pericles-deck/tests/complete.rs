@@ -1,4 +1,4 @@
-//! A deck with everything, and what it must become.
+//! A deck with every key, and the expected model.
 
 use pericles::boundary::MotionKind;
 use pericles::family::{Crack, EndRule, VolumeCorrection};
@@ -24,7 +24,7 @@ fn parse(text: &str) -> Deck {
 }
 
 #[test]
-fn every_entry_arrives() {
+fn every_entry_is_read() {
     let deck = parse(COMPLETE);
     assert_eq!(
         deck.model.title.as_deref(),
@@ -128,7 +128,7 @@ fn every_entry_arrives() {
 }
 
 #[test]
-fn conditions_time_and_output_arrive() {
+fn conditions_time_and_output_are_read() {
     let deck = parse(COMPLETE);
     assert_eq!(
         deck.model.initial,
@@ -150,16 +150,16 @@ fn conditions_time_and_output_arrive() {
         ]
     );
     assert_eq!(
-        deck.model.prescribe,
+        deck.model.constraints,
         [
-            Prescribe {
+            Constraint {
                 set: "left edge".into(),
                 kind: MotionKind::Velocity,
                 amplitude: [Some(0.0.into()), None, None],
                 function: TimeHistory::Constant,
                 until: None,
             },
-            Prescribe {
+            Constraint {
                 set: "bottom".into(),
                 kind: MotionKind::Displacement,
                 amplitude: [None, Some((-1e-4).into()), None],
@@ -243,7 +243,10 @@ fn conditions_time_and_output_arrive() {
             fields: Schedule::Interval(0.5e-6),
             names: Field::USUAL.to_vec(),
             formats: vec![FieldFormat::Vtu],
-            cells: false,
+            numbers: Vec::new(),
+            cells: pericles_deck::CellChoice::Auto,
+            mesh_cells: false,
+            profiles: Vec::new(),
             blocks: FieldBlocks::Groups,
             history: Schedule::Every(20),
             extremes: Vec::new(),
@@ -263,7 +266,7 @@ fn conditions_time_and_output_arrive() {
     assert_eq!(deck.model.checkpoint, Checkpoint::Every(500));
 }
 
-/// The least a deck must say.
+/// A minimal deck.
 const LEAST: &str = r#"
 [body]
 shape = "bar"
@@ -309,7 +312,7 @@ fn defaults_are_filled_in_and_recorded() {
         "time": { "end": 1e-3, "dt": "auto", "safety": 0.95, "scheme": "velocity-verlet", "allow_unstable": false },
         "output": {
             "fields": { "count": 20, "format": "vtu", "blocks": "groups" }, "history": { "count": 200 },
-            "cracks": { "count": 200, "threshold": 0.35 }, "precision": "double",
+            "cells": "auto", "cracks": { "count": 200, "threshold": 0.35 }, "precision": "double",
         },
         "checkpoint": { "wall": 600.0 },
     });
@@ -317,18 +320,18 @@ fn defaults_are_filled_in_and_recorded() {
 }
 
 #[test]
-fn the_record_is_a_deck_that_says_the_same() {
+fn the_record_is_an_equivalent_deck() {
     for text in [COMPLETE, LEAST] {
         let mut first = parse(text);
         let again = parse(&toml::to_string(first.to_json()).unwrap());
-        // The record holds defaults too.
+        // The record includes defaults.
         let output = &mut first.model.output;
         output.cracks = Some(output.cracks());
         let material = &mut first.model.body.solid_mut().unwrap().material;
         material.damage = Some(material.damage.unwrap_or_default());
         assert_eq!(again.to_json(), first.to_json());
         assert_eq!(again.model.body, first.model.body);
-        assert_eq!(again.model.prescribe, first.model.prescribe);
+        assert_eq!(again.model.constraints, first.model.constraints);
         assert_eq!(again.model.output, first.model.output);
     }
 }
@@ -447,7 +450,7 @@ fn overrides_change_what_is_read() {
         "body.spacing=0.5 mm",
         "crack.1.ends=closed",
         "load.1.traction=[0, '-24 MPa']",
-        "prescribe.1.function.start=2e-6",
+        "constraint.1.function.start=2e-6",
         "material.K=48 GPa",
         "material.horizon=2 mm",
         "output.history.interval=1 us",
@@ -463,7 +466,7 @@ fn overrides_change_what_is_read() {
     };
     assert_eq!(*traction, [0.0, -24e6, 0.0].map(Into::into));
     assert_eq!(
-        deck.model.prescribe[1].function,
+        deck.model.constraints[1].function,
         TimeHistory::Pulse {
             start: 2e-6,
             duration: 2e-6
@@ -483,7 +486,7 @@ fn overrides_change_what_is_read() {
 }
 
 #[test]
-fn overrides_make_tables_and_point_at_themselves() {
+fn overrides_create_tables_and_errors_point_at_them() {
     let deck = with(&["sets.right.layer.side=+x", "sets.right.layer.cells=2"]).unwrap();
     assert_eq!(
         deck.model.sets[3].members.region(),
@@ -514,7 +517,7 @@ fn overrides_make_tables_and_point_at_themselves() {
 }
 
 #[test]
-fn files_are_read_and_missing_ones_named() {
+fn files_are_read_and_missing_files_are_reported() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/complete.toml");
     assert_eq!(Deck::read(path, &[]).unwrap().model.loads.len(), 2);
     let error = Deck::read("no/such/deck.toml", &[]).unwrap_err();
@@ -522,7 +525,7 @@ fn files_are_read_and_missing_ones_named() {
     assert!(error.to_string().contains("no/such/deck.toml"));
 }
 
-/// The deck on the page of the crate.
+/// Returns the deck in the crate's documentation.
 fn documented() -> String {
     include_str!("../src/lib.rs")
         .lines()
@@ -535,7 +538,7 @@ fn documented() -> String {
 }
 
 #[test]
-fn the_documented_deck_is_right() {
+fn the_documented_deck_is_valid() {
     let deck = parse(&documented());
     assert_eq!(deck.model.cracks.len(), 1);
     assert_eq!(deck.model.loads.len(), 2);

@@ -1,4 +1,4 @@
-//! The JSON Schema, judged by a validator that knows nothing of Pericles.
+//! Tests of the JSON Schema with an independent validator.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -21,7 +21,7 @@ impl Validator {
         Self { schemas, deck }
     }
 
-    /// What is wrong with a deck; empty if nothing is.
+    /// Returns the errors of a deck; empty if it is valid.
     fn says(&self, text: &str) -> String {
         let table: toml::Table = toml::from_str(text).unwrap();
         let deck = json(&toml::Value::Table(table));
@@ -30,7 +30,7 @@ impl Validator {
     }
 }
 
-/// As editors see a deck.
+/// Converts TOML to JSON, as editors do.
 fn json(value: &toml::Value) -> Json {
     match value {
         toml::Value::String(text) => Json::from(text.as_str()),
@@ -46,7 +46,7 @@ fn json(value: &toml::Value) -> Json {
     }
 }
 
-/// The decks in a folder and below it.
+/// Collects the decks in a folder and its subfolders.
 fn decks(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
@@ -68,7 +68,7 @@ fn below(place: &str) -> Vec<PathBuf> {
 }
 
 #[test]
-fn every_right_deck_satisfies_the_schema() {
+fn every_valid_deck_satisfies_the_schema() {
     let validator = Validator::new();
     let mut decks = below("examples");
     decks.extend(below("book/decks"));
@@ -81,8 +81,9 @@ fn every_right_deck_satisfies_the_schema() {
 }
 
 #[test]
-fn slips_of_the_pen_break_the_schema_and_no_others_do() {
-    /// What a schema can see: keys, kinds of values, words, signs. Not that of one value for all axes where the body has several: it does not know the dimension.
+fn the_schema_detects_typos_and_wrong_types_only() {
+    /// Errors that a schema can detect: keys, types, words, signs. It does not know the dimension of the
+    /// body, so that it accepts a single value for several axes.
     const SEEN: [&str; 8] = [
         "decimal-comma",
         "lost-heading",
@@ -96,7 +97,7 @@ fn slips_of_the_pen_break_the_schema_and_no_others_do() {
     let validator = Validator::new();
     for deck in below("crates/pericles-cli/tests/wrong") {
         let name = deck.file_stem().unwrap().to_str().unwrap().to_owned();
-        // No TOML at all.
+        // Invalid TOML.
         if name == "syntax" {
             continue;
         }

@@ -1,4 +1,4 @@
-//! Wrong decks: every one names the line, the column, what stands there and what is allowed.
+//! Invalid decks: messages report line, column, text and what is allowed.
 
 mod common;
 
@@ -9,7 +9,7 @@ use proptest::prelude::*;
 
 const COMPLETE: &str = include_str!("complete.toml");
 
-/// A right deck, from which wrong ones are made by replacing some text.
+/// A valid deck; replacements of its text make invalid ones.
 const RIGHT: &str = r#"title = "plate"
 
 [body]
@@ -30,7 +30,7 @@ layer = { side = "+y", depth = "0.25 mm" }
 [[crack]]
 segment = [["0 mm", "20 mm"], ["50 mm", "20 mm"]]
 
-[[prescribe]]
+[[constraint]]
 set = "top"
 velocity = [0, "free"]
 
@@ -50,7 +50,7 @@ dt = "auto"
 fields = { interval = "0.5 us" }
 "#;
 
-/// The shape of the body.
+/// Keys of the shape of the body.
 const BODY: &str =
     "shape = \"plate\"\nsize = [\"100 mm\", \"40 mm\"]\nspacing = \"0.25 mm\"\nplane = \"strain\"";
 
@@ -60,143 +60,153 @@ const WRONG: &[Wrong] = &[
     wrong("spacing =", "spaceing =", (6, 1), "spaceing", &["unknown key `spaceing` in [body]", "did you mean `spacing`?", "`shape`, `spacing`, `size`, `origin`, `thickness`, `plane`, `hole`, `refine`, `positions` and `periodic`"]),
     wrong("[time]", "[tme]", (33, 2), "tme", &["unknown key `tme` in the deck", "did you mean `time`?"]),
     wrong("depth =", "deep =", (16, 24), "deep", &["unknown key `deep` in [sets.top.layer]", "`side`, `depth` and `cells`"]),
-    wrong("spacing = \"0.25 mm\"\n", "", (3, 1), "[body]", &["[body] lacks `spacing`", "also called `dx`"]),
+    wrong("spacing = \"0.25 mm\"\n", "", (3, 1), "[body]", &["[body] lacks `spacing`", "alternative names: `dx`"]),
     wrong("[body]\n", "[corpus]\n", (1, 1), "", &["the deck lacks `body`"]),
     wrong("density =", "rho = 1\ndensity =", (11, 1), "density", &["`rho` and `density` are given together in [material]", "only one"]),
     wrong("horizon =", "horizon_ratio = 3\nhorizon =", (13, 11), "\"0.75 mm\"", &["`horizon` and `horizon_ratio` are given together"]),
     wrong("horizon = \"0.75 mm\"\n", "", (9, 1), "[material]", &["[material] lacks one of `horizon` and `horizon_ratio`"]),
     wrong("fracture_energy", "bulk_modulus = 1\nfracture_energy", (13, 16), "1", &["`youngs_modulus` and `bulk_modulus`", "`shear_modulus`"]),
-    wrong("spacing =", "area = 1\nspacing =", (6, 1), "area", &["`area` has no place in [body]", "only a bar"]),
-    wrong("dt = \"auto\"", "dt = 1e-9\nsafety = 0.5", (36, 1), "safety", &["`safety` has no place", "dt = \"auto\""]),
-    wrong("segment =", "section =", (18, 1), "[[crack]]", &["[crack.0] lacks `segment`", "a section cuts a bar"]),
-    wrong("traction =", "body_force = [0, 1]\narea = 1\n# traction =", (28, 1), "area", &["`area` has no place in [load.0]", "`traction`"]),
+    wrong("spacing =", "area = 1\nspacing =", (6, 1), "area", &["`area` is not allowed in [body]", "only a bar"]),
+    wrong("dt = \"auto\"", "dt = 1e-9\nsafety = 0.5", (36, 1), "safety", &["`safety` is not allowed", "dt = \"auto\""]),
+    wrong("segment =", "section =", (18, 1), "[[crack]]", &["[crack.0] lacks `segment`", "`section` requires a bar"]),
+    wrong("traction =", "body_force = [0, 1]\narea = 1\n# traction =", (28, 1), "area", &["`area` is not allowed in [load.0]", "`traction`"]),
     // Meshes, random positions, formats.
-    wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "near_faces = { faces = \"a\", depth = 1 }", (16, 14), "{ faces", &["only a mesh", "`layer`"]),
-    wrong("fields = { interval = \"0.5 us\" }", "fields = { cells = true }", (38, 12), "cells", &["`cells` has no place in [output.fields]", "only a mesh"]),
+    wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "near_faces = { faces = \"a\", depth = 1 }", (16, 14), "{ faces", &["requires shape = \"mesh\"", "`layer`"]),
+    wrong("fields = { interval = \"0.5 us\" }", "fields = { cells = true }", (38, 12), "cells", &["`cells` is not allowed in [output.fields]", "requires shape = \"mesh\""]),
     wrong("fields = { interval = \"0.5 us\" }", "fields = { format = \"vtk\" }", (38, 21), "\"vtk\"", &["unknown format `vtk`", "\"exodus\""]),
-    wrong("spacing = \"0.25 mm\"", "spacing = \"0.25 mm\"\njitter = 0.1", (7, 1), "jitter", &["`jitter` has no place in [body]", "jittered"]),
-    wrong("spacing = \"0.25 mm\"", "spacing = \"0.25 mm\"\npositions = \"random\"", (7, 13), "\"random\"", &["unknown arrangement of points `random`", "\"blue-noise\""]),
+    wrong("spacing = \"0.25 mm\"", "spacing = \"0.25 mm\"\njitter = 0.1", (7, 1), "jitter", &["`jitter` is not allowed in [body]", "jittered"]),
+    wrong("spacing = \"0.25 mm\"", "spacing = \"0.25 mm\"\npositions = \"random\"", (7, 13), "\"random\"", &["unknown kind of positions `random`", "\"blue-noise\""]),
     wrong("spacing = \"0.25 mm\"", "spacing = \"0.25 mm\"\npositions = \"jittered\"\njitter = 0.5", (8, 10), "0.5", &["out of range", "below 0.5"]),
     wrong(BODY, "shape = \"mesh\"\nfile = \"a.msh\"\ndimension = 2\nplane = \"strain\"", (3, 1), "[body]", &["[body] lacks `unit`"]),
     wrong(BODY, "shape = \"mesh\"\nfile = \"a.msh\"\nunit = \"mmm\"\ndimension = 2\nplane = \"strain\"", (6, 8), "\"mmm\"", &["unknown unit `mmm`", "the unit of length of the file"]),
     wrong(BODY, "shape = \"mesh\"\nfile = \"a.msh\"\nunit = \"mm\"\ndimension = 1\nplane = \"strain\"", (7, 13), "1", &["out of range", "2 or 3"]),
-    wrong(BODY, "shape = \"outline\"\nfile = \"a.txt\"\nunit = \"mm\"\nspacing = 1e-4\nplane = \"strain\"\npositions = \"jittered\"\ncells = \"partial\"", (10, 1), "cells", &["`cells` has no place in [body]", "only points on a lattice have partial cells"]),
-    wrong("fields = { interval = \"0.5 us\" }", "fields = { blocks = \"sets\" }", (38, 21), "\"sets\"", &["unknown choice of blocks `sets`", "\"groups\"", "\"materials\""]),
+    wrong(BODY, "shape = \"outline\"\nfile = \"a.txt\"\nunit = \"mm\"\nspacing = 1e-4\nplane = \"strain\"\npositions = \"jittered\"\ncells = \"partial\"", (10, 1), "cells", &["`cells` is not allowed in [body]", "partial cells require positions = \"lattice\""]),
+    wrong("fields = { interval = \"0.5 us\" }", "fields = { blocks = \"sets\" }", (38, 21), "\"sets\"", &["unknown kind of blocks `sets`", "\"groups\"", "\"materials\""]),
     wrong(BODY, "shape = \"outline\"\npolygons = []\nspacing = 1e-4\nplane = \"strain\"", (5, 12), "[]", &["at least one polygon"]),
     // Expressions and tables.
-    wrong("[0, \"free\"]", "[{ expression = \"sine(t)\" }, \"free\"]", (23, 28), "\"sine(t)\"", &["`sine` is not known here", "did you mean `sin`", "Variables: x, y, t"]),
+    wrong("[0, \"free\"]", "[{ expression = \"sine(t)\" }, \"free\"]", (23, 28), "\"sine(t)\"", &["unknown name `sine`", "did you mean `sin`", "Variables: x, y, t"]),
     wrong("[0, \"12 MPa\"]", "[0, { expression = \"(x\" }]", (27, 31), "\"(x\"", &["a parenthesis is not closed", "SI units"]),
-    wrong("[0, \"12 MPa\"]", "[0, 1]\nfunction = { kind = \"table\", rows = [[1, 0], [1, 2]] }", (28, 37), "[[1, 0]", &["row 1 of the table", "each time later"]),
+    wrong("[0, \"12 MPa\"]", "[0, 1]\nfunction = { kind = \"table\", rows = [[1, 0], [1, 2]] }", (28, 37), "[[1, 0]", &["row 1 of the time table", "times that increase"]),
     wrong("[0, \"12 MPa\"]", "[0, 1]\nfrom = \"2 us\"\nuntil = \"1 us\"", (29, 9), "\"1 us\"", &["out of range", "later than `from`"]),
     // Schemes.
-    wrong("dt = \"auto\"", "scheme = \"rk5\"", (35, 10), "\"rk5\"", &["unknown scheme `rk5`", "did you mean `rk3`?", "\"rk4-mts\"", "\"respa\""]),
-    wrong("dt = \"auto\"", "scheme = \"rk4\"\nratio = 4", (36, 1), "ratio", &["`ratio` has no place in [time]", "\"rk4-mts\""]),
-    wrong("dt = \"auto\"", "alpha = 1", (35, 1), "alpha", &["`alpha` has no place in [time]", "rk3"]),
+    wrong("dt = \"auto\"", "scheme = \"rk5\"", (35, 10), "\"rk5\"", &["unknown scheme `rk5`", "did you mean `rk3`?", "\"multirate-rk4\"", "\"respa\""]),
+    wrong("dt = \"auto\"", "scheme = \"rk4\"\nratio = 4", (36, 1), "ratio", &["`ratio` is not allowed in [time]", "\"multirate-rk4\""]),
+    wrong("dt = \"auto\"", "alpha = 1", (35, 1), "alpha", &["`alpha` is not allowed in [time]", "rk3"]),
     wrong("dt = \"auto\"", "scheme = \"rk3\"\nalpha = 0", (36, 9), "0", &["out of range", "Heun"]),
-    wrong("dt = \"auto\"", "scheme = \"rk4\"\ntolerance = 1", (36, 1), "tolerance", &["no place", "dormand-prince"]),
+    wrong("dt = \"auto\"", "scheme = \"rk4\"\ntolerance = 1", (36, 1), "tolerance", &["not allowed", "dormand-prince"]),
     wrong("dt = \"auto\"", "scheme = \"dormand-prince\"\ntolerance = 0", (36, 13), "0", &["above 0 and below 1"]),
-    wrong("dt = \"auto\"", "scheme = \"rk4-mts\"\nfine = \"top\"", (33, 1), "[time]", &["[time] lacks `ratio`"]),
-    wrong("dt = \"auto\"", "scheme = \"rk4-mts\"\nratio = 0\nfine = \"top\"", (36, 9), "0", &["whole number of at least 1"]),
-    wrong("dt = \"auto\"", "scheme = \"rk4-mts\"\nratio = 2000\nfine = \"top\"", (36, 9), "2000", &["from 1 to 1000"]),
+    wrong("dt = \"auto\"", "scheme = \"multirate-rk4\"\nfine = \"top\"", (33, 1), "[time]", &["[time] lacks `ratio`"]),
+    wrong("dt = \"auto\"", "scheme = \"multirate-rk4\"\nratio = 0\nfine = \"top\"", (36, 9), "0", &["whole number of at least 1"]),
+    wrong("dt = \"auto\"", "scheme = \"multirate-rk4\"\nratio = 2000\nfine = \"top\"", (36, 9), "2000", &["from 1 to 1000"]),
     wrong("dt = \"auto\"", "scheme = \"respa\"\nratio = 4", (33, 1), "[time]", &["lacks one of `fine` and `adaptive`"]),
     wrong("dt = \"auto\"", "scheme = \"respa\"\nratio = 4\nfine = \"tip\"", (37, 8), "\"tip\"", &["unknown set `tip`", "did you mean `top`?"]),
     wrong("dt = \"auto\"", "scheme = \"respa\"\nratio = 4\nfine = \"top\"\nadaptive = {}", (38, 12), "{}", &["`fine` and `adaptive` are given together"]),
-    wrong("dt = \"auto\"", "scheme = \"respa\"\nratio = 4\nfine = \"top\"\npredictor = \"structured\"", (38, 1), "predictor", &["no place", "rk3-mts"]),
-    wrong("dt = \"auto\"", "scheme = \"rk3-mts\"\nratio = 4\nadaptive = { threshold = 1.2 }", (37, 26), "1.2", &["above 0 and below 1"]),
-    wrong("dt = \"auto\"", "scheme = \"rk3-mts\"\nratio = 4\nadaptive = { after = 2 }", (37, 14), "after", &["unknown key `after` in [time.adaptive]", "`threshold`"]),
-    wrong("dt = \"auto\"", "scheme = \"rk3-mts\"\nratio = 4\nfine = \"top\"\ninterpolant = \"hermit\"", (38, 15), "\"hermit\"", &["did you mean `hermite`?"]),
+    wrong("dt = \"auto\"", "scheme = \"respa\"\nratio = 4\nfine = \"top\"\npredictor = \"structured\"", (38, 1), "predictor", &["not allowed", "multirate-rk3"]),
+    wrong("dt = \"auto\"", "scheme = \"multirate-rk3\"\nratio = 4\nadaptive = { threshold = 1.2 }", (37, 26), "1.2", &["above 0 and below 1"]),
+    wrong("dt = \"auto\"", "scheme = \"multirate-rk3\"\nratio = 4\nadaptive = { after = 2 }", (37, 14), "after", &["unknown key `after` in [time.adaptive]", "`threshold`"]),
+    wrong("dt = \"auto\"", "scheme = \"multirate-rk3\"\nratio = 4\nfine = \"top\"\ninterpolant = \"hermit\"", (38, 15), "\"hermit\"", &["did you mean `hermite`?"]),
     wrong("[sets.top]", "[[material.inclusion]]\nset = \"top\"\nstiffness = 0\n[sets.top]", (17, 13), "0", &["a positive number"]),
     // Sets by condition, listed points.
     wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "where = \"x > \"", (16, 9), "\"x > \"", &["the condition `x > ` cannot be used", "block == 2"]),
-    wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "where = \"z > 0\"", (16, 9), "\"z > 0\"", &["`z` is not known here", "Variables: x, y, block"]),
-    wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "block = 1.5", (16, 9), "1.5", &["a whole number from 0 on"]),
+    wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "where = \"z > 0\"", (16, 9), "\"z > 0\"", &["unknown name `z`", "Variables: x, y, block"]),
+    wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "block = 1.5", (16, 9), "1.5", &["a whole number of at least 0"]),
     wrong("layer = {", "where = \"x > 0\"\nlayer = {", (17, 9), "{ side", &["`layer` and `where` are given together", "`block`"]),
     wrong("\"plate\"\nsize = [\"100 mm\", \"40 mm\"]\n", "\"points\"\n", (3, 1), "[body]", &["[body] lacks `file`"]),
     wrong("\"plate\"\nsize = [\"100 mm\", \"40 mm\"]\n", "\"points\"\nfile = \"a.txt\"\ndimension = 4\n", (6, 13), "4", &["allowed: 1, 2 or 3"]),
-    wrong("\"plate\"\nsize = [\"100 mm\", \"40 mm\"]\n", "\"points\"\nfile = \"a.txt\"\n", (7, 1), "plane", &["`plane` has no place in [body]"]),
-    // Several materials, relaxation.
+    wrong("\"plate\"\nsize = [\"100 mm\", \"40 mm\"]\n", "\"points\"\nfile = \"a.txt\"\n", (7, 1), "plane", &["`plane` is not allowed in [body]"]),
+    // Several materials, static schemes.
     wrong("[sets.top]", "[[material.part]]\nname = \"a\"\nset = \"top\"\ndensity = -1\nyoungs_modulus = 1\n[sets.top]", (18, 11), "-1", &["a positive number"]),
-    wrong("[sets.top]", "[[material.part]]\nname = \"a\"\nset = \"top\"\nblock = 2\ndensity = 1\nyoungs_modulus = 1\n[sets.top]", (15, 12), "part", &["no place", "[materials.NAME]", "[[assign]]"]),
+    wrong("[sets.top]", "[[material.part]]\nname = \"a\"\nset = \"top\"\nblock = 2\ndensity = 1\nyoungs_modulus = 1\n[sets.top]", (15, 12), "part", &["not allowed", "[materials.NAME]", "[[assign]]"]),
     wrong("[sets.top]", "[[material.part]]\nname = \"a\"\nset = \"top\"\ndensity = 1\nyoungs_modulus = 1\nvolume_correction = \"linear\"\n[sets.top]", (20, 21), "\"linear\"", &["`volume_correction` in [materials.a] differs", "once, in [material]"]),
-    wrong("[sets.top]", "[material.interface]\nrule = \"weaker\"\n[sets.top]", (16, 8), "\"weaker\"", &["`interface` has no place", "only a body of several materials"]),
+    wrong("[sets.top]", "[material.interface]\nrule = \"weaker\"\n[sets.top]", (16, 8), "\"weaker\"", &["`interface` is not allowed", "interfaces require several materials"]),
     wrong("[sets.top]", "[material.interface]\npair = [{ between = [\"b\", \"a\"], critical_stretch = 1 }]\n[[material.part]]\nname = \"a\"\nset = \"top\"\ndensity = 1\nyoungs_modulus = 1\n[sets.top]", (16, 22), "\"b\"", &["unknown material `b`", "\"a\""]),
     wrong("fracture_energy", "fracture_calibration = \"grid\"\nfracture_energy", (13, 24), "\"grid\"", &["unknown fracture calibration `grid`", "\"lattice\" and \"continuum\""]),
-    wrong("fracture_energy = \"135 J/m2\"", "fracture_calibration = \"lattice\"", (13, 1), "fracture_calibration", &["no place in [material]", "bonds without `fracture_energy` never break"]),
-    wrong("[sets.top]", "[[material.part]]\nname = \"a\"\nset = \"top\"\ndensity = 1\nyoungs_modulus = 1\nfracture_calibration = \"lattice\"\n[sets.top]", (20, 1), "fracture_calibration", &["no place", "never break"]),
+    wrong("fracture_energy = \"135 J/m2\"", "fracture_calibration = \"lattice\"", (13, 1), "fracture_calibration", &["not allowed in [material]", "bonds without `fracture_energy` never break"]),
+    wrong("[sets.top]", "[[material.part]]\nname = \"a\"\nset = \"top\"\ndensity = 1\nyoungs_modulus = 1\nfracture_calibration = \"lattice\"\n[sets.top]", (20, 1), "fracture_calibration", &["not allowed", "never break"]),
     wrong("[sets.top]", "[[assign]]\nset = \"top\"\n[sets.top]", (15, 1), "[[assign]]", &["[assign.0] lacks one of `material` and `stiffness`"]),
     wrong("[sets.top]", "[[assign]]\nset = \"tip\"\nstiffness = 2\n[sets.top]", (16, 7), "\"tip\"", &["unknown set `tip`", "did you mean `top`?"]),
     wrong("[sets.top]", "[[assign]]\nset = \"top\"\nmaterial = \"glue\"\n[sets.top]", (17, 12), "\"glue\"", &["unknown material `glue`", "\"default\""]),
     wrong("[sets.top]", "[[assign]]\nset = [\"top\"]\nstiffness = -1\n[sets.top]", (17, 13), "-1", &["a positive number"]),
     wrong("[sets.top]", "[materials.a]\nyoungs_modulus = 1\n[sets.top]", (15, 1), "[materials.a]", &["[materials.a] lacks `density`"]),
-    wrong("[sets.top]", "[materials.a]\nname = \"b\"\ndensity = 1\nyoungs_modulus = 1\n[sets.top]", (16, 1), "name", &["no place in [materials.a]", "the name of the table"]),
-    wrong("[sets.top]", "[materials.default]\ndensity = 1\nyoungs_modulus = 1\n[sets.top]", (15, 1), "[materials.default]", &["the name `default` cannot be used", "[material] has it"]),
+    wrong("[sets.top]", "[materials.a]\nname = \"b\"\ndensity = 1\nyoungs_modulus = 1\n[sets.top]", (16, 1), "name", &["not allowed in [materials.a]", "the heading of the table"]),
+    wrong("[sets.top]", "[materials.default]\ndensity = 1\nyoungs_modulus = 1\n[sets.top]", (15, 1), "[materials.default]", &["the name `default` cannot be used", "[material] has this name"]),
     wrong("[sets.top]", "[materials.a]\ndensity = 1\nyoungs_modulus = 1\ninfluence = { function = \"conical\" }\n[sets.top]", (18, 13), "{ function = \"conical\" }", &["`influence` in [materials.a] differs"]),
     wrong("[sets.top]", "[materials.a]\ndensity = 1\nyoungs_modulus = 1\nmodel = \"linear\"\n[sets.top]", (18, 9), "\"linear\"", &["`model` in [materials.a] differs"]),
     wrong("[sets.top]", "[materials.a]\ndensity = 1\nyoungs_modulus = 1\n[[interface]]\nbetween = [\"a\", \"default\"]\n[sets.top]", (18, 1), "[[interface]]", &["[interface.0] lacks one of `rule`", "`fracture_energy`"]),
     wrong("[sets.top]", "[materials.a]\ndensity = 1\nyoungs_modulus = 1\n[[interface]]\nrule = \"weaker\"\nyoungs_modulus = 1\n[sets.top]", (20, 18), "1", &["`rule` and `youngs_modulus` are given together in [interface.0]"]),
-    wrong("[sets.top]", "[materials.a]\ndensity = 1\nyoungs_modulus = 1\n[[interface]]\nrule = \"weaker\"\nfailure = \"stretch\"\n[sets.top]", (20, 1), "failure", &["no place", "state-based"]),
+    wrong("[sets.top]", "[materials.a]\ndensity = 1\nyoungs_modulus = 1\n[[interface]]\nrule = \"weaker\"\nfailure = \"stretch\"\n[sets.top]", (20, 1), "failure", &["not allowed", "state-based"]),
     wrong("[sets.top]", "[materials.a]\ndensity = 1\nyoungs_modulus = 1\n[[interface]]\nrule = \"weaker\"\n[[interface]]\nfracture_energy = 1\n[sets.top]", (20, 1), "[[interface]]", &["[interface.1] lacks one of `between`"]),
-    wrong("fracture_energy", "surface_correction = \"force\"\nfracture_energy", (13, 22), "\"force\"", &["unknown surface correction `force`", "\"volume\" and \"energy\""]),
-    wrong("dt = \"auto\"", "scheme = \"relaxation\"\ndt = 1", (36, 1), "dt", &["`dt` has no place in [time]", "give load_steps"]),
-    wrong("dt = \"auto\"", "scheme = \"relaxation\"\ndamping = 3", (36, 11), "3", &["\"adaptive\", or a number above 0 and below 2"]),
-    wrong("dt = \"auto\"", "scheme = \"relaxation\"\ntolerance = 0", (36, 13), "0", &["forces out of balance"]),
-    wrong("dt = \"auto\"", "scheme = \"static\"\ntolerance = 2", (36, 13), "2", &["residual over loads"]),
+    wrong("fracture_energy", "surface_correction = \"force\"\nfracture_energy", (13, 22), "\"force\"", &["unknown surface correction `force`", "\"energy\" and \"ghosts\""]),
+    wrong("dt = \"auto\"", "scheme = \"adaptive-dynamic-relaxation\"\ndt = 1", (36, 1), "dt", &["`dt` is not allowed in [time]", "set load_steps"]),
+    wrong("dt = \"auto\"", "scheme = \"adaptive-dynamic-relaxation\"\ndamping = 3", (36, 11), "3", &["\"adaptive\", or a number above 0 and below 2"]),
+    wrong("dt = \"auto\"", "scheme = \"adaptive-dynamic-relaxation\"\ntolerance = 0", (36, 13), "0", &["residual relative to loads"]),
+    wrong("dt = \"auto\"", "scheme = \"static\"\ntolerance = 2", (36, 13), "2", &["residual relative to loads"]),
     wrong("dt = \"auto\"", "scheme = \"static\"\nnewton_steps = 4000", (36, 16), "4000", &["from 1 to 1000"]),
     wrong("dt = \"auto\"", "scheme = \"static\"\nrigid_modes = \"keep\"", (36, 15), "\"keep\"", &["rigid", "refuse", "fix"]),
-    wrong("dt = \"auto\"", "scheme = \"static\"\nbreaking = \"first\"", (36, 12), "\"first\"", &["rule for breaking", "worst-first", "all", "event"]),
-    wrong("dt = \"auto\"", "newton_steps = 4", (35, 1), "newton_steps", &["no place", "scheme = \"static\""]),
-    wrong("dt = \"auto\"", "load_steps = 4", (35, 1), "load_steps", &["no place", "scheme = \"relaxation\""]),
-    wrong("fields = {", "fragments = { smallest = 1 }\nfields = {", (38, 26), "1", &["out of range", "a share of the body's mass"]),
+    wrong("dt = \"auto\"", "scheme = \"static\"\nbreaking = \"first\"", (36, 12), "\"first\"", &["breaking rule", "worst-first", "all", "event"]),
+    wrong("dt = \"auto\"", "newton_steps = 4", (35, 1), "newton_steps", &["not allowed", "scheme = \"static\""]),
+    wrong("dt = \"auto\"", "load_steps = 4", (35, 1), "load_steps", &["not allowed", "scheme = \"adaptive-dynamic-relaxation\""]),
+    wrong("fields = {", "fragments = { smallest = 1 }\nfields = {", (38, 26), "1", &["out of range", "a fraction of the body's mass"]),
+    // Profiles.
+    wrong("fields = { interval = \"0.5 us\" }\n", "fields = { interval = \"0.5 us\" }\n[[output.profile]]\nname = \"a/b\"\nfield = \"Damage\"\nfrom = [0, 0]\nto = [1, 0]\n", (40, 8), "\"a/b\"", &["it is part of a file's name", "letters, digits"]),
+    wrong("fields = { interval = \"0.5 us\" }\n", "fields = { interval = \"0.5 us\" }\n[[output.profile]]\nname = \"a\"\nfield = \"Damage\"\nfrom = [0, 0]\nto = [0, 0]\n", (43, 6), "[0, 0]", &["out of range", "a place other than `from`"]),
     // State-based materials.
     wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\n", (9, 1), "[material]", &["elastic constants", "two of Young's modulus, Poisson's ratio, bulk modulus and shear modulus"]),
     wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.5\n", (13, 17), "0.5", &["out of range", "above -1 and below 0.5"]),
     wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\nshear_modulus = \"20 GPa\"\n", (9, 1), "[material]", &["must be below three times the shear modulus"]),
-    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nbulk_modulus = \"10 GPa\"\n", (9, 1), "[material]", &["the bulk modulus is 1.0000e10 Pa, but", "give two constants"]),
-    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nmodulus = \"lattice\"\n", (14, 1), "modulus", &["`modulus` has no place in [material]", "exact on every lattice"]),
+    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nbulk_modulus = \"10 GPa\"\n", (9, 1), "[material]", &["the bulk modulus is 10.0 GPa, but", "give two constants"]),
+    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nmodulus = \"lattice\"\n", (14, 1), "modulus", &["`modulus` is not allowed in [material]", "exact on every lattice"]),
     wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nsurface_correction = \"volume\"\n", (14, 22), "\"volume\"", &["out of range", "6 to 15 % too stiff"]),
     wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nfailure = \"energy\"\n", (14, 11), "\"energy\"", &["unknown failure criterion `energy`", "\"bond-energy\""]),
-    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nfailure = \"bond-energy\"\nstretch_definition = \"iso\"\n", (15, 1), "stretch_definition", &["no place", "does not depend on it"]),
+    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nfailure = \"bond-energy\"\nstretch_definition = \"iso\"\n", (15, 1), "stretch_definition", &["not allowed", "does not depend on it"]),
     wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nstretch_definition = \"isotropic\"\n", (14, 22), "\"isotropic\"", &["unknown definition of the critical stretch `isotropic`", "\"closing\""]),
     wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nstrains = \"large\"\n", (14, 11), "\"large\"", &["unknown strains `large`", "\"finite\" and \"small\""]),
-    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\ntreatment = \"exact\"\n", (14, 1), "treatment", &["no place", "green-strain"]),
+    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\napproximation = \"exact\"\n", (14, 1), "approximation", &["not allowed", "green-strain"]),
     wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\ninfluence = { function = \"tuned\" }\n", (14, 26), "\"tuned\"", &["unknown influence function `tuned`", "\"isotropic\""]),
-    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\ninfluence = { acts_on = \"stretch\" }\n", (14, 15), "acts_on", &["no place", "weighs the extensions"]),
-    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\ninclusion = [{ set = \"top\", stiffness = 2 }]\n", (14, 29), "stiffness", &["no place", "elastic constants of its own"]),
+    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\ninfluence = { acts_on = \"stretch\" }\n", (14, 15), "acts_on", &["not allowed", "multiplies the bond extension"]),
+    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\ninclusion = [{ set = \"top\", stiffness = 2 }]\n", (14, 29), "stiffness", &["not allowed", "other elastic constants"]),
     wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\npart = [{ name = \"a\", set = \"top\", density = 1, youngs_modulus = 1, poisson_ratio = 0.6 }]\n", (14, 85), "0.6", &["above -1 and below 0.5"]),
-    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\npart = [{ name = \"a\", set = \"top\", density = 1, youngs_modulus = 1, poisson_ratio = 0.1, failure = \"stretch\" }]\n", (14, 90), "failure", &["no place", "never break"]),
-    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\ninterface = { rule = \"weaker\" }\npart = [{ name = \"a\", set = \"top\", density = 1, youngs_modulus = 1, poisson_ratio = 0.1 }]\n", (14, 15), "rule", &["no place", "nothing to average"]),
-    wrong("fracture_energy = \"135 J/m2\"\n", "failure = \"stretch\"\n", (13, 1), "failure", &["no place", "belongs to model"]),
+    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\npart = [{ name = \"a\", set = \"top\", density = 1, youngs_modulus = 1, poisson_ratio = 0.1, failure = \"stretch\" }]\n", (14, 90), "failure", &["not allowed", "never break"]),
+    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\ninterface = { rule = \"weaker\" }\npart = [{ name = \"a\", set = \"top\", density = 1, youngs_modulus = 1, poisson_ratio = 0.1 }]\n", (14, 15), "rule", &["not allowed", "constants of its own material"]),
+    wrong("fracture_energy = \"135 J/m2\"\n", "failure = \"stretch\"\n", (13, 1), "failure", &["not allowed", "requires model"]),
     wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nviscosity = [{ share = 1, time = \"1 s\" }]\n", (14, 24), "1", &["out of range", "between 0 and 1"]),
     wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nviscosity = [{ share = 0.6, time = 1 }, { share = 0.4, time = 2 }]\n", (9, 1), "[material]", &["the sum of the shares of all viscous terms is 1", "below 1"]),
     wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nviscosity = [{ share = 0.6, time = 0 }]\n", (14, 36), "0", &["out of range", "positive"]),
-    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nviscosity = [{ share = 0.6, time = 1 }]\nyield_stress = 1\n", (15, 1), "yield_stress", &["no place", "viscous or plastic"]),
+    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nviscosity = [{ share = 0.6, time = 1 }]\nyield_stress = 1\n", (15, 1), "yield_stress", &["not allowed", "viscous or plastic"]),
     wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nyield_stress = \"0 MPa\"\n", (14, 16), "\"0 MPa\"", &["out of range", "positive"]),
     wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nyield_stress = \"1 MPa\"\nhardening = -1\n", (15, 13), "-1", &["out of range", "zero or a positive modulus"]),
-    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nhardening = 1\n", (14, 1), "hardening", &["no place", "yield_stress"]),
+    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nhardening = 1\n", (14, 1), "hardening", &["not allowed", "yield_stress"]),
     wrong("[time]\n", "[thermal]\nexpansion = 1\ntemperature = 300\nreference = 293\n[time]\n", (34, 13), "1", &["out of range", "-0.01 to 0.01"]),
     wrong("[time]\n", "[thermal]\nexpansion = \"12e-6 1/s\"\ntemperature = 300\nreference = 293\n[time]\n", (34, 13), "\"12e-6 1/s\"", &["a coefficient of thermal expansion", "12e-6 1/K"]),
     wrong("[time]\n", "[thermal]\nexpansion = 1e-5\ntemperature = \"300 m\"\nreference = 293\n[time]\n", (35, 15), "\"300 m\"", &["a temperature", "293.15 K"]),
     wrong("[time]\n", "[thermal]\nexpansion = 1e-5\ntemperature = { expression = \"300 + z\" }\nreference = 293\n[time]\n", (35, 30), "\"300 + z\"", &["`z`"]),
     wrong("[time]\n", "[thermal]\nexpansion = 1e-5\ntemperature = 300\n[time]\n", (33, 1), "[thermal]", &["reference"]),
     wrong("[time]\n", "[thermal]\nexpansion = 1e-5\ntemperature = 300\nreference = 293\nmaterial = [{ name = \"lead\", expansion = 1e-5 }]\n[time]\n", (37, 22), "\"lead\"", &["lead", "default"]),
+    wrong("fracture_energy = \"135 J/m2\"\n", "fracture_energy = \"135 J/m2\"\nsoftening = { law = \"cubic\", onset_stretch = 1e-4 }\n", (14, 21), "\"cubic\"", &["unknown softening law `cubic`", "\"exponential\""]),
+    wrong("fracture_energy = \"135 J/m2\"\n", "fracture_energy = \"135 J/m2\"\nsoftening = { law = \"linear\", onset_stretch = 0 }\n", (14, 47), "0", &["out of range", "positive stretch"]),
+    wrong("fracture_energy = \"135 J/m2\"\n", "fracture_energy = \"135 J/m2\"\nsoftening = { law = \"trilinear\", onset_stretch = 1e-4, knee_force = 1 }\n", (14, 69), "1", &["out of range", "below 1"]),
+    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nsoftening = { law = \"linear\", onset_stretch = 1e-4 }\n", (14, 1), "softening", &["not allowed", "proportional to the stretch"]),
     wrong("fracture_energy = \"135 J/m2\"\n", "fracture_energy = \"135 J/m2\"\nscatter = { shape = 0.1 }\n", (14, 21), "0.1", &["out of range", "0.5 to 1000"]),
     wrong("fracture_energy = \"135 J/m2\"\n", "fracture_energy = \"135 J/m2\"\nscatter = { shape = 5, of = \"modulus\" }\n", (14, 29), "\"modulus\"", &["critical_stretch", "fracture_energy"]),
-    wrong("youngs_modulus = \"72 GPa\"\n", "youngs_modulus = \"72 GPa\"\nyield_stress = 1\n", (12, 1), "yield_stress", &["no place", "state-based"]),
-    wrong("youngs_modulus = \"72 GPa\"\n", "youngs_modulus = \"72 GPa\"\nstrains = \"small\"\n", (12, 1), "strains", &["no place", "state-based"]),
+    wrong("youngs_modulus = \"72 GPa\"\n", "youngs_modulus = \"72 GPa\"\nyield_stress = 1\n", (12, 1), "yield_stress", &["not allowed", "state-based"]),
+    wrong("youngs_modulus = \"72 GPa\"\n", "youngs_modulus = \"72 GPa\"\nstrains = \"small\"\n", (12, 1), "strains", &["not allowed", "state-based"]),
     wrong("youngs_modulus = \"72 GPa\"\n", "model = \"correspondence\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nlaw = \"hooke\"\n", (14, 7), "\"hooke\"", &["unknown elastic law `hooke`", "\"neo-hooke\""]),
     wrong("youngs_modulus = \"72 GPa\"\n", "model = \"correspondence\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nstabilisation = \"full\"\n", (14, 17), "\"full\"", &["unknown stabilisation `full`", "\"isotropic\""]),
     wrong("youngs_modulus = \"72 GPa\"\n", "model = \"correspondence\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nyield_stress = 0\n", (14, 16), "0", &["positive"]),
-    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"correspondence\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nhardening = \"1 GPa\"\n", (14, 1), "hardening", &["no place", "give `yield_stress`"]),
-    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"correspondence\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nyield_stress = 1\nhardening = -1\n", (15, 13), "-1", &["out of range", "softening needs a length"]),
+    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"correspondence\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nhardening = \"1 GPa\"\n", (14, 1), "hardening", &["not allowed", "requires `yield_stress`"]),
+    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"correspondence\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nyield_stress = 1\nhardening = -1\n", (15, 13), "-1", &["out of range", "softening is not supported"]),
     wrong("youngs_modulus = \"72 GPa\"\n", "model = \"correspondence\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nyield_stress = \"100 MPa\"\nlaw = \"neo-hooke\"\n", (15, 7), "\"neo-hooke\"", &["out of range", "logarithmic strains"]),
-    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"correspondence\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nstrains = \"small\"\n", (14, 1), "strains", &["no place", "displacements of any size"]),
-    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"correspondence\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nsurface_correction = \"energy\"\n", (14, 1), "surface_correction", &["no place", "shape tensor"]),
-    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"correspondence\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nfailure = \"bond-energy\"\n", (14, 1), "failure", &["no place", "break by their stretch"]),
-    wrong("youngs_modulus = \"72 GPa\"\n", "youngs_modulus = \"72 GPa\"\nlaw = \"neo-hooke\"\n", (12, 1), "law", &["no place", "correspondence"]),
+    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"correspondence\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nstrains = \"small\"\n", (14, 1), "strains", &["not allowed", "finite strains"]),
+    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"correspondence\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nsurface_correction = \"energy\"\n", (14, 1), "surface_correction", &["not allowed", "shape tensor"]),
+    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"correspondence\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nfailure = \"bond-energy\"\n", (14, 11), "\"bond-energy\"", &["unknown failure criterion `bond-energy`", "\"principal-stress\""]),
+    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"correspondence\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nstrength = \"1 MPa\"\n", (14, 1), "strength", &["not allowed", "principal-stress"]),
+    wrong("fracture_energy = \"135 J/m2\"\n", "model = \"correspondence\"\npoisson_ratio = 0.3\nfailure = \"principal-stress\"\nstrength = 0\n", (16, 12), "0", &["out of range", "positive"]),
+    wrong("youngs_modulus = \"72 GPa\"\n", "youngs_modulus = \"72 GPa\"\nstrength = \"1 MPa\"\n", (12, 1), "strength", &["not allowed", "correspondence"]),
+    wrong("youngs_modulus = \"72 GPa\"\n", "youngs_modulus = \"72 GPa\"\nlaw = \"neo-hooke\"\n", (12, 1), "law", &["not allowed", "correspondence"]),
     // Stop conditions.
     wrong("[output]", "[[time.stop_when]]\nset = \"top\"\n[output]", (37, 1), "[[time.stop_when]]", &["[time.stop_when.0] lacks one of `reaction_below` and `damage_above`"]),
     wrong("[output]", "[[time.stop_when]]\nset = \"tip\"\ndamage_above = 0.9\n[output]", (38, 7), "\"tip\"", &["unknown set `tip`", "did you mean `top`?"]),
-    wrong("[output]", "[[time.stop_when]]\nset = \"top\"\nreaction_below = 2\n[output]", (39, 18), "2", &["out of range", "share of the largest reaction"]),
+    wrong("[output]", "[[time.stop_when]]\nset = \"top\"\nreaction_below = 2\n[output]", (39, 18), "2", &["out of range", "fraction of the largest reaction"]),
     wrong("[output]", "[[time.stop_when]]\nset = \"top\"\ndamage_above = 1\n[output]", (39, 16), "1", &["out of range", "below 1"]),
     wrong("[output]", "[[time.stop_when]]\nset = \"top\"\nreaction_below = 0.1\ndamage_above = 0.9\n[output]", (40, 16), "0.9", &["`reaction_below` and `damage_above` are given together"]),
     // Prescribed motions with jumps.
@@ -207,32 +217,32 @@ const WRONG: &[Wrong] = &[
     wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\nside = \"-y\"\n[time]", (35, 8), "\"-y\"", &["unknown side `-y`", "\"-x\" and \"+x\""]),
     wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\n[time]", (33, 1), "[[boundary]]", &["[boundary.0] lacks `side`"]),
     wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\nside = \"-x\"\nhistory = \"long\"\n[time]", (36, 11), "\"long\"", &["unknown history `long`", "\"blocked\""]),
-    wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\nside = \"-x\"\nhistory = \"blocked\"\ntolerance = 1e-9\n[time]", (37, 1), "tolerance", &["no place", "\"exponentials\""]),
-    wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\nside = \"-x\"\nhistory = \"direct\"\nverify = true\n[time]", (37, 1), "verify", &["no place", "\"exponentials\""]),
-    wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\nside = \"-x\"\nhistory = \"exponentials\"\nmethod = \"semi-discrete\"\n[time]", (36, 1), "history", &["no place", "\"discrete\""]),
+    wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\nside = \"-x\"\nhistory = \"blocked\"\ntolerance = 1e-9\n[time]", (37, 1), "tolerance", &["not allowed", "\"exponentials\""]),
+    wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\nside = \"-x\"\nhistory = \"direct\"\nverify = true\n[time]", (37, 1), "verify", &["not allowed", "\"exponentials\""]),
+    wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\nside = \"-x\"\nhistory = \"exponentials\"\nmethod = \"semi-discrete\"\n[time]", (36, 1), "history", &["not allowed", "\"discrete\""]),
     wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\nside = \"-x\"\nmethod = \"exact\"\n[time]", (36, 10), "\"exact\"", &["unknown method `exact`", "\"semi-discrete\""]),
     wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\nside = \"-x\"\ntolerance = 2\n[time]", (36, 13), "2", &["above 1e-14 and below 1"]),
     wrong("[time]", "[[boundary]]\nkind = \"damping-layer\"\nside = \"+x\"\n[time]", (33, 1), "[[boundary]]", &["[boundary.0] lacks `thickness`"]),
     wrong("[time]", "[[boundary]]\nkind = \"damping-layer\"\nside = \"+x\"\nthickness = \"1 mm\"\nreflection = 2\n[time]", (37, 14), "2", &["above 1e-12 and below 1"]),
     wrong("[time]", "[[boundary]]\nkind = \"damping-layer\"\nside = \"+x\"\nthickness = \"1 mm\"\npower = -1\n[time]", (37, 9), "-1", &["from 0 to 10"]),
-    // Smaller cells.
+    // Refinement.
     wrong("[material]", "[[body.refine]]\nball = { centre = [0, 0], radius = 1 }\n[material]", (9, 1), "[[body.refine]]", &["[body.refine.0] lacks `ratio`"]),
     wrong("[material]", "[[body.refine]]\nratio = 2\n[material]", (9, 1), "[[body.refine]]", &["[body.refine.0] lacks one of", "`ball`"]),
     wrong("[material]", "[[body.refine]]\nall = true\nratio = 1\n[material]", (11, 9), "1", &["from 2 to 16"]),
-    // Spacings by axis.
+    // Anisotropic spacing.
     wrong("spacing = \"0.25 mm\"", "spacing = [\"0.25 mm\", 0]", (6, 23), "0", &["a positive number"]),
-    wrong("spacing = \"0.25 mm\"", "spacing = [\"0.25 mm\"]", (6, 11), "[\"0.25", &["has 1 entry", "a length, or one for each axis"]),
-    wrong("spacing = \"0.25 mm\"", "spacing = [\"0.25 mm\", \"0.2 mm\"]\nrefine = [{ all = true, ratio = 2 }]", (7, 1), "refine", &["only cells of one size"]),
-    wrong("spacing = \"0.25 mm\"\nplane = \"strain\"", "spacing = [\"0.25 mm\", \"0.2 mm\"]\nplane = \"strain\"\nhole = [{ layer = { side = \"+y\", cells = 1 } }]", (8, 42), "1", &["no cells of one size"]),
+    wrong("spacing = \"0.25 mm\"", "spacing = [\"0.25 mm\"]", (6, 11), "[\"0.25", &["has 1 entry", "a length, or one length per axis"]),
+    wrong("spacing = \"0.25 mm\"", "spacing = [\"0.25 mm\", \"0.2 mm\"]\nrefine = [{ all = true, ratio = 2 }]", (7, 1), "refine", &["equal spacings along all axes"]),
+    wrong("spacing = \"0.25 mm\"\nplane = \"strain\"", "spacing = [\"0.25 mm\", \"0.2 mm\"]\nplane = \"strain\"\nhole = [{ layer = { side = \"+y\", cells = 1 } }]", (8, 42), "1", &["no uniform spacing"]),
     // Sizes and spacings.
-    wrong("size = [\"100 mm\", \"40 mm\"]", "size = [\"100 mm\", \"40 mm\", 1]", (5, 8), "[\"100 mm", &["has 3 entries", "a body with so many sides is shape = \"block\""]),
+    wrong("size = [\"100 mm\", \"40 mm\"]", "size = [\"100 mm\", \"40 mm\", 1]", (5, 8), "[\"100 mm", &["has 3 entries", "for this number of entries use shape = \"block\""]),
     wrong("size = [\"100 mm\", \"40 mm\"]", "size = [1]", (5, 8), "[1]", &["shape = \"bar\""]),
-    // Kinds.
-    wrong("size = [\"100 mm\", \"40 mm\"]", "size = 5", (5, 8), "5", &["a number (`5`) where this is needed: a list with one entry per dimension", "0.25 mm"]),
-    wrong("\"0.25 mm\"\nplane", "true\nplane", (6, 11), "true", &["true or false (`true`) where this is needed: a length such as \"0.25 mm\""]),
-    wrong("[output]", "allow_unstable = \"yes\"\n[output]", (37, 18), "\"yes\"", &["a string (`yes`) where this is needed: true or false, without quotes"]),
+    // Types of values.
+    wrong("size = [\"100 mm\", \"40 mm\"]", "size = 5", (5, 8), "5", &["expected a list with one entry per dimension", "0.25 mm"]),
+    wrong("\"0.25 mm\"\nplane", "true\nplane", (6, 11), "true", &["expected a length such as \"0.25 mm\"", "found true or false (`true`)"]),
+    wrong("[output]", "allow_unstable = \"yes\"\n[output]", (37, 18), "\"yes\"", &["expected true or false, without quotes, found a string (`yes`)"]),
     wrong("segment = [[", "ends = true\nsegment = [[", (19, 8), "true", &["one of \"closed\", \"open\""]),
-    wrong("{ interval = \"0.5 us\" }", "\"often\"", (38, 10), "\"often\"", &["a string (`often`) where this is needed: a table"]),
+    wrong("{ interval = \"0.5 us\" }", "\"often\"", (38, 10), "\"often\"", &["a table, found a string (`often`)"]),
     wrong("title = \"plate\"", "title = 2024-01-01", (1, 9), "2024-01-01", &["a date", "a string in quotes"]),
     // Quantities.
     wrong("\"72 GPa\"", "\"72 GJ\"", (11, 18), "\"72 GJ\"", &["`72 GJ` is not a modulus", "a modulus such as \"72 GPa\" or a plain number in Pa"]),
@@ -251,34 +261,34 @@ const WRONG: &[Wrong] = &[
     wrong("{ interval = \"0.5 us\" }", "{ every = 1.5 }", (38, 20), "1.5", &["whole number"]),
     wrong("{ interval = \"0.5 us\" }", "{ interval = 1, every = 2 }", (38, 34), "2", &["`interval` and `every` are given together in [output.fields]", "`count`"]),
     // Vectors.
-    wrong("\"40 mm\"]\nspacing", "\"40 mm\", 1]\nspacing", (5, 8), "[\"100 mm\"", &["has 3 entries", "2 entries, one for each dimension"]),
+    wrong("\"40 mm\"]\nspacing", "\"40 mm\", 1]\nspacing", (5, 8), "[\"100 mm\"", &["has 3 entries", "2 entries, one per dimension"]),
     wrong("at = [\"50 mm\", \"20 mm\"]", "at = [1]", (31, 6), "[1]", &["`[1]` has 1 entry", "2 entries"]),
     wrong("traction = [0,", "traction = [0, 0,", (27, 12), "[0, 0,", &["3 entries"]),
-    wrong("[0, \"free\"]", "[\"free\", \"free\"]", (23, 12), "[\"free\"", &["every component is free"]),
+    wrong("[0, \"free\"]", "[\"free\", \"free\"]", (23, 12), "[\"free\"", &["all components are free"]),
     wrong("[0, \"free\"]", "[0, \"fre\"]", (23, 16), "\"fre\"", &["`fre` is not a number", "a velocity"]),
     // Words and names.
     wrong("\"plate\"\nsize", "\"plaet\"\nsize", (4, 9), "\"plaet\"", &["unknown shape `plaet`", "did you mean `plate`?", "\"bar\", \"plate\", \"disc\", \"block\", \"cylinder\", \"ball\", \"icosphere\""]),
     wrong("\"strain\"", "\"strian\"", (7, 9), "\"strian\"", &["did you mean `strain`?", "\"stress\" and \"strain\""]),
     wrong("set = \"top\"\nvelocity", "set = \"topp\"\nvelocity", (22, 7), "\"topp\"", &["unknown set `topp`", "did you mean `top`?", "\"all\" and \"top\""]),
-    wrong("[sets.top]", "[sets.all]", (15, 7), "all", &["`all` cannot be used", "always means all points"]),
+    wrong("[sets.top]", "[sets.all]", (15, 7), "all", &["`all` cannot be used", "reserved for the set of all points"]),
     wrong("\"+y\"", "\"+z\"", (16, 18), "\"+z\"", &["unknown side `+z`", "\"-x\", \"+x\", \"-y\" and \"+y\""]),
     wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "layer = { side = \"+y\" }", (16, 9), "{ side", &["lacks one of `depth` and `cells`"]),
     wrong("layer = {", "all = true\nlayer = {", (17, 9), "{ side", &["`all` and `layer` are given together", "`complement`"]),
     wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "cylinder = { centre = [0, 0], radius = 1 }", (16, 12), "{ centre", &["needs a body of dimension 3", "dimension 2"]),
-    wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "box = { min = [1, 0], max = [0, 1] }", (16, 29), "[0, 1]", &["nowhere below"]),
+    wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "box = { min = [1, 0], max = [0, 1] }", (16, 29), "[0, 1]", &["not below the lower corner"]),
     wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "polygon = { corners = [[0, 0], [1, 1]] }", (16, 23), "[[0, 0]", &["at least 3 corners"]),
-    wrong("[time]", "[[probe]]\nname = \"middle\"\nset = \"all\"\n[time]", (34, 8), "\"middle\"", &["the name `middle` cannot be used", "another probe has it"]),
+    wrong("[time]", "[[probe]]\nname = \"middle\"\nset = \"all\"\n[time]", (34, 8), "\"middle\"", &["the name `middle` cannot be used", "another probe has this name"]),
     wrong("fields =", "picture = [{ field = \"Displacement_z\" }]\nfields =", (38, 22), "\"Displacement_z\"", &["unknown field `Displacement_z`", "\"Displacement_x\""]),
     wrong("{ interval = \"0.5 us\" }", "{ every = 2, names = [\"Stress_xx\"] }", (38, 32), "\"Stress_xx\"", &["whole fields"]),
     wrong("{ interval = \"0.5 us\" }", "{ every = 2, names = [\"Damage\", \"Velocity\", \"Damage\"] }", (38, 54), "\"Damage\"", &["each field once"]),
     wrong("fields =", "history = { every = 1, extremes = [\"Damage\", \"Damage\"] }\nfields =", (38, 46), "\"Damage\"", &["each field once"]),
     wrong("fields =", "history = { every = 1, extremes = [\"Demage\"] }\nfields =", (38, 36), "\"Demage\"", &["did you mean `Damage`?"]),
-    wrong("fields =", "picture = [{ field = \"Stress_zz\" }]\nfields =", (38, 22), "\"Stress_zz\"", &["unknown field `Stress_zz`", "\"Stress_xy\""]),
+    wrong("fields =", "picture = [{ field = \"Stress_zz\" }]\nfields =", (38, 22), "\"Stress_zz\"", &["unknown field `Stress_zz`", "did you mean `Stress_xx`?"]),
     wrong("fields =", "picture = [{ field = \"Damage\", range = [1, 0] }]\nfields =", (38, 40), "[1, 0]", &["the first smaller"]),
     wrong("fields =", "picture = [{ field = \"Damage\", animation = 12 }]\nfields =", (38, 44), "12", &["true or false"]),
-    // What the library refuses.
+    // Errors of the library.
     wrong("fracture_energy", "poisson_ratio = 0.3\nfracture_energy", (13, 17), "0.3", &["Poisson's ratio 0.3", "plane strain", "0.25"]),
-    wrong("fracture_energy", "influence = { function = \"power\", exponent = -9 }\nfracture_energy", (13, 13), "{ function", &["exponent -9", "must exceed"]),
+    wrong("fracture_energy", "influence = { function = \"power\", exponent = -9 }\nfracture_energy", (13, 13), "{ function", &["exponent -9", "allowed: more than"]),
     wrong("fracture_energy", "influence = { function = \"tuned\", decay = 0 }\nfracture_energy", (13, 43), "0", &["`0` is out of range", "rad per spacing (usual: 1), or \"none\""]),
     wrong("[\"50 mm\", \"20 mm\"]]", "[0, 0.02]]", (18, 1), "[[crack]]", &["no usable surface"]),
     wrong("\"2440 kg/m3\"", "\"2440 kg/m3", (10, 22), "", &["not valid TOML"]),
@@ -298,18 +308,18 @@ const WRONG_SURFACES: &[Wrong] = &[
     wrong("alpha = 0.5", "alpha = 0", (12, 9), "0", &["above 0 and below 1"]),
     wrong("alpha = 0.5\n", "", (9, 1), "[material]", &["[material] lacks `alpha`"]),
     wrong("p = 3", "p = 1.5", (13, 5), "1.5", &["at least 2"]),
-    wrong("horizon = 0.8", "horizon = 0.01", (14, 11), "0.01", &["mean distance of vertices"]),
+    wrong("horizon = 0.8", "horizon = 0.01", (14, 11), "0.01", &["mean edge length"]),
     wrong("\"power\"", "\"linear\"", (10, 9), "\"linear\"", &["unknown model", "power"]),
     wrong("horizon = 0.8", "horizon = 0.8\nself_cell = true", (15, 13), "true", &["p = 2"]),
     wrong("horizon = 0.8", "horizon = 0.8\nbond = \"rod\"", (15, 8), "\"rod\"", &["\"displacement\"", "\"chord\""]),
     wrong("horizon = 0.8", "horizon = 0.8\nyoungs_modulus = 1", (15, 1), "youngs_modulus", &["unknown key"]),
     wrong("\"1 kg/m2\"", "\"1 kg/m3\"", (11, 11), "\"1 kg/m3\"", &["a mass per area"]),
     wrong("radius = 0.1, seed", "radius = -1, seed", (17, 30), "-1", &["a positive number"]),
-    wrong("random_velocity = { radius = 0.1, seed = 3 }", "file = \"u.txt\"\nvelocity = [0, 0, 1]", (18, 1), "velocity", &["`velocity` has no place", "`file` gives both displacement and velocity"]),
+    wrong("random_velocity = { radius = 0.1, seed = 3 }", "file = \"u.txt\"\nvelocity = [0, 0, 1]", (18, 1), "velocity", &["`velocity` is not allowed", "`file` contains both displacement and velocity"]),
     wrong("random_velocity = { radius = 0.1, seed = 3 }", "file = 3", (17, 8), "3", &["a string in quotes"]),
     wrong("random_velocity = { radius = 0.1, seed = 3 }", "set = \"all\"", (16, 1), "[[initial]]", &["lacks one of `displacement`, `velocity`, `random_velocity` and `file`"]),
     wrong("seed = 3", "seed = 3, generator = \"mt19937\"", (17, 57), "\"mt19937\"", &["splitmix64"]),
-    wrong("[[load]]", "[[crack]]\nsection = 1\n[[load]]", (19, 3), "crack", &["no pre-cracks"]),
+    wrong("[[load]]", "[[crack]]\nsection = 1\n[[load]]", (19, 3), "crack", &["pre-cracks in 2-manifolds"]),
     wrong("scheme = \"newmark\"", "scheme = \"newmark\"\nbeta = 0.6", (27, 8), "0.6", &["from 0 to 0.5"]),
     wrong("scheme = \"newmark\"", "scheme = \"newmark\"\ngamma = 0.4", (27, 9), "0.4", &["from 0.5 to 1"]),
     wrong("scheme = \"newmark\"", "scheme = \"newmark\"\ndepth = 3", (27, 1), "depth", &["anderson"]),
@@ -323,32 +333,32 @@ const WRONG_SURFACES: &[Wrong] = &[
 
 fn refusal(text: &str) -> DeckError {
     match Deck::parse(text, "plate.toml", &[]) {
-        Ok(_) => panic!("this deck is wrong:\n{text}"),
+        Ok(_) => panic!("this invalid deck is accepted:\n{text}"),
         Err(error) => error,
     }
 }
 
 #[test]
-fn the_right_deck_is_right() {
+fn the_valid_deck_is_accepted() {
     Deck::parse(RIGHT, "plate.toml", &[]).unwrap_or_else(|error| panic!("{error}"));
 }
 
 #[test]
-fn every_wrong_deck_is_explained() {
+fn errors_report_location_and_advice() {
     explained(RIGHT, WRONG, &|text| {
         Deck::parse(text, "plate.toml", &[]).map(|_| ())
     });
 }
 
 #[test]
-fn every_wrong_deck_of_a_surface_is_explained() {
+fn errors_of_surfaces_report_location_and_advice() {
     let read = |text: &str| Deck::parse(text, "plate.toml", &[]).map(|_| ());
     read(SURFACE).unwrap_or_else(|error| panic!("{error}"));
     explained(SURFACE, WRONG_SURFACES, &read);
 }
 
 #[test]
-fn many_problems_are_found_in_a_moment_and_counted() {
+fn many_problems_are_found_quickly_and_counted() {
     let began = std::time::Instant::now();
     let mut keys: String = (0..40_000)
         .map(|k| format!("unknown_{k} = {k}\n"))
@@ -367,7 +377,7 @@ fn many_problems_are_found_in_a_moment_and_counted() {
 }
 
 #[test]
-fn long_texts_are_quoted_by_their_beginning() {
+fn long_texts_are_cut_in_messages() {
     let long = "x+".repeat(500_000);
     for (replace, by) in [
         (
@@ -439,10 +449,10 @@ fn a_single_problem_is_a_diagnostic_with_its_text() {
         help,
         "did you mean `strain`? allowed: \"stress\" and \"strain\""
     );
-    assert_eq!(problem.to_string(), "unknown state of the plane `strian`");
+    assert_eq!(problem.to_string(), "unknown plane state `strian`");
 }
 
-/// Pieces of decks, from which mutations are made.
+/// Fragments of decks for mutations.
 fn piece() -> impl Strategy<Value = String> {
     prop_oneof![
         "[\\[\\]{}=.,\"'#\n a-zA-Z0-9µ-]{0,12}",
@@ -475,7 +485,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(1500))]
 
     #[test]
-    fn any_mutation_of_a_deck_is_answered(
+    fn mutated_decks_never_panic(
         cuts in proptest::collection::vec((0.0..1.0f64, 0usize..40, piece()), 1..4),
         lines in any::<bool>(),
     ) {
@@ -491,7 +501,7 @@ proptest! {
             let mut start = boundary((position * text.len() as f64) as usize, &text);
             let mut end = boundary(start + length, &text);
             if lines {
-                // Replace the value of a line: the likeliest to remain TOML.
+                // Replace the value of a line, which most often leaves valid TOML.
                 start = text[start..].find("= ").map_or(start, |at| start + at + 2);
                 end = text[start..].find('\n').map_or(text.len(), |at| start + at);
             }
@@ -508,16 +518,16 @@ proptest! {
     }
 
     #[test]
-    fn any_text_and_any_override_is_answered(text in ".{0,80}", path in "[a-z0-9.]{0,20}", value in ".{0,20}") {
+    fn arbitrary_text_and_overrides_never_panic(text in ".{0,80}", path in "[a-z0-9.]{0,20}", value in ".{0,20}") {
         let _ = Deck::parse(&text, "any.toml", &[]);
         let _ = Deck::parse(COMPLETE, "any.toml", &[format!("{path}={value}"), text]);
     }
 
     #[test]
-    fn any_value_under_a_known_key_is_answered(
+    fn arbitrary_values_never_panic(
         key in proptest::sample::select(vec![
             "body", "body.shape", "body.size.0", "body.hole.1.intersection.0.box.min", "material.influence.table.1.0",
-            "material.damage", "sets.top", "crack.0.segment", "crack.1.ends", "initial.0.velocity", "prescribe.0.velocity.1",
+            "material.damage", "sets.top", "crack.0.segment", "crack.1.ends", "initial.0.velocity", "constraint.0.velocity.1",
             "load.1.area", "probe.0.at", "time.dt", "output.picture.1.range", "output.fields", "checkpoint",
         ]),
         value in piece(),
@@ -529,7 +539,7 @@ proptest! {
 }
 
 #[test]
-fn a_ratio_to_the_spacing_of_a_mesh_needs_the_spacing() {
+fn a_horizon_ratio_needs_a_known_spacing() {
     let mesh =
         "shape = \"mesh\"\nfile = \"a.msh\"\nunit = \"mm\"\ndimension = 2\nplane = \"strain\"";
     let deck = |more: &str| {
@@ -539,7 +549,7 @@ fn a_ratio_to_the_spacing_of_a_mesh_needs_the_spacing() {
     };
     let error = deck("").unwrap_err().to_string();
     assert!(error.contains("deck.toml:13:1"), "{error}");
-    assert!(error.contains("`horizon_ratio` has no place"), "{error}");
-    assert!(error.contains("give `horizon` as a length"), "{error}");
+    assert!(error.contains("`horizon_ratio` is not allowed"), "{error}");
+    assert!(error.contains("set `horizon` to a length"), "{error}");
     assert!(deck("\nspacing = \"0.25 mm\"").is_ok());
 }

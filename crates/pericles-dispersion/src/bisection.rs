@@ -1,6 +1,7 @@
-//! Where a condition begins to hold.
+//! Bisection for the point at which a condition begins to hold.
 
-/// Where a condition first holds between 0 and `end`, found in steps and by bisection; `end` if it never does.
+/// Returns the first point between 0 and `end` at which a condition holds, found by stepping and bisection; `end`
+/// if it never holds.
 pub(super) fn last_before(end: f64, steps: usize, holds: impl Fn(f64) -> bool) -> f64 {
     let at = |step: usize| end * step as f64 / steps as f64;
     let Some(first) = (1..=steps).find(|&step| holds(at(step))) else {
@@ -15,6 +16,6 @@ pub(super) fn last_before(end: f64, steps: usize, holds: impl Fn(f64) -> bool) -
             low = middle;
         }
     }
-    // Never zero, and at the condition but for round-off.
+    // Never zero; satisfies the condition up to round-off.
     high
 }

@@ -1,4 +1,4 @@
-//! Branches along a contour: frequencies, phase and group velocities.
+//! Dispersion branches along a contour: frequencies, phase and group velocities.
 
 use super::contour::{Contour, Segment};
 use super::lattice::BondLattice;
@@ -11,14 +11,14 @@ pub struct BranchPoint {
     pub omega_squared: f64,
     /// Unit vector.
     pub polarisation: Vector,
-    /// ∂ω/∂k, m/s; along the contour at k = 0.
+    /// Group velocity ∂ω/∂k, m/s; at k = 0 along the contour.
     pub group_velocity: Vector,
-    /// ω/|k|, m/s; the limit at k = 0.
+    /// Phase velocity ω/|k|, m/s; the limit at k = 0.
     pub phase_velocity: f64,
 }
 
 impl BranchPoint {
-    /// ω, 1/s; not a number if unstable.
+    /// Returns ω, 1/s; NaN if unstable.
     pub fn omega(&self) -> f64 {
         self.omega_squared.sqrt()
     }
@@ -31,17 +31,17 @@ pub struct ContourPoint {
     pub abscissa: f64,
     /// The wave vector, rad/m.
     pub k: Vector,
-    /// Number of the segment.
+    /// Index of the segment.
     pub segment: usize,
-    /// In the order of the contour's branches.
+    /// Branches, in the order of the contour's branches.
     pub branches: Vec<BranchPoint>,
 }
 
-/// The branches at `steps + 1` equally spaced points of every segment. Corners appear twice, once for each segment, because the group
-/// velocity along the contour differs.
+/// Computes the branches at `steps + 1` equally spaced points of every segment. Corners appear twice, once for each
+/// segment, because the group velocity along the contour differs.
 ///
-/// Where symmetry fixes no polarisation, the branch is the eigenvector most like the one at the point before; at the start the most longitudinal one is
-/// the pressure branch.
+/// Where symmetry does not determine the polarisation, a branch follows the eigenvector closest to that of the
+/// previous point; at the start the most longitudinal one is the pressure branch.
 pub fn trace(lattice: &BondLattice, contour: &Contour, steps: usize) -> Vec<ContourPoint> {
     let mut points = Vec::new();
     let mut start = 0.0;
@@ -97,7 +97,7 @@ fn is_origin(lattice: &BondLattice, k: Vector) -> bool {
     dot(k, k).sqrt() * lattice.spacing()[0] < 1e-9
 }
 
-/// Eigenvectors at k in the order of those before.
+/// Returns the eigenvectors at k in the order of the previous ones.
 fn tracked(
     lattice: &BondLattice,
     segment: &Segment,
@@ -128,7 +128,7 @@ fn oriented(e: Vector, like: Vector) -> Vector {
     if dot(e, like) < 0.0 { e.map(|x| -x) } else { e }
 }
 
-/// Speeds of long waves along a direction: pressure first, then shear.
+/// Long-wave speeds along a direction: pressure first, then shear.
 pub fn long_wave_speeds(lattice: &BondLattice, direction: Vector) -> Vec<f64> {
     let n = lattice.unit_direction(direction);
     let mut modes = super::modes::modes_of(&lattice.long_wave_matrix(n), lattice.dimension());
@@ -136,16 +136,16 @@ pub fn long_wave_speeds(lattice: &BondLattice, direction: Vector) -> Vec<f64> {
     modes.iter().map(super::Mode::omega).collect()
 }
 
-/// Speeds of long waves around a circle in the plane of two axes.
+/// Long-wave speeds in one direction of the plane of two axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PolarSpeeds {
     /// Angle from the first axis, rad.
     pub angle: f64,
-    /// Pressure, then shear, m/s.
+    /// Pressure, then shear speeds, m/s.
     pub speeds: Vec<f64>,
 }
 
-/// Speeds of long waves in `count` directions of the plane spanned by two orthogonal vectors.
+/// Computes the long-wave speeds in `count` directions of the plane spanned by two orthogonal vectors.
 pub fn polar_speeds(lattice: &BondLattice, plane: [Vector; 2], count: usize) -> Vec<PolarSpeeds> {
     let [a, b] = plane.map(unit);
     let at = |step: usize| {
@@ -165,13 +165,13 @@ mod tests {
     use super::*;
 
     fn square() -> BondLattice {
-        // The original plane strain model with N = 3, D = V = 1.
+        // Plane strain model with a constant influence function, N = 3, D = V = 1.
         let c = 48.0 / (5.0 * std::f64::consts::PI * 27.0);
         BondLattice::new(&[1.0, 1.0], 3.0 + 1e-9, |_, _, _| c).unwrap()
     }
 
     #[test]
-    fn group_velocity_is_the_slope() {
+    fn group_velocity_is_the_derivative_of_frequency() {
         let lattice = square();
         for contour in [
             Contour::irreducible(&lattice),
@@ -213,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn polar_plot_has_the_square_s_symmetry() {
+    fn polar_speeds_have_the_symmetry_of_the_square() {
         let polar = polar_speeds(&square(), [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], 16);
         for step in 0..16 {
             for b in 0..2 {

@@ -1,19 +1,22 @@
-//! How much of a disturbance lies in short waves.
+//! Fraction of the energy of a load or an initial field in short waves.
 //!
-//! [`PhaseErrors`](super::PhaseErrors) gives the shortest waves that a lattice carries within a tolerance; [`time_content`] and [`space_content`] give the share of the energy of a load
-//! or an initial field that lies beyond them.
+//! [`PhaseErrors`](super::PhaseErrors) gives the shortest waves that a lattice represents within a tolerance;
+//! [`time_content`] and [`space_content`] give the fraction of the energy of a load or an initial field in waves
+//! shorter than these.
 
 use nalgebra::DMatrix;
 use realfft::RealFftPlanner;
 
 use pericles::space::PointCloud;
 
-/// The share of the energy of a signal g(t), 0 ≤ t ≤ `end`, zero before, that lies above an angular frequency: Σ|ĝ|² above it over Σ|ĝ|² of all but the mean.
+/// Returns the fraction of the energy of a signal g(t), 0 ≤ t ≤ `end`, zero before, above an angular frequency:
+/// Σ|ĝ|² above it divided by Σ|ĝ|² without the mean.
 ///
-/// A load that sets in suddenly has a spectrum ~ 1/ω, so that a small share is always beyond any frequency. Of signals longer than 2048 periods of that frequency the first so many are judged.
+/// A suddenly applied load has a spectrum ~ 1/ω, so a small fraction lies beyond any frequency. Signals longer than
+/// 2048 periods of that frequency are truncated to 2048 periods.
 pub fn time_content(g: impl Fn(f64) -> f64, end: f64, frequency: f64) -> f64 {
     const MOST: f64 = 16384.0;
-    // Eight samples for the shortest period that counts.
+    // Eight samples per shortest period of interest.
     let rate = 4.0 * frequency / std::f64::consts::PI;
     let samples = (rate * end).ceil().clamp(64.0, MOST);
     let dt = (end / samples).min(if rate > 0.0 {
@@ -22,7 +25,7 @@ pub fn time_content(g: impl Fn(f64) -> f64, end: f64, frequency: f64) -> f64 {
         f64::INFINITY
     });
     let samples = samples as usize;
-    // Rest before the start; then there and back again, so that the end is no jump.
+    // Rest before the start; then the signal forwards and backwards, so that its end does not introduce a jump.
     let mut signal = vec![0.0; samples];
     signal.extend((0..samples).map(|k| g((k as f64 + 0.5) * dt)));
     let mut planner = RealFftPlanner::new();
@@ -30,11 +33,13 @@ pub fn time_content(g: impl Fn(f64) -> f64, end: f64, frequency: f64) -> f64 {
     if all > 0.0 { beyond / all } else { 0.0 }
 }
 
-/// The share of the energy of a field on a body's lattice that lies beyond a wavenumber (rad/m), along the worst of the axes: of the strain Σ k²|û|² if
-/// `strain`, else of Σ|v̂|²; none for a body without a lattice or a field without energy, such as a rigid motion.
+/// Returns the fraction of the energy of a lattice field beyond a wavenumber (rad/m), along the worst of the axes:
+/// of the strain Σ k²|û|² if `strain`, else of Σ|v̂|². `None` for a body without a lattice or a field without
+/// energy, such as a rigid motion.
 ///
-/// `field` is component-major. The affine part of a displacement is a uniform strain and a rotation: the first counts as a long wave, the second has no energy. Lines of points along an
-/// axis are continued as if mirrored at their ends, or periodically where the body is periodic.
+/// `field` is component-major. The affine part of a displacement is a uniform strain and a rotation: the strain
+/// counts as a long wave, the rotation has no energy. Lines of points along an axis are extended by reflection at
+/// their ends, or periodically if the body is periodic.
 pub fn space_content(
     cloud: &PointCloud,
     field: &[f64],
@@ -51,7 +56,7 @@ pub fn space_content(
         .iter()
         .map(|&node| lattice.coordinates(node))
         .collect();
-    // A periodic field has no affine part, and without its mean slope it would jump at the faces.
+    // A periodic field has no affine part; removing its mean slope would introduce a jump at the faces.
     let affine = (!cloud.is_periodic()).then(|| Affine::of(cloud, field));
     let rest = affine
         .as_ref()
@@ -59,7 +64,7 @@ pub fn space_content(
     let dx = cloud.spacing();
     let noise = ROUND_OFF * field.iter().map(|x| x * x).sum::<f64>();
     let mut worst: Option<f64> = None;
-    // Lines of one length share a plan.
+    // Lines of equal length share an FFT plan.
     let mut planner = RealFftPlanner::new();
     for axis in 0..dimension {
         let mut order: Vec<usize> = (0..n).collect();
@@ -82,7 +87,7 @@ pub fn space_content(
                     (mirrored(&values), 2.0)
                 };
                 let found = energies_of(&mut planner, &signal, wavenumber * dx, strain);
-                // By Parseval's theorem the sum over the points of the line.
+                // By Parseval's theorem equal to the sum over the points of the line.
                 let share = 2.0 / (signal.len() as f64 * copies);
                 energies[0] += share * found[0];
                 energies[1] += share * found[1];
@@ -103,17 +108,18 @@ pub fn space_content(
     worst
 }
 
-/// Energy along an axis, as a share of Σ|u|², that may be round-off: of a rotation, or along an axis on which the field does not depend.
+/// Energy along an axis, as a fraction of Σ|u|², below which it is round-off: for a rotation, or along an axis on
+/// which the field does not depend.
 const ROUND_OFF: f64 = 1e-24;
 
-/// The affine field nearest to a field in the mean square.
+/// Affine field closest to a field in the least-squares sense.
 struct Affine {
-    /// The middle of the points, m, and the mean of the field.
+    /// Centroid of the points, m, and the mean of the field.
     middle: Vec<f64>,
     mean: Vec<f64>,
-    /// A of A (x − middle) + mean, row by component.
+    /// Matrix A of the affine field A (x − centroid) + mean, row by component.
     gradient: DMatrix<f64>,
-    /// Σ|A (x − middle)|² over all points.
+    /// Σ|A (x − centroid)|² over all points.
     kinetic: f64,
 }
 
@@ -134,7 +140,7 @@ impl Affine {
             product(&field[c * n..(c + 1) * n], mean[c], b)
         });
         let largest = spread.amax();
-        // A body one point thick says nothing about slopes across it.
+        // A body one point thick does not determine the slope across it.
         let inverse = spread.clone().pseudo_inverse(1e-12 * largest);
         let gradient = inverse.map_or_else(
             |_| DMatrix::zeros(dimension, dimension),
@@ -149,7 +155,7 @@ impl Affine {
         }
     }
 
-    /// The field without it.
+    /// Returns the field without its affine part.
     fn without(&self, cloud: &PointCloud, field: &[f64]) -> Vec<f64> {
         let (n, dimension) = (cloud.len(), cloud.dimension());
         let value = |c: usize, i: usize| -> f64 {
@@ -163,7 +169,7 @@ impl Affine {
             .collect()
     }
 
-    /// Σ_c E_ca² of Green's strain E = ½ (A + Aᵀ + AᵀA), which a rotation does not have.
+    /// Returns Σ_c E_ca² of the Green–Lagrange strain E = ½ (A + Aᵀ + AᵀA), which vanishes for a rotation.
     fn strain_energy(&self, axis: usize) -> f64 {
         let a = &self.gradient;
         let strain = 0.5 * (a + a.transpose() + a.transpose() * a);
@@ -175,7 +181,7 @@ fn mirrored(values: &[f64]) -> Vec<f64> {
     values.iter().chain(values.iter().rev()).copied().collect()
 }
 
-/// Energy beyond `limit` (rad per sample) and of all but the mean.
+/// Returns the energy beyond `limit` (rad per sample), and the total without the mean.
 fn energies_of(
     planner: &mut RealFftPlanner<f64>,
     signal: &[f64],
@@ -208,7 +214,7 @@ mod tests {
     use pericles::space::{Grid, Shape};
 
     #[test]
-    fn a_sine_is_on_one_side_and_a_jump_on_both() {
+    fn time_content_of_a_sine_and_of_a_jump() {
         let share = |omega: f64| {
             time_content(
                 |t| (20.0 * t).sin(),
@@ -218,14 +224,14 @@ mod tests {
         };
         assert!(share(40.0) < 1e-2, "{}", share(40.0));
         assert!(share(10.0) > 0.95, "{}", share(10.0));
-        // |ĝ|² ~ 1/ω² of a jump: ten times the frequency, a tenth of the share
+        // A jump has |ĝ|² ~ 1/ω²: at ten times the frequency a tenth of the fraction.
         let jump = |omega: f64| time_content(|_| 1.0, 1.0, omega);
         let ratio = jump(100.0) / jump(1000.0);
         assert!((8.0..12.0).contains(&ratio), "{ratio}");
     }
 
     #[test]
-    fn fields_are_judged_along_every_axis() {
+    fn space_content_uses_the_worst_axis() {
         let cloud = grid([64.0, 32.0]);
         let n = cloud.len();
         let wave = |k: f64, axis: usize| -> Vec<f64> {
@@ -233,7 +239,7 @@ mod tests {
             field.resize(2 * n, 0.0);
             field
         };
-        // cosines of half waves fit the mirrored lines exactly
+        // Half-wave cosines fit the reflected lines exactly.
         let k = std::f64::consts::PI / 64.0;
         for (times, beyond) in [(8.0, 0.0), (24.0, 1.0)] {
             for axis in [0, 1] {
@@ -279,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn a_periodic_wave_does_not_depend_on_the_cells_across() {
+    fn space_content_of_a_periodic_wave_is_independent_of_the_transverse_size() {
         for across in [4.0, 5.0, 24.0] {
             let cloud = grid([48.0, across]).with_periodic_faces().unwrap();
             let n = cloud.len();

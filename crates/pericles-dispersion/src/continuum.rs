@@ -1,4 +1,4 @@
-//! Plane waves of a kernel without a grid.
+//! Plane waves of an influence function in the nonlocal continuum.
 
 use std::f64::consts::PI;
 use std::num::NonZeroUsize;
@@ -8,31 +8,33 @@ use gauss_quad::GaussLegendre;
 use super::bisection::last_before;
 use pericles::kernel::{Influence, InfluenceFunction};
 
-/// Plane waves of the nonlocal continuum: what an influence function and a horizon do to waves before any grid does.
+/// Plane waves of the nonlocal continuum: the dispersion due to an influence function and a horizon, without a
+/// grid.
 ///
 /// In d dimensions ω² of a wave along the unit vector n with polarisation e is
 ///
 /// ω²(k) = (c/ρ) ∫_{|ξ|<δ} α(|ξ|) (1 − cos(k n·ξ)) (e·ξ)²/|ξ|³ dV,
 ///
-/// isotropic, with e = n for pressure waves and e ⟂ n for shear waves. Speeds are given relative to those of long waves, so that the bond constant does not enter.
+/// which is isotropic, with e = n for pressure waves and e ⟂ n for shear waves. Speeds are relative to those of
+/// long waves, so the bond constant cancels.
 #[derive(Debug, Clone)]
 pub struct KernelWaves {
     dimension: usize,
-    /// r (m) with α(r) r^(d−2) and the quadrature's weight.
+    /// r (m), and α(r) r^(d−2) times the quadrature weight.
     radii: Vec<[f64; 2]>,
     horizon: f64,
 }
 
 impl KernelWaves {
-    /// The waves of a kernel with the given horizon (m), to be asked for wavenumbers up to `largest` (rad/m). None for tables per class of bonds: they belong to a grid and have no
-    /// continuum.
+    /// Creates the waves of a kernel with the given horizon (m) for wavenumbers up to `largest` (rad/m). `None` for
+    /// tables per bond class: they belong to a grid and have no continuum.
     pub fn new(
         dimension: usize,
         influence: &Influence,
         horizon: f64,
         largest: f64,
     ) -> Option<Self> {
-        /// Radians of k r that one panel of 32 nodes resolves to round-off.
+        /// Range of k r (rad) that one panel of 32 nodes resolves to round-off.
         const PANEL: f64 = 20.0;
         const NODES: NonZeroUsize = NonZeroUsize::new(32).unwrap();
         if matches!(influence.function, InfluenceFunction::Classes(_)) {
@@ -59,7 +61,8 @@ impl KernelWaves {
         })
     }
 
-    /// Phase speeds at a wavenumber (rad/m) over those of long waves: pressure, then shear (in a bar pressure alone). Zero where ω² is negative.
+    /// Phase speeds at a wavenumber (rad/m) relative to those of long waves: pressure, then shear (in a bar
+    /// pressure only). Zero where ω² is negative.
     pub fn relative_speeds(&self, wavenumber: f64) -> Vec<f64> {
         let cosines = self.cosines(wavenumber * self.horizon);
         let branches = self.dimension.min(2);
@@ -67,10 +70,10 @@ impl KernelWaves {
         for [r, weight] in &self.radii {
             for &(mu, share) in &cosines {
                 let phase = wavenumber * r * mu;
-                // 1 − cos φ and what it is for long waves, φ²/2.
+                // 1 − cos φ and its long-wave limit φ²/2.
                 let values = [2.0 * (0.5 * phase).sin().powi(2), 0.5 * phase * phase];
                 let along = mu * mu;
-                // In space the two directions across share 1 − μ².
+                // In 3D the two transverse directions share 1 − μ².
                 let across = (1.0 - along) / (self.dimension.max(2) - 1) as f64;
                 for (sum, polarised) in sums.iter_mut().zip([along, across]) {
                     sum[0] += weight * share * polarised * values[0];
@@ -82,7 +85,8 @@ impl KernelWaves {
         sums.iter().map(ratio).collect()
     }
 
-    /// The largest wavenumber (rad/m, at most `end`) up to which all phase speeds are within a tolerance of those of long waves.
+    /// Returns the largest wavenumber (rad/m, at most `end`) up to which all phase speeds are within a tolerance of
+    /// those of long waves.
     pub fn resolved(&self, tolerance: f64, end: f64) -> f64 {
         const STEPS: usize = 200;
         let off = |k: f64| {
@@ -92,13 +96,14 @@ impl KernelWaves {
         last_before(end, STEPS, off)
     }
 
-    /// Nodes and weights in μ, the cosine between bond and wave vector, over half of all directions; exact to round-off up to `phase` = k δ.
+    /// Nodes and weights in μ, the cosine between bond and wave vector, over half of all directions; exact to
+    /// round-off up to `phase` = k δ.
     fn cosines(&self, phase: f64) -> Vec<(f64, f64)> {
         let count = 16 + (0.75 * phase) as usize;
         match self.dimension {
             1 => vec![(1.0, 1.0)],
             2 => {
-                // Midpoints of a periodic function.
+                // Midpoint rule for a periodic function.
                 let step = 0.5 * PI / count as f64;
                 let nodes = (0..count).map(|i| (((i as f64 + 0.5) * step).cos(), step));
                 nodes.collect()
@@ -129,8 +134,8 @@ mod tests {
     }
 
     #[test]
-    fn closed_forms_in_one_dimension() {
-        // α = r/δ: ω² ∝ ∫ (1 − cos kr) dr = δ − sin(kδ)/k, for long waves k²δ³/6.
+    fn bar_speeds_equal_closed_forms() {
+        // α = r/δ: ω² ∝ ∫ (1 − cos kr) dr = δ − sin(kδ)/k; for long waves k²δ³/6.
         let bar = waves(1, InfluenceFunction::Power { exponent: 1.0 });
         for k in [0.1, 1.0, 7.0, 30.0] {
             let exact = (2.0 - f64::sin(2.0 * k) / k) / (k * k * 8.0 / 6.0);
@@ -140,8 +145,8 @@ mod tests {
     }
 
     #[test]
-    fn plates_and_blocks() {
-        // Long waves keep their speed.
+    fn speeds_of_plates_and_blocks_equal_lattice_sums() {
+        // Long waves have relative speed one.
         for dimension in [2, 3] {
             let body = waves(dimension, InfluenceFunction::Constant);
             let [pressure, shear] = body.relative_speeds(1e-3)[..] else {
@@ -170,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn tables_per_class_have_no_continuum() {
+    fn tables_per_bond_class_have_no_continuum_waves() {
         let table = pericles::kernel::ClassTable::new(1, 1.0, &[([1, 0, 0], 1.0)]).unwrap();
         let influence = Influence {
             function: InfluenceFunction::Classes(table),

@@ -5,16 +5,16 @@ use std::f64::consts::PI;
 use super::lattice::BondLattice;
 use super::vector::{Vector, dot, unit};
 
-/// A straight piece of a contour.
+/// Straight segment of a contour.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Segment {
     /// Start, rad/m.
     pub from: Vector,
     /// End, rad/m.
     pub to: Vector,
-    /// Names of the ends.
+    /// Names of the two ends.
     pub ends: [&'static str; 2],
-    /// Polarisation of each branch if the lattice's symmetry fixes it along the segment.
+    /// Polarisation of each branch, if the symmetry of the lattice determines it along the segment.
     pub polarisation: Option<Vec<Vector>>,
 }
 
@@ -42,10 +42,10 @@ impl Segment {
     }
 }
 
-/// A path with the branches followed along it: pressure first, then shear.
+/// Path through wave-vector space with the branches followed along it: pressure first, then shear.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Contour {
-    /// Its pieces, each starting where the one before ends.
+    /// Segments, each starting where the previous one ends.
     pub segments: Vec<Segment>,
     /// Names of the branches.
     pub branches: Vec<&'static str>,
@@ -56,13 +56,15 @@ const Y: Vector = [0.0, 1.0, 0.0];
 const Z: Vector = [0.0, 0.0, 1.0];
 
 impl Contour {
-    /// The border of the irreducible zone in terms of the spacing D: Γ–X in 1D; O–M–Y–O, that is (0,0), (π,0), (π,π), (0,0) over D, on square
-    /// lattices; Γ–X–M–R–Γ on cubic ones. On all of it symmetry fixes the polarisations: along the axes and the zone's border the
-    /// products sin(k_x ξ_x) sin(k_y ξ_y) of the off-diagonal entries vanish, and along diagonals the axes are alike. The pressure branch continues from
-    /// segment to segment, so that on M–Y it is the one polarised along x.
+    /// Border of the irreducible Brillouin zone for spacing D: Γ–X in 1D; O–M–Y–O, that is (0,0), (π,0), (π,π),
+    /// (0,0) over D, on square lattices; Γ–X–M–R–Γ on cubic ones. Symmetry determines the polarisations on all of
+    /// it: along the axes and the zone border the products sin(k_x ξ_x) sin(k_y ξ_y) of the off-diagonal entries
+    /// vanish, and along diagonals the axes are equivalent. The pressure branch continues from segment to segment,
+    /// so on M–Y it is the one polarised along x.
     ///
-    /// Rectangular lattices are followed along lines with at most one component of k inside its range, where
-    /// all polarisations are the axes: Γ–X–S–Y–Γ in 2D, Γ–X–S–R–T–Z–Γ in 3D. Their branches are named by polarisation.
+    /// On rectangular lattices the path follows lines with at most one component of k strictly inside its range,
+    /// where all polarisations are along the axes: Γ–X–S–Y–Γ in 2D, Γ–X–S–R–T–Z–Γ in 3D. Their branches are named
+    /// by polarisation.
     pub fn irreducible(lattice: &BondLattice) -> Self {
         let edge = |c: usize| PI / lattice.spacing()[c];
         let axes = || Some(vec![X, Y, Z][..lattice.dimension()].to_vec());
@@ -138,7 +140,8 @@ impl Contour {
         Self { segments, branches }
     }
 
-    /// From the origin along a direction (any length) to the border of the zone. Branches are followed by the likeness of their polarisations.
+    /// Path from the origin along a direction (any length) to the border of the zone. Branches are followed by the
+    /// similarity of their polarisations.
     pub fn ray(lattice: &BondLattice, direction: Vector) -> Self {
         let n = lattice.unit_direction(direction);
         let reach = (0..lattice.dimension())
@@ -161,7 +164,8 @@ impl Contour {
         self.segments.iter().map(Segment::length).sum()
     }
 
-    /// The segment at an arc length, and the distance from its start. At a corner it is the segment that ends there.
+    /// Returns the segment at an arc length, and the distance from its start. A corner belongs to the segment that
+    /// ends there.
     pub fn locate(&self, abscissa: f64) -> (usize, f64) {
         let mut rest = abscissa;
         for (number, segment) in self.segments.iter().enumerate() {
@@ -188,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn polarisations_are_eigenvectors_everywhere() {
+    fn polarisations_on_the_contour_are_eigenvectors() {
         for spacing in [
             &[1.0][..],
             &[1.0, 1.0],
@@ -215,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn lengths_of_the_square_contour() {
+    fn square_contour_has_the_expected_length() {
         let contour = Contour::irreducible(&lattice(&[1.0, 1.0]));
         assert!((contour.length() - (2.0 + 2.0f64.sqrt()) * PI).abs() < 1e-14);
         assert_eq!(contour.locate(PI).0, 0);
@@ -226,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn rays_end_at_the_border() {
+    fn rays_end_at_the_zone_border() {
         let lattice = lattice(&[1.0, 0.5]);
         let ray = Contour::ray(&lattice, [1.0, 1.0, 9.0]);
         let end = ray.segments[0].to;

@@ -1,55 +1,61 @@
-//! What plane waves and tuning refuse.
+//! Errors of plane-wave analysis and tuning.
 
-/// Why a lattice has no plane waves, or coefficients cannot be tuned.
+/// Reason why plane waves or tuned coefficients are not available.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DispersionError {
-    /// Plane waves were asked for on a body without a grid.
-    #[error("the points lie on no regular grid: plane waves are known for grids only")]
-    NoLattice,
-    /// The bonds of a lattice cannot carry waves that are equally fast in all directions.
+    /// Plane waves were requested for a body without a grid.
     #[error(
-        "the {classes} class(es) of bonds within {ratio} spacings cannot give an isotropic medium: the long waves' speeds miss theirs by {miss:e} \
-         (relative); a horizon ratio of at least √2 is needed in two and three dimensions, and the Poisson's ratio of the model"
+        "plane waves are available for regular grids only, but the points are not on one; use a grid shape such \
+        as bar, plate or block"
+    )]
+    NoLattice,
+    /// The bonds of the lattice cannot represent an isotropic medium.
+    #[error(
+        "the {classes} bond class(es) within {ratio} spacings cannot represent an isotropic medium: the relative \
+        error of the long-wave speeds is {miss:.1e}; in two and three dimensions use a horizon ratio of at least √2 \
+        and the Poisson's ratio of the bond-based model"
     )]
     Anisotropic {
-        /// Classes of bonds.
+        /// Number of bond classes.
         classes: usize,
-        /// Horizon over spacing.
+        /// Horizon divided by spacing.
         ratio: f64,
         /// Relative residual of the constraints.
         miss: f64,
     },
-    /// A lower bound that leaves no solution.
+    /// The lower bound is too large for a solution.
     #[error(
-        "no coefficients of at least {bound} give the right wave speeds; with {classes} classes of bonds the largest possible bound is {largest}"
+        "no coefficients of at least {bound} give the exact long-wave speeds; with {classes} bond classes the \
+        largest feasible bound is {largest}"
     )]
     InfeasibleBound {
-        /// The bound asked for.
+        /// Requested bound.
         bound: f64,
-        /// Classes of bonds.
+        /// Number of bond classes.
         classes: usize,
-        /// The largest bound for which there is a solution.
+        /// Largest feasible bound.
         largest: f64,
     },
-    /// A combination of choices for tuning that does not exist.
-    #[error("{choice} cannot be had {with}; {allowed}")]
+    /// An unsupported combination of tuning options.
+    #[error("{choice} is not available {with}; {allowed}")]
     TuningChoice {
-        /// What was asked for.
+        /// Requested option.
         choice: &'static str,
-        /// Together with what.
+        /// Option with which it cannot be combined.
         with: &'static str,
-        /// What is allowed.
+        /// Allowed alternatives.
         allowed: &'static str,
     },
-    /// A tuning problem without a unique solution.
+    /// The tuning problem has no unique solution.
     #[error(
-        "the tuning problem has no unique solution: {rank} independent equations for {unknowns} unknowns; another method or a smaller horizon helps"
+        "the tuning problem has no unique solution: {rank} independent equations for {unknowns} unknowns; use \
+        another method or a smaller horizon"
     )]
     Undetermined {
         /// Rank of the equations.
         rank: usize,
-        /// Free unknowns.
+        /// Number of free unknowns.
         unknowns: usize,
     },
 }

@@ -1,4 +1,4 @@
-//! The bonds of one point of an infinite lattice, and its plane waves.
+//! Bonds of one point of an infinite lattice, and its plane waves.
 
 use crate::DispersionError;
 use pericles::family::VolumeCorrection;
@@ -9,7 +9,7 @@ use pericles::{PericlesError, Result, positive};
 use super::modes::{Mode, modes_of};
 use super::vector::{SquareMatrix, Vector, dot, unit};
 
-/// A bond of a lattice.
+/// Bond of a lattice.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LatticeBond {
     /// Steps along the axes.
@@ -18,14 +18,14 @@ pub struct LatticeBond {
     pub xi: Vector,
     /// |ξ|, m.
     pub length: f64,
-    /// c α κ V / ρ: acceleration per stretch, m/s².
+    /// c α κ V / ρ: acceleration per unit stretch, m/s².
     pub stiffness: f64,
 }
 
-/// The bonds of an interior point of a lattice: all that plane waves exp(i k·x) know of a bond-based operator.
+/// Bonds of an interior point of a lattice, which determine its plane waves exp(i k·x).
 ///
-/// The dynamical matrix is M(k) = Σ a (1 − cos k·ξ)/|ξ|³ ξ⊗ξ over all bonds, a their stiffness; its eigenvalues are ω². One of each pair ±ξ is
-/// stored; evaluations cost one trigonometric function per stored bond.
+/// The dynamical matrix is M(k) = Σ a (1 − cos k·ξ)/|ξ|³ ξ⊗ξ over all bonds with stiffness a; its eigenvalues are
+/// ω². One bond of each pair ±ξ is stored; an evaluation costs one trigonometric function per stored bond.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BondLattice {
     dimension: usize,
@@ -34,17 +34,19 @@ pub struct BondLattice {
 }
 
 impl BondLattice {
-    /// The lattice with the given spacings (one per axis, m) and the bonds up to length `reach` (m). `stiffness` is asked for the offset, ξ and |ξ|
-    /// of one of each pair ±ξ and must be the same under reflections of the axes (and under their exchange, where spacings are equal).
+    /// Creates the lattice with the given spacings (one per axis, m) and the bonds up to length `reach` (m).
+    /// `stiffness` is called with the offset, ξ and |ξ| of one bond of each pair ±ξ and must be invariant under
+    /// reflections of the axes (and under their exchange if spacings are equal).
     ///
     /// # Errors
-    /// A spacing that is not positive; a reach without any bond, or whose bonds fill the memory (125 spacings in 3D).
+    /// A spacing that is not positive; a reach that contains no bond, or too many for the memory (125 spacings in
+    /// 3D).
     pub fn new(
         spacing: &[f64],
         reach: f64,
         stiffness: impl Fn([i32; 3], Vector, f64) -> f64,
     ) -> Result<Self> {
-        /// Steps in the box around a family: some 4 million stored bonds in 3D, 300 MB.
+        /// Largest number of steps in the box around a family: some 4 million stored bonds in 3D, 300 MB.
         const MOST: f64 = 1.6e7;
         let dimension = spacing.len();
         if !(1..=3).contains(&dimension) {
@@ -59,13 +61,14 @@ impl BondLattice {
         let mut places = 1.0;
         for (c, &dx) in spacing.iter().enumerate() {
             all[c] = positive("the spacing", dx)?;
-            let ratio = positive("the reach of bonds", reach)? / dx;
+            let ratio = positive("the maximum bond length", reach)? / dx;
             places *= 2.0 * ratio.floor() + 1.0;
             if places > MOST {
                 return Err(PericlesError::OutOfRange {
-                    quantity: "the reach of bonds in spacings",
+                    quantity: "the maximum bond length in spacings",
                     value: ratio,
-                    allowed: "for plane waves at most 125 in 3D and 2000 in 2D, or 16 million places in the box around a family",
+                    allowed: "at most 125 in 3D and 2000 in 2D for plane waves (16 million offsets in the box around \
+                        a family)",
                 });
             }
             steps[c] = ratio.floor() as i32;
@@ -74,7 +77,7 @@ impl BondLattice {
         for x in -steps[0]..=steps[0] {
             for y in -steps[1]..=steps[1] {
                 for z in -steps[2]..=steps[2] {
-                    // The first coordinate other than zero is positive.
+                    // Keep offsets whose first non-zero coordinate is positive.
                     if [x, y, z] <= [0; 3] {
                         continue;
                     }
@@ -104,10 +107,10 @@ impl BondLattice {
         })
     }
 
-    /// The interior of a body on a grid.
+    /// Creates the lattice of the interior of a body on a grid.
     ///
     /// # Errors
-    /// A body whose points lie on no grid.
+    /// The points of the body are not on a grid.
     pub fn of_body(
         cloud: &PointCloud,
         material: &BondMaterial,
@@ -120,7 +123,7 @@ impl BondLattice {
         Self::of_material(&spacing, cloud.section(), material, constants)
     }
 
-    /// The lattice of a material with any spacings, whose cells have the volume section · Π spacing.
+    /// Creates the lattice of a material for any spacings; cells have the volume section · Π spacing.
     ///
     /// # Errors
     /// As [`BondLattice::new`].
@@ -143,22 +146,22 @@ impl BondLattice {
         })
     }
 
-    /// 1, 2 or 3.
+    /// Dimension: 1, 2 or 3.
     pub fn dimension(&self) -> usize {
         self.dimension
     }
 
-    /// Spacings along the axes, m; zero along missing axes.
+    /// Spacings along the axes, m; zero for missing axes.
     pub fn spacing(&self) -> Vector {
         self.spacing
     }
 
-    /// One bond of each pair ±ξ.
+    /// Stored bonds, one of each pair ±ξ.
     pub fn bonds(&self) -> &[LatticeBond] {
         &self.half
     }
 
-    /// Whether all spacings are equal, so that the lattice is square or cubic.
+    /// Returns true if all spacings are equal, so that the lattice is square or cubic.
     pub fn is_cubic(&self) -> bool {
         let first = self.spacing[0];
         self.spacing[..self.dimension]
@@ -166,22 +169,22 @@ impl BondLattice {
             .all(|dx| (dx / first - 1.0).abs() < 1e-12)
     }
 
-    /// M(k), 1/s²; k in rad/m.
+    /// Dynamical matrix M(k), 1/s²; k in rad/m.
     pub fn dynamical_matrix(&self, k: Vector) -> SquareMatrix {
         self.sum(|bond| {
             let half = (0.5 * dot(k, bond.xi)).sin();
-            // 1 − cos φ = 2 sin²(φ/2) keeps its digits for long waves.
+            // 1 − cos φ = 2 sin²(φ/2) is accurate for long waves.
             4.0 * half * half
         })
     }
 
-    /// The matrix ½ Σ a (n·ξ)²/|ξ|³ ξ⊗ξ that M(k)/|k|² tends to for long waves along the unit vector n, m²/s².
+    /// Long-wave limit ½ Σ a (n·ξ)²/|ξ|³ ξ⊗ξ of M(k)/|k|² along the unit vector n, m²/s².
     pub fn long_wave_matrix(&self, direction: Vector) -> SquareMatrix {
         let n = self.unit_direction(direction);
         self.sum(|bond| dot(n, bond.xi).powi(2))
     }
 
-    /// A direction as a unit vector, components beyond the dimension left out.
+    /// Normalises a direction, ignoring components beyond the dimension.
     pub(super) fn unit_direction(&self, direction: Vector) -> Vector {
         let mut n = [0.0; 3];
         n[..self.dimension].copy_from_slice(&direction[..self.dimension]);
@@ -206,7 +209,7 @@ impl BondLattice {
         matrix
     }
 
-    /// e·M(k)e: ω² if e is a polarisation.
+    /// Returns e·M(k)e, which is ω² if e is a polarisation.
     pub fn omega_squared(&self, k: Vector, e: Vector) -> f64 {
         let terms = self.half.iter().map(|bond| {
             let half = (0.5 * dot(k, bond.xi)).sin();
@@ -215,7 +218,7 @@ impl BondLattice {
         terms.sum()
     }
 
-    /// ∂(e·M(k)e)/∂k: 2ω times the group velocity if e is the polarisation of a branch.
+    /// Returns ∂(e·M(k)e)/∂k, which is 2ω times the group velocity if e is the polarisation of a branch.
     pub fn omega_squared_gradient(&self, k: Vector, e: Vector) -> Vector {
         let mut gradient = [0.0; 3];
         for bond in &self.half {
@@ -228,12 +231,12 @@ impl BondLattice {
         gradient
     }
 
-    /// The modes of wave vector k, slowest first.
+    /// Modes of wave vector k in ascending order of frequency.
     pub fn modes(&self, k: Vector) -> Vec<Mode> {
         modes_of(&self.dynamical_matrix(k), self.dimension)
     }
 
-    /// The tensor component ½ Σ a ξ_a ξ_b ξ_c ξ_d/|ξ|³ over all bonds (elastic constant over density), m²/s².
+    /// Component ½ Σ a ξ_a ξ_b ξ_c ξ_d/|ξ|³ of the elasticity tensor over density, summed over all bonds, m²/s².
     pub fn elasticity(&self, a: usize, b: usize, c: usize, d: usize) -> f64 {
         let terms = self.half.iter().map(|bond| {
             let xi = bond.xi;
@@ -242,8 +245,8 @@ impl BondLattice {
         terms.sum()
     }
 
-    /// The energy that opening a unit of crack surface with normal n costs, over ρ s₀²: ½ Σ_{ξ·n>0} a |ξ| (ξ·n), m³/s². The surface lies
-    /// anywhere between points.
+    /// Energy per unit area of a crack surface with normal n, divided by ρ s₀²: ½ Σ_{ξ·n>0} a |ξ| (ξ·n), m³/s². The
+    /// surface passes between points.
     pub fn crack_energy(&self, normal: Vector) -> f64 {
         let n = self.unit_direction(normal);
         let terms = self
@@ -253,14 +256,14 @@ impl BondLattice {
         terms.sum()
     }
 
-    /// The bonds that pass a test.
+    /// Returns the lattice with the bonds that satisfy a predicate.
     pub(super) fn only(&self, wanted: impl Fn(&LatticeBond) -> bool) -> Self {
         let mut lattice = self.clone();
         lattice.half.retain(wanted);
         lattice
     }
 
-    /// The same bonds with other stiffnesses.
+    /// Returns the lattice with other stiffnesses.
     pub(super) fn with_stiffness(&self, stiffness: impl Fn(&LatticeBond) -> f64) -> Self {
         let mut lattice = self.clone();
         for bond in &mut lattice.half {
@@ -291,7 +294,7 @@ mod tests {
     }
 
     #[test]
-    fn the_matrix_is_the_plain_sum() {
+    fn dynamical_matrix_is_the_sum_over_all_bonds() {
         let lattice = square(2.3);
         let k = [0.7, -1.9, 0.0];
         let mut plain = [[0.0; 2]; 2];
@@ -326,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn gradients_are_derivatives() {
+    fn gradients_equal_difference_quotients() {
         let lattice = square(3.0);
         let (k, e, h) = ([0.4, 1.3, 0.0], unit([1.0, 2.0, 0.0]), 1e-5);
         let gradient = lattice.omega_squared_gradient(k, e);
@@ -342,7 +345,7 @@ mod tests {
     }
 
     #[test]
-    fn long_waves_are_the_limit() {
+    fn dynamical_matrix_tends_to_the_long_wave_matrix() {
         let lattice = square(3.0);
         let n = unit([2.0, 1.0, 0.0]);
         let small = 1e-4;

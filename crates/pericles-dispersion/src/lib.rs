@@ -1,29 +1,36 @@
-//! What a lattice does to waves: dispersion, stability, tuned coefficients, measured spectra.
+//! Wave dispersion on lattices: dispersion curves, stability, tuned coefficients, measured spectra.
 //!
-//! In the interior of a grid, plane waves u = e exp(i(k·x − ωt)) solve the linearised equation of motion exactly if ω² and e are an eigenpair of
+//! In the interior of a grid, plane waves u = e exp(i(k·x − ωt)) solve the linearised equation of motion exactly if
+//! ω² and e are an eigenpair of
 //!
 //! M(k) = Σ_ξ (c α κ V/ρ) (1 − cos k·ξ)/|ξ|³ ξ⊗ξ,
 //!
-//! the sum over the bonds of one point. Everything follows from M (Alebrahim, Packo, Zaccariotto & Galvanetto 2022, in one and two
-//! dimensions; three are alike):
+//! summed over the bonds of one point. All results follow from M (Alebrahim, Packo, Zaccariotto & Galvanetto 2022,
+//! in one and two dimensions; extended here to three):
 //!
-//! * [`BondLattice`] – the bonds; M(k), its eigenpairs, the limit of long waves. Any spacings, influence function, correction and horizon.
-//! * [`Contour`], [`trace`] – branches along the border of the irreducible zone or along any ray, followed by symmetry or by likeness, with phase and group
-//!   velocities; [`verlet_frequency`] for the time-discrete curve.
-//! * [`stability`] – smallest ω²/|k|² and highest frequency over the whole zone, hence the stable step.
+//! * [`BondLattice`] – the bonds; M(k), its eigenpairs, the long-wave limit, for any spacings, influence function,
+//!   volume correction and horizon.
+//! * [`Contour`], [`trace`] – branches along the border of the irreducible zone or along any ray, followed by
+//!   symmetry or similarity of polarisation, with phase and group velocities; [`verlet_frequency`] gives the
+//!   time-discrete curve.
+//! * [`stability`] – smallest ω²/|k|² and highest frequency over the whole zone, from which the stable time step
+//!   follows.
 //! * [`long_wave_speeds`], [`polar_speeds`] – anisotropy.
 //! * [`KernelWaves`] – dispersion of an influence function in the continuum, without a grid.
-//! * [`PhaseErrors`] – the shortest waves that keep the speed of long ones within a tolerance, or that of the continuum; what the kernel does and what the grid adds to it.
-//! * [`time_content`], [`space_content`] – the share of a load or an initial field in waves shorter than that.
-//! * [`tuning`] – coefficients per class of bonds that reduce dispersion.
+//! * [`PhaseErrors`] – the shortest waves whose speed is within a tolerance of that of long waves, or of the
+//!   continuum; separates the dispersion of the kernel from that added by the grid.
+//! * [`time_content`], [`space_content`] – the energy fraction of a load or an initial field in waves shorter than
+//!   that.
+//! * [`tuning`] – coefficients per bond class that reduce dispersion.
 //! * [`spectrum`] – frequencies measured in a time-domain run.
 //!
-//! SI units; wave vectors in rad/m with missing components zero. An evaluation of M costs one sine for every pair ±ξ of bonds.
+//! SI units; wave vectors in rad/m, missing components are zero. An evaluation of M costs one sine per pair ±ξ of
+//! bonds.
 //!
 //! ```
 //! use pericles_dispersion::{BondLattice, Contour, stability, trace};
 //!
-//! // A bar with nearest neighbours only, D = √(E/ρ) = 1: ω = 2 sin(k/2).
+//! // A bar with nearest-neighbour bonds, D = √(E/ρ) = 1: ω = 2 sin(k/2).
 //! let chain = BondLattice::new(&[1.0], 1.0, |_, _, _| 1.0)?;
 //! let curve = trace(&chain, &Contour::irreducible(&chain), 10);
 //! let middle = &curve[5];

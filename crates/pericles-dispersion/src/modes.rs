@@ -1,8 +1,8 @@
-//! Frequencies and polarisations.
+//! Frequencies and polarisations of plane waves.
 
 use super::vector::{SquareMatrix, Vector, dot};
 
-/// A plane wave's frequency and polarisation.
+/// Frequency and polarisation of a plane wave.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mode {
     /// ω², 1/s² (or the square of a speed, m²/s²); negative if the lattice is unstable.
@@ -12,24 +12,25 @@ pub struct Mode {
 }
 
 impl Mode {
-    /// ω, 1/s; not a number if the mode is unstable.
+    /// Returns ω, 1/s; NaN if the mode is unstable.
     pub fn omega(&self) -> f64 {
         self.omega_squared.sqrt()
     }
 
-    /// Share of the polarisation along a unit vector, 0 … 1: 1 for pressure waves, 0 for shear waves.
+    /// Squared component of the polarisation along a unit vector, 0 … 1: 1 for pressure waves, 0 for shear waves.
     pub fn longitudinal(&self, direction: Vector) -> f64 {
         dot(self.polarisation, direction).powi(2)
     }
 }
 
-/// The frequency that velocity Verlet with step dt gives a mode of frequency ω: (2/dt) asin(ω dt/2); none beyond its stability limit.
+/// Numerical frequency (2/dt) asin(ω dt/2) of velocity Verlet with time step dt for a mode of frequency ω; `None`
+/// beyond the stability limit.
 pub fn verlet_frequency(omega: f64, dt: f64) -> Option<f64> {
     let half = 0.5 * omega * dt;
     (half.abs() <= 1.0).then(|| 2.0 / dt * half.asin())
 }
 
-/// Eigenvalues, ascending, and eigenvectors, by Jacobi's rotations.
+/// Computes eigenvalues, ascending, and eigenvectors by the Jacobi method.
 pub(super) fn modes_of(matrix: &SquareMatrix, dimension: usize) -> Vec<Mode> {
     let mut a = *matrix;
     let mut vectors = [[0.0; 3]; 3];
@@ -37,7 +38,7 @@ pub(super) fn modes_of(matrix: &SquareMatrix, dimension: usize) -> Vec<Mode> {
         vectors[c][c] = 1.0;
     }
     let scale: f64 = a.iter().flatten().map(|x| x * x).sum();
-    // Convergence is quadratic: three sweeps do, thirty never happen.
+    // Convergence is quadratic: three sweeps usually suffice; thirty are never needed.
     for _ in 0..30 {
         let off: f64 = (0..3)
             .map(|p| (p + 1..3).map(|q| a[p][q].powi(2)).sum::<f64>())
@@ -61,7 +62,7 @@ pub(super) fn modes_of(matrix: &SquareMatrix, dimension: usize) -> Vec<Mode> {
     modes
 }
 
-/// Zeroes entry (p, q); rows of `vectors` are the eigenvectors.
+/// Zeroes entry (p, q) by a Jacobi rotation; rows of `vectors` are the eigenvectors.
 fn rotate(a: &mut SquareMatrix, vectors: &mut [Vector; 3], p: usize, q: usize) {
     let theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
     let t = theta.signum() / (theta.abs() + theta.hypot(1.0));
@@ -93,7 +94,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn eigenpairs(d in prop::array::uniform3(-2.0f64..2.0), o in prop::array::uniform3(-2.0f64..2.0)) {
+        fn jacobi_eigenpairs_satisfy_the_eigenvalue_equation(d in prop::array::uniform3(-2.0f64..2.0), o in prop::array::uniform3(-2.0f64..2.0)) {
             let matrix = [[d[0], o[0], o[1]], [o[0], d[1], o[2]], [o[1], o[2], d[2]]];
             let modes = modes_of(&matrix, 3);
             for mode in &modes {
@@ -109,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn verlet_shortens_periods() {
+    fn verlet_increases_frequencies() {
         // At ω = 4, dt = 0.1 the shift is 0.027.
         assert!((verlet_frequency(4.0, 0.1).unwrap() - 4.0 - 0.027).abs() < 1e-3);
         assert!(verlet_frequency(20.1, 0.1).is_none());

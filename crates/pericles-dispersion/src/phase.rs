@@ -1,4 +1,4 @@
-//! How far the phase speeds of a lattice's waves are from a reference.
+//! Phase-speed errors of lattice waves relative to a reference.
 
 use std::f64::consts::PI;
 
@@ -8,14 +8,14 @@ use super::lattice::BondLattice;
 use super::modes::modes_of;
 use super::vector::{Vector, unit};
 
-/// Phase speeds of the plane waves of a lattice, of all branches and over directions of the whole octant, against a reference: the speed of long waves along the same direction, or
-/// the nonlocal continuum that the lattice stands for.
+/// Phase-speed errors of the plane waves of a lattice over all branches and directions of the octant. The reference
+/// is the speed of long waves along the same direction, or the nonlocal continuum that the lattice discretises.
 ///
-/// With the first as reference, errors are all the dispersion there is; with the second they are what the grid adds to the dispersion of the kernel. Both are measured relative to the
-/// speed of long waves, so that an error of the modulus does not count.
+/// With the first reference the errors are the total dispersion, with the second the dispersion added by the grid.
+/// Both are relative to the speed of long waves, so an error of the modulus does not count.
 pub struct PhaseErrors<'a> {
     lattice: &'a BondLattice,
-    /// Directions with the speeds of long waves along them, slowest first, m/s.
+    /// Directions with their long-wave speeds in ascending order, m/s.
     directions: Vec<(Vector, Vec<f64>)>,
     continuum: Option<&'a KernelWaves>,
 }
@@ -23,19 +23,19 @@ pub struct PhaseErrors<'a> {
 /// The shortest waves whose speed is within a tolerance of the reference.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Resolved {
-    /// Largest deviation of the phase speed, relative.
+    /// Largest relative deviation of the phase speed.
     pub tolerance: f64,
-    /// Largest wavenumber, rad/m; the end of the zone along an axis if the tolerance is not exceeded before.
+    /// Largest wavenumber, rad/m; the zone border along an axis if the tolerance is not exceeded before.
     pub wavenumber: f64,
-    /// The lowest angular frequency of these waves, 1/s.
+    /// Lowest angular frequency of these waves, 1/s.
     pub frequency: f64,
 }
 
-/// Steps from long waves to the end of the zone.
+/// Number of steps from zero to the zone border.
 const STEPS: usize = 200;
 
 impl<'a> PhaseErrors<'a> {
-    /// Against the speed of long waves.
+    /// Creates the errors relative to the speed of long waves.
     pub fn new(lattice: &'a BondLattice) -> Self {
         let speeds = |n: Vector| {
             let limit = modes_of(&lattice.long_wave_matrix(n), lattice.dimension());
@@ -49,7 +49,7 @@ impl<'a> PhaseErrors<'a> {
         }
     }
 
-    /// Against the nonlocal continuum.
+    /// Creates the errors relative to the nonlocal continuum.
     pub fn of_grid(lattice: &'a BondLattice, continuum: &'a KernelWaves) -> Self {
         Self {
             continuum: Some(continuum),
@@ -57,15 +57,15 @@ impl<'a> PhaseErrors<'a> {
         }
     }
 
-    /// The end of the zone along the axis with the largest spacing, rad/m.
+    /// Zone border along the axis with the largest spacing, rad/m.
     pub fn end(&self) -> f64 {
         let spacing = self.lattice.spacing();
         PI / spacing.into_iter().fold(0.0, f64::max)
     }
 
-    /// The largest relative error of the phase speed at a wavenumber (rad/m), 1 where waves grow.
+    /// Returns the largest relative error of the phase speed at a wavenumber (rad/m); 1 where waves are unstable.
     pub fn error(&self, wavenumber: f64) -> f64 {
-        // Slowest first, as modes are; shear waves in space are two.
+        // Ascending, like the modes; in 3D there are two shear waves.
         let reference = self.continuum.map(|continuum| {
             let mut speeds = continuum.relative_speeds(wavenumber);
             speeds.reverse();
@@ -79,7 +79,7 @@ impl<'a> PhaseErrors<'a> {
             let modes = self.lattice.modes(n.map(|c| c * wavenumber));
             let fastest = long.last().copied().unwrap_or(0.0);
             for (branch, mode) in modes.iter().enumerate() {
-                // A lattice of nearest neighbours carries no shear along its axes.
+                // A nearest-neighbour lattice has no shear stiffness along its axes.
                 if long[branch] <= 1e-6 * fastest {
                     continue;
                 }
@@ -92,13 +92,13 @@ impl<'a> PhaseErrors<'a> {
         worst
     }
 
-    /// The largest error of all waves up to a wavenumber (rad/m).
+    /// Returns the largest error of all waves up to a wavenumber (rad/m).
     pub fn largest(&self, wavenumber: f64) -> f64 {
         let steps = (1..=STEPS).map(|k| wavenumber * k as f64 / STEPS as f64);
         steps.map(|k| self.error(k)).fold(0.0, f64::max)
     }
 
-    /// The waves that are within a tolerance, with all longer ones.
+    /// Returns the shortest waves that are within a tolerance together with all longer ones.
     pub fn resolved(&self, tolerance: f64) -> Resolved {
         let wavenumber = last_before(self.end(), STEPS, |k| self.error(k) > tolerance);
         let slowest = |(n, _): &(Vector, Vec<f64>)| {
@@ -117,7 +117,7 @@ impl<'a> PhaseErrors<'a> {
     }
 }
 
-/// Unit vectors over the octant; of square and cubic lattices those between an axis and a diagonal.
+/// Unit vectors over the octant; for square and cubic lattices those between an axis and a diagonal.
 fn directions(lattice: &BondLattice) -> Vec<Vector> {
     let cubic = lattice.is_cubic();
     let all: Vec<Vector> = match lattice.dimension() {
@@ -135,7 +135,7 @@ fn directions(lattice: &BondLattice) -> Vec<Vector> {
                 for y in steps {
                     for z in steps {
                         let ordered = x >= y && y >= z;
-                        // (2, 0, 0) and (2, 2, 0) are (1, 0, 0) and (1, 1, 0).
+                        // Skips multiples: (2, 0, 0) and (2, 2, 0) equal (1, 0, 0) and (1, 1, 0).
                         let twice = [x, y, z].iter().all(|c| *c != 1.0);
                         if x + y + z > 0.0 && !twice && (ordered || !cubic) {
                             all.push([x, y, z]);
@@ -155,7 +155,7 @@ mod tests {
     use pericles::kernel::Influence;
 
     #[test]
-    fn a_chain_of_nearest_neighbours() {
+    fn nearest_neighbour_chain_has_the_closed_form_of_resolution() {
         // ω/k = sin(k/2)/(k/2) falls by 1 % at k = 0.4906.
         let chain = BondLattice::new(&[1.0], 1.0, |_, _, _| 1.0).unwrap();
         let errors = PhaseErrors::new(&chain);
@@ -163,12 +163,12 @@ mod tests {
         assert!((found.wavenumber - 0.4906).abs() < 1e-4, "{found:?}");
         assert!((found.frequency - 2.0 * (0.5 * found.wavenumber).sin()).abs() < 1e-12);
         assert!((errors.largest(PI) - (1.0 - 2.0 / PI)).abs() < 1e-12);
-        // With no limit the whole zone.
+        // With tolerance 1 the whole zone.
         assert_eq!(errors.resolved(1.0).wavenumber, PI);
     }
 
     #[test]
-    fn a_finer_grid_adds_less_to_the_kernel_s_dispersion() {
+    fn grid_dispersion_decreases_with_refinement_and_kernel_dispersion_does_not() {
         let influence = Influence::default();
         let horizon = 1.0;
         let continuum = KernelWaves::new(2, &influence, horizon, 40.0).unwrap();
@@ -182,7 +182,7 @@ mod tests {
         let (coarse, fine) = (lattice(3.0), lattice(9.0));
         let grid = [&coarse, &fine].map(|l| PhaseErrors::of_grid(l, &continuum).resolved(0.05));
         let whole = [&coarse, &fine].map(|l| PhaseErrors::new(l).resolved(0.05));
-        // What the grid adds goes away, what the kernel does stays.
+        // The dispersion of the grid decreases, that of the kernel stays.
         assert!(grid[1].wavenumber > 2.0 * grid[0].wavenumber, "{grid:?}");
         let ratio = whole[1].wavenumber / whole[0].wavenumber;
         assert!((0.8..1.25).contains(&ratio), "{whole:?}");
@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn octants_of_cubic_lattices_are_cut_down() {
+    fn cubic_lattices_need_only_directions_between_axis_and_diagonal() {
         let count = |spacing: &[f64]| {
             let lattice = BondLattice::new(spacing, 2.0, |_, _, _| 1.0).unwrap();
             directions(&lattice).len()

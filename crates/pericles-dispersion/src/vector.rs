@@ -1,18 +1,18 @@
 //! Vectors and matrices of lattices in up to three dimensions.
 
-/// A vector of a lattice; components beyond its dimension are zero.
+/// Vector of a lattice; components beyond its dimension are zero.
 pub type Vector = [f64; 3];
 
-/// A symmetric matrix; rows and columns beyond the dimension are zero.
+/// Symmetric matrix; rows and columns beyond the dimension are zero.
 pub type SquareMatrix = [[f64; 3]; 3];
 
-/// The inner product.
+/// Inner product.
 #[inline]
 pub(super) fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// The vector of length one with the same direction.
+/// Normalises a vector.
 #[inline]
 pub(super) fn unit(a: Vector) -> Vector {
     let norm = dot(a, a).sqrt();

@@ -1,4 +1,4 @@
-//! Stability and the highest frequency over the whole zone.
+//! Stability and highest frequency over the whole Brillouin zone.
 
 use std::f64::consts::PI;
 
@@ -8,26 +8,26 @@ use super::lattice::BondLattice;
 use super::modes::modes_of;
 use super::vector::{Vector, dot};
 
-/// What a scan of the zone found.
+/// Result of a scan of the zone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stability {
-    /// The smallest ω²/|k|² of any wave, m²/s²; the lattice is stable if it is positive.
+    /// Smallest ω²/|k|² of any wave, m²/s²; the lattice is stable if it is positive.
     pub smallest: f64,
-    /// Its wave vector, rad/m; a unit vector per metre for the limit of long waves.
+    /// Wave vector of the smallest value, rad/m; for the long-wave limit a unit vector (1/m).
     pub smallest_at: Vector,
-    /// The highest frequency, 1/s.
+    /// Highest frequency, 1/s.
     pub omega_max: f64,
-    /// Its wave vector, rad/m.
+    /// Wave vector of the highest frequency, rad/m.
     pub omega_max_at: Vector,
 }
 
 impl Stability {
-    /// Whether no wave grows.
+    /// Returns true if all waves are stable.
     pub fn is_stable(&self) -> bool {
         self.smallest > 0.0
     }
 
-    /// The largest stable step of velocity Verlet, 2/ω_max, s.
+    /// Largest stable time step of velocity Verlet, 2/ω_max, s.
     pub fn dt_max(&self) -> f64 {
         2.0 / self.omega_max
     }
@@ -36,8 +36,8 @@ impl Stability {
 /// Samples along an axis, by dimension.
 const SAMPLES: [usize; 3] = [2001, 181, 61];
 
-/// Scans the zone: by symmetry one octant on a regular grid of 2001, 181² or 61³ wave vectors, then a search around the best of them; long
-/// waves by their limit. Cubic lattices need only k_x ≥ k_y ≥ k_z.
+/// Scans the zone: by symmetry one octant on a regular grid of 2001, 181² or 61³ wave vectors, then a local search
+/// from the best of them; long waves by their limit. Cubic lattices need only k_x ≥ k_y ≥ k_z.
 pub fn stability(lattice: &BondLattice) -> Stability {
     let dimension = lattice.dimension();
     let samples = SAMPLES[dimension - 1];
@@ -100,7 +100,7 @@ fn highest(lattice: &BondLattice, k: Vector) -> f64 {
     lattice.modes(k)[lattice.dimension() - 1].omega_squared
 }
 
-/// Directions over an octant, a degree apart in the plane and three in space.
+/// Directions over an octant, one degree apart in 2D and three in 3D.
 fn directions(dimension: usize) -> Vec<Vector> {
     match dimension {
         1 => vec![[1.0, 0.0, 0.0]],
@@ -123,7 +123,7 @@ fn directions(dimension: usize) -> Vec<Vector> {
     }
 }
 
-/// The largest value seen.
+/// Largest value found.
 #[derive(Clone, Copy)]
 struct Extreme {
     value: f64,
@@ -142,8 +142,8 @@ impl Extreme {
         }
     }
 
-    /// Compass search within the octant from the best point of the grid, to a step of 1e-7 of the grid's. The origin, where ω²/|k|² has no
-    /// value, is kept out.
+    /// Compass search within the octant from the best grid point, to a step of 1e-7 of the grid spacing. The
+    /// origin, where ω²/|k|² is undefined, is excluded.
     fn refine(&mut self, step: Vector, edge: Vector, function: impl Fn(Vector) -> f64) {
         let mut size = 0.5;
         while size > 1e-7 {
@@ -169,7 +169,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nearest_neighbour_chain() {
+    fn nearest_neighbour_chain_has_the_closed_form_extremes() {
         let chain = BondLattice::new(&[0.5], 0.5, |_, _, _| 3.0).unwrap();
         // ω² = 2 · 3 (1 − cos k/2) / 0.5, highest at k = 2π; ω²/k² falls from 3·0.5 to ω²/(2π)².
         let found = stability(&chain);
@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn negative_second_neighbours_make_long_waves_grow() {
+    fn negative_second_neighbours_make_long_waves_unstable() {
         // ω²/k² → ½·2(1·1 − 0.6·2) < 0.
         let chain = BondLattice::new(
             &[1.0],
@@ -195,8 +195,8 @@ mod tests {
     }
 
     #[test]
-    fn rectangular_lattices_are_scanned_whole() {
-        // Bonds along the axes only: ω_x² = 4a/dx sin², the larger for the smaller spacing.
+    fn rectangular_lattices_are_scanned_over_the_whole_octant() {
+        // Bonds along the axes only: ω_x² = 4a/dx sin², largest for the smaller spacing.
         let lattice = BondLattice::new(&[1.0, 0.5], 1.0, |offset, _, _| {
             // The bonds (±1, 0) and (0, ±1).
             f64::from(u8::from(offset[0].abs() + offset[1].abs() == 1))

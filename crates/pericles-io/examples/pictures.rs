@@ -1,4 +1,4 @@
-//! Draws made-up fields and curves: `cargo run -p pericles-io --example pictures -- FOLDER`.
+//! Draws synthetic fields and curves: `cargo run -p pericles-io --example pictures -- FOLDER`.
 
 use std::error::Error;
 use std::f64::consts::PI;
@@ -16,7 +16,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// A plate of 100 mm × 40 mm with a crack from the left that opens.
+/// A plate of 100 mm × 40 mm with an opening crack at its left edge.
 fn plate(folder: &Path) -> Result<(), Box<dyn Error>> {
     let (columns, rows, dx) = (400, 160, 0.25e-3);
     let n = columns * rows;
@@ -48,7 +48,7 @@ fn plate(folder: &Path) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// A tube of 25 mm radius, seen from its side, coloured by the radial velocity.
+/// A tube of 25 mm radius, seen from the side, coloured by the radial velocity.
 fn solid(folder: &Path) -> Result<(), Box<dyn Error>> {
     let edge = 1e-3;
     let mut points = Vec::new();

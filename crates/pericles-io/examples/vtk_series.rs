@@ -1,6 +1,6 @@
-//! Writes a small series of made-up fields: `cargo run -p pericles-io --example vtk_series -- FOLDER [POINTS]`.
+//! Writes a small series of synthetic fields: `cargo run -p pericles-io --example vtk_series -- FOLDER [POINTS]`.
 //!
-//! It shows the writer at work and gives `validation/vtk/check.py` something to read.
+//! It demonstrates the writer and produces files for `validation/vtk/check.py`.
 
 use std::error::Error;
 use std::path::PathBuf;

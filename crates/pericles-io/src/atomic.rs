@@ -1,4 +1,4 @@
-//! Files that are either whole or not there: written beside their place, forced to the disk, and renamed.
+//! Atomic file writes: a temporary file in the same folder, flushed to disk and renamed.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Write};
@@ -7,13 +7,13 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::IoError;
 
-/// The ending of unfinished files, which a crash may leave behind.
+/// Extension of unfinished files, which may remain after a crash.
 const UNFINISHED: &str = ".part";
 
-/// Writes a file so that its readers see the old content or the new, never a part, even after a power failure.
+/// Writes a file atomically: readers see either the old or the new content, even after a power failure.
 ///
-/// `write` fills a temporary file in the same folder, which is then flushed, forced to the disk and renamed to `path`.
-/// If anything fails the temporary file is removed and `path` is left as it was.
+/// `write` fills a temporary file in the same folder, which is flushed to disk and then renamed to `path`. On
+/// failure the temporary file is removed and `path` is unchanged.
 ///
 /// ```
 /// use std::io::Write;
@@ -33,7 +33,7 @@ pub fn write_atomically<T>(
         let value = write(&mut writer)?;
         writer.flush()?;
         writer.get_ref().sync_all()?;
-        drop(writer); // some systems refuse to rename a file that is open
+        drop(writer); // some systems cannot rename an open file
         fs::rename(&temporary, path)?;
         Ok(value)
     })();
@@ -43,7 +43,7 @@ pub fn write_atomically<T>(
             Ok(value)
         }
         Err(source) => {
-            // The first error is the one to report.
+            // Report the first error.
             let _ = fs::remove_file(&temporary);
             Err(failed(source))
         }
@@ -61,7 +61,7 @@ pub(crate) fn remove_unfinished(folder: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// The name that a file was to get which [`write_atomically`] did not finish; none for other files.
+/// Returns the final name of a file that [`write_atomically`] left unfinished; `None` for other files.
 pub(crate) fn finished_name(name: &str) -> Option<&str> {
     let (name, numbers) = name
         .strip_prefix('.')?
@@ -72,7 +72,7 @@ pub(crate) fn finished_name(name: &str) -> Option<&str> {
     (number(process) && number(count)).then_some(name)
 }
 
-/// The folder a path lies in; `.` for a bare name.
+/// Returns the parent folder of a path; `.` for a bare file name.
 pub(crate) fn folder_of(path: &Path) -> &Path {
     match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
@@ -96,14 +96,14 @@ fn create_beside(path: &Path) -> io::Result<(PathBuf, File)> {
             .open(&temporary)
         {
             Ok(file) => return Ok((temporary, file)),
-            // Left by a crashed process of the same number: take the next name.
+            // Left over from a crashed process with the same id: use the next name.
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
             Err(error) => return Err(error),
         }
     }
 }
 
-/// Makes a rename last: on Unix a name is on the disk only once its folder is.
+/// Makes a rename durable: on Unix, the folder must be synced as well.
 #[cfg(unix)]
 pub(crate) fn sync_folder(folder: &Path) -> io::Result<()> {
     File::open(folder)?.sync_all()
@@ -119,7 +119,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_failure_leaves_the_old_content_and_nothing_else() {
+    fn a_failed_write_keeps_the_old_content_and_leaves_no_other_file() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.csv");
         write_atomically(&path, |file| file.write_all(b"old")).unwrap();
@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn a_missing_folder_is_an_output_problem() {
+    fn a_missing_folder_is_an_output_error() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("none").join("a.csv");
         let error = write_atomically(&path, |_| Ok(())).unwrap_err();
@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn only_unfinished_files_are_swept() {
+    fn only_unfinished_files_are_removed() {
         let folder = tempfile::tempdir().unwrap();
         for name in ["a.csv", ".hidden", "b.part", ".a.csv.1-0.part"] {
             fs::write(folder.path().join(name), "x").unwrap();

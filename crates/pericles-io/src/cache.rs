@@ -1,4 +1,4 @@
-//! The cache on the disk.
+//! On-disk cache of expensive results.
 
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -9,10 +9,10 @@ use serde_json::json;
 
 use crate::{Container, IoError};
 
-/// Results that are dear to compute, one checked file each, in a folder that all runs of a user share.
+/// Cache of expensive results: one file with checksums per result, in a folder shared by all runs of a user.
 ///
-/// A file is a [`Container`], written whole or not at all and checked by its checksums and its key when it is read. One that is damaged is
-/// not trusted: the caller computes again and replaces it. The cache may be deleted at any time.
+/// Each file is a [`Container`], written atomically; its checksums and key are verified when it is read.
+/// Damaged entries are recomputed and replaced. The cache may be deleted at any time.
 ///
 /// ```
 /// use pericles::{Archive, Values, cache::{Cache, Key}};
@@ -34,7 +34,7 @@ pub struct DiskCache {
 }
 
 impl DiskCache {
-    /// A cache in this folder, which is made when something is stored.
+    /// Creates a cache in `folder`; the folder is created when the first result is stored.
     pub fn new(folder: impl Into<PathBuf>) -> Self {
         Self {
             folder: folder.into(),
@@ -43,30 +43,31 @@ impl DiskCache {
         }
     }
 
-    /// The user's cache: `$XDG_CACHE_HOME/pericles`, else `$HOME/.cache/pericles` (on Windows `%LOCALAPPDATA%\pericles`); none if no such variable is set.
+    /// Returns the user's cache: `$XDG_CACHE_HOME/pericles`, else `$HOME/.cache/pericles` (on Windows
+    /// `%LOCALAPPDATA%\pericles`); `None` if no such variable is set.
     pub fn of_user() -> Option<Self> {
         let variable = |name| std::env::var_os(name).filter(|value| !value.is_empty());
         let base = variable("XDG_CACHE_HOME")
             .map(PathBuf::from)
-            // The standard says to ignore relative paths.
+            // The XDG standard requires that relative paths are ignored.
             .filter(|path| path.is_absolute())
             .or_else(|| variable("LOCALAPPDATA").map(PathBuf::from))
             .or_else(|| variable("HOME").map(|home| Path::new(&home).join(".cache")))?;
         Some(Self::new(base.join("pericles")))
     }
 
-    /// The same; an entry may take so many bytes of memory.
+    /// Sets the memory limit per entry, in bytes.
     #[must_use]
     pub fn within(self, memory: u64) -> Self {
         Self { memory, ..self }
     }
 
-    /// Where it is.
+    /// Returns the folder of the cache.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
 
-    /// What went wrong so far, in words: entries that were damaged or could not be written. Nothing is lost by either but time.
+    /// Returns messages about damaged entries and failed writes. Neither affects results, only computing time.
     pub fn notes(&self) -> Vec<String> {
         self.notes.lock().map_or_else(
             |poisoned| poisoned.into_inner().clone(),
@@ -91,7 +92,7 @@ impl Cache for DiskCache {
         let path = self.path(key);
         let stored = match Container::read(&path, self.memory) {
             Ok(container) if container.metadata == name(key) => container.into_archive(),
-            Ok(_) => Err("it holds something else than its name says".to_owned()),
+            Ok(_) => Err("its content does not match its key".to_owned()),
             Err(IoError::NotFound { .. }) => return None,
             Err(error) => Err(error.to_string()),
         };
@@ -99,7 +100,9 @@ impl Cache for DiskCache {
             .map(|(_, archive)| archive)
             .map_err(|reason| {
                 let path = path.display();
-                self.note(format!("the cached {path} is computed again: {reason}"));
+                self.note(format!(
+                    "{path} in the cache cannot be used and is recomputed: {reason}"
+                ));
             })
             .ok()
     }
@@ -111,7 +114,7 @@ impl Cache for DiskCache {
             .map_err(|source| IoError::writing(&self.folder, source))
             .and_then(|()| container.write(&path));
         if let Err(error) = written {
-            self.note(format!("not cached: {error}"));
+            self.note(format!("the result is not cached: {error}"));
         }
     }
 }
@@ -134,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn a_damaged_or_misplaced_entry_is_not_trusted_but_replaced() {
+    fn a_damaged_or_misplaced_entry_is_rejected_and_replaced() {
         let folder = tempfile::tempdir().unwrap();
         let cache = DiskCache::new(folder.path());
         let [key, other] = [1, 2].map(|n| Key::new("test").u64s(&[n]));
@@ -152,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn a_place_that_cannot_be_written_costs_a_note_only() {
+    fn a_cache_that_cannot_be_written_only_adds_a_note() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("file");
         fs::write(&file, "").unwrap();
@@ -161,7 +164,7 @@ mod tests {
         cache.store(&key, &numbers());
         assert!(cache.load(&key).is_none());
         assert!(
-            cache.notes()[0].starts_with("not cached"),
+            cache.notes()[0].starts_with("the result is not cached"),
             "{:?}",
             cache.notes()
         );

@@ -1,36 +1,36 @@
-//! What can go wrong with a file, told apart by what the user can do about it.
+//! Errors of file input and output, classified by what the user can do about them.
 
 use std::io;
 use std::path::{Path, PathBuf};
 
 use pericles::units::quantity;
 
-/// Errors of reading and writing the files of a run. Every variant names the path.
+/// Errors of reading and writing the files of a run. Every variant contains the path.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum IoError {
-    /// The file or folder may not be written: permission, read-only file system, or a path that leads through a file.
+    /// A file or folder that cannot be written: permissions, read-only file system, or a path through a file.
     #[error("cannot write {}: {source}; choose another folder or change its permissions", path.display())]
     NotWritable {
-        /// What was to be written.
+        /// The file or folder.
         path: PathBuf,
-        /// The system's reason.
+        /// The error of the operating system.
         source: io::Error,
     },
 
-    /// The folder of the file has gone.
-    #[error("cannot write {}: its folder is not there any more; run again, into a folder that stays", path.display())]
+    /// The folder of the file was removed.
+    #[error("cannot write {}: its folder has been removed; run again in a folder that is kept", path.display())]
     FolderGone {
-        /// What was to be written.
+        /// The file.
         path: PathBuf,
     },
 
-    /// No space is left, or a quota or the largest allowed file size is reached.
-    #[error("no room to write {}: {source}; free some space or choose another disk", path.display())]
+    /// No space left, or a quota or the maximum file size is exceeded.
+    #[error("not enough space to write {}: {source}; free some space or choose another disk", path.display())]
     DiskFull {
-        /// What was to be written.
+        /// The file or folder.
         path: PathBuf,
-        /// The system's reason.
+        /// The error of the operating system.
         source: io::Error,
     },
 
@@ -41,109 +41,109 @@ pub enum IoError {
         path: PathBuf,
     },
 
-    /// The output folder is there already.
-    #[error("{} exists already; choose another name or ask to overwrite its results", path.display())]
+    /// The output folder already exists.
+    #[error("{} already exists; choose another name or allow its results to be overwritten", path.display())]
     FolderExists {
         /// The output folder.
         path: PathBuf,
     },
 
-    /// The folder to be overwritten holds no results of Pericles, but other files.
-    #[error("{} holds other files and no results of Pericles, so nothing in it is overwritten; choose another folder", path.display())]
+    /// The folder to be overwritten contains files but no Pericles results.
+    #[error("{} contains files but no Pericles results, so nothing in it is overwritten; choose another folder", path.display())]
     FolderNotOurs {
         /// The folder.
         path: PathBuf,
     },
 
-    /// The file or folder to be read does not exist.
+    /// The file or folder to read does not exist.
     #[error("{} does not exist", path.display())]
     NotFound {
-        /// What was to be read.
+        /// The file or folder.
         path: PathBuf,
     },
 
-    /// The content of a file is not what Pericles wrote.
+    /// A damaged file: its content is not what Pericles wrote.
     #[error("{} is damaged: {reason}", path.display())]
     Damaged {
         /// The file.
         path: PathBuf,
-        /// What does not fit.
+        /// What is wrong.
         reason: String,
     },
 
-    /// The file is of a format that this version does not read.
-    #[error("{} has format version {found}; this program reads versions up to {newest}", path.display())]
+    /// A file format version that this version of Pericles does not read.
+    #[error("{} has format version {found}; this version of Pericles reads versions up to {newest}; use a newer version", path.display())]
     UnsupportedVersion {
         /// The file.
         path: PathBuf,
-        /// The version in the file.
+        /// The version of the file.
         found: u32,
-        /// The newest version known.
+        /// The newest supported version.
         newest: u32,
     },
 
-    /// The content of a file would take more memory than there is.
-    #[error("{} needs about {} of memory, and {} may be used; use a smaller file, or free or allow more memory", path.display(), size(*needed), size(*memory))]
+    /// The content of a file exceeds the memory limit.
+    #[error("{} needs about {} of memory, but only {} may be used; use a smaller file, free memory or raise the memory limit", path.display(), size(*needed), size(*memory))]
     TooLarge {
         /// The file.
         path: PathBuf,
-        /// What its content would take, bytes.
+        /// Memory needed, bytes.
         needed: u64,
-        /// What may be used, bytes.
+        /// Memory limit, bytes.
         memory: u64,
     },
 
-    /// None of the checkpoints in a folder can be used.
-    #[error("{} holds no usable checkpoint ({} refused{})", path.display(), refused.len(), first_reason(refused))]
+    /// No valid checkpoint in a folder.
+    #[error("{} contains no usable checkpoint ({} refused{})", path.display(), refused.len(), first_reason(refused))]
     NoValidCheckpoint {
-        /// The folder of the checkpoints.
+        /// The folder of checkpoints.
         path: PathBuf,
-        /// Why each checkpoint was refused, the newest first.
+        /// Errors of the rejected checkpoints, newest first.
         refused: Vec<IoError>,
     },
 
-    /// The data handed over for a file do not fit together.
-    #[error("data for {}: {what} has {given} values, {expected} are needed", path.display())]
+    /// Data passed for a file have inconsistent lengths.
+    #[error("data for {}: {what} has {given} values, expected {expected}", path.display())]
     Shape {
         /// The file.
         path: PathBuf,
         /// The array or row.
         what: String,
-        /// How many values fit.
+        /// Expected number of values.
         expected: usize,
-        /// How many were given.
+        /// Given number of values.
         given: usize,
     },
 
-    /// A value, name or setting cannot be stored in this kind of file.
+    /// A value, name or setting that this kind of file cannot store.
     #[error("{} cannot be written: {reason}", path.display())]
     Unsuitable {
         /// The file.
         path: PathBuf,
-        /// What does not fit, and what would.
+        /// What is wrong and what is allowed.
         reason: String,
     },
 
-    /// Any other trouble while reading.
+    /// Any other error of reading.
     #[error("cannot read {}: {source}", path.display())]
     Read {
         /// The file.
         path: PathBuf,
-        /// The system's reason.
+        /// The error of the operating system.
         source: io::Error,
     },
 
-    /// Any other trouble while writing.
+    /// Any other error of writing.
     #[error("cannot write {}: {source}", path.display())]
     Write {
         /// The file.
         path: PathBuf,
-        /// The system's reason.
+        /// The error of the operating system.
         source: io::Error,
     },
 }
 
-/// A number of bytes for people.
+/// Formats a number of bytes.
 fn size(bytes: u64) -> String {
     quantity(bytes as f64, "B")
 }
@@ -156,7 +156,7 @@ fn first_reason(refused: &[IoError]) -> String {
 }
 
 impl IoError {
-    /// Sorts a system error met while reading `path`.
+    /// Classifies a system error that occurred while reading `path`.
     pub fn reading(path: &Path, source: io::Error) -> Self {
         let path = path.to_path_buf();
         match source.kind() {
@@ -165,7 +165,7 @@ impl IoError {
         }
     }
 
-    /// Sorts a system error met while writing `path`.
+    /// Classifies a system error that occurred while writing `path`.
     pub fn writing(path: &Path, source: io::Error) -> Self {
         use io::ErrorKind as Kind;
         let path = path.to_path_buf();
@@ -173,7 +173,7 @@ impl IoError {
             return Self::DiskFull { path, source };
         }
         match source.kind() {
-            // The file itself need not be there.
+            // The file itself need not exist yet.
             Kind::NotFound => Self::FolderGone { path },
             Kind::PermissionDenied
             | Kind::ReadOnlyFilesystem
@@ -190,7 +190,8 @@ impl IoError {
         }
     }
 
-    /// Whether the output is to blame (not writable, full, locked, in the way) rather than the data or the input files.
+    /// Returns whether the output location is the cause (not writable, full, locked, already exists) rather
+    /// than the data or input files.
     pub fn is_output_problem(&self) -> bool {
         matches!(
             self,
@@ -204,7 +205,7 @@ impl IoError {
         )
     }
 
-    /// The file or folder concerned.
+    /// Returns the file or folder concerned.
     pub fn path(&self) -> &Path {
         match self {
             Self::NotWritable { path, .. }
@@ -228,7 +229,7 @@ impl IoError {
 
 fn is_full(error: &io::Error) -> bool {
     use io::ErrorKind as Kind;
-    // errno ENOSPC = 28 on Linux, macOS and the BSDs, for libraries that hand on the bare number
+    // errno ENOSPC = 28 on Linux, macOS and the BSDs, for libraries that pass on the raw number
     matches!(
         error.kind(),
         Kind::StorageFull | Kind::QuotaExceeded | Kind::FileTooLarge
@@ -240,7 +241,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_full_disk_is_told_from_a_missing_permission() {
+    fn a_full_disk_and_a_missing_permission_give_different_errors() {
         let path = Path::new("out/run.json");
         for (kind, full) in [
             (io::ErrorKind::StorageFull, true),
@@ -273,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn reading_a_missing_file_is_no_output_problem() {
+    fn reading_a_missing_file_is_not_an_output_error() {
         let error = IoError::reading(Path::new("gone"), io::Error::from(io::ErrorKind::NotFound));
         assert!(matches!(error, IoError::NotFound { .. }));
         assert!(!error.is_output_problem());

@@ -1,11 +1,12 @@
-//! The output folder of a run: created without races, locked for one run, emptied only of what an earlier run wrote.
+//! Output folder of a run: created atomically, locked against other runs, cleared only of files written by an
+//! earlier run.
 //!
 //! ```text
 //! branching/
 //!   run.json  history.csv  reactions.csv  …  fields.pvd
 //!   fields/fields_000000.vtu …    pictures/*.png    checkpoints/step-000000001840.chk …
-//!   .lock                         held while a run writes; stays behind, empty and unlocked
-//!   .manifest                     the names of all files that the run may write, on record before it does
+//!   .lock                         locked while a run writes; remains, empty and unlocked
+//!   .manifest                     the names of all files that the run may write, recorded in advance
 //! ```
 
 mod manifest;
@@ -20,12 +21,12 @@ use crate::atomic::{finished_name, folder_of, remove_unfinished};
 
 const LOCK: &str = ".lock";
 
-/// The sub-folders of a run.
+/// Sub-folders of a run.
 const SUBFOLDERS: [&str; 3] = ["fields", "pictures", "checkpoints"];
 
-/// The folder of one run, locked against other runs while this value lives.
+/// The folder of one run, locked against other runs for the lifetime of this value.
 ///
-/// The lock belongs to the open file, so it vanishes with the process, however that ends.
+/// The lock belongs to the open file, so that it is released when the process ends for any reason.
 ///
 /// ```
 /// use pericles_io::{IoError, OutputFolder};
@@ -42,11 +43,12 @@ pub struct OutputFolder {
 }
 
 impl OutputFolder {
-    /// Creates the folder `path`, and its parents where they are missing.
+    /// Creates the folder `path` and missing parents.
     ///
-    /// If it exists, `force` decides: without, it is refused; with, the files that the manifest of an earlier run names are removed from it and
-    /// everything else in it stays. A folder that is not empty and not that of a run is refused even then. Folders of versions without a manifest are
-    /// told by the content of their `run.json`, or by holding nothing but a lock and files with the names of results.
+    /// An existing folder is rejected unless `force` is set; with `force`, the files listed in the manifest
+    /// of an earlier run are removed and all other files are kept. A folder that is neither empty nor the
+    /// output of a run is always rejected. Folders of versions without a manifest are recognised by the
+    /// content of `run.json`, or if they contain only a lock and files with the names of results.
     pub fn create(path: impl Into<PathBuf>, force: bool) -> Result<Self, IoError> {
         let path = path.into();
         create_parents(&path)?;
@@ -56,7 +58,7 @@ impl OutputFolder {
                 Err(IoError::FolderExists { path })
             }
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
-                // Before the lock file is made: a refused folder stays untouched.
+                // Before the lock file is created: a rejected folder stays unchanged.
                 let manifest = owned(&path)?;
                 let folder = Self::lock(path)?;
                 folder.remove_results(&manifest)?;
@@ -66,7 +68,8 @@ impl OutputFolder {
         }
     }
 
-    /// Creates the first free one of `stem`, `stem-2`, `stem-3` …; runs started at the same time get different folders.
+    /// Creates the first free folder of `stem`, `stem-2`, `stem-3` …; runs started simultaneously get
+    /// different folders.
     pub fn create_numbered(stem: impl Into<PathBuf>) -> Result<Self, IoError> {
         let stem = stem.into();
         create_parents(&stem)?;
@@ -84,7 +87,7 @@ impl OutputFolder {
         }
     }
 
-    /// Opens the folder of an earlier run to go on in it, and removes what a crash left unfinished there.
+    /// Opens the folder of an earlier run to resume it, and removes unfinished files of a crash.
     pub fn open(path: impl Into<PathBuf>) -> Result<Self, IoError> {
         let path = path.into();
         let kind = fs::metadata(&path).map_err(|source| IoError::reading(&path, source))?;
@@ -99,17 +102,17 @@ impl OutputFolder {
         Ok(folder)
     }
 
-    /// Where the folder is.
+    /// Returns the path of the folder.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// The path of a file in the folder.
+    /// Returns the path of a file in the folder.
     pub fn file(&self, name: impl AsRef<Path>) -> PathBuf {
         self.path.join(name)
     }
 
-    /// A sub-folder, made if it is not there yet.
+    /// Returns a sub-folder, created if it does not exist.
     pub fn subfolder(&self, name: &str) -> Result<PathBuf, IoError> {
         let path = self.path.join(name);
         match fs::create_dir(&path) {
@@ -118,18 +121,19 @@ impl OutputFolder {
         }
     }
 
-    /// Puts files on record as the run's, before they are written: these names are what a later run may remove if it is to replace this one. `*` stands for
-    /// one or more digits, as in `fields/fields_*.vtu`.
+    /// Records file names in the manifest before the files are written: a later run that overwrites this one
+    /// may remove them. `*` stands for one or more digits, as in `fields/fields_*.vtu`.
     ///
     /// # Errors
-    /// A record that cannot be written.
+    /// Returns an error if the manifest cannot be written.
     pub fn claim(&self, names: &[String]) -> Result<(), IoError> {
         Manifest::add(&self.path, names)
     }
 
     fn lock(path: PathBuf) -> Result<Self, IoError> {
         let lock = path.join(LOCK);
-        // The lock file is never removed: a run that waits at the old file and one that makes a new one would both own the folder.
+        // The lock file is never removed: otherwise a run that waits for the old file and one that creates a
+        // new file would both own the folder.
         let file = OpenOptions::new()
             .write(true)
             .create(true)
@@ -143,7 +147,7 @@ impl OutputFolder {
         }
     }
 
-    /// The folder itself and its sub-folders that exist.
+    /// Returns the folder and its existing sub-folders.
     fn places(&self) -> Vec<PathBuf> {
         let subfolders = SUBFOLDERS.iter().map(|name| self.path.join(name));
         std::iter::once(self.path.clone())
@@ -165,7 +169,7 @@ impl OutputFolder {
                 }
             }
         }
-        // Last: what a kill in between leaves is on record still.
+        // The manifest goes last: if the process is killed before, the remaining files are still recorded.
         match fs::remove_file(self.path.join(MANIFEST)) {
             Err(error) if error.kind() != io::ErrorKind::NotFound => {
                 Err(IoError::writing(&self.path.join(MANIFEST), error))
@@ -175,7 +179,7 @@ impl OutputFolder {
     }
 }
 
-/// Whether a path is a folder itself, and no link to one.
+/// Returns whether a path is a folder and not a link to one.
 fn is_folder(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok_and(|found| found.is_dir())
 }
@@ -191,7 +195,8 @@ fn entries(folder: &Path) -> Result<Vec<Entry>, IoError> {
             .map(|entry| {
                 let entry = entry?;
                 Ok(Entry {
-                    // A name that is no UTF-8 is none of ours; its lossy form keeps it in the count of other files.
+                    // Names that are not UTF-8 are not Pericles files; the lossy form counts them among the
+                    // other files.
                     name: entry.file_name().to_string_lossy().into_owned(),
                     is_file: entry.file_type()?.is_file(),
                 })
@@ -201,10 +206,10 @@ fn entries(folder: &Path) -> Result<Vec<Entry>, IoError> {
     list().map_err(|source| IoError::writing(folder, source))
 }
 
-/// What an earlier run may have written into a folder.
+/// Returns the files that an earlier run may have written into a folder.
 ///
 /// # Errors
-/// A folder that holds other things than a run.
+/// Returns an error if the folder contains anything other than the results of a run.
 fn owned(path: &Path) -> Result<Manifest, IoError> {
     if let Some(manifest) = Manifest::of(path)? {
         return Ok(manifest);
@@ -212,7 +217,8 @@ fn owned(path: &Path) -> Result<Manifest, IoError> {
     let all = entries(path)?;
     let usual = Manifest::usual();
     let locked = all.iter().any(|entry| entry.name == LOCK);
-    // A run of a version without a manifest that died before its first report leaves the lock, sub-folders and tables behind.
+    // A run of a version without a manifest that stopped before its first report leaves the lock, sub-folders
+    // and tables.
     let begun = all.iter().all(|entry| {
         let name = finished_name(&entry.name);
         entry.name == LOCK
@@ -252,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn an_existing_folder_is_refused() {
+    fn an_existing_folder_is_rejected() {
         let place = tempfile::tempdir().unwrap();
         let error = OutputFolder::create(place.path(), false).unwrap_err();
         assert!(matches!(error, IoError::FolderExists { .. }), "{error}");
@@ -260,7 +266,7 @@ mod tests {
     }
 
     #[test]
-    fn missing_parents_are_made() {
+    fn missing_parents_are_created() {
         let place = tempfile::tempdir().unwrap();
         let path = place.path().join("a/b/c");
         let folder = OutputFolder::create(&path, false).unwrap();
@@ -292,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn force_removes_what_is_on_record_and_nothing_else() {
+    fn force_removes_only_recorded_files() {
         let place = tempfile::tempdir().unwrap();
         let path = place.path().join("out");
         let names = [
@@ -322,7 +328,7 @@ mod tests {
     }
 
     #[test]
-    fn results_without_a_manifest_are_told_by_their_report() {
+    fn results_without_a_manifest_are_recognised_by_their_report() {
         let place = tempfile::tempdir().unwrap();
         let path = place.path().join("out");
         let results = [
@@ -337,7 +343,7 @@ mod tests {
         ];
         populate(&path, &results);
         populate(&path, &STRAYS);
-        // The report of another program is no permission.
+        // The report of another program does not permit removal.
         for foreign in [
             "x",
             "{}",
@@ -369,7 +375,7 @@ mod tests {
     }
 
     #[test]
-    fn force_refuses_a_folder_of_other_files() {
+    fn force_rejects_a_folder_of_other_files() {
         let place = tempfile::tempdir().unwrap();
         populate(place.path(), &["thesis.tex", "data.csv", "pictures/me.png"]);
         let error = OutputFolder::create(place.path(), true).unwrap_err();
@@ -379,7 +385,7 @@ mod tests {
     }
 
     #[test]
-    fn force_takes_an_empty_folder_and_one_where_a_run_died_early() {
+    fn force_accepts_an_empty_folder_and_one_of_a_run_that_stopped_early() {
         let place = tempfile::tempdir().unwrap();
         drop(OutputFolder::create(place.path(), true).unwrap());
         assert!(place.path().join(LOCK).exists());
@@ -408,7 +414,7 @@ mod tests {
     }
 
     #[test]
-    fn runs_started_together_get_different_folders() {
+    fn runs_started_simultaneously_get_different_folders() {
         let place = tempfile::tempdir().unwrap();
         let stem = place.path().join("bar.v2");
         let folders: Vec<_> = thread::scope(|scope| {
@@ -428,7 +434,7 @@ mod tests {
     }
 
     #[test]
-    fn opening_what_is_not_there_or_no_folder_fails() {
+    fn opening_a_missing_path_or_a_file_fails() {
         let place = tempfile::tempdir().unwrap();
         let gone = OutputFolder::open(place.path().join("gone"));
         assert!(matches!(gone, Err(IoError::NotFound { .. })));

@@ -1,26 +1,27 @@
-//! The files of Pericles.
+//! File input and output of Pericles.
 //!
 //! | what | for whom | entry |
 //! |---|---|---|
 //! | output folder | one run at a time, locked | [`OutputFolder`] |
 //! | `.vtu` and `.pvd` | ParaView and other viewers | [`VtuFile`], [`PvdSeries`]; read back by [`read_fields`] |
-//! | Exodus II and VTKHDF | ParaView, VisIt, scripts: all outputs in one file | [`observers::ResultFile`] |
+//! | Exodus II and VTKHDF | ParaView, VisIt, scripts; all outputs in one file | [`observers::ResultFile`] |
 //! | `.npz` archives | NumPy | [`NpzWriter`] |
 //! | `.csv` tables | spreadsheets, scripts | [`CsvTable`], [`read_csv`] |
 //! | PNG pictures | people | [`FieldPicture`], [`LineChart`] |
 //! | surfaces: `.obj`, `.ply`, `.stl`, `.off`, `.msh`, `.vtu`, `.vtp` | bodies that are closed surfaces | [`read_surface`] |
 //! | meshes: all of these, Abaqus `.inp`, Exodus II | points and sets from elements, bodies in closed surfaces | [`read_mesh`] |
-//! | text `x y z block volume` | bodies whose points are listed | [`read_points`] |
-//! | text with a line `x y` for each corner | bodies in outlines | [`read_outline`] |
+//! | text `x y z block volume` | bodies given by a list of points | [`read_points`] |
+//! | text with a line `x y` for each corner | plane bodies given by outlines | [`read_outline`] |
 //! | text with a line of numbers for each point | initial states | [`read_rows`] |
 //! | checkpoints | resuming a run bit for bit | [`CheckpointFolder`], [`Container`] |
-//! | cached results | all runs of a user | [`DiskCache`] |
-//! | all of these but checkpoints | a simulation, state by state | [`observers`] |
+//! | cached results | reused by all runs of a user | [`DiskCache`] |
+//! | all of these except checkpoints | output during a simulation | [`observers`] |
 //!
-//! But for the observers, everything takes plain slices in the layout of Pericles, one component after the other (`u[c * n + i]`), in SI units, and
-//! knows nothing of physics. Field files, pictures and checkpoints are written whole or not at all ([`write_atomically`]), and their bytes
-//! depend on the data alone: no clock, path or thread count. What is read is given the `memory` in bytes that its content may take, and is refused
-//! before it takes more. [`IoError`] tells apart what a user can do something about.
+//! Except for the observers, all functions take plain slices in SI units, in the component-major layout of
+//! Pericles (`u[c * n + i]`), and do not depend on the physics. Field files, pictures and checkpoints are
+//! written atomically ([`write_atomically`]), and their bytes depend on the data alone: not on the clock,
+//! path or number of threads. Readers take a `memory` limit in bytes and reject content that would exceed it.
+//! [`IoError`] classifies errors by what the user can do about them.
 //!
 //! ```
 //! use pericles_io::{CheckpointFolder, Column, CsvTable, OutputFolder, PvdSeries, VtkField, VtuFile};
@@ -37,7 +38,7 @@
 //! VtuFile::new(1, &x).field(VtkField::scalar("Damage", &damage)).write(folder.file(&file))?;
 //! series.push(0.0, &file)?;
 //! history.append(&[0.0.into()])?;
-//! history.sync()?; // what a checkpoint remembers must be on the disk
+//! history.sync()?; // what a checkpoint records must be on disk
 //! let checkpoints = CheckpointFolder::new(folder.file("checkpoints"));
 //! # drop(checkpoints);
 //! # Ok(())
@@ -78,7 +79,8 @@ pub use npz::NpzWriter;
 pub use numbering::in_user_order;
 pub use outline::{parse_outline, read_outline};
 pub use picture::{
-    Axis, Backdrop, CellSize, ColourMap, Curve, FieldPicture, LineChart, quantity, write_animation,
+    Axis, Backdrop, CellSize, ColourMap, Curve, Extent, FieldPicture, LineChart, quantity,
+    write_animation,
 };
 pub use points::{parse_points, read_points};
 pub use result_body::{ResultBody, write_error};

@@ -1,6 +1,7 @@
 //! Archives of NumPy arrays: `numpy.load("run.npz")["Damage"]`.
 //!
-//! An archive is a ZIP file of `.npy` files that are stored as they are. Arrays are written part by part, so that none has to fit into memory.
+//! An archive is a ZIP file of uncompressed `.npy` files. Arrays are written in blocks, so that none has to
+//! fit into memory.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
@@ -8,13 +9,13 @@ use std::path::{Path, PathBuf};
 
 use crate::IoError;
 
-/// The largest size and place in a ZIP file without its extensions for large files.
+/// Largest size and offset in a ZIP file without the ZIP64 extensions.
 const MOST: u64 = u32::MAX as u64 - 1;
 
-/// 1980-01-01, the first day of ZIP files: the bytes of an archive depend on its arrays alone.
+/// 1980-01-01, the first date of ZIP files: the bytes of an archive depend on its arrays alone.
 const DATE: u16 = 0x21;
 
-/// An archive that is written array by array.
+/// Writes an archive array by array.
 pub struct NpzWriter {
     path: PathBuf,
     file: BufWriter<File>,
@@ -30,7 +31,7 @@ struct Entry {
     checksum: u32,
 }
 
-/// The array that is being written.
+/// The array being written.
 struct Open {
     name: String,
     place: u64,
@@ -40,10 +41,10 @@ struct Open {
 }
 
 impl NpzWriter {
-    /// Makes an archive; the file must not exist.
+    /// Creates an archive; the file must not exist.
     ///
     /// # Errors
-    /// A file that cannot be made.
+    /// Returns an error if the file cannot be created.
     pub fn create(path: impl AsRef<Path>) -> Result<Self, IoError> {
         let path = path.as_ref();
         let file = File::create_new(path).map_err(|error| IoError::writing(path, error))?;
@@ -55,10 +56,11 @@ impl NpzWriter {
         })
     }
 
-    /// Begins an array of doubles with a name and a shape, whose last index runs fastest.
+    /// Begins an array of doubles with a name and a shape; the last index varies fastest.
     ///
     /// # Errors
-    /// An array before it that is not complete, an archive beyond 4 GiB, a file that cannot be written.
+    /// Returns an error if the previous array is incomplete, the archive exceeds 4 GiB, or the file cannot be
+    /// written.
     pub fn begin(&mut self, name: &str, shape: &[usize]) -> Result<(), IoError> {
         self.check_complete()?;
         let header = header(shape);
@@ -67,7 +69,7 @@ impl NpzWriter {
         let place = self.place()?;
         if place + size > MOST {
             return Err(self.unsuitable(
-                "it would be larger than 4 GiB; export to exodus or vtkhdf, or write fewer fields",
+                "the archive would exceed the limit of 4 GiB; export to exodus or vtkhdf, or write fewer fields",
             ));
         }
         self.write_local(name, size, 0)?;
@@ -84,16 +86,16 @@ impl NpzWriter {
         Ok(())
     }
 
-    /// Adds numbers to the array.
+    /// Appends values to the array.
     ///
     /// # Errors
-    /// More numbers than its shape has, a file that cannot be written.
+    /// Returns an error for more values than the shape allows, or if the file cannot be written.
     pub fn write(&mut self, numbers: &[f64]) -> Result<(), IoError> {
         let Some(mut open) = self.open.take() else {
-            return Err(self.unsuitable("numbers without an array"));
+            return Err(self.unsuitable("values are written before an array is begun"));
         };
         let Some(left) = open.left.checked_sub(numbers.len() as u64) else {
-            return Err(self.unsuitable("more numbers than the shape of an array has"));
+            return Err(self.unsuitable("more values than the shape of the array allows"));
         };
         open.left = left;
         const BLOCK: usize = 8192;
@@ -120,10 +122,10 @@ impl NpzWriter {
         Ok(())
     }
 
-    /// Ends the archive.
+    /// Finishes the archive.
     ///
     /// # Errors
-    /// An array that is not complete, a file that cannot be written.
+    /// Returns an error if an array is incomplete or the file cannot be written.
     pub fn finish(mut self) -> Result<(), IoError> {
         self.check_complete()?;
         let begin = self.place()?;
@@ -135,7 +137,7 @@ impl NpzWriter {
             record.extend((entry.size as u32).to_le_bytes());
             let name = file_name(&entry.name);
             record.extend((name.len() as u16).to_le_bytes());
-            // No extra field and comment, first disk, no attributes.
+            // No extra field or comment, first disk, no attributes.
             record.extend([0; 12]);
             record.extend((entry.place as u32).to_le_bytes());
             record.extend(name.as_bytes());
@@ -158,14 +160,17 @@ impl NpzWriter {
     fn check_complete(&self) -> Result<(), IoError> {
         match &self.open {
             Some(open) => {
-                let reason = format!("the array {:?} lacks {} numbers", open.name, open.left);
+                let reason = format!(
+                    "the array {:?} is incomplete: {} values are missing",
+                    open.name, open.left
+                );
                 Err(self.unsuitable(&reason))
             }
             None => Ok(()),
         }
     }
 
-    /// The header of a file in the archive.
+    /// Writes the local header of a file in the archive.
     fn write_local(&mut self, name: &str, size: u64, checksum: u32) -> Result<(), IoError> {
         let name = file_name(name);
         let mut record = b"PK\x03\x04\x14\0\0\0\0\0\0\0".to_vec();
@@ -208,7 +213,8 @@ fn file_name(name: &str) -> String {
     format!("{name}.npy")
 }
 
-/// The header of a `.npy` file of version 1 with little-endian doubles, a multiple of 64 bytes long.
+/// Returns the header of a `.npy` file, version 1, for little-endian doubles; its length is a multiple of 64
+/// bytes.
 fn header(shape: &[usize]) -> Vec<u8> {
     let sides: String = shape.iter().map(|n| format!("{n},")).collect();
     let mut text =
@@ -227,7 +233,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn arrays_lie_in_the_archive_where_its_directory_says() {
+    fn arrays_are_at_the_offsets_given_by_the_directory() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.npz");
         let mut archive = NpzWriter::create(&path).unwrap();

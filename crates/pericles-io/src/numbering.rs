@@ -1,22 +1,22 @@
-//! Numbers of points in files.
+//! Numbering of points in files.
 
 use std::borrow::Cow;
 
 use pericles::space::PointCloud;
 
-/// The way from the cloud's order of points to the user's; none if they are the same.
+/// Mapping from the point order of the cloud to the user's order; `None` if they are equal.
 #[derive(Debug, Clone)]
 pub(crate) struct Numbering(Option<Vec<usize>>);
 
 impl Numbering {
-    /// That of a cloud.
+    /// Returns the numbering of a cloud.
     pub(crate) fn of(cloud: &PointCloud) -> Self {
         let numbers: Vec<usize> = (0..cloud.len()).map(|i| cloud.user_number(i)).collect();
         let same = numbers.iter().enumerate().all(|(i, &number)| i == number);
         Self((!same).then_some(numbers))
     }
 
-    /// The user's number of a point.
+    /// Returns the user's number of a point.
     pub(crate) fn number(&self, point: u32) -> u32 {
         match &self.0 {
             None => point,
@@ -24,7 +24,7 @@ impl Numbering {
         }
     }
 
-    /// A component-major array in the user's order.
+    /// Reorders a component-major array into the user's order.
     pub(crate) fn apply<'a>(&self, array: &'a [f64]) -> Cow<'a, [f64]> {
         let Some(numbers) = &self.0 else {
             return Cow::Borrowed(array);
@@ -40,7 +40,7 @@ impl Numbering {
     }
 }
 
-/// A component-major array on the points of a cloud in the user's order of points.
+/// Returns a component-major array of a cloud in the user's order of points.
 pub fn in_user_order<'a>(cloud: &PointCloud, array: &'a [f64]) -> Cow<'a, [f64]> {
     Numbering::of(cloud).apply(array)
 }

@@ -1,4 +1,4 @@
-//! Outlines from text: a line `x y` for each corner, a blank line or `#` between polygons.
+//! Reading of outlines from text: a line `x y` for each corner, a blank line or `#` between polygons.
 
 use std::path::Path;
 
@@ -6,21 +6,24 @@ use crate::TextError;
 use crate::points::words;
 use crate::whole::read_whole;
 
-/// Reads the polygons of an outline, in the file's unit of length.
+/// Reads the polygons of an outline, in the length unit of the file.
 ///
 /// # Errors
-/// A file that cannot be read or needs more than `memory` bytes; the first line that is not two finite numbers; a file without corners.
+/// Returns an error if the file cannot be read or exceeds `memory` bytes, for the first line that is not two
+/// finite numbers, and for a file without corners.
 pub fn read_outline(path: impl AsRef<Path>, memory: u64) -> Result<Vec<Vec<[f64; 2]>>, TextError> {
-    /// A corner takes sixteen bytes and has at least four characters; a list that grows has room for twice its length.
+    /// A corner takes 16 bytes and at least four characters; a growing list has capacity for up to twice its
+    /// length.
     const EXPANSION: u64 = 9;
     let path = path.as_ref();
     parse_outline(path, &read_whole(path, EXPANSION, memory)?)
 }
 
-/// The outline in the content of a file, which messages call by this name. A last corner equal to the first one is left out.
+/// Parses the content of an outline file; `name` is used in messages. A last corner equal to the first one is
+/// omitted.
 ///
 /// # Errors
-/// As [`read_outline`], but for a file that cannot be read.
+/// As [`read_outline`], except for errors of reading the file.
 pub fn parse_outline(
     name: impl AsRef<Path>,
     content: &[u8],
@@ -30,8 +33,8 @@ pub fn parse_outline(
     let mut is_open = false;
     for (k, line) in content.split(|&byte| byte == b'\n').enumerate() {
         let refused = |reason: String| TextError::line(&name, k + 1, reason);
-        let line = std::str::from_utf8(line)
-            .map_err(|_| refused("the line is not text in UTF-8".into()))?;
+        let line =
+            std::str::from_utf8(line).map_err(|_| refused("the line is not UTF-8 text".into()))?;
         let words = words(line);
         if words.is_empty() {
             is_open = false;
@@ -47,7 +50,7 @@ pub fn parse_outline(
             _ => {
                 let line = line.trim();
                 return Err(refused(format!(
-                    "`{line}` is not a corner; allowed: two finite numbers `x y`"
+                    "`{line}` is not a corner; expected two finite numbers `x y`"
                 )));
             }
         };
@@ -65,7 +68,7 @@ pub fn parse_outline(
     match polygons.is_empty() {
         true => Err(TextError::whole(
             &name,
-            "no corners; an outline has a line `x y` for each, and blank lines between polygons",
+            "no corners; write one line `x y` for each corner and a blank line between polygons",
         )),
         false => Ok(polygons),
     }
@@ -76,7 +79,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn blank_lines_divide_polygons() {
+    fn blank_lines_separate_polygons() {
         let text = b"# a frame\n0 0\n4, 0\n4 3\n0 3 # last\n0 0\n\n1 1\n2 1\n2 2\n";
         let polygons = parse_outline("frame.txt", text).unwrap();
         assert_eq!(polygons.len(), 2);
@@ -85,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn lines_that_are_no_corners_are_refused_with_their_place() {
+    fn lines_that_are_not_corners_are_reported_with_their_location() {
         for (text, place) in [
             ("0 0\n1 2 3\n", "frame.txt:2: `1 2 3` is not a corner"),
             ("0 0\n\n1 x\n", "frame.txt:3:"),

@@ -1,13 +1,14 @@
-//! Clouds of points from text: `x y z block volume`, a line for each point.
+//! Reading of points from text: one line `x y z block volume` per point.
 //!
 //! | line | meaning |
 //! |---|---|
-//! | `# …`, `! …`, blank | nothing; what follows `#` or `!` is a comment anywhere |
-//! | `header: x y block_id volume`, `x, y, z, block, volume` | names of the columns, in any order; optional, before the points |
+//! | `# …`, `! …`, blank | ignored; `#` and `!` begin a comment anywhere in a line |
+//! | `header: x y block_id volume`, `x, y, z, block, volume` | column names, in any order; optional, before the points |
 //! | `0.5 0.0 0.0 1 1e-9`, `0.5, 0, 0, 1, 1e-9` | a point; numbers are separated by commas or blanks |
 //!
-//! Without a header the columns are `x y z block volume`, or, for bodies of fewer dimensions, also `x y block volume` and `x block volume`. Lengths are in m,
-//! volumes in m³. This is what PeriLab and Peridigm write.
+//! Without a header the columns are `x y z block volume`, or, for bodies of lower dimension, also
+//! `x y block volume` and `x block volume`. Lengths are in m, volumes in m³. PeriLab and Peridigm write this
+//! format.
 
 use std::path::Path;
 
@@ -16,26 +17,28 @@ use pericles::space::ListedPoints;
 use crate::TextError;
 use crate::whole::read_whole;
 
-/// Reads the points of a body of this dimension. Coordinates beyond it must be the same for all points; the body does not use them.
+/// Reads the points of a body of the given dimension. Further coordinates are not used; they must be equal
+/// for all points.
 ///
 /// # Errors
-/// A file that cannot be read, needs more than `memory` bytes or holds no point; the first line that is wrong, with what is allowed there.
+/// Returns an error if the file cannot be read, exceeds `memory` bytes or contains no points, and for the
+/// first wrong line, with the allowed values.
 pub fn read_points(
     path: impl AsRef<Path>,
     dimension: usize,
     memory: u64,
 ) -> Result<ListedPoints, TextError> {
-    /// A point takes 44 bytes, twice that while the list grows; the shortest line has ten.
+    /// A point takes 44 bytes, up to twice that while the list grows; the shortest line has ten characters.
     const EXPANSION: u64 = 10;
     let path = path.as_ref();
     let bytes = read_whole(path, EXPANSION, memory)?;
     parse_points(path, &bytes, dimension)
 }
 
-/// The points in the content of a file, which messages call by this name.
+/// Parses the content of a list of points; `name` is used in messages.
 ///
 /// # Errors
-/// As [`read_points`], but for a file that cannot be read.
+/// As [`read_points`], except for errors of reading the file.
 pub fn parse_points(
     name: impl AsRef<Path>,
     content: &[u8],
@@ -45,19 +48,19 @@ pub fn parse_points(
         (Some(format), _) => TextError::whole(
             name,
             format!(
-                "this is a mesh ({format}), not a list of points; write a line `x y z block volume` for each element, with its centre in m and its volume in m³ \
-                 (Python's meshio reads most meshes), or use a closed surface of triangles as shape = \"surface\""
+                "this is a mesh ({format}), not a list of points; write one line `x y z block volume` for each element, with its centre in m and its volume in m³ \
+                 (the Python package meshio reads most meshes), or use shape = \"mesh\" or shape = \"surface\""
             ),
         ),
         (None, Some(Wrong { line, reason })) => TextError::line(name, line, reason),
         (None, None) => TextError::whole(
             name,
-            "it holds no point; each point is a line `x y z block volume`",
+            "no points; write one line `x y z block volume` for each point",
         ),
     })
 }
 
-/// The format of a mesh, by the beginning of its content or the ending of its name.
+/// Recognises a mesh format by the beginning of the content or the file extension.
 fn mesh_format(name: &Path, content: &[u8]) -> Option<&'static str> {
     const BEGINNINGS: [(&[u8], &str); 7] = [
         (b"$MeshFormat", "Gmsh"),
@@ -94,14 +97,14 @@ fn mesh_format(name: &Path, content: &[u8]) -> Option<&'static str> {
     by_content.or(by_name.map(|(_, format)| *format))
 }
 
-/// What is wrong with a line.
+/// An error in a line.
 #[derive(Debug, PartialEq)]
 struct Wrong {
     line: usize,
     reason: String,
 }
 
-/// What a column holds.
+/// Meaning of a column.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Column {
     Coordinate(usize),
@@ -130,7 +133,7 @@ impl Column {
     }
 }
 
-/// The points of a text; no reason if there are none.
+/// Parses the points of a text; `Err(None)` if there are none.
 fn parse(bytes: &[u8], dimension: usize) -> Result<ListedPoints, Option<Wrong>> {
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
     let mut points = ListedPoints::default();
@@ -143,8 +146,8 @@ fn parse(bytes: &[u8], dimension: usize) -> Result<ListedPoints, Option<Wrong>> 
                 reason,
             })
         };
-        let text = std::str::from_utf8(text)
-            .map_err(|_| wrong("it is no text (UTF-8); points are listed as text".into()))?;
+        let text =
+            std::str::from_utf8(text).map_err(|_| wrong("the line is not UTF-8 text".into()))?;
         let words = words(text);
         if words.is_empty() {
             continue;
@@ -152,7 +155,7 @@ fn parse(bytes: &[u8], dimension: usize) -> Result<ListedPoints, Option<Wrong>> 
         if is_header(&words) {
             if columns.is_some() {
                 return Err(wrong(format!(
-                    "`{}` where a number is needed: names of columns stand before the points",
+                    "`{}` is not a number; column names are allowed only before the first point",
                     words[0]
                 )));
             }
@@ -175,14 +178,14 @@ fn parse(bytes: &[u8], dimension: usize) -> Result<ListedPoints, Option<Wrong>> 
         Some((first, second)) => Err(Some(Wrong {
             line: lines[second],
             reason: format!(
-                "this point is at the same place as that of line {}",
+                "this point coincides with the point in line {}; remove one of them",
                 lines[first]
             ),
         })),
     }
 }
 
-/// What a line holds besides its comment.
+/// Splits a line into words, without its comment.
 pub(crate) fn words(text: &str) -> Vec<&str> {
     let text = text.split(['#', '!']).next().unwrap_or("");
     text.split(|c: char| c == ',' || c.is_whitespace())
@@ -190,7 +193,7 @@ pub(crate) fn words(text: &str) -> Vec<&str> {
         .collect()
 }
 
-/// Whether a line begins with a name. `nan` and `inf` are meant as numbers.
+/// Returns whether a line begins with a name. `nan` and `inf` count as numbers.
 fn is_header(words: &[&str]) -> bool {
     let first = words[0];
     first.starts_with(|c: char| c.is_alphabetic() || c == '_') && first.parse::<f64>().is_err()
@@ -216,13 +219,13 @@ fn header(words: &[&str], dimension: usize) -> Result<Vec<Column>, String> {
     match needed.into_iter().find(|column| !columns.contains(column)) {
         None => Ok(columns),
         Some(missing) => Err(format!(
-            "the column `{}` is missing, which a body of dimension {dimension} needs; {allowed}",
+            "the column `{}` is missing; a body of dimension {dimension} needs it; {allowed}",
             missing.name()
         )),
     }
 }
 
-/// Columns without a header.
+/// Returns the columns of a line without a header.
 fn columns_of(count: usize, dimension: usize) -> Result<Vec<Column>, String> {
     let coordinates = match count {
         5 => 3,
@@ -234,7 +237,7 @@ fn columns_of(count: usize, dimension: usize) -> Result<Vec<Column>, String> {
                 _ => "",
             };
             return Err(format!(
-                "{count} numbers; allowed: {own}`x y z block volume`, or names of the columns in a line before the points"
+                "{count} numbers; allowed: {own}`x y z block volume`, or a header line that names the columns"
             ));
         }
     };
@@ -246,7 +249,7 @@ fn read_point(words: &[&str], columns: &[Column], points: &mut ListedPoints) -> 
     if words.len() != columns.len() {
         let names: Vec<&str> = columns.iter().map(|column| column.name()).collect();
         return Err(format!(
-            "{} numbers where {} are needed: {}",
+            "{} numbers, expected {}: {}",
             words.len(),
             columns.len(),
             names.join(" ")
@@ -270,7 +273,7 @@ fn read_point(words: &[&str], columns: &[Column], points: &mut ListedPoints) -> 
             {
                 points.blocks.push(number as u32);
             }
-            Column::Block => return refuse("a whole number from 0 on"),
+            Column::Block => return refuse("a whole number, 0 or greater"),
             Column::Volume if number > 0.0 && number.is_finite() => points.volumes.push(number),
             Column::Volume => return refuse("a positive number, in m³"),
         }
@@ -279,7 +282,7 @@ fn read_point(words: &[&str], columns: &[Column], points: &mut ListedPoints) -> 
     Ok(())
 }
 
-/// Refuses coordinates beyond the body's dimension that differ from point to point.
+/// Rejects coordinates beyond the dimension of the body that differ between points.
 fn check_flat(
     points: &ListedPoints,
     dimension: usize,
@@ -293,7 +296,7 @@ fn check_flat(
                 return Err(Some(Wrong {
                     line,
                     reason: format!(
-                        "{axis} is {} here and {} in line {}; in a body of dimension {dimension} all points have the same {axis}",
+                        "{axis} is {} here and {} in line {}; all points of a body of dimension {dimension} must have the same {axis}",
                         place[c], first[c], lines[0]
                     ),
                 }));
@@ -319,7 +322,7 @@ mod tests {
     }
 
     #[test]
-    fn the_forms_of_other_codes_are_one_cloud() {
+    fn files_of_peridigm_and_perilab_give_the_same_points() {
         let peridigm = "# x y z block volume\n0.5 0.0 0.25 1 1.0e-3\n1.5 0.0 0.25 2 2.0e-3\n";
         let points = read(peridigm, 3);
         assert_eq!(points.positions, [[0.5, 0.0, 0.25], [1.5, 0.0, 0.25]]);
@@ -333,24 +336,24 @@ mod tests {
         let plane = read(perilab, 2);
         assert_eq!(plane, read(commas, 2));
         assert_eq!(plane, read("0.5 0 1 1e-3\n1.5\t0\t2\t2e-3", 2));
-        // A third coordinate that is the same everywhere is no third dimension.
+        // A third coordinate with equal values does not add a dimension.
         let flat = read(peridigm, 2);
         assert_eq!(
             flat.cloud(2, 1.0).unwrap().positions(),
             plane.cloud(2, 1.0).unwrap().positions()
         );
-        // It is kept, so that a warning can name it.
+        // It is kept for use in warnings.
         assert_eq!(flat.positions[0][2], 0.25);
     }
 
     #[test]
-    fn what_is_wrong_is_told_with_its_line() {
+    fn errors_are_reported_with_their_line() {
         let cases = [
             (
                 "0 0 0 1 1\n1 0 0 1",
                 3,
                 2,
-                "4 numbers where 5 are needed: x y z block volume",
+                "4 numbers, expected 5: x y z block volume",
             ),
             ("0 0 0\n", 3, 1, "3 numbers; allowed: `x y z block volume`"),
             ("0 0 0\n", 2, 1, "`x y block volume`"),
@@ -392,14 +395,14 @@ mod tests {
                 "0 0 0 1 1\nx y z block volume\n",
                 3,
                 2,
-                "names of columns stand before the points",
+                "column names are allowed only before the first point",
             ),
             ("0 0 1 1 1\n1 0 2 1 1", 2, 2, "z is 2 here and 1 in line 1"),
             (
                 "0 0 0 1 1\n1 0 0 1 1\n# a comment\n0 -0.0 0 1 1",
                 3,
                 4,
-                "same place as that of line 1",
+                "coincides with the point in line 1",
             ),
         ];
         for (text, dimension, line, says) in cases {
@@ -431,7 +434,7 @@ mod tests {
             let says = format!("{name}: this is a mesh ({format}), not a list of points");
             assert!(message.starts_with(&says), "{message}");
         }
-        // A list of points may be called as it likes.
+        // A list of points may have any file extension.
         assert!(parse_points("a.inp", b"0 0 0 1 1\n", 3).is_ok());
     }
 
@@ -452,7 +455,7 @@ mod tests {
             read_points(&path, 3, u64::MAX)
                 .unwrap_err()
                 .to_string()
-                .contains("no point")
+                .contains("no points")
         );
     }
 }

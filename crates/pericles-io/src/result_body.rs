@@ -1,4 +1,4 @@
-//! What files of results say of a body besides its fields.
+//! Description of a body in result files, apart from its fields.
 
 use std::path::Path;
 
@@ -8,26 +8,27 @@ use pericles_mesh::results::{PointList, WriteError};
 use crate::IoError;
 use crate::numbering::Numbering;
 
-/// The points of a body in the user's order, with their blocks and sets.
+/// The points of a body in the user's order, with blocks and sets.
 #[derive(Debug, Clone)]
 pub struct ResultBody {
-    /// A title.
+    /// Title.
     pub title: String,
-    /// Number of coordinates of a point.
+    /// Number of coordinates per point.
     pub dimension: usize,
     /// Positions, component-major, m.
     pub positions: Vec<f64>,
     /// Volumes, m³.
     pub volumes: Vec<f64>,
-    /// Blocks: every point is in one.
+    /// Blocks; every point belongs to exactly one.
     pub blocks: Vec<PointList>,
-    /// Sets of points.
+    /// Point sets.
     pub sets: Vec<PointList>,
     pub(crate) numbering: Numbering,
 }
 
 impl ResultBody {
-    /// The body of a cloud with sets by name; `block` gives the number of the block of a point, `name` the name of a block by its number.
+    /// Describes a cloud with named sets; `block` returns the block number of a point, `name` the name of a
+    /// block by its number.
     pub fn new<'a>(
         title: impl Into<String>,
         cloud: &PointCloud,
@@ -70,7 +71,7 @@ impl ResultBody {
     }
 }
 
-/// The error of a file of results that is written.
+/// Converts an error of writing a result file.
 pub fn write_error(path: &Path, error: WriteError) -> IoError {
     match error {
         WriteError::Io(source) => IoError::writing(path, source),

@@ -1,4 +1,5 @@
-//! Tables of numbers from text: a line for each row, `#` or `!` begins a comment, numbers are separated by commas or blanks.
+//! Reading of number tables from text: one line per row, comments after `#` or `!`, numbers separated by
+//! commas or blanks.
 
 use std::path::Path;
 
@@ -6,28 +7,29 @@ use crate::TextError;
 use crate::points::words;
 use crate::whole::read_whole;
 
-/// Reads a table of so many rows, with a column for each name; the numbers row by row.
+/// Reads a table with `rows` rows and one column per name; returns the numbers row by row.
 ///
 /// # Errors
-/// A file that cannot be read or needs more than `memory` bytes; the first line that is not as many finite numbers as there are columns, or a line too
-/// many; too few lines.
+/// Returns an error if the file cannot be read or exceeds `memory` bytes, for the first line that does not
+/// contain one finite number per column, and for too many or too few lines.
 pub fn read_rows(
     path: impl AsRef<Path>,
     rows: usize,
     columns: &[&str],
     memory: u64,
 ) -> Result<Vec<f64>, TextError> {
-    /// A number takes eight bytes and has two characters with the blank behind it; a list that grows has room for twice its length.
+    /// A number takes eight bytes and at least two characters with its separator; a growing list has capacity
+    /// for up to twice its length.
     const EXPANSION: u64 = 9;
     let path = path.as_ref();
     let content = read_whole(path, EXPANSION, memory)?;
     parse_rows(path, &content, rows, columns)
 }
 
-/// The table in the content of a file, which messages call by this name.
+/// Parses the content of a table; `name` is used in messages.
 ///
 /// # Errors
-/// As [`read_rows`], but for a file that cannot be read.
+/// As [`read_rows`], except for errors of reading the file.
 pub fn parse_rows(
     name: impl AsRef<Path>,
     content: &[u8],
@@ -38,21 +40,20 @@ pub fn parse_rows(
     let mut numbers = Vec::new();
     for (k, line) in content.split(|&byte| byte == b'\n').enumerate() {
         let refused = |reason: String| TextError::line(&name, k + 1, reason);
-        let line = std::str::from_utf8(line).map_err(|_| {
-            refused("this is no text in UTF-8; the numbers are given as text".into())
-        })?;
+        let line =
+            std::str::from_utf8(line).map_err(|_| refused("the line is not UTF-8 text".into()))?;
         let words = words(line);
         if words.is_empty() {
             continue;
         }
         if numbers.len() == rows * columns.len() {
             return Err(refused(format!(
-                "a line of numbers beyond the {rows} that are needed"
+                "too many lines of numbers; expected {rows}"
             )));
         }
         if words.len() != columns.len() {
             return Err(refused(format!(
-                "{} numbers where {} are needed: {}",
+                "{} numbers, expected {}: {}",
                 words.len(),
                 columns.len(),
                 columns.join(" ")
@@ -62,7 +63,7 @@ pub fn parse_rows(
             let number = word.parse().ok().filter(|number: &f64| number.is_finite());
             let number = number.ok_or_else(|| {
                 refused(format!(
-                    "{column} is `{word}`; allowed: a finite number (names of columns only behind `#`)"
+                    "{column} is `{word}`; allowed: a finite number (column names only after `#`)"
                 ))
             })?;
             numbers.push(number);
@@ -70,7 +71,7 @@ pub fn parse_rows(
     }
     let found = numbers.len() / columns.len().max(1);
     if found < rows {
-        let reason = format!("lines of numbers: {found}; needed: {rows}");
+        let reason = format!("lines of numbers: {found}; expected: {rows}");
         return Err(TextError::whole(&name, reason));
     }
     Ok(numbers)
@@ -84,34 +85,31 @@ mod tests {
     const COLUMNS: [&str; 2] = ["u_x", "v_x"];
 
     #[test]
-    fn rows_come_in_their_order() {
+    fn rows_are_read_in_order() {
         let text = "\u{feff}# u_x v_x\n1e-3, -2\r\n\n 0.5\t4 ! the end\n";
         let numbers = parse_rows("u.txt", text.as_bytes(), 2, &COLUMNS).unwrap();
         assert_eq!(numbers, [1e-3, -2.0, 0.5, 4.0]);
     }
 
     #[test]
-    fn what_is_wrong_is_reported_with_file_and_line() {
+    fn errors_are_reported_with_file_and_line() {
         let cases: [(&[u8], &str); 7] = [
-            (
-                b"1 2\n3\n",
-                "u.txt:2: 1 numbers where 2 are needed: u_x v_x",
-            ),
-            (b"1 2 3\n", "u.txt:1: 3 numbers where 2 are needed: u_x v_x"),
+            (b"1 2\n3\n", "u.txt:2: 1 numbers, expected 2: u_x v_x"),
+            (b"1 2 3\n", "u.txt:1: 3 numbers, expected 2: u_x v_x"),
             (
                 b"u_x v_x\n1 2\n3 4",
-                "u.txt:1: u_x is `u_x`; allowed: a finite number (names of columns only behind `#`)",
+                "u.txt:1: u_x is `u_x`; allowed: a finite number (column names only after `#`)",
             ),
             (
                 b"1 2\n3 nan\n",
                 "u.txt:2: v_x is `nan`; allowed: a finite number",
             ),
-            (b"1 2\n", "u.txt: lines of numbers: 1; needed: 2"),
+            (b"1 2\n", "u.txt: lines of numbers: 1; expected: 2"),
             (
                 b"1 2\n3 4\n\n5 6",
-                "u.txt:4: a line of numbers beyond the 2 that are needed",
+                "u.txt:4: too many lines of numbers; expected 2",
             ),
-            (b"\xff\xfe", "u.txt:1: this is no text in UTF-8"),
+            (b"\xff\xfe", "u.txt:1: the line is not UTF-8 text"),
         ];
         for (text, says) in cases {
             let error = parse_rows("u.txt", text, 2, &COLUMNS)
@@ -122,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_beyond_the_memory_is_refused() {
+    fn a_file_beyond_the_memory_limit_is_rejected() {
         let place = tempfile::tempdir().unwrap();
         let path = place.path().join("u.txt");
         std::fs::write(&path, "1 2\n3 4\n").unwrap();

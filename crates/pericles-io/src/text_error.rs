@@ -1,32 +1,32 @@
-//! Why a file of text cannot be used.
+//! Errors of reading text files.
 
 use std::path::{Path, PathBuf};
 
 use crate::IoError;
 
-/// Why a file of text gives no points, outline or table.
+/// Errors of reading a list of points, an outline or a table from text.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum TextError {
     /// The file cannot be read.
     #[error(transparent)]
     Io(#[from] IoError),
-    /// A line that holds something else than it should.
+    /// A line with invalid content.
     #[error("{}:{line}: {reason}", path.display())]
     Line {
         /// The file.
         path: PathBuf,
-        /// The line, from 1.
+        /// Line number, from 1.
         line: usize,
-        /// What is wrong, and what is allowed.
+        /// What is wrong and what is allowed.
         reason: String,
     },
-    /// A file that is wrong as a whole.
+    /// A file that is invalid as a whole.
     #[error("{}: {reason}", path.display())]
     Whole {
         /// The file.
         path: PathBuf,
-        /// What is wrong, and what is needed.
+        /// What is wrong and what is needed.
         reason: String,
     },
 }

@@ -1,4 +1,4 @@
-//! Whole files in memory, as far as the memory allows.
+//! Reading of whole files within a memory limit.
 
 use std::fs::File;
 use std::io::Read;
@@ -6,10 +6,11 @@ use std::path::Path;
 
 use crate::IoError;
 
-/// Reads a file whose content will take `expansion` times its size in memory, of which `memory` bytes may be used.
+/// Reads a file whose content will take `expansion` times its size in memory, within a limit of `memory` bytes.
 ///
 /// # Errors
-/// A file that cannot be read, or that needs more memory: by its length before it is read, without one (a pipe, a device) as soon as it has given more.
+/// Returns an error if the file cannot be read or exceeds the limit: by its length before reading, or without
+/// a length (a pipe, a device) while reading.
 pub(crate) fn read_whole(path: &Path, expansion: u64, memory: u64) -> Result<Vec<u8>, IoError> {
     let reading = |source| IoError::reading(path, source);
     let file = File::open(path).map_err(reading)?;
@@ -41,7 +42,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_file_beyond_the_memory_is_refused_by_its_length() {
+    fn a_file_beyond_the_memory_limit_is_rejected_by_its_length() {
         let place = tempfile::tempdir().unwrap();
         let path = place.path().join("points.txt");
         std::fs::write(&path, [b' '; 1000]).unwrap();
@@ -64,7 +65,7 @@ mod tests {
 
     #[cfg(target_os = "linux")]
     #[test]
-    fn a_device_without_end_is_refused() {
+    fn an_endless_device_is_rejected() {
         let error = read_whole(Path::new("/dev/zero"), 1, 100_000).unwrap_err();
         assert!(matches!(error, IoError::TooLarge { .. }), "{error}");
     }

@@ -1,6 +1,7 @@
-//! Text in XML and HTML.
+//! Escaping of text in XML and HTML.
 
-/// Text escaped for attributes and for content between tags in XML and HTML. Control characters, which XML does not allow, are replaced.
+/// Escapes text for attributes and content in XML and HTML. Control characters, which XML does not allow, are
+/// replaced.
 pub fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for character in text.chars() {
@@ -17,9 +18,9 @@ pub fn escaped(text: &str) -> String {
     out
 }
 
-/// The text of an attribute that [`escaped`] made.
+/// Reverses [`escaped`].
 pub(crate) fn unescaped(text: &str) -> String {
-    // The ampersand last: what it stands before must not be taken for another mark.
+    // The ampersand last: otherwise "&amp;lt;" would become "<".
     text.replace("&quot;", "\"")
         .replace("&gt;", ">")
         .replace("&lt;", "<")

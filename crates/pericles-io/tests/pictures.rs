@@ -1,4 +1,4 @@
-//! What the pictures show, read back from their files.
+//! Content of pictures, read back from their files.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -31,7 +31,7 @@ impl Picture {
         [self.rgb[at], self.rgb[at + 1], self.rgb[at + 2]]
     }
 
-    /// Width and height of the box around the pixels of a colour, left of column `right`.
+    /// Width and height of the bounding box of a colour, left of column `right`.
     fn extent(&self, colour: [u8; 3], right: usize) -> (usize, usize) {
         let (mut low, mut high) = ((usize::MAX, usize::MAX), (0, 0));
         for j in 0..self.height {
@@ -44,7 +44,7 @@ impl Picture {
         (high.0 - low.0, high.1 - low.1)
     }
 
-    /// Whether nothing touches the border, that is, nothing is cut.
+    /// Whether the border is white, so that nothing is clipped.
     fn border_is_white(&self) -> bool {
         let row = |j| (0..self.width).all(|i| self.at(i, j) == [255; 3]);
         let column = |i| (0..self.height).all(|j| self.at(i, j) == [255; 3]);
@@ -53,7 +53,7 @@ impl Picture {
     }
 }
 
-/// Cell-centred points of a grid, x of all, then y, then z.
+/// Cell centres of a grid, component-major.
 fn grid<const D: usize>(counts: [usize; D], edge: f64) -> Vec<f64> {
     let n: usize = counts.iter().product();
     (0..D)
@@ -78,10 +78,10 @@ fn draw_chart(chart: &LineChart) -> Picture {
     Picture::read(&path)
 }
 
-const BAR: usize = 1095; // everything right of it may belong to the colour bar
+const BAR: usize = 1095; // pixels to the right may belong to the colour bar
 
 #[test]
-fn a_plate_is_closed_true_to_scale_and_coloured_by_its_values() {
+fn a_plate_is_drawn_without_gaps_to_scale_and_coloured_by_its_values() {
     let x = grid([40, 20], 1e-3);
     let values: Vec<f64> = (0..800)
         .map(|i| if i % 40 < 20 { 0.25 } else { 0.75 })
@@ -97,7 +97,7 @@ fn a_plate_is_closed_true_to_scale_and_coloured_by_its_values() {
     );
     let (w1, h1) = picture.extent(left, BAR);
     let (w2, h2) = picture.extent(right, BAR);
-    // each half is a square, and closed
+    // each half is a square without gaps
     assert!(
         w1.abs_diff(h1) <= 3 && w2.abs_diff(h2) <= 3,
         "{w1} {h1} {w2} {h2}"
@@ -139,7 +139,7 @@ fn an_open_crack_is_white() {
     let (nx, ny) = (30, 20);
     let x = grid([nx, ny], 1e-3);
     let n = nx * ny;
-    // the upper half moves up by a tenth of a cell: twenty times enlarged, by two cells
+    // the upper half moves up by a tenth of a cell: magnified by twenty, by two cells
     let u: Vec<f64> = (0..2 * n)
         .map(|k| if k >= n + n / 2 { 1e-4 } else { 0.0 })
         .collect();
@@ -154,7 +154,7 @@ fn an_open_crack_is_white() {
             .iter()
             .filter(|&&c| c == [255; 3])
             .count();
-        white as f64 * 22.0 / (last - first) as f64 // in cells: 20 and the opening
+        white as f64 * 22.0 / (last - first) as f64 // in cells: 20 plus the opening
     };
     assert_eq!(gap(&draw(&plain)), 0.0);
     let open = gap(&draw(&plain.clone().displacement(&u, 20.0)));
@@ -162,7 +162,7 @@ fn an_open_crack_is_white() {
 }
 
 #[test]
-fn points_without_a_value_are_grey_and_lost_points_are_left_out() {
+fn points_without_a_value_are_grey_and_points_at_infinity_are_omitted() {
     let mut x = grid([10, 10], 1.0);
     let mut values = vec![0.5; 100];
     values[..50].fill(f64::NAN);
@@ -173,7 +173,7 @@ fn points_without_a_value_are_grey_and_lost_points_are_left_out() {
         let pixels = (0..picture.height).flat_map(|j| (0..BAR).map(move |i| (i, j)));
         pixels.filter(|&(i, j)| picture.at(i, j) == colour).count() as f64
     };
-    // one of the 50 upper points is lost
+    // one of the 50 upper points is not drawn
     assert!((count(green) / count(grey) - 0.98).abs() < 0.01);
 
     let nowhere = vec![f64::NAN; 200];
@@ -185,8 +185,8 @@ fn points_without_a_value_are_grey_and_lost_points_are_left_out() {
 }
 
 #[test]
-fn a_solid_shows_its_near_side_true_to_scale() {
-    // 20 × 6 × 10 cells; the layer in front (small y) has another value than the rest
+fn a_solid_shows_its_front_side_to_scale() {
+    // 20 × 6 × 10 cells; the layer in front (small y) has a different value
     let x = grid([20, 6, 10], 1.0);
     let n = 1200;
     let values: Vec<f64> = x[n..2 * n]
@@ -214,8 +214,8 @@ fn a_solid_shows_its_near_side_true_to_scale() {
 }
 
 #[test]
-fn nothing_is_cut_for_any_size_and_shape_of_body() {
-    let long = "A rather long title that nobody would give to a picture, but who knows what a deck is called one day";
+fn nothing_is_clipped_for_any_size_and_shape_of_body() {
+    let long = "A very long title of a picture, longer than any title that is expected in practice, to test that it fits";
     for counts in [[1, 1], [200, 2], [2, 200], [30, 30]] {
         for edge in [3e-9, 0.7e-3, 123.0] {
             let x = grid(counts, edge);
@@ -272,7 +272,7 @@ fn nothing_is_cut_for_any_size_and_shape_of_body() {
 }
 
 #[test]
-fn a_bar_is_drawn_over_its_length_in_any_order_of_points() {
+fn the_curve_of_a_bar_does_not_depend_on_the_order_of_points() {
     let x: Vec<f64> = (0..100).map(|i| f64::from((i * 37) % 100) * 1e-3).collect();
     let u: Vec<f64> = x.iter().map(|x| 1e-6 * (60.0 * x).sin()).collect();
     let mixed = FieldPicture::new(1, &x, &u, CellSize::Uniform(1e-3)).label("Displacement", "m");
@@ -287,7 +287,7 @@ fn a_bar_is_drawn_over_its_length_in_any_order_of_points() {
 
 #[test]
 fn a_symmetric_displacement_of_a_bar_is_drawn_symmetrically() {
-    // As large as the hump is wide: over displaced places the curve would lean over.
+    // The displacement is as large as the pulse is wide: over displaced positions the curve would lean over.
     let x: Vec<f64> = (0..101).map(|i| f64::from(i) * 0.1 - 5.0).collect();
     let u: Vec<f64> = x.iter().map(|x| (-x * x).exp()).collect();
     let picture = FieldPicture::new(1, &x, &u, CellSize::Uniform(0.1)).label("Displacement", "m");
@@ -309,7 +309,7 @@ fn equal_data_give_equal_bytes() {
 }
 
 #[test]
-fn a_window_keeps_the_axes_of_a_series() {
+fn a_window_fixes_the_axes_of_a_series() {
     let x = grid([10, 10], 1.0);
     let far: Vec<f64> = vec![30.0; 200];
     let values = vec![0.5; 100];
@@ -320,13 +320,13 @@ fn a_window_keeps_the_axes_of_a_series() {
     assert_eq!((first.width, first.height), (later.width, later.height));
     let colour = ColourMap::Viridis.colour(0.5);
     assert!(first.extent(colour, 900).0 > 100);
-    // flown out of the window: nothing of it is left in the plot, and nothing is drawn beside it
+    // outside the window: nothing is drawn, neither in the plot nor beside it
     assert!((0..later.height).all(|j| (0..900).all(|i| later.at(i, j) != colour)));
     assert!(later.border_is_white());
 }
 
 #[test]
-fn curves_lie_where_their_numbers_say() {
+fn curves_are_drawn_at_their_values() {
     let colour = [200, 0, 0];
     let axes = || {
         LineChart::new(
@@ -349,7 +349,7 @@ fn curves_lie_where_their_numbers_say() {
         "{one} {two} {three}"
     );
 
-    // on a logarithmic axis equal ratios are equal distances
+    // on a logarithmic axis equal ratios have equal distances
     let level = |y: f64| {
         let axes = LineChart::new(
             Axis::new("x", ""),
@@ -362,7 +362,7 @@ fn curves_lie_where_their_numbers_say() {
 }
 
 #[test]
-fn curves_stay_inside_their_axes_and_stop_at_missing_numbers() {
+fn curves_stay_inside_their_axes_and_are_interrupted_at_missing_values() {
     let colour = [200, 0, 0];
     let x: Vec<f64> = (0..=100).map(f64::from).collect();
     let mut y: Vec<f64> = x.iter().map(|x| 50.0 * (x / 5.0).sin()).collect();
@@ -393,7 +393,7 @@ fn curves_stay_inside_their_axes_and_stop_at_missing_numbers() {
         .max()
         .unwrap();
     let whole = inked[inked.len() - 1] - inked[0];
-    // 21 of 100 steps are missing
+    // 21 of 100 values are missing
     assert!(
         (widest as f64 / whole as f64 - 0.21).abs() < 0.01,
         "{widest} {whole}"
@@ -416,7 +416,7 @@ fn an_empty_chart_has_its_axes() {
 }
 
 #[test]
-fn data_that_do_not_fit_are_refused() {
+fn inconsistent_data_are_rejected() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.png");
     let x = grid([4, 4], 1.0);

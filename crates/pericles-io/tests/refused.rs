@@ -1,15 +1,16 @@
-//! Files that no reader may accept: those that claim more than they hold, and what fuzzing once found. Each is refused with a message that names it, and without taking memory for what
-//! it claims. A file that is found to be trouble is put into `tests/refused/`, with the ending of its format.
+//! Files that all readers must reject: those that declare more content than they have, and findings of
+//! fuzzing. Each is rejected with a message that names it, without allocating the declared memory. New
+//! findings are added to `tests/refused/`, with the file extension of their format.
 
 use std::fs;
 use std::path::Path;
 
 use pericles_io::{Container, SURFACE_ENDINGS, parse_fields, parse_points, parse_surface};
 
-/// Bytes that the content of a file may take.
+/// Memory limit for the content of a file, bytes.
 const MEMORY: u64 = 1 << 26;
 
-/// What reading a file says; none if it is accepted.
+/// Returns the error of reading a file; `None` if it is accepted.
 fn refusal(path: &Path) -> Option<String> {
     let content = fs::read(path).unwrap();
     let ending = path.extension().unwrap().to_str().unwrap();
@@ -34,7 +35,7 @@ fn refusal(path: &Path) -> Option<String> {
 }
 
 #[test]
-fn kept_files_are_refused() {
+fn all_files_in_the_folder_are_rejected() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/refused");
     let mut paths: Vec<_> = fs::read_dir(folder)
         .unwrap()

@@ -1,13 +1,15 @@
-//! The force of a surface: a sphere of 10 242 vertices, 6.4 million directed bonds, for each power and instruction set.
+//! Benchmark of the surface force: a sphere with 10 242 vertices and 6.4 million directed bonds, for each power
+//! and instruction set.
 //!
-//! `RAYON_NUM_THREADS=1 cargo bench -p pericles-manifold --bench surface`: CPU time per directed bond, and the rate at which the bonds are read, beside the rate at which
-//! this machine reads as many bytes and does nothing else. All cases are taken in turn, round after round, so that they meet the same load.
+//! `RAYON_NUM_THREADS=1 cargo bench -p pericles-manifold --bench surface` prints the CPU time per directed bond
+//! and the rate at which bonds are read, next to the rate at which this machine reads the same number of bytes
+//! without computing. All cases are timed in turn, round after round, so that they see the same machine load.
 
 use std::hint::black_box;
 use std::sync::Arc;
 use std::time::Instant;
 
-use pericles::operator::{Force, InstructionSet, On};
+use pericles::operator::{Force, InstructionSet, PointSubset};
 use pericles_bench::{cpu_seconds, read};
 use pericles_manifold::force::{DisplacementBond, Exponent, HalfInteger, SurfaceBody};
 use pericles_manifold::geodesic::{GeodesicMethod, geodesic_pairs};
@@ -17,7 +19,7 @@ use rayon::prelude::*;
 
 const ROUNDS: usize = 15;
 
-/// Passes that are timed together: a pass takes some milliseconds, about as long as the clock's step.
+/// Passes timed together; one pass takes a few milliseconds, about the resolution of the clock.
 const PASSES: usize = 10;
 
 struct Case<'a> {
@@ -55,7 +57,7 @@ fn forces<E: Exponent>(body: &SurfaceBody<'_>, exponent: E) -> Vec<Case<'static>
         let entries = 3 * operator.points();
         let u: Vec<f64> = (0..entries).map(|k| (k as f64 * 0.37).sin()).collect();
         let mut out = vec![0.0; entries];
-        let work = move || operator.add_force(0.0, black_box(&u), On::All, &mut out);
+        let work = move || operator.add_force(0.0, black_box(&u), PointSubset::All, &mut out);
         Case::new(format!("p = {}, {}", exponent.p(), set.name()), work)
     };
     let fast = |set: &InstructionSet| *set != InstructionSet::Baseline;
@@ -75,7 +77,7 @@ fn main() {
         p: 2.0,
         horizon: 0.5,
         bond: SurfaceBond::Displacement,
-        self_cell: false,
+        self_interaction: false,
         critical_stretch: f64::INFINITY,
     };
     let body = SurfaceBody {
@@ -90,7 +92,7 @@ fn main() {
     let bytes = 12.0 * bonds;
     let numbers = vec![1.0_f64; (bytes / 8.0) as usize];
     let set = InstructionSet::detect();
-    let mut cases = vec![Case::new("reading 12 bytes a bond".into(), || {
+    let mut cases = vec![Case::new("read only, 12 bytes per bond".into(), || {
         let parts = black_box(&numbers).par_chunks(1 << 16);
         black_box(parts.map(|part| read(set, part)).sum::<f64>());
     })];

@@ -1,26 +1,30 @@
-//! The bound of the energy of a body under loads that change.
+//! Energy bound of a body under time-dependent loads.
 
 use pericles::observe::Snapshot;
 
-/// e(t) ≤ e(0) exp(νt) + 1/(2ν) ∫₀ᵗ exp(ν(t−s)) ‖b(s)‖² ds with ‖b‖² = Σ V |b|²/ρ (W): what kinetic plus elastic energy e (J) cannot exceed, for any rate ν > 0 (1/s).
+/// Upper bound of kinetic plus elastic energy, for any rate ν > 0 (1/s):
+/// e(t) ≤ e(0) exp(νt) + 1/(2ν) ∫₀ᵗ exp(ν(t−s)) ‖b(s)‖² ds, where e is the energy (J) and ‖b‖² = Σ V |b|²/ρ
+/// (W).
 ///
-/// From de/dt = Σ V b·v ≤ ‖b‖²/(2ν) + ν e_kin and Gronwall's lemma. It holds for any elastic forces, breaking bonds and fixed supports; moving supports do work that it does not know. A scheme
-/// that breaks it makes energy. The bound is least for ν of about one over the time that has passed. The integral is Gauss's rule with three nodes between the states that are shown, so that jumps of
-/// a load should be rare between them.
+/// Derivation: de/dt = Σ V b·v ≤ ‖b‖²/(2ν) + ν e_kin, then Gronwall's lemma. The bound holds for any elastic
+/// force, breaking bonds and fixed supports; the work of moving supports is not included. A scheme that
+/// violates it gains spurious energy. The bound is tightest for ν of about 1/t. The integral is evaluated by
+/// three-point Gauss quadrature between the observed states, so jumps of the load between them should be rare.
 ///
-/// Source: the energy inequality of Coclite, Fanizzi, Lopez, Maddalena & Pellegrino, Appl. Numer. Math. 155 (2020), whose left side carries a further external term.
+/// Source: the energy inequality of Coclite, Fanizzi, Lopez, Maddalena & Pellegrino, Appl. Numer. Math. 155
+/// (2020), whose left side has an additional external term.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EnergyInequality {
     rate: f64,
-    /// Time of the last state, s; none before the first.
+    /// Time of the last state, s; `None` before the first.
     last: Option<f64>,
-    /// ∫ exp(ν(t−s)) ‖b‖² ds so far, J.
+    /// Accumulated ∫ exp(ν(t−s)) ‖b‖² ds, J.
     forced: f64,
     load: Vec<f64>,
 }
 
 impl EnergyInequality {
-    /// The bound for a rate ν, 1/s.
+    /// Creates the bound for a rate ν, 1/s.
     pub fn new(rate: f64) -> Self {
         Self {
             rate,
@@ -30,7 +34,7 @@ impl EnergyInequality {
         }
     }
 
-    /// The bound at a state, later than the one before, J.
+    /// Returns the bound at a state, J. States must be passed in order of time.
     pub fn bound(&mut self, snapshot: &Snapshot<'_>) -> f64 {
         let t = snapshot.state().t;
         if let Some(before) = self.last {
@@ -64,7 +68,7 @@ impl EnergyInequality {
 }
 
 pericles::saved! {
-    impl Saved for EnergyInequality {
+    impl Checkpointed for EnergyInequality {
         last, forced: array("observer/energy-inequality"),
         rate: fixed,
         load: scratch,

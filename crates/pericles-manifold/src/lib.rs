@@ -1,12 +1,12 @@
-//! Nonlinear peridynamics on closed surfaces.
+//! Nonlinear peridynamics on closed surfaces (2-manifolds).
 //!
 //! * [`surface`] – closed triangulated surfaces: shapes, checks, areas, order along a curve.
 //! * [`geodesic`] – distances along surfaces up to a horizon.
 //! * [`PowerMaterial`] – the pair law and its constants.
 //! * [`force`] – the force operator: power-law bonds over geodesic or Euclidean balls.
-//! * [`SurfaceMeasure`], [`EnergyInequality`] – what is measured of such bodies.
+//! * [`SurfaceMeasure`], [`EnergyInequality`] – quantities measured on such bodies.
 //!
-//! The crate uses only what the engine, [`pericles`], exports.
+//! The crate uses only the public interface of the engine, [`pericles`].
 
 mod energy_inequality;
 pub mod force;

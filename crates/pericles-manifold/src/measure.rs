@@ -1,4 +1,4 @@
-//! What can be read off a surface in motion.
+//! Quantities measured on a moving surface.
 
 use std::sync::Arc;
 
@@ -6,7 +6,7 @@ use crate::surface::Surface;
 use pericles::observe::{Field, Snapshot};
 use pericles::space::Point;
 
-/// Reads stretch, turned triangles and concentrations of energy off a surface.
+/// Measures stretch, inverted triangles and energy concentrations of a surface.
 #[derive(Debug, Clone)]
 pub struct SurfaceMeasure {
     surface: Arc<Surface>,
@@ -14,41 +14,41 @@ pub struct SurfaceMeasure {
     edges: Vec<[u32; 2]>,
 }
 
-/// One reading.
+/// Measured quantities of one state.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SurfaceReading {
-    /// S/S₀ − 1, with S the area of the triangles as they are deformed.
+    /// Relative change of area S/S₀ − 1, with S the area of the deformed triangles.
     pub stretch: f64,
-    /// Triangles whose normal has turned by more than a right angle.
+    /// Number of triangles whose normal has turned by more than a right angle.
     pub inverted_triangles: usize,
-    /// Edges longer than twice their length at rest.
+    /// Number of edges longer than twice their reference length.
     pub overstretched_edges: usize,
-    /// Largest elastic energy density over its mean.
+    /// Largest elastic energy density divided by the mean.
     pub localisation: f64,
-    /// Share of the elastic energy held by the 2 % of vertices with the highest densities.
+    /// Fraction of the elastic energy in the 2 % of vertices with the highest densities.
     pub top_share: f64,
-    /// Where energy gathers, the largest area first.
+    /// Zones of concentrated energy, in descending order of area.
     pub zones: Vec<EnergyZone>,
 }
 
-/// Vertices joined by edges whose elastic energy density is beyond eight times the mean over the area.
+/// Connected vertices whose elastic energy density exceeds eight times the mean over the area.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EnergyZone {
-    /// Vertices.
+    /// Number of vertices.
     pub vertices: usize,
     /// Their area, m².
     pub area: f64,
-    /// Their centre at rest, m.
+    /// Their centre in the reference configuration, m.
     pub centre: Point,
 }
 
-/// Energy density over the mean that makes a zone.
+/// Ratio of energy density to the mean that defines a zone.
 const CONCENTRATED: f64 = 8.0;
-/// Part of the vertices counted as the top.
+/// Fraction of the vertices counted as the top.
 const TOP: f64 = 0.02;
 
 impl SurfaceMeasure {
-    /// The measure of a surface whose vertices are a body's points.
+    /// Creates the measure of a surface whose vertices are a body's points.
     pub fn new(surface: Arc<Surface>) -> Self {
         Self {
             area: surface.area(),
@@ -62,7 +62,7 @@ impl SurfaceMeasure {
         &self.surface
     }
 
-    /// Reads a state.
+    /// Measures a state.
     pub fn read(&self, snapshot: &Snapshot<'_>) -> SurfaceReading {
         let u = &snapshot.state().u;
         let areas = snapshot.system().cloud().volumes();
@@ -78,7 +78,7 @@ impl SurfaceMeasure {
         }
     }
 
-    /// S/S₀ − 1 at a displacement.
+    /// Returns S/S₀ − 1 for a displacement.
     pub fn stretch(&self, u: &[f64]) -> f64 {
         let area: f64 = self
             .surface
@@ -127,7 +127,7 @@ impl SurfaceMeasure {
         let total: f64 = energy.iter().zip(areas).map(|(e, a)| e * a).sum();
         let mean = total / areas.iter().sum::<f64>();
         let hot = |i: u32| energy[i as usize] > CONCENTRATED * mean;
-        // The root of each vertex's zone, the lowest of its vertices.
+        // Root of each vertex's zone: the lowest-numbered vertex.
         let mut root: Vec<u32> = (0..energy.len() as u32).collect();
         for &[a, b] in self.edges.iter().filter(|&&[a, b]| hot(a) && hot(b)) {
             let (a, b) = (find(&mut root, a), find(&mut root, b));
@@ -166,7 +166,7 @@ impl SurfaceMeasure {
     }
 }
 
-/// Largest over mean, and the share of the top vertices.
+/// Returns largest over mean, and the fraction in the top vertices.
 fn concentration(energy: &[f64], areas: &[f64]) -> (f64, f64) {
     let n = energy.len();
     let mean = energy.iter().sum::<f64>() / n as f64;
@@ -202,14 +202,16 @@ fn norm(a: Point) -> f64 {
     (a[0] * a[0] + a[1] * a[1] + a[2] * a[2]).sqrt()
 }
 
-/// √E(0) + ∫ ‖b‖ ds/√(2ρ) − √E(t), J^½, with ‖b‖² = Σ A |b|² and ρ the lowest density: never negative for an exact solution without supports, since
-/// d√E/dt = (b, u_t)/(2√E) ≤ ‖b‖/√(2ρ) (Coclite, Coclite, Maddalena, Politi 2022, equation 3.3; a 1/2 in place of 1/√(2ρ), as in their 2.11,
-/// is broken by a uniform load on a body at rest). The integral is the trapezoidal rule over the states that are shown.
+/// Margin of the energy estimate √E(0) + ∫ ‖b‖ ds/√(2ρ) − √E(t), J^½, with ‖b‖² = Σ A |b|² and ρ the lowest
+/// density. It is never negative for an exact solution without supports, since d√E/dt = (b, u_t)/(2√E) ≤
+/// ‖b‖/√(2ρ) (Coclite, Coclite, Maddalena, Politi 2022, equation 3.3; with 1/2 in place of 1/√(2ρ), as in their
+/// 2.11, a uniform load on a body at rest violates it). The integral is computed by the trapezoidal rule over
+/// the observed states.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct EnergyBound {
-    /// ∫ ‖b‖ ds so far.
+    /// Accumulated ∫ ‖b‖ ds.
     pub impulse: f64,
-    /// The last state: time and ‖b‖.
+    /// Time and ‖b‖ of the last state.
     pub last: Option<(f64, f64)>,
 }
 
@@ -218,7 +220,7 @@ pericles::saved! {
 }
 
 impl EnergyBound {
-    /// The margin at a state, later than the one before.
+    /// Returns the margin at a state. States must be passed in order of time.
     pub fn margin(&mut self, snapshot: &Snapshot<'_>) -> f64 {
         let (system, t) = (snapshot.system(), snapshot.state().t);
         let n = system.points();

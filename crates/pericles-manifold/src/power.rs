@@ -1,19 +1,20 @@
-//! The material of a surface: bonds whose force is a power of the relative displacement.
+//! Material of a surface: bonds whose force is a power of the relative displacement.
 
 use pericles::{PericlesError, Result, positive};
 
-/// What the force of a bond follows.
+/// Quantity that the bond force follows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum SurfaceBond {
-    /// The difference of displacements: rigid rotations cost energy, as in the paper.
+    /// The difference of displacements, as in the paper; rigid rotations change the energy.
     #[default]
     Displacement,
-    /// The change of the chord's length: indifferent to rigid motions.
+    /// The elongation of the chord; invariant under rigid motions.
     Chord,
 }
 
-/// ρ u_tt = κ ∫ |η|^(p−2) η / d^(2+αp) dA′ + b over the points nearer than δ along the surface, with η = u′ − u
-/// (Coclite, Coclite, Maddalena, Politi 2022), per area: κ in N/m^(2+p(1−α)) … such that the result is in N/m².
+/// Constants of ρ u_tt = κ ∫ |η|^(p−2) η / d^(2+αp) dA′ + b over the points within the geodesic distance δ,
+/// with η = u′ − u (Coclite, Coclite, Maddalena, Politi 2022). All terms are per area: the unit of κ is such
+/// that the integral is in N/m².
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PowerMaterial {
     /// Mass per area ρ, kg/m².
@@ -22,24 +23,25 @@ pub struct PowerMaterial {
     pub kappa: f64,
     /// α, between 0 and 1.
     pub alpha: f64,
-    /// p, at least 2.
+    /// p ≥ 2.
     pub p: f64,
     /// Horizon δ, m.
     pub horizon: f64,
-    /// What the force follows.
+    /// Quantity that the bond force follows.
     pub bond: SurfaceBond,
-    /// Adds what the sum leaves out: the integral over the disc of the point's own area, to first order in gradients. For p = 2 and
-    /// [`SurfaceBond::Displacement`] only.
-    pub self_cell: bool,
-    /// Largest |η|/d that a bond stands; infinite: bonds never break.
+    /// Adds the self-interaction omitted by the sum: the integral over the disc of the point's own area, to
+    /// first order in gradients. Only for p = 2 with [`SurfaceBond::Displacement`].
+    pub self_interaction: bool,
+    /// Critical stretch: largest |η|/d of an intact bond; infinite if bonds never break.
     pub critical_stretch: f64,
 }
 
 impl PowerMaterial {
-    /// Checks every number.
+    /// Validates all constants.
     ///
     /// # Errors
-    /// α outside (0, 1), p below 2, numbers that are not positive, a self-cell term with p ≠ 2 or another bond.
+    /// α outside (0, 1), p below 2, a value that is not positive, or a self-interaction term with p ≠ 2 or
+    /// another bond law.
     pub fn check(&self) -> Result<()> {
         positive("the density", self.density)?;
         positive("κ", self.kappa)?;
@@ -63,27 +65,27 @@ impl PowerMaterial {
         within(
             "the critical stretch",
             self.critical_stretch,
-            "a positive number, or infinity for bonds that never break",
+            "a positive number, or infinity if bonds never break",
             critical,
         )?;
-        if self.self_cell && (self.p != 2.0 || self.bond != SurfaceBond::Displacement) {
+        if self.self_interaction && (self.p != 2.0 || self.bond != SurfaceBond::Displacement) {
             return Err(PericlesError::OutOfRange {
-                quantity: "p with the self-cell term",
+                quantity: "the exponent p with the self-interaction term",
                 value: self.p,
-                allowed: "2, with the force that follows displacements: the term is a Laplacian",
+                allowed: "p = 2 with the force that follows displacements (the term is a Laplacian)",
             });
         }
         Ok(())
     }
 
-    /// w = κ / d^(2+αp), of a pair at distance d.
+    /// Weight w = κ / d^(2+αp) of a pair at distance d.
     pub fn weight(&self, distance: f64) -> f64 {
         self.kappa / distance.powf(2.0 + self.alpha * self.p)
     }
 
-    /// c = κ π r^(2−2α)/(2 (2−2α)): for p = 2 the integral over a disc of this area, which the sum over other points leaves out, is c Δu to first order in
-    /// gradients, r being the disc's radius.
-    pub fn self_cell_stiffness(&self, area: f64) -> f64 {
+    /// Stiffness c = κ π r^(2−2α)/(2 (2−2α)) of the self-interaction: for p = 2 the integral over a disc of
+    /// this area and radius r, which the sum over other points omits, is c Δu to first order in gradients.
+    pub fn self_interaction_stiffness(&self, area: f64) -> f64 {
         let radius = (area / std::f64::consts::PI).sqrt();
         let exponent = 2.0 - 2.0 * self.alpha;
         self.kappa * std::f64::consts::PI * radius.powf(exponent) / (2.0 * exponent)

@@ -1,8 +1,9 @@
-//! Times as ratios, in alternation with something simple, so that they hold on a machine that does other work as well: `cargo bench -p pericles-mesh`.
+//! Timings as ratios to a simple reference, measured alternately so that they hold on a busy machine:
+//! `cargo bench -p pericles-mesh`.
 //!
-//! | ours | beside it |
+//! | measured | reference |
 //! |---|---|
-//! | filling 200 × 200 × 200 nodes from 327,680 triangles, one thread | the same columns by a plain loop with rounded arithmetic |
+//! | filling 200 × 200 × 200 nodes from 327,680 triangles, one thread | the same columns by a plain loop in floating-point arithmetic |
 //! | an output of 10⁶ points and 7 numbers, Exodus and VTKHDF, single precision | writing the same bytes |
 //!
 //! Readers are compared with meshio by `validation/formats/compare_readers.py`.
@@ -17,7 +18,7 @@ use pericles_mesh::results::{
     ExodusLayout, ExodusWriter, FieldSpec, PointList, VtkHdfLayout, VtkHdfWriter, WriteError,
 };
 
-/// A torus of n × m quadrilaterals, each cut into two triangles.
+/// A torus of n × m quadrilaterals, each split into two triangles.
 fn torus(n: u32, m: u32) -> TriangleSurface {
     let angle = |k: u32, n: u32| 2.0 * std::f64::consts::PI * f64::from(k) / f64::from(n);
     let (mut positions, mut triangles) = (Vec::new(), Vec::new());
@@ -34,7 +35,8 @@ fn torus(n: u32, m: u32) -> TriangleSurface {
     TriangleSurface::new(positions, triangles).expect("a torus is a surface")
 }
 
-/// The number of nodes inside by a plain loop: for each triangle the columns of its box, for each column that it crosses the nodes below. Nodes on edges may be counted wrongly.
+/// Counts the nodes inside by a plain loop: for each triangle the columns in its bounding box, for each
+/// crossed column the nodes below. Nodes on edges may be counted wrongly.
 fn fill_plainly(surface: &TriangleSurface, low: [f64; 3], spacing: [f64; 3], n: usize) -> usize {
     let mut changes = vec![0i32; n * n * (n + 1)];
     let coordinate = |c: usize, k: usize| low[c] + (k as f64 + 0.5) * spacing[c];
@@ -84,7 +86,7 @@ fn seconds(work: impl FnOnce()) -> f64 {
     begin.elapsed().as_secs_f64()
 }
 
-/// Alternates two works; prints the medians and that of the ratios.
+/// Alternates two tasks and prints the median times and the median of their ratios.
 fn compare(name: &str, rounds: usize, mut ours: impl FnMut(), mut plain: impl FnMut()) {
     let median = |mut values: Vec<f64>| {
         values.sort_by(f64::total_cmp);
@@ -95,7 +97,7 @@ fn compare(name: &str, rounds: usize, mut ours: impl FnMut(), mut plain: impl Fn
         .collect();
     let least = |k: usize| times.iter().map(|t| t[k]).fold(f64::INFINITY, f64::min);
     println!(
-        "{name}: {:.0} ms, beside it {:.0} ms (least {:.0} and {:.0}), ratio {:.2} (medians of {rounds} rounds)",
+        "{name}: {:.0} ms, reference {:.0} ms (minimum {:.0} and {:.0}), ratio {:.2} (medians of {rounds} rounds)",
         1e3 * median(times.iter().map(|t| t[0]).collect()),
         1e3 * median(times.iter().map(|t| t[1]).collect()),
         1e3 * least(0),
@@ -118,7 +120,7 @@ fn filling() {
         || exact = one.install(|| fill(&surface, spacing).expect("closed").len()),
         || plain = fill_plainly(&surface, low, spacing, n),
     );
-    println!("  nodes inside: {exact} exactly, {plain} by the plain loop");
+    println!("  nodes inside: {exact} (exact), {plain} (plain loop)");
 }
 
 fn writing(folder: &Path) -> Result<(), WriteError> {
@@ -155,8 +157,8 @@ fn writing(folder: &Path) -> Result<(), WriteError> {
     compare(
         "Exodus, an output of 1e6 points and 7 numbers",
         rounds,
-        || exodus.append(0.0, &[], &values).expect("room on the disk"),
-        || raw.write_all(&bytes).expect("room on the disk"),
+        || exodus.append(0.0, &[], &values).expect("disk space"),
+        || raw.write_all(&bytes).expect("disk space"),
     );
     let vtkhdf = VtkHdfLayout {
         dimension: 3,
@@ -170,8 +172,8 @@ fn writing(folder: &Path) -> Result<(), WriteError> {
     compare(
         "VTKHDF, an output of 1e6 points and 7 numbers",
         rounds,
-        || vtkhdf.append(0.0, &values).expect("room on the disk"),
-        || raw.write_all(&bytes).expect("room on the disk"),
+        || vtkhdf.append(0.0, &values).expect("disk space"),
+        || raw.write_all(&bytes).expect("disk space"),
     );
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! Prints what is in files of meshes: `cargo run --example mesh_info -- FILE …`.
+//! Prints the content of mesh files: `cargo run --example mesh_info -- FILE …`.
 
 use std::path::Path;
 use std::time::Instant;
@@ -6,7 +6,7 @@ use std::time::Instant;
 use pericles_mesh::{Format, PointOptions, Summary};
 
 fn report(path: &Path) -> Result<(), String> {
-    let format = Format::of(path).ok_or("an unknown ending")?;
+    let format = Format::of(path).ok_or("unknown file extension")?;
     let include = |name: &str| {
         std::fs::read(path.with_file_name(name)).map_err(|error| format!("{name}: {error}"))
     };
@@ -33,7 +33,7 @@ fn main() {
     for path in std::env::args().skip(1) {
         println!("{path}");
         if let Err(reason) = report(Path::new(&path)) {
-            println!("  refused: {reason}");
+            println!("  error: {reason}");
         }
     }
 }

@@ -1,7 +1,9 @@
-//! Writes result files of known numbers, for other programs to read: `cargo run --example result_files -- FOLDER`.
+//! Writes result files with known values, to be read by other programs:
+//! `cargo run --example result_files -- FOLDER`.
 //!
-//! Point i of 24 is at (i mod 2, i / 2 mod 3, i / 6) and has the volume 1 + i / 100; output k of 3 is at the time 0.5 k, with the damage i + 100 k and the
-//! displacement (i, 2 i, 3 i + k). `validation/formats/read_results.py` checks what VTK, h5py and netCDF read.
+//! Point i of 24 is at (i mod 2, i / 2 mod 3, i / 6) and has volume 1 + i / 100; output k of 3 is at time 0.5
+//! k, with damage i + 100 k and displacement (i, 2 i, 3 i + k). `validation/formats/read_results.py` checks
+//! the values read by VTK, h5py and netCDF.
 
 use std::path::Path;
 
@@ -45,7 +47,7 @@ fn main() -> Result<(), WriteError> {
             positions: &positions,
             fields: fields.clone(),
             constants: vec![(FieldSpec::new("Volume", 1), &volumes)],
-            // One more than is written, as of a run that was stopped.
+            // One more than is written, as in a run that was stopped.
             outputs: 4,
             is_single,
         };

@@ -15,7 +15,7 @@ fn timed<T>(what: &str, work: impl FnOnce() -> T) -> T {
     result
 }
 
-/// A torus of n × m quadrilaterals, each cut into two triangles.
+/// A torus of n × m quadrilaterals, each split into two triangles.
 fn torus(n: u32, m: u32) -> TriangleSurface {
     let angle = |k: u32, n: u32| 2.0 * std::f64::consts::PI * f64::from(k) / f64::from(n);
     let (mut positions, mut triangles) = (Vec::new(), Vec::new());
@@ -123,6 +123,9 @@ fn main() {
         .chain(&positions[..n])
         .flat_map(|x| (*x as f32).to_le_bytes())
         .collect();
-    timed("the same bytes at once", || std::fs::write(&path, &plain)).expect("a file");
+    timed("the same bytes in one write", || {
+        std::fs::write(&path, &plain)
+    })
+    .expect("a file");
     let _ = std::fs::remove_file(path);
 }

@@ -1,10 +1,12 @@
-//! Kinds of cells, with their corners and facets.
+//! Cell types with their corners and facets.
 //!
-//! Corners run around the bottom, then around the top, as in Gmsh, Abaqus, Exodus and VTK. Facets are numbered as the sides of Exodus II, from 0.
+//! Corners are numbered around the bottom, then around the top, as in Gmsh, Abaqus, Exodus and VTK. Facets
+//! are numbered as the sides of Exodus II, from 0.
 
 use std::fmt;
 
-/// The kind of a cell, by its corners. Cells of second order are cells of these kinds: nodes on edges and faces are not used.
+/// The type of a cell by its corners. Second-order cells belong to these types; their nodes on edges and
+/// faces are not used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum CellKind {
     /// One node.
@@ -27,11 +29,11 @@ pub enum CellKind {
 
 use CellKind::{Hexahedron, Line, Point, Pyramid, Quadrilateral, Tetrahedron, Triangle, Wedge};
 
-/// A facet of a kind: its own kind and its corners among those of the cell.
+/// A facet of a cell type: its own type and its corners among those of the cell.
 pub type Facet = (CellKind, &'static [usize]);
 
 impl CellKind {
-    /// All kinds, by ascending dimension.
+    /// All types, by ascending dimension.
     pub const ALL: [Self; 8] = [
         Point,
         Line,
@@ -43,7 +45,7 @@ impl CellKind {
         Hexahedron,
     ];
 
-    /// The word for so many cells of this kind: "triangle", "triangles".
+    /// Returns the name for `count` cells of this type: "triangle", "triangles".
     pub fn word(self, count: usize) -> &'static str {
         let [one, several] = match self {
             Point => ["point", "points"],
@@ -58,7 +60,7 @@ impl CellKind {
         if count == 1 { one } else { several }
     }
 
-    /// Number of corners.
+    /// Returns the number of corners.
     pub fn corners(self) -> usize {
         match self {
             Point => 1,
@@ -71,7 +73,7 @@ impl CellKind {
         }
     }
 
-    /// 0 of points to 3 of solids.
+    /// Returns the dimension, 0 for points to 3 for solids.
     pub fn dimension(self) -> usize {
         match self {
             Point => 0,
@@ -81,7 +83,7 @@ impl CellKind {
         }
     }
 
-    /// Facets: faces of solids, edges of plane cells, ends of lines.
+    /// Returns the facets: faces of solids, edges of plane cells, ends of lines.
     pub fn facets(self) -> &'static [Facet] {
         match self {
             Point => &[],

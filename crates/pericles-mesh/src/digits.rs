@@ -1,6 +1,6 @@
-//! Numbers and lengths in messages.
+//! Formatting of numbers and lengths in messages.
 
-/// A number with four digits.
+/// Formats a number with four digits.
 pub(crate) fn short(x: f64) -> String {
     if x == 0.0 || (0.99995e-3..1e4).contains(&x.abs()) {
         let digits = 3 - x.abs().max(1e-3).log10().floor() as i32;
@@ -20,7 +20,7 @@ pub(crate) fn short(x: f64) -> String {
     }
 }
 
-/// A place in a plane, given in metres, in the unit that suits its larger coordinate.
+/// Formats a position in a plane, given in metres, in the unit that suits its larger coordinate.
 pub(crate) fn place(at: [f64; 2]) -> String {
     const UNITS: [(&str, f64); 4] = [("km", 1e3), ("m", 1.0), ("mm", 1e-3), ("um", 1e-6)];
     let largest = at[0].abs().max(at[1].abs());
@@ -56,7 +56,7 @@ mod tests {
     }
 
     #[test]
-    fn places_have_the_unit_of_their_largest_coordinate() {
+    fn positions_use_the_unit_of_their_largest_coordinate() {
         assert_eq!(place([5e-4, 1.5e-3]), "x = 0.5 mm, y = 1.5 mm");
         assert_eq!(place([0.0, -12.0]), "x = 0 m, y = -12 m");
         assert_eq!(place([0.0, 0.0]), "x = 0 m, y = 0 m");

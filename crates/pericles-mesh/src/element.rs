@@ -1,25 +1,25 @@
-//! Volume and centroid of an element from its corners.
+//! Volume and centroid of an element.
 //!
-//! Every solid is a brick whose corners may coincide. With two Gauss nodes for each axis, r_c = ±1/√3, x(r) = Σ N_a x_a, N_a = ⅛ Π_c (1 + s_ac r_c) and
-//! J = det ∂x/∂r,
+//! Every solid is a hexahedron whose corners may coincide. With two Gauss points per axis, r_c = ±1/√3, x(r)
+//! = Σ N_a x_a, N_a = ⅛ Π_c (1 + s_ac r_c) and J = det ∂x/∂r,
 //!
 //! V = Σ J, C = Σ J x / V,
 //!
-//! which is exact, for J and x J are polynomials of degree 3 at most in each r_c; bent faces are bilinear. Plane elements are quadrilaterals in the same way,
-//! with ¼ Π (1 + s_ac r_c).
+//! which is exact, because J and x J are polynomials of degree 3 at most in each r_c; non-planar faces are
+//! bilinear. Plane elements are quadrilaterals, treated in the same way with ¼ Π (1 + s_ac r_c).
 
 use crate::cell::CellKind;
 
 /// Volume (or area of plane elements, length of lines) and centroid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measure {
-    /// Volume of solids, area of plane elements, negative if the corners run the other way round.
+    /// Volume of solids, area of plane elements; negative if the corners are ordered in the opposite direction.
     pub volume: f64,
-    /// The centroid.
+    /// Centroid.
     pub centroid: [f64; 3],
 }
 
-/// Corners of the brick that an element is.
+/// Returns the corners of the hexahedron that represents an element.
 fn brick(kind: CellKind) -> Option<[usize; 8]> {
     match kind {
         CellKind::Tetrahedron => Some([0, 1, 2, 2, 3, 3, 3, 3]),
@@ -30,7 +30,7 @@ fn brick(kind: CellKind) -> Option<[usize; 8]> {
     }
 }
 
-/// Signs of the corners of a brick along the axes.
+/// Signs of the corners of a hexahedron along the axes.
 const SIGNS: [[f64; 3]; 8] = [
     [-1.0, -1.0, -1.0],
     [1.0, -1.0, -1.0],
@@ -65,13 +65,13 @@ fn triple(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> f64 {
     dot(a, cross(b, c))
 }
 
-/// The measure of an element with these corners; `None` of kinds without volume or area, and with fewer corners than the kind has.
+/// Returns the measure of an element; `None` for types without volume or area, or with too few corners.
 pub fn measure(kind: CellKind, corners: &[[f64; 3]]) -> Option<Measure> {
     if corners.len() < kind.corners() {
         return None;
     }
     let first = corners[0];
-    // Coordinates relative to a corner: far from the origin no digits are lost.
+    // Coordinates relative to a corner avoid a loss of digits far from the origin.
     let local = |corner: usize| minus(corners[corner], first);
     let (volume, moment) = match kind {
         CellKind::Triangle => quadrilateral([0, 1, 2, 2].map(local)),
@@ -85,7 +85,7 @@ pub fn measure(kind: CellKind, corners: &[[f64; 3]]) -> Option<Measure> {
     })
 }
 
-/// Volume and ∫ x dV of a brick.
+/// Returns volume and ∫ x dV of a hexahedron.
 fn solid(x: [[f64; 3]; 8]) -> (f64, [f64; 3]) {
     let (mut volume, mut moment) = (0.0, [0.0; 3]);
     for node in SIGNS {
@@ -115,7 +115,7 @@ fn solid(x: [[f64; 3]; 8]) -> (f64, [f64; 3]) {
     (volume, moment)
 }
 
-/// Shape functions and their derivatives of a quadrilateral at a Gauss node.
+/// Returns the shape functions of a quadrilateral and their derivatives at a Gauss point.
 fn plane_shapes(node: usize) -> [(f64, f64, f64); 4] {
     let [r, s, _] = SIGNS[node].map(|sign| sign * NODE);
     std::array::from_fn(|corner| {
@@ -125,7 +125,7 @@ fn plane_shapes(node: usize) -> [(f64, f64, f64); 4] {
     })
 }
 
-/// Area and ∫ x dA of a quadrilateral in a plane of constant z.
+/// Returns area and ∫ x dA of a quadrilateral in a plane of constant z.
 fn quadrilateral(x: [[f64; 3]; 4]) -> (f64, [f64; 3]) {
     let (mut area, mut moment) = (0.0, [0.0; 3]);
     for node in 0..4 {
@@ -146,9 +146,11 @@ fn quadrilateral(x: [[f64; 3]; 4]) -> (f64, [f64; 3]) {
     (area, moment)
 }
 
-/// Length of a line, area of a triangle or quadrilateral anywhere in space, never negative; 1 of a point and 0 of solids.
+/// Returns the length of a line or the area of a triangle or quadrilateral in space, never negative; 1 for a
+/// point and 0 for solids.
 ///
-/// The area of a quadrilateral that is not plane is that of the bilinear surface, by two Gauss nodes for each axis.
+/// The area of a non-planar quadrilateral is that of the bilinear surface, integrated with two Gauss points
+/// per axis.
 pub fn facet_measure(kind: CellKind, corners: &[[f64; 3]]) -> f64 {
     let norm = |a: [f64; 3]| dot(a, a).sqrt();
     match (kind, corners) {
@@ -173,7 +175,8 @@ pub fn facet_measure(kind: CellKind, corners: &[[f64; 3]]) -> f64 {
     }
 }
 
-/// The corners that edges lead to from each corner, so that their triple product is positive in an element that is not folded.
+/// Returns the corners connected to each corner by edges, ordered so that their triple product is positive in
+/// a valid element.
 fn neighbours(kind: CellKind) -> &'static [[usize; 3]] {
     match kind {
         CellKind::Tetrahedron => &[[1, 2, 3]],
@@ -200,11 +203,12 @@ fn neighbours(kind: CellKind) -> &'static [[usize; 3]] {
     }
 }
 
-/// Corner products below this part of the largest one count as zero: round-off of a corner whose edges are in one plane.
+/// Triple products below this fraction of the largest one count as zero: round-off of a corner with coplanar
+/// edges.
 const FLAT: f64 = 1e-12;
 
-/// Whether an element is folded: the edges at one corner span a positive volume (or area), those at another a negative one. The Gauss nodes of a brick with
-/// coinciding corners do not show this.
+/// Returns whether an element is folded: the triple product (or area) of the edges is positive at one corner
+/// and negative at another. The Gauss points of a hexahedron with coinciding corners do not detect this.
 pub fn is_folded(kind: CellKind, corners: &[[f64; 3]]) -> bool {
     if corners.len() < kind.corners() {
         return false;

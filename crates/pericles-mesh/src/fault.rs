@@ -1,8 +1,8 @@
-//! What is wrong with the content of a file, and where.
+//! Errors in the content of a file, with their location.
 
 use std::fmt;
 
-/// A place in a file.
+/// A location in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Place {
     /// A line of text, from 1.
@@ -23,17 +23,17 @@ impl fmt::Display for Place {
     }
 }
 
-/// Why the content of a file cannot be used. The name of the file is added by whoever knows it: `{file}{place}: {reason}`.
+/// Error in the content of a file. The caller adds the file name: `{file}{place}: {reason}`.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{}{place}: {reason}", included.as_deref().unwrap_or_default())]
 pub struct Fault {
-    /// The included file in which the fault is, if it is in one.
+    /// The included file that contains the error, if any.
     pub included: Option<String>,
-    /// Where.
+    /// Location.
     pub place: Place,
-    /// What is wrong, and what is allowed.
+    /// What is wrong and what is allowed.
     pub reason: String,
-    /// Bytes that the content would take, where these are more than may be used.
+    /// Memory needed for the content in bytes, if it exceeds the limit.
     pub needed: Option<u64>,
 }
 
@@ -47,22 +47,22 @@ impl Fault {
         }
     }
 
-    /// A fault in a line, from 1.
+    /// Error in a line, from 1.
     pub fn at_line(line: usize, reason: impl Into<String>) -> Self {
         Self::new(Place::Line(line), reason)
     }
 
-    /// A fault at a byte, from 0.
+    /// Error at a byte, from 0.
     pub fn at_byte(byte: usize, reason: impl Into<String>) -> Self {
         Self::new(Place::Byte(byte), reason)
     }
 
-    /// A fault of the file as a whole.
+    /// Error of the file as a whole.
     pub fn of_file(reason: impl Into<String>) -> Self {
         Self::new(Place::File, reason)
     }
 
-    /// Content that would take so many bytes, more than may be used.
+    /// Content that would exceed the memory limit; `needed` in bytes.
     pub fn too_large(needed: u64) -> Self {
         Self {
             needed: Some(needed),

@@ -1,8 +1,9 @@
-//! Meshes and surfaces: read, turned into points with volumes and sets, filled with lattices or random points; results as Exodus II and VTKHDF files.
+//! Meshes and surfaces: reading, points with volumes and sets, filling with lattices or random points, and
+//! result files in Exodus II and VTKHDF.
 //!
-//! | what | entry |
+//! | task | entry |
 //! |---|---|
-//! | a mesh as it is in a file (Gmsh, Abaqus, Exodus II, VTK, STL, OBJ, PLY, OFF) | [`Format::parse`] → [`RawMesh`] |
+//! | mesh of a file (Gmsh, Abaqus, Exodus II, VTK, STL, OBJ, PLY, OFF) | [`Format::parse`] → [`RawMesh`] |
 //! | points with volumes and sets from elements | [`RawMesh::points`] → [`MeshPoints`], [`Summary`] |
 //! | volume and centroid of an element | [`element::measure`] |
 //! | lattices in closed surfaces and outlines | [`fill`] |
@@ -13,7 +14,7 @@
 //! use pericles_mesh::{Format, PointOptions};
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let file = b"*NODE\n1, 0\n2, 10\n3, 0, 10\n4, 0, 0, 10\n*ELEMENT, TYPE=C3D4, ELSET=steel\n1, 1, 2, 3, 4\n";
-//! let mesh = Format::Abaqus.parse(file, 1 << 20, &|name| Err(format!("{name} is not there")))?;
+//! let mesh = Format::Abaqus.parse(file, 1 << 20, &|name| Err(format!("{name} does not exist")))?;
 //! // The file is in millimetres.
 //! let points = mesh.points(&PointOptions { unit: 1e-3, ..Default::default() })?;
 //! assert!((points.volumes[0] - 1e-6 / 6.0).abs() < 1e-20);
@@ -22,7 +23,8 @@
 //! # }
 //! ```
 //!
-//! Positions have three coordinates, plane meshes the same z everywhere. This crate reads no files but writes some: readers take the content of a file.
+//! Positions have three coordinates; plane meshes have constant z. Readers take the content of a file; only
+//! result files are written by this crate.
 
 mod cell;
 mod digits;

@@ -1,36 +1,37 @@
-//! A mesh as it is in a file.
+//! Mesh of a file, unchanged.
 
 use std::collections::BTreeMap;
 
 use crate::cell::CellKind;
 
-/// Cells of any kinds, in the order of the file.
+/// Cells of any type, in the order of the file.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Cells {
     kinds: Vec<CellKind>,
     ends: Vec<usize>,
     corners: Vec<u32>,
-    /// The file's own numbers; empty as long as they are 1, 2, 3, ….
+    /// Numbers in the file; empty while they are 1, 2, 3, ….
     numbers: Vec<u64>,
 }
 
 impl Cells {
-    /// Number of cells.
+    /// Returns the number of cells.
     pub fn len(&self) -> usize {
         self.kinds.len()
     }
 
-    /// Whether there is no cell.
+    /// Returns whether there are no cells.
     pub fn is_empty(&self) -> bool {
         self.kinds.is_empty()
     }
 
-    /// Adds a cell, numbered by its place. Nodes beyond the corners are left out; a cell of fewer nodes than its kind has corners is not added.
+    /// Adds a cell, numbered by its position. Nodes beyond the corners are ignored; a cell with too few nodes
+    /// is not added.
     pub fn push(&mut self, kind: CellKind, nodes: &[u32]) {
         self.push_numbered(self.len() as u64 + 1, kind, nodes);
     }
 
-    /// Adds a cell with its number in the file, as [`Cells::push`].
+    /// Adds a cell with its number in the file, otherwise like [`Cells::push`].
     pub fn push_numbered(&mut self, number: u64, kind: CellKind, nodes: &[u32]) {
         let Some(corners) = nodes.get(..kind.corners()) else {
             return;
@@ -47,38 +48,38 @@ impl Cells {
         self.ends.push(self.corners.len());
     }
 
-    /// The kind of a cell.
+    /// Returns the type of a cell.
     pub fn kind(&self, cell: usize) -> CellKind {
         self.kinds[cell]
     }
 
-    /// The corners of a cell: numbers of nodes, from 0.
+    /// Returns the corners of a cell: node numbers, from 0.
     pub fn corners(&self, cell: usize) -> &[u32] {
         let begin = if cell == 0 { 0 } else { self.ends[cell - 1] };
         &self.corners[begin..self.ends[cell]]
     }
 
-    /// The number of a cell in the file.
+    /// Returns the number of a cell in the file.
     pub fn number(&self, cell: usize) -> u64 {
         self.numbers.get(cell).copied().unwrap_or(cell as u64 + 1)
     }
 
-    /// Kind and corners of every cell in turn.
+    /// Returns type and corners of every cell in turn.
     pub fn iter(&self) -> impl Iterator<Item = (CellKind, &[u32])> {
         (0..self.len()).map(|cell| (self.kind(cell), self.corners(cell)))
     }
 
-    /// The corners of all cells, one after the other.
+    /// Returns the concatenated corners of all cells.
     pub fn all_corners(&self) -> &[u32] {
         &self.corners
     }
 
-    /// The highest dimension of a cell.
+    /// Returns the highest dimension of a cell.
     pub fn dimension(&self) -> Option<usize> {
         self.kinds.iter().map(|kind| kind.dimension()).max()
     }
 
-    /// The number of cells of every kind that there is.
+    /// Returns the number of cells of each type present.
     pub fn counts(&self) -> Vec<(CellKind, usize)> {
         let mut counts = BTreeMap::new();
         for &kind in &self.kinds {
@@ -88,61 +89,62 @@ impl Cells {
     }
 }
 
-/// A named list: of cells or of nodes, by number from 0.
+/// A named list of cells or nodes, by number from 0.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct NamedList {
-    /// The name in the file.
+    /// Name in the file.
     pub name: String,
-    /// Cells or nodes, in the file's order.
+    /// Cells or nodes, in the order of the file.
     pub members: Vec<u32>,
 }
 
 /// A named set of facets of cells.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct FaceSet {
-    /// The name in the file.
+    /// Name in the file.
     pub name: String,
-    /// The facets, as cells of their own.
+    /// The facets, as separate cells.
     pub faces: Cells,
 }
 
-/// Nodes, cells and sets of a file, in the file's unit of length.
+/// Nodes, cells and sets of a file, in its length unit.
 ///
-/// Nothing is checked here: corners may be numbers of no node. [`RawMesh::check`] does that, and everything that uses a mesh calls it.
+/// The content is not validated: corners may be invalid node numbers. [`RawMesh::check`] validates it, and is
+/// called by all functions that use a mesh.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct RawMesh {
     /// Positions of the nodes.
     pub nodes: Vec<[f64; 3]>,
-    /// Cells, of all dimensions.
+    /// Cells of all dimensions.
     pub cells: Cells,
-    /// Blocks, physical groups, element sets: lists of cells.
+    /// Blocks, physical groups and element sets: lists of cells.
     pub groups: Vec<NamedList>,
-    /// Lists of nodes.
+    /// Node sets.
     pub node_sets: Vec<NamedList>,
-    /// Side sets, surfaces: lists of facets.
+    /// Side sets and surfaces: lists of facets.
     pub face_sets: Vec<FaceSet>,
-    /// Volumes that the file gives to cells of the kind [`CellKind::Point`], with the number of the cell, ascending.
+    /// Given volumes of cells of type [`CellKind::Point`], with the number of the cell, ascending.
     pub point_volumes: Vec<(u32, f64)>,
-    /// Elements of types that are not used, with their number.
+    /// Elements of unsupported types, with their number.
     pub left_out: BTreeMap<String, usize>,
 }
 
-/// A number or coordinate that makes no mesh.
+/// Numbers or coordinates that do not define a mesh.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum InvalidMesh {
-    /// A corner is no node.
-    #[error("element {number} ({kind}) has the corner {corner}; the nodes are numbered 0 to {last}", last = nodes.saturating_sub(1))]
+    /// A corner that is not a node.
+    #[error("element {number} ({kind}) refers to node {corner}; nodes are numbered 0 to {last}", last = nodes.saturating_sub(1))]
     NoSuchNode {
-        /// The number of the element in the file.
+        /// Number of the element in the file.
         number: u64,
-        /// Its kind.
+        /// Its type.
         kind: CellKind,
-        /// The corner.
+        /// The invalid corner.
         corner: u32,
         /// The number of nodes.
         nodes: usize,
     },
-    /// A coordinate is NaN or infinite.
+    /// A coordinate that is NaN or infinite.
     #[error("node {node} (from 0) has the coordinate {value}; it must be a finite number")]
     NotFinite {
         /// The node, from 0.
@@ -150,20 +152,20 @@ pub enum InvalidMesh {
         /// The coordinate.
         value: f64,
     },
-    /// A set has a member that is not there.
-    #[error("the set {name:?} has the member {member}; {count} are there, numbered from 0")]
+    /// A set member that does not exist.
+    #[error("the set {name:?} refers to member {member}; there are only {count}, numbered from 0")]
     NoSuchMember {
-        /// The name of the set.
+        /// Name of the set.
         name: String,
-        /// The member.
+        /// The invalid member.
         member: u32,
-        /// The number of cells or nodes.
+        /// Number of cells or nodes.
         count: usize,
     },
 }
 
 impl RawMesh {
-    /// Adds a polygon: a triangle, a quadrilateral, or the triangles of a fan from its first corner.
+    /// Adds a polygon: a triangle, a quadrilateral, or a triangle fan from its first corner.
     pub fn polygon(&mut self, corners: &[u32]) {
         match corners.len() {
             0..3 => {}
@@ -173,16 +175,18 @@ impl RawMesh {
         }
     }
 
-    /// The triangles of all plane cells, in the order of the file; a quadrilateral is cut from its first corner.
+    /// Returns the triangles of all plane cells, in the order of the file; a quadrilateral is split from its
+    /// first corner.
     pub fn triangles(&self) -> Vec<[u32; 3]> {
         let plane = self.cells.iter().filter(|(kind, _)| kind.dimension() == 2);
         plane.flat_map(|(_, corners)| fan(corners)).collect()
     }
 
-    /// Checks coordinates, corners and members of sets.
+    /// Checks coordinates, corners and set members.
     ///
     /// # Errors
-    /// The first coordinate that is not finite, corner that is no node, or member of a set that is not there.
+    /// Returns an error for the first coordinate that is not finite, corner that is not a node, or set member that does
+    /// not exist.
     pub fn check(&self) -> Result<(), InvalidMesh> {
         for (node, x) in self.nodes.iter().enumerate() {
             if let Some(&value) = x.iter().find(|x| !x.is_finite()) {
@@ -223,7 +227,7 @@ impl RawMesh {
     }
 }
 
-/// The triangles of a polygon, from its first corner.
+/// Returns the triangle fan of a polygon from its first corner.
 fn fan(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {
     let pairs = corners.windows(2).skip(1);
     pairs.map(|pair| [corners[0], pair[0], pair[1]])

@@ -1,4 +1,4 @@
-//! Volumes and centroids of elements: exact values, another formula, whole boxes.
+//! Volumes and centroids of elements: exact values, an independent formula, and space-filling meshes.
 
 use pericles_mesh::element::{Measure, facet_measure, is_folded, measure};
 use pericles_mesh::{CellKind, PointOptions, Problem, RawMesh, SetKind};
@@ -6,7 +6,8 @@ use proptest::prelude::*;
 
 type Point = [f64; 3];
 
-/// Elements with exact volume and centroid. Solids: integrals of the trilinear map, computed by hand; plane ones: by the shoelace formula.
+/// Elements with exact volume and centroid. Solids: integrals of the trilinear map, computed by hand; plane
+/// elements: the shoelace formula.
 fn references() -> Vec<(CellKind, Vec<Point>, f64, Point)> {
     vec![
         (
@@ -80,11 +81,11 @@ fn assert_measure(kind: CellKind, corners: &[Point], volume: f64, centroid: Poin
 }
 
 #[test]
-fn reference_elements_are_exact() {
+fn volumes_and_centroids_of_reference_elements_are_exact() {
     for (kind, corners, volume, centroid) in references() {
         assert_measure(kind, &corners, volume, centroid);
         assert!(!is_folded(kind, &corners), "{kind}");
-        // Turned about an axis of the body: x, y, z to y, z, x. Plane elements stay in their plane.
+        // Rotated about a space diagonal: x, y, z to y, z, x. Plane elements stay in their plane.
         if kind.dimension() == 3 {
             let turned: Vec<Point> = corners.iter().map(|x| [x[1], x[2], x[0]]).collect();
             let [a, b, c] = centroid;
@@ -103,7 +104,7 @@ fn reference_elements_are_exact() {
 }
 
 #[test]
-fn corners_may_be_numbered_from_any_corner_of_the_bottom() {
+fn volumes_do_not_depend_on_the_first_corner_of_the_bottom() {
     for (kind, corners, volume, centroid) in references() {
         let bottom = match kind {
             CellKind::Hexahedron | CellKind::Pyramid | CellKind::Quadrilateral => 4,
@@ -118,7 +119,8 @@ fn corners_may_be_numbered_from_any_corner_of_the_bottom() {
     }
 }
 
-/// V = Σ x_a · (x_b × x_c) / 6 over the faces, a quadrilateral being the mean of its two triangulations (the volume under a bilinear face is that mean).
+/// V = Σ x_a · (x_b × x_c) / 6 over the faces, where a quadrilateral is the mean of its two triangulations
+/// (equal to the volume under a bilinear face).
 fn volume_by_faces(kind: CellKind, corners: &[Point]) -> f64 {
     let six = |a: usize, b: usize, c: usize| {
         let [a, b, c] = [corners[a], corners[b], corners[c]];
@@ -136,7 +138,7 @@ fn volume_by_faces(kind: CellKind, corners: &[Point]) -> f64 {
 
 proptest! {
     #[test]
-    fn volumes_of_bent_elements_agree_with_their_faces(shift in prop::collection::vec(-0.3f64..0.3, 24), which in 0usize..4) {
+    fn volumes_of_elements_with_nonplanar_faces_agree_with_the_face_formula(shift in prop::collection::vec(-0.3f64..0.3, 24), which in 0usize..4) {
         let (kind, mut corners, ..) = references().swap_remove(which);
         for (k, corner) in corners.iter_mut().enumerate() {
             for c in 0..3 {
@@ -149,13 +151,13 @@ proptest! {
 }
 
 #[test]
-fn folded_elements_are_found_and_flat_or_collapsed_ones_are_not() {
+fn folded_elements_are_detected_and_flat_or_collapsed_ones_are_accepted() {
     let (_, cube, ..) = references().swap_remove(3);
     let mut folded = cube.clone();
-    // The corner opposite to 0 pushed through the middle: the products at its neighbours change their sign.
+    // The corner opposite to 0 is moved through the centre: the triple products at its neighbours change sign.
     folded[6] = [-0.5, -0.5, -0.5];
     assert!(is_folded(CellKind::Hexahedron, &folded));
-    // A brick that is collapsed to a wedge: two pairs of corners coincide.
+    // A hexahedron collapsed to a wedge: two pairs of corners coincide.
     let mut collapsed = cube.clone();
     collapsed[6] = [1.0, 1.0, 1.0];
     collapsed[3] = collapsed[2];
@@ -168,7 +170,7 @@ fn folded_elements_are_found_and_flat_or_collapsed_ones_are_not() {
 }
 
 #[test]
-fn areas_of_faces_anywhere_in_space() {
+fn areas_of_faces_in_space_are_exact() {
     let turn = |[x, y, z]: Point| [0.6 * x - 0.8 * z, y, 0.8 * x + 0.6 * z];
     let square = [[0.0; 3], [2.0, 0.0, 0.0], [2.0, 3.0, 0.0], [0.0, 3.0, 0.0]].map(turn);
     assert!((facet_measure(CellKind::Quadrilateral, &square) - 6.0).abs() < 1e-14);
@@ -176,7 +178,7 @@ fn areas_of_faces_anywhere_in_space() {
     assert!((facet_measure(CellKind::Line, &square) - 2.0).abs() < 1e-14);
 }
 
-/// Corners of a brick cut into six tetrahedra along the diagonal from 0 to 6.
+/// Corners of a hexahedron split into six tetrahedra along the diagonal from 0 to 6.
 const TETS: [[usize; 4]; 6] = [
     [0, 1, 2, 6],
     [0, 2, 3, 6],
@@ -186,7 +188,8 @@ const TETS: [[usize; 4]; 6] = [
     [0, 5, 1, 6],
 ];
 
-/// A box of n³ bricks of side 1/n, or of their tetrahedra, its nodes displaced inside by a smooth map that keeps the faces of the box.
+/// A box of n³ hexahedra of side 1/n, or of their tetrahedra; interior nodes are displaced by a smooth map
+/// that keeps the faces of the box.
 fn boxes(n: usize, of_tets: bool) -> RawMesh {
     let mut mesh = RawMesh::default();
     let at = |i: usize, j: usize, k: usize| ((k * (n + 1) + j) * (n + 1) + i) as u32;
@@ -248,7 +251,7 @@ fn boxes(n: usize, of_tets: bool) -> RawMesh {
 }
 
 #[test]
-fn elements_fill_a_box_without_gaps() {
+fn element_volumes_add_up_to_the_volume_of_a_box() {
     for of_tets in [false, true] {
         let n = 5;
         let mesh = boxes(n, of_tets);
@@ -260,7 +263,7 @@ fn elements_fill_a_box_without_gaps() {
         let points = mesh.points(&options).unwrap();
         let volume: f64 = points.volumes.iter().sum();
         assert!((volume / unit.powi(3) - 1.0).abs() < 1e-13, "{volume}");
-        // The moment of the volume is that of the cube.
+        // The first moment of the volume is that of the cube.
         for c in 0..3 {
             let moment: f64 = points
                 .volumes
@@ -273,11 +276,13 @@ fn elements_fill_a_box_without_gaps() {
         let left = points.set("left").unwrap();
         assert_eq!(left.kind, SetKind::Faces);
         assert!((left.area.unwrap() / (unit * unit) - 1.0).abs() < 1e-13);
-        // Of the six tetrahedra of a brick two own a triangle of the face x = 0: [0, 3, 7, 6] and [0, 7, 4, 6] share its diagonal.
+        // Two of the six tetrahedra of a hexahedron own a triangle of the face x = 0: [0, 3, 7, 6] and [0, 7,
+        // 4, 6] share its diagonal.
         let owners = if of_tets { 2 * n * n } else { n * n };
         assert_eq!(left.points.len(), owners);
         assert!(points.warnings.is_empty(), "{:?}", points.warnings);
-        // A layer of two bricks: all points with x below it, for the face is the whole side of the box.
+        // A layer of two hexahedra: all points with x below its thickness, because the face is the whole side
+        // of the box.
         let depth = 0.4 * unit;
         let near = points.near_faces(&mesh, unit, "left", depth).unwrap();
         let expected = (0u32..)
@@ -290,7 +295,7 @@ fn elements_fill_a_box_without_gaps() {
 }
 
 #[test]
-fn bad_meshes_are_refused_in_words() {
+fn invalid_meshes_are_rejected_with_clear_messages() {
     let (_, cube, ..) = references().swap_remove(3);
     let corners: Vec<u32> = (0..8).collect();
     let refused = |nodes: Vec<Point>, kind: CellKind, corners: &[u32]| {
@@ -307,7 +312,7 @@ fn bad_meshes_are_refused_in_words() {
     assert!(
         problem
             .to_string()
-            .starts_with("element 812 (hex) is folded: its corners are (0, 0, 0) (1, 0, 0)"),
+            .starts_with("element 812 (hex) is folded (inverted at some of its corners): its corners are (0, 0, 0) (1, 0, 0)"),
         "{problem}"
     );
     let flat = cube.iter().map(|x| [x[0], x[1], 0.0]).collect();
@@ -321,7 +326,7 @@ fn bad_meshes_are_refused_in_words() {
     );
     assert_eq!(
         problem.to_string(),
-        "1 element(s) have no volume, the first of them element 812"
+        "1 element(s) have zero volume, the first is element 812"
     );
     let problem = refused(cube.clone(), CellKind::Quadrilateral, &[0, 1, 6, 7]);
     assert!(matches!(problem, Problem::NotPlane { .. }), "{problem}");
@@ -340,7 +345,7 @@ fn bad_meshes_are_refused_in_words() {
     assert!(
         problem
             .to_string()
-            .contains("element 812 (tet) has the corner 8; the nodes are numbered 0 to 7"),
+            .contains("element 812 (tet) refers to node 8; nodes are numbered 0 to 7"),
         "{problem}"
     );
     let mut infinite = cube.clone();
@@ -351,7 +356,7 @@ fn bad_meshes_are_refused_in_words() {
         .points(&PointOptions::default())
         .unwrap_err();
     assert!(empty.to_string().contains("Mesh.SaveAll"), "{empty}");
-    // A cube of 1 mm, of 100 km.
+    // A cube of 1 mm and one of 100 km.
     for (unit, doubted) in [(1.0, false), (1e-4, true), (1e5, true)] {
         let mut mesh = RawMesh {
             nodes: cube.clone(),
@@ -365,7 +370,7 @@ fn bad_meshes_are_refused_in_words() {
         let points = mesh.points(&options).unwrap();
         assert_eq!(!points.warnings.is_empty(), doubted, "{unit}");
         if let [warning] = &points.warnings[..] {
-            // The largest side of the box of the centroids and one element: the cube root of 11/8.
+            // The largest side of the bounding box of the centroids plus one element: the cube root of 11/8.
             let words = warning.to_string();
             let side = if unit < 1.0 {
                 "1.112e-4 m"
@@ -373,7 +378,7 @@ fn bad_meshes_are_refused_in_words() {
                 "1.112e5 m"
             };
             assert!(words.contains(side), "{words}");
-            assert!(words.contains("is the unit of the file right?"), "{words}");
+            assert!(words.contains("check the unit of the file"), "{words}");
         }
         assert!(points.check_sizes(3.0 * unit).is_empty());
         let problems = points.check_sizes(2.0 * unit);
@@ -395,13 +400,13 @@ fn bad_meshes_are_refused_in_words() {
     let problem = mesh.points(&options("glue")).unwrap_err();
     assert_eq!(
         problem.to_string(),
-        "the mesh has no block \"glue\"; it has steel"
+        "the mesh has no block \"glue\"; available: steel"
     );
 }
 
 #[test]
-fn doubtful_sizes_are_reported_with_both_places() {
-    // A cube of side 1 and one of side 0.1, apart.
+fn doubtful_element_sizes_are_reported_with_both_positions() {
+    // A cube of side 1 and one of side 0.1, disconnected.
     let mut mesh = RawMesh::default();
     for (place, side) in [(0.0, 1.0), (2.0, 0.1)] {
         let first = mesh.nodes.len() as u32;
@@ -427,8 +432,8 @@ fn doubtful_sizes_are_reported_with_both_places() {
         .map(ToString::to_string)
         .collect();
     assert_eq!(words.len(), 2, "{words:?}");
-    assert!(words[0].starts_with("fewer than 2 cells in a horizon of 1.5 m"));
-    assert!(words[1].contains("differ more than 8 : 1"));
+    assert!(words[0].starts_with("the horizon of 1.5 m spans fewer than 2 elements"));
+    assert!(words[1].contains("a ratio above 8 : 1"));
     for words in &words {
         assert!(
             words.contains("from 0.1 m at (2.05, 0.05, 0.05) to 1 m at (0.5, 0.5, 0.5)"),

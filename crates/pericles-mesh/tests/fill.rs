@@ -1,4 +1,4 @@
-//! Lattices in closed surfaces: every node on the right side, in all orientations, on any number of threads.
+//! Lattices in closed surfaces: exact classification of nodes, in all orientations, on any number of threads.
 
 use std::f64::consts::PI;
 
@@ -9,7 +9,7 @@ use pericles_mesh::fill::{
 
 type Point = [f64; 3];
 
-/// Triangles of a prism over a convex polygon that runs counter-clockwise, between two heights.
+/// Triangles of a prism over a convex counter-clockwise polygon, between two heights.
 fn prism(polygon: &[[f64; 2]], low: f64, high: f64) -> (Vec<Point>, Vec<[u32; 3]>) {
     let n = polygon.len() as u32;
     let at = |z: f64| polygon.iter().map(move |p| [p[0], p[1], z]);
@@ -27,7 +27,7 @@ fn prism(polygon: &[[f64; 2]], low: f64, high: f64) -> (Vec<Point>, Vec<[u32; 3]
     (positions, triangles)
 }
 
-/// The 48 symmetries of a cube: an order of the axes and their signs.
+/// The 48 symmetries of a cube: permutations of the axes and signs.
 fn symmetries() -> Vec<([usize; 3], Point)> {
     let orders = [
         [0, 1, 2],
@@ -64,7 +64,7 @@ fn surface(
     TriangleSurface::new(positions.collect(), triangles.collect()).unwrap()
 }
 
-/// The positions of the nodes inside, as whole numbers of 1/8.
+/// Positions of the nodes inside, as multiples of 1/8.
 fn nodes(filled: &Filled) -> Vec<[i64; 3]> {
     let lattice = *filled.lattice();
     let mut nodes: Vec<[i64; 3]> = filled
@@ -76,8 +76,9 @@ fn nodes(filled: &Filled) -> Vec<[i64; 3]> {
 }
 
 #[test]
-fn a_cut_through_nodes_gives_each_node_to_exactly_one_half() {
-    // A cube of side 16 with nodes at −7.5, −6.5, … along each axis, cut along its diagonal plane x = y and along the plane x = 0.5, which both pass through nodes.
+fn a_cut_through_nodes_assigns_each_node_to_exactly_one_half() {
+    // A cube of side 16 with nodes at −7.5, −6.5, … along each axis, cut along the diagonal plane x = y and
+    // along the plane x = 0.5, which both pass through nodes.
     let h = 8.0;
     let frame = [[-h, -h], [h, -h], [h, h], [-h, h]];
     let halves: [[Vec<[f64; 2]>; 2]; 2] = [
@@ -96,7 +97,8 @@ fn a_cut_through_nodes_gives_each_node_to_exactly_one_half() {
         for pair in &halves {
             let mut both: Vec<[i64; 3]> = Vec::new();
             for half in pair {
-                // Two thin slivers in opposite corners widen the box to that of the cube; they hold no node.
+                // Two thin slivers in opposite corners extend the bounding box to that of the cube; they
+                // contain no node.
                 let mut shape = prism(half, -h, h);
                 for corner in [-h, h] {
                     let d = 0.01 * corner.signum();
@@ -121,7 +123,7 @@ fn a_cut_through_nodes_gives_each_node_to_exactly_one_half() {
     }
 }
 
-/// An icosahedron, its triangles divided n times into four, on a sphere.
+/// An icosahedron on a sphere, its triangles divided n times into four.
 fn ball(times: usize, radius: f64, centre: Point) -> (Vec<Point>, Vec<[u32; 3]>) {
     let g = (1.0 + 5f64.sqrt()) / 2.0;
     let mut x: Vec<Point> = Vec::new();
@@ -194,18 +196,19 @@ fn together(parts: &[(Vec<Point>, Vec<[u32; 3]>)], inverted: &[bool]) -> Triangl
 }
 
 #[test]
-fn balls_overlaps_and_cavities_hold_the_right_nodes() {
+fn nodes_in_balls_overlapping_balls_and_cavities_are_exact() {
     let is_in = |x: Point, centre: f64, radius: f64| {
         (x[0] - centre).powi(2) + x[1] * x[1] + x[2] * x[2] < radius * radius
     };
-    // Nodes between the sphere and its triangles are left out: the triangles of 5 divisions lie within 0.1 % of the sphere.
+    // Nodes between the sphere and its triangulation are ignored: after 5 divisions the triangles are within
+    // 0.1 % of the sphere.
     let clear = |x: Point, centre: f64, radius: f64| {
         let r = ((x[0] - centre).powi(2) + x[1] * x[1] + x[2] * x[2]).sqrt();
         (r / radius - 1.0).abs() > 1.1e-3
     };
     let ball = |radius, centre| ball(5, radius, [centre, 0.0, 0.0]);
     type Inside<'a> = Box<dyn Fn(Point) -> bool + 'a>;
-    // Surface, what is inside, centres and radii of the spheres.
+    // Surface, indicator function, centres and radii of the spheres.
     type Case<'a> = (TriangleSurface, Inside<'a>, Vec<(f64, f64)>);
     let cases: Vec<Case<'_>> = vec![
         (
@@ -258,7 +261,7 @@ fn balls_overlaps_and_cavities_hold_the_right_nodes() {
 }
 
 #[test]
-fn small_cells_in_a_box_are_those_of_the_divided_lattice() {
+fn small_cells_in_a_box_equal_those_of_the_divided_lattice() {
     let (x, t) = ball(3, 1.0, [0.01, 0.02, 0.03]);
     let surface = TriangleSurface::new(x, t).unwrap();
     let tree = WindingTree::new(&surface);
@@ -292,7 +295,7 @@ fn small_cells_in_a_box_are_those_of_the_divided_lattice() {
     let all = large.divided_box([0; 3], large.counts, 3, RATIO);
     let part = large.divided_box(first, [3, 4, 3], 3, RATIO);
     let whole = fill_nodes(&surface, all).unwrap();
-    // The divided lattice has the volume of the ball.
+    // The divided lattice reproduces the volume of the ball.
     assert!((whole.volume() / whole.enclosed_volume() - 1.0).abs() < 1e-2);
     compare(&whole, &fill_nodes(&surface, part).unwrap(), first, 3);
     let whole = fill_open_nodes(&surface, &tree, all);
@@ -308,7 +311,7 @@ fn small_cells_in_a_box_are_those_of_the_divided_lattice() {
 }
 
 #[test]
-fn the_number_of_threads_changes_nothing() {
+fn results_do_not_depend_on_the_number_of_threads() {
     let surface = together(
         &[ball(3, 1.0, [0.0; 3]), ball(3, 0.8, [0.7, 0.2, 0.1])],
         &[false, false],
@@ -333,7 +336,7 @@ fn the_number_of_threads_changes_nothing() {
 }
 
 #[test]
-fn an_open_surface_is_refused_and_filled_by_the_winding_number() {
+fn an_open_surface_is_rejected_and_can_be_filled_by_the_winding_number() {
     let (x, t) = ball(4, 1.0, [0.0; 3]);
     let whole = fill(
         &TriangleSurface::new(x.clone(), t.clone()).unwrap(),
@@ -356,7 +359,7 @@ fn an_open_surface_is_refused_and_filled_by_the_winding_number() {
         fill_partially(&open, [0.1; 3]),
         Err(FillError::Open { .. })
     ));
-    // A hole of one triangle is 5 % of the radius wide; nodes are 10 % apart: the same nodes are inside.
+    // A hole of one triangle is 5 % of the radius wide and the node spacing is 10 %: the same nodes are inside.
     let filled = fill_open(&open, [0.1; 3]).unwrap();
     let differ = filled.nodes().filter(|&node| !whole.contains(node)).count();
     assert!(
@@ -368,7 +371,7 @@ fn an_open_surface_is_refused_and_filled_by_the_winding_number() {
 }
 
 #[test]
-fn the_winding_number_of_a_closed_surface_is_a_whole_number() {
+fn the_winding_number_of_a_closed_surface_is_an_integer() {
     let (x, t) = ball(3, 1.0, [0.0; 3]);
     let surface = TriangleSurface::new(x, t).unwrap();
     let tree = WindingTree::new(&surface);
@@ -379,21 +382,22 @@ fn the_winding_number_of_a_closed_surface_is_a_whole_number() {
         ([5.0, 4.0, 3.0], 0.0),
     ] {
         let found = tree.winding_number(point);
-        // The error of dipole and first moment beyond two radii; the bound is chosen after seeing 0.061 at the centre. Half would make nodes wrong.
+        // Error of dipole and first moment beyond two radii; the bound was chosen after seeing 0.061 at the
+        // centre. An error of one half would misclassify nodes.
         assert!((found - expected).abs() < 0.11, "{point:?}: {found}");
     }
 }
 
 #[test]
-fn parts_of_cells_add_up_to_the_volume() {
-    // Of a box whose sides are no multiples of the spacing all parts are known.
+fn volume_fractions_add_up_to_the_volume() {
+    // For a box whose sides are not multiples of the spacing, all fractions are known.
     let side = 1.1;
     let frame = [[0.0, 0.0], [side, 0.0], [side, side], [0.0, side]];
     let shape =
         TriangleSurface::new(prism(&frame, 0.0, 0.85).0, prism(&frame, 0.0, 0.85).1).unwrap();
     let cells = fill_partially(&shape, [0.25; 3]).unwrap();
     let volume: f64 = cells.parts.iter().sum::<f64>() * cells.lattice.cell_volume();
-    // Along z lengths are exact; across, lines stand for sixteenths of a side that is cut where no line passes: 5 cells of 0.25 for 1.1.
+    // Lengths along z are exact; in x and y, lines represent sixteenths of a cut side: 5 cells of 0.25 for 1.1.
     assert!(
         (volume / (side * side * 0.85) - 1.0).abs() < 0.06,
         "{volume}"
@@ -406,7 +410,7 @@ fn parts_of_cells_add_up_to_the_volume() {
         "{enclosed}"
     );
     for (spacing, most) in [(0.2, 2e-3), (0.1, 5e-4)] {
-        // Bounds chosen after seeing 2.1e-4 of the finer lattice.
+        // Bounds chosen after seeing 2.1e-4 on the finer lattice.
         let cells = fill_partially(&surface, [spacing; 3]).unwrap();
         let volume = cells.parts.iter().sum::<f64>() * cells.lattice.cell_volume();
         assert!(
@@ -419,7 +423,7 @@ fn parts_of_cells_add_up_to_the_volume() {
 }
 
 #[test]
-fn outlines_with_holes_hold_their_nodes() {
+fn nodes_in_outlines_with_holes_are_exact() {
     let square = |low: f64, high: f64| vec![[low, low], [high, low], [high, high], [low, high]];
     let mut hole = square(3.0, 5.0);
     for turned in [false, true] {
@@ -438,7 +442,7 @@ fn outlines_with_holes_hold_their_nodes() {
             assert!(outline.contains([x, y]) && ((x - 4.0).abs() > 1.0 || (y - 4.0).abs() > 1.0));
         }
     }
-    // A cut along the diagonal through nodes: each node in one half.
+    // A cut along the diagonal through nodes: each node belongs to one half.
     let lower = Outline::new(vec![vec![[0.0, 0.0], [8.0, 0.0], [8.0, 8.0]]]).unwrap();
     let upper = Outline::new(vec![vec![[0.0, 0.0], [8.0, 8.0], [0.0, 8.0]]]).unwrap();
     let (a, b) = (lower.fill([1.0; 2]).unwrap(), upper.fill([1.0; 2]).unwrap());
@@ -457,7 +461,7 @@ fn outlines_with_holes_hold_their_nodes() {
     ));
 }
 
-/// A regular polygon of n corners.
+/// A regular polygon with n corners.
 fn regular(n: u32, radius: f64, centre: [f64; 2]) -> Vec<[f64; 2]> {
     let angle = |k: u32| 2.0 * PI * f64::from(k) / f64::from(n) + 0.1;
     let corner = |k: u32| {
@@ -468,8 +472,8 @@ fn regular(n: u32, radius: f64, centre: [f64; 2]) -> Vec<[f64; 2]> {
 }
 
 #[test]
-fn parts_of_plane_cells_are_exact() {
-    // A right triangle in four squares: one whole, two halves, one without.
+fn area_fractions_of_plane_cells_are_exact() {
+    // A right triangle in four squares: one full, two halves, one empty.
     let corners = vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
     for start in 0..3 {
         for turned in [false, true] {
@@ -487,7 +491,7 @@ fn parts_of_plane_cells_are_exact() {
             }
         }
     }
-    // Rings with a hole, at any orientation of both: the area is that of the polygons.
+    // Rings with a hole, with either orientation of both polygons: the area is that of the polygons.
     for (n, spacing) in [(3, 0.3), (7, 0.21), (400, 0.1), (400, 3.0)] {
         for turned in [false, true] {
             let mut hole = regular(n, 0.4, [0.1, -0.05]);
@@ -507,7 +511,7 @@ fn parts_of_plane_cells_are_exact() {
 }
 
 #[test]
-fn a_part_of_a_plane_cell_is_the_clipped_area() {
+fn area_fractions_equal_sampled_areas() {
     const SAMPLES: usize = 60;
     let outline =
         Outline::new(vec![regular(5, 1.0, [0.0; 2]), regular(6, 0.3, [0.2, 0.1])]).unwrap();
@@ -523,7 +527,8 @@ fn a_part_of_a_plane_cell_is_the_clipped_area() {
         (0..all).filter(is_inside).count() as f64 / all as f64
     };
     let parts: Vec<f64> = (0..nx * ny).map(|k| sampled(k % nx, k / nx)).collect();
-    // Cells without neighbours below a tenth keep their own part. An edge crosses at most 2 · 60 of the 3600 squares of the samples, and several edges meet few cells.
+    // Cells below a tenth without neighbours keep their own fraction. An edge crosses at most 2 · 60 of the
+    // 3600 sample squares, and few cells intersect several edges.
     let error = 0.03;
     let mut compared = 0;
     for (&[i, j, _], part) in cells.cells.iter().zip(&cells.parts) {
@@ -542,7 +547,7 @@ fn a_part_of_a_plane_cell_is_the_clipped_area() {
 }
 
 #[test]
-fn parts_of_cells_of_an_open_surface_are_those_of_the_closed_one() {
+fn volume_fractions_of_an_open_surface_equal_those_of_the_closed_one() {
     let (x, t) = ball(4, 1.0, [0.0; 3]);
     let closed = TriangleSurface::new(x.clone(), t.clone()).unwrap();
     // Every fiftieth triangle is missing.
@@ -557,7 +562,8 @@ fn parts_of_cells_of_an_open_surface_are_those_of_the_closed_one() {
         assert!(cells.parts.iter().all(|&part| part >= 0.1));
         cells.parts.iter().sum::<f64>() * cells.lattice.cell_volume()
     };
-    // 64 samples a cell of 10 cells in the diameter: nodes of a lattice with 40, whose volume is 0.18 % off in the tables of such balls.
+    // 64 samples per cell with 10 cells per diameter correspond to a lattice with 40 nodes per diameter,
+    // whose volume error is 0.18 % in tables for such balls.
     let enclosed = closed.signed_volume();
     for surface in [&closed, &open] {
         let volume = volume(surface);
@@ -566,7 +572,7 @@ fn parts_of_cells_of_an_open_surface_are_those_of_the_closed_one() {
             "{volume} {enclosed}"
         );
     }
-    // A cube that the lattice divides has whole cells only.
+    // A cube that is a multiple of the spacing has only full cells.
     let cube = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
     let (x, t) = prism(&cube, 0.0, 1.0);
     let cube = TriangleSurface::new(x, t).unwrap();
@@ -575,7 +581,7 @@ fn parts_of_cells_of_an_open_surface_are_those_of_the_closed_one() {
 }
 
 #[test]
-fn spacings_and_surfaces_that_make_no_lattice_are_refused() {
+fn invalid_spacings_and_surfaces_are_rejected() {
     let (x, t) = ball(1, 1.0, [0.0; 3]);
     let surface = TriangleSurface::new(x.clone(), t.clone()).unwrap();
     for spacing in [0.0, -1.0, f64::NAN, f64::INFINITY] {

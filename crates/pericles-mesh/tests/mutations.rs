@@ -1,6 +1,9 @@
-//! Damaged files: every prefix and many mutations of every file are read or refused, without a panic and within memory in proportion to their size.
+//! Damaged files: every prefix and many mutations of every file are read or rejected, without a panic and
+//! with memory in proportion to their size.
 //!
-//! The mutations of the usual test are few; `cargo test --release -p pericles-mesh --test mutations -- --ignored --nocapture` makes a million of every file.
+//! The default test uses few mutations;
+//! `cargo test --release -p pericles-mesh --test mutations -- --ignored --nocapture` runs a million for every
+//! file.
 
 #[path = "formats/cdf.rs"]
 mod cdf;
@@ -19,33 +22,34 @@ use std::time::Instant;
 use pericles_mesh::fill::{Outline, TriangleSurface};
 use pericles_mesh::{Format, PointOptions, Summary, parse_fields};
 
-/// Bytes that arrays of a VTK file may take in these tests.
+/// Memory limit for arrays of a VTK file in these tests, bytes.
 const MEMORY: u64 = 1 << 24;
 
-/// Bytes that reading one of these files, of a few kilobytes, may hold at once: the arrays above, as bytes, words and numbers.
+/// Memory limit for reading one of these files of a few kilobytes, bytes: the arrays above, as bytes, words
+/// and numbers.
 const MOST: usize = 1 << 27;
 
-/// The system's allocator, counting what is held.
+/// The system allocator with a count of allocated bytes.
 struct Counting;
 
 static HELD: AtomicUsize = AtomicUsize::new(0);
 static PEAK: AtomicUsize = AtomicUsize::new(0);
 
-/// The count is of the whole process: one test at a time.
+/// The count is per process, so that tests run one at a time.
 static ONE: Mutex<()> = Mutex::new(());
 
-// SAFETY: every call is handed on to the system's allocator as it is.
+// SAFETY: every call is forwarded unchanged to the system allocator.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         let held = HELD.fetch_add(layout.size(), Ordering::Relaxed) + layout.size();
         PEAK.fetch_max(held, Ordering::Relaxed);
-        // SAFETY: the caller's promise.
+        // SAFETY: guaranteed by the caller.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
         HELD.fetch_sub(layout.size(), Ordering::Relaxed);
-        // SAFETY: the caller's promise.
+        // SAFETY: guaranteed by the caller.
         unsafe { System.dealloc(pointer, layout) }
     }
 }
@@ -53,14 +57,14 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// A file that is damaged: its name and its content.
+/// A file to mutate: its name and content.
 struct Original {
     name: String,
     format: Format,
     content: Vec<u8>,
 }
 
-/// The mesh of the tests in all formats, and the seeds of the fuzz targets.
+/// The test mesh in all formats, and the seeds of the fuzz targets.
 fn originals() -> Vec<Original> {
     let format = |ending: &str| Format::of(&Path::new("a").with_extension(ending)).unwrap();
     let mut all: Vec<Original> = (0..)
@@ -111,12 +115,12 @@ fn originals() -> Vec<Original> {
     all
 }
 
-/// Everything that follows a reader; whether the content was read.
+/// Calls all functions that follow a reader; returns whether the content was read.
 fn use_all(format: Format, content: &[u8]) -> bool {
     if format == Format::Vtk {
         let _ = parse_fields(content, MEMORY);
     }
-    let alone = |name: &str| Err(format!("{name} is not there"));
+    let alone = |name: &str| Err(format!("{name} does not exist"));
     let Ok(mesh) = format.parse(content, MEMORY, &alone) else {
         return false;
     };
@@ -132,7 +136,8 @@ fn use_all(format: Format, content: &[u8]) -> bool {
     true
 }
 
-/// Uses a content and fails, naming it, if that panics or holds too much memory; whether it was read.
+/// Runs [`use_all`] and fails with the name of the content if that panics or allocates too much memory;
+/// returns whether it was read.
 fn try_out(original: &Original, content: &[u8], what: &dyn Fn() -> String) -> bool {
     let before = HELD.load(Ordering::Relaxed);
     PEAK.store(before, Ordering::Relaxed);
@@ -142,7 +147,7 @@ fn try_out(original: &Original, content: &[u8], what: &dyn Fn() -> String) -> bo
         let path = std::env::temp_dir().join("pericles-mutation");
         let _ = fs::write(&path, content);
         panic!(
-            "{}, {}: {} MiB held; the content is in {}",
+            "{}, {}: {} MiB allocated; the content is in {}",
             original.name,
             what(),
             taken >> 20,
@@ -169,7 +174,7 @@ impl Random {
     }
 }
 
-/// Numbers and words that readers may stumble over.
+/// Numbers and words that may trigger errors in readers.
 const WORDS: [&[u8]; 14] = [
     b"-1",
     b"0",
@@ -187,7 +192,8 @@ const WORDS: [&[u8]; 14] = [
     b"\x80",
 ];
 
-/// Changes a content in one to four places: bytes replaced, bits turned, words written over it or put in, ranges left out, repeated or cut off.
+/// Mutates a content in one to four places: replaces bytes, flips bits, overwrites or inserts words, removes,
+/// repeats or truncates ranges.
 fn mutate(content: &mut Vec<u8>, random: &mut Random) {
     for _ in 0..=random.below(4) {
         let at = random.below(content.len());
@@ -218,7 +224,7 @@ fn mutate(content: &mut Vec<u8>, random: &mut Random) {
     }
 }
 
-/// Runs mutations of every file, with numbers of what was read and the largest memory.
+/// Runs mutations of every file and prints the number of files read and the peak memory.
 fn run(mutations: u64, show: bool) {
     let _one = ONE.lock();
     for (number, original) in (0u64..).zip(&originals()) {
@@ -235,7 +241,7 @@ fn run(mutations: u64, show: bool) {
         }
         if show {
             println!(
-                "{:<28} {:>5} bytes: {mutations} mutations, {read} read, at most {:.2} MiB held, {:.1} s",
+                "{:<28} {:>5} bytes: {mutations} mutations, {read} read, peak memory {:.2} MiB, {:.1} s",
                 original.name,
                 original.content.len(),
                 peak as f64 / f64::from(1 << 20),
@@ -246,7 +252,7 @@ fn run(mutations: u64, show: bool) {
 }
 
 #[test]
-fn originals_are_read() {
+fn unmodified_files_are_read() {
     let _one = ONE.lock();
     for original in originals() {
         assert!(
@@ -258,7 +264,7 @@ fn originals_are_read() {
 }
 
 #[test]
-fn every_prefix_is_read_or_refused() {
+fn every_truncated_file_is_read_or_rejected() {
     let _one = ONE.lock();
     for original in originals() {
         for length in 0..original.content.len() {
@@ -269,12 +275,12 @@ fn every_prefix_is_read_or_refused() {
 }
 
 #[test]
-fn mutations_are_read_or_refused() {
+fn mutated_files_are_read_or_rejected() {
     run(300, false);
 }
 
 #[test]
-#[ignore = "a million mutations of every file: minutes, in release"]
-fn a_million_mutations_of_every_file_are_read_or_refused() {
+#[ignore = "a million mutations of every file take minutes in release builds"]
+fn a_million_mutations_of_every_file_are_read_or_rejected() {
     run(1_000_000, true);
 }

@@ -1,6 +1,7 @@
-//! Exodus files in the form of netCDF-4 (HDF5), with the feature `netcdf4`; without it, the message.
+//! netCDF-4 (HDF5) Exodus files with the feature `netcdf4`; without it, the error message.
 //!
-//! The files are written by `validation/formats/make_netcdf4.py`: the mesh of `formats/files.rs`, by meshio and compressed by the netCDF library.
+//! The files are written by `validation/formats/make_netcdf4.py`: the mesh of `formats/files.rs`, written by
+//! meshio and compressed by the netCDF library.
 
 use std::path::Path;
 
@@ -10,12 +11,14 @@ const MESHIO: &[u8] = include_bytes!("files/meshio.exo");
 
 fn read(content: &[u8], memory: u64) -> Result<RawMesh, Fault> {
     let format = Format::of(Path::new("mesh.exo")).unwrap();
-    format.parse(content, memory, &|name| Err(format!("{name} is not there")))
+    format.parse(content, memory, &|name| {
+        Err(format!("{name} does not exist"))
+    })
 }
 
 #[cfg(not(feature = "netcdf4"))]
 #[test]
-fn netcdf_4_is_refused_with_the_conversion_and_the_feature() {
+fn netcdf_4_is_rejected_with_advice_on_conversion_and_feature() {
     let message = read(MESHIO, 1 << 26).unwrap_err().to_string();
     for part in [
         "netCDF-4 (HDF5)",
@@ -55,16 +58,16 @@ mod with_feature {
     }
 
     #[test]
-    fn a_file_of_meshio_gives_the_points_and_sets_of_its_mesh() {
+    fn a_meshio_file_gives_the_points_and_sets_of_its_mesh() {
         let points = points(MESHIO);
-        // meshio numbers blocks from 0 and gives them no names.
+        // meshio numbers blocks from 0 and does not name them.
         assert_eq!(set(&points, "block_0"), (SetKind::Elements, vec![0]));
         assert_eq!(set(&points, "block_1"), (SetKind::Elements, vec![1]));
         assert_eq!(set(&points, "tip"), (SetKind::Nodes, vec![1]));
     }
 
     #[test]
-    fn a_compressed_file_gives_the_points_sets_and_areas_of_the_classic_one() {
+    fn a_compressed_file_gives_the_same_points_sets_and_areas_as_the_classic_one() {
         let points = points(COMPRESSED);
         assert_eq!(set(&points, "left part"), (SetKind::Elements, vec![0]));
         assert_eq!(set(&points, "right"), (SetKind::Elements, vec![1]));
@@ -75,7 +78,7 @@ mod with_feature {
     }
 
     #[test]
-    fn a_damaged_file_is_refused() {
+    fn a_damaged_file_is_rejected() {
         for content in [&MESHIO[..9000], b"\x89HDF\r\n\x1a\n"] {
             let message = read(content, 1 << 26).unwrap_err().to_string();
             assert!(

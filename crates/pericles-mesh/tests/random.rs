@@ -1,4 +1,4 @@
-//! Random points: inside, apart, of the right density, the same on any number of threads.
+//! Random points: inside the body, minimum distance, density, and independence of the number of threads.
 
 use std::f64::consts::PI;
 
@@ -32,8 +32,9 @@ fn least_distance(points: &[Point]) -> f64 {
 }
 
 #[test]
-fn blue_noise_keeps_its_distance_and_its_density() {
-    // Radii over spacings of saturated random sequential addition, for which the mean volume of a point is the spacing to the power of the dimension.
+fn blue_noise_has_the_prescribed_minimum_distance_and_density() {
+    // Ratio of radius and spacing for saturated random sequential addition, for which the mean volume per
+    // point is the spacing to the power of the dimension.
     for (dimension, spacing, radius) in [(1, 0.002, 0.7476), (2, 0.05, 0.8346), (3, 0.1, 0.9018)] {
         let inside = |x: Point| is_in_ball(x);
         let points = blue_noise(
@@ -58,7 +59,7 @@ fn blue_noise_keeps_its_distance_and_its_density() {
                 .all(|x| x[dimension..].iter().all(|&x| x == 0.0))
         );
         assert!(least_distance(&points) >= radius * spacing);
-        // Two spacings and more away from the boundary: beyond it no points keep others away, and near it there are more.
+        // At least two spacings away from the boundary, because the density is higher near it.
         let radius = 1.0 - 2.0 * spacing.max(0.05);
         let middle = points
             .iter()
@@ -77,8 +78,9 @@ fn blue_noise_keeps_its_distance_and_its_density() {
 }
 
 #[test]
-fn every_place_is_near_a_point() {
-    // Darts fall until hardly any room is left: a place of the body farther than a radius from all points is rare.
+fn blue_noise_is_nearly_saturated() {
+    // Darts are thrown until hardly any space is left: positions in the body farther than one radius from all
+    // points are rare.
     let spacing = 0.1;
     let points = blue_noise(BALL, 3, spacing, 5, &is_in_ball).unwrap();
     let radius = 0.9018 * spacing;
@@ -102,7 +104,7 @@ fn every_place_is_near_a_point() {
 }
 
 #[test]
-fn seeds_differ_and_threads_do_not() {
+fn points_depend_on_the_seed_and_not_on_the_number_of_threads() {
     let points = |threads: usize, seed: u64| {
         on(threads, || {
             blue_noise(BALL, 3, 0.1, seed, &is_in_ball).unwrap()
@@ -121,14 +123,14 @@ fn seeds_differ_and_threads_do_not() {
 }
 
 #[test]
-fn volumes_by_nearest_points_add_up_and_are_those_of_a_lattice() {
+fn nearest_point_volumes_add_up_and_equal_the_cells_of_a_lattice() {
     let points = blue_noise(BALL, 3, 0.1, 1, &is_in_ball).unwrap();
     let volumes = nearest_volumes(&points, BALL, 3, 0.1, &is_in_ball).unwrap();
     let volume: f64 = volumes.iter().sum();
-    // Whole samples, 80 across the ball; the bound is chosen after seeing less than 1e-3.
+    // Integer samples, 80 across the ball; the bound was chosen after seeing less than 1e-3.
     assert!((volume / (4.0 / 3.0 * PI) - 1.0).abs() < 2e-3, "{volume}");
     assert!(volumes.iter().all(|&v| v > 0.0));
-    // The nodes of a lattice have its cells.
+    // The nodes of a lattice have the volumes of its cells.
     let bounds = [[0.0; 3], [1.0, 0.5, 0.75]];
     let lattice = Lattice::around(bounds, [0.25; 3]).unwrap();
     let nodes: Vec<Point> = (0..lattice.len())
@@ -138,7 +140,7 @@ fn volumes_by_nearest_points_add_up_and_are_those_of_a_lattice() {
     for volume in volumes {
         assert!((volume * 64.0 - 1.0).abs() < 1e-12, "{volume}");
     }
-    // In the plane, per unit of thickness.
+    // In the plane, per unit thickness.
     let flat = nearest_volumes(
         &[[0.25, 0.5, 0.0], [0.75, 0.5, 0.0]],
         [[0.0; 3], [1.0, 1.0, 0.0]],
@@ -154,7 +156,7 @@ fn volumes_by_nearest_points_add_up_and_are_those_of_a_lattice() {
 }
 
 #[test]
-fn jitter_stays_within_its_amplitude_and_the_body() {
+fn random_displacements_stay_within_the_amplitude_and_the_body() {
     let lattice = Lattice::around(BALL, [0.1; 3]).unwrap();
     let [nx, ny, nz] = lattice.counts;
     let nodes: Vec<[usize; 3]> = (0..nx * ny * nz)
@@ -178,7 +180,8 @@ fn jitter_stays_within_its_amplitude_and_the_body() {
             sum += shift * shift;
         }
     }
-    // The variance of a uniform displacement is a²/3; fewer near the boundary, where some are halved.
+    // The variance of a uniform displacement is a²/3; it is smaller near the boundary, where some
+    // displacements are halved.
     let variance = sum / (3 * nodes.len()) as f64;
     assert!(
         (variance / (amplitude * amplitude / 3.0) - 1.0).abs() < 0.1,

@@ -1,7 +1,8 @@
-//! A deck read and changed: the steel bar of `examples/statics/bar.toml`, and the same bar of aluminium, each run into a folder of its own.
+//! Running a deck and a modified model: the steel bar of `examples/statics/bar.toml`, and the same bar of aluminium,
+//! each with its own output folder.
 //!
-//! A deck is read into a `Model`: plain data, which a program changes as it likes and runs like the deck itself. The folder keeps the model, so that `pericles resume`, `info`, `plot` and `report`
-//! work on it.
+//! A deck is read into a `Model`: plain data, which a program can change and run like the deck itself. The model is
+//! stored in the output folder, so that `pericles resume`, `info`, `plot` and `report` work on it.
 
 use std::error::Error;
 use std::path::Path;
@@ -13,7 +14,7 @@ use pericles_run::{Assembled, Cancel, Event, Means, Results, Run, Source};
 
 /// Runs a source into a folder and returns the displacement (m) of the point nearest to x = 997.5 mm.
 fn end_displacement(source: &Source, folder: &Path) -> Result<f64, Box<dyn Error>> {
-    // Points, forces, scheme and step; everything that can be wrong with a model is refused here, before the folder is made.
+    // Points, forces, scheme and step. Errors of the model are reported here, before the folder is created.
     let assembled = Assembled::of(source, &Means::default(), &mut |_| {})?;
     let mut run = Run::begin(source, assembled, OutputFolder::create(folder, false)?)?;
     run.drive(None, &Cancel::new(), &mut |event| {
@@ -30,13 +31,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/statics/bar.toml");
     let place = tempfile::tempdir()?;
 
-    // The deck as it is. Warnings and refusals point into its text.
+    // The unmodified deck. Warnings and errors refer to locations in its text.
     let deck = Deck::read(&path, &[])?;
     let mut model: Model = deck.model.clone();
     let steel = Source::of_deck(deck, path.display().to_string());
     let steel = end_displacement(&steel, &place.path().join("steel"))?;
 
-    // The model changed in Rust. It could as well come from JSON, or be written from scratch.
+    // The model changed in Rust. It can also be read from JSON or built from scratch.
     model.title = Some("Aluminium bar in tension".into());
     let solid = model.body.solid_mut();
     if let Some(material) = solid.and_then(|solid| solid.material.bonds_mut()) {
@@ -50,11 +51,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (name, moved, young) in [("steel", steel, 200e9), ("aluminium", aluminium, 70e9)] {
         let exact = 2e6 * 0.9975 / (young * 0.01);
         println!(
-            "{name:10} {:.4} mm, by Hooke's law {:.4} mm",
+            "{name:10} {:.4} mm, Hooke's law {:.4} mm",
             1e3 * moved,
             1e3 * exact
         );
-        // Within a horizon of its ends the bar is softer: 1 % of its length.
+        // Within a horizon of its ends the bar is softer; this is 1 % of its length.
         if (moved / exact - 1.0).abs() > 0.02 {
             return Err("the bar does not follow Hooke's law".into());
         }

@@ -1,10 +1,10 @@
-//! Animations whose pictures somebody took away while the run went on.
+//! Animations with pictures that were removed during the run.
 
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::path::Path;
 
-/// What to say of a folder of pictures: animations between whose pictures some are missing, in words.
+/// Returns warnings about animations in a folder with missing pictures.
 pub fn gaps(folder: &Path) -> Vec<String> {
     let names: Vec<String> = std::fs::read_dir(folder)
         .into_iter()
@@ -32,7 +32,7 @@ pub fn gaps(folder: &Path) -> Vec<String> {
             let drawn = numbers.iter().max()? + 1;
             let missing = drawn - numbers.len();
             (missing > 0).then(|| {
-                format!("{stem}.apng leaves out {missing} of {drawn} pictures, which are gone from the folder")
+                format!("{stem}.apng lacks {missing} of {drawn} pictures, which were removed from the folder")
             })
         })
         .collect();
@@ -58,10 +58,7 @@ mod tests {
         }
         let said = gaps(place.path());
         assert_eq!(said.len(), 1);
-        assert!(
-            said[0].starts_with("Damage.apng leaves out 2 of 4"),
-            "{said:?}"
-        );
+        assert!(said[0].starts_with("Damage.apng lacks 2 of 4"), "{said:?}");
         assert!(gaps(&place.path().join("nowhere")).is_empty());
     }
 }

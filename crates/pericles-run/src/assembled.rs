@@ -1,4 +1,4 @@
-//! From a deck or a model to its assembly, with the means that a machine has: a cache, memory, readers of files beside the deck.
+//! Assembly of a deck or model with a cache, a memory limit, and readers of input files.
 
 use std::path::PathBuf;
 
@@ -15,17 +15,17 @@ use crate::facts::Facts;
 use crate::machine;
 use crate::source::Source;
 
-/// What a model may be made with.
+/// Cache and memory limit for building a model.
 #[derive(Debug, Clone)]
 pub struct Means {
-    /// Where results that take long to compute are kept.
+    /// Where expensive results are cached.
     pub caching: Caching,
-    /// Memory, bytes.
+    /// Memory limit, bytes.
     pub memory: u64,
 }
 
 impl Default for Means {
-    /// The user's cache, and the memory that the machine has free.
+    /// The user's cache, and the available memory.
     fn default() -> Self {
         Self {
             caching: Caching::User,
@@ -34,19 +34,19 @@ impl Default for Means {
     }
 }
 
-/// Where results that take long to compute, such as kernels and distances, are kept from run to run.
+/// Where expensive results, such as kernels and geodesic distances, are cached between runs.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Caching {
-    /// In the user's cache folder; nowhere if the user has none.
+    /// The user's cache folder, if there is one.
     User,
-    /// In this folder.
+    /// A given folder.
     Folder(PathBuf),
-    /// Nowhere: everything is computed anew.
+    /// No cache.
     Off,
 }
 
 impl Caching {
-    /// The cache; none if it is off or the user has no place for one.
+    /// Returns the cache; `None` if it is off or the user has no cache folder.
     fn cache(&self) -> Option<DiskCache> {
         match self {
             Self::User => DiskCache::of_user(),
@@ -56,19 +56,19 @@ impl Caching {
     }
 }
 
-/// An assembled model, with what is known of it before the first step.
+/// An assembled model with its properties before the first step.
 pub struct Assembled {
     /// The assembly.
     pub assembly: Assembly,
-    /// The facts about it.
+    /// Its properties.
     pub facts: Facts,
 }
 
 impl Assembled {
-    /// Discretises and assembles the model of a source. Results that take long to compute are read from the cache if it has them.
+    /// Discretises and assembles the model of a source. Expensive results are read from the cache if available.
     ///
     /// # Errors
-    /// A deck or model that is refused.
+    /// The deck or model is invalid.
     pub fn of(source: &Source, means: &Means, tell: Tell<'_>) -> Result<Self, RunError> {
         let model = source.model();
         let assembly = means.with_resources(tell, |resources| {
@@ -89,7 +89,7 @@ impl Assembled {
 }
 
 impl Means {
-    /// Makes something with the resources, and tells what the cache notes.
+    /// Calls `make` with the resources, and reports the notes of the cache.
     fn with_resources<T>(&self, tell: Tell<'_>, make: impl FnOnce(&Resources<'_>) -> T) -> T {
         let cache = self.caching.cache();
         let cache = cache.map(|cache| cache.within(self.memory));
@@ -105,7 +105,7 @@ impl Means {
     }
 }
 
-/// What files beside a deck are read with.
+/// Returns the readers of input files.
 pub fn readers() -> Resources<'static> {
     Resources {
         cache: &NoCache,

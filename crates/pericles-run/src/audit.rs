@@ -1,4 +1,4 @@
-//! The account of energy and momentum at the end of a run.
+//! Balance of energy and momentum at the end of a run.
 
 use std::path::Path;
 
@@ -12,14 +12,14 @@ use crate::mirror::{MirrorError, Symmetries};
 use crate::refinement::RefinementAudit;
 use crate::static_balance::StaticBalance;
 
-/// What the audit compares the end with: the state before the first step of the whole run.
+/// Reference values from the state before the first step of the whole run.
 pub struct Start {
     momentum: [f64; 3],
     symmetries: Symmetries,
 }
 
 impl Start {
-    /// Of a simulation that has made no step yet.
+    /// Takes the values of a simulation before its first step.
     pub fn of(simulation: &Simulation) -> Self {
         Self {
             momentum: simulation.system().momentum(&simulation.state().v),
@@ -28,7 +28,7 @@ impl Start {
     }
 }
 
-/// The account of energy and momentum at the end.
+/// The balance of energy and momentum at the end.
 #[derive(Debug, Clone, Serialize)]
 pub struct Audit {
     /// Kinetic energy, J.
@@ -37,60 +37,60 @@ pub struct Audit {
     pub elastic_energy: f64,
     /// Energy dissipated by broken bonds and damping, J.
     pub dissipated_energy: f64,
-    /// Work done on the body by loads and supports, J.
+    /// Work done on the body by loads and constraints, J.
     pub external_work: f64,
     /// Kinetic and elastic energy before the first step of the whole run, J.
     pub initial_energy: f64,
-    /// By how much the scheme's own conserved energy differs from kinetic + elastic.
+    /// Difference between the energy that the scheme conserves and kinetic + elastic energy, J.
     pub scheme_correction: f64,
-    /// What the energies do not add up by.
+    /// Error of the energy balance, J.
     pub balance: f64,
-    /// The balance over the external work.
+    /// The error relative to the external work.
     pub balance_over_work: f64,
-    /// The balance over the dissipated energy.
+    /// The error relative to the dissipated energy.
     pub balance_over_dissipated: f64,
-    /// The largest size of the balance among the rows of history.csv.
+    /// The largest error among the rows of history.csv, J.
     pub largest_balance: f64,
-    /// Momentum, kg m/s; none of static states.
+    /// Momentum, kg m/s; `None` for static states.
     pub momentum: Option<[f64; 3]>,
-    /// Impulse of loads and supports since the start, N s; none of static states.
+    /// Impulse of loads and constraints since the start, N s; `None` for static states.
     pub impulse: Option<[f64; 3]>,
-    /// |momentum − momentum at the start − impulse|; NaN (null) for static states, which have no momentum.
+    /// |momentum − initial momentum − impulse|, kg m/s; NaN (null) for static states, which have no momentum.
     pub momentum_error: f64,
-    /// The same over √(2 · kinetic energy · mass).
+    /// The same relative to √(2 · kinetic energy · mass).
     pub momentum_error_relative: f64,
     /// Bonds broken since the start, each counted once.
     pub broken_bonds: u64,
-    /// Those of them that were stretched from compression, or to many times their critical stretch, within one step.
+    /// Broken bonds that were stretched from compression, or to many times their critical stretch, within one step.
     pub coarse_breaks: u64,
     /// The largest damage of a point.
     pub largest_damage: f64,
-    /// The balance over the larger of work and initial energy.
+    /// Error of the energy balance relative to the larger of external work and initial energy.
     pub energy_drift: f64,
-    /// Highest frequency of the reference state that limits the step times the step; none if nothing resists motion.
+    /// Highest frequency of the reference state that limits the time step, times the step; `None` without stiffness.
     pub omega_dt: Option<f64>,
-    /// Points whose force was evaluated since the start of the run: the whole body counts as many as it has points.
+    /// Point-wise force evaluations since the start of the run; an evaluation of the whole body counts all its points.
     pub evaluated_points: u64,
-    /// Error of the last force for being computed in floats, over the largest force.
+    /// Rounding error of the last force in single precision, relative to the largest force.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub force_rounding: Option<f64>,
-    /// How far the displacements are from their mirror images, where a run begins as its own.
+    /// Deviations from the mirror symmetries of the data.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub mirror_errors: Vec<MirrorError>,
-    /// Residual, and the balance of loads and reactions, of static states.
+    /// Residual and resultant of loads and reactions of static states.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub static_balance: Option<StaticBalance>,
-    /// None for schemes with one time step.
+    /// Results of multirate schemes; `None` for other schemes.
     pub refinement: Option<RefinementAudit>,
     /// Warnings about the results.
     pub warnings: Vec<String>,
 }
 
 impl Audit {
-    /// The account of the present state, without warnings.
+    /// Evaluates the current state, without warnings.
     ///
     /// # Errors
-    /// A history that cannot be read.
+    /// The history cannot be read.
     pub(crate) fn of(
         simulation: &Simulation,
         start: &Start,
@@ -117,7 +117,7 @@ impl Audit {
             .map(|i| system.density().at(i) * volumes[i])
             .sum();
         let damage = snapshot.field(Field::Damage);
-        // A run may keep no history.
+        // A run may write no history.
         let table = history.exists().then(|| read_csv(history)).transpose()?;
         let rows = table.as_ref().and_then(|table| table.column("balance"));
         Ok(Self {

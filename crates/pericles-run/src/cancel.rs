@@ -1,45 +1,47 @@
-//! Asking a run to stop from outside.
+//! Cancellation of runs.
 
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Whether a run has been asked to stop, and for what reason. Copies share the answer, so that one can be kept by another thread or a signal handler.
+/// A token that stops a run, with a reason. Copies share their state, so that another thread or a signal handler can
+/// keep one.
 ///
-/// A run asks after every step, and between the iterations of steps that iterate; it then stops with a checkpoint.
+/// A run checks the token after every step and between iterations within a step; it then stops with a checkpoint.
 #[derive(Debug, Clone, Default)]
 pub struct Cancel {
-    /// Zero as long as nobody has asked.
+    /// Zero if not cancelled.
     reason: Arc<AtomicUsize>,
 }
 
 impl Cancel {
-    /// A token that nobody has used yet.
+    /// Creates a token.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Asks to stop.
+    /// Requests the run to stop.
     pub fn cancel(&self) {
         self.cancel_for(NonZeroUsize::MIN);
     }
 
-    /// Asks to stop for a reason that the caller numbers, such as a signal. The last reason counts.
+    /// Requests the run to stop for a reason numbered by the caller, such as a signal. The last reason counts.
     pub fn cancel_for(&self, reason: NonZeroUsize) {
         self.reason.store(reason.get(), Ordering::Relaxed);
     }
 
-    /// The reason to stop; none as long as nobody has asked.
+    /// Returns the reason, or `None` if not cancelled.
     pub fn reason(&self) -> Option<NonZeroUsize> {
         NonZeroUsize::new(self.reason.load(Ordering::Relaxed))
     }
 
-    /// Whether somebody has asked.
+    /// Returns whether a stop was requested.
     pub fn is_cancelled(&self) -> bool {
         self.reason().is_some()
     }
 
-    /// The number behind the token, for signal handlers, which may do nothing but store one: zero goes on, any other number stops the run.
+    /// Returns the number behind the token for signal handlers, which may only store one: zero continues, any other
+    /// number stops the run.
     pub fn flag(&self) -> Arc<AtomicUsize> {
         Arc::clone(&self.reason)
     }
@@ -50,7 +52,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn copies_share_the_reason() {
+    fn copies_of_a_token_share_the_reason() {
         let cancel = Cancel::new();
         let copy = cancel.clone();
         assert_eq!(copy.reason(), None);

@@ -1,14 +1,15 @@
-//! Checkpoints of a run: when they are due, and what they hold besides the state.
+//! Checkpoints of a run: schedule and metadata.
 //!
-//! One is written before the first step, so that a run that dies at any time can be resumed, then at the deck's schedule (by default every ten minutes
-//! of wall time; static runs also between load steps, as far as that takes no more than a twentieth of the time), and when a signal stops the run. A run that becomes unstable leaves its failing state as `failed.chk`, which is for looking
-//! at only: `resume` goes on from the last regular one.
+//! A checkpoint is written before the first step, so that a run that is killed at any time can be resumed, then by
+//! the schedule of the deck (by default every ten minutes of wall-clock time; static runs also between load steps, as
+//! long as this takes at most a twentieth of the time), and when a signal stops the run. If a run becomes unstable,
+//! its state is written to `failed.chk` for inspection; `resume` continues from the last regular checkpoint.
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use pericles::observe::Schedule;
-use pericles::{Archive, Saved, Simulation};
+use pericles::{Archive, Checkpointed, Simulation};
 use pericles_deck::Checkpoint;
 use pericles_io::{CheckpointFolder, Container, IoError, OutputFolder};
 use serde::{Deserialize, Serialize};
@@ -16,37 +17,37 @@ use serde::{Deserialize, Serialize};
 use crate::error::RunError;
 use crate::source::SourceRecord;
 
-/// The state of a run that became unstable.
+/// File of the state of a run that became unstable.
 pub const FAILED: &str = "failed.chk";
-/// Between load steps checkpoints are as many times rarer than they take to write.
+/// Between load steps, the interval between checkpoints is at least this multiple of the time to write one.
 const SHARE: u32 = 20;
 
-/// What a checkpoint says besides the state: enough to build the same run again.
+/// Metadata of a checkpoint, sufficient to build the same run again.
 #[derive(Debug, Clone, Serialize, Deserialize, PartialEq)]
 pub struct Metadata {
-    /// The version that wrote it.
+    /// The version of Pericles.
     pub version: String,
-    /// The instruction set it ran with.
+    /// The instruction set of the run.
     pub instruction_set: String,
-    /// Steps taken.
+    /// Number of completed steps.
     pub step: u64,
     /// The deck or the model.
     #[serde(flatten)]
     pub source: SourceRecord,
 }
 
-/// The checkpoints of one run.
+/// The checkpoints of a run.
 pub struct Checkpoints {
     folder: CheckpointFolder,
     schedule: Checkpoint,
     source: SourceRecord,
     last: Instant,
-    /// How long the last one took to write.
+    /// Time to write the last checkpoint.
     cost: Duration,
 }
 
 impl Checkpoints {
-    /// The checkpoints of a run in its output folder.
+    /// Creates the checkpoints of a run in its output folder.
     pub fn new(folder: &OutputFolder, schedule: Checkpoint, source: SourceRecord) -> Self {
         Self {
             folder: CheckpointFolder::new(folder.file("checkpoints")),
@@ -57,20 +58,20 @@ impl Checkpoints {
         }
     }
 
-    /// How long the last one took to write; zero before the first.
+    /// Returns the time to write the last checkpoint; zero before the first.
     pub fn cost(&self) -> Duration {
         self.cost
     }
 
-    /// Whether one is due after the present step.
+    /// Returns whether a checkpoint is due after the current step.
     pub fn is_due(&self, simulation: &Simulation) -> bool {
         let step = simulation.state().step;
         let due = |schedule: Schedule| schedule.is_due(step, simulation.dt(), simulation.steps());
         match self.schedule {
             Checkpoint::Wall(seconds) => {
-                // A deck may ask for more seconds than a clock can count.
+                // The interval of the deck may exceed the range of the clock.
                 let wait = Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX);
-                // A load step may take as long as a whole dynamic run, and the next one may have no static state.
+                // A load step may take as long as a whole dynamic run, and the next one may fail.
                 let affordable = SHARE * self.cost;
                 let is_static = simulation.integrator().is_static();
                 let elapsed = self.last.elapsed();
@@ -81,10 +82,10 @@ impl Checkpoints {
         }
     }
 
-    /// Writes the present state.
+    /// Writes the current state.
     ///
     /// # Errors
-    /// A file that cannot be written.
+    /// The file cannot be written.
     pub fn write(&mut self, simulation: &Simulation) -> Result<PathBuf, RunError> {
         let began = Instant::now();
         let container = self.container(simulation)?;
@@ -94,23 +95,23 @@ impl Checkpoints {
         Ok(path)
     }
 
-    /// Writes a state that cannot be gone on from.
+    /// Writes the state of a failed run, which cannot be resumed.
     ///
     /// # Errors
-    /// A file that cannot be written.
+    /// The file cannot be written.
     pub fn write_failed(&self, simulation: &Simulation) -> Result<PathBuf, RunError> {
         let path = self.folder.path().join(FAILED);
         self.container(simulation)?.write(&path)?;
         Ok(path)
     }
 
-    /// Removes what an earlier failure left.
+    /// Removes the state of an earlier failure.
     pub fn forget_failed(&self) {
-        // It is overwritten by the next failure, and of no use to a success.
+        // An error is ignored: the next failure overwrites the file.
         let _ = std::fs::remove_file(self.folder.path().join(FAILED));
     }
 
-    /// The step from which `resume` would go on.
+    /// Returns the step at which `resume` would continue.
     pub fn last_step(&self) -> Option<u64> {
         self.folder.steps().ok()?.last().copied()
     }
@@ -135,23 +136,23 @@ impl Checkpoints {
     }
 }
 
-/// A checkpoint read back.
+/// A checkpoint read from a file.
 pub struct Stored {
     /// The file.
     pub path: PathBuf,
-    /// What it says.
+    /// The metadata.
     pub metadata: Metadata,
     /// The state.
     pub archive: Archive,
-    /// Why newer ones were refused.
+    /// Errors of newer checkpoints that cannot be used.
     pub refused: Vec<IoError>,
 }
 
 impl Stored {
-    /// The newest usable checkpoint of a run; its content may take so many bytes of memory.
+    /// Reads the newest usable checkpoint of a run, whose content may need at most `memory` bytes.
     ///
     /// # Errors
-    /// No checkpoint that is whole, one of another program, one that needs more memory.
+    /// No checkpoint is complete, it is from another program, or it needs more memory.
     pub fn latest(folder: &OutputFolder, memory: u64) -> Result<Self, RunError> {
         let latest = CheckpointFolder::new(folder.file("checkpoints")).latest_valid(memory)?;
         let unusable = |reason: String| RunError::Checkpoint {

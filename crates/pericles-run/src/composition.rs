@@ -1,5 +1,5 @@
-//! What works together: the schemes and what they need, the forms of forces, what they offer and what they do not represent. Refusals follow from the same lists, and the tables of the book are written
-//! by [`tables`].
+//! Compatibility of schemes, force kernels and features: requirements of the schemes, capabilities and limits of the
+//! force kernels. Error messages use the same lists; [`tables`] writes the tables of the book.
 
 use std::fmt::Write;
 
@@ -13,33 +13,33 @@ use pericles_statics::StaticScheme;
 use pericles_waves::absorbing::LatticeScheme;
 use pericles_waves::{ForceForm, Trigonometric};
 
-/// A scheme, or several with the same needs.
+/// A scheme, or several with the same requirements.
 #[derive(Debug, Clone, Copy)]
 pub struct Scheme {
-    /// In words.
+    /// The name in tables.
     pub words: &'static str,
-    /// Names in decks.
+    /// The words in decks.
     pub names: &'static [&'static str],
-    /// Where within a step it takes the forces.
+    /// Where within a step forces are evaluated.
     pub kind: StepKind,
-    /// What it needs of a system.
+    /// Requirements on the system.
     pub requirements: &'static [Requirement],
 }
 
-/// A form in which forces are computed.
+/// A force kernel.
 #[derive(Debug, Clone, Copy)]
 pub struct Form {
-    /// In words.
+    /// The name in tables.
     pub words: &'static str,
     /// The word in decks.
     pub name: &'static str,
-    /// The needs of schemes that its forces meet.
+    /// The needs of schemes that it satisfies.
     pub offers: &'static [Need],
-    /// The choice that a deck makes; none for surfaces and state-based bodies, which have no other form.
+    /// The choice in decks; `None` for surfaces and state-based bodies, which have a single form.
     pub choice: Option<ForceForm>,
 }
 
-/// Needs that concern the form of forces.
+/// Needs that concern the force kernel.
 const OF_FORMS: [Need; 3] = [Need::DoublePrecision, Need::FiniteReach, Need::SumOverBonds];
 
 /// All schemes.
@@ -51,19 +51,19 @@ pub const SCHEMES: [Scheme; 13] = [
         requirements: &[],
     },
     Scheme {
-        words: "relaxation (static states)",
-        names: &["relaxation"],
+        words: "adaptive dynamic relaxation (static states)",
+        names: &["adaptive-dynamic-relaxation"],
         kind: StepKind::Stages,
         requirements: Relaxation::REQUIREMENTS,
     },
     Scheme {
-        words: "static (Newton–Krylov)",
+        words: "Newton–Krylov (static states)",
         names: &["static"],
         kind: StepKind::Stages,
         requirements: StaticScheme::REQUIREMENTS,
     },
     Scheme {
-        words: "Runge–Kutta of order 3 and 4",
+        words: "Runge–Kutta of orders 3 and 4",
         names: &["rk3", "rk4"],
         kind: StepKind::Stages,
         requirements: &[],
@@ -75,8 +75,8 @@ pub const SCHEMES: [Scheme; 13] = [
         requirements: AdaptiveRungeKutta::REQUIREMENTS,
     },
     Scheme {
-        words: "Runge–Kutta with two time steps",
-        names: &["rk3-mts", "rk4-mts"],
+        words: "multirate Runge–Kutta",
+        names: &["multirate-rk3", "multirate-rk4"],
         kind: StepKind::Stages,
         requirements: MultiTimeStep::REQUIREMENTS,
     },
@@ -127,7 +127,7 @@ pub const SCHEMES: [Scheme; 13] = [
 /// All forms.
 pub const FORMS: [Form; 7] = [
     Form {
-        words: "list of bonds (any body)",
+        words: "neighbour list (any body)",
         name: "list",
         offers: &OF_FORMS,
         choice: Some(ForceForm::List),
@@ -145,7 +145,7 @@ pub const FORMS: [Form; 7] = [
         choice: Some(ForceForm::FloatGrid),
     },
     Form {
-        words: "bonds of surfaces",
+        words: "surfaces",
         name: "surface",
         offers: &OF_FORMS,
         choice: None,
@@ -171,7 +171,7 @@ pub const FORMS: [Form; 7] = [
 ];
 
 impl Form {
-    /// Why the form does not represent a feature of a body; none if it does.
+    /// Returns why the kernel does not represent a feature of a body, or `None` if it does.
     pub fn refusal_of_feature(&self, feature: Feature) -> Option<&'static str> {
         let limits = self.choice.map_or(&[][..], ForceForm::limits);
         Limit::refusal(limits, feature.into())
@@ -179,12 +179,12 @@ impl Form {
 }
 
 impl Scheme {
-    /// Why the scheme cannot step forces of a form; none if it can.
+    /// Returns why the scheme is not compatible with a force kernel, or `None` if it is.
     pub fn refusal_of_form(&self, form: &Form) -> Option<&'static str> {
         self.refusal(|need| !OF_FORMS.contains(&need) || form.offers.contains(&need))
     }
 
-    /// Why the scheme cannot step a system with a certain condition; none if it can.
+    /// Returns why the scheme is not compatible with a condition, or `None` if it is.
     pub fn refusal_of_condition(&self, condition: Condition) -> Option<&'static str> {
         let unmet = self.refusal(|need| !condition.breaks(need));
         let kinds = condition.kinds();
@@ -201,7 +201,7 @@ impl Scheme {
     }
 }
 
-/// What the scheme of a model needs of a system.
+/// Returns the requirements of the scheme of a model.
 pub fn requirements(scheme: &DeckScheme) -> &'static [Requirement] {
     match scheme {
         DeckScheme::VelocityVerlet | DeckScheme::RungeKutta3 { .. } | DeckScheme::RungeKutta4 => {
@@ -221,23 +221,23 @@ pub fn requirements(scheme: &DeckScheme) -> &'static [Requirement] {
     }
 }
 
-/// What a system may have beside its forces.
+/// Conditions of a system besides its forces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Condition {
     /// Prescribed motion.
     Supports,
     /// Prescribed motion that ends before the run.
     ReleasedPoints,
-    /// Bonds that break.
+    /// Breaking bonds.
     Breaking,
-    /// Exact absorbing ends.
+    /// Exact absorbing boundaries.
     AbsorbingEnds,
     /// Damping layers.
     DampingLayers,
 }
 
 impl Condition {
-    /// All of them.
+    /// All conditions.
     pub const ALL: [Self; 5] = [
         Self::Supports,
         Self::ReleasedPoints,
@@ -246,18 +246,18 @@ impl Condition {
         Self::DampingLayers,
     ];
 
-    /// In words.
+    /// Returns the name in tables.
     pub fn words(self) -> &'static str {
         match self {
             Self::Supports => "prescribed motion",
-            Self::ReleasedPoints => "points that are let go",
-            Self::Breaking => "breaking",
-            Self::AbsorbingEnds => "absorbing ends",
+            Self::ReleasedPoints => "released points",
+            Self::Breaking => "breaking bonds",
+            Self::AbsorbingEnds => "absorbing boundaries",
             Self::DampingLayers => "damping layers",
         }
     }
 
-    /// Whether a system with it does not meet a need.
+    /// Returns whether the condition violates a need.
     fn breaks(self, need: Need) -> bool {
         match self {
             Self::Supports | Self::ReleasedPoints | Self::Breaking => false,
@@ -266,7 +266,7 @@ impl Condition {
         }
     }
 
-    /// The kinds of steps that it is made for; empty if any.
+    /// Returns the supported kinds of steps; empty if all.
     fn kinds(self) -> &'static [StepKind] {
         match self {
             Self::AbsorbingEnds => LatticeScheme::KINDS,
@@ -275,10 +275,11 @@ impl Condition {
     }
 }
 
-/// Why absorbing ends do not go with most kinds of steps.
-const OTHER_KERNELS: &str = "the kernels of an absorbing end are made for a scheme: velocity-verlet, implicit-midpoint, trapezoidal or discrete-gradient";
+/// Why absorbing boundaries require certain schemes.
+const OTHER_KERNELS: &str = "the kernels of absorbing boundaries are available for velocity-verlet, implicit-midpoint, trapezoidal and discrete-gradient only";
 
-/// The tables of schemes with forms and with conditions, and of features of bodies with forms, in Markdown, with the reasons of what is refused.
+/// Returns Markdown tables of schemes with force kernels and conditions, and of features with force kernels, with the
+/// reasons of incompatibilities.
 pub fn tables() -> String {
     let mut reasons = Reasons::default();
     let forms = FORMS.map(|form| form.words);
@@ -320,7 +321,7 @@ pub fn tables() -> String {
     text
 }
 
-/// Reasons in the order in which they are met first.
+/// Reasons in the order of their first use.
 #[derive(Default)]
 struct Reasons(Vec<&'static str>);
 
@@ -339,7 +340,7 @@ fn head(first: &str, columns: &[&str]) -> String {
     format!("| {first} | {} |\n{rule}|\n", columns.join(" | "))
 }
 
-/// Adds rows; what has the same cells shares a row.
+/// Adds rows; entries with the same cells share a row.
 fn rows<'a>(
     text: &mut String,
     all: impl Iterator<Item = (&'a str, Vec<Option<&'static str>>)>,

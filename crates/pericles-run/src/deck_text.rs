@@ -1,4 +1,4 @@
-//! A deck as a run keeps it: enough to read it again without its file.
+//! The deck as stored with a run, sufficient to read it again without its file.
 
 use pericles_deck::Deck;
 use serde::{Deserialize, Serialize};
@@ -6,22 +6,22 @@ use serde::{Deserialize, Serialize};
 use crate::error::RunError;
 use crate::inputs::Inputs;
 
-/// A deck as it was given.
+/// The text of a deck with its overrides.
 #[derive(Debug, Clone, Serialize, Deserialize, PartialEq)]
 pub struct DeckText {
-    /// What messages call it.
+    /// The file name for messages.
     pub file: String,
-    /// Its text.
+    /// The text.
     pub source: String,
     /// The overrides, `key=value`.
     pub overrides: Vec<String>,
-    /// The files that the deck names.
+    /// The input files of the deck.
     #[serde(default, skip_serializing_if = "Inputs::is_empty")]
     pub inputs: Inputs,
 }
 
 impl DeckText {
-    /// The text of a deck that was read from `file`.
+    /// Returns the text of a deck that was read from `file`.
     pub fn of(deck: &Deck, file: String) -> Self {
         Self {
             inputs: Inputs::of(&deck.model, deck.folder()),
@@ -31,10 +31,10 @@ impl DeckText {
         }
     }
 
-    /// Reads the deck again, from whatever folder.
+    /// Reads the deck again, independent of the current folder.
     ///
     /// # Errors
-    /// What this version no longer accepts; a file that the deck names and that is no longer what it was.
+    /// This version no longer accepts the deck, or an input file has changed.
     pub fn read(&self) -> Result<Deck, RunError> {
         let file = self.inputs.located(&self.file);
         let deck = Deck::parse(&self.source, &file, &self.overrides)?;

@@ -1,4 +1,4 @@
-//! What can go wrong between a deck and its results.
+//! Errors of runs and their results.
 
 use std::path::PathBuf;
 
@@ -6,31 +6,31 @@ use pericles::{PericlesError, SimulationError};
 use pericles_deck::{BuildError, DeckError};
 use pericles_io::{IoError, MeshError};
 
-/// Everything that ends a run early, or keeps its results from being read.
+/// An error that ends a run, or prevents its results from being read.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RunError {
-    /// The deck is refused.
+    /// The deck is invalid.
     #[error(transparent)]
     Deck(#[from] DeckError),
-    /// A model without a deck is refused.
+    /// A model without a deck is invalid.
     #[error(transparent)]
     Model(#[from] BuildError),
-    /// A file is to blame.
+    /// A file cannot be read or written.
     #[error(transparent)]
     Io(#[from] IoError),
-    /// The run became unstable, or found no way on.
+    /// The run became unstable, or cannot continue.
     #[error("{source}")]
     Unstable {
-        /// What happened.
+        /// The cause.
         source: SimulationError,
-        /// What is left of the run.
+        /// The saved state and checkpoints.
         left: String,
     },
-    /// Anything else that keeps a run from going on.
+    /// Any other error of the simulation.
     #[error("{0}")]
     Simulation(#[source] SimulationError),
-    /// A checkpoint that does not go with its deck.
+    /// A checkpoint does not match its deck.
     #[error("the checkpoint {} cannot be used: {reason}", path.display())]
     Checkpoint {
         /// The checkpoint.
@@ -38,39 +38,39 @@ pub enum RunError {
         /// Why.
         reason: String,
     },
-    /// A file that the deck names is not what it was when the run began.
-    #[error("{} is read by the run: {reason}", path.display())]
+    /// An input file has changed since the run started.
+    #[error("the input file {} of the run cannot be used: {reason}", path.display())]
     InputChanged {
         /// The file.
         path: PathBuf,
-        /// What has happened to it.
+        /// The change.
         reason: String,
     },
-    /// There are no results.
-    #[error("{} is no output folder of a run: {reason}", path.display())]
+    /// The folder contains no results.
+    #[error("{} is not the output folder of a run: {reason}", path.display())]
     NoResults {
         /// The folder.
         path: PathBuf,
-        /// What it lacks.
+        /// Why.
         reason: &'static str,
     },
-    /// There is nothing to resume.
-    #[error("{} is no output folder of a run: it has no checkpoints", path.display())]
+    /// The folder contains no checkpoints.
+    #[error("{} is not the output folder of a run: it has no checkpoints", path.display())]
     NoRun {
         /// The folder.
         path: PathBuf,
     },
-    /// A name that nothing has: of a number, a study, an example.
+    /// An unknown name of a scalar, study, example, field, column or case.
     #[error("there is no {kind} \"{name}\"")]
     Unknown {
-        /// What it should name.
+        /// The kind of object.
         kind: &'static str,
         /// The name given.
         name: String,
-        /// The nearest name, and where to find the others.
+        /// The most similar name, and how to list all names.
         hint: String,
     },
-    /// A file of results that is not what Pericles writes.
+    /// A result file is damaged or was not written by Pericles.
     #[error("{} cannot be used: {reason}", path.display())]
     Damaged {
         /// The file.
@@ -78,22 +78,22 @@ pub enum RunError {
         /// Why.
         reason: String,
     },
-    /// A file that gives no surface, or no fields.
+    /// A mesh, surface or field file cannot be used.
     #[error(transparent)]
     Mesh(#[from] MeshError),
-    /// A step of the library outside of a run.
+    /// An error of the engine outside of a run.
     #[error(transparent)]
     Library(#[from] PericlesError),
-    /// The system refuses threads.
-    #[error("the threads cannot be started: {0}")]
+    /// The thread pool cannot be started.
+    #[error("cannot start the threads: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
-    /// A value that has no JSON.
+    /// A value cannot be represented in JSON.
     #[error("the results cannot be written as JSON: {0}")]
     Json(#[from] serde_json::Error),
 }
 
 impl RunError {
-    /// A name that is none of the allowed ones; `listing` says where all of them are shown.
+    /// Creates the error for an unknown name, with the most similar allowed name; `listing` tells how to list all.
     pub fn unknown(
         kind: &'static str,
         name: &str,
@@ -112,7 +112,7 @@ impl RunError {
         Self::Unknown {
             kind,
             name: name.to_owned(),
-            // Below this the two have little in common.
+            // Names with a lower similarity are not suggested.
             hint: if likeness > 0.6 {
                 format!("did you mean {nearest}? {listing}")
             } else {
@@ -121,7 +121,7 @@ impl RunError {
         }
     }
 
-    /// Sorts the failure of a simulation; `left` tells what is left of the run if it came to no end of its own.
+    /// Converts an error of a simulation; for unstable runs `left` describes the saved state and checkpoints.
     pub fn of_run(error: SimulationError, left: impl FnOnce() -> String) -> Self {
         match error {
             SimulationError::Observe(source) => match source.downcast::<IoError>() {

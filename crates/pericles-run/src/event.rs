@@ -1,39 +1,43 @@
-//! What a run tells while it goes on.
+//! Events of a run.
 
 use std::path::Path;
 
+use pericles::IterationProgress;
+
 use crate::report::Report;
 
-/// News of a run. Texts are whole sentences without a full stop, in the words of the program.
+/// An event of a run. Texts are messages without a final full stop.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Event<'a> {
-    /// Something about the cache, while the model is built.
+    /// A note about the cache while the model is built.
     CacheNote(&'a str),
-    /// The run is about to begin or to go on: what is known of it, its warnings among that, and where its results go.
+    /// The run is about to start or to be resumed.
     Opening {
-        /// The report as it stands.
+        /// The current report, including warnings.
         report: &'a Report,
-        /// The folder of the results.
+        /// The output folder.
         folder: &'a Path,
     },
     /// The time loop begins.
     LoopBegins {
-        /// The step it begins at.
+        /// The step at which it begins.
         first: u64,
         /// The last step of the run.
         steps: u64,
     },
-    /// A step has been made, and it was not the last.
+    /// A step other than the last one was completed.
     Step {
-        /// Its number.
+        /// The step number.
         step: u64,
         /// The time reached, s.
         t: f64,
     },
+    /// An iteration within a step has been made, by a scheme that reports its iterations: a step of Newton's method in a load step.
+    Iteration(IterationProgress),
     /// A warning about the run.
     Warning(&'a str),
-    /// The time loop has ended, for whatever reason.
+    /// The time loop has ended.
     LoopEnds,
 }
 

@@ -1,4 +1,4 @@
-//! Fields of a run in other formats.
+//! Export of the fields of a run to other formats.
 
 use std::fs;
 use std::path::Path;
@@ -22,20 +22,22 @@ pub enum ExportFormat {
     Exodus,
     /// One VTKHDF file.
     VtkHdf,
-    /// A folder with a table for each output, `fields_000000.csv` …: a row for each point.
+    /// A folder with a table per output time, `fields_000000.csv`, ..., with a row per point.
     Csv,
-    /// One archive of NumPy arrays: `time` (outputs), `position` (points × dimension), `volume` (points), and each field (outputs × points, of vectors × 3).
+    /// A NumPy archive: `time` (outputs), `position` (points × dimension), `volume` (points), and each field
+    /// (outputs × points, vectors × 3).
     Npz,
 }
 
-/// Writes all fields of a run to a new file or folder, in the user's order of points; the number of outputs.
+/// Writes all fields of a run to a new file or folder, in the user's order of points; returns the number of output
+/// times.
 ///
 /// # Errors
-/// A run without field files, a deck whose points can no longer be made, files that cannot be read or written.
+/// The run has no field files, the points cannot be built from its deck, or files cannot be read or written.
 pub fn export(results: &Results, format: ExportFormat, path: &Path) -> Result<usize, RunError> {
     let states = results.fields()?;
     let Some(first) = states.first() else {
-        return Err(results.damaged("fields.pvd", "the run wrote no fields".into()));
+        return Err(results.damaged("fields.pvd", "the run wrote no field files".into()));
     };
     let source = results.source()?.read()?;
     let resources = Resources {
@@ -47,10 +49,12 @@ pub fn export(results: &Results, format: ExportFormat, path: &Path) -> Result<us
     let points = points.map_err(|error| source.refusal(error))?;
     let mesh = points.mesh.as_deref();
     let body = result_body(source.model(), &points.cloud, &points.sets, mesh);
-    let first = first.read()?;
+    let mut first = first.read()?;
+    // The components of a tensor are also there as scalars, which every format can keep.
+    first.fields.retain(|field| field.components <= 3);
     if first.points.len() != 3 * body.volumes.len() {
         let reason = format!(
-            "it has {} points, the deck {}",
+            "it has {} points, but the body of the deck has {}",
             first.points.len() / 3,
             body.volumes.len()
         );
@@ -85,7 +89,7 @@ impl Outputs<'_> {
         fields.map(spec).collect()
     }
 
-    /// The fields of a state, component-major, as they are in the first one.
+    /// Returns the fields of a state, component-major, in the order of the first one.
     fn values(&self, state: &FieldFile) -> Result<Vec<Vec<f64>>, RunError> {
         let data = state.read()?;
         let n = self.body.volumes.len();
@@ -94,7 +98,7 @@ impl Outputs<'_> {
             let found = found.filter(|found| found.values.len() == field.values.len());
             let found = found.ok_or_else(|| RunError::Damaged {
                 path: state.path.clone(),
-                reason: format!("it lacks the field {} on {n} points", field.name),
+                reason: format!("the field {} on {n} points is missing", field.name),
             })?;
             let components = field.components;
             let mut values = vec![0.0; found.values.len()];
@@ -204,7 +208,7 @@ impl Outputs<'_> {
         archive.write(&positions)?;
         archive.begin("volume", &[n])?;
         archive.write(&self.body.volumes)?;
-        // Field by field: an array over all outputs need not fit into memory.
+        // Field by field, because an array over all outputs may not fit into memory.
         for field in &self.first.fields {
             match field.components {
                 1 => archive.begin(&field.name, &[outputs, n])?,
@@ -217,7 +221,7 @@ impl Outputs<'_> {
                 let Some(found) = found else {
                     return Err(RunError::Damaged {
                         path: state.path.clone(),
-                        reason: format!("it lacks the field {}", field.name),
+                        reason: format!("the field {} is missing", field.name),
                     });
                 };
                 archive.write(&found.values)?;

@@ -1,4 +1,4 @@
-//! What is known of a run before its first step: what reports, `check` and `run.json` say of a model.
+//! Properties of a run before its first step, for reports, `check` and `run.json`.
 
 use pericles::material::{BondMaterial, Fracture, FractureCalibration, SurfaceCorrection};
 use pericles_deck::{Body, Deck, Model, ModelWarning};
@@ -9,7 +9,7 @@ use crate::build::{Assembly, LoadReport, MaterialConstants};
 use crate::refinement::RefinementFacts;
 use crate::units::{bytes, count, quantity, significant};
 
-/// What is known about a run before its first step; SI units.
+/// Properties of a run before its first step; SI units.
 #[derive(Debug, Clone, Serialize)]
 pub struct Facts {
     /// Dimension of the body.
@@ -20,107 +20,108 @@ pub struct Facts {
     pub spacing: f64,
     /// Horizon, m.
     pub horizon: f64,
-    /// Bonds, each counted once, after pre-cutting.
+    /// Number of bonds, each counted once, without those cut by pre-cracks.
     pub bonds: u64,
-    /// Bonds, each counted from both ends.
+    /// Number of bonds, each counted from both ends.
     pub directed_bonds: u64,
-    /// Bonds cut before the start, each counted once.
+    /// Number of bonds cut by pre-cracks, each counted once.
     pub precut_bonds: u64,
-    /// How the bonds are kept: grid or list.
+    /// Force kernel: grid or list.
     pub operator: &'static str,
-    /// Young's modulus, Pa; none for a surface.
+    /// Young's modulus, Pa; `None` for a surface.
     pub youngs_modulus: Option<f64>,
-    /// Poisson's ratio; of state-based materials in two and three dimensions.
+    /// Poisson's ratio of state-based materials in two and three dimensions.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub poisson_ratio: Option<f64>,
-    /// Bulk modulus, Pa; of state-based materials in two and three dimensions.
+    /// Bulk modulus, Pa, of state-based materials in two and three dimensions.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bulk_modulus: Option<f64>,
-    /// Shear modulus, Pa; of state-based materials in two and three dimensions.
+    /// Shear modulus, Pa, of state-based materials in two and three dimensions.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shear_modulus: Option<f64>,
-    /// The bond constant c; none for a surface and for state-based materials.
+    /// Bond constant c; `None` for surfaces and state-based materials.
     pub micromodulus: Option<f64>,
-    /// None if bonds never break, or not by their stretch.
+    /// Critical stretch; `None` if bonds do not break, or not by their stretch.
     pub critical_stretch: Option<f64>,
-    /// Critical bond energy, J/m⁶; none if bonds do not break by their energy.
+    /// Critical bond energy, J/m⁶; `None` if bonds do not break by their energy.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub critical_bond_energy: Option<f64>,
-    /// Fracture energy, J/m²; none if bonds never break.
+    /// Fracture energy, J/m²; `None` if bonds do not break.
     pub fracture_energy: Option<f64>,
-    /// How the critical stretch follows from the fracture energy; none if the deck gives no fracture energy.
+    /// Calibration of the critical stretch by the fracture energy; `None` if the deck has no fracture energy.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fracture_calibration: Option<&'static str>,
-    /// Cracks along the planes of the lattice, if bonds break and there is a lattice.
+    /// Energies of cracks along lattice planes, if bonds break and the points form a lattice.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub crack_planes: Vec<PlaneFacts>,
-    /// Bulk stiffness of the grid's interior over the continuum's, less one; none for a surface; of state-based materials zero.
+    /// Relative error of the bulk stiffness in the interior of the grid; zero for state-based materials, `None` for
+    /// surfaces.
     pub stiffness_error: Option<f64>,
-    /// Stiffness of the grid's interior against a shear along its axes over the continuum's, less one; none for a surface.
+    /// Relative error of the stiffness in shear along the axes in the interior of the grid; `None` for surfaces.
     pub shear_error: Option<f64>,
-    /// The same against a shear along the diagonals; of state-based materials on square and cubic cells.
+    /// The same in shear along the diagonals, for state-based materials on square and cubic cells.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub diagonal_shear_error: Option<f64>,
     /// Time step, s.
     pub dt: f64,
-    /// Steps of the whole run.
+    /// Number of steps of the whole run.
     pub steps: u64,
-    /// An estimate of the body's highest frequency from below, whatever the scheme, 1/s. None if nothing resists motion.
+    /// Lower estimate of the highest frequency of the body, for any scheme, 1/s; `None` without stiffness.
     pub highest_frequency: Option<f64>,
-    /// An upper bound of it, which holds but for the probability below, 1/s.
+    /// Upper bound of the highest frequency, which fails with the probability below, 1/s.
     pub highest_frequency_bound: Option<f64>,
-    /// The probability that the bound is wrong.
+    /// Probability that the bound fails.
     pub highest_frequency_failure_probability: Option<f64>,
-    /// Whether both agree to 2 %.
+    /// Whether estimate and bound agree to 2 %.
     pub frequency_converged: Option<bool>,
-    /// The frequency that limits the step, from below, 1/s: the highest, except for schemes with two time steps.
+    /// Lower estimate of the frequency that limits the time step, 1/s: the highest, except for multirate schemes.
     pub limiting_frequency: Option<f64>,
-    /// An upper bound of it, 1/s.
+    /// Upper bound of the limiting frequency, 1/s.
     pub limiting_frequency_bound: Option<f64>,
-    /// The largest stable time step, s; none where no step is unstable.
+    /// Largest stable time step, s; `None` for unconditionally stable schemes.
     pub stable_step: Option<f64>,
-    /// The estimated peak, files and pictures not counted, bytes.
+    /// Estimated peak memory without output, bytes.
     pub memory_estimate: u64,
-    /// The time integration scheme.
+    /// Time integration scheme.
     pub scheme: &'static str,
-    /// None for schemes with one time step.
+    /// Properties of multirate schemes; `None` for other schemes.
     pub refinement: Option<RefinementFacts>,
     /// The loads, in the order of the deck.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub loads: Vec<LoadFacts>,
-    /// The absorbing ends.
+    /// The absorbing boundaries.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub ends: Vec<EndFacts>,
-    /// The vector instructions that the force loops use.
+    /// Vector instruction set of the force loops.
     pub instruction_set: &'static str,
     /// Warnings about the run.
     pub warnings: Vec<String>,
-    /// Defaults that this deck relies on and that have changed since the last release.
+    /// Defaults used by the deck that have changed since the last release.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub changed_defaults: Vec<String>,
 }
 
-/// What a crack along a plane of the lattice costs.
+/// The energy of a crack along a lattice plane.
 #[derive(Debug, Clone, Serialize)]
 pub struct PlaneFacts {
     /// Miller indices, such as (110).
     pub plane: String,
-    /// Energy per area over the fracture energy, less one.
+    /// Relative deviation of the energy per area from the fracture energy.
     pub deviation: f64,
 }
 
-/// What a load comes to; SI units.
+/// Resultant of a load; SI units.
 #[derive(Debug, Clone, Serialize)]
 pub struct LoadFacts {
-    /// The set of points that it acts on.
+    /// The loaded set.
     pub set: String,
-    /// Number of these points.
+    /// Number of points of the set.
     pub points: usize,
-    /// None for body forces.
+    /// Loaded area; `None` for body forces.
     pub area: Option<f64>,
-    /// The resultant when it is largest in the run, an entry per dimension.
+    /// Largest resultant in the run, an entry per dimension.
     pub force: Vec<f64>,
-    /// When that is first so.
+    /// Time of the largest resultant.
     pub force_time: f64,
 }
 
@@ -135,7 +136,7 @@ impl LoadFacts {
         }
     }
 
-    /// In a line.
+    /// Returns a summary line.
     pub fn line(&self) -> String {
         let force: Vec<String> = self.force.iter().map(|f| quantity(*f, "N")).collect();
         let area = self.area.map_or_else(String::new, |area| {
@@ -151,22 +152,22 @@ impl LoadFacts {
     }
 }
 
-/// How an absorbing end is made.
+/// Properties of an absorbing boundary.
 #[derive(Debug, Clone, Serialize)]
 pub struct EndFacts {
-    /// Which end of the body.
+    /// Side of the body.
     pub side: &'static str,
-    /// How its kernels are computed.
+    /// Method for the kernels.
     pub method: &'static str,
-    /// How the history of its ghosts is kept.
+    /// Representation of the history.
     pub history: &'static str,
     /// Memory of the history, bytes.
     pub memory: u64,
-    /// None for exact histories.
+    /// Number of exponentials; `None` for exact histories.
     pub exponentials: Option<usize>,
-    /// Error of the fit on its samples.
+    /// Error of the fit at its samples.
     pub residual: Option<f64>,
-    /// Distance from the exact kernels, where `verify` asks for it.
+    /// Deviation from the exact kernels, with `verify`.
     pub distance: Option<f64>,
 }
 
@@ -183,24 +184,27 @@ impl EndFacts {
         }
     }
 
-    /// In a line.
+    /// Returns a summary line.
     pub fn line(&self) -> String {
         let mut line = format!("{}: {}, {}", self.side, self.history, bytes(self.memory));
         if self.method != KernelMethod::Discrete.name() {
             line += &format!(", {} kernels", self.method);
         }
         if let (Some(count), Some(residual)) = (self.exponentials, self.residual) {
-            line += &format!(", {count} terms, error {residual:.1e}");
+            line += &format!(", {count} terms, error {}", significant(residual, 2));
         }
         if let Some(distance) = self.distance {
-            line += &format!(", {distance:.1e} from the exact kernels");
+            line += &format!(
+                ", deviation {} from the exact kernels",
+                significant(distance, 2)
+            );
         }
         line
     }
 }
 
 impl Facts {
-    /// The facts about an assembled model. Warnings name the keys they concern.
+    /// Returns the properties of an assembled model. Warnings name their keys.
     pub fn of(model: &Model, assembly: &Assembly) -> Self {
         let waves = assembly.judge_waves(model);
         let warnings = assembly.warnings.iter().chain(&waves);
@@ -248,7 +252,7 @@ impl Facts {
             crack_planes: constants.map(plane_facts).unwrap_or_default(),
             stiffness_error: constants.map(|constants| match constants {
                 MaterialConstants::Bonds(constants) => constants.stiffness_error,
-                // The bulk stiffness is exact on any points.
+                // The bulk stiffness is exact for any points.
                 MaterialConstants::StateBased(_) | MaterialConstants::Correspondence(_) => 0.0,
             }),
             diagonal_shear_error: shear.map(|shear| shear.diagonals - 1.0),
@@ -281,7 +285,7 @@ impl Facts {
         }
     }
 
-    /// The facts about the assembly of a deck: warnings say where in the text they belong, and defaults that the deck relies on are known.
+    /// Returns the properties of the assembly of a deck, with locations of warnings and changed defaults.
     pub fn of_deck(deck: &Deck, assembly: &Assembly) -> Self {
         let waves = assembly.judge_waves(&deck.model);
         let warnings = assembly.warnings.iter().chain(&waves);
@@ -295,7 +299,7 @@ impl Facts {
     }
 }
 
-/// What cracks along the planes of the lattice cost.
+/// Returns the energies of cracks along lattice planes.
 fn plane_facts(constants: &MaterialConstants) -> Vec<PlaneFacts> {
     let planes = constants.crack_planes().iter();
     let facts = planes.map(|plane| PlaneFacts {
@@ -305,7 +309,7 @@ fn plane_facts(constants: &MaterialConstants) -> Vec<PlaneFacts> {
     facts.collect()
 }
 
-/// What this deck leaves to defaults that differ from those of the last release.
+/// Returns the defaults used by the deck that have changed since the last release.
 fn changed_defaults(deck: &Deck, assembly: &Assembly) -> Vec<String> {
     let mut changed = Vec::new();
     let Some(solid) = deck.model.body.solid() else {
@@ -328,14 +332,14 @@ fn changed_defaults(deck: &Deck, assembly: &Assembly) -> Vec<String> {
         let before = continuum.constants(&assembly.cloud, solid.state);
         let before = before.map_or(f64::NAN, |constants| constants.critical_stretch);
         changed.push(format!(
-            "fracture_calibration = \"lattice\" gives the critical stretch {}; \"continuum\", the former default, gives {}",
+            "fracture_calibration = \"lattice\" gives the critical stretch {}; the former default \"continuum\" gives {}",
             significant(constants.critical_stretch, 4),
             significant(before, 4)
         ));
     }
     if solid.material.surface_correction == SurfaceCorrection::Energy {
         changed.push(
-            "surface_correction = \"energy\" has factors for three directions at each point; formerly it had one for all directions"
+            "surface_correction = \"energy\" has factors for three directions at each point; formerly it had one factor for all directions"
                 .into(),
         );
     }

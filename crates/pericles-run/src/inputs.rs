@@ -1,4 +1,4 @@
-//! The files that a deck or model names, with their digests, so that no run continues with other content.
+//! Input files of a deck or model with their digests, so that a run is not resumed with changed files.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -10,25 +10,27 @@ use sha2::{Digest, Sha256};
 
 use crate::error::RunError;
 
-/// The files that a model names, as they were when the run began. Empty for models without files, and for runs of versions that did not record them.
+/// The input files of a model at the start of the run. Empty for models without files, and for runs of versions that
+/// did not record them.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Inputs {
-    /// The folder where relative paths start; absolute.
+    /// The base folder of relative paths; absolute.
     folder: Option<PathBuf>,
     files: Vec<Input>,
 }
 
-/// A file.
+/// An input file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Input {
-    /// As the model names it.
+    /// The path as given in the model.
     file: PathBuf,
-    /// Its content's SHA-256 in hexadecimal digits.
+    /// SHA-256 of the content in hexadecimal digits.
     sha256: String,
 }
 
 impl Inputs {
-    /// The files of a model whose relative paths start at `folder`. Those that cannot be read are left out: they are refused where they are needed.
+    /// Records the files of a model with paths relative to `folder`. Unreadable files are omitted; they lead to an
+    /// error when they are read.
     pub fn of(model: &Model, folder: &Path) -> Self {
         let inputs: Vec<Input> = model
             .files()
@@ -41,24 +43,25 @@ impl Inputs {
             })
             .collect();
         Self {
-            // A folder whose name is no text has no JSON; the deck's own path then serves alone.
+            // A folder name that is not UTF-8 has no JSON; then the path of the deck is used alone.
             folder: folder_of(&folder.join("deck"))
                 .filter(|folder| !inputs.is_empty() && folder.to_str().is_some()),
             files: inputs,
         }
     }
 
-    /// Whether nothing is recorded.
+    /// Returns whether no file is recorded.
     pub fn is_empty(&self) -> bool {
         self.files.is_empty()
     }
 
-    /// The folder where relative paths of a model start; empty for the present folder and for models without files.
+    /// Returns the base folder of relative paths; empty for the current folder and for models without files.
     pub fn folder(&self) -> &Path {
         self.folder.as_deref().unwrap_or(Path::new(""))
     }
 
-    /// A deck's path, by which its files are found: as it was given, or absolute if it was given from another folder than the present one.
+    /// Returns the path of a deck from which its files are found: as given, or absolute if it was given relative to a
+    /// folder other than the current one.
     pub fn located(&self, file: &str) -> String {
         let name = Path::new(file).file_name();
         match (&self.folder, name) {
@@ -71,18 +74,18 @@ impl Inputs {
         }
     }
 
-    /// Refuses files that have changed since the run began; relative paths start at `folder`.
+    /// Checks that the files have not changed since the start of the run; paths are relative to `folder`.
     ///
     /// # Errors
-    /// The first file that no longer exists, or whose content has changed.
+    /// A file no longer exists, or its content has changed.
     pub fn check(&self, folder: &Path) -> Result<(), RunError> {
         for input in &self.files {
             let path = folder.join(&input.file);
             let reason = match digest(&path) {
                 Ok(found) if found == input.sha256 => continue,
-                Ok(_) => "its content has changed since the run began".to_owned(),
+                Ok(_) => "its content has changed since the run started".to_owned(),
                 Err(error) if error.kind() == io::ErrorKind::NotFound => {
-                    "it does not exist any more".to_owned()
+                    "it no longer exists".to_owned()
                 }
                 Err(error) => format!("it cannot be read ({error})"),
             };
@@ -92,19 +95,19 @@ impl Inputs {
     }
 }
 
-/// The folder of a file, absolute.
+/// Returns the absolute folder of a file.
 fn folder_of(file: &Path) -> Option<PathBuf> {
     let path = std::path::absolute(file).ok()?;
     Some(path.parent()?.to_path_buf())
 }
 
-/// SHA-256 of a file's content, in hexadecimal digits.
+/// Returns the SHA-256 of the content of a file in hexadecimal digits.
 fn digest(path: &Path) -> io::Result<String> {
-    // What a pipe gives is gone once it is read.
+    // A pipe can be read only once.
     if !std::fs::metadata(path)?.is_file() {
         return Err(io::Error::new(
             io::ErrorKind::InvalidInput,
-            "it is no regular file",
+            "not a regular file",
         ));
     }
     let mut file = File::open(path)?;

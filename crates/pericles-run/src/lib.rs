@@ -1,17 +1,22 @@
-//! Runs: the whole way from a deck or a model to a finished folder of results, as a library.
+//! Runs as a library, from a deck or a model to an output folder.
 //!
-//! * [`discretise`] and [`assemble`] – from a [`Model`](pericles_deck::Model) to its points and sets ([`Discretisation`]), and on to the equation of
-//!   motion with state, scheme and time step ([`Assembly`]); [`build`] does both for a deck, with [`Resources`].
-//! * [`Source`] – what a run is made of: a deck, or a [`Model`](pericles_deck::Model) that a program made. `run.json` and checkpoints keep it.
-//! * [`Assembled`] – the assembly of a source with the facts about it ([`Facts`]), made with the [`Means`] of the machine.
-//! * [`Run`] – a run in its folder: [`begin`](Run::begin), or [`resume`](Run::resume) from the last checkpoint, then [`drive`](Run::drive) with
-//!   a callback for [`Event`]s, a [`Cancel`] token and a [`Deadline`]. It writes what the model asks for, checkpoints, and [`Report`] as `run.json`.
-//! * [`Results`] – the results of a run, read back from its folder.
-//! * [`sweep`] – one deck at several values of its keys; [`convergence`] – how a number of such runs converges.
-//! * [`Vibration`] – the natural modes of a body, as table, fields and pictures.
-//! * [`refinement`] – whether two time steps pay; [`dispersion`] – what a lattice does to waves, as files.
+//! * [`discretise`] and [`assemble`] – from a [`Model`](pericles_deck::Model) to points and sets
+//!   ([`Discretisation`]), and to the equation of motion with state, scheme and time step ([`Assembly`]); [`build`]
+//!   does both for a deck, with [`Resources`].
+//! * [`Source`] – the source of a run: a deck, or a [`Model`](pericles_deck::Model) built by a program. It is stored in
+//!   `run.json` and checkpoints.
+//! * [`Assembled`] – the assembly of a source with its properties ([`Facts`]), built with a cache and a memory limit
+//!   ([`Means`]).
+//! * [`Run`] – a run with its output folder: [`begin`](Run::begin), or [`resume`](Run::resume) from the last
+//!   checkpoint, then [`drive`](Run::drive) with a callback for [`Event`]s, a [`Cancel`] token and a [`Deadline`]. It
+//!   writes the output of the model, checkpoints, and [`Report`] as `run.json`.
+//! * [`Results`] – reads the results of a run from its folder.
+//! * [`sweep`] – parameter sweeps; [`convergence`] – convergence studies.
+//! * [`Vibration`] – natural modes of a body as table, fields and pictures.
+//! * [`refinement`] – net speed-up of multirate schemes; [`dispersion`] – files of the dispersion analysis of a
+//!   lattice.
 //!
-//! Nothing here prints, reads the command line or watches signals.
+//! This library does not print, read the command line or handle signals.
 //!
 //! ```no_run
 //! use pericles_deck::Deck;
@@ -63,6 +68,7 @@ pub mod refinement;
 mod report;
 mod results;
 mod run;
+mod scalar;
 mod source;
 mod static_balance;
 pub mod sweep;
@@ -75,8 +81,7 @@ pub use audit::Audit;
 pub use build::{
     Assembly, Discretisation, ExactReference, FileError, Grids, Interior, KernelQuality,
     LoadReport, MaterialConstants, MeshBody, MeshReader, OutlineReader, PlaneWaves, PointsReader,
-    Polygons, Resources, Sets, SurfaceReader, TableReader, assemble, body_points, build,
-    discretise,
+    Polygons, Resources, Sets, SurfaceReader, TableReader, assemble, build, discretise,
 };
 pub use cancel::Cancel;
 pub use deadline::Deadline;
@@ -87,7 +92,7 @@ pub use export::{ExportFormat, export};
 pub use facts::{EndFacts, Facts, LoadFacts, PlaneFacts};
 pub use inputs::Inputs;
 pub use mirror::MirrorError;
-pub use observers::{picture_of, result_body};
+pub use observers::{overlay, picture_of, result_body};
 pub use report::{Report, Span, Status};
 pub use results::{FieldFile, Results, file_name};
 pub use run::{Ending, Run};

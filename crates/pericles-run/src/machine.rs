@@ -1,8 +1,8 @@
-//! The machine that a run uses: its name, its memory.
+//! Description and memory of the machine.
 
 use std::path::Path;
 
-/// Operating system, architecture, processor and cores, in words; for people comparing speeds.
+/// Returns a description of processor, cores, operating system and architecture.
 pub fn words() -> String {
     let cores = std::thread::available_parallelism().map_or(1, std::num::NonZeroUsize::get);
     let system = format!("{} {}", std::env::consts::OS, std::env::consts::ARCH);
@@ -18,7 +18,7 @@ fn processor() -> Option<String> {
     Some(line.split_once(':')?.1.trim().to_owned())
 }
 
-/// The largest memory the process has held so far, bytes, where the system tells.
+/// Returns the peak memory of the process in bytes, if the system reports it.
 pub fn peak_memory() -> Option<u64> {
     let text = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = text.lines().find(|line| line.starts_with("VmHWM:"))?;
@@ -26,7 +26,8 @@ pub fn peak_memory() -> Option<u64> {
     Some(1024 * kilobytes)
 }
 
-/// Memory that the process may still take, bytes, where the system tells: what is free or can be freed, or less in a container with a limit.
+/// Returns the memory available to the process in bytes, if the system reports it: free or reclaimable memory, or
+/// less in a container with a limit.
 fn free_memory() -> Option<u64> {
     let text = std::fs::read_to_string("/proc/meminfo").ok()?;
     let line = text
@@ -36,12 +37,13 @@ fn free_memory() -> Option<u64> {
     Some(left_in_groups().map_or(1024 * kilobytes, |left| left.min(1024 * kilobytes)))
 }
 
-/// Memory that may be used, bytes, where nothing else is asked for: what is free, or any amount where the system does not tell.
+/// Returns the default memory limit in bytes: the available memory, or no limit if the system does not report it.
 pub fn memory() -> u64 {
     free_memory().unwrap_or(u64::MAX)
 }
 
-/// What the control groups of the process (version 2) leave it: the least of its own and all above it.
+/// Returns the memory left by the control groups (version 2) of the process: the minimum over its own group and all
+/// parents.
 fn left_in_groups() -> Option<u64> {
     let groups = std::fs::read_to_string("/proc/self/cgroup").ok()?;
     let own = groups.lines().find_map(|line| line.strip_prefix("0::/"))?;
@@ -58,10 +60,10 @@ fn left_in(group: &Path) -> Option<u64> {
         let text = std::fs::read_to_string(group.join(file)).ok()?;
         text.trim().parse().ok()
     };
-    // "max", or no file at all, is no limit.
+    // "max", or a missing file, means no limit.
     let most = number("memory.max")?;
     let taken = number("memory.current")?;
-    // Copies of files are given back when memory is short.
+    // The file cache is reclaimed when memory is short.
     let stat = std::fs::read_to_string(group.join("memory.stat")).unwrap_or_default();
     let copies = stat
         .lines()
@@ -72,7 +74,7 @@ fn left_in(group: &Path) -> Option<u64> {
     Some(most.saturating_sub(taken.saturating_sub(copies)))
 }
 
-/// Reads a size such as 8GB, 512 MiB, or a number of bytes.
+/// Parses a size such as 8GB, 512 MiB, or a number of bytes.
 pub fn size(text: &str) -> Result<u64, String> {
     const UNITS: [(&str, f64); 8] = [
         ("KiB", 1024.0),
@@ -92,13 +94,15 @@ pub fn size(text: &str) -> Result<u64, String> {
     size.ok()
         .filter(|size| (1.0..1e18).contains(size))
         .map(|size| size as u64)
-        .ok_or_else(|| "a size above zero such as 8GB, \"512 MiB\" or bytes".to_owned())
+        .ok_or_else(|| {
+            "expected a positive size such as 8GB, \"512 MiB\" or a number of bytes".to_owned()
+        })
 }
 
 #[cfg(test)]
 mod tests {
     #[test]
-    fn sizes_have_units() {
+    fn sizes_are_parsed_with_units() {
         use super::size;
         assert_eq!(size("8GB"), Ok(8_000_000_000));
         assert_eq!(size("1.5 MiB"), Ok(3 << 19));
@@ -110,14 +114,14 @@ mod tests {
 
     #[cfg(target_os = "linux")]
     #[test]
-    fn free_memory_is_told() {
+    fn free_memory_is_reported() {
         let free = super::free_memory().unwrap();
         assert!(free > 1 << 20, "{free}");
     }
 
     #[cfg(target_os = "linux")]
     #[test]
-    fn memory_is_told() {
+    fn peak_memory_is_reported() {
         let before = super::peak_memory().unwrap();
         let block = std::hint::black_box(vec![1u8; 64 << 20]);
         assert!(super::peak_memory().unwrap() >= before.max(block.len() as u64));

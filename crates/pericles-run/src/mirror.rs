@@ -1,13 +1,14 @@
-//! Mirror images: which a body, with all that acts on it, has at its start, and by how much its state at the end is not one.
+//! Mirror symmetries of the data of a run, and the deviation of its state from them.
 //!
-//! A run is its own image across the plane through the middle of its body if every point has an image of the same volume and density, and if initial fields, loads,
-//! supports, forces and breaking are the same at both. Forces are compared on displacements that are images of each other and random otherwise: whatever makes
-//! bonds different, materials, cracks, corrections, shows in them. A bar may also be the image with the opposite sign, as a hump that goes to both sides is.
+//! A run is symmetric about the plane through the centre of its body if every point has an image of the same volume
+//! and density, and if initial fields, loads, constraints, forces and failure are the same at both. Forces are
+//! compared for random symmetric displacements, so that differences in materials, cracks or corrections are detected.
+//! A bar may also be antisymmetric, for example with a pulse that travels to both sides.
 
 use std::fmt;
 
 use pericles::noise::SplitMix64;
-use pericles::operator::On;
+use pericles::operator::PointSubset;
 use pericles::space::PointCloud;
 use pericles::{Simulation, System};
 use rayon::slice::ParallelSliceMut;
@@ -15,38 +16,38 @@ use serde::Serialize;
 
 use crate::units::significant;
 
-/// Bodies of more points are not looked at: the images would take more memory than the forces do.
+/// Larger bodies are not checked: the images would need more memory than the forces.
 const MOST_POINTS: usize = 1_000_000;
-/// Places that differ by less of a spacing are the same.
+/// Tolerance for positions, relative to the spacing.
 const SAME_PLACE: f64 = 1e-4;
-/// Fields that differ by less of their largest value are the same.
+/// Tolerance for fields, relative to their largest value.
 const SAME_FIELD: f64 = 1e-9;
-/// Forces differ by rounding, and they are sums.
+/// Tolerance for forces, whose sums have rounding errors.
 const SAME_FORCE: f64 = 1e-8;
-/// Moments at which loads and supports are compared, as parts of the time a run takes.
+/// Times at which loads and constraints are compared, as fractions of the end time.
 const MOMENTS: [f64; 5] = [0.0, 0.137, 0.41, 0.73, 1.0];
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// What is an image of itself.
+/// A mirror symmetry.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Symmetry {
     axis: usize,
-    /// −1 for the image with the opposite sign.
+    /// −1 for antisymmetry.
     sign: f64,
 }
 
-/// The symmetries of a run, as found at its start.
+/// The symmetries of the data of a run.
 #[derive(Debug, Default)]
 pub struct Symmetries(Vec<Symmetry>);
 
-/// How far a state is from its image.
+/// The deviation of a state from a mirror symmetry.
 #[derive(Debug, Clone, Serialize)]
 pub struct MirrorError {
-    /// The mirror is across it.
+    /// The axis normal to the mirror plane.
     pub axis: &'static str,
-    /// Whether the image has the opposite sign.
+    /// Whether the run is antisymmetric.
     pub opposite: bool,
-    /// Largest difference of displacements over the largest displacement.
+    /// Largest deviation of the displacements, relative to the largest displacement.
     pub error: f64,
 }
 
@@ -58,23 +59,20 @@ impl fmt::Display for MirrorError {
             error,
         } = self;
         let sign = if *opposite {
-            " with the opposite sign"
+            "antisymmetry"
         } else {
-            ""
+            "symmetry"
         };
         let error = significant(*error, 2);
-        write!(
-            f,
-            "mirror image in {axis}{sign}: displacements are their own, but for {error} of the largest"
-        )
+        write!(f, "Mirror {sign} about {axis} holds to {error} (relative).")
     }
 }
 
 impl Symmetries {
-    /// Those of a simulation before its first step.
+    /// Detects the symmetries of a simulation before its first step.
     pub fn of(simulation: &Simulation) -> Self {
         let system = simulation.system();
-        // What leaves through ends and layers is not asked for its image.
+        // Absorbing boundaries and damping layers are not compared.
         if system.points() > MOST_POINTS || system.has_boundaries() {
             return Self::default();
         }
@@ -98,7 +96,7 @@ impl Symmetries {
         Self(found)
     }
 
-    /// How far the state is from them.
+    /// Returns the deviations of the current state.
     pub fn errors(&self, simulation: &Simulation) -> Vec<MirrorError> {
         let errors = self.0.iter().filter_map(|symmetry| {
             let mirror = Mirror::across(symmetry.axis, simulation.system().cloud())?;
@@ -112,7 +110,7 @@ impl Symmetries {
     }
 }
 
-/// A mirror through the middle of a body.
+/// A mirror plane through the centre of a body.
 struct Mirror {
     axis: usize,
     /// The image of every point.
@@ -120,7 +118,7 @@ struct Mirror {
 }
 
 impl Mirror {
-    /// The mirror across an axis, if every point has an image with the same volume.
+    /// Creates the mirror plane normal to an axis, if every point has an image with the same volume.
     fn across(axis: usize, cloud: &PointCloud) -> Option<Self> {
         let [low, high] = cloud.bounds();
         let (grain, dimension) = (SAME_PLACE * cloud.spacing(), cloud.dimension());
@@ -150,7 +148,7 @@ impl Mirror {
         mirror.is_even(cloud.volumes()).then_some(mirror)
     }
 
-    /// Whether a number per point is the same at the images.
+    /// Returns whether a scalar per point is symmetric.
     fn is_even(&self, values: &[f64]) -> bool {
         let mut pairs = values.iter().zip(&self.images);
         pairs.all(|(a, &image)| {
@@ -159,12 +157,13 @@ impl Mirror {
         })
     }
 
-    /// What the sign of a component is in the image.
+    /// Returns the sign of a component in the image.
     fn sign(&self, component: usize, sign: f64) -> f64 {
         if component == self.axis { -sign } else { sign }
     }
 
-    /// Largest difference between a vector field and its image, over its largest entry. The images of NaN entries are NaN.
+    /// Returns the largest difference between a vector field and its image, relative to its largest entry. The images
+    /// of NaN entries must be NaN.
     fn difference(&self, sign: f64, field: &[f64]) -> f64 {
         let (mut most, mut largest) = (0.0f64, 0.0f64);
         for (c, component) in field.chunks(self.images.len()).enumerate() {
@@ -184,7 +183,7 @@ impl Mirror {
         if most == 0.0 { 0.0 } else { most / largest }
     }
 
-    /// Whether a simulation before its first step is its own image.
+    /// Returns whether a simulation before its first step is symmetric.
     fn keeps(&self, sign: f64, simulation: &Simulation) -> bool {
         let (system, state) = (simulation.system(), simulation.state());
         let alike = |field: &[f64]| self.difference(sign, field) <= SAME_FIELD;
@@ -201,7 +200,7 @@ impl Mirror {
             && self.resists_alike(sign, system, &state.u)
     }
 
-    /// Whether loads and supports of a moment are their own images.
+    /// Returns whether loads and constraints are symmetric at a time.
     fn acts_alike(&self, sign: f64, system: &System, t: f64) -> bool {
         let entries = system.dimension() * system.points();
         let alike = |fill: &dyn Fn(&mut [f64]), elsewhere: f64| {
@@ -209,13 +208,19 @@ impl Mirror {
             fill(&mut field);
             self.difference(sign, &field) <= SAME_FIELD
         };
-        // What is not held keeps what is no number.
+        // Unconstrained entries stay NaN.
         alike(&|field| system.load_density_into(t, field), 0.0)
-            && alike(&|field| system.place_on(t, &On::All, field), f64::NAN)
-            && alike(&|field| system.drive_on(t, &On::All, field), f64::NAN)
+            && alike(
+                &|field| system.place_on(t, &PointSubset::All, field),
+                f64::NAN,
+            )
+            && alike(
+                &|field| system.drive_on(t, &PointSubset::All, field),
+                f64::NAN,
+            )
     }
 
-    /// Whether forces, and what is about to break, are images under displacements that are.
+    /// Returns whether forces and failure are symmetric for symmetric displacements.
     fn resists_alike(&self, sign: f64, system: &System, start: &[f64]) -> bool {
         let (n, operator) = (system.points(), system.operator());
         let amplitude = 1e-3 * system.cloud().spacing();
@@ -232,7 +237,7 @@ impl Mirror {
         };
         let u = moved(amplitude);
         let mut force = vec![0.0; u.len()];
-        operator.add_force(0.0, &u, On::All, &mut force);
+        operator.add_force(0.0, &u, PointSubset::All, &mut force);
         let rounding = operator.rounding(&u).unwrap_or(0.0);
         if self.difference(sign, &force) > SAME_FORCE.max(100.0 * rounding) {
             return false;
@@ -243,7 +248,7 @@ impl Mirror {
         let Some(breaking) = operator.capabilities().breaking else {
             return false;
         };
-        // Stretches from well below to well above those that break anything.
+        // Stretches from well below to well above the critical ones.
         [0.01, 0.1, 1.0, 10.0, 100.0].iter().all(|times| {
             let mut marks = vec![false; n];
             breaking.mark_endangered(&moved(times * amplitude), 1.0, &mut marks);

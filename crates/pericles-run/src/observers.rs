@@ -1,29 +1,33 @@
-//! The observers that a model asks for: what a simulation writes into its folder.
+//! Observers that write the output requested by a model.
 
 use std::collections::HashMap;
 use std::sync::Arc;
 
 use pericles::Simulation;
+use pericles::family::Crack;
 use pericles::observe::{CrackTracker, Schedule};
 use pericles::space::PointCloud;
-use pericles_deck::{ALL, FieldBlocks, FieldFormat, Model, Picture, Precision, Scheme};
+use pericles_deck::{
+    ALL, CellChoice, CrackSurface, FieldBlocks, FieldFormat, Model, Picture, PointNumber,
+    Precision, Scheme, StaticBreaking,
+};
 use pericles_io::observers::{
-    Cracks, EnergyBoundColumns, ErrorColumns, ExtremeColumns, FieldSeries, ForceDisplacement,
-    FragmentCourse, History, InnerColumns, PictureOf, Pictures, Probes, Reactions, ResultFile,
-    ResultFormat, SurfaceCourse,
+    CellMesh, Cracks, EnergyBoundColumns, ErrorColumns, ExtremeColumns, FieldSelection,
+    FieldSeries, ForceDisplacement, FragmentCourse, History, InnerColumns, Overlay, PictureOf,
+    Pictures, PointMark, Probes, Profile, Reactions, ResultFile, ResultFormat, SurfaceCourse,
 };
 use pericles_io::{OutputFolder, ResultBody};
 use pericles_manifold::surface::Surface;
 use pericles_manifold::{EnergyInequality, SurfaceMeasure};
 
-use crate::build::{Assembly, ExactReference, MeshBody, Sets};
+use crate::build::{Assembly, ExactReference, MeshBody, Sets, is_on_grid};
 use crate::checkpoint;
 use crate::error::RunError;
 
-/// The simulation of an assembled model with the observers it asks for, writing into a folder.
+/// Creates the simulation of an assembled model with observers that write to a folder.
 ///
 /// # Errors
-/// Sub-folders that cannot be made.
+/// Subfolders cannot be created.
 pub fn simulation(
     model: &Model,
     mut assembly: Assembly,
@@ -106,17 +110,19 @@ pub fn simulation(
         simulation.observe(output.history, Box::new(course));
     }
     names.extend(add_fields(model, folder, &body, &mut simulation)?);
+    names.extend(add_profiles(model, folder, &cloud, &mut simulation)?);
     names.extend(add_pictures(
         model,
         folder,
         surface.as_ref(),
+        &body.sets,
         &mut simulation,
     )?);
     folder.claim(&names)?;
     Ok(simulation)
 }
 
-/// A picture that a model asks for.
+/// Returns a picture requested by a model.
 pub fn picture_of(model: &Model, picture: &Picture, surface: Option<&Arc<Surface>>) -> PictureOf {
     PictureOf {
         component: picture.component,
@@ -125,11 +131,51 @@ pub fn picture_of(model: &Model, picture: &Picture, surface: Option<&Arc<Surface
         title: model.title.clone().unwrap_or_default(),
         view: picture.view,
         surface: surface.cloned(),
+        load_end: load_end(model),
         ..PictureOf::new(picture.field)
     }
 }
 
-/// What files of fields need of an assembly.
+/// Returns the time at which all loads of a static run act; none if the time is not proportional to the loads.
+fn load_end(model: &Model) -> Option<f64> {
+    match &model.time.scheme {
+        Scheme::Static(options) if options.breaking == StaticBreaking::Event => None,
+        scheme => scheme.is_static().then_some(model.time.end),
+    }
+}
+
+/// Returns the lines on pictures of a plane body: pre-cracks, interfaces of materials, borders of refined parts.
+pub fn overlay(model: &Model, cloud: &PointCloud, sets: &Sets) -> Option<Overlay> {
+    if cloud.dimension() != 2 || model.body.solid().is_none() {
+        return None;
+    }
+    let cracks = model
+        .cracks
+        .iter()
+        .filter_map(|crack| match &crack.surface {
+            CrackSurface::Plane(Crack::Segment { from, to }) => Some([*from, *to]),
+            _ => None,
+        });
+    let class = match is_on_grid(model, cloud) {
+        false => Vec::new(),
+        true => {
+            let ratio = |i: usize| (cloud.spacing() / cloud.cell_size(i)).round() as u32;
+            let mut class: Vec<u32> = (0..cloud.len()).map(|i| 1000 * ratio(i)).collect();
+            for (number, assignment) in model.assignments.iter().enumerate() {
+                let is_assigned = |name: &String| assignment.sets.contains(name);
+                for (_, points) in sets.iter().filter(|(name, _)| is_assigned(name)) {
+                    for &i in points {
+                        class[i as usize] = 1000 * ratio(i as usize) + number as u32 + 1;
+                    }
+                }
+            }
+            class
+        }
+    };
+    Some(Overlay::new(cloud, cracks.collect(), &class))
+}
+
+/// Data of an assembly for field files.
 struct FieldBody {
     cloud: Arc<PointCloud>,
     sets: Sets,
@@ -152,7 +198,49 @@ impl FieldBody {
     }
 }
 
-/// Adds the files of fields that a model asks for; their names, relative to the folder.
+impl FieldBody {
+    /// The cells that fields are written on; none if they are written on points.
+    fn cells(&self, model: &Model) -> Option<CellMesh> {
+        let is_on_grid = is_on_grid(model, &self.cloud);
+        match (model.output.cells, &self.mesh) {
+            (CellChoice::Never, _) => None,
+            (CellChoice::Always, Some(mesh)) => Some(mesh.cells()),
+            (CellChoice::Auto, _) if self.cloud.len() > CellChoice::MOST_POINTS => None,
+            _ => is_on_grid.then(|| CellMesh::of_boxes(&self.cloud)),
+        }
+    }
+}
+
+/// The numbers of points that a model asks for.
+fn point_marks(model: &Model, cloud: &PointCloud, sets: &Sets) -> Vec<PointMark> {
+    let numbers = |number: &PointNumber| match number {
+        PointNumber::Material => match model.body.solid() {
+            Some(solid) => {
+                let (numbers, _) = material_blocks(model, solid.material.name(), cloud, sets);
+                numbers.into_iter().map(|number| number as i32).collect()
+            }
+            None => vec![1; cloud.len()],
+        },
+        PointNumber::Set(name) => {
+            let mut numbers = vec![0; cloud.len()];
+            for (_, points) in sets.iter().filter(|(known, _)| known == name) {
+                for &i in points {
+                    numbers[i as usize] = 1;
+                }
+            }
+            numbers
+        }
+    };
+    let wanted = model.output.numbers.iter();
+    wanted
+        .map(|number| PointMark {
+            name: number.name(),
+            numbers: numbers(number),
+        })
+        .collect()
+}
+
+/// Adds the requested field files; returns their names relative to the folder.
 fn add_fields(
     model: &Model,
     folder: &OutputFolder,
@@ -165,10 +253,14 @@ fn add_fields(
         return Ok(names);
     }
     let single = output.precision == Precision::Single;
+    let selection = FieldSelection {
+        fields: output.names.clone(),
+        marks: point_marks(model, &body.cloud, &body.sets),
+    };
     let mut one_file = |name: &str, format: ResultFormat| {
         let points = result_body(model, &body.cloud, &body.sets, body.mesh.as_deref());
         let path = folder.file(name);
-        let file = ResultFile::new(path, format, Arc::new(points), &output.names, single);
+        let file = ResultFile::new(path, format, Arc::new(points), selection.clone(), single);
         simulation.observe(output.fields, Box::new(file));
     };
     for format in &output.formats {
@@ -188,23 +280,26 @@ fn add_fields(
     if output.formats.contains(&FieldFormat::Vtu) {
         names.extend(["fields.pvd".into(), "fields/fields_*.vtu".into()]);
         folder.subfolder("fields")?;
-        let mut fields = FieldSeries::new(folder.path(), single).with(&output.names);
+        let mut fields = FieldSeries::new(folder.path(), single).with(selection.clone());
         if let Some(surface) = &body.surface {
             fields = fields.of_surface(surface.clone());
         }
+        if let Some(cells) = body.cells(model) {
+            fields = fields.on_cells(Arc::new(cells));
+        }
         simulation.observe(output.fields, Box::new(fields));
     }
-    if let (true, Some(mesh)) = (output.cells, &body.mesh) {
+    if let (true, Some(mesh)) = (output.mesh_cells, &body.mesh) {
         names.extend(["cells.pvd".into(), "cells/cells_*.vtu".into()]);
         folder.subfolder("cells")?;
-        let fields = FieldSeries::new(folder.path(), single).with(&output.names);
-        let fields = fields.on_cells(Arc::new(mesh.cells()));
+        let fields = FieldSeries::new(folder.path(), single).with(selection.clone());
+        let fields = fields.on_cells(Arc::new(mesh.cells())).as_second();
         simulation.observe(output.fields, Box::new(fields));
     }
     Ok(names)
 }
 
-/// A body as files of results describe it, with the blocks that the model asks for.
+/// Returns the body for result files, with the requested blocks.
 pub fn result_body(
     model: &Model,
     cloud: &PointCloud,
@@ -231,7 +326,7 @@ pub fn result_body(
     }
 }
 
-/// The material of each point by its number, counted from 1, and the names of the materials, that of the body first.
+/// Returns the material number of each point, from 1, and the names of the materials, that of the body first.
 fn material_blocks<'m>(
     model: &'m Model,
     own: &'m str,
@@ -256,11 +351,38 @@ fn material_blocks<'m>(
     (numbers, names)
 }
 
-/// Adds the pictures that a model asks for; their files, relative to the folder.
+/// Adds the requested profiles; returns their names relative to the folder.
+fn add_profiles(
+    model: &Model,
+    folder: &OutputFolder,
+    cloud: &PointCloud,
+    simulation: &mut Simulation,
+) -> Result<Vec<String>, RunError> {
+    let mut names = Vec::new();
+    for wanted in &model.output.profiles {
+        let files = ["csv", "png"].map(|end| format!("profile_{}.{end}", wanted.name));
+        let mut profile = Profile::new(
+            files.each_ref().map(|file| folder.file(file)),
+            model.title.clone().unwrap_or_default(),
+            (wanted.field, wanted.component),
+            [wanted.from, wanted.to],
+            cloud,
+        )?;
+        if let Some(reference) = wanted.reference.clone() {
+            profile = profile.with_reference(Box::new(move |x, t| reference.value(x, t)));
+        }
+        simulation.observe(Schedule::Count(1), Box::new(profile));
+        names.extend(files);
+    }
+    Ok(names)
+}
+
+/// Adds the requested pictures; returns their names relative to the folder.
 fn add_pictures(
     model: &Model,
     folder: &OutputFolder,
     surface: Option<&Arc<Surface>>,
+    sets: &Sets,
     simulation: &mut Simulation,
 ) -> Result<Vec<String>, RunError> {
     if model.output.pictures.is_empty() {
@@ -269,10 +391,15 @@ fn add_pictures(
     let mut names = Vec::new();
     let place = folder.subfolder("pictures")?;
     let dimension = simulation.system().dimension();
+    let cloud = simulation.system().cloud().clone();
+    let overlay = overlay(model, &cloud, sets).map(Arc::new);
     let mut uses: HashMap<String, u32> = HashMap::new();
     for picture in &model.output.pictures {
-        let what = picture_of(model, picture, surface);
-        // Two pictures of one field get two names.
+        let what = PictureOf {
+            overlay: overlay.clone(),
+            ..picture_of(model, picture, surface)
+        };
+        // Several pictures of one field get distinct names.
         let uses = uses.entry(what.name(dimension)).or_default();
         *uses += 1;
         let stem = match *uses {
@@ -283,7 +410,10 @@ fn add_pictures(
         if picture.animation {
             names.push(format!("pictures/{stem}.apng"));
         }
-        let mut pictures = Pictures::new(&place, stem, what);
+        if what.has_own_range() {
+            names.push(format!("pictures/.{stem}-*.state"));
+        }
+        let mut pictures = Pictures::new(&place, stem, what).with_common_range(cloud.clone());
         if picture.animation {
             pictures = pictures.animated();
         }

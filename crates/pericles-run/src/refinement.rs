@@ -1,8 +1,9 @@
-//! Two time steps in one body: whether they will pay, and whether they did.
+//! Multirate schemes: predicted and achieved net speed-up.
 //!
-//! Against the same scheme with the fine step everywhere a scheme with two steps saves evaluations as long as the fine region is small. That is no
-//! reason to use it: on a uniform grid of one material coarse and fine points have the same stable step, and velocity Verlet takes a quarter of the
-//! evaluations of a Runge–Kutta method of order four. So `check` also compares with velocity Verlet, with the fine step and with its own largest one.
+//! Compared with the same scheme and the fine step everywhere, a multirate scheme saves force evaluations if the fine
+//! region is small. This alone does not justify it: on a uniform grid of one material, coarse and fine points have
+//! the same stable step, and velocity Verlet needs a quarter of the evaluations of a fourth-order Runge–Kutta method.
+//! Therefore `check` also compares with velocity Verlet, with the fine step and with its own largest stable step.
 
 use std::time::{Duration, Instant};
 
@@ -16,10 +17,10 @@ use serde::Serialize;
 use crate::build::Assembly;
 use crate::units::{percent, significant};
 
-/// What is known of two time steps before the first; SI units.
+/// Properties of a multirate scheme before the first step; SI units.
 #[derive(Debug, Clone, Serialize)]
 pub struct RefinementFacts {
-    /// Fine steps in a coarse one, M.
+    /// Fine steps per coarse step, M.
     pub ratio: u32,
     /// Fraction φ of fine points at the start.
     pub fine_fraction: f64,
@@ -27,41 +28,42 @@ pub struct RefinementFacts {
     pub fine_points: u64,
     /// Points with the coarse step at the start.
     pub coarse_points: u64,
-    /// Those of the coarse points that have fine neighbours at the start.
+    /// Coarse points with fine neighbours at the start.
     pub border_points: u64,
     /// Whether the fine region follows damage.
     pub follows_damage: bool,
-    /// The highest frequency of the whole body; that of the model limits the coarse step.
+    /// The highest frequency of the whole body; the coarse step is limited by that of the coarse part.
     pub body_frequency: Option<f64>,
-    /// The highest frequency that limits the coarse step, times that step.
+    /// The frequency that limits the coarse step, times that step.
     pub omega_dt: Option<f64>,
     /// The highest frequency of the whole body times the fine step.
     pub omega_dt_fine: Option<f64>,
-    /// Evaluations per point in a coarse step.
+    /// Force evaluations per point and coarse step.
     pub evaluations: f64,
-    /// Evaluations of the same scheme with the fine step everywhere over those of this one.
+    /// Ratio of the evaluations of the same scheme with the fine step everywhere to those of this one.
     pub speed_up: f64,
     /// The same for velocity Verlet with the fine step everywhere.
     pub speed_up_over_verlet: f64,
-    /// The same for velocity Verlet with its own largest stable step; none where no frequency is known.
+    /// The same for velocity Verlet with its own largest stable step; `None` if no frequency is known.
     pub speed_up_over_stable_verlet: Option<f64>,
 }
 
-/// What two time steps did.
+/// Results of a multirate scheme.
 #[derive(Debug, Clone, Serialize)]
 pub struct RefinementAudit {
-    /// Fine steps in a coarse one, M.
+    /// Fine steps per coarse step, M.
     pub ratio: u32,
-    /// Mean over the steps.
+    /// Fraction of fine points, mean over the steps.
     pub fine_fraction: f64,
-    /// The largest over the steps.
+    /// Fraction of fine points, maximum over the steps.
     pub largest_fine_fraction: f64,
-    /// Coarse steps.
+    /// Number of coarse steps.
     pub steps: u64,
-    /// Those of the coarse steps at the start that were fine everywhere.
+    /// Initial coarse steps that were fine everywhere.
     pub starting_steps: u64,
-    /// Evaluations of the same scheme with the fine step everywhere over those of this one: by the model of its cost. The clock is for `check`, which lets
-    /// schemes take turns: what a run takes holds its output and what else the machine does.
+    /// Ratio of the evaluations of the same scheme with the fine step everywhere to those of this one, by the cost
+    /// model. Measured times are compared by `check`, which runs the schemes alternately: the time of a run includes
+    /// output and other load of the machine.
     pub predicted_speed_up: f64,
     /// The same, counted.
     pub achieved_speed_up: f64,
@@ -70,7 +72,7 @@ pub struct RefinementAudit {
 }
 
 impl RefinementFacts {
-    /// The facts of an assembled model whose scheme has two time steps.
+    /// Returns the properties of an assembled model with a multirate scheme.
     pub fn of(model: &Model, assembly: &Assembly) -> Option<Self> {
         let report = assembly.integrator.refinement()?;
         let ratio = f64::from(report.ratio);
@@ -107,7 +109,7 @@ fn fine_region(scheme: &Scheme) -> Option<&FineRegion> {
     }
 }
 
-/// The step that velocity Verlet would take by itself, s.
+/// Returns the stable step of velocity Verlet, s.
 fn verlet_step(body: &HighestFrequency) -> f64 {
     /// The default of decks.
     const SAFETY: f64 = 0.95;
@@ -117,10 +119,10 @@ fn verlet_step(body: &HighestFrequency) -> f64 {
 }
 
 impl RefinementAudit {
-    /// The account of a scheme that has come so far with a body.
+    /// Evaluates a scheme after the current step.
     pub fn of(report: &RefinementReport, system: &System) -> Self {
         let steps = report.steps + report.starting_steps;
-        // The evaluation of the initial state belongs to every scheme.
+        // Every scheme evaluates the initial state.
         let evaluated = system.evaluated_points().saturating_sub(report.points);
         let everywhere = steps * u64::from(report.ratio) * report.points;
         let verlet = everywhere as f64 / evaluated as f64;
@@ -136,10 +138,10 @@ impl RefinementAudit {
         }
     }
 
-    /// In words.
+    /// Returns a summary line.
     pub fn line(&self) -> String {
         format!(
-            "two time steps: M = {}, fine {} of the points (at most {}); the fine step everywhere would take {} times as many evaluations (model: {}), velocity-verlet there {} times",
+            "multirate: M = {}, {} of the points fine (at most {}); with the fine step everywhere the scheme would need {} times as many force evaluations (predicted: {}), velocity-verlet {} times",
             self.ratio,
             percent(self.fine_fraction),
             percent(self.largest_fine_fraction),
@@ -150,22 +152,22 @@ impl RefinementAudit {
     }
 }
 
-/// Times of the clock for one coarse step of the deck's scheme and for the same span of time by schemes with one step, measured on the built body.
+/// Measured times of one coarse step, and of the same time interval with single-rate schemes.
 #[derive(Debug, Clone, Copy)]
 pub struct Comparison {
-    /// This scheme.
+    /// The multirate scheme, s.
     pub seconds: f64,
-    /// The same scheme with the fine step everywhere.
+    /// The same scheme with the fine step everywhere, s.
     pub uniform: f64,
-    /// Velocity Verlet with the fine step everywhere.
+    /// Velocity Verlet with the fine step everywhere, s.
     pub verlet: f64,
 }
 
 impl Comparison {
-    /// Measures. The assembly is worn out by it: its state moves on.
+    /// Measures the times. This advances the state of the assembly.
     ///
     /// # Errors
-    /// Schemes that do not converge.
+    /// A scheme does not converge.
     pub fn measure(model: &Model, assembly: &mut Assembly) -> Result<Option<Self>, PericlesError> {
         let Some(report) = assembly.integrator.refinement() else {
             return Ok(None);
@@ -178,7 +180,7 @@ impl Comparison {
             Scheme::MultiTimeStep4 { .. } => {
                 Some(RungeKutta::new(&Tableau::rk4(), &assembly.system))
             }
-            // r-RESPA with one step is velocity Verlet.
+            // r-RESPA with a single step is velocity Verlet.
             _ => None,
         };
         let (system, state, dt) = (&mut assembly.system, &mut assembly.state, assembly.dt);
@@ -187,7 +189,7 @@ impl Comparison {
             uniform: f64::INFINITY,
             verlet: f64::INFINITY,
         };
-        // In turns, so that what else the machine does meets all of them.
+        // Alternately, so that other load of the machine affects all of them.
         for _ in 0..ROUNDS {
             let mut time = |scheme: &mut dyn Integrator, dt| {
                 seconds_per_step(system, state, scheme, dt, MOST, LONGEST / ROUNDS)
@@ -205,16 +207,16 @@ impl Comparison {
     }
 }
 
-/// How long schemes are tried.
+/// Maximum time of the measurement.
 pub const LONGEST: Duration = Duration::from_millis(500);
 const ROUNDS: u32 = 4;
-/// Steps that are enough however short they are.
+/// Maximum number of measured steps.
 const MOST: u64 = 500;
 
-/// The time of the clock for one step of a scheme, from a few, at most `most`, on the built body, which moves on.
+/// Measures the time per step of a scheme over at most `most` steps. This advances the state.
 ///
 /// # Errors
-/// Schemes that do not converge.
+/// The scheme does not converge.
 pub fn seconds_per_step(
     system: &mut System,
     state: &mut State,
@@ -228,7 +230,7 @@ pub fn seconds_per_step(
         integrator.step(system, state, t_next, Interrupt::never())
     };
     let mut most = most.min(MOST);
-    // The first step finds cold caches and sleeping threads.
+    // The first step is slower because of cold caches and sleeping threads.
     if most > 1 {
         step()?;
         most -= 1;

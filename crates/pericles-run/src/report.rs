@@ -1,4 +1,4 @@
-//! `run.json`: what was run, how it went, and the audit of energy and momentum.
+//! `run.json`: source, model, progress, and balance of energy and momentum.
 
 use std::io::Write;
 use std::path::Path;
@@ -14,37 +14,37 @@ use crate::facts::Facts;
 use crate::machine;
 use crate::source::{ModelData, Source};
 
-/// How a run stands.
+/// The status of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Status {
-    /// It runs, or its process died.
+    /// The run is in progress, or its process was killed.
     Running,
-    /// It reached its end.
+    /// The run reached its end.
     Finished,
-    /// It was stopped and can be resumed.
+    /// The run was stopped and can be resumed.
     Stopped,
-    /// It failed.
+    /// The run failed.
     Failed,
 }
 
-/// The content of `run.json`; SI units throughout, numbers that are not finite as null.
+/// The content of `run.json` in SI units; NaN and infinities are null.
 #[derive(Debug, Serialize)]
 pub struct Report {
-    /// How the run stands.
+    /// The status of the run.
     pub status: Status,
-    /// What went wrong.
+    /// The error of a failed run.
     pub error: Option<String>,
     /// The stop condition that ended a finished run before its last step.
     pub stop_reason: Option<String>,
     /// The title of the model.
     pub title: Option<String>,
     program: Program,
-    /// What is known of the model.
+    /// Properties of the model.
     pub model: Facts,
-    /// How far the run came and how fast.
+    /// Progress and performance.
     pub progress: Span,
-    /// The account at the end; none of a run that has not come to rest.
+    /// Balance of energy and momentum at the end; `None` during the run.
     pub audit: Option<Audit>,
     #[serde(flatten)]
     source: Given,
@@ -58,24 +58,24 @@ struct Program {
     machine: String,
 }
 
-/// What was done since the program was started, and how fast.
+/// Progress and performance of the current session.
 #[derive(Debug, Default, Serialize)]
 pub struct Span {
-    /// The step at which the present session began.
+    /// The step at which the current session began.
     pub first_step: u64,
-    /// The last step made.
+    /// The last completed step.
     pub last_step: u64,
     /// Simulated time reached, s.
     pub t: f64,
-    /// Time of the clock since the first step of this session, output included, s.
+    /// Wall-clock time since the first step of this session, including output, s.
     pub wall_seconds: f64,
-    /// Directed bonds times steps over the time of the clock, 1/s.
+    /// Directed bonds times steps per wall-clock time, 1/s.
     pub directed_bond_updates_per_second: f64,
-    /// Bytes; none where the system does not tell.
+    /// Peak memory, bytes; `None` if the system does not report it.
     pub peak_memory: Option<u64>,
 }
 
-/// What was given, a deck with the values that were read from it, or a model.
+/// The source: a deck with the values read from it, or a model.
 #[derive(Debug, Serialize)]
 enum Given {
     #[serde(rename = "deck")]
@@ -101,7 +101,7 @@ impl Given {
 }
 
 impl Report {
-    /// A report of a run that begins at `first_step`.
+    /// Creates the report of a run that begins at `first_step`.
     pub(crate) fn new(source: &Source, facts: Facts, first_step: u64) -> Self {
         Self {
             status: Status::Running,
@@ -125,7 +125,7 @@ impl Report {
         }
     }
 
-    /// Notes that the run goes on from `step`.
+    /// Starts a session at `step`.
     pub(crate) fn begin_session(&mut self, step: u64) {
         self.status = Status::Running;
         self.audit = None;
@@ -133,7 +133,7 @@ impl Report {
         self.progress.last_step = step;
     }
 
-    /// Notes how far the run came and how fast.
+    /// Records progress and performance.
     pub(crate) fn note_progress(&mut self, simulation: &Simulation, wall_seconds: f64) {
         let state = simulation.state();
         let first_step = self.progress.first_step;
@@ -151,7 +151,7 @@ impl Report {
     /// Writes the report.
     ///
     /// # Errors
-    /// A file that cannot be written.
+    /// The file cannot be written.
     pub(crate) fn write(&self, path: &Path) -> Result<(), RunError> {
         let mut text = serde_json::to_string_pretty(self)?;
         text.push('\n');

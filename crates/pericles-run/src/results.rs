@@ -1,4 +1,4 @@
-//! The results of a run, read back from its folder.
+//! Reading of the results of a run from its folder.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -10,13 +10,13 @@ use crate::error::RunError;
 use crate::machine;
 use crate::source::SourceRecord;
 
-/// The folder of a run that was started once.
+/// The results of a run.
 pub struct Results {
     folder: PathBuf,
     report: Value,
 }
 
-/// One state among the fields.
+/// The field file of an output time.
 pub struct FieldFile {
     /// The time, s.
     pub time: f64,
@@ -28,23 +28,23 @@ impl FieldFile {
     /// Reads the fields.
     ///
     /// # Errors
-    /// A file that is gone or damaged.
+    /// The file is missing or damaged.
     pub fn read(&self) -> Result<FieldData, RunError> {
         Ok(read_fields(&self.path, machine::memory())?)
     }
 }
 
 impl Results {
-    /// Opens a folder.
+    /// Opens the output folder of a run.
     ///
     /// # Errors
-    /// A folder without `run.json`, or with one that is none.
+    /// The folder has no `run.json`, or it is invalid.
     pub fn open(folder: &Path) -> Result<Self, RunError> {
         let path = folder.join("run.json");
         let reason = match (folder.is_dir(), folder.exists()) {
             (true, _) => (!path.exists()).then_some("it has no run.json"),
             (false, true) => Some("it is a file"),
-            (false, false) => Some("it is not there"),
+            (false, false) => Some("it does not exist"),
         };
         if let Some(reason) = reason {
             return Err(RunError::NoResults {
@@ -70,45 +70,45 @@ impl Results {
         })
     }
 
-    /// Where they are.
+    /// Returns the output folder.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
 
-    /// A value of `run.json` by its JSON pointer, such as `/model/points`.
+    /// Returns a value of `run.json` by its JSON pointer, such as `/model/points`.
     pub fn value(&self, pointer: &str) -> Option<&Value> {
         self.report.pointer(pointer)
     }
 
-    /// A text of `run.json`; empty if there is none.
+    /// Returns a string of `run.json`; empty if missing.
     pub fn text(&self, pointer: &str) -> &str {
         self.value(pointer)
             .and_then(Value::as_str)
             .unwrap_or_default()
     }
 
-    /// A number of `run.json`.
+    /// Returns a number of `run.json`.
     pub fn number(&self, pointer: &str) -> Option<f64> {
         self.value(pointer)?.as_f64()
     }
 
-    /// A count of `run.json`; zero if there is none.
+    /// Returns a count of `run.json`; zero if missing.
     pub fn count(&self, pointer: &str) -> u64 {
         self.value(pointer)
             .and_then(Value::as_u64)
             .unwrap_or_default()
     }
 
-    /// The texts of a list of `run.json`.
+    /// Returns the strings of a list of `run.json`.
     pub fn texts(&self, pointer: &str) -> impl Iterator<Item = &str> {
         let list = self.value(pointer).and_then(Value::as_array);
         list.into_iter().flatten().filter_map(Value::as_str)
     }
 
-    /// What the run was made of: the deck as it was given, or the model.
+    /// Returns the source of the run: the deck or the model.
     ///
     /// # Errors
-    /// A `run.json` that holds neither.
+    /// `run.json` has neither.
     pub fn source(&self) -> Result<SourceRecord, RunError> {
         let kept = ["deck", "model_data"].into_iter().filter_map(|key| {
             let value = self.report.get(key)?;
@@ -118,7 +118,7 @@ impl Results {
         serde_json::from_value(kept).map_err(|error| self.damaged("run.json", error.to_string()))
     }
 
-    /// A file of the folder that cannot be used.
+    /// Creates the error for an unusable file of the folder.
     pub fn damaged(&self, file: &str, reason: String) -> RunError {
         RunError::Damaged {
             path: self.folder.join(file),
@@ -126,10 +126,10 @@ impl Results {
         }
     }
 
-    /// The states whose fields were written, in time; none if the deck asked for no fields.
+    /// Returns the field files in the order of time; empty if the deck requested no fields.
     ///
     /// # Errors
-    /// A series that cannot be read.
+    /// The series cannot be read.
     pub fn fields(&self) -> Result<Vec<FieldFile>, RunError> {
         let series = self.folder.join("fields.pvd");
         if !series.exists() {
@@ -142,12 +142,12 @@ impl Results {
         Ok(PvdSeries::read(series)?.into_iter().map(located).collect())
     }
 
-    /// The tables, by name.
+    /// Returns the tables, sorted by name.
     pub fn tables(&self) -> Vec<PathBuf> {
         files(&self.folder, "csv")
     }
 
-    /// The pictures, by name.
+    /// Returns the pictures, sorted by name.
     pub fn pictures(&self) -> Vec<PathBuf> {
         let folder = self.folder.join("pictures");
         if folder.is_symlink() {
@@ -156,7 +156,7 @@ impl Results {
         files(&folder, "png")
     }
 
-    /// The steps of the checkpoints.
+    /// Returns the steps of the checkpoints.
     pub fn checkpoints(&self) -> Vec<u64> {
         let step = |path: PathBuf| {
             let stem = path.file_stem()?.to_str()?;
@@ -167,8 +167,8 @@ impl Results {
     }
 }
 
-/// The files of a folder with an ending, sorted; none if there is no such folder. Links are left out: what they point at is no result of the run, and a report
-/// that is passed on must not carry it.
+/// Returns the files of a folder with an extension, sorted; empty if the folder does not exist. Symbolic links are
+/// ignored: their targets are not results of the run and must not be included in a report.
 fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let mut paths: Vec<_> = entries
@@ -180,7 +180,7 @@ fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
     paths
 }
 
-/// The last part of a path, for people.
+/// Returns the last component of a path as text.
 pub fn file_name(path: &Path) -> String {
     let name = path.file_name().unwrap_or_default();
     name.to_string_lossy().into_owned()

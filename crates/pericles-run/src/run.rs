@@ -1,10 +1,10 @@
-//! A run in its folder, from its first step or its last checkpoint to its end.
+//! Runs: start, resume, drive to the end, report.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::path::Path;
 use std::time::Instant;
 
-use pericles::{Control, Interrupt, Outcome, Saved, Simulation, SimulationError};
+use pericles::{Checkpointed, Control, Interrupt, Outcome, Simulation, SimulationError};
 use pericles_deck::Model;
 use pericles_io::{OutputFolder, PvdSeries, VtuFile};
 
@@ -23,7 +23,7 @@ use crate::source::Source;
 use crate::units::quantity;
 use crate::watch::{self, Breakage};
 
-/// A run in its folder.
+/// A run with its output folder.
 pub struct Run {
     simulation: Simulation,
     start: Start,
@@ -32,22 +32,23 @@ pub struct Run {
     folder: OutputFolder,
 }
 
-/// How a run came to rest.
+/// How a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ending {
-    /// It reached its end: its last step, or a stop condition of the model.
+    /// The last step, or a stop condition of the model, was reached.
     Finished,
-    /// It was asked to stop; it can be resumed.
+    /// The run was cancelled; it can be resumed.
     Cancelled,
-    /// It stopped while there was time for a checkpoint before the deadline; it can be resumed.
+    /// The run stopped before its deadline with a checkpoint; it can be resumed.
     Deadline,
 }
 
 impl Run {
-    /// A run at its start, with the observers that its model asks for. `run.json` and checkpoints keep the source, from which `assembled` was made.
+    /// Creates a run at its start with the output of its model. `source`, from which `assembled` was built, is stored
+    /// in `run.json` and checkpoints.
     ///
     /// # Errors
-    /// Sub-folders that cannot be made, files of an earlier run that cannot be claimed.
+    /// Subfolders cannot be created, or files of an earlier run cannot be replaced.
     pub fn begin(
         source: &Source,
         assembled: Assembled,
@@ -65,10 +66,10 @@ impl Run {
         })
     }
 
-    /// The run of a folder at its last checkpoint; none if it has finished.
+    /// Restores a run from its last checkpoint; `None` if it has finished.
     ///
     /// # Errors
-    /// No usable checkpoint, one that does not go with its deck.
+    /// There is no usable checkpoint, or it does not match its deck.
     pub fn resume(path: &Path, means: &Means, tell: Tell<'_>) -> Result<Option<Self>, RunError> {
         if path.is_dir() && !path.join("checkpoints").is_dir() {
             return Err(RunError::NoRun { path: path.into() });
@@ -87,7 +88,7 @@ impl Run {
         facts.warnings.extend(doubts(&stored, model, &facts));
         facts.warnings.extend(incomplete(&folder)?);
         let mut simulation = observers::simulation(model, assembly, &folder)?;
-        // The state is still that of the start.
+        // The state is still the initial state.
         let start = Start::of(&simulation);
         simulation
             .restore(&stored.archive)
@@ -107,25 +108,26 @@ impl Run {
         }))
     }
 
-    /// The simulation as it stands.
+    /// Returns the simulation.
     pub fn simulation(&self) -> &Simulation {
         &self.simulation
     }
 
-    /// What `run.json` says.
+    /// Returns the content of `run.json`.
     pub fn report(&self) -> &Report {
         &self.report
     }
 
-    /// The folder of the results.
+    /// Returns the output folder.
     pub fn folder(&self) -> &Path {
         self.folder.path()
     }
 
-    /// Runs to the end, until it is cancelled, or close to the deadline, with checkpoints and the report `run.json`. A run that was stopped may be driven on.
+    /// Runs until the end, cancellation or the deadline, and writes checkpoints and `run.json`. A stopped run may be
+    /// driven again.
     ///
     /// # Errors
-    /// Output that cannot be written, an unstable run.
+    /// Output cannot be written, or the run becomes unstable.
     pub fn drive(
         &mut self,
         deadline: Option<Deadline>,
@@ -147,7 +149,7 @@ impl Run {
             Err(error) => {
                 self.report.status = Status::Failed;
                 self.report.error = Some(error.to_string());
-                // The first error is the one to report; on a full disk this one fails for the same reason.
+                // The first error is reported; on a full disk this write fails for the same reason.
                 let _ = self.write_report();
                 Err(error)
             }
@@ -182,12 +184,15 @@ impl Run {
         let warnings = &mut self.report.model.warnings;
         let cost = Cell::new(checkpoints.cost());
         let end = deadline.as_ref().map(Deadline::end);
-        // Asked within steps that iterate, which may take longer than any other part of a run.
+        // Checked within iterative steps, which may take longer than any other part of a run.
         let is_over = || {
             let late = |end: Instant| Instant::now() + 2 * cost.get() >= end;
             cancel.is_cancelled() || end.is_some_and(late)
         };
-        let interrupt = Interrupt::when(&is_over);
+        let tell = RefCell::new(tell);
+        let tell = |event: Event<'_>| (*tell.borrow_mut())(event);
+        let follow = |progress| tell(Event::Iteration(progress));
+        let interrupt = Interrupt::when(&is_over).following(&follow);
         let outcome = self.simulation.run_interruptible(interrupt, |simulation| {
             let state = simulation.state();
             if let (Some(found), false) = (simulation.instability(), warned) {
@@ -226,17 +231,17 @@ impl Run {
         Ok(outcome)
     }
 
-    /// The failure of the run, with what is left of it.
+    /// Converts an error of the simulation, and saves the failed state.
     fn sorted(&self, error: SimulationError) -> RunError {
         RunError::of_run(error, || {
             let mut left = match self.checkpoints.write_failed(&self.simulation) {
-                Ok(path) => format!("the failing state is in {}", path.display()),
-                Err(error) => format!("the failing state could not be kept ({error})"),
+                Ok(path) => format!("the failed state is in {}", path.display()),
+                Err(error) => format!("the failed state could not be saved ({error})"),
             };
             if let Some(step) = self.checkpoints.last_step() {
                 let folder = self.folder.path().display();
                 left += &format!(
-                    "; the last good checkpoint, from which `pericles resume {folder}` would go on, is that of step {step}"
+                    "; `pericles resume {folder}` continues from the last regular checkpoint, at step {step}"
                 );
             }
             left
@@ -266,7 +271,7 @@ impl Run {
     }
 }
 
-/// Whether `run.json` says so. A report that cannot be read says nothing: the checkpoints decide.
+/// Returns whether the run has finished according to `run.json`. If it cannot be read, the checkpoints decide.
 fn is_finished(folder: &OutputFolder) -> bool {
     let status = || -> Option<String> {
         let text = std::fs::read_to_string(folder.file("run.json")).ok()?;
@@ -276,24 +281,24 @@ fn is_finished(folder: &OutputFolder) -> bool {
     status().as_deref() == Some("finished")
 }
 
-/// What may make a resumed run differ from an uninterrupted one.
+/// Returns warnings about differences between a resumed and an uninterrupted run.
 fn doubts(stored: &Stored, model: &Model, facts: &Facts) -> Vec<String> {
     let mut doubts: Vec<String> = stored
         .refused
         .iter()
-        .map(|error| format!("{error}; the checkpoint before it is used"))
+        .map(|error| format!("{error}; the previous checkpoint is used"))
         .collect();
     let metadata = &stored.metadata;
     let version = env!("CARGO_PKG_VERSION");
     if metadata.version != version {
         doubts.push(format!(
-            "the run was begun by version {} and goes on with version {version}: it may not be the same bit for bit",
+            "the run was started with version {} and is resumed with version {version}: results may not be bitwise identical",
             metadata.version
         ));
     }
     if metadata.instruction_set != facts.instruction_set {
         doubts.push(format!(
-            "the run was begun with instruction set {} and goes on with {}: it may not be the same bit for bit",
+            "the run was started with instruction set {} and is resumed with {}: results may not be bitwise identical",
             metadata.instruction_set, facts.instruction_set
         ));
     }
@@ -301,16 +306,16 @@ fn doubts(stored: &Stored, model: &Model, facts: &Facts) -> Vec<String> {
     if let (Some(file), true) = (files.first(), metadata.source.inputs().is_empty()) {
         let file = file.display();
         doubts.push(format!(
-            "the version that began the run did not record the content of {file}: whether it has changed since is not known"
+            "the version that started the run did not record the content of {file}; it may have changed since"
         ));
     }
     doubts
 }
 
-/// Field files that the series lists and that are missing or cut short. The run needs none of them to go on, but its results lack them.
+/// Returns a warning about missing or truncated field files. The run does not need them, but its results have gaps.
 ///
 /// # Errors
-/// A series that cannot be read.
+/// The series cannot be read.
 fn incomplete(folder: &OutputFolder) -> Result<Option<String>, RunError> {
     let series = folder.file("fields.pvd");
     if !series.exists() {
@@ -322,7 +327,7 @@ fn incomplete(folder: &OutputFolder) -> Result<Option<String>, RunError> {
         .collect();
     Ok(broken.first().map(|(time, first)| {
         format!(
-            "{} of the {} field files of the run so far are missing or cut short, the first of them {} at t = {}: the series will have gaps there",
+            "{} of the {} field files written so far are missing or truncated, first {} at t = {}: the series has gaps there",
             broken.len(),
             states.len(),
             first.display(),
@@ -336,7 +341,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_run_may_move_to_another_thread() {
+    fn runs_can_be_sent_to_another_thread() {
         fn is_send<T: Send>() {}
         is_send::<Simulation>();
         is_send::<Run>();

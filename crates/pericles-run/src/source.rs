@@ -1,4 +1,4 @@
-//! What a run is made of, a deck or a model alone, and what its folder keeps of it.
+//! The source of a run, a deck or a model, and its record in the output folder.
 
 use std::path::Path;
 
@@ -9,31 +9,31 @@ use crate::deck_text::DeckText;
 use crate::error::RunError;
 use crate::inputs::Inputs;
 
-/// What a run is made of.
+/// The source of a run.
 #[derive(Debug, Clone)]
 pub enum Source {
-    /// A deck. Messages point into its text.
+    /// A deck; messages refer to locations in its text.
     Deck {
         /// The deck.
         deck: Box<Deck>,
         /// Its text.
         text: DeckText,
     },
-    /// A model that a program made or read. Messages name its keys.
+    /// A model built or read by a program; messages name its keys.
     Model(Box<ModelData>),
 }
 
-/// A model without a deck, with the digests of the files that it names.
+/// A model without a deck, with the digests of its input files.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ModelData {
     /// The model.
     pub model: Model,
-    /// The files that it names.
+    /// Its input files.
     #[serde(default, skip_serializing_if = "Inputs::is_empty")]
     pub inputs: Inputs,
 }
 
-/// The part of a [`Source`] that `run.json` and checkpoints hold: enough to make the same run again.
+/// The record of a [`Source`] in `run.json` and checkpoints, sufficient to build the same run again.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum SourceRecord {
     /// The text of a deck.
@@ -45,7 +45,7 @@ pub enum SourceRecord {
 }
 
 impl Source {
-    /// A deck that was read from `file`.
+    /// Creates the source from a deck that was read from `file`.
     pub fn of_deck(deck: Deck, file: String) -> Self {
         Self::Deck {
             text: DeckText::of(&deck, file),
@@ -53,7 +53,7 @@ impl Source {
         }
     }
 
-    /// A model alone; relative paths of its files start at `folder`.
+    /// Creates the source from a model; paths of its input files are relative to `folder`.
     ///
     /// ```
     /// use std::path::Path;
@@ -78,7 +78,7 @@ impl Source {
         }))
     }
 
-    /// The model.
+    /// Returns the model.
     pub fn model(&self) -> &Model {
         match self {
             Self::Deck { deck, .. } => &deck.model,
@@ -86,7 +86,7 @@ impl Source {
         }
     }
 
-    /// The folder at which relative paths of the model start; empty for the present folder.
+    /// Returns the base folder of relative paths; empty for the current folder.
     pub fn folder(&self) -> &Path {
         match self {
             Self::Deck { deck, .. } => deck.folder(),
@@ -94,7 +94,7 @@ impl Source {
         }
     }
 
-    /// The refusal of the model: it points into the text of a deck, and names the keys of a model alone.
+    /// Converts an error of the model: for a deck it has the location in the text, for a model the keys.
     pub fn refusal(&self, error: BuildError) -> RunError {
         match self {
             Self::Deck { deck, .. } => deck.refusal(error).into(),
@@ -102,7 +102,7 @@ impl Source {
         }
     }
 
-    /// What `run.json` and checkpoints hold of it.
+    /// Returns the record for `run.json` and checkpoints.
     pub fn record(&self) -> SourceRecord {
         match self {
             Self::Deck { text, .. } => SourceRecord::Deck(text.clone()),
@@ -112,10 +112,10 @@ impl Source {
 }
 
 impl SourceRecord {
-    /// Makes the source again, from whatever folder.
+    /// Restores the source, independent of the current folder.
     ///
     /// # Errors
-    /// A deck that this version no longer accepts; a file that the source names and that has changed or no longer exists.
+    /// This version no longer accepts the deck, or an input file has changed or no longer exists.
     pub fn read(self) -> Result<Source, RunError> {
         match self {
             Self::Deck(text) => Ok(Source::Deck {
@@ -129,7 +129,7 @@ impl SourceRecord {
         }
     }
 
-    /// The files that the source names, with their digests.
+    /// Returns the input files with their digests.
     pub(crate) fn inputs(&self) -> &Inputs {
         match self {
             Self::Deck(text) => &text.inputs,

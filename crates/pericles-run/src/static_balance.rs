@@ -1,26 +1,26 @@
-//! How well the forces on a body at rest are in balance.
+//! Equilibrium of the forces in a static state.
 
 use pericles::Simulation;
 use pericles::observe::{Field, Snapshot};
 use serde::Serialize;
 
-/// The balance of forces at the last static state.
+/// Residual and resultants of the last static state.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct StaticBalance {
-    /// Norm of the residual forces over that of loads or reactions, as the tolerance of the scheme measures it.
+    /// Norm of the residual relative to that of loads or reactions, as measured by the tolerance of the scheme.
     pub residual: f64,
     /// Resultant of loads and reactions, N: zero at equilibrium.
     pub force: [f64; 3],
-    /// Its size over the sum of the sizes of all loads and reactions.
+    /// Its magnitude relative to the sum of the magnitudes of all loads and reactions.
     pub force_relative: f64,
-    /// Moment of loads and reactions about the middle of the body, N m: zero at equilibrium.
+    /// Moment of loads and reactions about the centre of the body, N m: zero at equilibrium.
     pub moment: [f64; 3],
-    /// Its size over the sum of the sizes of the moments of all loads and reactions.
+    /// Its magnitude relative to the sum of the magnitudes of the moments of all loads and reactions.
     pub moment_relative: f64,
 }
 
 impl StaticBalance {
-    /// Of the last state of a simulation; none unless its scheme is static.
+    /// Evaluates the last state of a simulation; `None` unless its scheme is static.
     pub(crate) fn of(simulation: &Simulation) -> Option<Self> {
         let integrator = simulation.integrator();
         let inner = integrator.inner_iterations()?;
@@ -50,7 +50,8 @@ impl StaticBalance {
     }
 }
 
-/// Positions of the points about their middle, m: displaced ones unless forces are linear in the displacements, for linear forces act at reference positions.
+/// Returns the positions of the points relative to their centre, m: deformed positions for nonlinear forces, reference
+/// positions for linear ones.
 fn arms(snapshot: &Snapshot<'_>) -> Vec<[f64; 3]> {
     let system = snapshot.system();
     let (n, cloud, u) = (system.points(), system.cloud(), &snapshot.state().u);
@@ -69,7 +70,7 @@ fn arms(snapshot: &Snapshot<'_>) -> Vec<[f64; 3]> {
         .collect()
 }
 
-/// Loads and reactions on each point, N.
+/// Returns loads plus reactions on each point, N.
 fn forces(snapshot: &Snapshot<'_>) -> Vec<[f64; 3]> {
     let system = snapshot.system();
     let (n, volumes) = (system.points(), system.cloud().volumes());

@@ -1,6 +1,6 @@
-//! Numbers as people read them.
+//! Formatting of numbers with units.
 
-/// A time span: `0.4 s`, `12 s`, `3 min 20 s`, `2 h 5 min`.
+/// Formats a time span: `0.4 s`, `12 s`, `3 min 20 s`, `2 h 5 min`.
 pub fn duration(seconds: f64) -> String {
     if !seconds.is_finite() {
         return "unknown time".into();
@@ -16,7 +16,7 @@ pub fn duration(seconds: f64) -> String {
     }
 }
 
-/// A size in memory: `512 B`, `16.2 MB`.
+/// Formats a memory size: `512 B`, `16.2 MB`.
 pub fn bytes(count: u64) -> String {
     let size = count as f64;
     let (factor, unit) = match count {
@@ -28,13 +28,13 @@ pub fn bytes(count: u64) -> String {
     format!("{} {unit}", significant(size / factor, 3))
 }
 
-/// `1 thread`, `2 threads`.
+/// Formats a number of threads: `1 thread`, `2 threads`.
 pub fn threads(number: usize) -> String {
     let ending = if number == 1 { "" } else { "s" };
     format!("{number} thread{ending}")
 }
 
-/// A ratio in percent with two significant digits.
+/// Formats a ratio in percent with two significant digits.
 pub fn percent(ratio: f64) -> String {
     if !ratio.is_finite() {
         return "unknown".into();
@@ -44,12 +44,21 @@ pub fn percent(ratio: f64) -> String {
 
 pub use pericles::units::{count, quantity, significant};
 
+/// Formats an angular frequency (1/s) with five significant digits: `1.6330`, `5.8244e6`.
+pub fn frequency(omega: f64) -> String {
+    if omega == 0.0 || (1e-3..1e5).contains(&omega.abs()) {
+        significant(omega, 5)
+    } else {
+        format!("{omega:.4e}")
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn spans_of_time() {
+    fn time_spans_are_formatted_with_units() {
         for (seconds, text) in [
             (0.04, "0.0 s"),
             (9.94, "9.9 s"),
@@ -64,7 +73,9 @@ mod tests {
     }
 
     #[test]
-    fn ratios_and_sizes() {
+    fn ratios_and_sizes_are_rounded() {
+        assert_eq!(frequency(1.633), "1.6330");
+        assert_eq!(frequency(5_824_437.0), "5.8244e6");
         assert_eq!(percent(0.000_234_5), "0.023 %");
         assert_eq!(percent(-0.5), "-50 %");
         assert_eq!(bytes(999), "999 B");

@@ -1,4 +1,4 @@
-//! Natural modes of an assembled body: found, and written as a table, fields and pictures.
+//! Natural modes of an assembled body, with output as table, fields and pictures.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -11,11 +11,12 @@ use pericles_io::{
 };
 use pericles_manifold::surface::Surface;
 use pericles_statics::{Mode, ModeOptions, NaturalModes};
+use rayon::prelude::*;
 
 use crate::build::Assembly;
 use crate::error::RunError;
 
-/// Natural modes with the body that they belong to.
+/// Natural modes of a body.
 pub struct Vibration {
     /// The modes.
     pub modes: NaturalModes,
@@ -23,16 +24,17 @@ pub struct Vibration {
     surface: Option<Arc<Surface>>,
 }
 
-/// Stills of an animation: one period.
+/// Number of pictures of an animation over one period.
 const STILLS: usize = 16;
-/// The largest displacement in pictures over the longest side of the body.
+/// Largest displacement in pictures, relative to the longest side of the body.
 const ENLARGED: f64 = 0.08;
 
 impl Vibration {
-    /// The lowest modes of a body with the supports that it has at the start: about the undeformed body or, if `prestressed`, about the last state of its simulation, which has to be static.
+    /// Computes the lowest modes of a body with its initial constraints: about the undeformed body or, if
+    /// `prestressed`, about the last state of its simulation, which must be static.
     ///
     /// # Errors
-    /// What can go wrong with the simulation; what [`NaturalModes::find`] refuses.
+    /// The simulation fails, and the errors of [`NaturalModes::find`].
     pub fn of(
         assembly: Assembly,
         options: ModeOptions,
@@ -59,16 +61,16 @@ impl Vibration {
         })
     }
 
-    /// Number of points of the body.
+    /// Returns the number of points of the body.
     pub fn points(&self) -> usize {
         self.cloud.len()
     }
 
-    /// Writes `modes.csv`, `modes.pvd` with a field `Mode_Shape` for each mode, whose largest displacement is 1, at the "time" that is its number, and a picture of each mode; with `animated` an
-    /// animation of one period too.
+    /// Writes `modes.csv`, `modes.pvd` with a field `Mode_Shape` per mode (largest displacement 1; the time value is
+    /// the mode number) and a picture of each mode; with `animated` also an animation of one period.
     ///
     /// # Errors
-    /// Files that cannot be written.
+    /// Files cannot be written.
     pub fn write(
         &self,
         folder: &OutputFolder,
@@ -78,26 +80,41 @@ impl Vibration {
         self.write_table(&folder.file("modes.csv"))?;
         folder.subfolder("modes")?;
         let mut series = PvdSeries::create(folder.file("modes.pvd"))?;
-        for (number, mode) in (1..).zip(&self.modes.modes) {
-            let stem = format!("modes/mode_{number:03}");
-            let shape = self.normalised(mode);
-            let file = format!("{stem}.vtu");
-            self.write_fields(&folder.file(&file), number, &shape)?;
-            series.push(f64::from(number), &file)?;
-            let drawn = Drawn {
-                body: self,
-                title: format!(
-                    "{title}{}mode {number}, {}",
-                    if title.is_empty() { "" } else { ": " },
-                    pericles::units::quantity(mode.frequency_hz, "Hz")
-                ),
-                values: self.values(&shape),
-                shape,
-            };
-            drawn.write(&folder.file(format!("{stem}.png")), None)?;
-            if animated {
-                drawn.animate(folder, &stem)?;
-            }
+        let numbered: Vec<(u32, &Mode)> = (1..).zip(&self.modes.modes).collect();
+        for (number, mode) in &numbered {
+            let file = format!("modes/mode_{number:03}.vtu");
+            self.write_fields(&folder.file(&file), *number, &self.normalised(mode))?;
+            series.push(f64::from(*number), &file)?;
+        }
+        // Pictures take longer than the modes of a small body.
+        numbered
+            .into_par_iter()
+            .try_for_each(|(number, mode)| self.draw(folder, title, (number, mode), animated))
+    }
+
+    /// Draws the picture of a mode and, if wanted, its animation.
+    fn draw(
+        &self,
+        folder: &OutputFolder,
+        title: &str,
+        (number, mode): (u32, &Mode),
+        animated: bool,
+    ) -> Result<(), RunError> {
+        let stem = format!("modes/mode_{number:03}");
+        let shape = self.normalised(mode);
+        let drawn = Drawn {
+            body: self,
+            title: format!(
+                "{title}{}mode {number}, {}",
+                if title.is_empty() { "" } else { ": " },
+                pericles::units::quantity(mode.frequency_hz, "Hz")
+            ),
+            values: self.values(&shape),
+            shape,
+        };
+        drawn.write(&folder.file(format!("{stem}.png")), None)?;
+        if animated {
+            drawn.animate(folder, &stem)?;
         }
         Ok(())
     }
@@ -137,7 +154,7 @@ impl Vibration {
         file.write(path)
     }
 
-    /// The shape with a largest displacement of 1.
+    /// Returns the mode shape with a largest displacement of 1.
     fn normalised(&self, mode: &Mode) -> Vec<f64> {
         let largest = self.sizes(&mode.shape).into_iter().fold(0.0, f64::max);
         let scale = if largest > 0.0 { 1.0 / largest } else { 1.0 };
@@ -150,7 +167,7 @@ impl Vibration {
         (0..n).map(|i| square(i).sqrt()).collect()
     }
 
-    /// What colours show: the displacement of a bar, the size of that of other bodies.
+    /// Returns the values shown by colours: the displacement of a bar, its magnitude for other bodies.
     fn values(&self, shape: &[f64]) -> Vec<f64> {
         match self.cloud.dimension() {
             1 => shape.to_vec(),
@@ -159,7 +176,7 @@ impl Vibration {
     }
 }
 
-/// A mode as it is drawn.
+/// A mode to be drawn.
 struct Drawn<'a> {
     body: &'a Vibration,
     title: String,
@@ -168,7 +185,7 @@ struct Drawn<'a> {
 }
 
 impl Drawn<'_> {
-    /// A picture at the largest displacement, or at another part of it with the axes of an animation.
+    /// Writes a picture at the largest displacement, or at a fraction of it with the axes of an animation.
     fn write(&self, path: &Path, part: Option<f64>) -> Result<(), IoError> {
         let cloud = &*self.body.cloud;
         let dimension = cloud.dimension();
@@ -182,7 +199,7 @@ impl Drawn<'_> {
         let (low, high) = corners(cloud);
         let longest = (0..3).map(|c| high[c] - low[c]).fold(0.0, f64::max);
         let factor = part.unwrap_or(1.0);
-        // Sizes have no sign.
+        // Magnitudes have no sign.
         let of_values = if dimension == 1 { factor } else { factor.abs() };
         let values: Vec<f64> = self.values.iter().map(|value| of_values * value).collect();
         let (colours, least) = match dimension {
@@ -221,7 +238,7 @@ impl Drawn<'_> {
     }
 }
 
-/// Opposite corners of the box of the points.
+/// Returns opposite corners of the bounding box of the points.
 fn corners(cloud: &PointCloud) -> ([f64; 3], [f64; 3]) {
     let (mut low, mut high) = ([0.0; 3], [0.0; 3]);
     for c in 0..cloud.dimension() {

@@ -1,18 +1,18 @@
-//! The physics watch: warnings about a finished run where a quantity exceeds its threshold.
+//! Plausibility checks of a finished run: warnings where a quantity exceeds its threshold.
 //!
-//! | what | warned of beyond |
+//! | quantity | threshold |
 //! |---|---|
-//! | energy account | [`ENERGY`] of the work done or of the energy at the start, whichever is larger, at any row of the history |
-//! | energy balance of static states | [`STATIC_ENERGY`] of the work exchanged or of the energy at the start |
-//! | momentum account | [`MOMENTUM`] of the momentum that the energy there was could have made; [`IMPULSE`] of it with supports or two time steps |
-//! | loads and reactions of a static state | [`REACTIONS`] of the reactions |
-//! | bonds that break in masses, once while the run goes on | [`BROKEN_AT_ONCE`] of the bonds in one step, [`BROKEN_IN_ALL`] in all |
-//! | points near breaking, where nothing broke | [`ENDANGERED`] of the points have bonds beyond [`NEAR`] of the critical stretch |
-//! | points of correspondence materials that lost all bonds because those that were left did not span the space | any |
-//! | breaking within coarse steps | [`COARSE`] of the broken bonds |
-//! | displacements of a run that began as its own mirror image | they differ from their image by [`ASYMMETRY`] of the largest |
+//! | energy balance | [`ENERGY`] of the external work or of the initial energy, whichever is larger, in any row of the history |
+//! | energy balance of static states | [`STATIC_ENERGY`] of the work exchanged or of the initial energy |
+//! | momentum balance | [`MOMENTUM`] of the momentum that corresponds to the energy; [`IMPULSE`] with constraints or multirate schemes |
+//! | resultant of loads and reactions of a static state | [`REACTIONS`] of the reactions |
+//! | broken bonds, once during the run | [`BROKEN_AT_ONCE`] of the bonds in one step, [`BROKEN_IN_ALL`] in total |
+//! | points close to failure in a run without broken bonds | [`ENDANGERED`] of the points have bonds above [`NEAR`] of the critical stretch |
+//! | points of correspondence materials that lost all bonds because the remaining ones did not span the space | any |
+//! | bonds broken within coarse steps | [`COARSE`] of the broken bonds |
+//! | mirror symmetry of a run with symmetric data | displacements deviate from the symmetry by [`ASYMMETRY`] of the largest |
 //!
-//! Static states have no momentum. Waves that the grid cannot carry are found before the run (`pericles check`).
+//! Static states have no momentum. Waves that the grid does not resolve are reported before the run (`pericles check`).
 
 use pericles::Simulation;
 use pericles::observe::Field;
@@ -20,42 +20,44 @@ use pericles::observe::Field;
 use crate::audit::Audit;
 use crate::units::{percent, quantity, significant};
 
-/// The account closes to 10⁻³ and better with steps near the stable one.
+/// With steps close to the stable one the energy balance closes to 10⁻³ or better.
 const ENERGY: f64 = 0.01;
-/// Of static states: the work between two is exact for linear forces.
+/// For static states; the work between two states is exact for linear forces.
 const STATIC_ENERGY: f64 = 1e-3;
-/// Momentum is exact but for rounding.
+/// Momentum is conserved up to rounding.
 const MOMENTUM: f64 = 1e-6;
-/// The impulse of supports, and of forces between points with different steps, is that of their values at the ends of steps: an integral by trapezia.
+/// The impulse of constraints, and of forces between points with different steps, is integrated by the trapezoidal rule
+/// over the ends of steps.
 const IMPULSE: f64 = 1e-3;
-/// A hundred times the default tolerance of relaxation.
+/// A hundred times the default tolerance of adaptive dynamic relaxation.
 const REACTIONS: f64 = 1e-4;
 const NEAR: f64 = 0.9;
 const ENDANGERED: f64 = 0.01;
 const COARSE: f64 = 0.05;
-/// Rounding that did not grow is ten orders below.
+/// Rounding errors that do not grow are ten orders of magnitude smaller.
 const ASYMMETRY: f64 = 1e-6;
 
-/// Share of the bonds that break in one step where a run goes wrong. Cracks break far less; a tube that flies apart in fragments (`examples/fragmentation`) 7 %.
+/// Fraction of the bonds broken in one step that indicates an error. Cracks break far fewer; a fragmenting tube
+/// (`examples/fragmentation`) breaks 7 %.
 const BROKEN_AT_ONCE: f64 = 0.1;
-/// Share of the bonds that break in a run where little is left of the body.
+/// Fraction of the bonds broken in a run that indicates an error.
 const BROKEN_IN_ALL: f64 = 0.5;
 
-/// Looks out for bonds that break in masses, and warns once.
+/// Monitors the number of broken bonds and warns once.
 pub struct Breakage {
-    /// Bonds at the start.
+    /// Number of bonds at the start.
     bonds: u64,
-    /// Broken at the last step.
+    /// Number of broken bonds after the last step.
     broken: u64,
     warned: bool,
 }
 
 impl Breakage {
-    /// From a state of a run on.
+    /// Starts monitoring at the current state of a run.
     pub fn from(simulation: &Simulation) -> Self {
         let operator = simulation.system().operator();
         let (bonds, broken) = (operator.directed_bonds() / 2, operator.broken_bonds());
-        // A resumed run has warned before.
+        // The warning was given before the run was resumed.
         let warned = broken as f64 > BROKEN_IN_ALL * bonds as f64;
         Self {
             bonds,
@@ -64,7 +66,7 @@ impl Breakage {
         }
     }
 
-    /// Looks at the state after a step.
+    /// Checks the state after a step.
     pub fn look(&mut self, simulation: &Simulation) -> Option<String> {
         if self.warned {
             return None;
@@ -83,14 +85,14 @@ impl Breakage {
         self.warned = true;
         let state = simulation.state();
         Some(format!(
-            "{what} (step {}, t = {}): the body falls apart in masses, not along cracks; check speeds, loads, fracture energy and their units",
+            "{what} (step {}, t = {}): the body disintegrates instead of cracking; check velocities, loads, fracture energy and their units",
             state.step,
             quantity(state.t, "s")
         ))
     }
 }
 
-/// Warnings about a finished run.
+/// Returns the warnings about a finished run.
 pub fn warnings(simulation: &Simulation, audit: &Audit) -> Vec<String> {
     let found = [
         simulation.instability().map(ToString::to_string),
@@ -105,13 +107,13 @@ pub fn warnings(simulation: &Simulation, audit: &Audit) -> Vec<String> {
     found.into_iter().flatten().collect()
 }
 
-/// Points of correspondence materials whose last bonds broke together.
+/// Checks for points of correspondence materials whose last bonds were removed together.
 fn dropped(simulation: &Simulation) -> Option<String> {
     let breaking = simulation.system().operator().capabilities().breaking?;
     match breaking.dropped_points() {
         0 => None,
         points => Some(format!(
-            "{points} points lost all of their bonds because those that were left did not span the space: they are fragments without stress"
+            "{points} points lost all bonds because the remaining ones did not span the space; these points are stress-free fragments"
         )),
     }
 }
@@ -125,10 +127,10 @@ fn energy(simulation: &Simulation, audit: &Audit) -> Option<String> {
     let advice = simulation
         .integrator()
         .intended_drift()
-        .unwrap_or("a smaller time step shows whether results depend on it");
+        .unwrap_or("reduce the time step and compare the results");
     (drift > ENERGY).then(|| {
         format!(
-            "the energy account is off by up to {}: {advice}",
+            "the error of the energy balance reaches {}: {advice}",
             percent(drift)
         )
     })
@@ -140,7 +142,7 @@ fn momentum(simulation: &Simulation, audit: &Audit) -> Option<String> {
     }
     let system = simulation.system();
     let mass: f64 = system.masses().iter().sum::<f64>() / system.dimension() as f64;
-    // Not what is left: waves may have gone, and static states have none.
+    // Not the energy at the end: waves may have left the body, and static states have no kinetic energy.
     let energy = audit.initial_energy.abs() + system.ledger().exchanged;
     let error = audit.momentum_error / (2.0 * energy * mass).sqrt();
     let by_trapezia =
@@ -148,36 +150,36 @@ fn momentum(simulation: &Simulation, audit: &Audit) -> Option<String> {
     let limit = if by_trapezia { IMPULSE } else { MOMENTUM };
     (error > limit).then(|| {
         let cure = if by_trapezia {
-            ": a smaller time step sums the impulses better"
+            "; a smaller time step integrates the impulses more accurately"
         } else {
             ""
         };
         format!(
-            "the momentum account is off by {} of what the energy could have made{cure}",
+            "the momentum error is {} of √(2 · energy · mass){cure}",
             significant(error, 2)
         )
     })
 }
 
-/// Of static states: what the work of loads and supports between them, taken as the mean of their forces at both, misses.
+/// Checks the energy balance of static states, whose work is that of the mean of the forces at both.
 fn static_energy(simulation: &Simulation, audit: &Audit) -> Option<String> {
     if reactions(simulation).is_some() {
-        // The states are not static, and that is what is reported.
+        // The states are not in equilibrium; this is reported instead.
         return None;
     }
-    // Not the work that is left: a body that is unloaded again has none.
+    // Not the net work, which vanishes for a body that is unloaded again.
     let exchanged = simulation.system().ledger().exchanged;
     let drift = audit.largest_balance / exchanged.max(audit.initial_energy.abs());
     (drift > STATIC_ENERGY).then(|| {
         format!(
-            "the energy balance of the static states is off by up to {} of the work done: the work between two states is that of the mean forces. Loads and displacements that grow over \
-             more load steps (function = {{ kind = \"ramp\", … }} and time.load_steps) make it more accurate",
+            "the error of the energy balance of the static states reaches {} of the work done, because the work between two states is that of the mean forces; apply loads and displacements \
+             over more load steps (function = {{ kind = \"ramp\", … }} and time.load_steps)",
             percent(drift)
         )
     })
 }
 
-/// Of a static state: loads and reactions together are nothing.
+/// Checks that loads and reactions of a static state add up to zero.
 fn reactions(simulation: &Simulation) -> Option<String> {
     let system = simulation.system();
     if !simulation.integrator().is_static() || system.motions().is_empty() {
@@ -193,7 +195,7 @@ fn reactions(simulation: &Simulation) -> Option<String> {
             .map(|(f, volume)| f * volume)
             .sum()
     };
-    // Reactions of opposite supports add up to nothing: their sizes are what to compare with.
+    // Reactions of opposite constraints cancel: compare with the sum of their magnitudes.
     let size: f64 = snapshot
         .field(Field::Reaction)
         .chunks(n)
@@ -205,7 +207,7 @@ fn reactions(simulation: &Simulation) -> Option<String> {
         .fold(0.0, f64::max);
     (left > REACTIONS * size).then(|| {
         format!(
-            "loads and reactions differ by {}: a smaller tolerance of the relaxation helps",
+            "loads and reactions are not in equilibrium: their resultant is {} of the reactions; use a smaller tolerance of the static scheme",
             percent(left / size)
         )
     })
@@ -225,19 +227,20 @@ fn endangered(simulation: &Simulation, audit: &Audit) -> Option<String> {
     let share = marks.iter().filter(|mark| **mark).count() as f64 / marks.len() as f64;
     (share > ENDANGERED).then(|| {
         format!(
-            "{} of the points have bonds beyond {} of the critical stretch, and none broke: a little more load would break them",
+            "{} of the points have bonds above {} of the critical stretch, but no bond broke; a slightly larger load would break bonds",
             percent(share),
             percent(NEAR)
         )
     })
 }
 
-/// Bonds that break within steps too coarse for them dissipate what they should, but when and which of them break depends on the step.
+/// Bonds that break within too coarse steps dissipate the correct energy, but which bonds break, and when, depends on
+/// the step.
 fn coarse_breaking(audit: &Audit) -> Option<String> {
     let share = audit.coarse_breaks as f64 / audit.broken_bonds.max(1) as f64;
     (share > COARSE).then(|| {
         format!(
-            "{} of the broken bonds were stretched from compression, or to more than twice the critical stretch, within one step: a smaller dt shows whether the results depend on it",
+            "{} of the broken bonds were stretched from compression, or to more than twice the critical stretch, within one step; reduce dt and compare the results",
             percent(share)
         )
     })
@@ -251,8 +254,8 @@ fn asymmetry(audit: &Audit) -> Option<String> {
     let axes: Vec<&str> = lost.clone().map(|mirror| mirror.axis).collect();
     let most = lost.map(|mirror| mirror.error).reduce(f64::max)?;
     Some(format!(
-        "the run began as its own mirror image in {} and is none any more: displacements differ by {} of the largest. rounding has grown, as where cracks branch or bodies buckle, \
-         or the time steps are small on one side only; which side it is to be is not known",
+        "the data are mirror-symmetric about {}, but the displacements deviate from the symmetry by {} of the largest: rounding errors have grown, as in crack branching or buckling, \
+         or the multirate zones are not symmetric; the direction of the deviation has no physical meaning",
         axes.join(" and "),
         percent(most)
     ))

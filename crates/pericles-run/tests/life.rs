@@ -1,4 +1,4 @@
-//! The life of a run as other programs see it: begun, cancelled, resumed on another thread, finished.
+//! Runs as a library: started, cancelled, resumed on another thread, finished.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -27,7 +27,7 @@ critical_stretch = 0.002
 layer = { side = "+y", cells = 1 }
 [[crack]]
 segment = [["0 mm", "6 mm"], ["8 mm", "6 mm"]]
-[[prescribe]]
+[[constraint]]
 set = "top"
 velocity = ["free", "4 m/s"]
 [time]
@@ -63,7 +63,7 @@ fn history(folder: &Path) -> String {
 }
 
 #[test]
-fn a_cancelled_run_goes_on_to_the_same_results_on_another_thread() {
+fn a_cancelled_run_resumed_on_another_thread_gives_identical_results() {
     let place = tempfile::tempdir().unwrap();
     let (whole, parts) = (place.path().join("whole"), place.path().join("parts"));
     let mut run = begun(&whole);
@@ -94,7 +94,8 @@ fn a_cancelled_run_goes_on_to_the_same_results_on_another_thread() {
     drop(run);
     let folder = parts.clone();
     let resumed = thread::spawn(move || {
-        let mut run = Run::resume(&folder, &means(), &mut |_| {})?.expect("it has not finished");
+        let mut run =
+            Run::resume(&folder, &means(), &mut |_| {})?.expect("the run has not finished");
         run.drive(None, &Cancel::new(), &mut |_| {})
     });
     assert_eq!(resumed.join().unwrap().unwrap(), Ending::Finished);
@@ -110,7 +111,7 @@ fn a_cancelled_run_goes_on_to_the_same_results_on_another_thread() {
 }
 
 #[test]
-fn a_stopped_run_may_be_driven_on_and_a_deadline_stops_it() {
+fn a_stopped_run_may_be_driven_again_and_stops_at_a_deadline() {
     let place = tempfile::tempdir().unwrap();
     let (whole, parts) = (place.path().join("whole"), place.path().join("parts"));
     let ending = begun(&whole).drive(None, &Cancel::new(), &mut |_| {});
@@ -131,7 +132,7 @@ fn a_folder_without_a_run_cannot_be_resumed() {
     assert!(matches!(resumed.err(), Some(RunError::NoRun { .. })));
 }
 
-/// The names of the files of fields with their contents, in order.
+/// Returns the names and contents of the field files, in order.
 fn fields(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     let states = Results::open(folder).unwrap().fields().unwrap();
     let content = |state: FieldFile| {
@@ -142,10 +143,10 @@ fn fields(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
 }
 
 #[test]
-fn a_model_without_a_deck_is_stopped_and_resumed_and_gives_the_bytes_of_the_run_of_its_deck() {
+fn a_stopped_and_resumed_model_gives_the_same_results_as_its_deck() {
     let place = tempfile::tempdir().unwrap();
     let (of_deck, of_model) = (place.path().join("deck"), place.path().join("model"));
-    // Numbers without a short decimal form, and a title that the folder must return.
+    // Numbers without a short decimal form, and a title that must be stored.
     let overrides = [
         "output.fields={ every = 10 }".to_owned(),
         format!(
@@ -175,7 +176,8 @@ fn a_model_without_a_deck_is_stopped_and_resumed_and_gives_the_bytes_of_the_run_
     drop(run);
     let folder = of_model.clone();
     let resumed = thread::spawn(move || {
-        let mut run = Run::resume(&folder, &means(), &mut |_| {})?.expect("it has not finished");
+        let mut run =
+            Run::resume(&folder, &means(), &mut |_| {})?.expect("the run has not finished");
         run.drive(None, &Cancel::new(), &mut |_| {})
     });
     assert_eq!(resumed.join().unwrap().unwrap(), Ending::Finished);
@@ -189,15 +191,15 @@ fn a_model_without_a_deck_is_stopped_and_resumed_and_gives_the_bytes_of_the_run_
     let written = fields(&of_model);
     assert_eq!(written.len(), 5);
     assert_eq!(fields(&of_deck), written);
-    // The folder returns the model, of which points and pictures are made again.
+    // The model is restored from the folder, for points and pictures.
     let SourceRecord::Model(data) = results.source().unwrap() else {
-        panic!("the folder of a model holds a deck");
+        panic!("the folder of a model contains a deck");
     };
     assert_eq!(data.model, model);
 }
 
 #[test]
-fn a_model_whose_file_has_changed_is_not_resumed() {
+fn a_model_with_a_changed_file_is_not_resumed() {
     let place = tempfile::tempdir().unwrap();
     let table = place.path().join("start.txt");
     let rows: String = (0..24 * 12)
@@ -273,10 +275,10 @@ unit = "mm"
 youngs_modulus = "72 GPa"
 density = 2440
 horizon = "2.1 mm"
-[[prescribe]]
+[[constraint]]
 set = "left"
 displacement = [0, 0, 0]
-[[prescribe]]
+[[constraint]]
 set = "right"
 velocity = ["4 m/s", 0, 0]
 [time]
@@ -287,7 +289,7 @@ fields = { every = 2, format = ["vtu", "exodus", "vtkhdf"], cells = true }
 "#;
 
 #[test]
-fn result_files_of_a_resumed_run_are_those_of_an_uninterrupted_one() {
+fn result_files_of_a_resumed_run_equal_those_of_an_uninterrupted_one() {
     let place = tempfile::tempdir().unwrap();
     fs::write(place.path().join("cubes.inp"), cubes()).unwrap();
     let name = place.path().join("cubes.toml").display().to_string();
@@ -305,7 +307,7 @@ fn result_files_of_a_resumed_run_are_those_of_an_uninterrupted_one() {
         "cells.pvd",
         "cells/cells_000010.vtu",
     ];
-    // Before the first output after the start, in the middle, and just behind an output.
+    // Before the first output after the start, in the middle, and just after an output.
     for (stop, threads) in [(1, 1), (7, 2), (8, 3)] {
         let parts = place.path().join(format!("parts-{stop}"));
         let mut run = begun_of(&source, &parts);
@@ -320,13 +322,14 @@ fn result_files_of_a_resumed_run_are_those_of_an_uninterrupted_one() {
         });
         assert_eq!(ending.unwrap(), Ending::Cancelled);
         drop(run);
-        // A part of an output that a kill left behind.
+        // An incomplete output of a killed run.
         let mut torn = read(&parts, "fields.exo");
         torn.extend([1; 100]);
         fs::write(parts.join("fields.exo"), torn).unwrap();
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         let ending = pool.unwrap().install(|| {
-            let mut run = Run::resume(&parts, &means(), &mut |_| {})?.expect("it has not finished");
+            let mut run =
+                Run::resume(&parts, &means(), &mut |_| {})?.expect("the run has not finished");
             run.drive(None, &Cancel::new(), &mut |_| {})
         });
         assert_eq!(ending.unwrap(), Ending::Finished);
@@ -337,7 +340,7 @@ fn result_files_of_a_resumed_run_are_those_of_an_uninterrupted_one() {
             );
         }
     }
-    // The Exodus file is a mesh of points with the sets, and what is exported from VTU is the same file.
+    // The Exodus file is a mesh of points with the sets; export from VTU gives the same file.
     let memory = u64::MAX;
     let mesh = pericles_io::read_mesh(whole.join("fields.exo"), memory).unwrap();
     assert_eq!(mesh.cells.len(), 24);

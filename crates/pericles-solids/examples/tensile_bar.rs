@@ -1,6 +1,11 @@
-//! A tensile bar that yields: a correspondence material with J2 plasticity in plane stress, pulled slowly by its ends.
+//! Tensile test of an elastoplastic bar: a correspondence material with J2 plasticity in plane stress, loaded
+//! by prescribed displacements of its ends.
 //!
-//! The stress, the force over the section at the start, is compared with the closed form of uniaxial tension at the strain between two gauge points.
+//! The nominal stress is compared with the closed form of uniaxial tension at the strain between two gauge
+//! points. The gauge points must be far from the ends: the control of zero-energy modes has the stiffness of
+//! the elastic material, here 15 times that of plastic flow, and resists strain gradients along the bar. With
+//! gauge points 2.5 widths from the constrained ends the stress agrees with the closed form to 0.3 %; in a
+//! bar of 24 by 6 cells with gauge points 1.1 widths from the ends it is 2.8 % too high.
 
 use std::error::Error;
 use std::sync::Arc;
@@ -23,7 +28,7 @@ const STEEL: Plasticity = Plasticity {
     hardening: 5e9,
 };
 /// Cells along the bar and across.
-const CELLS: [f64; 2] = [24.0, 6.0];
+const CELLS: [f64; 2] = [32.0, 4.0];
 const SPACING: f64 = 1e-3;
 
 /// Nominal stress σ = τ/λ in uniaxial tension, with the Kirchhoff stress τ at the logarithmic strain ln λ.
@@ -76,7 +81,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let column = |i: &u32| (bar.point(*i as usize)[0] - end).abs() < 2.0 * SPACING;
         (0..bar.len() as u32).filter(column).collect()
     };
-    let pull = 2.5e-4;
+    let pull = 1.5e-4;
     let ramp = || TimeFunction::Ramp {
         start: 0.0,
         duration: 1.0,
@@ -89,15 +94,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     system.add_motion(corner)?;
 
     let options = RelaxationOptions {
-        tolerance: 1e-6,
+        tolerance: 1e-4,
         ..RelaxationOptions::default()
     };
     let scheme = Box::new(Relaxation::new(options, &system)?);
     let start = State::at_rest(2 * bar.len());
-    let mut run = Simulation::new(system, scheme, start, 0.1, 10)?;
-    // The two gauge points lie on the axis of the bar, as close to it as points are.
-    let gauge = [8.5, 15.5].map(|x| {
-        let place = [x * SPACING, 2.5 * SPACING];
+    let mut run = Simulation::new(system, scheme, start, 1.0 / 3.0, 3)?;
+    // Two gauge points, the points closest to the axis of the bar.
+    let gauge = [12.5, 19.5].map(|x| {
+        let place = [x * SPACING, 1.5 * SPACING];
         let distance = |i: &usize| {
             let point = bar.point(*i);
             (point[0] - place[0]).hypot(point[1] - place[1])
@@ -133,9 +138,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         "work {:.4} J: stored {:.4} J, dissipated {:.4} J",
         energies.work, energies.elastic, energies.dissipated
     );
-    // The ends disturb the uniform stress of the middle by a little.
+    // The constrained ends slightly disturb the uniform stress of the middle.
     if largest > 0.01 {
-        return Err(format!("{largest:.3} from the closed form").into());
+        return Err(format!(
+            "relative error {largest:.3} of the nominal stress; expected at most 0.01"
+        )
+        .into());
     }
     Ok(())
 }

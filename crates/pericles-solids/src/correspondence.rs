@@ -1,8 +1,10 @@
-//! Correspondence materials: forces from the stress of a deformation gradient.
+//! Correspondence materials: forces from the stress of a nonlocal deformation gradient.
 //!
-//! A correspondence material (Silling, Epton, Weckner, Xu & Askari, J. Elasticity 88, 2007) takes the stress of any classical material at large strain. Each point has the deformation gradient that fits its bonds
-//! best, F = I + (Σ w η ⊗ ξ) K⁻¹ with the shape tensor K = Σ w ξ ⊗ ξ; the force state follows from the first Piola–Kirchhoff stress P(F), and a penalty controls the deformations that F does not represent
-//! ([`Stabilisation`]). A uniform deformation has the classical stress at every point, surfaces included.
+//! A correspondence material (Silling, Epton, Weckner, Xu & Askari, J. Elasticity 88, 2007) uses the stress
+//! of a classical material at large strain. The deformation gradient of a point is the best fit to its bonds,
+//! F = I + (Σ w η ⊗ ξ) K⁻¹ with the shape tensor K = Σ w ξ ⊗ ξ. The force state follows from the first
+//! Piola–Kirchhoff stress P(F); a penalty controls deformations that F does not represent
+//! ([`Stabilisation`]). For a uniform deformation the stress is classical at every point, surfaces included.
 //!
 //! [`CorrespondenceMaterial`] → [`CorrespondenceConstants`] → [`CorrespondenceBody`] → [`CorrespondenceForce`].
 
@@ -21,6 +23,7 @@ mod passes;
 mod plasticity;
 mod shape;
 mod solid;
+mod stress;
 mod tensor;
 mod view;
 

@@ -1,7 +1,8 @@
 //! Peridynamic solids at large strain.
 //!
-//! * [`correspondence`] – correspondence materials: a stress of a deformation gradient, with control of zero-energy modes.
+//! * [`correspondence`] – correspondence materials: stress from a nonlocal deformation gradient, with control
+//!   of zero-energy modes.
 //!
-//! The crate uses only what the engine, [`pericles`], exports.
+//! The crate uses only public items of the engine, [`pericles`].
 
 pub mod correspondence;

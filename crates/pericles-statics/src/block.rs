@@ -1,14 +1,14 @@
-//! Inner products and combinations of many vectors at once.
+//! Inner products and linear combinations of blocks of vectors.
 
 use rayon::prelude::*;
 
 use crate::chunks::for_each_chunk;
 
-/// Entries that are taken together, so that those of all vectors stay in the cache.
+/// Entries per block, so that blocks of all vectors remain in the cache.
 const BLOCK: usize = 2048;
 
-/// Σ_k w_k a_i,k b_j,k for all pairs, row by row, of vectors for which the result is symmetric. The sum over a block is plain, and blocks are added in order, so that the result does not depend on
-/// the number of threads.
+/// Returns Σ_k w_k a_i,k b_j,k for all pairs, row by row, of vectors for which the result is symmetric.
+/// Blocks are added in a fixed order, so that the result does not depend on the number of threads.
 pub(crate) fn symmetric_products(a: &[Vec<f64>], b: &[Vec<f64>], weights: &[f64]) -> Vec<f64> {
     let n = a.len();
     let of_block = |block: usize| {
@@ -44,7 +44,7 @@ pub(crate) fn symmetric_products(a: &[Vec<f64>], b: &[Vec<f64>], weights: &[f64]
     total
 }
 
-/// A dot product by four sums, which a processor adds up side by side.
+/// Returns a dot product computed with four independent sums.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 4];
     let (a_fours, b_fours) = (a.chunks_exact(4), b.chunks_exact(4));
@@ -58,7 +58,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
 }
 
-/// Σ_k c_k x_k
+/// Returns Σ_k c_k x_k.
 pub(crate) fn combination(vectors: &[Vec<f64>], coefficients: &[f64], entries: usize) -> Vec<f64> {
     let mut sum = vec![0.0; entries];
     for_each_chunk(&mut sum, &|first, chunk| {
@@ -76,7 +76,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn products_and_combinations_are_those_of_single_vectors() {
+    fn block_products_and_combinations_equal_those_of_single_vectors() {
         let entries = 2 * BLOCK + 7;
         let entry = |k: usize, i: usize| ((3 * k + 1) as f64 * (0.1 + i as f64)).sin();
         let vectors: Vec<Vec<f64>> = (0..3)

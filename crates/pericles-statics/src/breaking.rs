@@ -1,25 +1,27 @@
-//! Which bonds break at a static state.
+//! Bond failure at static states.
 
-use pericles::operator::On;
+use pericles::operator::PointSubset;
 use pericles::{StepEnd, System};
 
 use crate::stretch::{endangered, largest_ratio};
 
-/// Which over-stretched bonds break at a static state, before the next one is sought at the same loads.
+/// Rule that selects the bonds that break at a static state among those beyond their limits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum BreakingRule {
-    /// Those whose stretch over the critical stretch is at least this part of the largest: a crack grows bond by bond, and equally stretched bonds break together.
+    /// Bonds whose ratio of stretch to critical stretch is at least a fraction of the largest ratio break:
+    /// cracks grow bond by bond, and equally stretched bonds break together.
     WorstFirst {
-        /// The part, above 0 and at most 1.
+        /// The fraction, above 0 and at most 1.
         fraction: f64,
     },
-    /// All of them: fewer static states, more broken bonds.
+    /// All bonds beyond their limits break: fewer static states, more broken bonds.
     All,
-    /// None is ever over-stretched: each load step scales the displacements of the supports by the factor at which the next bond reaches its critical stretch. The factor falls where the body snaps back.
+    /// Event by event: each step scales the displacements of the supports by the factor at which the next
+    /// bond reaches its critical stretch. The factor decreases during snap-back.
     Event {
-        /// Time (s) at which supports have the displacements that are scaled.
+        /// Time (s) at which supports have the reference displacements.
         reference: f64,
-        /// Bonds within this part of the largest stretch break together; 0: the most stretched bond alone.
+        /// Bonds within this fraction of the largest stretch break together; 0 for the most stretched bond alone.
         ties: f64,
     },
 }
@@ -31,7 +33,8 @@ impl Default for BreakingRule {
 }
 
 impl BreakingRule {
-    /// From event to event; bonds within 0.1 % of the largest stretch break together, so that symmetric bodies break symmetrically.
+    /// Returns the event-by-event rule. Bonds within 0.1 % of the largest stretch break together, so that
+    /// symmetric bodies break symmetrically.
     pub fn events(reference: f64) -> Self {
         Self::Event {
             reference,
@@ -39,11 +42,14 @@ impl BreakingRule {
         }
     }
 
-    /// Breaks bonds at displacement `u`. Returns the energy that the body lost at `u` and that was not booked as dissipated, J; none if no bond broke. `work` is for forces.
+    /// Breaks bonds at displacement `u`. Returns the energy that the body lost at `u` and that is not part of
+    /// the dissipated energy, J; `None` if no bond broke. `work` is scratch memory for forces.
     ///
-    /// The worst bonds are those that exceed their critical stretch in displacements scaled down by a common factor. They dissipate their energy there, as they would have if loads had grown in steps too
-    /// small to stretch them further; what the body loses beyond that it gives up like the energy released after bonds broke. Where the scaled displacements do not single out the same points, as in large rotations or
-    /// for bonds that break by their energy, and in path-dependent bodies, whose history goes on from the states they were in, all over-stretched bonds break, and dissipate their energy at `u`.
+    /// The selected bonds are those that exceed their critical stretch in displacements scaled down by a
+    /// common factor. They dissipate their energy at the scaled displacements, as in the limit of small load
+    /// steps; the remaining loss of the body counts as energy released after bonds broke. If the scaled
+    /// displacements do not select the same points (large rotations, bonds that break by their energy), and
+    /// in path-dependent bodies, all bonds beyond their limits break and dissipate their energy at `u`.
     pub fn apply(self, system: &mut System, t: f64, u: &[f64], work: &mut [f64]) -> Option<f64> {
         let broken = system.operator().broken_bonds();
         let mut beyond = 0.0;
@@ -66,7 +72,8 @@ impl BreakingRule {
     }
 }
 
-/// Breaks the bonds that are over-stretched in `scaled` displacements, which dissipate their energy there; what the body loses at `u` beyond that, J.
+/// Breaks the bonds beyond their limits in `scaled` displacements, at which they dissipate their energy.
+/// Returns the remaining loss of the body at `u`, J.
 fn at(system: &mut System, t: f64, (scaled, u): (&[f64], &[f64]), work: &mut [f64]) -> f64 {
     let energy = system.operator().energy(t, u);
     let booked = system.operator().dissipated();
@@ -76,16 +83,16 @@ fn at(system: &mut System, t: f64, (scaled, u): (&[f64], &[f64]), work: &mut [f6
 }
 
 fn end_step(system: &mut System, t: f64, u: &[f64], work: &mut [f64]) {
-    system.end_step_on(&StepEnd::sub_step(t, 0.0, u), &On::All, work);
+    system.end_step_on(&StepEnd::sub_step(t, 0.0, u), &PointSubset::All, work);
 }
 
-/// Displacements in which only the bonds that are to break are over-stretched.
+/// Displacements in which only the selected bonds exceed their limits.
 enum Scaled {
-    /// No bond is.
+    /// No bond exceeds its limits.
     Nothing,
-    /// The displacements themselves.
+    /// The unscaled displacements.
     All,
-    /// The displacements times a factor below 1.
+    /// The displacements multiplied by a factor below 1.
     By(Vec<f64>),
 }
 
@@ -93,7 +100,7 @@ fn scaled(system: &System, u: &[f64], fraction: f64) -> Scaled {
     if !endangered(system, u, 1.0).contains(&true) {
         return Scaled::Nothing;
     }
-    /// Relative accuracy of the largest stretch, well below what a fraction leaves out.
+    /// Relative accuracy of the largest stretch, well below the fraction.
     const ACCURACY: f64 = 1e-5;
     let part = match largest_ratio(system, u, ACCURACY) {
         Some(largest) => fraction * largest,

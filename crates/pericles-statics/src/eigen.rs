@@ -1,6 +1,7 @@
 //! Eigenvalues of small dense symmetric matrices.
 
-/// Eigenvalues, ascending, and orthonormal eigenvectors of a symmetric n × n matrix, row by row, by Jacobi's rotations. The second result holds the vectors one after the other.
+/// Returns the ascending eigenvalues and orthonormal eigenvectors of a symmetric n × n matrix, given row by
+/// row, by Jacobi rotations. The vectors are concatenated.
 ///
 /// ```
 /// let (values, vectors) = pericles_statics::symmetric_eigen(2, vec![2.0, 1.0, 1.0, 2.0]);
@@ -8,7 +9,7 @@
 /// assert!((vectors[2].abs() - 0.5f64.sqrt()).abs() < 1e-14);
 /// ```
 pub fn symmetric_eigen(n: usize, mut a: Vec<f64>) -> (Vec<f64>, Vec<f64>) {
-    /// Sweeps over all pairs; convergence is quadratic, and six are usual.
+    /// Largest number of sweeps over all pairs; convergence is quadratic, typically in six sweeps.
     const SWEEPS: usize = 60;
     let mut vectors = vec![0.0; n * n];
     for k in 0..n {
@@ -40,7 +41,7 @@ pub fn symmetric_eigen(n: usize, mut a: Vec<f64>) -> (Vec<f64>, Vec<f64>) {
     (values, sorted.collect())
 }
 
-/// One rotation that makes entry (p, q) zero.
+/// Applies a rotation that annihilates the entry (p, q).
 fn rotate(n: usize, a: &mut [f64], vectors: &mut [f64], p: usize, q: usize) {
     let apq = a[p * n + q];
     if apq == 0.0 {

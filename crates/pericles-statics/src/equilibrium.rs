@@ -1,7 +1,7 @@
-//! One static state: Newton's method with conjugate gradients inside.
+//! Solver for a static state: Newton's method with conjugate gradients.
 
-use pericles::operator::On;
-use pericles::{Interrupt, PericlesError, Result, System};
+use pericles::operator::PointSubset;
+use pericles::{Interrupt, IterationProgress, PericlesError, Result, System};
 
 use crate::error::StaticsError;
 use crate::krylov::{End, Goal, KrylovWork, Solution, conjugate_gradients};
@@ -13,36 +13,36 @@ use crate::surrogate::Surrogate;
 use crate::tangent::{Tangent, remove, stiffness_into};
 use crate::unknowns::Unknowns;
 
-/// What a static state is in equilibrium with.
+/// Loads and supports of a static state.
 #[derive(Debug, Clone, Copy)]
 pub struct Target<'a> {
     /// Time, s.
     pub t: f64,
     /// Loads, N/m³.
     pub load: &'a [f64],
-    /// Displacements whose held entries are prescribed, m.
+    /// Displacements, m; only constrained entries are used.
     pub supports: &'a [f64],
-    /// The largest norm of loads or reactions before, N.
+    /// Largest norm of loads or reactions before, N.
     pub largest: f64,
 }
 
-/// What finding a static state took.
+/// Effort to find a static state.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Effort {
-    /// Steps of Newton's method.
+    /// Number of Newton steps.
     pub newton: u64,
-    /// Products with the tangent.
+    /// Number of products with the tangent.
     pub products: u64,
-    /// Evaluations of the force.
+    /// Number of force evaluations.
     pub forces: u64,
-    /// Norm of the residual over that of loads or reactions.
+    /// Norm of the residual relative to loads or reactions.
     pub residual: f64,
-    /// Norm of loads or reactions, the larger, N.
+    /// Larger norm of loads and reactions, N.
     pub acting: f64,
 }
 
 impl Effort {
-    /// Adds what another state took; the residual is the other's.
+    /// Adds the effort of another state and takes its residual.
     pub fn add(&mut self, other: Self) {
         self.newton += other.newton;
         self.products += other.products;
@@ -52,12 +52,12 @@ impl Effort {
     }
 }
 
-/// The first forcing term: the accuracy of the first linear problem.
+/// First forcing term: relative accuracy of the first linear problem.
 const FORCING: f64 = 0.1;
-/// Halvings of a Newton step that does not reduce the residual.
+/// Largest number of halvings of a Newton step that does not reduce the residual.
 const HALVINGS: u32 = 8;
 
-/// The solver of a body with certain supports and bonds.
+/// Solver of a body with given supports and bonds.
 #[derive(Debug, Clone)]
 pub struct Equilibrium {
     options: StaticOptions,
@@ -65,7 +65,7 @@ pub struct Equilibrium {
     unknowns: Unknowns,
     multigrid: Multigrid,
     pieces: Vec<FreePiece>,
-    /// Rigid-body motions that are taken out.
+    /// Rigid-body motions that are projected out.
     rigid: Vec<Vec<f64>>,
     krylov: KrylovWork,
     reduced: [Vec<f64>; 2],
@@ -77,7 +77,7 @@ pub struct Equilibrium {
 }
 
 impl Equilibrium {
-    /// Of a body with the bonds that are intact now, whose supports hold the entries that are zero in `free`.
+    /// Creates the solver for the intact bonds of a body, with constraints at the entries that are zero in `free`.
     pub fn new(options: StaticOptions, system: &System, free: Vec<f64>) -> Self {
         let unknowns = Unknowns::new(system.dimension(), &free);
         let surrogate = Surrogate::new(system);
@@ -108,17 +108,17 @@ impl Equilibrium {
         }
     }
 
-    /// 1 on free entries, 0 on held ones.
+    /// Returns 1 on free entries, 0 on constrained entries.
     pub fn free(&self) -> &[f64] {
         &self.free
     }
 
-    /// The preconditioner.
+    /// Returns the preconditioner.
     pub fn multigrid(&self) -> &Multigrid {
         &self.multigrid
     }
 
-    /// Refuses rigid-body motions that nothing prevents, unless they are to be taken out.
+    /// Returns an error for unconstrained rigid-body motions, unless they are projected out.
     ///
     /// # Errors
     /// [`StaticsError::Unconstrained`].
@@ -134,10 +134,11 @@ impl Equilibrium {
         }
     }
 
-    /// Moves `u` to the static state of a target.
+    /// Advances `u` to the static state of a target.
     ///
     /// # Errors
-    /// [`StaticsError::NoEquilibrium`] if Newton's method does not converge, with a fraction of zero; [`StaticsError::Unbalanced`]; [`PericlesError::Interrupted`].
+    /// [`StaticsError::NoEquilibrium`] if Newton's method does not converge, with a fraction of zero;
+    /// [`StaticsError::Unbalanced`]; [`PericlesError::Interrupted`].
     pub fn find(
         &mut self,
         system: &System,
@@ -158,6 +159,12 @@ impl Equilibrium {
             if !lifted {
                 effort.acting = acting;
                 effort.residual = if norm == 0.0 { 0.0 } else { norm / acting };
+                interrupt.report(IterationProgress {
+                    iteration: effort.newton,
+                    residual: effort.residual,
+                    tolerance: self.options.tolerance,
+                    evaluations: effort.products + effort.forces,
+                });
                 if effort.residual <= self.options.tolerance {
                     return Ok(effort);
                 }
@@ -173,7 +180,8 @@ impl Equilibrium {
                 return Err(failed.into());
             }
             effort.newton += 1;
-            /// Of the tolerance: rounding makes the true residual a little larger than that of the recurrence.
+            /// Fraction of the tolerance, because round-off makes the true residual slightly larger than that
+            /// of the recurrence.
             const MARGIN: f64 = 0.9;
             let finest = MARGIN * self.options.tolerance;
             let goal = Goal {
@@ -211,7 +219,7 @@ impl Equilibrium {
         }
     }
 
-    /// The norm of the loads on free entries, N; refuses those that move a free body.
+    /// Returns the norm of the loads on free entries, N; an error for loads that move a free body.
     fn load_norm(&self, system: &System, target: &Target<'_>) -> Result<f64> {
         let (n, volumes) = (system.points(), system.cloud().volumes());
         let force = |k: usize| self.free[k] * volumes[k % n] * target.load[k];
@@ -224,7 +232,7 @@ impl Equilibrium {
             part.abs() / load
         };
         let part = self.rigid.iter().map(along).fold(0.0, f64::max);
-        /// Rounding of sums and of positions.
+        /// Tolerance for round-off of sums and positions.
         const BALANCED: f64 = 1e-9;
         if part > BALANCED.max(0.1 * self.options.tolerance) {
             return Err(StaticsError::Unbalanced { t: target.t, part }.into());
@@ -232,7 +240,7 @@ impl Equilibrium {
         Ok(load)
     }
 
-    /// Notes how far held entries are from where they are to be; whether any is.
+    /// Stores the differences of constrained entries to their prescribed values; returns whether any is not zero.
     fn set_lift(&mut self, target: &Target<'_>, u: &[f64]) -> bool {
         let mut any = false;
         for k in 0..u.len() {
@@ -260,7 +268,8 @@ impl Equilibrium {
         free_norm(system, &self.free, &self.residual)
     }
 
-    /// What the residual is compared with: loads or reactions, now or before; where none of them ever acted, the first residual.
+    /// Returns the reference of the residual: the largest norm of loads or reactions so far; if there were
+    /// none, the first residual.
     fn acting(&self, system: &System, load: f64, largest: f64, first: f64) -> f64 {
         let entries = self.residual.len();
         let held = |k: usize| (1.0 - self.free[k]) * self.residual[k].powi(2);
@@ -271,14 +280,14 @@ impl Equilibrium {
         }
     }
 
-    /// Changes the residual by the motion of the supports.
+    /// Adds the linearised effect of the motion of the supports to the residual.
     fn linearise_lift(&mut self, system: &System, t: f64, u: &[f64]) {
         stiffness_into(system, t, u, &self.lift, &mut self.correction);
         add_multiple(&mut self.residual, -1.0, &self.correction);
         remove(system, &self.rigid, &mut self.residual);
     }
 
-    /// The correction that the residual asks for.
+    /// Computes the Newton correction.
     fn solve(&mut self, system: &System, t: f64, u: &[f64], goal: &Goal<'_>) -> Result<Solution> {
         let mut tangent = Tangent {
             system,
@@ -299,7 +308,7 @@ impl Equilibrium {
         )
     }
 
-    /// Goes along the correction as far as the residual falls; its norm there, or none if it does not fall.
+    /// Line search along the correction. Returns the reduced norm of the residual; `None` if it does not decrease.
     fn search(
         &mut self,
         system: &System,
@@ -327,10 +336,12 @@ impl Equilibrium {
     }
 }
 
-/// `out` = V (f(u) + b), N.
+/// Computes `out` = V (f(u) + b), N.
 fn residual_into(system: &System, target: &Target<'_>, u: &[f64], out: &mut [f64]) {
     out.copy_from_slice(target.load);
-    system.operator().add_force(target.t, u, On::All, out);
+    system
+        .operator()
+        .add_force(target.t, u, PointSubset::All, out);
     let (n, volumes) = (system.points(), system.cloud().volumes());
     crate::chunks::for_each_chunk(out, &|first, chunk| {
         for (k, out) in chunk.iter_mut().enumerate() {
@@ -339,7 +350,7 @@ fn residual_into(system: &System, target: &Target<'_>, u: &[f64], out: &mut [f64
     });
 }
 
-/// The norm of the free entries of a vector.
+/// Returns the norm of the free entries of a vector.
 fn free_norm(system: &System, free: &[f64], vector: &[f64]) -> f64 {
     system
         .domain()
@@ -347,7 +358,7 @@ fn free_norm(system: &System, free: &[f64], vector: &[f64]) -> f64 {
         .sqrt()
 }
 
-/// Whether an error is a request to stop, which no shorter step helps against.
+/// Returns whether an error is an interruption, so that a shorter step does not help.
 pub(crate) fn is_interrupt(error: &PericlesError) -> bool {
     matches!(error, PericlesError::Interrupted)
 }

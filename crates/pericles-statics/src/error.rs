@@ -1,28 +1,28 @@
-//! What can go wrong on the way to a static state.
+//! Errors of static solvers and of natural modes.
 
 use pericles::PericlesError;
-use pericles::units::significant;
+use pericles::units::{quantity, significant};
 
-/// Why a static state is not found.
+/// Errors of static solvers and of natural modes.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum StaticsError {
-    /// Rigid-body motions that no support prevents.
+    /// Unconstrained rigid-body motions.
     #[error(
-        "nothing prevents the {} of {}: a static state is not unique; prescribe displacements that prevent it, or use rigid_modes = \"fix\" for loads that are in balance",
+        "no constraint prevents the {} of {}, so that the static state is not unique; prescribe displacements with [[constraint]] that prevent it, or set rigid_modes = \"fix\" if the loads are in balance",
         list(motions), piece(*points, *of)
     )]
     Unconstrained {
         /// Names of the motions.
         motions: Vec<&'static str>,
-        /// Points of the part of the body that can move.
+        /// Number of points of the free part of the body.
         points: usize,
-        /// Points of the body.
+        /// Number of points of the body.
         of: usize,
     },
     /// Loads on a free body that are not in balance.
     #[error(
-        "the loads at t = {t} s are not in balance: their resultant along rigid-body motions is {} of their size, and no support takes it up; loads on a free body must add up to no force and no moment",
-        significant(*.part, 3)
+        "the loads on a free body are not in balance at t = {}: their resultant along rigid-body motions is {} times their norm; the resultant force and moment must be zero; change the loads, or add a constraint with [[constraint]]",
+        quantity(*.t, "s"), significant(*.part, 3)
     )]
     Unbalanced {
         /// Time, s.
@@ -30,43 +30,46 @@ pub enum StaticsError {
         /// Resultant along rigid-body motions over the norm of the loads.
         part: f64,
     },
-    /// A system whose natural modes cannot be found.
-    #[error("the natural modes of this body cannot be found: {reason}")]
+    /// Natural modes are not supported for the system.
+    #[error("natural modes are not available for this body: {reason}")]
     NoModes {
-        /// Why, and what can be done.
+        /// Reason and suggested change.
         reason: &'static str,
     },
-    /// A run that cannot be followed from event to event.
-    #[error("breaking = \"event\" cannot be used: {reason}; use \"worst-first\" otherwise")]
+    /// Event-by-event analysis is not supported for the system.
+    #[error(
+        "breaking = \"event\" cannot be used: {reason}; the alternative is breaking = \"worst-first\""
+    )]
     NoEvents {
-        /// Why.
+        /// Reason and suggested change.
         reason: &'static str,
     },
-    /// The modes do not converge.
-    #[error("the natural modes do not reach a residual of {} within {iterations} iterations; allow more of them, or ask for fewer modes", significant(*.tolerance, 3))]
+    /// The iteration of natural modes does not converge.
+    #[error("the natural modes did not converge to a residual of {} within {iterations} iterations; allow more iterations or compute fewer modes", significant(*.tolerance, 3))]
     ModesNotFound {
-        /// Iterations made.
+        /// Number of iterations.
         iterations: u32,
-        /// The residual asked for.
+        /// Tolerance of the residual.
         tolerance: f64,
     },
-    /// Newton's method does not converge, however short the load step.
+    /// Newton's method does not converge for the shortest load step.
     #[error(
-        "no static state found at t = {t} s: after {} of the load step the residual is {} of the loads and reactions (tolerance {}){}; \
-         the body may be unstable under this load (buckling, softening, a part that comes loose), or the tolerance below rounding",
-        significant(*.fraction, 3), significant(*.residual, 3), significant(*.tolerance, 3),
+        "no static state found at t = {}: at the fraction {} of the load step the relative residual is {} (tolerance {}){}; \
+         the body may be unstable under this load (buckling, softening, a part that separates), or the tolerance may be below \
+         round-off; use shorter load steps, a larger tolerance or a dynamic scheme",
+        quantity(*.t, "s"), significant(*.fraction, 3), significant(*.residual, 3), significant(*.tolerance, 3),
         if *.indefinite { ", and the tangent is not positive definite" } else { "" }
     )]
     NoEquilibrium {
         /// Time, s.
         t: f64,
-        /// Part of the load step up to which static states were found.
+        /// Fraction of the load step up to which static states were found.
         fraction: f64,
-        /// Residual over loads and reactions.
+        /// Residual relative to loads and reactions.
         residual: f64,
-        /// The residual allowed.
+        /// Tolerance of the relative residual.
         tolerance: f64,
-        /// Whether a direction without positive stiffness was met.
+        /// Whether a direction without positive stiffness was found.
         indefinite: bool,
     },
 }
@@ -89,6 +92,6 @@ fn piece(points: usize, of: usize) -> String {
     if points == of {
         "the body".into()
     } else {
-        format!("a part of the body ({points} of {of} points)")
+        format!("a disconnected part of the body ({points} of {of} points)")
     }
 }

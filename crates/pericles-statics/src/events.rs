@@ -1,42 +1,42 @@
-//! Event-to-event analysis: a body of linear forces is followed from one breaking bond to the next.
+//! Event-by-event analysis of bodies with linear forces, from one breaking bond to the next.
 
-use pericles::operator::On;
+use pericles::operator::PointSubset;
 use pericles::{Result, System};
 
 use crate::error::StaticsError;
 use crate::stretch::largest_ratio;
 
-/// Refuses what cannot be followed: states between events must be multiples of one solution, of which prescribed displacements alone are the cause.
+/// Returns an error for systems that event-by-event analysis does not support: states between events must be
+/// multiples of one solution that prescribed displacements alone cause.
 pub(crate) fn check(system: &System, reference: f64) -> Result<()> {
     let refuse = |reason| Err(StaticsError::NoEvents { reason }.into());
     if system.operator().as_linear().is_none() {
-        return refuse("forces are not linear in the displacements, which small strains make them");
+        return refuse("forces are not linear in the displacements (use small strains)");
     }
     if !system.operator().can_break() {
         return refuse(
-            "no bond can break, give the material a fracture energy or a critical stretch",
+            "no bond can break (set a fracture energy or a critical stretch of the material)",
         );
     }
     if !system.loads().is_empty() {
         return refuse(
-            "loads are not scaled from event to event, drive the body by prescribed displacements alone",
+            "loads are not scaled from event to event (use prescribed displacements only)",
         );
     }
     let mut supports = vec![0.0; system.dimension() * system.points()];
-    system.place_on(reference, &On::All, &mut supports);
+    system.place_on(reference, &PointSubset::All, &mut supports);
     if supports.iter().all(|u| *u == 0.0) {
-        return refuse(
-            "no displacement is prescribed that differs from zero at the end of the run",
-        );
+        return refuse("no displacement is prescribed that is not zero at the end of the run");
     }
     Ok(())
 }
 
-/// The factor at which the most stretched bond of a response reaches its critical stretch; none if no bond is stretched but by rounding.
+/// Returns the factor at which the most stretched bond of a response reaches its critical stretch; `None` if
+/// bonds are stretched only by round-off.
 pub(crate) fn next(system: &System, response: &[f64], last: f64) -> Option<f64> {
     /// Relative accuracy of the factor.
     const ACCURACY: f64 = 1e-7;
-    /// A factor beyond this multiple of the last one belongs to bonds that only rounding stretches: the body is severed.
+    /// Factors beyond this multiple of the last one come from bonds stretched by round-off: the body is severed.
     const SEVERED: f64 = 1e3;
     let factor = 1.0 / largest_ratio(system, response, ACCURACY)?;
     (last == 0.0 || factor <= SEVERED * last).then_some(factor)

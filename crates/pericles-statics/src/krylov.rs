@@ -1,4 +1,4 @@
-//! Conjugate gradients with a preconditioner, on the free entries of a body.
+//! Preconditioned conjugate gradients on the free entries of a body.
 
 use pericles::domain::Domain;
 use pericles::{Interrupt, Result};
@@ -6,40 +6,41 @@ use pericles::{Interrupt, Result};
 use crate::chunks::for_each_chunk;
 use crate::sparse::add_multiple;
 
-/// A linear problem A d = r on the free entries of vectors that also have held entries.
+/// Linear problem A d = r on the free entries of vectors that also have constrained entries.
 ///
-/// Products give all rows: those of held entries are the change of the reactions, so that the accuracy asked for can be measured by the reactions of the solution itself.
+/// Products include all rows. Rows of constrained entries are the change of the reactions, so that the
+/// required accuracy can be relative to the reactions of the solution.
 pub trait LinearProblem {
-    /// `out` = A x on all entries, for an x that is zero on held ones.
+    /// Computes `out` = A x on all entries, for an x that is zero on constrained entries.
     fn multiply_into(&mut self, x: &[f64], out: &mut [f64]);
 
-    /// `out` = an approximation of A⁻¹ r on free entries, zero on held ones.
+    /// Computes `out`, an approximation of A⁻¹ r on free entries, zero on constrained entries.
     fn precondition_into(&mut self, residual: &[f64], out: &mut [f64]);
 }
 
-/// Why conjugate gradients ended.
+/// Reason why the iteration ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum End {
-    /// The residual meets the tolerance.
+    /// The residual is below the tolerance.
     Reached,
-    /// Too many products.
+    /// The largest number of products was reached.
     Exhausted,
-    /// A direction without positive curvature was met: the tangent is not positive definite (Steihaug 1983).
+    /// A direction without positive curvature was found: the tangent is not positive definite (Steihaug 1983).
     Indefinite,
 }
 
-/// What conjugate gradients did.
+/// Result of conjugate gradients.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Solution {
-    /// Products with the matrix.
+    /// Number of products with the matrix.
     pub products: u64,
-    /// Norm of the last residual on free entries.
+    /// Norm of the final residual on free entries.
     pub residual: f64,
-    /// Why they ended.
+    /// Reason why the iteration ended.
     pub end: End,
 }
 
-/// Vectors of conjugate gradients, made once.
+/// Work vectors of conjugate gradients.
 #[derive(Debug, Clone)]
 pub struct KrylovWork {
     direction: Vec<f64>,
@@ -48,7 +49,7 @@ pub struct KrylovWork {
 }
 
 impl KrylovWork {
-    /// For vectors with so many entries.
+    /// Creates work vectors of this length.
     pub fn new(entries: usize) -> Self {
         let zeros = || vec![0.0; entries];
         Self {
@@ -59,24 +60,27 @@ impl KrylovWork {
     }
 }
 
-/// When conjugate gradients are to end.
+/// Termination criteria of conjugate gradients.
 pub struct Goal<'a> {
-    /// The residual's norm is at most this …
+    /// Absolute tolerance of the norm of the residual.
     pub absolute: f64,
-    /// … or at most this part of `acting` and of the norm of the held entries of the residual, which are the reactions.
+    /// Alternative tolerance relative to `acting` and to the norm of the reactions, the constrained entries
+    /// of the residual.
     pub relative: f64,
-    /// Norm of the loads, or the largest reaction known.
+    /// Norm of the loads or of the largest known reactions.
     pub acting: f64,
-    /// The most products.
+    /// Largest number of products.
     pub products: u64,
-    /// Polled before every product.
+    /// Interrupt, queried before every product.
     pub interrupt: Interrupt<'a>,
 }
 
-/// Solves A d = r from d = 0. `residual` holds r on free entries and minus the reactions at d = 0 on held ones, and both at the solution in the end. `free` is 1 on free entries and 0 on held ones.
+/// Solves A d = r from d = 0. On input, `residual` is r on free entries and minus the reactions at d = 0 on
+/// constrained entries; on output, both are those of the solution. `free` is 1 on free entries and 0 on
+/// constrained entries.
 ///
 /// # Errors
-/// If it is interrupted.
+/// Interruption.
 pub fn conjugate_gradients(
     problem: &mut dyn LinearProblem,
     (domain, free): (&Domain, &[f64]),
@@ -128,7 +132,7 @@ pub fn conjugate_gradients(
         let curvature = domain.dot(direction, product);
         if curvature.is_nan() || curvature <= 0.0 {
             if products == 1 {
-                // Nothing better is known than the preconditioned residual.
+                // The preconditioned residual is the best available approximation.
                 solution.copy_from_slice(direction);
             }
             return Ok(Solution {

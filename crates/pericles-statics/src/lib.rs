@@ -1,16 +1,17 @@
-//! Static equilibrium, quasi-static fracture and natural modes of peridynamic bodies, by solvers whose number of iterations does not grow with the body.
+//! Static equilibrium, quasi-static fracture and natural modes of peridynamic bodies, with solvers whose
+//! iteration counts do not grow with the body.
 //!
 //! | module | contents |
 //! |---|---|
-//! | [`StaticScheme`] | the integrator whose steps go from one static state to the next by Newton's method |
-//! | [`BreakingRule`] | which bonds break at a static state |
+//! | [`StaticScheme`] | integrator whose steps are static load steps, solved by Newton's method |
+//! | [`BreakingRule`] | rule that selects the bonds that break at a static state |
 //! | [`NaturalModes`] | lowest natural frequencies and mode shapes |
-//! | [`krylov`] | conjugate gradients with a preconditioner |
-//! | [`surrogate`] | the springs between neighbouring points that stand for the body in the preconditioner |
-//! | [`multigrid`] | smoothed-aggregation multigrid of their matrix |
-//! | [`rigid`] | rigid-body motions that no support prevents |
+//! | [`krylov`] | preconditioned conjugate gradients |
+//! | [`surrogate`] | springs between neighbouring points that approximate the body in the preconditioner |
+//! | [`multigrid`] | smoothed-aggregation multigrid for the stiffness matrix of these springs |
+//! | [`rigid`] | unconstrained rigid-body motions |
 //!
-//! The crate uses only what the engine, [`pericles`], exports.
+//! The crate uses only public items of the engine, [`pericles`].
 
 mod block;
 mod breaking;

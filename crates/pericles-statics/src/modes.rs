@@ -12,14 +12,15 @@ use crate::surrogate::Surrogate;
 use crate::tangent::stiffness_into;
 use crate::unknowns::Unknowns;
 
-/// Which modes, and how accurately.
+/// Number and accuracy of natural modes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ModeOptions {
-    /// How many modes of the lowest frequencies, rigid-body motions not among them.
+    /// Number of modes of the lowest frequencies, without rigid-body motions.
     pub count: usize,
-    /// Largest residual |K x − ω² M x| over ω² |M x|, in the norm of the inverse mass matrix. The relative error of a frequency is of the order of its square.
+    /// Tolerance of the residual |K x − ω² M x| over ω² |M x|, in the norm of the inverse mass matrix. The
+    /// relative error of a frequency is of the order of the squared residual.
     pub tolerance: f64,
-    /// The most iterations.
+    /// Largest number of iterations.
     pub iterations: u32,
 }
 
@@ -38,56 +39,59 @@ impl Default for ModeOptions {
 pub struct Mode {
     /// ω/2π, Hz.
     pub frequency_hz: f64,
-    /// The residual reached, as [`ModeOptions::tolerance`] measures it.
+    /// Residual, measured like [`ModeOptions::tolerance`].
     pub residual: f64,
-    /// The shape x: a component-major vector with xᵀ M x = 1 kg m².
+    /// Mode shape x: a component-major vector with xᵀ M x = 1 kg m².
     pub shape: Vec<f64>,
 }
 
 /// Modes of equal frequency.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ModeGroup {
-    /// Their mean frequency, Hz.
+    /// Mean frequency, Hz.
     pub frequency_hz: f64,
-    /// How many.
+    /// Number of modes.
     pub multiplicity: usize,
-    /// The largest of their residuals.
+    /// Largest residual.
     pub residual: f64,
 }
 
-/// The lowest natural modes of a body.
+/// Lowest natural modes of a body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NaturalModes {
-    /// By ascending frequency.
+    /// Modes by ascending frequency.
     pub modes: Vec<Mode>,
     /// Number of rigid-body motions, of frequency zero.
     pub rigid_modes: usize,
-    /// Products with the stiffness.
+    /// Number of products with the stiffness.
     pub products: u64,
-    /// Iterations.
+    /// Number of iterations.
     pub iterations: u32,
 }
 
-/// Frequencies that differ by less than this part belong to one group.
+/// Relative difference below which frequencies belong to the same group.
 const EQUAL: f64 = 1e-6;
 
 impl NaturalModes {
-    /// What they need of a system.
+    /// Requirements on a system.
     pub const REQUIREMENTS: &'static [Requirement] = &[
         Requirement::IN_DOUBLES,
         Requirement {
             need: Need::NoBoundaries,
-            reason: "absorbing boundaries and damping layers have no undamped modes; leave the boundary out",
+            reason: "absorbing boundaries and damping layers have no undamped modes; remove the boundary",
         },
     ];
 
-    /// The lowest modes about displacement `u` at time t, with the entries held that supports hold then.
+    /// Computes the lowest modes about displacement `u` at time t, with the constraints at that time.
     ///
-    /// K x = ω² M x with the tangent stiffness K and the masses M is solved by the locally optimal block preconditioned conjugate gradient method (Knyazev, SIAM J. Sci. Comput. 23, 517, 2001) with the
-    /// multigrid preconditioner of static states. Rigid-body motions that no support prevents are taken out beforehand; points without bonds are left out.
+    /// K x = ω² M x with the tangent stiffness K and the masses M is solved by the locally optimal block
+    /// preconditioned conjugate gradient method (Knyazev, SIAM J. Sci. Comput. 23, 517, 2001) with the
+    /// multigrid preconditioner of static states. Unconstrained rigid-body motions are projected out; points
+    /// without bonds are excluded.
     ///
     /// # Errors
-    /// [`StaticsError::NoModes`] for a system that does not meet the [requirements](Self::REQUIREMENTS); [`StaticsError::ModesNotFound`] after too many iterations;
+    /// [`StaticsError::NoModes`] for a system that does not meet the [requirements](Self::REQUIREMENTS);
+    /// [`StaticsError::ModesNotFound`] after too many iterations;
     /// [`PericlesError::Interrupted`](pericles::PericlesError::Interrupted).
     pub fn find(
         options: ModeOptions,
@@ -103,7 +107,7 @@ impl NaturalModes {
         }
         let mut problem = Problem::new(system, t, u);
         let free = problem.unknowns.len() - problem.rigid.len().min(problem.unknowns.len());
-        /// Vectors that are iterated beside those wanted, so that the last of these converge as fast as the others.
+        /// Additional iterated vectors, so that the last requested modes converge as fast as the others.
         const EXTRA: usize = 4;
         let count = options.count.min(free);
         let size = (count + EXTRA).min(free);
@@ -127,7 +131,7 @@ impl NaturalModes {
         .into())
     }
 
-    /// Modes of equal frequency together, by ascending frequency.
+    /// Returns groups of modes of equal frequency, by ascending frequency.
     pub fn groups(&self) -> Vec<ModeGroup> {
         let mut groups: Vec<ModeGroup> = Vec::new();
         for mode in &self.modes {
@@ -163,7 +167,7 @@ struct Problem<'a> {
     free: Vec<f64>,
     multigrid: Multigrid,
     reduced: [Vec<f64>; 2],
-    /// Rigid-body motions with xᵀ M x = 1, and M times them.
+    /// Rigid-body motions x with xᵀ M x = 1, and M x.
     rigid: Vec<[Vec<f64>; 2]>,
     products: u64,
 }
@@ -210,12 +214,12 @@ impl<'a> Problem<'a> {
         self.system.domain().dot(a, b)
     }
 
-    /// M x
+    /// Returns M x.
     fn weighted(&self, x: &[f64]) -> Vec<f64> {
         x.iter().zip(&self.masses).map(|(x, m)| x * m).collect()
     }
 
-    /// K x on free entries.
+    /// Returns K x on free entries.
     fn product(&mut self, x: &[f64]) -> Vec<f64> {
         let mut out = vec![0.0; x.len()];
         stiffness_into(self.system, self.t, self.u, x, &mut out);
@@ -233,7 +237,7 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// An approximation of K⁻¹ r without rigid-body motions.
+    /// Returns an approximation of K⁻¹ r without rigid-body motions.
     fn preconditioned(&mut self, residual: &[f64]) -> Vec<f64> {
         let mut out = vec![0.0; residual.len()];
         let [right, solution] = &mut self.reduced;
@@ -245,14 +249,14 @@ impl<'a> Problem<'a> {
     }
 }
 
-/// Vectors with the products of the stiffness.
+/// Vectors and their products with the stiffness.
 #[derive(Default)]
 struct Vectors {
     x: Vec<Vec<f64>>,
     product: Vec<Vec<f64>>,
 }
 
-/// The iterates: approximate modes, and the directions in which they moved last.
+/// Iterates: approximate modes and their last search directions.
 struct Block {
     values: Vec<f64>,
     modes: Vectors,
@@ -260,7 +264,7 @@ struct Block {
 }
 
 impl Block {
-    /// From vectors that follow no pattern, smoothed by the preconditioner.
+    /// Starts from pseudorandom vectors, smoothed by the preconditioner.
     fn start(problem: &mut Problem<'_>, size: usize) -> Self {
         let entries = problem.free.len();
         let mut modes = Vectors::default();
@@ -286,7 +290,7 @@ impl Block {
         block
     }
 
-    /// K x − ω² M x of every iterate.
+    /// Returns K x − ω² M x of every iterate.
     fn residuals(&self, problem: &Problem<'_>) -> Vec<Vec<f64>> {
         let pairs = self.modes.x.iter().zip(&self.modes.product);
         let residual = |((x, product), value): ((&Vec<f64>, &Vec<f64>), &f64)| {
@@ -298,7 +302,7 @@ impl Block {
         pairs.zip(&self.values).map(residual).collect()
     }
 
-    /// Their norms over ω².
+    /// Returns the norms of the residuals over ω².
     fn norms(&self, problem: &Problem<'_>, residuals: &[Vec<f64>]) -> Vec<f64> {
         let norm = |(residual, value): (&Vec<f64>, &f64)| {
             let square = |k: usize| problem.free[k] * residual[k] * residual[k] / problem.masses[k];
@@ -308,7 +312,8 @@ impl Block {
         residuals.iter().zip(&self.values).map(norm).collect()
     }
 
-    /// The best iterates in the space of the present ones, their preconditioned residuals and the last directions.
+    /// Computes the optimal iterates in the space of the current ones, their preconditioned residuals and the
+    /// last directions.
     fn improve(
         &mut self,
         problem: &mut Problem<'_>,
@@ -329,7 +334,8 @@ impl Block {
         self.rayleigh_ritz(problem, space, size, size);
     }
 
-    /// Takes the `size` lowest Ritz pairs of a space as iterates; their parts outside of its first `old` vectors are the directions.
+    /// Sets the iterates to the `size` lowest Ritz pairs of a space; their components outside of the first
+    /// `old` vectors are the directions.
     fn rayleigh_ritz(&mut self, problem: &Problem<'_>, space: Vectors, old: usize, size: usize) {
         let n = space.x.len();
         let mass = symmetric_products(&space.x, &space.x, &problem.masses);
@@ -376,7 +382,7 @@ impl Block {
     }
 }
 
-/// The lowest eigenpairs of a small generalised problem; directions on which the mass is rounding are left out.
+/// Returns the lowest eigenpairs of a small generalised problem; directions whose mass is round-off are excluded.
 fn lowest(n: usize, mass: &[f64], stiffness: &[f64], size: usize) -> Vec<(f64, Vec<f64>)> {
     let scale: Vec<f64> = (0..n)
         .map(|k| 1.0 / mass[k * n + k].max(f64::MIN_POSITIVE).sqrt())
@@ -385,7 +391,7 @@ fn lowest(n: usize, mass: &[f64], stiffness: &[f64], size: usize) -> Vec<(f64, V
         .map(|e| scale[e / n] * mass[e] * scale[e % n])
         .collect();
     let (values, vectors) = symmetric_eigen(n, scaled);
-    /// Of the largest eigenvalue of the scaled mass matrix.
+    /// Fraction of the largest eigenvalue of the scaled mass matrix below which a direction is round-off.
     const ROUNDING: f64 = 1e-13;
     let largest = values.last().copied().unwrap_or(0.0);
     let basis: Vec<Vec<f64>> = (0..n)

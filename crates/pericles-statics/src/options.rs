@@ -1,19 +1,19 @@
-//! How static states are found.
+//! Options of the static solver.
 
 use crate::breaking::BreakingRule;
 
-/// When a state counts as static, and how it is found.
+/// Options of the static solver: tolerance, limits, rigid-body motions and bond failure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StaticOptions {
-    /// Norm of the residual over that of loads or reactions, the larger; the largest so far.
+    /// Tolerance of the norm of the residual relative to the largest norm of loads or reactions so far.
     pub tolerance: f64,
-    /// The most steps of Newton's method for one state.
+    /// Largest number of Newton steps per state.
     pub newton_steps: u32,
-    /// The most products of one linear problem.
+    /// Largest number of products with the tangent per linear problem.
     pub products: u32,
-    /// Whether rigid-body motions that nothing prevents are taken out; else they are refused.
+    /// Whether unconstrained rigid-body motions are projected out; otherwise they are an error.
     pub fix_rigid_modes: bool,
-    /// Which over-stretched bonds break at a static state.
+    /// Rule that selects the bonds that break at a static state.
     pub breaking: BreakingRule,
 }
 

@@ -1,51 +1,51 @@
-//! A load step: static states along a straight path of loads and supports, and the work done on it.
+//! Load steps: static states along a linear path of loads and supports, and the work done.
 
-use pericles::operator::On;
+use pericles::operator::PointSubset;
 use pericles::{Interrupt, Result, System};
 
 use crate::equilibrium::{Effort, Equilibrium, Target, is_interrupt};
 use crate::error::StaticsError;
 
-/// Loads and supports at both ends of a load step; in between they are interpolated linearly.
+/// Loads and supports at both ends of a load step, interpolated linearly in between.
 pub struct LoadStep<'a> {
     /// Time at the end, s.
     pub t: f64,
     /// Loads before and after, N/m³.
     pub loads: [&'a [f64]; 2],
-    /// Displacements before and after, m; the entries that supports hold count.
+    /// Displacements before and after, m; only constrained entries are used.
     pub supports: [&'a [f64]; 2],
-    /// The largest norm of loads or reactions before, N.
+    /// Largest norm of loads or reactions before, N.
     pub largest: f64,
 }
 
-/// A static state on the way.
+/// A static state on the path.
 struct Station {
-    /// Part of the load step, 0 … 1.
+    /// Fraction of the load step, 0 … 1.
     s: f64,
     u: Vec<f64>,
-    /// What acts on each entry from outside, N: loads on free entries, reactions and loads on held ones.
+    /// External force on each entry, N: loads on free entries, reactions and loads on constrained entries.
     acting: Vec<f64>,
 }
 
-/// What a load step took and did.
+/// Result of a load step.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Followed {
-    /// Of all static states.
+    /// Effort of all static states.
     pub effort: Effort,
     /// Work of loads and supports, J.
     pub work: f64,
-    /// Parts that the step was cut to.
+    /// Number of parts into which the step was divided.
     pub parts: u32,
 }
 
-/// The shortest part of a load step.
+/// Shortest part of a load step, as a fraction of it.
 const SHORTEST: f64 = 1.0 / 1024.0;
-/// Work is integrated until its estimated error is below this part of it.
+/// Relative tolerance of the estimated error of the work.
 const WORK_TOLERANCE: f64 = 1e-8;
-/// Halvings of a part of a load step for the integral of the work.
+/// Largest number of halvings of a part of a load step for the integral of the work.
 const DEPTH: u32 = 3;
 
-/// Follows a load step with the bonds as they are.
+/// Follows a load step with fixed bonds.
 pub struct Follower<'a, 'i> {
     /// The body.
     pub system: &'a System,
@@ -53,17 +53,18 @@ pub struct Follower<'a, 'i> {
     pub equilibrium: &'a mut Equilibrium,
     /// The load step.
     pub step: LoadStep<'a>,
-    /// Polled on the way.
+    /// Interrupt, queried by the iterations.
     pub interrupt: Interrupt<'i>,
-    /// Work exchanged before, J: the work of a step that is small beside it need not be accurate by itself.
+    /// Work exchanged before, J; the work of a step that is small relative to it may be less accurate.
     pub exchanged: f64,
 }
 
 impl Follower<'_, '_> {
-    /// Moves `u` from the start of the load step to its end. The step is cut where Newton's method does not converge.
+    /// Advances `u` from the start of the load step to its end. The step is divided if Newton's method does
+    /// not converge.
     ///
     /// # Errors
-    /// If no part of the step, however short, leads to a static state; if it is interrupted.
+    /// No static state for the shortest part of the step; interruption.
     pub fn follow(&mut self, u: &mut Vec<f64>, with_work: bool) -> Result<Followed> {
         let mut followed = Followed::default();
         let mut here = self.station(0.0, std::mem::take(u));
@@ -77,9 +78,15 @@ impl Follower<'_, '_> {
                     followed.parts += 1;
                     self.step.largest = self.step.largest.max(effort.acting);
                     let there = self.station(s, next);
-                    followed.work +=
-                        self.work(&here, &there, with_work, 0, &mut followed.effort)?;
+                    let work = self.work(&here, &there, with_work, 0, &mut followed.effort);
                     here = there;
+                    match work {
+                        Ok(work) => followed.work += work,
+                        Err(error) => {
+                            *u = here.u;
+                            return Err(error);
+                        }
+                    }
                     length = (2.0 * length).min(1.0 - here.s);
                 }
                 Err(error) => {
@@ -95,7 +102,7 @@ impl Follower<'_, '_> {
         Ok(followed)
     }
 
-    /// Moves `u` to the static state at a part of the step.
+    /// Advances `u` to the static state at a fraction of the step.
     fn find(&mut self, s: f64, u: &mut [f64]) -> Result<Effort> {
         let mix = |[a, b]: [&[f64]; 2]| -> Vec<f64> {
             if s == 1.0 {
@@ -119,7 +126,7 @@ impl Follower<'_, '_> {
         let (system, n) = (self.system, self.system.points());
         let mut acting = vec![0.0; u.len()];
         let operator = system.operator();
-        operator.add_force(self.step.t, &u, On::All, &mut acting);
+        operator.add_force(self.step.t, &u, PointSubset::All, &mut acting);
         let [before, after] = self.step.loads;
         let free = self.equilibrium.free();
         let volumes = system.cloud().volumes();
@@ -134,7 +141,8 @@ impl Follower<'_, '_> {
         Station { s, u, acting }
     }
 
-    /// The work between two stations, by the trapezoidal rule and, for forces that are not linear, by Simpson's rule on as many halves as needed.
+    /// Returns the work between two stations by the trapezoidal rule; for nonlinear forces by Simpson's rule
+    /// with adaptive halving.
     fn work(
         &mut self,
         a: &Station,
@@ -155,14 +163,14 @@ impl Follower<'_, '_> {
                 ..found
             }),
             Err(error) if is_interrupt(&error) => return Err(error),
-            // The body jumps from one state to the other: there is none in between.
+            // The body jumps from one state to the other, without intermediate static states.
             Err(_) => return Ok(whole),
         }
         let middle = self.station(s, u);
         let halves = self.trapezoid(a, &middle) + self.trapezoid(&middle, b);
         let correction = (halves - whole) / 3.0;
         let scale = halves.abs().max(self.exchanged);
-        // The error of Simpson's rule is of the order of the square of that of the trapezoidal rule.
+        // The error of Simpson's rule is of the order of the squared error of the trapezoidal rule.
         let error = (4.0 * correction / scale).powi(2);
         if scale == 0.0 || error <= WORK_TOLERANCE || depth == DEPTH {
             return Ok(halves + correction);
@@ -177,7 +185,7 @@ impl Follower<'_, '_> {
     }
 }
 
-/// The error with the part of the load step up to which static states were found.
+/// Adds the fraction of the load step up to which static states were found to an error.
 fn at_fraction(error: pericles::PericlesError, s: f64) -> pericles::PericlesError {
     let pericles::PericlesError::Extension(inner) = error else {
         return error;

@@ -1,4 +1,4 @@
-//! Rigid-body motions that no support prevents.
+//! Unconstrained rigid-body motions.
 
 use pericles::System;
 use pericles::domain::Field;
@@ -7,18 +7,19 @@ use crate::eigen::symmetric_eigen;
 use crate::surrogate::{RigidModes, Surrogate};
 use crate::unknowns::Unknowns;
 
-/// A part of the body that hangs together, and how it can move.
+/// A connected part of the body with unconstrained rigid-body motions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FreePiece {
-    /// Its points, ascending.
+    /// Points, ascending.
     pub points: Vec<u32>,
-    /// Names of the motions that supports would have to prevent.
+    /// Names of the unconstrained motions.
     pub motions: Vec<&'static str>,
-    /// An orthonormal basis of these motions: component-major vectors on the points of the piece.
+    /// Orthonormal basis of these motions: component-major vectors on the points of the part.
     pub basis: Vec<Vec<f64>>,
 }
 
-/// The parts of a body with two points or more that some rigid-body motion does not deform, with the supports that hold the entries which are not unknowns.
+/// Returns the connected parts of two or more points that have rigid-body motions compatible with the
+/// constrained entries.
 pub fn free_pieces(system: &System, surrogate: &Surrogate, unknowns: &Unknowns) -> Vec<FreePiece> {
     let d = system.dimension();
     let positions = system.cloud().positions();
@@ -47,7 +48,7 @@ pub fn free_pieces(system: &System, surrogate: &Surrogate, unknowns: &Unknowns) 
     free
 }
 
-/// The motions of free pieces as vectors on the whole body.
+/// Returns the motions of free parts as vectors on the whole body.
 pub(crate) fn spread(pieces: &[FreePiece], system: &System) -> Vec<Vec<f64>> {
     let (n, d) = (system.points(), system.dimension());
     let mut all = Vec::new();
@@ -66,7 +67,7 @@ pub(crate) fn spread(pieces: &[FreePiece], system: &System) -> Vec<Vec<f64>> {
     all
 }
 
-/// The parts of the body that bonds hold together.
+/// Returns the connected parts of the body.
 fn pieces(system: &System, surrogate: &Surrogate) -> Vec<Vec<u32>> {
     let n = system.points();
     let mut root: Vec<u32> = (0..n as u32).collect();
@@ -104,7 +105,7 @@ fn pieces(system: &System, surrogate: &Surrogate) -> Vec<Vec<u32>> {
     members
 }
 
-/// Coefficients of motions that leave all held entries where they are.
+/// Returns the coefficients of motions that do not displace constrained entries.
 fn unheld(
     modes: &RigidModes<'_>,
     points: usize,
@@ -126,8 +127,8 @@ fn unheld(
             }
         }
     }
-    // A motion that moves nothing, as the rotation of a bar about its axis, needs no support.
-    /// Of the squared size of a translation.
+    // Motions without displacements, such as the rotation of a bar about its axis, need no constraint.
+    /// Fraction of the squared norm of a translation.
     const NOTHING: f64 = 1e-20;
     for a in 0..count {
         if size[a] < NOTHING * points as f64 {
@@ -136,7 +137,7 @@ fn unheld(
     }
     let (values, vectors) = symmetric_eigen(count, gram);
     let largest = values.last().copied().unwrap_or(0.0);
-    /// Squared displacements of held entries, over the largest.
+    /// Squared displacements of constrained entries, relative to the largest.
     const HELD: f64 = 1e-12;
     let free = values.iter().take_while(|&&value| value <= HELD * largest);
     let free = if largest == 0.0 { count } else { free.count() };
@@ -144,7 +145,8 @@ fn unheld(
     (0..free).map(of_vector).collect()
 }
 
-/// Names of as many motions as there are free ones, which supports must prevent: rotations first, as a rotation about some point is also a translation of the middle.
+/// Returns names of independent motions that constraints must prevent, as many as there are free ones;
+/// rotations first, because a rotation about a point is also a translation of the centre.
 fn names(modes: &RigidModes<'_>, found: &[Vec<f64>]) -> Vec<&'static str> {
     let mut rows: Vec<(usize, Vec<f64>)> = (0..modes.count())
         .rev()
@@ -153,7 +155,7 @@ fn names(modes: &RigidModes<'_>, found: &[Vec<f64>]) -> Vec<&'static str> {
     let mut named = Vec::new();
     while named.len() < found.len() {
         let square = |row: &[f64]| row.iter().map(|x| x * x).sum::<f64>();
-        /// A row that is left counts as independent from here on.
+        /// Smallest relative size of a linearly independent row.
         const INDEPENDENT: f64 = 0.02;
         let Some(place) = rows.iter().position(|(_, row)| square(row) > INDEPENDENT) else {
             break;
@@ -172,7 +174,7 @@ fn names(modes: &RigidModes<'_>, found: &[Vec<f64>]) -> Vec<&'static str> {
     named.into_iter().map(|mode| modes.name(mode)).collect()
 }
 
-/// The motions as orthonormal vectors, zero on held entries.
+/// Returns the motions as orthonormal vectors, zero on constrained entries.
 fn orthonormal(
     modes: &RigidModes<'_>,
     found: &[Vec<f64>],

@@ -1,7 +1,7 @@
-//! The integrator whose steps go from one static state to the next.
+//! Integrator whose steps are static load steps.
 
 use pericles::boundary::Exchange;
-use pericles::operator::On;
+use pericles::operator::PointSubset;
 use pericles::time::{InnerIterations, Integrator, State};
 use pericles::{
     Interrupt, Need, Path, PericlesError, Requirement, Result, StepEnd, System, require,
@@ -14,43 +14,50 @@ use crate::events;
 use crate::options::StaticOptions;
 use crate::path::{Follower, LoadStep};
 
-/// Each step goes from one static state to the next: loads and supports take their values of its end, and f(u) + b = 0 is solved on the free entries by Newton's method.
+/// Static integrator: each step is a load step to the next static state. Loads and supports have their values
+/// at the end of the step, and f(u) + b = 0 is solved on the free entries by Newton's method.
 ///
-/// Linear problems are solved by conjugate gradients on the body's exact tangent, preconditioned by smoothed-aggregation multigrid of springs between neighbouring points
-/// ([`Surrogate`](crate::surrogate::Surrogate)): the number of products does not grow with the body. They are solved only as accurately as Newton's method can make use of (Eisenstat & Walker, SIAM J. Sci.
-/// Comput. 17, 1996) and stopped at directions without positive curvature (Steihaug 1983). A correction that does not reduce the residual is shortened; a load step that
-/// does not converge is cut.
+/// Linear problems are solved by conjugate gradients with the exact tangent, preconditioned by
+/// smoothed-aggregation multigrid of springs between neighbouring points
+/// ([`Surrogate`](crate::surrogate::Surrogate)), so that the number of products does not grow with the body.
+/// Their accuracy is adapted to Newton's method (Eisenstat & Walker, SIAM J. Sci. Comput. 17, 1996), and they
+/// stop at directions without positive curvature (Steihaug 1983). A correction that does not reduce the
+/// residual is shortened; a load step that does not converge is divided.
 ///
-/// Bonds that are over-stretched in a static state break, by default those with the largest stretch first ([`BreakingRule`](crate::BreakingRule)), and the state is found again at the same loads, until none does.
+/// Bonds that exceed their critical stretch in a static state break, by default those with the largest
+/// stretch first ([`BreakingRule`](crate::BreakingRule)), and the state is recomputed at the same loads until
+/// no bond breaks.
 ///
-/// With [`BreakingRule::Event`] each step goes to the state at which the next bond breaks, at whatever load that is.
+/// With [`BreakingRule::Event`] each step computes the load and the state at which the next bond breaks.
 ///
-/// The energy balance: within a load step, loads and supports change linearly. For linear forces their work is that of the mean forces, exactly; for others it is integrated by Simpson's rule over static states in
-/// between, so that the balance closes to a small multiple of the tolerance. The run starts from the unloaded body. What the body gives up after bonds broke is reported as the
-/// scheme's correction, as by [`Relaxation`](pericles::time::Relaxation).
+/// Energy balance: loads and supports change linearly within a load step. For linear forces their work is
+/// exactly that of the mean forces; for nonlinear forces it is integrated by Simpson's rule over intermediate
+/// static states, so that the energy balance closes to a small multiple of the tolerance. The run starts from
+/// the unloaded body. The energy released after bonds broke is reported as the correction of the scheme, as
+/// by [`Relaxation`](pericles::time::Relaxation).
 #[derive(Debug, Clone)]
 pub struct StaticScheme {
     options: StaticOptions,
     entries: usize,
-    /// The solver, for the bonds and supports of the last static state.
+    /// Solver for the bonds and supports of the last static state.
     equilibrium: Equilibrium,
-    /// Bonds broken when the solver was made.
+    /// Number of broken bonds when the solver was created.
     broken: u64,
-    /// The largest norm of loads or reactions at a static state so far, N.
+    /// Largest norm of loads or reactions at a static state so far, N.
     largest: f64,
-    /// Energy given up after bonds broke, J.
+    /// Energy released after bonds broke, J.
     released: f64,
-    /// The factor of the supports' displacements at the last event.
+    /// Factor of the displacements of supports at the last event.
     factor: f64,
     inner: InnerIterations,
-    /// What the last step took.
+    /// Effort of the last step.
     effort: Effort,
 }
 
 const NAME: &str = "static";
 
 impl StaticScheme {
-    /// What it needs of a system.
+    /// Requirements on a system.
     pub const REQUIREMENTS: &'static [Requirement] = &[
         Requirement::IN_DOUBLES,
         Requirement {
@@ -59,10 +66,10 @@ impl StaticScheme {
         },
     ];
 
-    /// The scheme for a system with the supports that act at the start.
+    /// Creates the scheme for a system with the supports at the start.
     ///
     /// # Errors
-    /// Options out of their ranges, a system that does not meet the requirements, rigid-body motions that no support prevents.
+    /// Options out of range, a system that does not meet the requirements, unconstrained rigid-body motions.
     pub fn new(options: StaticOptions, system: &System) -> Result<Self> {
         if !(options.tolerance > 0.0 && options.tolerance < 1.0) {
             return Err(PericlesError::SchemeParameter {
@@ -94,17 +101,17 @@ impl StaticScheme {
         })
     }
 
-    /// What the last step took.
+    /// Returns the effort of the last step.
     pub fn effort(&self) -> Effort {
         self.effort
     }
 
-    /// The solver, for the bonds and supports of the last static state.
+    /// Returns the solver for the bonds and supports of the last static state.
     pub fn equilibrium(&self) -> &Equilibrium {
         &self.equilibrium
     }
 
-    /// Makes the solver anew if supports or bonds are not those that it was made for.
+    /// Recreates the solver if supports or bonds have changed.
     fn prepare(&mut self, system: &System, t: f64) -> Result<()> {
         let free = free_at(system, t);
         let broken = system.operator().broken_bonds();
@@ -113,14 +120,14 @@ impl StaticScheme {
             self.equilibrium = Equilibrium::new(self.options, system, free);
             self.broken = broken;
         }
-        // Parts that break off are left where they are; parts that are let go are not.
+        // Parts that break off keep their displacement; parts that constraints release must be supported otherwise.
         if held_anew {
             self.equilibrium.check_support(system)?;
         }
         Ok(())
     }
 
-    /// Moves `u` along a load step and returns the work done.
+    /// Advances `u` along a load step and returns the work done.
     fn follow(
         &mut self,
         system: &System,
@@ -141,7 +148,7 @@ impl StaticScheme {
         Ok(followed.work)
     }
 
-    /// Breaks over-stretched bonds and finds the static state again until none is left.
+    /// Breaks bonds beyond their limits and recomputes the static state until no bond breaks.
     fn settle(
         &mut self,
         system: &mut System,
@@ -170,8 +177,9 @@ impl StaticScheme {
         }
     }
 
-    /// Moves `state` to the next event: the displacements of the supports are scaled so that the most stretched bond just reaches its critical stretch; then it breaks. Between events the body
-    /// is linear, so that one solution at the reference displacements gives all states on the way.
+    /// Advances `state` to the next event: scales the displacements of the supports such that the most
+    /// stretched bond reaches its critical stretch, and breaks it. The body is linear between events, so that
+    /// one solution at the reference displacements gives all states in between.
     fn step_to_event(
         &mut self,
         system: &mut System,
@@ -182,7 +190,7 @@ impl StaticScheme {
         self.prepare(system, reference)?;
         let first = state.step == 0;
         let mut supports = vec![0.0; self.entries];
-        system.place_on(reference, &On::All, &mut supports);
+        system.place_on(reference, &PointSubset::All, &mut supports);
         let free = self.equilibrium.free();
         let guess = |k: usize| match self.factor {
             _ if free[k] == 0.0 => supports[k],
@@ -190,7 +198,7 @@ impl StaticScheme {
             factor => state.u[k] / factor,
         };
         let mut response: Vec<f64> = (0..self.entries).map(guess).collect();
-        /// Of the largest reactions: a residual below this part is accurate enough for a body that is almost severed.
+        /// Fraction of the largest reactions: a residual below it is sufficient for an almost severed body.
         const SEVERED: f64 = 1e-3;
         let none = vec![0.0; self.entries];
         let step = LoadStep {
@@ -226,7 +234,7 @@ impl StaticScheme {
         Ok(())
     }
 
-    /// Notes the effort of a step and moves on to its end.
+    /// Records the effort of a step and advances the time to its end.
     fn close_step(&mut self, state: &mut State, t_next: f64) {
         let InnerIterations { most, total, .. } = self.inner;
         self.inner = InnerIterations {
@@ -247,7 +255,7 @@ fn chord<'a>(t: f64, dt: f64, u: &'a [f64], before: &'a [f64], first: bool) -> S
     StepEnd { t, dt, u, path }
 }
 
-/// 1 for the entries that are free at a time, 0 for those that supports hold.
+/// Returns 1 for entries that are free at a time, 0 for constrained entries.
 fn free_at(system: &System, t: f64) -> Vec<f64> {
     let mut free = vec![1.0; system.dimension() * system.points()];
     system.hold_at(t, &mut free);
@@ -267,17 +275,17 @@ impl Integrator for StaticScheme {
         Self::REQUIREMENTS
     }
 
-    /// Of the work between static states, in the length of load steps.
+    /// Returns the order of the work between static states in the length of load steps.
     fn order(&self) -> u32 {
         4
     }
 
-    /// Load steps of any length.
+    /// Returns `None`: load steps can have any length.
     fn stability_limit(&self) -> Option<f64> {
         None
     }
 
-    /// What the body gave up after bonds broke.
+    /// Returns the energy released after bonds broke.
     fn energy_correction(&self, _system: &System, _state: &State, _dt: f64) -> f64 {
         self.released
     }
@@ -290,7 +298,7 @@ impl Integrator for StaticScheme {
         true
     }
 
-    /// Displacements are iterated in place, and bonds break between equilibria.
+    /// Returns true: displacements are iterated in place, and bonds break between equilibria.
     fn changes_within_step(&self) -> bool {
         true
     }
@@ -317,7 +325,7 @@ impl Integrator for StaticScheme {
         self.prepare(system, t_next)?;
         let first = state.step == 0;
         let before = state.u.clone();
-        // An initial displacement is no static state: the way to the first one is a jump.
+        // An initial displacement is not a static state: the first load step is a jump.
         let displaced = first && before.iter().any(|u| *u != 0.0);
         let elastic = if displaced {
             system.operator().energy(state.t, &before)
@@ -330,7 +338,7 @@ impl Integrator for StaticScheme {
         }
         system.load_density_into(t_next, &mut loads[1]);
         let mut supports = before.clone();
-        system.place_on(t_next, &On::All, &mut supports);
+        system.place_on(t_next, &PointSubset::All, &mut supports);
         let step = LoadStep {
             t: t_next,
             loads: [&loads[0], &loads[1]],
@@ -360,7 +368,7 @@ impl Integrator for StaticScheme {
 }
 
 pericles::saved! {
-    impl Saved for StaticScheme {
+    impl Checkpointed for StaticScheme {
         released, largest, factor: array("static/account"),
         inner: part,
         options, entries: fixed,

@@ -1,16 +1,16 @@
 //! Sparse matrices in compressed rows.
 //!
-//! Every row is computed by one thread in a fixed order, so that no result depends on the number of threads.
+//! Each row is computed by one thread in a fixed order, so that results do not depend on the number of threads.
 
 use pericles::parallel::BLOCK;
 use rayon::prelude::*;
 
 use crate::chunks::for_each_chunk;
 
-/// Takes the column and value of an entry.
+/// Receives the column and value of an entry.
 type Push<'a> = dyn FnMut(usize, f64) + 'a;
 
-/// A sparse matrix: the entries of row i are those from `start[i]` to `start[i + 1]`, their columns ascending.
+/// Sparse matrix in compressed rows: row i has the entries `start[i]` to `start[i + 1]`, with ascending columns.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SparseMatrix {
     columns: usize,
@@ -19,7 +19,7 @@ pub struct SparseMatrix {
     value: Vec<f64>,
 }
 
-/// Some consecutive rows of a matrix.
+/// Consecutive rows of a matrix.
 #[derive(Default)]
 struct Rows {
     lengths: Vec<usize>,
@@ -27,7 +27,7 @@ struct Rows {
     value: Vec<f64>,
 }
 
-/// One row in the making: a sum of sparse rows.
+/// Accumulator of a row: a sum of sparse rows.
 struct Accumulator {
     value: Vec<f64>,
     present: Vec<bool>,
@@ -53,7 +53,7 @@ impl Accumulator {
         self.value[k] += value;
     }
 
-    /// Moves the row to its place.
+    /// Appends the row and clears the accumulator.
     fn take_into(&mut self, rows: &mut Rows) {
         self.columns.sort_unstable();
         rows.lengths.push(self.columns.len());
@@ -67,7 +67,7 @@ impl Accumulator {
 }
 
 impl SparseMatrix {
-    /// A matrix with so many columns, from consecutive groups of rows.
+    /// Creates a matrix from consecutive groups of rows.
     fn of_rows(columns: usize, parts: Vec<Rows>) -> Self {
         let entries = parts.iter().map(|part| part.column.len()).sum();
         let mut matrix = Self {
@@ -88,7 +88,8 @@ impl SparseMatrix {
         matrix
     }
 
-    /// Makes a matrix row by row: `fill(row, entries)` pushes the columns and values of a row, in any order; values of one column are added in the order given.
+    /// Creates a matrix row by row: `fill(row, entries)` pushes the columns and values of a row in any order;
+    /// values of the same column are added in the order of their calls.
     pub(crate) fn from_rows(
         rows: usize,
         columns: usize,
@@ -113,22 +114,22 @@ impl SparseMatrix {
         Self::of_rows(columns, parts)
     }
 
-    /// Number of rows.
+    /// Returns the number of rows.
     pub fn rows(&self) -> usize {
         self.start.len().saturating_sub(1)
     }
 
-    /// Number of columns.
+    /// Returns the number of columns.
     pub fn columns(&self) -> usize {
         self.columns
     }
 
-    /// Number of stored entries.
+    /// Returns the number of stored entries.
     pub fn entries(&self) -> usize {
         self.value.len()
     }
 
-    /// Columns and values of a row.
+    /// Returns the columns and values of a row.
     pub fn row(&self, i: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let range = self.start[i]..self.start[i + 1];
         let columns = self.column[range.clone()].iter();
@@ -137,7 +138,7 @@ impl SparseMatrix {
             .map(|(&column, &value)| (column as usize, value))
     }
 
-    /// The entry of the diagonal in a row; zero if it is not stored.
+    /// Returns the diagonal entry of a row; zero if it is not stored.
     pub fn diagonal(&self, i: usize) -> f64 {
         self.row(i).find(|(k, _)| *k == i).map_or(0.0, |(_, a)| a)
     }
@@ -172,7 +173,7 @@ impl SparseMatrix {
     fn row_product(&self, i: usize, x: &[f64]) -> f64 {
         let range = self.start[i]..self.start[i + 1];
         let (columns, values) = (&self.column[range.clone()], &self.value[range]);
-        // Two sums, which a processor adds up side by side.
+        // Two independent sums, which a processor adds in parallel.
         let (mut even, mut odd) = (0.0, 0.0);
         let pairs = columns.len() / 2 * 2;
         let mut k = 0;
@@ -187,7 +188,7 @@ impl SparseMatrix {
         even + odd
     }
 
-    /// Aᵀ.
+    /// Returns Aᵀ.
     pub fn transposed(&self) -> Self {
         let mut start = vec![0; self.columns + 1];
         for &column in &self.column {
@@ -214,7 +215,7 @@ impl SparseMatrix {
         }
     }
 
-    /// A B.
+    /// Returns A B.
     pub fn product(&self, other: &Self) -> Self {
         Self::from_rows(self.rows(), other.columns, &|i, add| {
             for (k, a) in self.row(i) {
@@ -225,7 +226,7 @@ impl SparseMatrix {
         })
     }
 
-    /// Memory, bytes.
+    /// Returns the memory, bytes.
     pub fn bytes(&self) -> usize {
         self.start.len() * size_of::<usize>()
             + self.column.len() * size_of::<u32>()
@@ -247,7 +248,7 @@ pub(crate) fn add_multiple(y: &mut [f64], factor: f64, x: &[f64]) {
 mod tests {
     use super::*;
 
-    /// Entries that follow no pattern.
+    /// A matrix of pseudorandom entries.
     fn matrix(rows: usize, columns: usize, seed: usize) -> SparseMatrix {
         SparseMatrix::from_rows(rows, columns, &|i, add| {
             for k in 0..4 {
@@ -262,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn a_product_of_matrices_acts_as_both_in_turn() {
+    fn product_of_matrices_acts_as_both_matrices_in_sequence() {
         let (a, b) = (matrix(1100, 70, 1), matrix(70, 33, 2));
         let x = noise(33);
         let mut bx = vec![0.0; 70];
@@ -276,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn the_transposed_matrix_is_the_adjoint() {
+    fn transposed_matrix_is_the_adjoint() {
         let a = matrix(50, 31, 3);
         let (x, y) = (noise(31), noise(50));
         let (mut ax, mut aty) = (vec![0.0; 50], vec![0.0; 31]);

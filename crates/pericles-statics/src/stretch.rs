@@ -1,8 +1,8 @@
-//! How far the bonds of a displaced body are from breaking.
+//! Ratio of bond stretches to their critical stretches.
 
 use pericles::System;
 
-/// Points with a bond that is left, may break and is stretched beyond `part` of its critical stretch.
+/// Returns whether each point has an intact, breakable bond beyond the fraction `part` of its critical stretch.
 pub(crate) fn endangered(system: &System, u: &[f64], part: f64) -> Vec<bool> {
     let mut marks = vec![false; system.points()];
     if let Some(breaking) = system.operator().capabilities().breaking {
@@ -11,11 +11,12 @@ pub(crate) fn endangered(system: &System, u: &[f64], part: f64) -> Vec<bool> {
     marks
 }
 
-/// Ratios beyond these are not told apart.
+/// Largest ratio that is determined.
 const LARGEST: f64 = 1e12;
 const SMALLEST: f64 = 1e-12;
 
-/// The largest stretch over the critical stretch of the bonds that may break, from below, to a relative `accuracy`; none if no bond is stretched, or if the largest is not found below 1e12.
+/// Returns a lower bound of the largest ratio of stretch to critical stretch of breakable bonds, to a
+/// relative `accuracy`; `None` if no bond is stretched or the ratio exceeds 1e12.
 pub(crate) fn largest_ratio(system: &System, u: &[f64], accuracy: f64) -> Option<f64> {
     let any = |part: f64| endangered(system, u, part).contains(&true);
     let (mut low, mut high) = (1.0, 1.0);

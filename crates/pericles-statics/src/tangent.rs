@@ -1,4 +1,4 @@
-//! The tangent stiffness of a body as a linear problem.
+//! Tangent stiffness of a body as a linear problem.
 
 use pericles::System;
 
@@ -7,7 +7,7 @@ use crate::krylov::LinearProblem;
 use crate::multigrid::Multigrid;
 use crate::unknowns::Unknowns;
 
-/// The tangent stiffness at a displacement, A = −V ∂f/∂u (N/m), preconditioned by the multigrid of the surrogate.
+/// Tangent stiffness at a displacement, A = −V ∂f/∂u (N/m), preconditioned by multigrid of the surrogate.
 pub struct Tangent<'a> {
     /// The body.
     pub system: &'a System,
@@ -19,9 +19,9 @@ pub struct Tangent<'a> {
     pub unknowns: &'a Unknowns,
     /// The preconditioner.
     pub multigrid: &'a mut Multigrid,
-    /// Orthonormal rigid-body motions that are taken out of residuals and displacements.
+    /// Orthonormal rigid-body motions that are projected out of residuals and displacements.
     pub rigid: &'a [Vec<f64>],
-    /// Two vectors of unknowns to work with.
+    /// Two work vectors of unknowns.
     pub work: &'a mut [Vec<f64>; 2],
 }
 
@@ -39,7 +39,7 @@ impl LinearProblem for Tangent<'_> {
     }
 }
 
-/// `out` = −V ∂f/∂u x at displacement u, on all entries.
+/// Computes `out` = −V ∂f/∂u x at displacement u, on all entries.
 pub fn stiffness_into(system: &System, t: f64, u: &[f64], x: &[f64], out: &mut [f64]) {
     match system.operator().as_linear() {
         Some(linear) => linear.apply_into(x, out),
@@ -53,7 +53,7 @@ pub fn stiffness_into(system: &System, t: f64, u: &[f64], x: &[f64], out: &mut [
     });
 }
 
-/// Takes the parts along orthonormal vectors out of a vector.
+/// Removes the components along orthonormal vectors from a vector.
 pub fn remove(system: &System, basis: &[Vec<f64>], vector: &mut [f64]) {
     for one in basis {
         let along = system.domain().dot(one, vector);

@@ -1,9 +1,9 @@
 //! The free displacement components of a body, numbered point by point.
 
-/// Marks an entry that is held.
+/// Marks a constrained entry.
 const HELD: u32 = u32::MAX;
 
-/// The unknowns of a static problem: displacement components that no support prescribes.
+/// Unknowns of a static problem: the displacement components that are not constrained.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Unknowns {
     points: usize,
@@ -17,7 +17,7 @@ pub struct Unknowns {
 }
 
 impl Unknowns {
-    /// Of a body whose entries are free where `free` is not zero.
+    /// Creates the unknowns of a body whose entries are free where `free` is not zero.
     pub fn new(dimension: usize, free: &[f64]) -> Self {
         let points = free.len() / dimension;
         let mut unknowns = Self {
@@ -40,34 +40,34 @@ impl Unknowns {
         unknowns
     }
 
-    /// How many.
+    /// Returns the number of unknowns.
     pub fn len(&self) -> usize {
         self.entries.len()
     }
 
-    /// Whether there are none.
+    /// Returns whether there are no unknowns.
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty()
     }
 
-    /// Dimension of the body.
+    /// Returns the dimension of the body.
     pub fn dimension(&self) -> usize {
         self.dimension
     }
 
-    /// Number of the unknown of a component at a point; none if it is held.
+    /// Returns the number of the unknown of a component at a point; `None` if it is constrained.
     pub fn number(&self, point: usize, axis: usize) -> Option<usize> {
         let number = self.numbers[axis * self.points + point];
         (number != HELD).then_some(number as usize)
     }
 
-    /// Point and component of an unknown.
+    /// Returns the point and component of an unknown.
     pub fn point_and_axis(&self, number: usize) -> (usize, usize) {
         let entry = self.entries[number] as usize;
         (entry % self.points, entry / self.points)
     }
 
-    /// First unknown of each point, and their number behind.
+    /// Returns the first unknown of each point, followed by the number of unknowns.
     pub fn nodes(&self) -> &[usize] {
         &self.nodes
     }
@@ -79,7 +79,7 @@ impl Unknowns {
         }
     }
 
-    /// Sets the free entries of a component-major vector, and the others to zero.
+    /// Sets the free entries of a component-major vector, and constrained entries to zero.
     pub fn scatter(&self, values: &[f64], out: &mut [f64]) {
         out.fill(0.0);
         for (value, &entry) in values.iter().zip(&self.entries) {

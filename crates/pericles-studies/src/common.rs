@@ -1,10 +1,10 @@
-//! What studies of several topics do.
+//! Helpers shared by several topics.
 
 use pericles::space::{Grid, PointCloud, Shape};
 use pericles::{Control, Simulation};
 use pericles_run::RunError;
 
-/// A box of square or cubic cells.
+/// Box of square or cubic cells.
 pub(crate) fn cells(
     origin: [f64; 3],
     size: Vec<f64>,
@@ -24,7 +24,7 @@ pub(crate) fn finish(simulation: &mut Simulation) -> Result<(), RunError> {
     watch(simulation, |_| ())
 }
 
-/// Runs a simulation to its end and shows the states that the loop asks about.
+/// Runs a simulation to its end and calls the observer as often as the loop provides.
 pub(crate) fn watch(
     simulation: &mut Simulation,
     mut look: impl FnMut(&Simulation),
@@ -33,16 +33,16 @@ pub(crate) fn watch(
         look(now);
         Control::Continue
     });
-    run.map_err(|error| RunError::of_run(error, || "the study stopped there".into()))?;
+    run.map_err(|error| RunError::of_run(error, || "the study was stopped".into()))?;
     Ok(())
 }
 
-/// The largest magnitude.
+/// Largest magnitude.
 pub(crate) fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |most, x| most.max(x.abs()))
 }
 
-/// The largest difference.
+/// Largest difference.
 pub(crate) fn difference(a: &[f64], b: &[f64]) -> f64 {
     let pairs = a.iter().zip(b);
     pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)

@@ -1,21 +1,21 @@
-//! What a study is run with.
+//! Options of a study run.
 
 use std::path::{Path, PathBuf};
 
 use pericles_run::Event;
 
-/// What a study is run with.
+/// Options of a study run.
 pub struct Context<'a> {
-    /// Whether rows that take long are wanted.
+    /// Include rows that take long.
     pub full: bool,
-    /// The folder for figures; none if no figures are wanted.
+    /// Folder for figures; `None` for no figures.
     pub figures: Option<&'a Path>,
     /// Receives the progress of long runs.
     pub tell: &'a dyn Fn(Event<'_>),
 }
 
 impl Context<'_> {
-    /// The file of a figure; none if no figures are wanted.
+    /// Path of a figure; `None` if no figures are requested.
     pub(crate) fn figure(&self, name: &str) -> Option<PathBuf> {
         self.figures.map(|folder| folder.join(name))
     }

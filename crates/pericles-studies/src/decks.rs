@@ -1,14 +1,14 @@
-//! The decks of the studies.
+//! Decks of the studies.
 
 use pericles_deck::Deck;
 use pericles_run::RunError;
 
 use crate::data::Case;
 
-/// The decks in a list of files of the repository.
+/// Decks in a list of files of the repository.
 macro_rules! decks {
     ($($file:literal),* $(,)?) => {
-        [$(($file, include_str!(concat!("../../../", $file)))),*]
+        [$(($file, include_str!(concat!("../decks/", $file)))),*]
     };
 }
 
@@ -30,7 +30,8 @@ const DECKS: [(&str, &str); 15] = decks![
     "validation/multi-time-step/two-grid.toml",
 ];
 
-/// The deck of a case: the argument `deck` is a file of the repository or the text of a deck, and `set` a list of changes.
+/// Returns the deck of a case: the argument `deck` is a file of the repository or the text of a deck, `set` a list
+/// of overrides.
 pub(crate) fn deck(case: &Case<'_>, changes: &[String]) -> Result<Deck, RunError> {
     let given = case.text("deck")?;
     let (name, text) = match given.contains('\n') {

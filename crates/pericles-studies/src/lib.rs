@@ -1,10 +1,13 @@
-//! Studies of papers, computed again and compared with the published numbers.
+//! Studies that reproduce published results and compare them with the printed values.
 //!
-//! A [`Study`] is a file of data: its rows with the printed and the expected numbers, and the functions that compute them with their arguments. A row is judged if it has an expected number ([`Row`]); a
-//! printed number known not to reproduce is shown beside the verified one that is judged, with the reason. Studies, their data and their decks are inside the library, so that they run from any directory; they
-//! know nothing of files but the figures they may draw, and do not print. The same studies are run by the tests.
+//! A [`Study`] is a data file: its rows with the printed and the expected values, and the functions that compute
+//! them with their arguments. A row with an expected value is judged ([`Row`]); a printed value known not to be
+//! reproducible is shown beside the verified one that is judged, with the reason. Studies, their data and their
+//! decks are part of the library, so they run from any directory; they write no files except requested figures, and
+//! print nothing. The tests run the same studies.
 //!
-//! A new study is a file `data/TOPIC/NAME.toml`, listed in its topic's `studies`; functions that it needs are listed in the topic's `measures`. A new topic is listed in `TOPICS`.
+//! A new study is a file `data/TOPIC/NAME.toml`, listed in the `studies` of its topic; functions that it needs are
+//! listed in the topic's `measures`. A new topic is listed in `TOPICS`.
 //!
 //! ```no_run
 //! use pericles_studies::{Context, find, table};
@@ -58,23 +61,23 @@ const TOPICS: [&Topic; 9] = [
 static STUDIES: LazyLock<Vec<Study>> =
     LazyLock::new(|| TOPICS.into_iter().flat_map(Topic::read).collect());
 
-/// All studies, by topic.
+/// All studies by topic.
 pub fn studies() -> impl Iterator<Item = &'static Study> {
     STUDIES.iter()
 }
 
-/// The study of a name.
+/// Returns the study with a name.
 ///
 /// # Errors
-/// A name that no study has.
+/// No study has this name.
 pub fn find(id: &str) -> Result<&'static Study, RunError> {
     studies().find(|study| study.id == id).ok_or_else(|| {
-        let all = "`pericles reproduce --list` shows all studies";
+        let all = "list all studies with `pericles reproduce --list`";
         RunError::unknown("study", id, studies().map(|study| study.id), all)
     })
 }
 
-/// Whether every judged row holds.
+/// Returns true if every judged row is within its tolerance.
 pub fn all_hold(rows: &[Row]) -> bool {
     rows.iter().all(|row| row.pass() != Some(false))
 }

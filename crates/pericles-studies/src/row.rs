@@ -1,32 +1,32 @@
-//! One line of a study: a number beside the one it should be.
+//! Row of a study: a computed value beside the expected one.
 
 use std::borrow::Cow;
 
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
-/// A number computed by a study, SI units.
+/// Value computed by a study, SI units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
-    /// What it is.
+    /// Label.
     pub case: String,
-    /// The number in the paper.
+    /// Value printed in the paper.
     pub printed: Option<f64>,
-    /// The number to judge by; a row without it is information only.
+    /// Value to judge by; a row without it is for information.
     pub expected: Option<f64>,
-    /// The number found; none if what it measures did not happen.
+    /// Computed value; `None` if the measured event did not happen.
     pub computed: Option<f64>,
     /// Allowed difference: relative to |expected| unless `absolute`.
     pub tolerance: f64,
-    /// Whether the tolerance is in the row's own unit.
+    /// True if the tolerance is in the unit of the row.
     pub absolute: bool,
-    /// What a reader should know.
+    /// Remark for the reader.
     pub note: String,
-    /// SI unit, for the table; empty for a pure number.
+    /// SI unit for the table; empty for a pure number.
     pub unit: Cow<'static, str>,
 }
 
 impl Row {
-    /// A row for information.
+    /// Creates a row for information.
     pub fn new(
         case: impl Into<String>,
         unit: impl Into<Cow<'static, str>>,
@@ -44,7 +44,7 @@ impl Row {
         }
     }
 
-    /// Judged: at most this far from the expected number.
+    /// Judges the row by an absolute difference from the expected value.
     pub fn within(mut self, expected: f64, tolerance: f64) -> Self {
         self.expected = Some(expected);
         self.tolerance = tolerance;
@@ -52,7 +52,7 @@ impl Row {
         self
     }
 
-    /// Judged: at most this share of the expected number away from it.
+    /// Judges the row by a difference relative to the expected value.
     pub fn within_share(mut self, expected: f64, tolerance: f64) -> Self {
         self.expected = Some(expected);
         self.tolerance = tolerance;
@@ -60,19 +60,19 @@ impl Row {
         self
     }
 
-    /// With the number in the paper.
+    /// Sets the value printed in the paper.
     pub fn printed(mut self, printed: f64) -> Self {
         self.printed = Some(printed);
         self
     }
 
-    /// With a remark.
+    /// Sets the remark.
     pub fn note(mut self, note: impl Into<String>) -> Self {
         self.note = note.into();
         self
     }
 
-    /// Whether the row holds; none if it is not judged. What did not happen or is no number does not hold.
+    /// Returns true if the row is within its tolerance; `None` if it is not judged. A missing or NaN value fails.
     pub fn pass(&self) -> Option<bool> {
         let expected = self.expected?;
         let scale = if self.absolute { 1.0 } else { expected.abs() };
@@ -104,21 +104,21 @@ mod tests {
     use serde_json::json;
 
     #[test]
-    fn verdicts() {
+    fn rows_are_judged_by_their_tolerance() {
         let row = |computed: f64| Row::new("a", "m", Some(computed));
         assert_eq!(row(1.0).pass(), None);
         assert_eq!(row(1.05).within(1.0, 0.1).pass(), Some(true));
         assert_eq!(row(1.15).within(1.0, 0.1).pass(), Some(false));
         assert_eq!(row(-190.0).within_share(-200.0, 0.06).pass(), Some(true));
         assert_eq!(row(-190.0).within_share(-200.0, 0.04).pass(), Some(false));
-        // The limit itself holds, and a tolerance of zero asks for equality.
+        // The tolerance is inclusive, and a tolerance of zero requires equality.
         assert_eq!(row(4.0).within(4.0, 0.0).pass(), Some(true));
         assert_eq!(row(0.0).within_share(0.0, 0.5).pass(), Some(true));
         assert_eq!(row(1e-9).within_share(0.0, 0.5).pass(), Some(false));
     }
 
     #[test]
-    fn what_is_no_number_or_did_not_happen_fails() {
+    fn nan_and_missing_values_fail() {
         for computed in [None, Some(f64::NAN), Some(f64::INFINITY)] {
             let row = Row::new("a", "", computed);
             assert_eq!(row.clone().within(1.0, 1e300).pass(), Some(false));
@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_as_json() {
+    fn rows_are_serialised_to_json() {
         let judged = Row::new("x", "m", Some(2.0)).within(1.0, 0.5).printed(1.2);
         assert_eq!(
             serde_json::to_value(judged.note("why")).unwrap(),

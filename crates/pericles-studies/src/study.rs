@@ -1,4 +1,4 @@
-//! What a study is.
+//! Definition of a study.
 
 use pericles_run::RunError;
 
@@ -6,25 +6,25 @@ use crate::context::Context;
 use crate::data::{Measure, StudyData, rows};
 use crate::row::Row;
 
-/// A study of a paper.
+/// Study that reproduces published results.
 pub struct Study {
-    /// Its name, `topic/name`.
+    /// Name, `topic/name`.
     pub id: &'static str,
-    /// The paper, short.
+    /// Short reference of the paper.
     pub paper: &'static str,
-    /// What it shows.
+    /// Subject of the study.
     pub title: &'static str,
     data: StudyData,
     measures: &'static [Measure],
 }
 
-/// The studies of a topic: their names and data, and the functions that these name.
+/// Studies of a topic: their names and data, and the functions that these call.
 pub(crate) struct Topic {
     pub(crate) studies: &'static [(&'static str, &'static str)],
     pub(crate) measures: &'static [Measure],
 }
 
-/// The name of a study and its data, a file in the folder `data`.
+/// Name of a study and its data, a file in the folder `data`.
 macro_rules! data {
     ($id:literal) => {
         (
@@ -36,10 +36,10 @@ macro_rules! data {
 pub(crate) use data;
 
 impl Topic {
-    /// Reads the studies, which are kept as long as the program runs.
+    /// Parses the studies, which are kept as long as the program runs.
     ///
     /// # Panics
-    /// Data that do not follow the format: they are part of the program, and a test reads all of them.
+    /// If the data do not follow the format. They are part of the program, and a test parses all of them.
     pub(crate) fn read(&'static self) -> impl Iterator<Item = Study> {
         self.studies.iter().map(|(id, text)| {
             let data = StudyData::read(text).unwrap_or_else(|error| panic!("{id}: {error}"));
@@ -55,7 +55,7 @@ impl Topic {
 }
 
 impl Study {
-    /// Functions and figures that the data name and nothing has, and rows whose number or tolerance is missing.
+    /// Returns unknown functions and figures in the data, and rows without a value or tolerance.
     #[cfg(test)]
     pub(crate) fn unknown_names(&self) -> Vec<String> {
         self.data.unknown_names(self.measures)
@@ -64,7 +64,7 @@ impl Study {
     /// Computes the rows and draws the figures.
     ///
     /// # Errors
-    /// Figures that cannot be written, and what can go wrong with a run.
+    /// Figures that cannot be written, and errors of runs.
     pub fn run(&self, context: &Context<'_>) -> Result<Vec<Row>, RunError> {
         rows(&self.data, self.measures, context)
     }

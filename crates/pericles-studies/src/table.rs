@@ -1,4 +1,4 @@
-//! The rows of a study as a table for people.
+//! Prints the rows of a study as a table.
 
 use pericles_run::units::{percent, quantity, significant};
 
@@ -13,7 +13,7 @@ const HEADER: [&str; 6] = [
     "verdict",
 ];
 
-/// The table with notes below it.
+/// Formats the table with notes below it.
 pub fn table(rows: &[Row]) -> String {
     let mut cells = vec![HEADER.map(str::to_owned)];
     let mut notes = Vec::new();
@@ -71,7 +71,7 @@ pub fn table(rows: &[Row]) -> String {
 fn shown(value: f64, unit: &str) -> String {
     match unit {
         "" => significant(value, 4),
-        // Angles keep their degrees, and speeds are compared without prefixes.
+        // Angles are given in degrees, and speeds without prefixes for comparison.
         "°" => format!("{value:.1}°"),
         "m/s" => format!("{value:.0} m/s"),
         _ => quantity(value, unit),

@@ -1,7 +1,7 @@
-//! The choice among bonds one by one, convolution and plane waves.
+//! Selects the form of the force operator: bonds one by one, convolution or plane waves.
 
 use pericles::Result;
-use pericles::family::Cut;
+use pericles::family::BondCut;
 use pericles::material::PairLaw;
 use pericles::operator::{AssembledBonds, BondBody, CompositeBody, Feature, Features, Force};
 
@@ -10,13 +10,13 @@ use crate::linear::{
     ConvolutionForce, CostComparison, GaussForce, SpectralCubicForce, SpectralForce,
 };
 
-/// A force operator, and what each pre-crack removed from it.
+/// Force operator, and the bonds removed by each pre-crack.
 pub struct AssembledForce {
     /// The operator.
     pub operator: Box<dyn Force>,
-    /// One for each pre-crack.
-    pub cuts: Vec<Cut>,
-    /// The form taken, never [`ForceForm::Fastest`].
+    /// Removed bonds, one entry per pre-crack.
+    pub cuts: Vec<BondCut>,
+    /// Selected form, never [`ForceForm::Fastest`].
     pub form: ForceForm,
 }
 
@@ -30,7 +30,7 @@ impl From<AssembledBonds> for AssembledForce {
     }
 }
 
-/// What a body has that not every form represents.
+/// Returns the features of a body that some forms do not represent.
 pub fn features(composite: &CompositeBody<'_>) -> Features {
     let features = composite.features();
     if !GaussForce::fits(composite.body.cloud) {
@@ -41,10 +41,11 @@ pub fn features(composite: &CompositeBody<'_>) -> Features {
         .with(Feature::NoLattice, false)
 }
 
-/// The force operator of a body.
+/// Creates the force operator of a body.
 ///
 /// # Errors
-/// A form that does not represent the body ([`ForceForm::check`]); those of [`CompositeBody::operator`] and of the constructors of linear operators.
+/// A form that does not represent the body ([`ForceForm::check`]); errors of [`CompositeBody::operator`] and of the
+/// constructors of linear operators.
 pub fn assemble(composite: &CompositeBody<'_>, form: ForceForm) -> Result<AssembledForce> {
     let body = &composite.body;
     let features = features(composite);
@@ -73,14 +74,15 @@ pub fn assemble(composite: &CompositeBody<'_>, form: ForceForm) -> Result<Assemb
     })
 }
 
-/// Whether a convolution represents a body and costs less than bonds one by one, or is the one form of both that represents it.
+/// Returns true if a convolution represents the body and is cheaper than bonds one by one, or is the only form that
+/// represents it.
 fn convolution_is_fastest(body: &BondBody<'_>, features: Features) -> bool {
-    /// What a bond of the list costs over one of the grid, about.
+    /// Approximate cost of a bond in a list relative to a stencil.
     const GRID_GAIN: f64 = 5.0;
     if ForceForm::Convolution.refusal(features).is_some() {
         return false;
     }
-    // The estimate of costs is that of free faces.
+    // The cost estimate holds for free faces only.
     if features.has(Feature::PeriodicFaces) || features.has(Feature::GaussNodes) {
         return true;
     }
@@ -89,7 +91,7 @@ fn convolution_is_fastest(body: &BondBody<'_>, features: Features) -> bool {
     costs.is_ok_and(|costs| GRID_GAIN * costs.convolution < costs.bond_list)
 }
 
-/// A form without bonds: plane waves, else a convolution.
+/// Creates a form without individual bonds: plane waves or a convolution.
 fn transform<const D: usize>(body: &BondBody<'_>, form: ForceForm) -> Result<Box<dyn Force>> {
     let (cloud, material, constants) = (body.cloud.clone(), body.material, body.constants);
     Ok(match form {

@@ -1,12 +1,12 @@
-//! The forms in which forces are computed, and what they do not represent.
+//! Forms in which forces are computed, and their limits.
 
 use pericles::Result;
 use pericles::operator::{BondForm, Feature, Features, Limit};
 
-/// How the internal forces of a body are computed.
+/// Form in which the internal forces of a body are computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ForceForm {
-    /// The cheapest by estimated cost.
+    /// The cheapest form by estimated cost.
     #[default]
     Fastest,
     /// [`BondForm::Grid`].
@@ -15,17 +15,20 @@ pub enum ForceForm {
     FloatGrid,
     /// [`BondForm::List`].
     List,
-    /// Transforms of a linear body's kernel ([`ConvolutionForce`](crate::linear::ConvolutionForce), or [`GaussForce`](crate::linear::GaussForce) on Gauss nodes).
+    /// Transforms of the kernel of a linear body ([`ConvolutionForce`](crate::linear::ConvolutionForce), or
+    /// [`GaussForce`](crate::linear::GaussForce) on Gauss nodes).
     Convolution,
     /// Plane waves of a periodic body ([`SpectralForce`](crate::linear::SpectralForce), [`SpectralCubicForce`](crate::linear::SpectralCubicForce)).
     Spectral,
 }
 
-/// A transform is a linear operator.
-pub(crate) const LINEAR_ONLY: &str = "a transform is a linear operator; use model = \"linear\", or bonds = \"list\", \"grid\" or \"fastest\"";
+/// Reason: a transform is a linear operator.
+pub(crate) const LINEAR_ONLY: &str = "transforms (convolution, spectral) represent linear forces only; use model = \
+    \"linear\", or bonds = \"list\", \"grid\" or \"fastest\"";
 
-/// The bonds of a transform are the same at every point.
-const UNIFORM: &str = "a transform has the same bonds at every point, for the whole run; use bonds = \"list\", \"grid\" or \"fastest\"";
+/// Reason: a transform uses the same bonds at every point.
+const UNIFORM: &str = "transforms (convolution, spectral) need the same bonds at every point during the whole run; \
+    use bonds = \"list\", \"grid\" or \"fastest\"";
 
 const fn linear(feature: Feature) -> Limit {
     Limit::new(feature, LINEAR_ONLY)
@@ -37,11 +40,11 @@ const fn uniform(feature: Feature) -> Limit {
 
 const TENSORS: Limit = Limit::new(
     Feature::Tensors,
-    "they are sums over single bonds; use bonds = \"list\", \"grid\" or \"fastest\"",
+    "they are sums over individual bonds; use bonds = \"list\", \"grid\" or \"fastest\"",
 );
 
 /// Limits of all transforms.
-const OF_TRANSFORMS: [Limit; 15] = [
+const OF_TRANSFORMS: [Limit; 16] = [
     Limit::STATE_BASED,
     Limit::CORRESPONDENCE,
     Limit::SEVERAL_SPACINGS,
@@ -57,12 +60,13 @@ const OF_TRANSFORMS: [Limit; 15] = [
     Limit::BOND_ENERGY,
     TENSORS,
     Limit::THERMAL_EXPANSION,
+    Limit::SOFTENING,
 ];
 
 const FULL_BOX: &str =
     "a Fourier series needs a full box of cells (bar, plate or block without holes)";
 
-/// All limits of convolutions. On bars plane waves compute the Green-strain law too.
+/// All limits of convolutions. On bars plane waves also compute the Green-strain law.
 const OF_CONVOLUTION: &[Limit] = &joined::<{ OF_TRANSFORMS.len() + 2 }>(&[
     linear(Feature::GreenStrainBar),
     Limit::new(
@@ -74,13 +78,13 @@ const OF_CONVOLUTION: &[Limit] = &joined::<{ OF_TRANSFORMS.len() + 2 }>(&[
 const OF_SPECTRAL: &[Limit] = &joined::<{ OF_TRANSFORMS.len() + 3 }>(&[
     Limit::new(
         Feature::FreeFaces,
-        "Fourier series need a body whose opposite faces are one: set body.periodic = true, or use \"convolution\"",
+        "Fourier series need a periodic body: set body.periodic = true, or use \"convolution\"",
     ),
     Limit::new(Feature::NoLattice, FULL_BOX),
     Limit::new(Feature::GaussNodes, FULL_BOX),
 ]);
 
-/// The limits of all transforms, and others.
+/// Concatenates the limits of all transforms and others.
 const fn joined<const N: usize>(others: &[Limit]) -> [Limit; N] {
     let mut all = [OF_TRANSFORMS[0]; N];
     let mut k = 0;
@@ -95,7 +99,7 @@ const fn joined<const N: usize>(others: &[Limit]) -> [Limit; N] {
 }
 
 impl ForceForm {
-    /// As written in decks.
+    /// Name in decks.
     pub fn name(self) -> &'static str {
         match (self, self.of_bonds()) {
             (_, Some(bonds)) => bonds.name(),
@@ -104,7 +108,7 @@ impl ForceForm {
         }
     }
 
-    /// The form in which bonds are computed one by one; none for forms that transform.
+    /// Returns the form that computes bonds one by one; `None` for transforms.
     pub fn of_bonds(self) -> Option<BondForm> {
         match self {
             Self::Fastest => Some(BondForm::Fastest),
@@ -115,7 +119,7 @@ impl ForceForm {
         }
     }
 
-    /// The forms that may be taken where this one is asked for.
+    /// Returns the forms that may be selected for this one.
     pub fn candidates(self) -> &'static [Self] {
         match self {
             Self::Fastest => &[Self::Grid, Self::List, Self::Convolution],
@@ -127,7 +131,7 @@ impl ForceForm {
         }
     }
 
-    /// What the form does not represent ([`BondForm::limits`]).
+    /// Limits of the form ([`BondForm::limits`]).
     pub fn limits(self) -> &'static [Limit] {
         match (self, self.of_bonds()) {
             (_, Some(bonds)) => bonds.limits(),
@@ -136,12 +140,12 @@ impl ForceForm {
         }
     }
 
-    /// Why the form does not represent a body with these features; none if it does.
+    /// Returns the reason why the form does not represent a body with these features; `None` if it does.
     pub fn refusal(self, features: Features) -> Option<&'static str> {
         Limit::refusal(self.limits(), features)
     }
 
-    /// Refuses a body with features that the form does not represent.
+    /// Returns an error if the form does not represent a body with these features.
     ///
     /// # Errors
     /// [`FormNotUsable`](pericles::PericlesError::FormNotUsable), with the reason.

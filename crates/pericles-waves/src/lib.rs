@@ -1,13 +1,14 @@
-//! Linear peridynamic waves: the nonlocal wave equation and its exact absorbing ends.
+//! Linear peridynamic waves: the nonlocal wave equation and exact absorbing boundaries.
 //!
-//! * [`linear`] – linear operators by convolution (lines, lattice bodies of any shape, bars with Gauss nodes) and by plane waves on periodic boxes.
-//! * [`assemble`] – the force operator of a body, in any form: bonds one by one, convolution, plane waves.
+//! * [`linear`] – linear operators by convolution (lines, lattice bodies of any shape, bars with Gauss nodes) and
+//!   by plane waves on periodic boxes.
+//! * [`assemble`] – the force operator of a body in any form: bonds one by one, convolution, plane waves.
 //! * [`function`] – cos, sinc and other functions of a linear operator, applied to vectors.
-//! * [`Trigonometric`] – the integrator that takes the linear part exactly.
-//! * [`exact`] – solutions in one dimension, to measure errors against.
-//! * [`absorbing`] – exact ends of infinite bars and of plates that are periodic across.
+//! * [`Trigonometric`] – the integrator that solves the linear part exactly.
+//! * [`exact`] – exact solutions in one dimension, used to measure errors.
+//! * [`absorbing`] – exact absorbing boundaries of bars and of plates that are periodic across.
 //!
-//! The crate uses only what the engine, [`pericles`], exports.
+//! The crate uses only the public interface of the engine, [`pericles`].
 
 pub mod absorbing;
 mod assemble;

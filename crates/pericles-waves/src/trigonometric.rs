@@ -5,17 +5,17 @@ use rayon::prelude::*;
 use crate::function::{Chebyshev, Eigenvectors, Lanczos, MatrixFunction, Term, WaveFunction};
 use pericles::Interrupt;
 use pericles::StepKind;
-use pericles::operator::{FunctionOf, On};
+use pericles::operator::{FunctionOf, PointSubset};
 use pericles::parallel::BLOCK;
 use pericles::time::{Integrator, State};
 use pericles::{Need, Requirement, require};
 use pericles::{PericlesError, Result};
 use pericles::{PointScalar, System};
 
-/// How functions of the stiffness are computed (see [`crate::function`]).
+/// Method for functions of the stiffness (see [`crate::function`]).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum FunctionMethod {
-    /// Fourier where the operator is diagonal in plane waves and nothing is held, else Chebyshev.
+    /// Fourier if the operator is diagonal in plane waves and no point is constrained, otherwise Chebyshev.
     #[default]
     Fastest,
     /// Chebyshev series.
@@ -38,7 +38,7 @@ impl FunctionMethod {
         Self::Eigenvectors,
     ];
 
-    /// As written in decks.
+    /// Name in decks.
     pub fn name(self) -> &'static str {
         match self {
             Self::Fastest => "fastest",
@@ -50,49 +50,55 @@ impl FunctionMethod {
     }
 }
 
-/// Where a load that changes in time is taken within a step.
+/// Quadrature of time-dependent loads within a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum LoadRule {
-    /// At the two Gauss nodes: order four.
+    /// Two Gauss nodes: order four.
     #[default]
     Gauss,
-    /// In the middle: order two.
+    /// Midpoint: order two.
     Midpoint,
 }
 
-/// Choices of a [`Trigonometric`] integrator.
+/// Options of a [`Trigonometric`] integrator.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct TrigonometricOptions {
-    /// Functions of the stiffness.
+    /// Method for functions of the stiffness.
     pub functions: FunctionMethod,
-    /// Loads.
+    /// Quadrature of loads.
     pub load_rule: LoadRule,
-    /// Added to all eigenvalues ω², 1/s². Never needed, and an error of its own: for comparison with methods that divide by W.
+    /// Added to all eigenvalues ω², 1/s². Never required, and introduces an error; for comparison with methods that
+    /// divide by W.
     pub regularisation: f64,
 }
 
-/// u′ = u + τ sinc(τW) v + (1 − cos τW) W⁻² a, v′ = cos(τW) v + τ sinc(τW) a, with W² = K/ρ and a = −W²u + b/ρ at the start of the step.
+/// Trigonometric integrator: u′ = u + τ sinc(τW) v + (1 − cos τW) W⁻² a, v′ = cos(τW) v + τ sinc(τW) a, with W² =
+/// K/ρ and a = −W²u + b/ρ at the start of the step.
 ///
-/// Exact for linear forces and constant loads, whatever the step: one step may reach any time. Loads and prescribed motions that change within the
-/// step enter by the difference from its start, r(s) = b(t+s) − b(t) over ρ, as
-/// Σ_k w_k [ sin((τ−s_k)W)/W r(s_k), cos((τ−s_k)W) r(s_k) ] with the Gauss nodes s_k (order 4) or the midpoint (order 2).
+/// Exact for linear forces and constant loads with any time step: one step may cover any time. Loads and prescribed
+/// motions that vary within the step contribute by the difference from its start, r(s) = b(t+s) − b(t) over ρ, as
+/// Σ_k w_k [ sin((τ−s_k)W)/W r(s_k), cos((τ−s_k)W) r(s_k) ] with the Gauss nodes s_k (order 4) or the midpoint
+/// (order 2).
 ///
-/// Nonlinear forces are split into K, the tangent at the reference, and a remainder g, which kicks the velocity by τg/(2ρ) before and after
-/// the step of the linear part: second order, symmetric and symplectic (Deuflhard 1979; Hairer, Lubich & Wanner, Geometric Numerical
-/// Integration, XIII.1), and stable as long as τ² times the remainder's stiffness over ρ is small, however stiff the linear part is. Prescribed motion of
-/// nonlinear bodies is then of second order, too.
+/// Nonlinear forces are split into K, the tangent at the reference, and a remainder g, which changes the velocity
+/// by τg/(2ρ) before and after the step of the linear part: second order, symmetric and symplectic (Deuflhard 1979;
+/// Hairer, Lubich & Wanner, Geometric Numerical Integration, XIII.1), and stable as long as τ² times the
+/// remainder's stiffness over ρ is small, however stiff the linear part is. Prescribed motion of nonlinear bodies
+/// is then of second order as well.
 ///
-/// Cost of a step: two applications of the functions (four where loads change), each some τω/2 products with K by Chebyshev series.
+/// Cost of a step: two applications of the functions (four with time-dependent loads), each some τω/2 products with
+/// K by Chebyshev series.
 ///
-/// Source: the schemes of Coclite, Fanizzi, Lopez, Maddalena & Pellegrino, Appl. Numer. Math. 155 (2020) 119–139, in increments, so that loads that are constant
-/// and rigid motions are exact and nothing need be inverted; the second load node of their order-4 scheme is misprinted.
+/// Source: the schemes of Coclite, Fanizzi, Lopez, Maddalena & Pellegrino, Appl. Numer. Math. 155 (2020) 119–139,
+/// written in increments, so that constant loads and rigid motions are exact and no inverse is needed; the second
+/// load node of their order-4 scheme is misprinted.
 pub struct Trigonometric {
     options: TrigonometricOptions,
     engine: Engine,
-    /// The number of prescribed motions that held their points when the functions were made.
+    /// Number of prescribed motions that constrained their points when the functions were created.
     held: u64,
     linear: bool,
-    /// The displacement about which forces are linearised: none.
+    /// Displacement about which forces are linearised: zero.
     reference: Vec<f64>,
     push: Vec<f64>,
     pull: Vec<f64>,
@@ -109,24 +115,25 @@ enum Engine {
 const NAME: &str = "trigonometric";
 
 impl Trigonometric {
-    /// What it needs of a system.
+    /// Requirements on a system.
     pub const REQUIREMENTS: &'static [Requirement] = &[Requirement {
         need: Need::NoMemory,
-        reason: "boundaries with a memory have as many ghosts as the horizon has points, and the cosine of the stiffness reaches much farther in one step; use velocity-verlet",
+        reason: "the cosine of the stiffness extends much farther in one step than the ghosts of a boundary with memory, \
+            which are as many as the horizon has points; use velocity-verlet",
     }];
 
-    /// The scheme for a body.
+    /// Creates the scheme for a body.
     ///
     /// # Errors
-    /// A body without stiffness or with boundaries that have a memory; a negative regularisation; [`FunctionMethod::Fourier`] where the operator is
-    /// not diagonal in plane waves.
+    /// A body without stiffness or with boundaries that have a memory; a negative regularisation;
+    /// [`FunctionMethod::Fourier`] if the operator is not diagonal in plane waves.
     pub fn new(options: TrigonometricOptions, system: &System) -> Result<Self> {
         let regularisation = options.regularisation;
         if !(regularisation.is_finite() && regularisation >= 0.0) {
             return Err(PericlesError::SchemeParameter {
                 parameter: "the regularisation of the trigonometric scheme",
                 value: regularisation,
-                allowed: "zero (the default, and always right) or a positive number, 1/s²",
+                allowed: "zero (the default, recommended) or a positive number, 1/s²",
             });
         }
         require(NAME, Self::REQUIREMENTS, system)?;
@@ -149,7 +156,7 @@ impl Trigonometric {
         })
     }
 
-    /// Makes the functions anew where they know which points are held and some have been let go.
+    /// Recreates the functions if they depend on the constrained points and some have been released.
     fn follow_supports(&mut self, system: &System, t_next: f64) -> Result<()> {
         let held = system.holding(t_next);
         if held != self.held && self.options.functions == FunctionMethod::Eigenvectors {
@@ -159,7 +166,7 @@ impl Trigonometric {
         Ok(())
     }
 
-    /// Splits the held acceleration in `pull` into that of the linear part, which stays there, and the remainder.
+    /// Splits the acceleration in `pull` into the linear part, which stays there, and the remainder.
     fn split(&mut self, system: &System, [t, t_next]: [f64; 2], u: &[f64]) {
         system.vibration_at(t_next, &self.reference, u, &mut self.remainder);
         system.external_acceleration_into(t, &mut self.change);
@@ -177,7 +184,7 @@ impl Trigonometric {
             });
     }
 
-    /// r of the second of three times, start, place and end of the step: zero where nothing changes.
+    /// Computes r for the second of three times (start, node and end of the step); returns false if nothing varies.
     fn change_into(&mut self, system: &System, t: [f64; 3], u: &[f64]) -> bool {
         let [push, change] = [&mut self.push, &mut self.change];
         system.external_acceleration_into(t[1], change);
@@ -185,9 +192,9 @@ impl Trigonometric {
         subtract(change, push);
         if !system.motions().is_empty() {
             push.copy_from_slice(u);
-            system.place_on(t[1], &On::All, push);
+            system.place_on(t[1], &PointSubset::All, push);
             subtract(push, u);
-            // Points that are let go within the step are free in all of it.
+            // Points that are released within the step are free during all of it.
             self.pull.copy_from_slice(push);
             system.hold_at(t[2], &mut self.pull);
             subtract(push, &self.pull);
@@ -269,7 +276,7 @@ impl Trigonometric {
     }
 }
 
-/// The functions of the stiffness with the points held that are so at time t.
+/// Creates the functions of the stiffness with the points that are constrained at time t.
 fn engine(
     options: TrigonometricOptions,
     system: &System,
@@ -292,8 +299,8 @@ fn engine(
     if uniform.is_none() && !(bound > 0.0 && bound.is_finite()) {
         return Err(PericlesError::SchemeNotUsable {
             scheme: NAME,
-            reason: "its forces have no linear part at rest (on a surface: p above 2), and the scheme is the exact flow of that part; \
-                     use scheme = \"rk4\", \"newmark\" or \"discrete-gradient\"",
+            reason: "its forces have no linear part at rest (as on a surface with p > 2), which this scheme solves \
+                exactly; use scheme = \"rk4\", \"newmark\" or \"discrete-gradient\"",
         });
     }
     Ok(match (options.functions, uniform) {
@@ -303,7 +310,8 @@ fn engine(
         (FunctionMethod::Fourier, None) => {
             return Err(PericlesError::SchemeNotUsable {
                 scheme: "trigonometric with Fourier functions",
-                reason: "it needs bonds = \"spectral\" and no prescribed motion; functions = \"chebyshev\" fits any body",
+                reason: "it needs bonds = \"spectral\" and no prescribed motion; functions = \"chebyshev\" supports \
+                    any body",
             });
         }
         (FunctionMethod::Fastest | FunctionMethod::Chebyshev, _) => {
@@ -312,7 +320,7 @@ fn engine(
         }
         (FunctionMethod::Lanczos, _) => Engine::Krylov(Box::new(Lanczos::new(system.masses()))),
         (FunctionMethod::Eigenvectors, _) => {
-            // Held points move nobody, so that the matrix is symmetric.
+            // Constrained points exert no force, so that the matrix is symmetric.
             let mut free = vec![0.0; reference.len()];
             let mut shifted = |x: &[f64], out: &mut [f64]| {
                 free.copy_from_slice(x);
@@ -325,7 +333,7 @@ fn engine(
     })
 }
 
-/// Adds functions of the stiffness applied to `x`, whose held entries are zero.
+/// Adds functions of the stiffness applied to `x`, whose constrained entries are zero.
 fn apply(
     engine: &mut Engine,
     options: TrigonometricOptions,
@@ -366,7 +374,7 @@ fn apply(
     }
 }
 
-/// y += factor x
+/// y += factor x.
 fn add(y: &mut [f64], factor: f64, x: &[f64]) {
     y.par_chunks_mut(BLOCK)
         .zip(x.par_chunks(BLOCK))
@@ -407,7 +415,8 @@ impl Integrator for Trigonometric {
 
     fn intended_drift(&self) -> Option<&'static str> {
         (self.options.regularisation > 0.0).then_some(
-            "regularisation adds a stiffness to the ground, and the scheme conserves the energy with it, for any time step; regularisation = 0 conserves the energy of the body",
+            "regularisation adds a stiffness to the ground, whose energy the scheme conserves for any time step; \
+            with regularisation = 0 it conserves the energy of the body",
         )
     }
 
@@ -429,7 +438,8 @@ impl Integrator for Trigonometric {
         let mut exchange = system.damp(t_next, 0.5 * dt, &mut self.push, &mut self.change);
         self.pull.copy_from_slice(a);
         if self.linear {
-            // The last push of supports is part of `a` as if it lasted for the whole step; the kicks of nonlinear bodies halve it.
+            // The last push of supports is part of `a` as if it lasted for the whole step; the kicks of nonlinear
+            // bodies halve it.
             if let Some(push) = system.last_push(times, u) {
                 subtract(&mut self.pull, &push);
             }
@@ -453,7 +463,7 @@ impl Integrator for Trigonometric {
         system.constrain_velocity(t_next, v_next);
         if !self.linear {
             let mut u_next = std::mem::take(&mut self.next[0]);
-            system.free_acceleration(t_next, &u_next, &On::All, &mut self.pull);
+            system.free_acceleration(t_next, &u_next, &PointSubset::All, &mut self.pull);
             system.hold_at(t_next, &mut self.pull);
             self.split(system, [t_next; 2], &u_next);
             std::mem::swap(&mut self.next[0], &mut u_next);
@@ -469,7 +479,7 @@ impl Integrator for Trigonometric {
 }
 
 pericles::saved! {
-    impl Saved for Trigonometric {
+    impl Checkpointed for Trigonometric {
         options, linear, reference: fixed,
         engine, held: rebuilt,
         push, pull, remainder, change, next: scratch,

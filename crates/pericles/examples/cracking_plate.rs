@@ -1,10 +1,13 @@
-//! A glass plate with an edge crack under tension: the crack runs. How fast, compared with the Rayleigh speed?
+//! Dynamic fracture: an edge crack in a glass plate under tension, and its speed compared with the Rayleigh speed.
 
 use std::error::Error;
 
 use pericles::prelude::*;
+use pericles::units::{count, quantity};
 
+/// Young's modulus, Pa.
 const YOUNG: f64 = 72e9;
+/// Mass density, kg/m³.
 const DENSITY: f64 = 2440.0;
 /// Fracture energy, J/m².
 const ENERGY: f64 = 135.0;
@@ -15,7 +18,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let glass = BondMaterial::new(ElasticModulus::Young(YOUNG), DENSITY, 3.0 * spacing)
         .with_fracture_energy(ENERGY);
 
-    // Sets of points are chosen by regions; here the two layers that are loaded.
+    // Regions select sets of points: here the layers of cells at the top and bottom, which carry the traction.
     let layer = |face: &str| Ok::<_, PericlesError>(plate.select(&Region::layer(face, spacing)?));
     let traction = |face: &str, size: f64| {
         let area = 0.06 * 1e-3;
@@ -29,7 +32,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let loads = [traction("+y", 24e6)?, traction("-y", -24e6)?];
 
-    // The crack from the left edge to 15 mm. The tracker follows what grows from it.
+    // The pre-crack from the left edge to x = 15 mm. The tracker finds the damage that grows from it.
     let crack = Crack::Segment {
         from: [0.0, 0.015],
         to: [0.015, 0.015],
@@ -52,7 +55,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         .build()?;
     let mut run = Simulation::builder(system).end(16e-6).build()?;
 
-    // `run` asks after every step whether to go on, and shows the present state.
+    // The closure is called after every step; it reads the state and returns whether to continue.
     let mut path: Vec<(f64, f64)> = Vec::new();
     run.run(|now| {
         if now.state().step.is_multiple_of(10) {
@@ -65,32 +68,32 @@ fn main() -> Result<(), Box<dyn Error>> {
         Control::Continue
     })?;
 
-    // The slope of the path, once the crack has grown by 5 mm.
+    // The mean speed after the crack has grown by 5 mm.
     let running: Vec<_> = path.iter().filter(|(_, advance)| *advance > 5e-3).collect();
     let (Some((t0, a0)), Some((t1, a1))) = (running.first(), running.last()) else {
-        return Err("the crack has not grown by 5 mm".into());
+        return Err("the crack has grown by less than 5 mm".into());
     };
     let speed = (a1 - a0) / (t1 - t0);
-    // Viktorov's approximation of the Rayleigh speed, with Poisson's ratio 1/3 of bond-based plane stress.
+    // Viktorov's approximation of the Rayleigh speed; bond-based plane stress has Poisson's ratio 1/3.
     let ratio = 1.0 / 3.0;
     let shear = (YOUNG / (2.0 * (1.0 + ratio) * DENSITY)).sqrt();
     let rayleigh = shear * (0.862 + 1.14 * ratio) / (1.0 + ratio);
     println!(
-        "crack speed: {speed:.0} m/s = {:.2} of the Rayleigh speed",
+        "crack speed: {speed:.0} m/s = {:.2} times the Rayleigh speed",
         speed / rayleigh
     );
 
     let energies = run.snapshot().energies();
     println!(
-        "{} bonds broke and took {:.3e} J; energy balance: {:+.1e} of it",
-        run.system().operator().broken_bonds(),
-        energies.dissipated,
+        "{} bonds broke and dissipated {}; error of the energy balance: {:+.1e} of it",
+        count(run.system().operator().broken_bonds()),
+        quantity(energies.dissipated, "J"),
         energies.balance() / energies.dissipated
     );
 
-    // A crack in tension cannot outrun the Rayleigh wave.
+    // The Rayleigh speed is the upper limit for a crack in tension.
     if !(0.2..1.0).contains(&(speed / rayleigh)) {
-        return Err("the crack is slower or faster than cracks are".into());
+        return Err("the crack speed is outside the physical range".into());
     }
     Ok(())
 }

@@ -1,16 +1,19 @@
-//! A force of one's own beside the bonds: a rigid wall that pushes points back. A bar flies against it and rebounds.
+//! A custom force in addition to the bonds: contact with a rigid wall. A bar hits the wall and rebounds.
 
 use std::error::Error;
 
 use pericles::prelude::*;
 
-/// A wall: the force density k d on a point that is a depth d > 0 behind it, which has the energy density ½ k d².
+/// A wall with penalty contact: a point at a depth d > 0 behind it has the force density k d and the energy
+/// density ½ k d².
 struct Wall {
-    /// Where it is, m.
+    /// Coordinate of the wall, m.
     place: f64,
+    /// Reference positions of the points, m.
     positions: Vec<f64>,
+    /// Volumes of the points, m³.
     volumes: Vec<f64>,
-    /// k, N/m⁴.
+    /// Contact stiffness k, N/m⁴.
     stiffness: f64,
 }
 
@@ -29,7 +32,7 @@ impl Force for Wall {
         1
     }
 
-    fn add_force(&self, _t: f64, u: &[f64], on: On<'_>, out: &mut [f64]) {
+    fn add_force(&self, _t: f64, u: &[f64], on: PointSubset<'_>, out: &mut [f64]) {
         on.for_each(self.points(), |i| {
             out[i] += self.stiffness * self.depth(u, i)
         });
@@ -47,7 +50,7 @@ impl Force for Wall {
         density.iter().zip(&self.volumes).map(|(w, v)| w * v).sum()
     }
 
-    /// ω² ≤ k/ρ: the stable step takes the wall into account.
+    /// The wall contributes ω² ≤ k/ρ to the highest frequency, from which the stable step follows.
     fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {
         let square = |i: usize| self.stiffness / density(i);
         (0..self.points()).map(square).fold(0.0, f64::max).sqrt()
@@ -65,9 +68,9 @@ impl Force for Wall {
     }
 }
 
-// Nothing changes from step to step, so there is nothing to save.
+// All fields are constant, so that checkpoints contain nothing of the wall.
 saved! {
-    impl Saved for Wall {
+    impl Checkpointed for Wall {
         place, positions, volumes, stiffness: fixed,
     }
 }
@@ -76,9 +79,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     const SPEED: f64 = 5.0;
     let (young, density, length, spacing) = (210e9, 7850.0, 0.1, 1e-3);
     let bar = Grid::bar(length, spacing, 1e-4).points()?;
+    // The wall is at the first point.
     let place = 0.5 * spacing;
     let wall = Wall {
-        // At the first point.
         place,
         positions: bar.axis(0).to_vec(),
         volumes: bar.volumes().to_vec(),
@@ -88,9 +91,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let system = Body::new(bar, steel).force(Box::new(wall)).build()?;
     let mass: f64 = system.masses().iter().sum();
 
-    // The wave of compression runs to the free end and back: the bar touches the wall for 2 L/c.
+    // A compression wave travels to the free end and back, so that the bar touches the wall for the time 2 L/c.
     let transit = length / (young / density).sqrt();
-    // The wall meets points that move: a small part of the stable step resolves the moment of contact.
+    // A fifth of the stable step resolves the start of the contact.
     let mut run = Simulation::builder(system)
         .velocity(|_| [-SPEED, 0.0, 0.0])
         .safety(0.2)
@@ -106,17 +109,17 @@ fn main() -> Result<(), Box<dyn Error>> {
     })?;
 
     let rebound = run.system().momentum(&run.state().v)[0] / mass;
-    println!("the bar arrives with {SPEED} m/s and leaves with {rebound:.3} m/s");
+    println!("impact speed: {SPEED} m/s; rebound speed: {rebound:.3} m/s");
     println!(
-        "contact ends after {:.2} L/c, in the continuum after 2 L/c",
+        "contact ends after {:.2} L/c; continuum: 2 L/c",
         contact / transit
     );
     let energies = run.snapshot().energies();
     let error = energies.balance() / energies.initial;
-    println!("energy balance: {error:+.1e} of the initial energy");
-    // What is left in vibrations of the bar is missing in the rebound.
+    println!("error of the energy balance: {error:+.1e} of the initial energy");
+    // The rebound is slower than the impact by the energy that remains in vibrations of the bar.
     if !(0.9 * SPEED..=SPEED).contains(&rebound) || error.abs() > 1e-3 {
-        return Err("the bar does not rebound as an elastic bar does".into());
+        return Err("the rebound of the elastic bar is wrong".into());
     }
     Ok(())
 }

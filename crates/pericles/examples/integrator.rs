@@ -1,13 +1,15 @@
-//! A time integrator of one's own: Nyström's method of order four for u″ = a(t, u).
+//! A custom time integrator: Nyström's method of order four for u″ = a(t, u).
 //!
 //! With k₁ = a(t, u), k₂ = a(t + h/2, u + h/2 v + h²/8 k₁) and k₃ = a(t + h, u + h v + h²/2 k₂) the step is
-//! u ← u + h v + h²/6 (k₁ + 2 k₂), v ← v + h/6 (k₁ + 4 k₂ + k₃) (Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, II.14).
-//! An integrator asks the system for accelerations and knows no physics.
+//! u ← u + h v + h²/6 (k₁ + 2 k₂), v ← v + h/6 (k₁ + 4 k₂ + k₃)
+//! (Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, II.14).
+//! The integrator gets accelerations from the system and contains no physics.
 
 use std::error::Error;
 
 use pericles::prelude::*;
 
+/// Work arrays of Nyström's method.
 struct Nystrom {
     stage: Vec<f64>,
     k2: Vec<f64>,
@@ -36,7 +38,7 @@ impl Integrator for Nystrom {
         4
     }
 
-    /// The interval of stability is ω h ≤ 2.58; the largest stable step follows from it and the highest frequency of the body.
+    /// The method is stable for ω h ≤ 2.58; with the highest frequency ω of the body this gives the stable step.
     fn stability_limit(&self) -> Option<f64> {
         Some(2.58)
     }
@@ -53,17 +55,24 @@ impl Integrator for Nystrom {
         for i in 0..u.len() {
             self.stage[i] = u[i] + 0.5 * h * v[i] + h * h / 8.0 * k1[i];
         }
-        system.acceleration(state.t + 0.5 * h, &self.stage, v, On::All, &mut self.k2);
+        system.acceleration(
+            state.t + 0.5 * h,
+            &self.stage,
+            v,
+            PointSubset::All,
+            &mut self.k2,
+        );
         for i in 0..u.len() {
             self.stage[i] = u[i] + h * v[i] + 0.5 * h * h * self.k2[i];
         }
-        system.acceleration(t_next, &self.stage, v, On::All, &mut self.k3);
+        system.acceleration(t_next, &self.stage, v, PointSubset::All, &mut self.k3);
         let [u_next, v_next] = &mut self.next;
         for i in 0..u.len() {
             u_next[i] = u[i] + h * v[i] + h * h / 6.0 * (k1[i] + 2.0 * self.k2[i]);
             v_next[i] = v[i] + h / 6.0 * (k1[i] + 4.0 * self.k2[i] + self.k3[i]);
         }
-        // Supports first. Then the end of the step, which decides breaking, books work, and evaluates the acceleration that the next step begins with.
+        // Apply constraints; then end the step, which breaks bonds, updates the energy balance, and evaluates the
+        // acceleration with which the next step starts.
         system.constrain(t_next, u_next, v_next);
         system.constrain_velocity(t_next, v_next);
         state.complete(system, &mut self.next, t_next, h);
@@ -72,14 +81,14 @@ impl Integrator for Nystrom {
     }
 }
 
-// Nothing is carried from step to step but the state, so checkpoints hold nothing of the scheme.
+// The scheme has no state from step to step, so that checkpoints contain nothing of it.
 saved! {
-    impl Saved for Nystrom {
+    impl Checkpointed for Nystrom {
         stage, k2, k3, next: scratch,
     }
 }
 
-/// The displacement of a vibrating bar after 20 µs in so many steps.
+/// The displacement of a vibrating bar after 20 µs, computed in `steps` steps.
 fn displacement(steps: u64) -> Result<Vec<f64>, Box<dyn Error>> {
     let bar = Grid::bar(0.1, 1e-3, 1e-4).points()?;
     let steel = BondMaterial::new(ElasticModulus::Young(210e9), 7850.0, 3e-3);
@@ -108,7 +117,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             None => println!("{steps:5}   {error:.3e}"),
         }
         if order.is_some_and(|order| (order - 4.0).abs() > 0.2) {
-            return Err("the scheme is not of order four".into());
+            return Err("the observed order is not four".into());
         }
         before = Some(error);
     }

@@ -1,13 +1,14 @@
-//! An observer of one's own: gauges on a bar that note when a pulse arrives and how fast the points move.
+//! A custom observer: gauges on a bar that record the arrival of a pulse and its peak velocity.
 //!
-//! Observers look at a run without touching it. A gauge that is asked for its readings after the run is shared with the program by `Arc<Mutex<…>>`.
+//! Observers read a run without changing it. `Arc<Mutex<…>>` shares a gauge with the program, which reads it after the
+//! run.
 
 use std::error::Error;
 use std::sync::{Arc, Mutex};
 
 use pericles::prelude::*;
 
-/// The largest velocity at a point, and when it was reached.
+/// The peak velocity (m/s) at a point and its time (s).
 struct Gauge {
     point: usize,
     peak: f64,
@@ -16,7 +17,7 @@ struct Gauge {
 
 impl Observer for Gauge {
     fn observe(&mut self, snapshot: &Snapshot<'_>) -> Result<(), ObserveError> {
-        // Component c of point i is entry c · n + i; a bar has component 0 only.
+        // Component c of point i is entry c · n + i for n points; a bar has component 0 only.
         let velocity = snapshot.field(Field::Velocity)[self.point];
         if velocity > self.peak {
             (self.peak, self.time) = (velocity, snapshot.state().t);
@@ -25,9 +26,9 @@ impl Observer for Gauge {
     }
 }
 
-// What a checkpoint keeps of it: a run that is stopped and resumed has the same readings. A field that is missing in this list does not compile.
+// The fields stored in checkpoints, so that a resumed run has the same readings. A missing field is a compile error.
 saved! {
-    impl Saved for Gauge {
+    impl Checkpointed for Gauge {
         peak: array("gauge/peak"),
         time: array("gauge/time"),
         point: fixed,
@@ -48,7 +49,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let (first, second, end) = (gauge(0.2), gauge(0.6), gauge(0.8));
 
-    // The left end is driven with the velocity 0.5 m/s · sin²(π t/40 µs), then held.
+    // The left end moves with the prescribed velocity 0.5 m/s · sin²(π t/40 µs) and then stays fixed.
     let driven = bar.select(&Region::layer("-x", 3e-3)?);
     let pulse = TimeFunction::Pulse {
         start: 0.0,
@@ -71,15 +72,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     let ((t1, v1), (t2, _), (_, v_end)) = (read(&first)?, read(&second)?, read(&end)?);
     let speed = 0.4 / (t2 - t1);
     println!("wave speed between the gauges: {speed:.0} m/s (continuum: {wave_speed:.0} m/s)");
-    println!("velocity inside the bar: {v1:.4} m/s (driven with {PUSH} m/s)");
+    println!("peak velocity inside the bar: {v1:.4} m/s (prescribed: {PUSH} m/s)");
     println!(
-        "velocity of the free end: {:.3} times that, 2 in the continuum",
+        "peak velocity of the free end: {:.3} times that inside (continuum: 2)",
         v_end / v1
     );
 
-    // A pulse of compression comes back from a free end as tension: the end moves twice as fast.
+    // A compression pulse is reflected as tension at a free end, which moves with twice the velocity.
     if (speed / wave_speed - 1.0).abs() > 0.01 || (v_end / v1 - 2.0).abs() > 0.02 {
-        return Err("the pulse is not that of an elastic bar".into());
+        return Err("the wave speed or the reflection is wrong".into());
     }
     Ok(())
 }

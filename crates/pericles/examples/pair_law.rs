@@ -1,7 +1,7 @@
-//! A pair law of one's own: bonds that stiffen with the square of their stretch.
+//! A custom pair law: bonds that stiffen with the square of their stretch.
 //!
-//! A law is a type without data that implements [`PairForce`]. It is compiled into the loops over bonds, generic over the number of components `D` and over [`Real`]: one number, or eight bonds side
-//! by side.
+//! A law is a type without data that implements [`PairForce`]. It is compiled into the loops over bonds and is generic
+//! over the dimension `D` and over [`Real`], a single number or a vector of eight bonds.
 
 use std::error::Error;
 
@@ -11,11 +11,13 @@ use pericles::prelude::*;
 /// The coefficient β of the law.
 const BETA: f64 = 4.0;
 
-/// Energy (½ s² + ¼ β s⁴) |ξ| with the stretch s = (|ξ+η| − |ξ|)/|ξ|, so that the force is (s + β s³) n along the deformed bond.
+/// Energy (½ s² + ¼ β s⁴) |ξ| with the stretch s = (|ξ+η| − |ξ|)/|ξ|, hence force (s + β s³) n with the direction n of
+/// the deformed bond.
 #[derive(Debug, Clone, Copy, Default)]
 struct Stiffening;
 
-/// s, |ξ|, |ξ+η| and n. The growth q = |ξ+η|² − |ξ|² keeps its digits at small stretches, a difference of lengths does not.
+/// Returns s, |ξ|, |ξ+η| and n. It uses |ξ+η|² − |ξ|² = η·(2ξ + η), which avoids the cancellation in |ξ+η| − |ξ| at
+/// small stretches.
 #[inline(always)]
 fn bond<T: Real, const D: usize>(xi: [T; D], eta: [T; D]) -> (T, T, T, [T; D]) {
     let reference = dot(xi, xi).sqrt();
@@ -46,7 +48,8 @@ impl PairForce for Stiffening {
         (T::splat(0.5) + T::splat(0.25 * BETA) * s * s) * s * s * reference
     }
 
-    /// The derivative of the force in the direction d: the size changes along n, the direction across it.
+    /// The derivative of the force in the direction d: the part along n changes the magnitude, the part across n the
+    /// direction.
     #[inline(always)]
     fn tangent<T: Real, const D: usize>(xi: [T; D], eta: [T; D], d: [T; D]) -> [T; D] {
         let (s, reference, length, n) = bond(xi, eta);
@@ -58,14 +61,14 @@ impl PairForce for Stiffening {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    // The material gives modulus, density and horizon. With the constants of the lattice the modulus of the grid is exact.
+    // The material has modulus, density and horizon. Calibration on the lattice makes the modulus of the grid exact.
     let young = 1e9;
     let rubber = BondMaterial::new(ElasticModulus::Young(young), 1100.0, 3e-3)
         .with_calibration(Calibration::Lattice);
     let bar = Grid::bar(0.1, 1e-3, 1e-4).points()?;
     let system = Body::new(bar, rubber).pair_law::<Stiffening>().build()?;
 
-    // All bonds of a uniformly stretched bar have one stretch: the energy density is E (½ s² + ¼ β s⁴).
+    // All bonds of a uniformly stretched bar have the same stretch: the energy density is E (½ s² + ¼ β s⁴).
     println!("stretch   energy density (J/m³)   closed form");
     for stretch in [0.01, 0.1, 0.3] {
         let u: Vec<f64> = system.cloud().axis(0).iter().map(|x| stretch * x).collect();
@@ -75,11 +78,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         let exact = young * (0.5 * square + 0.25 * BETA * square * square);
         println!("{stretch:7.2}   {:21.6e}   {exact:.6e}", density[50]);
         if (density[50] / exact - 1.0).abs() > 1e-9 {
-            return Err("the energy density is not that of the law".into());
+            return Err("the energy density differs from the closed form".into());
         }
     }
 
-    // The law runs with every scheme and every form of bonds. Here the bar vibrates with strains of several per cent.
+    // The law works with every time integrator and every form of bonds. Here the bar vibrates with strains of several
+    // per cent.
     let mut run = Simulation::builder(system)
         .velocity(|[x, ..]| [60.0 * (10.0 * std::f64::consts::PI * x).cos(), 0.0, 0.0])
         .safety(0.2)
@@ -88,7 +92,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     run.run_to_end()?;
     let energies = run.snapshot().energies();
     let error = energies.balance() / energies.initial;
-    println!("energy balance after {} steps: {error:+.1e}", run.steps());
+    println!(
+        "error of the energy balance after {} steps: {error:+.1e} of the initial energy",
+        run.steps()
+    );
     if error.abs() > 1e-3 {
         return Err("the force is not the derivative of the energy".into());
     }

@@ -1,17 +1,18 @@
-//! Work and impulse of everything outside the body.
+//! Work and impulse of external forces.
 
 use crate::boundary::Load;
 use crate::space::PointCloud;
 use crate::step_end::{Path, StepEnd};
 
-/// Work and impulse of everything outside the body since the start.
+/// Work and impulse of loads, constraints and boundaries since the start.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Ledger {
-    /// Work of loads and supports, J.
+    /// Work, J.
     pub work: f64,
-    /// Sum of the magnitudes of its contributions, J: the scale of what was exchanged.
+    /// Sum of the magnitudes of all contributions to the work, J: the scale for relative errors of the energy
+    /// balance.
     pub exchanged: f64,
-    /// Impulse of loads and supports, N s.
+    /// Impulse, N s.
     pub impulse: [f64; 3],
 }
 
@@ -24,7 +25,7 @@ impl Ledger {
         }
     }
 
-    /// Books the work and impulse of a load over a step.
+    /// Adds the work and impulse of a load over a step.
     pub(crate) fn book_load(&mut self, step: &StepEnd<'_>, load: &Load, cloud: &PointCloud) {
         let (n, volumes) = (cloud.len(), cloud.volumes());
         let times = [step.t - step.dt, step.t - 0.5 * step.dt, step.t];

@@ -1,25 +1,28 @@
-//! Bonds that broke within a step too coarse for them: what they should have dissipated is taken from the motion of their ends.
+//! Energy correction for bonds that break in a step too coarse for the half-step rule.
 //!
-//! A scheme lets a breaking bond act for half of its step, so that it dissipates the energy ½ k η η′ of a linear bond with elongations η before and η′ after the step. That converges to its energy at the
-//! critical elongation, ½ k η_c². Where a bond is stretched by many times η_c in one step the two have nothing to do with each other, and compressed bonds (η < 0) would make energy. There the bond
-//! is taken to have broken at η_c on the way: the difference is taken from, or given back to, the relative velocity of its ends along the bond, as two equal and opposite impulses. Momentum and
-//! angular momentum are kept. All bonds of a step are settled at once from the same velocities, so that the result does not depend on their order, and the energy that
-//! this takes in fact is booked, so that the balance of energy closes to rounding.
+//! A breaking bond acts for half of its step. A linear bond with elongation η before and η′ after the step thus
+//! dissipates ½ k η η′, which converges to the energy at the critical elongation, ½ k η_c². Where one step
+//! stretches a bond to many times η_c the two are unrelated, and a compressed bond (η < 0) would create energy.
+//! Such a bond is taken to have broken at η_c within the step: the difference is removed from, or added to, the
+//! relative velocity of its ends along the bond by two equal and opposite impulses, which conserve momentum and
+//! angular momentum. All bonds of a step are corrected at once from the same velocities, so that the result does
+//! not depend on their order. The energy actually removed enters the energy balance, which closes to rounding.
 
 use crate::domain::Field;
 use crate::operator::CoarseBreak;
 use crate::system::System;
 
-/// Passes over the bonds of a step at most. One is enough where few bonds share a point; where all bonds of a point break at once, each pass leaves some energy to the next.
+/// Largest number of passes over the broken bonds of a step. One is enough where few bonds share a point; where all
+/// bonds of a point break at once, each pass leaves some energy to the next.
 const PASSES: usize = 32;
-/// Energy that may be left, over that of all bonds.
+/// Energy that may remain, relative to that of all broken bonds.
 const LEFT: f64 = 1e-6;
 
 impl System {
-    /// Settles the bonds that broke at the end of a step, time t: changes the velocities v of their ends.
+    /// Corrects the velocities v of the ends of the bonds that broke in the step that ends at time t.
     ///
-    /// In each pass every bond asks for its impulse from the same velocities; all impulses together are scaled so that they take the energy that is still missing, or as much
-    /// of it as they can.
+    /// Each pass computes the impulses of all bonds from the same velocities and scales them so that together they
+    /// remove the missing energy, or as much of it as possible.
     pub fn settle_breaking(&mut self, t: f64, v: &mut [f64]) {
         let domain = self.domain().clone();
         let Some(breaking) = self.operator_mut().breaking_mut() else {
@@ -29,7 +32,7 @@ impl System {
         if domain.all(breaks.is_empty()) {
             return;
         }
-        // In the same order for every division among processes.
+        // The order must not depend on the division among processes.
         breaks.sort_by_key(|bond| {
             let [a, b] = bond.points.map(|point| domain.number(point as usize));
             [a.min(b), a.max(b)]
@@ -59,14 +62,15 @@ impl System {
         }
     }
 
-    /// Whether this process counts a bond: the owner of the end with the smaller number does.
+    /// Returns whether this process counts a bond: the owner of the end with the smaller number does.
     fn is_ours(&self, bond: &CoarseBreak) -> bool {
         let number = |&point: &u32| self.domain().number(point as usize);
         let first = bond.points.iter().min_by_key(|&point| number(point));
         first.is_some_and(|&point| (point as usize) < self.points())
     }
 
-    /// Applies impulses, N s, scaled so that they take the energy `missing`, J, or as much of it as they can; books and returns what they took.
+    /// Applies impulses (N s), scaled so that they remove the energy `missing` (J) or as much of it as possible.
+    /// Adds the removed energy to the energy balance and returns it.
     fn push(&mut self, impulse: &[f64], missing: f64, v: &mut [f64], free: &[f64]) -> f64 {
         let (n, domain) = (self.points(), self.domain().clone());
         let pushed: Vec<usize> = (0..impulse.len()).filter(|&k| impulse[k] != 0.0).collect();
@@ -76,7 +80,7 @@ impl System {
             free[entry] * impulse[entry] * impulse[entry] / self.mass(entry % n)
         });
         let scale = separating_impulse(rate, compliance, missing);
-        // Impulses against the bonds' own are no separation.
+        // Impulses opposite to those of the bonds would not separate their ends.
         if scale <= 0.0 || !scale.is_finite() {
             return 0.0;
         }
@@ -85,7 +89,7 @@ impl System {
         for entry in pushed {
             let push = scale * impulse[entry];
             if free[entry] == 0.0 {
-                // The support takes the impulse.
+                // The constraint takes the impulse.
                 given.push(push * v[entry]);
                 supports.push(-push * v[entry]);
                 reaction[entry / n].push(-push);
@@ -99,18 +103,18 @@ impl System {
         let taken = -sum(&given);
         self.book_reaction(sum(&supports), reaction.each_ref().map(|terms| sum(terms)));
         if let Some(breaking) = self.operator_mut().breaking_mut() {
-            // One by one: the sum of all processes does not depend on the division.
+            // Added one by one, so that the sum over all processes does not depend on the division.
             given.iter().for_each(|given| breaking.dissipate(-given));
         }
         taken
     }
 
-    /// Bonds that broke within a step too coarse for them so far.
+    /// Number of bonds so far that broke in a step too coarse for the half-step rule.
     pub fn coarse_breaks(&self) -> u64 {
         self.domain().count(self.coarse_breaks.get())
     }
 
-    /// The impulse on every unknown, N s.
+    /// Returns the impulse on every unknown, N s.
     fn impulses(&self, breaks: &[CoarseBreak], v: &[f64], ends: &Ends) -> Vec<f64> {
         let (n, dimension) = (self.points(), self.dimension());
         let velocity = Field::new(v, &ends.velocity);
@@ -148,12 +152,12 @@ impl System {
     }
 }
 
-/// What is known of the ends of bonds, with those that other processes own.
+/// Data of the ends of bonds, including those owned by other processes.
 struct Ends {
-    /// One where the motion is free, zero where it is prescribed; by entry.
+    /// 1 where the motion is free, 0 where it is prescribed; by entry.
     free: Vec<f64>,
     free_ghosts: Vec<f64>,
-    /// Masses, kg; ghosts behind own points.
+    /// Masses, kg; own points first, then ghosts.
     mass: Vec<f64>,
     /// Velocities of ghosts, m/s.
     velocity: Vec<f64>,
@@ -173,8 +177,9 @@ impl Ends {
     }
 }
 
-/// The impulse p along a bond that changes the energy of its ends, whose distance grows with `rate` and whose inverse masses add up to `compliance`, by −`missing` = p rate + ½ p² compliance: the
-/// smaller of the two; the one that takes the most if there is none.
+/// Returns the impulse p along a bond that changes the energy of its ends by −`missing`: p rate + ½ p² compliance =
+/// −missing, where their distance grows with `rate` and their inverse masses add up to `compliance`. Of two
+/// solutions it is the smaller one; without a solution, the impulse that removes the most energy.
 fn separating_impulse(rate: f64, compliance: f64, missing: f64) -> f64 {
     let square = rate * rate - 2.0 * compliance * missing;
     if square < 0.0 {
@@ -193,16 +198,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn impulses_take_the_energy_that_is_missing_or_all_there_is() {
+    fn separating_impulses_remove_the_missing_energy_or_all_of_it() {
         for (rate, compliance, missing) in [(2.0, 0.5, 1.0), (-3.0, 2.0, 0.7), (0.1, 1.0, -4.0)] {
             let p = separating_impulse(rate, compliance, missing);
             let change = p * rate + 0.5 * p * p * compliance;
             assert!((change + missing).abs() < 1e-12, "{rate}: {p}");
         }
-        // A relative velocity of 1 m/s of two masses of 2 kg holds 1/2 J.
+        // A relative velocity of 1 m/s of two masses of 2 kg has the energy 1/2 J.
         assert_eq!(separating_impulse(1.0, 1.0, 3.0), -1.0);
         assert_eq!(separating_impulse(0.0, 1.0, 3.0), 0.0);
-        // Ends that do not give way.
+        // Ends that cannot move.
         assert_eq!(separating_impulse(2.0, 0.0, 3.0), -1.5);
     }
 }

@@ -1,7 +1,8 @@
-//! Arrays that are dear to compute and depend on few inputs, kept from run to run.
+//! A cache for arrays that are expensive to compute and depend on few inputs, shared by several runs.
 //!
-//! Kernels of absorbing boundaries, geodesic distances: who computes them asks a [`Cache`] first. The library knows no files; `pericles-io` has a
-//! cache in a folder. What a cache gives is checked there to be what was stored under this key, and by the caller to have the sizes it needs.
+//! Kernels of absorbing boundaries and geodesic distances are looked up in a [`Cache`] before they are computed.
+//! The engine accesses no files; `pericles-io` provides a cache in a folder. That cache checks that the arrays were
+//! stored under the same key; the caller checks that they have the right sizes.
 //!
 //! ```
 //! use pericles::cache::{Cache, Key, NoCache};
@@ -16,15 +17,15 @@ use sha2::{Digest, Sha256};
 
 use crate::archive::Archive;
 
-/// A place where arrays are kept from run to run. A cache may forget; it never gives what was stored under another key.
+/// A store of arrays that outlives a run. It may forget entries, but never returns arrays stored under another key.
 pub trait Cache: Send + Sync {
-    /// What was stored under the key, if it is there and undamaged.
+    /// Returns the arrays stored under a key, if they exist and are undamaged.
     fn load(&self, key: &Key) -> Option<Archive>;
     /// Stores arrays. A failure is not an error of the run: the arrays are computed again next time.
     fn store(&self, key: &Key, arrays: &Archive);
 }
 
-/// A cache that forgets everything.
+/// A cache that stores nothing.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct NoCache;
 
@@ -36,9 +37,9 @@ impl Cache for NoCache {
     fn store(&self, _: &Key, _: &Archive) {}
 }
 
-/// All that a stored result depends on: a kind, which names the algorithm and its version, and the inputs to the last bit.
+/// The key of a stored result: its kind, which names the algorithm and its version, and all inputs bit for bit.
 ///
-/// Every input is hashed with its type and length, so that different lists of inputs give different keys (SHA-256).
+/// Every input is hashed (SHA-256) with its type and length, so that different lists of inputs have different keys.
 #[derive(Clone)]
 pub struct Key {
     kind: &'static str,
@@ -46,7 +47,8 @@ pub struct Key {
 }
 
 impl Key {
-    /// A key without inputs yet. The kind is part of file names: letters, digits and hyphens. It changes when the algorithm's results do.
+    /// Makes a key without inputs. The kind is part of file names: letters, digits and hyphens. Change it when the
+    /// results of the algorithm change.
     pub fn new(kind: &'static str) -> Self {
         Self {
             kind,
@@ -55,12 +57,12 @@ impl Key {
         .text(kind)
     }
 
-    /// The kind.
+    /// Returns the kind.
     pub fn kind(&self) -> &'static str {
         self.kind
     }
 
-    /// Adds a text.
+    /// Adds a string.
     #[must_use]
     pub fn text(mut self, text: &str) -> Self {
         self.start(b't', text.len());
@@ -93,7 +95,7 @@ impl Key {
         self.hash.update((length as u64).to_le_bytes());
     }
 
-    /// The digest in hexadecimal digits.
+    /// Returns the digest in hexadecimal digits.
     pub fn digest(&self) -> String {
         let bytes = self.hash.clone().finalize();
         bytes.iter().map(|byte| format!("{byte:02x}")).collect()
@@ -119,7 +121,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn keys_differ_with_the_inputs_and_where_one_ends() {
+    fn keys_depend_on_every_input_and_its_length() {
         let keys = [
             Key::new("a"),
             Key::new("b"),

@@ -1,36 +1,37 @@
-//! What schemes need of the system they step: one list per scheme, from which refusals and the table of the book are made.
+//! Requirements of time integrators on systems: one list per scheme, from which error messages and the
+//! compatibility table of the book are made.
 
 use crate::error::{PericlesError, Result};
 use crate::system::System;
 
-/// Something that a scheme may need of a system.
+/// A requirement of a scheme on a system.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Need {
     /// Forces in double precision.
     DoublePrecision,
-    /// Forces of finite reach, which can be evaluated on a part of the body.
+    /// Forces of finite reach, which can be evaluated on a subset of the points.
     FiniteReach,
-    /// Forces that are sums over bonds, whose parts can be summed up alone.
+    /// Forces that are sums over bonds and can be split into partial sums.
     SumOverBonds,
-    /// No boundaries that keep a state of their own.
+    /// No boundaries with a state of their own.
     NoBoundaries,
-    /// No boundaries with a memory: none, or such that depend on the state of a stage alone.
+    /// No boundaries with memory; boundaries that depend only on the state of a stage are allowed.
     NoMemory,
-    /// Boundaries that act linearly within a step whose end is an unknown.
+    /// Boundaries that act linearly within an implicit step.
     BoundariesWithinStep,
 }
 
-/// A need of a scheme, and why it has it.
+/// A requirement of a scheme, with its reason.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Requirement {
-    /// What it needs.
+    /// The requirement.
     pub need: Need,
-    /// Why, and what to use where the need is not met.
+    /// The reason, and what to use if the requirement is not met.
     pub reason: &'static str,
 }
 
 impl Requirement {
-    /// For schemes that solve equations.
+    /// The requirement of schemes that solve equations.
     pub const IN_DOUBLES: Self = Self {
         need: Need::DoublePrecision,
         reason: "it solves equations to more digits than forces in single precision have; use forces in double precision",
@@ -38,7 +39,7 @@ impl Requirement {
 }
 
 impl Need {
-    /// Whether a system meets it.
+    /// Returns whether a system meets the requirement.
     pub fn is_met_by(self, system: &System) -> bool {
         let force = system.operator();
         match self {
@@ -54,7 +55,7 @@ impl Need {
     }
 }
 
-/// Refuses a system that does not meet the requirements of a scheme; the first that is not met is named.
+/// Checks that a system meets the requirements of a scheme; the error names the first one that it does not meet.
 ///
 /// # Errors
 /// [`PericlesError::SchemeNotUsable`].

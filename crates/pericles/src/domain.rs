@@ -1,11 +1,15 @@
-//! The points that a process owns, and how it reaches those of others.
+//! Domain decomposition: the points owned by a process, and communication with other processes.
 //!
-//! A body may be divided among several processes. Each owns some of the points, contiguous and component-major in every vector that integrators, observers and boundaries see; of the points of others it holds
-//! copies, *ghosts*, as far as its own points interact with them. Ghost values live in a buffer of their own and are known to forces alone: a force asks its domain for them ([`Domain::ghosts`]) before each of
-//! its passes. Sums, maxima and counts over points go through the domain too, so that nothing else knows how many processes there are. One process that owns everything ([`Alone`]) is the normal case.
+//! A body may be divided among several processes. Each process owns some of the points; integrators, observers and
+//! boundaries see vectors of these points, contiguous and component-major. Of the points of other processes it has
+//! copies, *ghosts*, as far as its own points interact with them. Ghost values are stored in a separate buffer and
+//! are visible to forces only: a force requests them ([`Domain::ghosts`]) before each of its passes. Sums, maxima
+//! and counts over points go through the domain too, so that no other code depends on the number of processes. A
+//! single process that owns all points ([`Alone`]) is the normal case.
 //!
-//! The number of a point in the whole body is its place in the order of [`PointCloud`](crate::space::PointCloud), whatever the division: rows of bonds and groups of eight follow these numbers, so that a
-//! point's force has the same bits for every division. Each process keeps its own points in ascending order of these numbers.
+//! The number of a point in the whole body is its index in [`PointCloud`](crate::space::PointCloud), for every
+//! division. Rows of bonds and groups of eight follow these numbers, so that the force on a point has the same bits
+//! for every division. Each process stores its own points in ascending order of these numbers.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -14,9 +18,10 @@ use std::sync::Arc;
 
 use crate::sum::BinnedSum;
 
-/// What processes that share a body can say to each other. There is no sum of floating-point numbers: it would depend on the number of processes.
+/// Communication between the processes that share a body. It offers no sum of floating-point numbers, because such
+/// a sum depends on the number of processes.
 pub trait Comm: Send + Sync {
-    /// Number of this process.
+    /// Index of this process.
     fn rank(&self) -> usize;
 
     /// Number of processes.
@@ -28,7 +33,7 @@ pub trait Comm: Send + Sync {
     /// Replaces each number by its sum over all processes.
     fn sum(&self, numbers: &mut [i128]);
 
-    /// Replaces each number by the largest of all processes.
+    /// Replaces each number by its maximum over all processes.
     fn max(&self, numbers: &mut [f64]);
 }
 
@@ -52,34 +57,34 @@ impl Comm for Alone {
     fn max(&self, _numbers: &mut [f64]) {}
 }
 
-/// A process that owns ghosts of this one, or the other way round.
+/// A process that owns ghosts of this process, or whose ghosts this process owns.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Peer {
-    /// Its number.
+    /// Its index.
     pub rank: usize,
-    /// Own points that are ghosts there, by their numbers in the whole body.
+    /// Own points that are its ghosts, by their local index.
     pub sent: Vec<u32>,
     /// Ghosts that it owns, in the same order.
     pub received: Range<usize>,
 }
 
-/// What a point tells another one across the border between two processes.
+/// A message between two points of different processes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Letter {
-    /// The point that writes; ghosts are counted behind own points.
+    /// Sending point; ghosts are counted after the own points.
     pub from: usize,
-    /// The point that it writes to, likewise.
+    /// Receiving point, counted in the same way.
     pub to: usize,
-    /// What it says.
+    /// Content of the message.
     pub numbers: [f64; Letter::NUMBERS],
 }
 
 impl Letter {
-    /// Numbers in a letter.
+    /// Count of numbers in a message.
     pub const NUMBERS: usize = 4;
 }
 
-/// The points of a process.
+/// The points of a process and its communication.
 #[derive(Clone)]
 pub struct Domain {
     owned: usize,
@@ -109,28 +114,29 @@ impl fmt::Debug for Domain {
     }
 }
 
-/// A vector on the points of a process: component c of own point i is `owned[c * n + i]`, of ghost g `ghosts[c * m + g]`, with n own points and m ghosts.
+/// A vector field on the points of a process: component c of own point i is `owned[c * n + i]`, of ghost g
+/// `ghosts[c * m + g]`, with n own points and m ghosts.
 #[derive(Debug, Clone, Copy)]
 pub struct Field<'a> {
-    /// Own points.
+    /// Values of own points.
     pub owned: &'a [f64],
-    /// Ghosts.
+    /// Values of ghosts.
     pub ghosts: &'a [f64],
 }
 
 impl<'a> Field<'a> {
-    /// A vector of own points and ghosts.
+    /// Combines the values of own points and ghosts.
     pub fn new(owned: &'a [f64], ghosts: &'a [f64]) -> Self {
         Self { owned, ghosts }
     }
 
-    /// Component c of D at a point; ghosts are counted behind own points.
+    /// Returns component c of D at a point; ghosts are counted after the own points.
     #[inline(always)]
     pub fn at<const D: usize>(&self, c: usize, point: usize) -> f64 {
         self.entry(D, c, point)
     }
 
-    /// The same of a number of components that is known when the program runs.
+    /// Returns component c of `components` at a point, as [`Field::at`].
     #[inline(always)]
     pub fn entry(&self, components: usize, c: usize, point: usize) -> f64 {
         let n = self.owned.len() / components;
@@ -141,14 +147,14 @@ impl<'a> Field<'a> {
         }
     }
 
-    /// The value at point j less that at point i.
+    /// Returns the value at point j minus the value at point i.
     pub fn difference<const D: usize>(&self, [i, j]: [usize; 2]) -> [f64; D] {
         std::array::from_fn(|c| self.at::<D>(c, j) - self.at::<D>(c, i))
     }
 }
 
 impl Domain {
-    /// All points of a body.
+    /// The domain of a single process that owns all points.
     pub fn alone(points: usize) -> Self {
         Self {
             owned: points,
@@ -159,16 +165,18 @@ impl Domain {
         }
     }
 
-    /// The points of one of several processes: their numbers in the whole body, the first `owned` ones its own in ascending order, the others ghosts.
+    /// The domain of one of several processes: the numbers of its points in the whole body, first `owned` own
+    /// points in ascending order, then ghosts.
     ///
     /// # Panics
-    /// If the peers' ghosts are not the points behind the own ones, or the own numbers do not ascend.
+    /// If the ghosts of the peers are not the points after the own ones, or the numbers of own points do not
+    /// increase.
     pub fn new(numbers: Vec<u32>, owned: usize, peers: Vec<Peer>, comm: Arc<dyn Comm>) -> Self {
         let ghosts = peers.iter().map(|peer| peer.received.len()).sum();
-        assert_eq!(numbers.len(), owned + ghosts, "a number for every point");
+        assert_eq!(numbers.len(), owned + ghosts, "one number per point");
         assert!(
             numbers[..owned].is_sorted_by(|a, b| a < b),
-            "own points in ascending order"
+            "own points are in ascending order"
         );
         Self {
             owned,
@@ -179,7 +187,7 @@ impl Domain {
         }
     }
 
-    /// The number in the whole body of own point k, or of ghost k − n if k is not below the number n of own points.
+    /// Number in the whole body of own point k, or of ghost k − n if k ≥ n, the number of own points.
     pub fn number(&self, k: usize) -> usize {
         match &self.numbers[..] {
             [] => k,
@@ -187,7 +195,7 @@ impl Domain {
         }
     }
 
-    /// One value a point, with those of ghosts behind them. Every process must ask at the same time.
+    /// Returns one value per point, first own points, then ghosts. All processes must call it together.
     pub fn with_ghosts<'a>(&self, owned: &'a [f64]) -> Cow<'a, [f64]> {
         if self.peers.is_empty() {
             return Cow::Borrowed(owned);
@@ -195,7 +203,7 @@ impl Domain {
         Cow::Owned([owned, &self.ghosts(owned)].concat())
     }
 
-    /// One mark a point, with those of ghosts behind them. Every process must ask at the same time.
+    /// Returns one flag per point, first own points, then ghosts. All processes must call it together.
     pub fn marks_with_ghosts<'a>(&self, owned: &'a [bool]) -> Cow<'a, [bool]> {
         if self.peers.is_empty() {
             return Cow::Borrowed(owned);
@@ -208,10 +216,11 @@ impl Domain {
         Cow::Owned(marks.iter().map(|&mark| mark != 0.0).collect())
     }
 
-    /// The letters that own points get: those of `letters`, which own points write, and those that come from other processes. Every process must ask at the same time.
+    /// Returns the messages to own points: those of `letters`, which own points send, and those from other
+    /// processes. All processes must call it together.
     ///
     /// # Panics
-    /// If a point that writes to a ghost is no ghost of its owner.
+    /// If a point that sends to a ghost is not a ghost of the owner of that ghost.
     pub fn deliver(&self, letters: Vec<Letter>) -> Vec<Letter> {
         const LENGTH: usize = 2 + Letter::NUMBERS;
         let own = |one: &Letter| one.to < self.owned;
@@ -223,7 +232,7 @@ impl Domain {
             to_them
                 .flat_map(|one| {
                     let from = peer.sent.iter().position(|&k| k as usize == one.from);
-                    let from = from.expect("a bond is known to the owners of both of its ends");
+                    let from = from.expect("the owners of both ends of a bond know the bond");
                     let place = [one.to - first, from].map(|k| k as f64);
                     place.into_iter().chain(one.numbers)
                 })
@@ -239,7 +248,7 @@ impl Domain {
         arrived
     }
 
-    /// Sends each peer a message and returns those that the peers send.
+    /// Sends a message to each peer and returns the messages of the peers.
     fn exchange(&self, message: impl Fn(&Peer) -> Vec<f64>) -> Vec<Vec<f64>> {
         let mut received = vec![Vec::new(); self.peers.len()];
         if !self.peers.is_empty() {
@@ -250,12 +259,12 @@ impl Domain {
         received
     }
 
-    /// Whether a condition holds on all processes.
+    /// Returns whether a condition holds on all processes.
     pub fn all(&self, holds: bool) -> bool {
         self.max(f64::from(u8::from(!holds))) == 0.0
     }
 
-    /// Whether other processes own points of the body.
+    /// Returns whether other processes own points of the body.
     pub fn is_divided(&self) -> bool {
         self.comm.size() > 1
     }
@@ -270,7 +279,8 @@ impl Domain {
         self.ghosts
     }
 
-    /// The values of ghosts, as their owners hold them, of a component-major vector on points. Every process must ask at the same time.
+    /// Returns the values of the ghosts of a component-major vector on points, from their owners. All processes
+    /// must call it together.
     pub fn ghosts(&self, owned: &[f64]) -> Vec<f64> {
         if self.peers.is_empty() {
             return Vec::new();
@@ -294,12 +304,12 @@ impl Domain {
         ghosts
     }
 
-    /// Σ term(k) for k < n and over all processes, the same for every order and division; see [`sum`](crate::sum).
+    /// Returns Σ term(k) over k < n and all processes, independent of order and division; see [`sum`](crate::sum).
     pub fn sum(&self, n: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
         self.total(BinnedSum::of(n, term))
     }
 
-    /// The sum of the sums of all processes.
+    /// Returns the total of the sums of all processes.
     pub fn total(&self, own: BinnedSum) -> f64 {
         if self.comm.size() == 1 {
             return own.value();
@@ -322,9 +332,9 @@ impl Domain {
         self.dot(a, a).sqrt()
     }
 
-    /// The largest of a number of all processes; not a number if it is none on any of them.
+    /// Returns the maximum over all processes; NaN if the value is NaN on any process.
     pub fn max(&self, value: f64) -> f64 {
-        // The maximum of a communicator is that of numbers.
+        // The maximum of a communicator is defined for numbers other than NaN.
         let mut numbers = [
             if value.is_nan() { f64::INFINITY } else { value },
             f64::from(u8::from(value.is_nan())),
@@ -337,12 +347,12 @@ impl Domain {
         }
     }
 
-    /// Replaces each number by the largest of all processes. None of them may be NaN.
+    /// Replaces each number by its maximum over all processes. None of them may be NaN.
     pub fn max_each(&self, numbers: &mut [f64]) {
         self.comm.max(numbers);
     }
 
-    /// The sum of a count over all processes.
+    /// Returns the sum of a count over all processes.
     pub fn count(&self, own: u64) -> u64 {
         let mut numbers = [i128::from(own)];
         self.comm.sum(&mut numbers);

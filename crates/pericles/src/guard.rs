@@ -1,26 +1,32 @@
-//! The guard of a run: stops it before it fills a disk with nonsense.
+//! The guard: detects unstable runs and stops them.
 //!
-//! | looked for | when | in |
+//! | checked for | when | in |
 //! |---|---|---|
 //! | NaN or infinity | every [`OFTEN`] steps | velocities |
-//! | more kinetic energy than was put in | every [`OFTEN`] steps | all bodies |
+//! | more kinetic energy than was supplied | every [`OFTEN`] steps | all bodies |
 //! | growing kinetic and elastic energy | every step | runs whose step is above the bound of the stable step |
-//! | the same, by a measure that costs no force | every [`OFTEN`] steps | nonlinear bodies under explicit schemes |
+//! | growth by a measure without force evaluation | every [`OFTEN`] steps | nonlinear bodies under explicit schemes |
 //! | more energy than the scheme conserves | every [`RARELY`] steps | all bodies |
-//! | a deformation gradient without a positive determinant | every step | forces that compute one |
-//! | points that have passed each other | every [`OFTEN`] steps | nonlinear bars: a linear law knows no order of points |
-//! | a step above the bound of a body that stiffened | every [`RARELY`] steps, and where energy appeared | nonlinear bodies under explicit schemes of one step, unless the step was too long from the start |
+//! | a deformation gradient with non-positive determinant | every step | forces that compute one |
+//! | points that have passed each other | every [`OFTEN`] steps | nonlinear bars (linear laws do not depend on the order of points) |
+//! | a step above the stable step of a body that stiffened | every [`RARELY`] steps, and when energy appears | nonlinear bodies under explicit schemes with one step, unless the step was too long from the start |
 //!
-//! Everything is looked for after the last step. The guard changes nothing, so that results do not depend on it. It costs less than one evaluation of the force in a hundred, except where the
-//! step is above the bound: there it costs one evaluation of the energy a step.
+//! All checks run after the last step. The guard changes nothing, so that results do not depend on it. It costs
+//! less than a hundredth of a force evaluation per step, except where the step is above the bound: there it costs
+//! one evaluation of the energy per step.
 //!
-//! **Growth.** Velocity Verlet conserves H = T + U − dt²/8 a·Ma for linear bodies. H is no measure of growth: it is indefinite beyond the stability limit, where T + U grows without bound at constant H. Below the limit,
-//! with x = dt ω/(the limit of ω dt), H ≥ T + (1 − x²) U, so that T + U cannot exceed H/(1 − x²): a linear body whose step is below the bound cannot grow, and its plain energy, which
-//! may swing by that factor, need not be looked at. At the limit, T + U of a mode can grow (3 + 2√2)-fold in a step, and above it exponentially: a run that is stopped at the first step with 1.7 times the energy
-//! put in has not passed ten times. For nonlinear bodies, whose limit changes, T + dt²/8 a·Ma is the measure, which costs no force: it is bounded by a multiple of the energy like T + U in stable
-//! runs, and grows as T + U does in unstable ones, where T alone is small at full steps.
+//! **Growth.** For linear bodies velocity Verlet conserves H = T + U − dt²/8 a·Ma. H does not measure growth: it is
+//! indefinite beyond the stability limit, where T + U grows without bound at constant H. Below the limit, with x =
+//! dt ω/(limit of ω dt), H ≥ T + (1 − x²) U, so that T + U cannot exceed H/(1 − x²): a linear body whose step is
+//! below the bound cannot grow, and its plain energy, which may oscillate by that factor, needs no check. At the
+//! limit, T + U of a mode can grow (3 + 2√2)-fold in a step, and above it exponentially: a run stopped at the first
+//! step with 1.7 times the supplied energy has not exceeded ten times that energy. For nonlinear bodies, whose
+//! limit changes, the measure is T + dt²/8 a·Ma, which needs no force evaluation: like T + U it is bounded by a
+//! multiple of the energy in stable runs, and it grows as T + U does in unstable ones, where T alone is small at
+//! full steps.
 //!
-//! **Rounding.** Energies below those of displacements by a few units in the last place, ½ M (ω ε L)² with the body's mass M, frequency bound ω and size L, mean nothing: see [`Watched::rounding`].
+//! **Rounding.** Energies below that of displacements of a few units in the last place, ½ M (ω ε L)² with the mass
+//! M, frequency bound ω and size L of the body, are not significant: see [`Watched::rounding`].
 
 use std::fmt;
 
@@ -28,118 +34,125 @@ use crate::observe::StartEnergy;
 use crate::operator::Inversion;
 use crate::system::System;
 use crate::time::{Integrator, State, frequency_from_below, highest_frequency};
+use crate::units::significant;
 
-/// Steps between two looks that cost next to nothing.
+/// Steps between two checks of negligible cost.
 const OFTEN: u64 = 20;
-/// Steps between two looks that cost as much as some evaluations of the force.
+/// Steps between two checks that cost several force evaluations.
 const RARELY: u64 = 2000;
-/// Energy over the energy available at which a run is given up: there is room for the errors of coarse steps.
+/// Ratio to the available energy at which a run is stopped; it allows for the errors of coarse steps.
 const GROWTH: f64 = 2.0;
-/// The same for the sum of kinetic and elastic energy where the step is above the bound.
+/// The same ratio for the sum of kinetic and elastic energy where the step is above the bound.
 const PLAIN_GROWTH: f64 = 1.7;
-/// The same for the measure of nonlinear bodies, over what stable runs can have.
+/// The same ratio for the measure of nonlinear bodies, relative to its bound in stable runs.
 const SWING: f64 = 5.0;
-/// Evaluations of the tangent for a look at the stiffness.
+/// Evaluations of the tangent in a check of the stiffness.
 const APPLICATIONS: usize = 10;
-/// By how much the bound of the linearised motion may be exceeded: nonlinear motion does not grow at once.
+/// Allowed ratio of the step to the stable step of the linearised motion; nonlinear motion does not grow at once above
+/// it.
 const SLACK: f64 = 1.02;
 
-/// Why a run is given up.
+/// The kind of an instability.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
-pub enum Cause {
+pub enum InstabilityCause {
     /// A velocity is NaN or infinite.
     NotANumber,
-    /// More energy than was there at the start and was exchanged since.
+    /// The energy exceeds the initial energy plus the energy exchanged since.
     Growth {
-        /// Its ratio to that.
+        /// Ratio to that energy.
         ratio: f64,
     },
-    /// Neighbours of a bar have changed places.
+    /// Adjacent points of a bar have passed each other.
     Passed {
         /// The other point, in the user's numbering.
         other: usize,
     },
-    /// The deformation gradient of a point has no positive determinant: its material is turned inside out.
+    /// The deformation gradient of a point has a non-positive determinant: the material is inverted.
     Inverted {
         /// The determinant J.
         volume_ratio: f64,
     },
-    /// The body has become so stiff that the step is too long.
+    /// The body has stiffened so much that the step is too long.
     Stiffened {
-        /// The step, s.
+        /// The time step, s.
         dt: f64,
-        /// The largest stable step now, or a bound of it from above, s.
+        /// The present largest stable step or an upper bound of it, s.
         limit: f64,
     },
 }
 
-impl fmt::Display for Cause {
+impl fmt::Display for InstabilityCause {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NotANumber => write!(f, "a velocity is NaN or infinite"),
             Self::Growth { ratio } if *ratio < 1e4 => {
-                write!(f, "the energy is {ratio:.1} times what was put in")
+                write!(f, "the energy is {ratio:.1} times the supplied energy")
             }
             Self::Growth { ratio } => {
-                write!(f, "the energy is {ratio:.1e} times what was put in")
+                write!(f, "the energy is {ratio:.1e} times the supplied energy")
             }
-            Self::Passed { other } => write!(f, "it has passed its neighbour, point {other}"),
+            Self::Passed { other } => {
+                write!(f, "the point has passed its neighbour, point {other}")
+            }
             Self::Inverted { volume_ratio } => write!(
                 f,
-                "its deformation gradient has the determinant {volume_ratio:.3}, which must be positive: the material is turned inside out"
+                "the deformation gradient has the determinant {volume_ratio:.3}, but it must be positive: the material is inverted"
             ),
             Self::Stiffened { dt, limit } => write!(
                 f,
-                "the body has become stiffer: steps above {limit:.4e} s are unstable now, and dt is {dt:.4e} s"
+                "the body has become stiffer: dt is {} s, but steps above {} s are now unstable",
+                significant(*dt, 4),
+                significant(*limit, 4)
             ),
         }
     }
 }
 
-impl Cause {
-    /// What can be done.
+impl InstabilityCause {
+    /// Returns usual causes and remedies.
     pub fn advice(&self) -> &'static str {
         match self {
             Self::NotANumber | Self::Growth { .. } => {
-                "usual causes: a time step above the stable limit, a load that tears points off, a displacement prescribed too fast"
+                "Usual causes: a time step above the stable limit, a load that tears points off, a displacement prescribed too fast"
             }
             Self::Passed { .. } => {
-                "a weaker load, a smoother initial field or a larger spacing keeps points apart"
+                "Use a weaker load, a smoother initial field or a larger spacing"
             }
             Self::Inverted { .. } => {
-                "usual causes: a load or prescribed displacement that is too strong or too fast, a time step above the stable limit; a neo-Hookean law resists compression, and bonds that break (`fracture_energy`) let                  material come apart"
+                "Usual causes: a load or prescribed displacement that is too strong or too fast, a time step above the stable limit. Remedies: a neo-Hookean law, which resists compression, or \
+                 bonds that break (`fracture_energy`)"
             }
-            Self::Stiffened { .. } => "give a smaller dt",
+            Self::Stiffened { .. } => "Use a smaller dt",
         }
     }
 
-    /// Whether it is the time step that makes the run unstable, and not its numbers that ended.
+    /// Returns whether the cause is growth from a time step that is too long, and not NaN or infinity.
     pub(crate) fn is_growth(&self) -> bool {
         matches!(self, Self::Growth { .. } | Self::Stiffened { .. })
     }
 }
 
-/// What was found, and at which point.
+/// An instability and the point at which it was found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Alarm {
-    pub(crate) cause: Cause,
+    pub(crate) cause: InstabilityCause,
     pub(crate) point: usize,
 }
 
-/// A run as the guard sees it.
+/// The parts of a run that the guard checks.
 pub(crate) struct Watched<'a> {
     pub(crate) system: &'a System,
     pub(crate) state: &'a State,
     pub(crate) integrator: &'a dyn Integrator,
     pub(crate) start: StartEnergy,
     pub(crate) dt: f64,
-    /// The step over the largest one that is stable at rest for certain; none where there is no such step.
+    /// Ratio of the step to the largest step that is certainly stable at rest; `None` where no such step exists.
     pub(crate) step_ratio: Option<f64>,
 }
 
 impl Watched<'_> {
-    /// Looks at what is due after a step; at everything after the last.
+    /// Runs the checks that are due after a step; all checks after the last step.
     pub(crate) fn look(&self, last: bool) -> Result<(), Alarm> {
         self.look_at_volumes()?;
         let due = |every: u64| last || self.state.step.is_multiple_of(every);
@@ -158,7 +171,7 @@ impl Watched<'_> {
         Ok(())
     }
 
-    /// Looks for NaN, infinity and inverted points alone.
+    /// Checks for NaN, infinity and inverted points only.
     pub(crate) fn look_at_numbers(&self, last: bool) -> Result<(), Alarm> {
         self.look_at_volumes()?;
         if !(last || self.state.step.is_multiple_of(OFTEN)) {
@@ -167,7 +180,7 @@ impl Watched<'_> {
         self.finite_kinetic_energy().map(|_| ())
     }
 
-    /// The fastest point; one whose velocity is not a number counts as such.
+    /// Returns the fastest point; NaN counts as fastest.
     pub(crate) fn fastest(&self) -> usize {
         let n = self.system.points();
         (0..n).fold(0, |best, i| {
@@ -179,7 +192,7 @@ impl Watched<'_> {
         })
     }
 
-    /// The speed of a point, m/s; infinite if it is not a number.
+    /// Speed of a point, m/s; infinite if it is NaN.
     pub(crate) fn speed(&self, i: usize) -> f64 {
         let n = self.system.points();
         let components = (0..self.system.dimension()).map(|c| self.state.v[c * n + i]);
@@ -193,7 +206,7 @@ impl Watched<'_> {
             return Ok(kinetic);
         }
         Err(Alarm {
-            cause: Cause::NotANumber,
+            cause: InstabilityCause::NotANumber,
             point: self.fastest(),
         })
     }
@@ -205,7 +218,7 @@ impl Watched<'_> {
                 point,
                 volume_ratio,
             }) => Err(Alarm {
-                cause: Cause::Inverted { volume_ratio },
+                cause: InstabilityCause::Inverted { volume_ratio },
                 point,
             }),
         }
@@ -222,7 +235,8 @@ impl Watched<'_> {
         self.compare(energy, PLAIN_GROWTH)
     }
 
-    /// The kinetic energy half a step away, beyond what a stable run can have, in a nonlinear body whose step is too long by now.
+    /// Checks the kinetic energy half a step away against its bound in a stable run, for nonlinear bodies whose
+    /// step may have become too long.
     fn look_at_swing(&self) -> Result<(), Alarm> {
         let Some(ratio) = self.step_ratio.filter(|ratio| *ratio < 1.0) else {
             return Ok(());
@@ -246,13 +260,14 @@ impl Watched<'_> {
         }
     }
 
-    /// Energy that was there and that was exchanged with the outside, J: what left may come back.
+    /// Energy that was supplied or exchanged with the outside, J: energy that left may return.
     fn available(&self) -> f64 {
         self.start.energy + self.system.ledger().exchanged
     }
 
-    /// Energy that rounding alone may make, J: the body's mass times the square of ω ε L, the velocity of vibrations by one unit in the last place of coordinates and displacements. Rounding acts
-    /// anew in every step, like a random walk.
+    /// Energy that rounding alone may create, J: the mass of the body times the square of ω ε L, the velocity of
+    /// vibrations by one unit in the last place of coordinates and displacements. Rounding acts anew in every step,
+    /// like a random walk.
     fn rounding(&self) -> f64 {
         let (system, operator) = (self.system, self.system.operator());
         let density = |i: usize| system.density().at(i);
@@ -276,7 +291,8 @@ impl Watched<'_> {
         mass * (omega * unit * size).powi(2) * steps
     }
 
-    /// What the scheme conserves: close to the stable limit the plain energy swings by orders of magnitude.
+    /// Checks the energy that the scheme conserves: close to the stable limit the plain energy oscillates by orders
+    /// of magnitude.
     fn look_at_energy(&self) -> Result<(), Alarm> {
         let (system, state) = (self.system, self.state);
         let operator = system.operator();
@@ -287,7 +303,7 @@ impl Watched<'_> {
         self.compare(conserved, GROWTH)
     }
 
-    /// Refuses an energy above `most` times the available one.
+    /// Fails if an energy is above `most` times the available one.
     fn compare(&self, energy: f64, most: f64) -> Result<(), Alarm> {
         let available = self.available();
         if energy <= most * available || energy <= most * (available + self.rounding()) {
@@ -297,12 +313,12 @@ impl Watched<'_> {
         let stiffened = omega.ok().and_then(|omega| self.stiffened(omega.estimate));
         let ratio = energy / available.max(f64::MIN_POSITIVE);
         Err(Alarm {
-            cause: stiffened.unwrap_or(Cause::Growth { ratio }),
+            cause: stiffened.unwrap_or(InstabilityCause::Growth { ratio }),
             point: self.fastest(),
         })
     }
 
-    /// Cells of a bar that lie side by side stay in their order as long as the bonds between them hold.
+    /// Checks the order of adjacent cells of a bar, which stays the same as long as the bonds between them exist.
     fn look_at_order(&self) -> Result<(), Alarm> {
         let (system, cloud) = (self.system, self.system.cloud());
         let operator = system.operator();
@@ -323,7 +339,7 @@ impl Watched<'_> {
         match passed {
             None => Ok(()),
             Some(point) => Err(Alarm {
-                cause: Cause::Passed {
+                cause: InstabilityCause::Passed {
                     other: cloud.user_number(point - 1),
                 },
                 point,
@@ -345,24 +361,26 @@ impl Watched<'_> {
         }
     }
 
-    /// The cause of a step that is too long for a frequency, 1/s, but was not for that of the body at rest: what was too long from the start is wanted.
-    fn stiffened(&self, omega: f64) -> Option<Cause> {
+    /// Returns the cause if the step is too long for a frequency (1/s) but was not too long for that of the body at
+    /// rest; a step too long from the start has another cause.
+    fn stiffened(&self, omega: f64) -> Option<InstabilityCause> {
         let (dt, limit) = (self.dt, self.stable_step(omega)?);
         if dt <= SLACK * limit {
             return None;
         }
         let rest = vec![0.0; self.state.u.len()];
         let first = highest_frequency(self.system, &rest).ok()?.estimate;
-        (dt <= SLACK * self.stable_step(first)?).then_some(Cause::Stiffened { dt, limit })
+        (dt <= SLACK * self.stable_step(first)?)
+            .then_some(InstabilityCause::Stiffened { dt, limit })
     }
 
-    /// The largest stable step of a frequency, for schemes whose step has one bound for all points.
+    /// Largest stable step for a frequency, of schemes with one limit for all points.
     fn stable_step(&self, omega: f64) -> Option<f64> {
         let one = self.integrator.refinement().is_none();
         Some(self.integrator.stability_limit().filter(|_| one)? / omega)
     }
 
-    /// The point with the most elastic energy in its volume.
+    /// Returns the point with the largest elastic energy in its volume.
     fn hardest(&self) -> usize {
         let mut energy = vec![0.0; self.system.points()];
         let operator = self.system.operator();

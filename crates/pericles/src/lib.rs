@@ -1,16 +1,24 @@
-//! Bond-based peridynamics: the engine of Pericles as a library.
+//! Peridynamics in Rust: the engine of Pericles as a library.
 //!
-//! Peridynamics describes a body by points that act on each other over a finite distance, the horizon δ. The equation of
-//! motion ρ u_tt(x) = ∫ f(ξ, η) dx′ + b, with ξ = x′ − x and η = u′ − u, holds across cracks, where displacements have no
-//! derivatives. On points with volumes V it becomes ρ u_tt,i = Σ_j f_ij κ_ij V_j + b_i (Silling 2000; Silling & Askari 2005).
+//! Peridynamics describes a body by points that interact over a finite distance, the horizon δ. The equation
+//! of motion
 //!
-//! This crate holds the physics and the numerics: points, bonds, pair laws, breaking, loads and supports, time integrators,
-//! the time loop and observers. It reads and writes no files. Decks (TOML) are read by `pericles-deck`, files are written by
-//! `pericles-io`, and `pericles-run` runs a deck or a model into a folder, with checkpoints.
+//! ```text
+//! ρ u_tt(x) = ∫ f(ξ, η) dx′ + b(x),    ξ = x′ − x,    η = u′ − u
+//! ```
 //!
-//! # The first program
+//! with density ρ, displacement u, pair force f, bond ξ, relative displacement η and body force b also holds
+//! across cracks, where displacements have no derivatives. On points with volumes V it becomes
+//! ρ u_tt,i = Σ_j f_ij κ_ij V_j + b_i, where κ is the fraction of a neighbour's volume within the horizon
+//! (Silling 2000; Silling & Askari 2005).
 //!
-//! Points, a material, a body, a run:
+//! This crate contains points, bonds, material models, fracture, loads, constraints, time integrators, the
+//! time loop and observers. It reads and writes no files: `pericles-deck` reads input decks (TOML),
+//! `pericles-io` writes result files, and `pericles-run` runs a deck with output and checkpoints.
+//!
+//! # Quick start
+//!
+//! Every program follows the same four steps: points, material, body, simulation.
 //!
 //! ```
 //! use pericles::prelude::*;
@@ -21,12 +29,12 @@
 //! let left = bar.select(&Region::layer("-x", 0.1)?);
 //! let steel = BondMaterial::new(ElasticModulus::Young(210e9), 7850.0, 3e-3);
 //!
-//! // Its left half moves at 1 m/s towards the right half.
+//! // The left half starts at 1 m/s towards the right half.
 //! let system = Body::new(bar, steel).build()?;
 //! let mut run = Simulation::builder(system).velocity_of(&left, [1.0, 0.0, 0.0])?.end(1e-4).build()?;
 //! run.run_to_end()?;
 //!
-//! // Nothing is lost: momentum is that of the start to round-off, energy to the order of the scheme.
+//! // Momentum is conserved to round-off, energy to the order of the scheme.
 //! let energies = run.snapshot().energies();
 //! assert!(energies.balance().abs() < 1e-6 * energies.initial);
 //! let momentum = run.system().momentum(&run.state().v)[0];
@@ -35,60 +43,68 @@
 //! # }
 //! ```
 //!
-//! The programs in `examples/` go on from here; each is a page and prints what it compares with theory:
+//! The programs in `examples/` continue from here. Each is about a page long and compares its result with
+//! theory:
 //!
 //! | `cargo run --release -p pericles --example …` | shows |
 //! |---|---|
-//! | `bar` | all steps of a program; the speed of a wave |
-//! | `cracking_plate` | a pre-crack, loads, breaking bonds; crack speed and Rayleigh speed |
-//! | `two_materials` | materials by sets; reflection at an interface |
-//! | `pair_law` | a pair law of one's own |
-//! | `force` | a force of one's own beside the bonds |
-//! | `observer` | an observer of one's own, with checkpoints |
-//! | `integrator` | a time integrator of one's own and its order |
+//! | `bar` | all steps of a program; wave speed in a bar |
+//! | `cracking_plate` | a pre-crack, loads and breaking bonds; crack speed and Rayleigh speed |
+//! | `two_materials` | materials assigned to sets; reflection at an interface |
+//! | `pair_law` | a custom pair law |
+//! | `force` | a custom force in addition to the bonds |
+//! | `observer` | a custom observer with checkpoints |
+//! | `integrator` | a custom time integrator and its order |
 //!
 //! # Conventions
 //!
-//! * **Units** are SI throughout: m, kg, s, N, Pa, J.
-//! * **Vectors on points** are component-major: component c of point i is entry `c * n + i` of a slice of `dimension * n` numbers.
-//!   Tensors have the order of [`observe::Field::components`].
-//! * **Points** are numbered in an order that suits memory. [`PointCloud::user_number`](space::PointCloud::user_number) is the number
-//!   under which a point is written to files. A [`PointSet`](space::PointSet) holds numbers in ascending order.
-//! * **Places** have three coordinates ([`Point`](space::Point)), of which those beyond the dimension are zero.
-//! * **Volumes** of plates contain the thickness, those of bars the area of the section: forces are per volume (N/m³), energies in J.
-//! * **Results do not depend on the number of threads**, bit for bit: points are computed in fixed blocks, sums are exact ([`sum`]).
-//!   They depend on the [instruction set](operator::InstructionSet) in the last digits; which bonds break does not.
-//! * **Errors**: what does not fit together is refused with a [`PericlesError`] that names it. Methods that loops call, such as
-//!   [`Force::add_force`](operator::Force::add_force), take slices of the right length for granted.
+//! * **Units** are SI: m, kg, s, N, Pa, J.
+//! * **Vector fields** are component-major: component c of point i is entry `c * n + i` of a slice of
+//!   `dimension * n` numbers. Tensors use the order of [`observe::Field::components`].
+//! * **Points** are stored in an order that suits memory.
+//!   [`PointCloud::user_number`](space::PointCloud::user_number) returns the number of a point in result
+//!   files. A [`PointSet`](space::PointSet) contains point numbers in ascending order.
+//! * **Coordinates** have three components ([`Point`](space::Point)); those beyond the dimension of the body
+//!   are zero.
+//! * **Volumes** include the thickness of plates and the cross-section of bars, so that forces are densities
+//!   in N/m³ and energies are in J in every dimension.
+//! * **Results do not depend on the number of threads**, bit for bit: loops run over fixed blocks of points
+//!   and sums are exact ([`sum`]). The last digits depend on the [instruction set](operator::InstructionSet);
+//!   which bonds break does not.
+//! * **Errors**: functions that build a model return a [`PericlesError`] that names the invalid value and
+//!   what is allowed. Methods called in inner loops, such as
+//!   [`Force::add_force`](operator::Force::add_force), assume slices of the right length.
 //!
-//! # What is where
+//! # Where to look
 //!
-//! | task | look at |
+//! | task | items |
 //! |---|---|
 //! | place points: grids with holes, graded grids, lists | [`space`]: [`Grid`](space::Grid), [`GradedGrid`](space::GradedGrid), [`ListedPoints`](space::ListedPoints) |
-//! | choose sets of points | [`Region`](space::Region), [`PointCloud::select`](space::PointCloud::select) |
-//! | describe a material | [`material`]: [`BondMaterial`](material::BondMaterial); [`kernel`]: influence functions |
-//! | cut pre-cracks | [`family::Crack`], [`Body::crack`] |
-//! | load and hold a body | [`boundary`]: [`Load`](boundary::Load), [`PrescribedMotion`](boundary::PrescribedMotion), [`DampingLayer`](boundary::DampingLayer) |
-//! | heat a body | [`ThermalExpansion`], [`Temperature`] |
-//! | build the equation of motion | [`Body`], or by hand [`operator::BondBody`] and [`System::new`] |
-//! | choose a scheme | [`time`]: explicit, implicit, static, adaptive, multirate |
-//! | find the stable step | [`time::highest_frequency`]; [`Simulation::builder`] does it by itself |
-//! | run, stop, resume | [`Simulation`], [`StopWhen`], [`archive`] |
+//! | select sets of points | [`Region`](space::Region), [`PointCloud::select`](space::PointCloud::select) |
+//! | define a material | [`material`]: [`BondMaterial`](material::BondMaterial); [`kernel`]: influence functions |
+//! | use a state-based material | [`LinearSolid`](material::LinearSolid), [`operator::LinearSolidBody`]; viscous or plastic: [`Inelasticity`](material::Inelasticity), [`operator::InelasticSolidBody`] |
+//! | define pre-cracks | [`family::Crack`], [`Body::crack`] |
+//! | apply loads, constraints and damping | [`boundary`]: [`Load`](boundary::Load), [`PrescribedMotion`](boundary::PrescribedMotion), [`DampingLayer`](boundary::DampingLayer) |
+//! | apply temperatures | [`ThermalExpansion`], [`Temperature`] |
+//! | assemble the equation of motion | [`Body`], or [`operator::BondBody`] and [`System::new`] |
+//! | choose a time integrator | [`time`]: explicit, implicit, static, adaptive, multirate |
+//! | find the stable time step | [`time::highest_frequency`]; [`Simulation::builder`] uses it by default |
+//! | run, stop and resume | [`Simulation`], [`StopWhen`], [`archive`] |
 //! | read results | [`observe`]: [`Snapshot`](observe::Snapshot), [`CrackTracker`](observe::CrackTracker), [`Fragments`](observe::Fragments) |
-//! | compute state-based forces | [`operator::TwoPass`] |
+//! | write a state-based force | [`operator::TwoPass`] |
 //!
-//! # Parts of one's own
+//! # Extending the engine
 //!
-//! **A pair law** implements [`PairForce`](material::PairForce): force, energy and tangent of one bond of unit stiffness, generic over the
-//! dimension and over [`Real`](lanes::Real), so that eight bonds are computed at once. [`Body::pair_law`] takes it; it runs as a list and as a
-//! stencil, breaks, and goes with several materials like a built-in law. A law with a faster form for small strains implements
-//! [`FastLaw`](operator::FastLaw) as well.
+//! **A pair law** implements [`PairForce`](material::PairForce): force, energy and tangent of one bond of
+//! unit stiffness, generic over the dimension and over [`Real`](lanes::Real), so that eight bonds are
+//! computed at once. Pass it to [`Body::pair_law`]. It works with neighbour lists and stencils, with fracture
+//! and with several materials, like a built-in law. A law with a faster form for small strains also
+//! implements [`VectorLaw`](operator::VectorLaw).
 //!
 //! ```
 //! use pericles::prelude::*;
 //!
-//! /// A spring along the bond of the reference state: s = ξ·η/|ξ|², force s ξ/|ξ|, energy ½ s² |ξ|.
+//! /// A linear spring along the reference bond: s = ξ·η/|ξ|², force s ξ/|ξ|, energy ½ s² |ξ|.
 //! #[derive(Clone, Copy, Default)]
 //! struct Spring;
 //!
@@ -120,21 +136,24 @@
 //! # Ok::<(), PericlesError>(())
 //! ```
 //!
-//! **A force** beside the bonds (contact, a foundation, another material model) implements [`Force`](operator::Force): force density on a part of
-//! the points, energy, tangent, and a bound of its frequency. What it can do beside that it says by its
-//! [`Capabilities`](operator::Capabilities); schemes that need more than it has refuse it with the reason. A force whose bonds depend on other
-//! bonds implements [`TwoPass`](operator::TwoPass).
+//! **A force** in addition to the bonds (contact, a foundation, another material model) implements
+//! [`Force`](operator::Force): force density on a subset of the points, energy, tangent, and an upper bound
+//! of its frequency. Optional features are reported by its [`Capabilities`](operator::Capabilities); a scheme
+//! that needs a missing one is refused with the reason. A force whose bonds depend on other bonds implements
+//! [`TwoPass`](operator::TwoPass).
 //!
-//! **An observer** implements [`Observer`](observe::Observer): it gets a [`Snapshot`](observe::Snapshot) when its
-//! [`Schedule`](observe::Schedule) says so. To read it after the run, pass it as `Arc<Mutex<…>>` and keep a clone. For a few numbers the closure
-//! of [`Simulation::run`] is enough.
+//! **An observer** implements [`Observer`](observe::Observer). It receives a [`Snapshot`](observe::Snapshot)
+//! at the times of its [`Schedule`](observe::Schedule). To read it after the run, pass it as `Arc<Mutex<…>>`
+//! and keep a clone. For a few numbers the closure of [`Simulation::run`] is enough.
 //!
-//! **An integrator** implements [`Integrator`](time::Integrator): its step asks the [`System`] for accelerations
-//! ([`System::acceleration`]), sets supports ([`System::constrain`], [`System::constrain_velocity`]) and ends with
-//! [`State::complete`](time::State::complete), which decides breaking and books work. It says which order it has and up to which ω dt it is stable.
+//! **An integrator** implements [`Integrator`](time::Integrator). Its step gets accelerations from the
+//! [`System`] ([`System::acceleration`]), applies constraints ([`System::constrain`],
+//! [`System::constrain_velocity`]) and ends with [`State::complete`](time::State::complete), which breaks
+//! bonds and updates the energy balance. It also reports its order and the largest stable ω dt.
 //!
-//! **Everything with a state from step to step** lists its fields in [`saved!`], from which checkpoints are made; a field that is forgotten does not
-//! compile. [`round_trip::check_resume`] tests that a resumed run goes on bit for bit.
+//! **A type with state from step to step** lists its fields in [`saved!`], which generates the code for
+//! checkpoints; a missing field is a compile error. [`round_trip::check_resume`] tests that a resumed run
+//! agrees bit for bit with an uninterrupted one.
 
 mod accounts;
 pub mod archive;
@@ -171,12 +190,12 @@ pub mod time;
 pub mod units;
 
 pub use accounts::Ledger;
-pub use archive::{Archive, Saved, Values};
+pub use archive::{Archive, Checkpointed, Values};
 pub use body::Body;
 pub use compatibility::{Need, Requirement, require};
 pub use error::{PericlesError, Result, positive};
-pub use guard::Cause;
-pub use interrupt::Interrupt;
+pub use guard::InstabilityCause;
+pub use interrupt::{Interrupt, IterationProgress};
 pub use scalar::PointScalar;
 pub use simulation::{
     Control, Outcome, Simulation, SimulationBuilder, SimulationError, check_compatibility,

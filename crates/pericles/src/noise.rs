@@ -1,8 +1,8 @@
-//! Pseudo-random numbers that are the same on every machine.
+//! Pseudo-random numbers that are equal on every machine.
 
 use crate::domain::Domain;
 
-/// SplitMix64 (Steele, Lea & Flood 2014): a generator of 64 bits of state, seeded by any number.
+/// The SplitMix64 generator (Steele, Lea & Flood 2014): 64 bits of state, any seed.
 #[derive(Debug, Clone)]
 pub struct SplitMix64 {
     state: u64,
@@ -11,17 +11,17 @@ pub struct SplitMix64 {
 impl SplitMix64 {
     const STEP: u64 = 0x9E37_79B9_7F4A_7C15;
 
-    /// The generator of a seed.
+    /// Makes the generator for a random seed.
     pub fn new(seed: u64) -> Self {
         Self { state: seed }
     }
 
-    /// The generator of a seed after `count` numbers.
+    /// Makes the generator for a random seed and skips `count` numbers.
     pub fn after(seed: u64, count: u64) -> Self {
         Self::new(seed.wrapping_add(count.wrapping_mul(Self::STEP)))
     }
 
-    /// The next number, uniform in [−1, 1).
+    /// Returns the next number, uniform in [−1, 1).
     pub fn signed(&mut self) -> f64 {
         self.state = self.state.wrapping_add(Self::STEP);
         let mut z = self.state;
@@ -31,7 +31,8 @@ impl SplitMix64 {
     }
 }
 
-/// Vectors uniform in the ball (disc, interval) of this radius, one after the other, by rejection from the cube around it.
+/// Returns `count` vectors uniformly distributed in the ball (disc, interval) of a radius, by rejection from the
+/// enclosing cube.
 ///
 /// ```
 /// let vectors = pericles::noise::uniform_in_ball(3, 0.1, 7, 1000);
@@ -53,7 +54,8 @@ pub fn uniform_in_ball(dimension: usize, radius: f64, seed: u64, count: usize) -
     (0..count).map(|_| draw()).collect()
 }
 
-/// A vector on the points of a process, component-major, of numbers in (−1, 1): those that one process alone would draw by [`noise`].
+/// Returns a vector of numbers in (−1, 1) on the points of a process, component-major; equal to what [`noise`]
+/// gives for a single process.
 pub fn noise_on(domain: &Domain, components: usize, seed: u64) -> Vec<f64> {
     let all = domain.count(domain.owned_points() as u64);
     let number = |c: u64, i: usize| {
@@ -65,7 +67,7 @@ pub fn noise_on(domain: &Domain, components: usize, seed: u64) -> Vec<f64> {
         .collect()
 }
 
-/// Numbers in (−1, 1) (SplitMix64).
+/// Returns `len` numbers in (−1, 1) (SplitMix64).
 pub fn noise(len: usize, seed: u64) -> Vec<f64> {
     let mut generator = SplitMix64::new(seed);
     (0..len).map(|_| generator.signed()).collect()
@@ -76,15 +78,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_vector_on_points_is_the_sequence() {
+    fn noise_on_points_equals_the_sequence() {
         assert_eq!(noise_on(&Domain::alone(7), 3, 5), noise(21, 5));
     }
 
     #[test]
-    fn the_ball_is_filled_evenly() {
+    fn vectors_fill_the_ball_uniformly() {
         let n = 20_000;
         let vectors = uniform_in_ball(3, 2.0, 1, n);
-        // The share within half the radius is 1/8, and the mean square 3/5 of the radius squared.
+        // The fraction within half the radius is 1/8, and the mean square is 3/5 of the radius squared.
         let squares: Vec<f64> = vectors
             .iter()
             .map(|v| v.iter().map(|x| x * x).sum())

@@ -1,26 +1,29 @@
-//! Loops over points on all cores whose results do not depend on the number of threads.
+//! Parallel loops over points whose results do not depend on the number of threads.
 //!
-//! Points are taken in fixed blocks; a block is computed by one thread from start to end. Sums are in [`sum`](crate::sum).
+//! Points are divided into fixed blocks; one thread computes each block from start to end. Sums are in
+//! [`sum`](crate::sum).
 //!
-//! Work is given as a reference to a closure that takes a whole block, so that the code which hands blocks to threads is compiled once, not once for every loop.
+//! Loops take a reference to a closure that computes a whole block, so that the code which distributes blocks is
+//! compiled once and not for every loop.
 
 use std::ops::Range;
 
 use rayon::prelude::*;
 
-/// Which points an evaluation is wanted for. A point's result does not depend on this choice, bit for bit.
+/// The subset of the points on which an evaluation is requested. The result at a point does not depend on the
+/// subset, bit for bit.
 #[derive(Debug, Clone)]
-pub enum On<'a> {
+pub enum PointSubset<'a> {
     /// All points.
     All,
     /// A range of points.
     Range(Range<usize>),
-    /// Points by number, ascending.
+    /// Point numbers in ascending order.
     Set(&'a [u32]),
 }
 
-impl On<'_> {
-    /// Number of points, of a body of `points`.
+impl PointSubset<'_> {
+    /// Number of points in the subset, for a body of `points` points.
     pub fn count(&self, points: usize) -> usize {
         match self {
             Self::All => points,
@@ -29,7 +32,7 @@ impl On<'_> {
         }
     }
 
-    /// Calls `visit(point)` for every point that is wanted, of a body of `points`, ascending.
+    /// Calls `visit(point)` for every point of the subset in ascending order, for a body of `points` points.
     pub fn for_each(&self, points: usize, visit: impl FnMut(usize)) {
         match self {
             Self::All => (0..points).for_each(visit),
@@ -38,7 +41,7 @@ impl On<'_> {
         }
     }
 
-    /// Calls `visit(place in the list, point)` for every point of an ascending list that is wanted.
+    /// Calls `visit(index in the list, point)` for every point of the subset that is in an ascending list.
     pub fn common(&self, list: &[u32], mut visit: impl FnMut(usize, usize)) {
         match self {
             Self::All => {
@@ -53,7 +56,7 @@ impl On<'_> {
                     visit(k, i as usize);
                 }
             }
-            // The shorter of the two is walked through.
+            // Iterates over the shorter of the two.
             Self::Set(set) if set.len() < list.len() => {
                 for &i in *set {
                     if let Ok(k) = list.binary_search(&i) {
@@ -72,13 +75,15 @@ impl On<'_> {
     }
 }
 
-/// What is done with a part of the points: its number or first point, its entries of each component, and the part's own state.
+/// Work on a part of the points; the arguments are the index of the part or its first point, one slice per
+/// component, and the state of the part.
 pub type PartWork<'a, const D: usize, S> = dyn Fn(usize, [&mut [f64]; D], &mut S) + Sync + 'a;
 
-/// Points in a block.
+/// Number of points in a block.
 pub const BLOCK: usize = 512;
 
-/// Calls `work(first point, one slice per component, the block's own state)` for every block, on all cores, without allocating.
+/// Calls `work(first point, one slice per component, state of the block)` for every block in parallel, without
+/// allocation.
 pub fn for_each_block<const D: usize, S: Send>(
     out: [&mut [f64]; D],
     states: &mut [S],
@@ -89,8 +94,9 @@ pub fn for_each_block<const D: usize, S: Send>(
     });
 }
 
-/// Calls `work(part, one slice per component, the part's own state)` for every part, on all cores, without allocating. Part k has the
-/// points from `first(k)` to `first(k + 1)`, the last one all that are left; `first(0)` is 0.
+/// Calls `work(part, one slice per component, state of the part)` for every part in parallel, without allocation.
+/// Part k contains the points from `first(k)` to `first(k + 1)`, the last part all remaining points; `first(0)` is
+/// 0.
 pub(crate) fn for_each_part<const D: usize, S: Send>(
     out: [&mut [f64]; D],
     states: &mut [S],
@@ -130,7 +136,7 @@ fn split<const D: usize, S: Send>(
     }
 }
 
-/// Calls `work(first entry, entries)` for every block of entries, on all cores.
+/// Calls `work(first entry, entries)` for every block of entries in parallel.
 pub fn for_each_chunk<T: Send>(entries: &mut [T], work: &(dyn Fn(usize, &mut [T]) + Sync)) {
     entries
         .par_chunks_mut(BLOCK)
@@ -138,7 +144,7 @@ pub fn for_each_chunk<T: Send>(entries: &mut [T], work: &(dyn Fn(usize, &mut [T]
         .for_each(|(block, chunk)| work(block * BLOCK, chunk));
 }
 
-/// The values of a function of points, on all cores.
+/// Evaluates a function at all points in parallel.
 pub fn for_each_point<T: Send>(points: usize, value: &(dyn Fn(usize) -> T + Sync)) -> Vec<T> {
     (0..points)
         .into_par_iter()
@@ -147,18 +153,19 @@ pub fn for_each_point<T: Send>(points: usize, value: &(dyn Fn(usize) -> T + Sync
         .collect()
 }
 
-/// Calls `set(point, entry)` for the entries of a component-major array that belong to the points named by `on`, on all cores.
+/// Calls `set(point, entry)` in parallel for the entries of a component-major array that belong to the points of
+/// `on`.
 pub(crate) fn for_each_entry(
-    on: &On<'_>,
+    on: &PointSubset<'_>,
     n: usize,
     out: &mut [f64],
     set: &(impl Fn(usize, &mut f64) + Sync),
 ) {
     for component in out.chunks_mut(n) {
         match on {
-            On::All => in_range(0, component, set),
-            On::Range(range) => in_range(range.start, &mut component[range.clone()], set),
-            On::Set(points) => in_set(0, component, points, &|first, entries| {
+            PointSubset::All => in_range(0, component, set),
+            PointSubset::Range(range) => in_range(range.start, &mut component[range.clone()], set),
+            PointSubset::Set(points) => in_set(0, component, points, &|first, entries| {
                 for (k, entry) in entries.iter_mut().enumerate() {
                     set(first + k, entry);
                 }
@@ -197,7 +204,7 @@ fn in_set(
     );
 }
 
-/// The runs of consecutive numbers in an ascending list.
+/// Returns the runs of consecutive numbers in an ascending list.
 pub(crate) fn runs(points: &[u32]) -> impl Iterator<Item = Range<usize>> + '_ {
     let mut rest = points;
     std::iter::from_fn(move || {
@@ -208,7 +215,7 @@ pub(crate) fn runs(points: &[u32]) -> impl Iterator<Item = Range<usize>> + '_ {
     })
 }
 
-/// The length of the run at the beginning, by steps that double and then by halving: most lists are made of few long runs.
+/// Returns the length of the first run, by doubling and bisection: most lists consist of few long runs.
 fn run_length(points: &[u32]) -> usize {
     let is_run = |length: usize| (points[length - 1] - points[0]) as usize == length - 1;
     let (mut low, mut step) = (1, 1);
@@ -228,7 +235,7 @@ fn run_length(points: &[u32]) -> usize {
     low
 }
 
-/// The components of a component-major array.
+/// Splits a component-major array into its components.
 pub fn components_mut<const D: usize>(array: &mut [f64], n: usize) -> [&mut [f64]; D] {
     let mut rest = array;
     std::array::from_fn(|_| {
@@ -238,7 +245,7 @@ pub fn components_mut<const D: usize>(array: &mut [f64], n: usize) -> [&mut [f64
     })
 }
 
-/// The components of a component-major array.
+/// Splits a component-major array into its components.
 pub fn components<const D: usize>(array: &[f64], n: usize) -> [&[f64]; D] {
     std::array::from_fn(|c| &array[c * n..(c + 1) * n])
 }
@@ -248,7 +255,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_point_is_visited_once() {
+    fn every_point_is_visited_exactly_once() {
         let n = 5 * BLOCK + 17;
         let mut out = vec![0.0; 2 * n];
         let mut states = vec![0usize; n.div_ceil(BLOCK)];
@@ -267,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn runs_are_the_longest_there_are() {
+    fn runs_are_maximal() {
         for skipped in [&[][..], &[0, 1, 5, 6, 7, 40, 99], &[50], &[1, 3, 5, 7, 9]] {
             let points: Vec<u32> = (0..100).filter(|i| !skipped.contains(i)).collect();
             let found: Vec<Range<usize>> = runs(&points).collect();

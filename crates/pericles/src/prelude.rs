@@ -1,6 +1,6 @@
-//! What most programs need, in one line: `use pericles::prelude::*;`.
+//! The items that most programs need: `use pericles::prelude::*;`.
 
-pub use crate::archive::Saved;
+pub use crate::archive::Checkpointed;
 pub use crate::body::Body;
 pub use crate::boundary::{Load, PrescribedMotion, TimeFunction};
 pub use crate::error::PericlesError;
@@ -14,7 +14,7 @@ pub use crate::material::{
 pub use crate::observe::{
     CrackTracker, Energies, Field, ObserveError, Observer, Probe, Schedule, Snapshot, TrackedCrack,
 };
-pub use crate::operator::{BondForm, Force, On};
+pub use crate::operator::{BondForm, Force, PointSubset};
 pub use crate::saved;
 pub use crate::simulation::{Control, Outcome, Simulation, SimulationError};
 pub use crate::space::{Face, Grid, ListedPoints, Point, PointCloud, PointSet, Region, Shape};

@@ -1,26 +1,26 @@
-//! Whether a checkpoint holds all that a run needs: for tests of integrators, forces, boundaries and observers.
+//! Tests that a checkpoint contains everything a run needs, for integrators, forces, boundaries and observers.
 
-use crate::archive::{Archive, Saved};
+use crate::archive::{Archive, Checkpointed};
 use crate::error::PericlesError;
 use crate::simulation::{Control, Outcome, Simulation, SimulationError};
 
-/// What is wrong with a checkpoint.
+/// A defect of a checkpoint.
 #[derive(Debug, thiserror::Error)]
 pub enum Incomplete {
-    /// A run that was restored stores something else than it was restored from.
+    /// A run restored from a checkpoint stores different values.
     #[error("a run restored from a checkpoint stores other values in {}", .arrays.join(", "))]
     Restored {
         /// The arrays that differ.
         arrays: Vec<String>,
     },
-    /// A new run that was restored ends differently from the run that went on.
+    /// A run resumed from a checkpoint ends differently from the uninterrupted run.
     #[error("a run resumed from a checkpoint ends with other values in {}", .arrays.join(", "))]
     Resumed {
         /// The arrays that differ.
         arrays: Vec<String>,
     },
-    /// A run that was taken back to a checkpoint ends differently from the first time.
-    #[error("a run taken back to a checkpoint ends with other values in {}", .arrays.join(", "))]
+    /// A finished run that is reset to a checkpoint ends differently the second time.
+    #[error("a run reset to a checkpoint ends with other values in {}", .arrays.join(", "))]
     TakenBack {
         /// The arrays that differ.
         arrays: Vec<String>,
@@ -28,25 +28,27 @@ pub enum Incomplete {
     /// The run ended before the checkpoint.
     #[error("the run ends at step {step}, before the checkpoint")]
     Ended {
-        /// Its last step.
+        /// Last step of the run.
         step: u64,
     },
-    /// The run fails.
+    /// The run failed.
     #[error(transparent)]
     Run(#[from] SimulationError),
-    /// The checkpoint is refused.
+    /// The checkpoint does not match the run.
     #[error(transparent)]
     Archive(#[from] PericlesError),
 }
 
-/// Checks that a run resumed from a checkpoint after one of the steps `pauses`, in ascending order, goes on as if it had never stopped, bit for bit in everything that runs save. Returns what
-/// is stored at its end.
+/// Checks that a run resumed from checkpoints after the steps `pauses` (in ascending order) equals the
+/// uninterrupted run bit for bit in everything that runs save. Returns the final checkpoint.
 ///
-/// `make` makes the run, each time the same one. It is run to its end with the checkpoints on the way. Each of them is restored into a new run, which must store the same again, and must end
-/// with the same; and into the run that has ended, which must end with the same once more: what a new run happens to have right is then wrong.
+/// `make` constructs the run and must construct the same one each time. The run is executed to its end, with
+/// checkpoints on the way. Each checkpoint is restored into a new run, which must save the same arrays again and
+/// reach the same end. It is also restored into the finished run, which must reach the same end again; this detects
+/// state that a new run has right by chance.
 ///
 /// # Errors
-/// [`Incomplete`] with the arrays that differ; errors of the run itself.
+/// [`Incomplete`] with the differing arrays; errors of the run.
 pub fn check_resume(
     make: impl Fn() -> Simulation,
     pauses: impl IntoIterator<Item = u64>,

@@ -1,16 +1,16 @@
-//! Numbers of points.
+//! Scalars on points.
 
-/// A number per point, stored once where all are equal.
+/// A number per point, stored once if it is the same for all points.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PointScalar {
-    /// The same everywhere.
+    /// The same number for all points.
     Uniform(f64),
     /// One number per point.
     PerPoint(Vec<f64>),
 }
 
 impl PointScalar {
-    /// The number of point i.
+    /// Returns the number of point i.
     #[inline]
     pub fn at(&self, i: usize) -> f64 {
         match self {

@@ -1,44 +1,53 @@
-//! Kinds of steps, as far as boundaries with a memory depend on them.
+//! Kinds of time steps, which determine the boundaries with memory that a scheme supports.
 
-/// Where within a step a scheme takes the forces.
+/// Time within a step at which a scheme evaluates the forces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StepKind {
-    /// At the end of the step, once: velocity Verlet.
+    /// Once, at the end of the step: velocity Verlet.
     EndOfStep,
-    /// At its middle, by an equation for the whole step: the implicit midpoint rule and, for linear forces, the trapezoidal rule and the discrete gradient.
+    /// In the middle of the step, through an equation for the whole step: the implicit midpoint rule and, for
+    /// linear forces, the trapezoidal rule and the discrete gradient.
     Middle,
-    /// Nowhere: the step is a function of the stiffness, which reaches past any layer of ghosts.
+    /// Never: the step is a function of the stiffness, which reaches beyond any layer of ghosts.
     Flow,
-    /// At stages, or in sub-steps.
+    /// At stages or in sub-steps.
     Stages,
-    /// At times of their own, between which boundaries act: the parts of r-RESPA, and Newmark's method with Newton's.
+    /// At separate times for parts of the force, between which boundaries act: r-RESPA, and Newmark's method solved
+    /// by Newton's method.
     Kicks,
 }
 
 impl StepKind {
-    /// The schemes of this kind that boundaries are made for, by their names in decks: for messages.
+    /// Names of the schemes of this kind that boundaries with memory support, as in decks, for messages.
     pub fn schemes(self) -> &'static [&'static str] {
         match self {
             Self::EndOfStep => &["velocity-verlet"],
             Self::Middle => &["implicit-midpoint", "trapezoidal", "discrete-gradient"],
-            Self::Stages => &["rk3", "rk4", "dormand-prince", "rk3-mts", "rk4-mts"],
+            Self::Stages => &[
+                "rk3",
+                "rk4",
+                "dormand-prince",
+                "multirate-rk3",
+                "multirate-rk4",
+            ],
             Self::Flow => &["trigonometric"],
             Self::Kicks => &["respa"],
         }
     }
 
-    /// Why boundaries with a memory cannot follow such steps where one may expect that they can; the end of a message, else empty.
+    /// End of a message that explains why boundaries with memory do not support such steps; empty if no explanation
+    /// is needed.
     pub(crate) fn why_not(self) -> &'static str {
         match self {
             Self::Flow => {
-                ", whose step multiplies by cos(dt W): it reaches as far as its series does, past any layer of ghosts"
+                "; its step multiplies by cos(dt W), a series that reaches beyond any layer of ghosts"
             }
             Self::EndOfStep | Self::Middle | Self::Stages | Self::Kicks => "",
         }
     }
 }
 
-/// The schemes of some kinds in words, such as `velocity-verlet, implicit-midpoint or trapezoidal`.
+/// Lists the schemes of some kinds, such as `velocity-verlet, implicit-midpoint or trapezoidal`.
 pub fn schemes_of(kinds: &[StepKind]) -> String {
     let names: Vec<&str> = kinds
         .iter()

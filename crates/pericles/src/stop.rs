@@ -1,72 +1,74 @@
-//! Conditions that end a run before its last step.
+//! Stop conditions: conditions on the state that end a run early.
 
 use std::fmt;
 
-use crate::archive::{Archive, Saved, Values};
+use crate::archive::{Archive, Checkpointed, Values};
 use crate::error::{PericlesError, Result};
 use crate::space::{PointSet, check_points};
 use crate::system::System;
+use crate::units::quantity;
 
-/// What a set of points must have come to.
+/// A condition on a set of points.
 #[derive(Debug, Clone, PartialEq)]
 pub enum StopCondition {
-    /// The resultant of the supports of the set, |Σ R| over all its prescribed motions, is below this share of its largest value so far.
+    /// The reaction force of the set, |Σ R| over its constraints, falls below this fraction of its largest value so
+    /// far.
     ReactionBelow {
-        /// Above 0 and below 1.
+        /// Fraction, between 0 and 1.
         share: f64,
-        /// Places of the motions in [`System::motions`].
+        /// Indices of the constraints in [`System::motions`].
         motions: Vec<usize>,
     },
-    /// The damage of a point of the set is above this value.
+    /// The damage of a point of the set exceeds this value.
     DamageAbove {
-        /// From 0 on, below 1.
+        /// Damage, at least 0 and below 1.
         damage: f64,
-        /// The points.
+        /// Points of the set.
         points: PointSet,
     },
 }
 
-/// A condition that ends a run as if it had reached its last step; evaluated after every step.
+/// A stop condition; it is evaluated after every step and ends the run as if its last step were reached.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StopWhen {
-    /// The name of the set, for reports.
+    /// Name of the set in reports.
     pub set: String,
     /// The condition.
     pub condition: StopCondition,
-    /// The largest reaction so far, N.
+    /// Largest reaction so far, N.
     peak: f64,
-    /// Bonds that had broken when damage was last looked at: it only grows with their number.
+    /// Number of broken bonds at the last evaluation of the damage, which changes only with this number.
     broken: u64,
 }
 
-/// Why a run ended before its last step.
+/// The reason why a run ended early.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StopReason {
-    /// The name of the set.
+    /// Name of the set.
     pub set: String,
-    /// The step after which it was found.
+    /// Step after which the condition was met.
     pub step: u64,
-    /// Its time, s.
+    /// Time of that step, s.
     pub t: f64,
-    /// What was found.
+    /// Values that met the condition.
     pub found: Found,
 }
 
-/// The numbers that met a condition.
+/// The values that met a stop condition.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Found {
-    /// The reaction of the set, N, and its largest value in the run, N.
+    /// The reaction force of the set fell.
     Reaction {
-        /// Now.
+        /// Reaction at the end, N.
         now: f64,
-        /// The largest.
+        /// Largest reaction of the run, N.
         peak: f64,
     },
-    /// The damage of a point of the set.
+    /// The damage of a point of the set exceeded its limit.
     Damage {
-        /// The largest damage of the set.
+        /// Largest damage of the set.
         damage: f64,
-        /// That point, in the user's numbering.
+        /// Point with this damage, in the user's numbering.
         point: usize,
     },
 }
@@ -76,9 +78,11 @@ impl fmt::Display for StopReason {
         match self.found {
             Found::Reaction { now, peak } => write!(
                 f,
-                "the reaction of `{}` has fallen to {:.2} % of its peak, from {peak:.4e} N to {now:.4e} N",
+                "the reaction of `{}` has fallen to {:.2} % of its peak, from {} to {}",
                 self.set,
-                100.0 * now / peak
+                100.0 * now / peak,
+                quantity(peak, "N"),
+                quantity(now, "N")
             ),
             Found::Damage { damage, point } => write!(
                 f,
@@ -90,7 +94,7 @@ impl fmt::Display for StopReason {
 }
 
 impl StopWhen {
-    /// A condition on a set of this name.
+    /// Makes a condition on the set of this name.
     pub fn new(set: String, condition: StopCondition) -> Self {
         Self {
             set,
@@ -100,16 +104,16 @@ impl StopWhen {
         }
     }
 
-    /// Refuses a condition on motions or points that a system does not have.
+    /// Checks that the system has the constraints or points of a condition.
     pub(crate) fn check(&self, system: &System) -> Result<()> {
         match &self.condition {
             StopCondition::ReactionBelow { motions, .. } => {
                 let count = system.motions().len();
                 match motions.iter().find(|&&motion| motion >= count) {
                     Some(&motion) => Err(PericlesError::OutOfRange {
-                        quantity: "the number of a motion in a stop condition",
+                        quantity: "the index of a constraint in a stop condition",
                         value: motion as f64,
-                        allowed: "places of motions in the list of the system, from 0",
+                        allowed: "indices of the constraints of the system, from 0",
                     }),
                     None => Ok(()),
                 }
@@ -120,7 +124,7 @@ impl StopWhen {
         }
     }
 
-    /// Looks at an accepted state; what it found if the condition is met.
+    /// Evaluates the condition on an accepted state; returns the values if it is met.
     pub(crate) fn look(&mut self, system: &System) -> Option<Found> {
         match &self.condition {
             StopCondition::ReactionBelow { share, motions } => {
@@ -156,8 +160,8 @@ impl StopWhen {
     }
 }
 
-/// All conditions of a run: the peaks are part of its state.
-impl Saved for Vec<StopWhen> {
+/// All conditions of a run; their peaks are part of its state.
+impl Checkpointed for Vec<StopWhen> {
     fn save(&self, archive: &mut Archive) {
         let peak = |stop: &StopWhen| {
             let StopWhen {
@@ -181,7 +185,7 @@ impl Saved for Vec<StopWhen> {
         archive.f64_into("stop/peaks", &mut peaks)?;
         for (stop, peak) in self.iter_mut().zip(peaks) {
             stop.peak = peak;
-            // Damage is looked at anew.
+            // Forces a new evaluation of the damage.
             stop.broken = 0;
         }
         Ok(())

@@ -1,8 +1,11 @@
-//! Sums whose result depends on nothing but the terms: not on their order, not on threads, not on how points are divided among processes.
+//! Reproducible sums: the result depends on the terms only, not on their order, the number of threads or the
+//! division among processes.
 //!
-//! Floating-point addition rounds, and what it rounds depends on the order. Here each term is cut into integer multiples of fixed units, 2^(40 b) for integers b, and the integers are added, which is exact
-//! and so free of order (Demmel & Nguyen, *Parallel reproducible summation*, IEEE Trans. Comput. 64, 2015; Ahrens, Demmel & Nguyen, ACM TOMS 46, 2020). The three units nearest to the largest term are
-//! kept; what lies below is less than 2⁻⁸⁰ of the largest term for each term, so that sums are more accurate than plain ones.
+//! Floating-point addition rounds, and the rounding error depends on the order. Here each term is split into
+//! integer multiples of fixed units 2^(40 b), with integers b, and the integers are added exactly (Demmel & Nguyen,
+//! *Parallel reproducible summation*, IEEE Trans. Comput. 64, 2015; Ahrens, Demmel & Nguyen, ACM TOMS 46, 2020).
+//! The three units nearest to the largest term are kept. The neglected rest is below 2⁻⁸⁰ of the largest term per
+//! term, so that sums are more accurate than plain ones.
 
 use rayon::prelude::*;
 
@@ -11,29 +14,30 @@ use crate::error::{PericlesError, Result};
 use crate::lanes::{InstructionSet, for_each_instruction_set};
 use crate::parallel::BLOCK;
 
-/// Bits of a bin: its unit is 2^(40 b).
+/// Bits per bin: the unit of bin b is 2^(40 b).
 const WIDTH: i32 = 40;
-/// Bins that are kept.
+/// Number of bins that are kept.
 const KEPT: usize = 3;
-/// Terms that are cut side by side.
+/// Number of terms that are split in parallel lanes.
 const LANES: usize = 8;
-/// Bins beyond ±[`SAFE`] are reached by terms scaled by 2^(40 · [`SHIFT`]) or its inverse, so that no unit over- or underflows.
+/// Terms in bins beyond ±[`SAFE`] are scaled by 2^(40 · [`SHIFT`]) or its inverse, so that no unit over- or
+/// underflows.
 const SAFE: i32 = 22;
 const SHIFT: i32 = 12;
 
-/// A sum in progress. Two of them can be merged in any order.
+/// A partial sum. Partial sums can be merged in any order.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BinnedSum {
-    /// Number b of the highest bin; the lowest possible number while there are no terms but zeros.
+    /// Index b of the highest bin; the lowest possible index while all terms are zero.
     top: i32,
     /// Multiples of 2^(40 (top − k)).
     bins: [i128; KEPT],
-    /// How many terms are +∞, −∞ and not a number.
+    /// Numbers of terms that are +∞, −∞ and NaN.
     special: [i128; 3],
 }
 
 impl Default for BinnedSum {
-    /// A sum of no terms.
+    /// The sum of no terms.
     fn default() -> Self {
         Self {
             top: i32::MIN,
@@ -44,7 +48,7 @@ impl Default for BinnedSum {
 }
 
 impl BinnedSum {
-    /// Σ term(i) for i < n, on all cores.
+    /// Returns Σ term(i) for i < n, computed in parallel.
     pub fn of(n: usize, term: impl Fn(usize) -> f64 + Sync) -> Self {
         Self::of_blocks(n, &|first, terms| {
             for (k, slot) in terms.iter_mut().enumerate() {
@@ -53,7 +57,7 @@ impl BinnedSum {
         })
     }
 
-    /// Of n terms that `fill(first term, terms)` computes block by block.
+    /// Returns the sum of n terms that `fill(first term, terms)` computes block by block.
     fn of_blocks(n: usize, fill: &(dyn Fn(usize, &mut [f64]) + Sync)) -> Self {
         let set = InstructionSet::detect();
         (0..n.div_ceil(BLOCK))
@@ -67,7 +71,7 @@ impl BinnedSum {
             .reduce(Self::default, Self::merged)
     }
 
-    /// Of at most a block of terms, filled up with zeros.
+    /// Returns the sum of one block of terms, padded with zeros.
     fn of_block(set: InstructionSet, terms: &mut [f64; BLOCK]) -> Self {
         let mut sum = Self::default();
         let mut largest = Largest::default();
@@ -104,13 +108,13 @@ impl BinnedSum {
         let mut cut = [[0.0; LANES]; KEPT];
         cut_into(set, terms, &units, &mut cut);
         for ((bin, lanes), unit) in sum.bins.iter_mut().zip(&cut).zip(units) {
-            // All are multiples of the unit below 2^53 of it: the sum of the lanes and the quotient are exact.
+            // All are multiples of the unit and below 2^53 units: the sum of the lanes and the quotient are exact.
             *bin = (lanes.iter().sum::<f64>() / unit) as i128;
         }
         sum
     }
 
-    /// The sum of the terms of both.
+    /// Returns the sum of the terms of both.
     pub fn merged(mut self, mut other: Self) -> Self {
         let top = self.top.max(other.top);
         self.lower(top);
@@ -124,19 +128,20 @@ impl BinnedSum {
         self
     }
 
-    /// One term more.
+    /// Adds a term.
     pub fn add(&mut self, term: f64) {
         let mut terms = [0.0; BLOCK];
         terms[0] = term;
         *self = self.merged(Self::of_block(InstructionSet::Baseline, &mut terms));
     }
 
-    /// Number of the highest bin.
+    /// Index of the highest bin.
     pub(crate) fn top(&self) -> i32 {
         self.top
     }
 
-    /// The integers of a sum with this highest bin, not below its own: those of several sums with one highest bin may be added.
+    /// Returns the integers of the sum for a highest bin `top` at or above its own; integers of several sums with
+    /// the same `top` may be added.
     pub(crate) fn integers(mut self, top: i32) -> [i128; KEPT + 3] {
         self.lower(top);
         let mut integers = [0; KEPT + 3];
@@ -145,7 +150,7 @@ impl BinnedSum {
         integers
     }
 
-    /// The sum of these integers.
+    /// Makes a sum from such integers.
     pub(crate) fn of_integers(top: i32, integers: [i128; KEPT + 3]) -> Self {
         Self {
             top,
@@ -154,7 +159,7 @@ impl BinnedSum {
         }
     }
 
-    /// Takes a higher bin as the highest: what falls below the lowest that is kept is dropped.
+    /// Raises the highest bin; bins below the lowest kept one are dropped.
     fn lower(&mut self, top: i32) {
         let steps = top.saturating_sub(self.top).min(KEPT as i32) as usize;
         self.bins.rotate_right(steps);
@@ -162,7 +167,7 @@ impl BinnedSum {
         self.top = top;
     }
 
-    /// The sum, rounded.
+    /// Returns the sum, rounded.
     pub fn value(&self) -> f64 {
         match self.special {
             [0, 0, 0] => {}
@@ -174,14 +179,14 @@ impl BinnedSum {
             return 0.0;
         }
         let [high, middle, low] = self.bins;
-        // In units of the middle bin, of which there are fewer than 2^127 for up to 2^47 terms.
+        // In units of the middle bin: fewer than 2^127 units for up to 2^47 terms.
         let upper = (high << WIDTH) + middle;
         let lower = low as f64 * power_of_two(-WIDTH);
         scaled(upper as f64 + lower, WIDTH * (self.top - 1))
     }
 }
 
-/// The integers, each in two halves, behind the number of the highest bin.
+/// Stored as the index of the highest bin followed by the integers, each in two halves.
 impl SavedUnder for BinnedSum {
     fn save_under(&self, name: &str, archive: &mut Archive) {
         let halves = |integer: i128| [integer as u64, (integer >> 64) as u64];
@@ -191,7 +196,7 @@ impl SavedUnder for BinnedSum {
     }
 
     fn restore_under(&mut self, name: &str, archive: &Archive) -> Result<()> {
-        /// Far beyond the integers of any run, far below those that would overflow.
+        /// Far larger than the integers of any run and far below overflow.
         const MOST: u128 = 1 << 100;
         let numbers = archive.exactly::<u64>(name, 1 + 2 * (KEPT + 3))?;
         let integer = |k: usize| {
@@ -207,30 +212,31 @@ impl SavedUnder for BinnedSum {
                 Ok(())
             }
             _ => Err(PericlesError::BadArchive {
-                reason: format!("{name} is no sum"),
+                reason: format!("{name} is not a valid sum"),
             }),
         }
     }
 }
 
-/// The maximum norm max |xᵢ|, zero of no numbers; entries that are not a number are passed over.
+/// Returns the maximum norm max |xᵢ|, zero for no numbers; NaN entries are ignored.
 pub fn max_norm<'a>(numbers: impl IntoIterator<Item = &'a f64>) -> f64 {
     let sizes = numbers.into_iter().map(|x| x.abs());
     sizes.fold(0.0, f64::max)
 }
 
-/// Σ term(i) for i < n, on all cores of this process.
+/// Returns Σ term(i) for i < n, computed in parallel on this process.
 pub fn sum(n: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
     BinnedSum::of(n, term).value()
 }
 
-/// The lowest bin b whose terms are at most half a unit of bin b + 1, so that they have no part there.
+/// Returns the lowest bin b whose terms are at most half a unit of bin b + 1, so that they do not contribute to
+/// that bin.
 fn bin_of(magnitude: f64) -> i32 {
     // ⌈(exponent + 2 − WIDTH)/WIDTH⌉
     (exponent_of(magnitude) + 1).div_euclid(WIDTH)
 }
 
-/// ⌊log₂ x⌋ of a positive finite number.
+/// Returns ⌊log₂ x⌋ of a positive finite number.
 fn exponent_of(x: f64) -> i32 {
     const SUBNORMAL: i32 = -1022;
     let biased = (x.to_bits() >> 52) as i32;
@@ -241,12 +247,12 @@ fn exponent_of(x: f64) -> i32 {
     }
 }
 
-/// 2^exponent of a normal number.
+/// Returns 2^exponent as a normal number.
 fn power_of_two(exponent: i32) -> f64 {
     f64::from_bits(((exponent + 1023) as u64) << 52)
 }
 
-/// x · 2^exponent, in steps that neither over- nor underflow before the end.
+/// Returns x · 2^exponent, in steps that neither over- nor underflow before the end.
 fn scaled(mut x: f64, mut exponent: i32) -> f64 {
     const STEP: i32 = 900;
     while exponent.abs() > STEP {
@@ -257,7 +263,7 @@ fn scaled(mut x: f64, mut exponent: i32) -> f64 {
     x * power_of_two(exponent)
 }
 
-/// The largest magnitude among finite terms, and whether there are others.
+/// Largest magnitude of the finite terms, and whether there are infinite or NaN terms.
 #[derive(Debug, Clone, Copy, Default)]
 struct Largest {
     magnitude: f64,
@@ -276,7 +282,7 @@ fn largest_body(terms: &[f64; BLOCK], largest: &mut Largest) {
             } else {
                 magnitudes[k]
             };
-            // Not a number for infinite terms and those that are no numbers.
+            // NaN for infinite and NaN terms.
             zeros[k] += group[k] * 0.0;
         }
     }
@@ -286,7 +292,7 @@ fn largest_body(terms: &[f64; BLOCK], largest: &mut Largest) {
 
 #[inline(always)]
 fn cut_body(terms: &[f64; BLOCK], units: &[f64; KEPT], sums: &mut [[f64; LANES]; KEPT]) {
-    // x + 1.5 · 2^52 units is rounded to a multiple of the unit, halves to even.
+    // Adding and subtracting 1.5 · 2^52 units rounds x to a multiple of the unit, ties to even.
     let mut round = [0.0; KEPT];
     for k in 0..KEPT {
         round[k] = 1.5 * power_of_two(52) * units[k];
@@ -306,12 +312,12 @@ fn cut_body(terms: &[f64; BLOCK], units: &[f64; KEPT], sums: &mut [[f64; LANES];
 }
 
 for_each_instruction_set! {
-    /// Finds the largest term.
+    /// Finds the largest magnitude.
     fn largest_of [] <> (terms: &[f64; BLOCK], largest: &mut Largest) = largest_body
 }
 
 for_each_instruction_set! {
-    /// Adds the parts of all terms that are multiples of each unit, lane by lane.
+    /// Splits all terms into multiples of each unit and adds these, lane by lane.
     fn cut_into [] <> (
         terms: &[f64; BLOCK],
         units: &[f64; KEPT],
@@ -389,8 +395,8 @@ mod tests {
     }
 
     #[test]
-    fn sums_are_those_of_exact_arithmetic_to_the_last_digit() {
-        // Integers times 2^-30: i128 adds them exactly.
+    fn sums_equal_exact_arithmetic_to_the_last_digit() {
+        // Integers times 2^-30, which i128 adds exactly.
         let terms: Vec<f64> = numbers(3, 10_000, [-9, 22])
             .iter()
             .map(|x| (x * power_of_two(30)).round() / power_of_two(30))
@@ -398,7 +404,7 @@ mod tests {
         let exact: i128 = terms.iter().map(|x| (x * power_of_two(30)) as i128).sum();
         let expected = exact as f64 / power_of_two(30);
         assert_eq!(of(&terms), expected);
-        // What cancels leaves the small ones.
+        // Large terms cancel and leave the small ones.
         let small = 3.0 * power_of_two(-40);
         let mut cancelling = terms.clone();
         cancelling.extend(terms.iter().map(|x| -x));
@@ -407,7 +413,7 @@ mod tests {
     }
 
     #[test]
-    fn sums_of_few_extreme_and_special_terms() {
+    fn sums_of_few_extreme_and_special_terms_are_exact() {
         assert_eq!(of(&[]), 0.0);
         assert_eq!(of(&[0.0, -0.0]), 0.0);
         for x in [
@@ -431,7 +437,7 @@ mod tests {
     }
 
     #[test]
-    fn bins_and_exponents() {
+    fn bins_follow_from_exponents() {
         assert_eq!(
             [1.0, 1.5, 0.5, 5e-324, 2.5e-308].map(exponent_of),
             [0, 0, -1, -1074, -1022]

@@ -1,4 +1,4 @@
-//! Thermal strain: the temperature of every point, and the stretch that it would have without stress.
+//! Thermal expansion: temperatures of points and the thermal stretch of bonds.
 
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -7,20 +7,22 @@ use crate::error::{PericlesError, Result};
 use crate::scalar::PointScalar;
 use crate::space::{PointCloud, check_length};
 
-/// Temperatures of the points of a body as a function of time, prescribed or solved for.
+/// Temperatures of the points of a body as a function of time, prescribed or computed.
 pub trait Temperature: fmt::Debug + Send + Sync {
-    /// Sets the temperature of every own point at a time, K.
+    /// Computes the temperature of every own point at a time, K.
     fn temperatures_into(&self, t: f64, out: &mut [f64]);
 
-    /// Whether it is the same at all times.
+    /// Returns whether the temperatures are constant in time.
     fn is_steady(&self) -> bool {
         false
     }
 }
 
-/// The thermal stretch τ = α (T − T₀) of every point, dimensionless: forces are zero where all bonds have this stretch.
+/// The thermal stretch τ = α (T − T₀) of every point (dimensionless): forces are zero if all bonds have this
+/// stretch.
 ///
-/// In plane strain the bonds of bond-based and state-based materials, which lie in the plane, need α (1 + ν) in place of α, because the strain across the plane is prevented.
+/// In plane strain bond-based and state-based materials need α (1 + ν) in place of α, because the out-of-plane
+/// strain is prevented.
 #[derive(Debug, Clone)]
 pub struct ThermalExpansion {
     temperature: Arc<dyn Temperature>,
@@ -30,7 +32,7 @@ pub struct ThermalExpansion {
     kept: Arc<Mutex<Option<Kept>>>,
 }
 
-/// The stretches found last.
+/// The last computed stretches.
 #[derive(Debug)]
 struct Kept {
     t: f64,
@@ -38,10 +40,10 @@ struct Kept {
 }
 
 impl ThermalExpansion {
-    /// The expansion of the points of a body with the coefficient α (1/K) and the stress-free temperature T₀ (K).
+    /// Makes the expansion of the points of a body with coefficient α (1/K) and stress-free temperature T₀ (K).
     ///
     /// # Errors
-    /// Coefficients that are not one for each point, or not finite; a reference temperature that is not finite.
+    /// Coefficients that are not one per point or not finite; a reference temperature that is not finite.
     pub fn new(
         cloud: Arc<PointCloud>,
         temperature: Arc<dyn Temperature>,
@@ -80,17 +82,18 @@ impl ThermalExpansion {
         })
     }
 
-    /// Whether temperatures are the same at all times.
+    /// Returns whether the temperatures are constant in time.
     pub fn is_steady(&self) -> bool {
         self.temperature.is_steady()
     }
 
-    /// Sets the temperature of every own point at a time, K.
+    /// Computes the temperature of every own point at a time, K.
     pub fn temperatures_into(&self, t: f64, out: &mut [f64]) {
         self.temperature.temperatures_into(t, out);
     }
 
-    /// τ of all own points, with that of ghosts behind them, at a time. Zero at t = −∞: the body before it was heated. Every process must ask at the same time.
+    /// Returns τ of all own points, followed by that of ghosts, at a time; zero at t = −∞, before the body is
+    /// heated. All processes must call it together.
     pub fn stretches(&self, t: f64) -> Arc<Vec<f64>> {
         if t == f64::NEG_INFINITY {
             return Arc::new(self.unheated());
@@ -109,7 +112,7 @@ impl ThermalExpansion {
         }
     }
 
-    /// τ at the time that forces were computed for last, for output; zero before.
+    /// Returns τ at the time of the last force evaluation, for output; zero before.
     pub fn latest(&self) -> Arc<Vec<f64>> {
         let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         match &*kept {
@@ -135,11 +138,11 @@ impl ThermalExpansion {
     }
 }
 
-/// Forces of a material that can expand with temperature.
+/// Forces of a material that supports thermal expansion.
 pub trait Expandable {
-    /// Gives the material a thermal expansion from now on.
+    /// Adds a thermal expansion to the material.
     ///
     /// # Errors
-    /// Materials whose limits or corrections are not defined with thermal strain.
+    /// Materials whose failure criterion or corrections are not defined with thermal strain.
     fn expand(&mut self, expansion: ThermalExpansion) -> Result<()>;
 }

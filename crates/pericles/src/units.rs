@@ -1,22 +1,22 @@
-//! Numbers as people read them: few digits, with SI prefixes, or a power of ten where a prefix would be wrong.
+//! Numbers in messages and plots: few digits, with SI prefixes, or a power of ten where a prefix would be wrong.
 
-/// Symbols that take a prefix, alone or as the first of a product or quotient.
+/// Units that take a prefix, alone or as the first factor of a product or quotient.
 const PREFIXED: [&str; 10] = ["m", "s", "N", "J", "Pa", "W", "Hz", "g", "K", "B"];
 
 /// Prefixes from 10⁻¹² to 10¹².
 const PREFIXES: [&str; 9] = ["p", "n", "µ", "m", "", "k", "M", "G", "T"];
 
-/// How numbers of one kind are shown: divided by `factor`, and in `unit`.
+/// Scaling of numbers of one kind for display.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shown {
-    /// What values are divided by.
+    /// Divisor of the values.
     pub factor: f64,
-    /// The unit with its prefix or power of ten.
+    /// Unit with its prefix or power of ten.
     pub unit: String,
 }
 
 impl Shown {
-    /// The way that suits numbers up to `largest` in size.
+    /// Chooses prefix or power of ten for numbers up to `largest` in magnitude.
     pub fn for_size(largest: f64, unit: &str) -> Self {
         if !largest.is_finite() || largest <= 0.0 {
             return Self::plain(unit);
@@ -24,17 +24,17 @@ impl Shown {
         let thousands = (largest.log10() + 1e-9).div_euclid(3.0) as i32;
         let symbol = unit.split(['/', '·', ' ']).next().unwrap_or_default();
         if PREFIXED.contains(&symbol) {
-            // Nobody says kiloseconds.
+            // Kiloseconds are not in use.
             let most = if symbol == "s" { 0 } else { 4 };
             let thousands = thousands.clamp(-4, most);
             let prefix = PREFIXES[(thousands + 4) as usize];
-            // 10⁻⁶ as the nearest number, which (10³)⁻² is not: 46e-6 / 1e-6 must print as 46.
+            // 10⁻⁶ as the nearest double, which (10³)⁻² is not: 46e-6 / 1e-6 must print as 46.
             return Self {
                 factor: power_of_ten(3 * thousands),
                 unit: format!("{prefix}{unit}"),
             };
         }
-        // Numbers of up to five digits, and down to 0.001, are read as they are.
+        // Numbers from 0.001 to five digits need no power of ten.
         let power = largest.log10().floor() as i32;
         if (-3..5).contains(&power) {
             return Self::plain(unit);
@@ -46,7 +46,7 @@ impl Shown {
         }
     }
 
-    /// As given.
+    /// The unit without a prefix.
     pub fn plain(unit: &str) -> Self {
         Self {
             factor: 1.0,
@@ -54,7 +54,7 @@ impl Shown {
         }
     }
 
-    /// `name [unit]`, or the bare name of a pure number.
+    /// Returns `name [unit]`, or the name alone for dimensionless numbers.
     pub fn label(&self, name: &str) -> String {
         match (name.is_empty(), self.unit.is_empty()) {
             (_, true) => name.to_owned(),
@@ -64,9 +64,9 @@ impl Shown {
     }
 }
 
-/// One quantity with three digits and the SI prefix that suits its size: `46.0 µs`.
+/// Formats a quantity with three digits and a suitable SI prefix: `46.0 µs`.
 pub fn quantity(value: f64, unit: &str) -> String {
-    // Rounded first: 999.96 ns is 1.00 µs.
+    // Round first: 999.96 ns is 1.00 µs.
     let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
     let shown = Shown::for_size(rounded.abs(), unit);
     let scaled = rounded / shown.factor;
@@ -84,7 +84,7 @@ pub fn quantity(value: f64, unit: &str) -> String {
         .to_owned()
 }
 
-/// One quantity with its SI prefix and up to seven digits, to be written into an input: `0.7017544 mm`.
+/// Formats a quantity with its SI prefix and up to seven digits, for use in an input: `0.7017544 mm`.
 pub fn precise(value: f64, unit: &str) -> String {
     let rounded: f64 = format!("{value:.6e}").parse().unwrap_or(value);
     let shown = Shown::for_size(rounded.abs(), unit);
@@ -97,7 +97,8 @@ pub fn precise(value: f64, unit: &str) -> String {
     format!("{scaled} {}", shown.unit).trim_end().to_owned()
 }
 
-/// A number with so many significant digits, without an exponent where that is readable: `0.001809`, `1540`, `7.20e10`.
+/// Formats a number with the given significant digits, without an exponent where that is readable: `0.001809`,
+/// `1540`, `7.20e10`.
 pub fn significant(value: f64, digits: usize) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");
@@ -114,7 +115,7 @@ pub fn significant(value: f64, digits: usize) -> String {
     }
 }
 
-/// A large count in groups of three digits: `1 234 567`.
+/// Formats a large count in groups of three digits: `1 234 567`.
 pub fn count(number: u64) -> String {
     let digits = number.to_string();
     let mut grouped = String::new();
@@ -127,12 +128,12 @@ pub fn count(number: u64) -> String {
     grouped
 }
 
-/// 10ⁿ, the nearest number to it.
+/// Returns the double nearest to 10ⁿ.
 pub fn power_of_ten(power: i32) -> f64 {
     format!("1e{power}").parse().unwrap_or(f64::NAN)
 }
 
-/// A whole number as superscript digits.
+/// Formats an integer as superscript digits.
 pub fn superscript(number: i32) -> String {
     number
         .to_string()
@@ -183,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn a_quantity_has_three_digits() {
+    fn quantities_have_three_digits() {
         for (value, text) in [
             (46e-6, "46.0 µs"),
             (0.0, "0 s"),
@@ -201,14 +202,14 @@ mod tests {
     }
 
     #[test]
-    fn precise_quantities_have_the_digits_that_are_needed() {
+    fn precise_quantities_have_up_to_seven_digits() {
         assert_eq!(precise(0.04 / 57.0, "m"), "701.7544 µm");
         assert_eq!(precise(0.1, "m"), "100 mm");
         assert_eq!(precise(1e30, "m"), "1e30 m");
     }
 
     #[test]
-    fn significant_digits() {
+    fn significant_digits_are_rounded() {
         assert_eq!(significant(0.001_808_7, 4), "0.001809");
         assert_eq!(significant(1541.3, 3), "1540");
         assert_eq!(significant(9.996, 3), "10.0");

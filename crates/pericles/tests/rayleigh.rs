@@ -1,4 +1,4 @@
-//! Damping in proportion to mass and stiffness.
+//! Rayleigh damping.
 
 use pericles::boundary::{PrescribedMotion, RayleighDamping, RayleighRates, TimeFunction};
 use pericles::material::{BondMaterial, ElasticModulus, PairLaw};
@@ -7,7 +7,7 @@ use pericles::round_trip::check_resume;
 use pericles::time::{RungeKutta, Tableau};
 use pericles::{Control, StepKind};
 
-/// A periodic bar of 32 cells in a vibration with two waves along it, damped.
+/// A damped vibration of a periodic bar of 32 cells with two waves along it.
 fn bar(rates: RayleighRates, stages: bool, dt: f64, end: f64) -> Simulation {
     let grid = Grid::bar(32.0, 1.0, 1.0);
     let cloud = std::sync::Arc::new(grid.points().unwrap().with_periodic_faces().unwrap());
@@ -52,7 +52,8 @@ fn square(run: &Simulation) -> f64 {
     dot(v, &product) / dot(v, v)
 }
 
-/// The amplitude of a vibration of angular frequency ω falls as exp(−½ (α + β ω²) t), its phase advances with √(ω² − ¼ (α + β ω²)²).
+/// The amplitude of a vibration of angular frequency ω decays as exp(−½ (α + β ω²) t), and its phase advances with
+/// √(ω² − ¼ (α + β ω²)²).
 #[test]
 fn vibrations_decay_at_the_rate_of_their_frequency() {
     for (rates, stages) in cases() {
@@ -69,14 +70,14 @@ fn vibrations_decay_at_the_rate_of_their_frequency() {
         });
         let order = (errors[0] / errors[1]).log2();
         println!("{rates:?}: {errors:?}");
-        // Velocity Verlet damps the velocity of half a step before: of first order in the damping times the step.
+        // Velocity Verlet damps the velocity of half a step before: first order in damping times step.
         let (bound, least) = if stages { (1e-6, 3.5) } else { (1e-2, 0.9) };
         assert!(errors[1] < bound && order > least, "{rates:?}: {errors:?}");
     }
 }
 
 #[test]
-fn the_energy_balance_counts_the_damping() {
+fn the_energy_balance_includes_the_damping() {
     for (rates, stages) in cases() {
         let mut run = bar(rates, stages, 0.05, 20.0);
         run.run(|_| Control::Continue).unwrap();
@@ -89,16 +90,16 @@ fn the_energy_balance_counts_the_damping() {
 }
 
 #[test]
-fn damped_runs_resume_bit_by_bit() {
+fn resumed_damped_runs_are_bitwise_identical() {
     for (rates, stages) in cases() {
         let make = || bar(rates, stages, 0.05, 5.0);
         check_resume(make, [37]).unwrap_or_else(|error| panic!("{rates:?}: {error}"));
     }
 }
 
-/// A plate with a moving support whose bonds break: only free points are damped, and the balance holds.
+/// A plate with a prescribed motion whose bonds break: only free points are damped, and the balance closes.
 #[test]
-fn supports_are_not_damped() {
+fn constrained_points_are_not_damped() {
     let cloud = std::sync::Arc::new(Grid::plate([16.0, 6.0], 1.0, 1.0).points().unwrap());
     let left = cloud.select(&Region::layer("-x", 2.0).unwrap());
     let right = cloud.select(&Region::layer("+x", 2.0).unwrap());
@@ -135,7 +136,7 @@ fn supports_are_not_damped() {
 }
 
 #[test]
-fn factors_and_schemes_that_do_not_fit_are_refused() {
+fn invalid_damping_factors_and_unsupported_schemes_are_errors() {
     let new = |mass, stiffness, kind| {
         let rates = RayleighRates { mass, stiffness };
         RayleighDamping::new(rates, kind, vec![1.0; 4], 1).map(|_| ())

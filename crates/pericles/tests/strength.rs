@@ -1,4 +1,4 @@
-//! Strength that scatters from point to point.
+//! Strength that varies randomly from point to point.
 
 use std::sync::Arc;
 
@@ -7,10 +7,10 @@ use pericles::family::{BondList, VolumeCorrection};
 use pericles::kernel::InfluenceFunction;
 use pericles::material::{
     BondFailure, BondLimits, BondMaterial, ElasticModulus, GivenConstants, InterfaceRule,
-    LinearSolid, PairClasses, PairLaw, Scattered, SolidClasses, StateInfluence, StrengthScatter,
+    LinearSolid, MaterialPairs, PairLaw, Scattered, SolidClasses, StateInfluence, StrengthScatter,
     StressState,
 };
-use pericles::operator::{BondBody, BondForm, CompositeBody, Force, LinearSolidBody, On};
+use pericles::operator::{BondBody, BondForm, CompositeBody, Force, LinearSolidBody, PointSubset};
 use pericles::space::{Grid, PointCloud};
 
 const LIMIT: f64 = 0.05;
@@ -20,7 +20,7 @@ fn plate() -> Arc<PointCloud> {
     Arc::new(Grid::plate([17.0, 9.0], 1.0, 1.0).points().unwrap())
 }
 
-/// Stretched by about the critical stretch, in every direction by another amount.
+/// Stretches of about the critical stretch that depend on the direction.
 fn displacement(cloud: &PointCloud) -> Vec<f64> {
     let n = cloud.len();
     let of = |entry: usize| {
@@ -42,7 +42,7 @@ fn factors(cloud: &PointCloud, of: Scattered) -> Vec<f64> {
     scatter.factors(cloud).unwrap()
 }
 
-/// The bonds whose stretch exceeds the critical stretch times the mean factor of their ends.
+/// Number of bonds whose stretch exceeds the critical stretch times the mean factor of their ends.
 fn expected(cloud: &Arc<PointCloud>, u: &[f64], factors: &[f64]) -> u64 {
     let bonds = BondList::new(cloud, HORIZON, VolumeCorrection::None).unwrap();
     let n = cloud.len();
@@ -66,12 +66,12 @@ fn expected(cloud: &Arc<PointCloud>, u: &[f64], factors: &[f64]) -> u64 {
 fn broken(force: &mut dyn Force, u: &[f64]) -> u64 {
     let rest = vec![0.0; u.len()];
     let end = StepEnd::start(0.0, u, &rest);
-    force.end_step(&end, On::All, &mut vec![0.0; u.len()]);
+    force.end_step(&end, PointSubset::All, &mut vec![0.0; u.len()]);
     force.broken_bonds()
 }
 
 #[test]
-fn bonds_break_at_the_mean_strength_of_their_ends() {
+fn bonds_break_at_the_mean_strength_of_their_end_points() {
     let cloud = plate();
     let (n, u) = (cloud.len(), displacement(&cloud));
     for of in [Scattered::CriticalStretch, Scattered::FractureEnergy] {
@@ -88,7 +88,7 @@ fn bonds_break_at_the_mean_strength_of_their_ends() {
             .unwrap();
         constants.critical_stretch = LIMIT;
         let all = [constants.clone()];
-        let classes = PairClasses::new(vec![0; n], &all, InterfaceRule::default()).unwrap();
+        let classes = MaterialPairs::new(vec![0; n], &all, InterfaceRule::default()).unwrap();
         let classes = classes.with_strengths(factors.clone()).unwrap();
         let body = CompositeBody {
             classes: Some(&classes),
@@ -128,9 +128,9 @@ fn bonds_break_at_the_mean_strength_of_their_ends() {
     }
 }
 
-/// A factor belongs to the number that a point has in files.
+/// Factors depend on the number of a point in output files.
 #[test]
-fn strengths_follow_the_numbers_of_points() {
+fn strength_factors_follow_the_numbers_of_points_in_output_files() {
     let cloud = plate();
     let scatter = StrengthScatter {
         of: Scattered::CriticalStretch,

@@ -1,4 +1,4 @@
-//! Options that several commands have.
+//! Options shared by several commands.
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -9,15 +9,15 @@ use pericles_run::{self as library, Means, RunError, machine};
 
 use super::values::{threads, wall_time};
 
-/// Changes to the deck.
+/// Overrides of deck keys.
 #[derive(Debug, Args)]
 pub(crate) struct Overrides {
-    /// Change the deck, such as time.dt=auto or crack.0.ends=open; may be given several times
+    /// Override a key of the deck, such as time.dt=auto or crack.0.ends=open; may be repeated
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
 }
 
-/// How a run is conducted.
+/// Options of a run.
 #[derive(Debug, Args)]
 pub(crate) struct RunOptions {
     #[command(flatten)]
@@ -29,7 +29,7 @@ pub(crate) struct RunOptions {
 }
 
 impl RunOptions {
-    /// What a model may be made with.
+    /// Returns the cache and memory limit for building a model.
     pub(crate) fn means(&self) -> Means {
         Means {
             caching: self.caching.wanted(),
@@ -38,19 +38,20 @@ impl RunOptions {
     }
 }
 
-/// Where results that are dear to compute are kept from run to run.
+/// Options of the cache for results that are expensive to compute.
 #[derive(Debug, Args)]
 pub(crate) struct Caching {
-    /// Keep kernels and distances that take long to compute in DIR [default: $XDG_CACHE_HOME/pericles or ~/.cache/pericles]
+    /// Cache folder for expensive kernels and geodesic distances [default: $XDG_CACHE_HOME/pericles or
+    /// ~/.cache/pericles]
     #[arg(long = "cache", value_name = "DIR")]
     folder: Option<PathBuf>,
-    /// Compute everything anew and keep nothing
+    /// Do not read or write the cache
     #[arg(long, conflicts_with = "folder")]
     no_cache: bool,
 }
 
 impl Caching {
-    /// Where they are kept.
+    /// Returns where results are cached.
     pub(crate) fn wanted(&self) -> library::Caching {
         match &self.folder {
             Some(folder) => library::Caching::Folder(folder.clone()),
@@ -60,56 +61,58 @@ impl Caching {
     }
 }
 
-/// What a run may use up.
+/// Limits on the resources of a run.
 #[derive(Debug, Args)]
 pub(crate) struct Limits {
-    /// Stop in time, with a checkpoint, before so much time on the clock has passed, such as 2h, "90 min" or seconds; the exit status is then 7
+    /// Wall-clock time limit, such as 2h, "90 min" or 5400 (seconds): the run stops before it with a checkpoint and
+    /// exit status 7
     #[arg(long, value_name = "TIME", value_parser = wall_time)]
     pub(crate) wall_time: Option<Duration>,
     #[command(flatten)]
     pub(crate) memory: Memory,
 }
 
-/// Memory.
+/// Memory limit.
 #[derive(Debug, Args)]
 pub(crate) struct Memory {
-    /// Refuse what is estimated to need more memory, such as 8GB, 512MiB or bytes; the exit status is then 8 [default: what the machine has free]
+    /// Memory limit, such as 8GB, 512MiB or a number of bytes: models with a larger estimate are rejected with exit
+    /// status 8 [default: available memory]
     #[arg(long = "max-memory", value_name = "SIZE", value_parser = machine::size)]
     most: Option<u64>,
 }
 
 impl Memory {
-    /// Bytes that a run may take; without a limit from the user those that are free, where the system tells.
+    /// Returns the limit in bytes; by default the available memory, if the system reports it.
     pub(crate) fn bytes(&self) -> u64 {
         self.most.unwrap_or_else(machine::memory)
     }
 }
 
-/// How to compute and how much to say.
+/// Threads and verbosity.
 #[derive(Debug, Args)]
 pub(crate) struct Execution {
     #[command(flatten)]
     pub(crate) threads: Threads,
-    /// Say nothing but errors
+    /// Print errors only
     #[arg(long, short)]
     pub(crate) quiet: bool,
 }
 
-/// Threads.
+/// The number of threads.
 #[derive(Debug, Args)]
 pub(crate) struct Threads {
-    /// Threads [default: one per core]; results do not depend on it
+    /// Number of threads; results do not depend on it [default: one per core]
     #[arg(long = "threads", value_name = "N", value_parser = threads)]
     count: Option<NonZeroUsize>,
 }
 
 impl Threads {
-    /// The number given, or another.
+    /// Returns the number given, or `other` by default.
     pub(crate) fn count_or(&self, other: usize) -> usize {
         self.count.map_or(other, NonZeroUsize::get)
     }
 
-    /// Starts the threads; without a number one per core.
+    /// Starts the thread pool; by default one thread per core.
     pub(crate) fn start(&self) -> Result<usize, RunError> {
         let count = self.count.map_or(0, NonZeroUsize::get);
         rayon::ThreadPoolBuilder::new()

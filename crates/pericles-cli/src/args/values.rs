@@ -1,4 +1,4 @@
-//! Values of options.
+//! Parsers of option values.
 
 use std::num::NonZeroUsize;
 use std::time::Duration;
@@ -9,24 +9,24 @@ use pericles::sum::max_norm;
 
 use crate::error::CliError;
 
-/// A vector other than zero; missing components are zero.
+/// A nonzero vector of one to three components.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Direction {
     vector: [f64; 3],
-    /// Components given.
+    /// Number of components given.
     given: usize,
 }
 
 impl Direction {
-    /// The vector, missing components zero.
+    /// Returns the vector; components not given are zero.
     pub(crate) fn vector(self) -> [f64; 3] {
         self.vector
     }
 
-    /// The vector, for a body of so many dimensions.
+    /// Returns the vector for a body of `dimension` dimensions.
     ///
     /// # Errors
-    /// More components than the body has; `option` is what they were given to.
+    /// The vector has more components than the body has dimensions; `option` names the option in the message.
     pub(crate) fn of(self, dimension: usize, option: &'static str) -> Result<[f64; 3], CliError> {
         if self.given <= dimension {
             return Ok(self.vector);
@@ -39,11 +39,11 @@ impl Direction {
     }
 }
 
-/// One to three numbers, such as `2,1` or `1,1,0`.
+/// Parses one to three numbers, such as `2,1` or `1,1,0`.
 pub(super) fn direction(text: &str) -> Result<Direction, String> {
     let mut vector = [0.0_f64; 3];
     let numbers: Vec<&str> = text.split(',').collect();
-    let allowed = "one to three numbers with commas between them, not all zero";
+    let allowed = "expected one to three comma-separated numbers, not all zero";
     let given = numbers.len();
     if given > 3 {
         return Err(allowed.into());
@@ -55,7 +55,7 @@ pub(super) fn direction(text: &str) -> Result<Direction, String> {
     let length: f64 = vector.iter().map(|x| x * x).sum();
     if vector.iter().all(|x| x.is_finite()) && largest > 0.0 {
         if length == 0.0 || !length.is_finite() {
-            // The direction is right, its square is not.
+            // The square underflows or overflows: normalise by the largest component.
             vector = vector.map(|x| x / largest);
         }
         Ok(Direction { vector, given })
@@ -64,28 +64,28 @@ pub(super) fn direction(text: &str) -> Result<Direction, String> {
     }
 }
 
-/// An instruction set by its name.
+/// Parses the name of an instruction set.
 pub(super) fn instruction_set(name: &str) -> Result<InstructionSet, String> {
     InstructionSet::named(name).ok_or_else(|| "allowed: baseline, avx2, avx512".to_owned())
 }
 
-/// Two numbers of vertices.
+/// Two vertex numbers.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Pair(pub(crate) [usize; 2]);
 
-/// Reads two numbers of vertices.
+/// Parses two vertex numbers, such as `0,41`.
 pub(super) fn pair(text: &str) -> Result<Pair, String> {
     let numbers = text
         .split_once(',')
         .and_then(|(a, b)| Some([a.trim().parse().ok()?, b.trim().parse().ok()?]));
     numbers
         .map(Pair)
-        .ok_or_else(|| "two numbers of vertices with a comma between them, such as 0,41".to_owned())
+        .ok_or_else(|| "expected two comma-separated vertex numbers, such as 0,41".to_owned())
 }
 
-/// Reads a number of threads.
+/// Parses a number of threads.
 pub(super) fn threads(text: &str) -> Result<NonZeroUsize, String> {
-    /// More than one for each core make a run slower, and thousands take minutes to start.
+    /// More threads than cores slow a run down, and thousands take minutes to start.
     const PER_CORE: usize = 4;
     let cores = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
     let most = (PER_CORE * cores).max(64);
@@ -93,20 +93,22 @@ pub(super) fn threads(text: &str) -> Result<NonZeroUsize, String> {
         .parse()
         .ok()
         .filter(|number: &NonZeroUsize| number.get() <= most);
-    number.ok_or_else(|| format!("a whole number from 1 to {most}; this machine has {cores} cores"))
+    number.ok_or_else(|| {
+        format!("expected an integer from 1 to {most}; this machine has {cores} cores")
+    })
 }
 
-/// Kinds of picture files.
+/// Formats of pictures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Format {
-    /// Pixels
+    /// Raster image
     Png,
-    /// Shapes and text
+    /// Vector graphics
     Svg,
 }
 
 impl Format {
-    /// What its files end in.
+    /// Returns the file extension.
     pub(crate) fn ending(self) -> &'static str {
         match self {
             Self::Png => "png",
@@ -115,65 +117,74 @@ impl Format {
     }
 }
 
-/// Two numbers, the first smaller.
+/// A closed interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Range(pub(crate) [f64; 2]);
 
-/// Two numbers, such as `0:1`.
+/// Parses an interval, such as `0:1`.
 pub(super) fn range(text: &str) -> Result<Range, String> {
     let ends = text.split_once(':').and_then(|(low, high)| {
         let number = |text: &str| text.trim().parse().ok().filter(|x: &f64| x.is_finite());
         Some([number(low)?, number(high)?])
     });
     let range = ends.filter(|[low, high]| low < high).map(Range);
-    range.ok_or_else(|| "two numbers LOW:HIGH, the first smaller".to_owned())
+    range.ok_or_else(|| "expected LOW:HIGH with LOW < HIGH".to_owned())
 }
 
-/// A number of zero or more.
+/// Parses a number of at least zero.
 pub(super) fn tolerance(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|number: &f64| *number >= 0.0);
-    number.ok_or_else(|| "a number of zero or more".to_owned())
+    number.ok_or_else(|| "expected a number of at least 0".to_owned())
 }
 
-/// A length above zero, as it was written and in metres.
+/// A positive length, as written and in metres.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Length {
     pub(crate) text: String,
     pub(crate) metres: f64,
 }
 
-/// A length, such as `0.5 mm`.
+/// Parses a positive length, such as `0.5 mm`.
 pub(super) fn length(text: &str) -> Result<Length, String> {
     let metres = pericles_deck::metres(text).filter(|metres| *metres > 0.0);
-    let metres =
-        metres.ok_or_else(|| "a length above zero such as \"0.5 mm\" or 5e-4".to_owned())?;
+    let metres = metres.ok_or_else(|| {
+        "expected a positive length such as \"0.5 mm\" or 5e-4 (metres)".to_owned()
+    })?;
     let text = text.trim().to_owned();
     Ok(Length { text, metres })
 }
 
-/// The unit of length of a file.
+/// Parses a positive time step, such as `0.5 us`, as written.
+pub(super) fn time_step(text: &str) -> Result<String, String> {
+    let seconds = pericles_deck::seconds(text).filter(|seconds| *seconds > 0.0);
+    seconds.ok_or("expected a positive time such as \"0.5 us\" or 5e-7 (seconds)")?;
+    Ok(text.trim().to_owned())
+}
+
+/// The length unit of a file.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LengthUnit {
     pub(crate) metres: f64,
 }
 
-/// A unit of length, such as `mm`.
+/// Parses a length unit, such as `mm`.
 pub(super) fn length_unit(text: &str) -> Result<LengthUnit, String> {
     let metres = pericles_deck::length_unit(text);
-    let metres = metres.map_err(|_| "a unit of length such as mm, cm, m, um or \"25.4 mm\"")?;
+    let metres =
+        metres.map_err(|_| "expected a length unit such as mm, cm, m, um or \"25.4 mm\"")?;
     Ok(LengthUnit { metres })
 }
 
-/// A number of at least one.
+/// Parses a number of at least one.
 pub(super) fn ratio(text: &str) -> Result<f64, String> {
     let number = text.trim().parse().ok();
     let number = number.filter(|number: &f64| *number >= 1.0 && number.is_finite());
-    number.ok_or_else(|| "a number of at least 1".to_owned())
+    number.ok_or_else(|| "expected a number of at least 1".to_owned())
 }
 
-/// A time on the clock, such as `2h`.
+/// Parses a wall-clock time, such as `2h`.
 pub(super) fn wall_time(text: &str) -> Result<Duration, String> {
-    let allowed = "a time above zero such as 2h, \"90 min\" or 5400 (seconds)";
+    let allowed = "expected a positive time such as 2h, \"90 min\" or 5400 (seconds)";
     pericles_deck::seconds(text)
         .filter(|&seconds| seconds > 0.0)
         .and_then(|seconds| Duration::try_from_secs_f64(seconds).ok())

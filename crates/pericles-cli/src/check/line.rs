@@ -1,11 +1,11 @@
-//! The lines that `check` prints. Each carries the numbers in its text that are not among the facts of `run.json`, so that the JSON of `check` holds
-//! every number that is printed.
+//! Lines of the output of `check`. A line carries the numbers of its text that are not among the facts of `run.json`,
+//! so that the JSON output of `check` contains every printed number.
 
 use std::fmt::{self, Display, Formatter};
 
 use serde_json::{Map, Value, json};
 
-/// A line: its name, its text, and what the JSON says of it.
+/// A line: label, text, and values for the JSON.
 #[derive(Debug, Clone)]
 pub(super) struct Line {
     name: &'static str,
@@ -13,17 +13,17 @@ pub(super) struct Line {
     values: Vec<(&'static str, Entry)>,
 }
 
-/// How a value goes into the JSON.
+/// A value in the JSON.
 #[derive(Debug, Clone)]
 enum Entry {
     /// The value of the key.
     One(Value),
-    /// An entry of the list of that key.
+    /// An entry of the list under the key.
     Listed(Value),
 }
 
 impl Line {
-    /// A line whose numbers are among the facts, or that has none.
+    /// Creates a line whose numbers are among the facts, or that has none.
     pub(super) fn new(name: &'static str, text: impl Into<String>) -> Self {
         Self {
             name,
@@ -32,13 +32,13 @@ impl Line {
         }
     }
 
-    /// The same with a value for the JSON, in SI units. A number that is not finite and a missing one are null.
+    /// Adds a value for the JSON, in SI units. Non-finite and missing numbers become null.
     pub(super) fn with(mut self, key: &'static str, value: impl Into<Value>) -> Self {
         self.values.push((key, Entry::One(value.into())));
         self
     }
 
-    /// The same with an entry in a list of the JSON, for lines of which there may be several.
+    /// Adds an entry to a list of the JSON, for lines that occur several times.
     pub(super) fn with_entry(mut self, key: &'static str, value: impl Into<Value>) -> Self {
         self.values.push((key, Entry::Listed(value.into())));
         self

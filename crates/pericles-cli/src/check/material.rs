@@ -1,4 +1,4 @@
-//! What `check` says of materials.
+//! Lines of `check` about materials.
 
 use pericles::kernel::ActsOn;
 use pericles::material::{
@@ -35,7 +35,7 @@ pub(super) fn material(
         }
         _ => Vec::new(),
     };
-    lines.push(Line::new("breaking", breaking(constants)));
+    lines.push(Line::new("bond failure", breaking(constants)));
     if !facts.crack_planes.is_empty() {
         lines.push(Line::new("crack planes", crack_planes(facts)));
     }
@@ -83,7 +83,7 @@ fn bond_based(material: &BondMaterial, constants: &BondConstants, facts: &Facts)
     ]
 }
 
-/// Elastic constants, and how far the grid's interior is from isotropic.
+/// Elastic constants, and the anisotropy of the grid's interior.
 fn state_based(
     material: &StateBased,
     constants: &LinearSolidConstants,
@@ -91,16 +91,16 @@ fn state_based(
 ) -> Vec<Line> {
     let mut lines = vec![elastic_constants(constants, facts)];
     if let (Some(axes), Some(diagonals)) = (facts.shear_error, facts.diagonal_shear_error) {
-        /// Worth a word.
+        /// Smaller errors get no advice.
         const NOTICED: f64 = 0.01;
         let mut text = format!(
-            "{} in shear along the axes, {} along the diagonals, none in bulk, of the grid's interior",
+            "shear along the axes {}, along the diagonals {}, bulk exact (interior of the grid)",
             deviation(axes),
             deviation(diagonals)
         );
         let isotropic = material.solid.influence == StateInfluence::Isotropic;
         if axes.abs() > NOTICED && !isotropic {
-            text += "; influence = { function = \"isotropic\" } makes both 0";
+            text += "; eliminated by influence = { function = \"isotropic\" }";
         }
         lines.push(Line::new("stiffness error", text));
     }
@@ -122,7 +122,7 @@ fn elastic_constants(constants: &LinearSolidConstants, facts: &Facts) -> Line {
     Line::new("elastic constants", text)
 }
 
-/// Elastic constants, the law of finite strain, the control of zero-energy modes and plastic constants.
+/// Elastic constants, elastic law, zero-energy mode control and plastic constants.
 fn correspondence(
     material: &Correspondence,
     constants: &CorrespondenceConstants,
@@ -130,20 +130,20 @@ fn correspondence(
 ) -> Vec<Line> {
     let law = match constants.point.law {
         ElasticLaw::StVenantKirchhoff => {
-            "St Venant–Kirchhoff: for small strain and any rotation; it softens in compression"
+            "St Venant–Kirchhoff: for small strain and any rotation; softens in compression"
         }
         ElasticLaw::NeoHooke => "neo-Hookean",
-        ElasticLaw::NeoHookeSplit => "neo-Hookean, volume and shape apart",
+        ElasticLaw::NeoHookeSplit => "neo-Hookean, volumetric–isochoric split",
         ElasticLaw::Hencky => "Hencky: linear in the logarithmic strain",
     };
     let control = match material.stabilisation {
-        Stabilisation::Isotropic => "isotropic: objective everywhere",
+        Stabilisation::Isotropic => "isotropic: objective",
         Stabilisation::Wan => {
-            "Wan: violates the balance of angular momentum near surfaces at large rotations"
+            "Wan: does not conserve angular momentum near surfaces at large rotations"
         }
-        Stabilisation::Silling => "Silling: stiffens waves of a few horizons",
+        Stabilisation::Silling => "Silling: stiffens waves with wavelengths of a few horizons",
         Stabilisation::None => {
-            "none: short waves are too slow, and the checkerboard costs no energy"
+            "none: short waves are too slow, and the checkerboard mode has zero energy"
         }
     };
     let mut lines = vec![
@@ -165,7 +165,7 @@ fn correspondence(
     lines
 }
 
-/// A material of `[materials]`.
+/// The line of a material of `[materials]`.
 fn other_material(other: &NamedMaterial, own: &MaterialConstants) -> Line {
     let finite = |x: f64| x.is_finite().then_some(x);
     let elastic = own
@@ -175,7 +175,7 @@ fn other_material(other: &NamedMaterial, own: &MaterialConstants) -> Line {
         format!(", ν = {}", significant(ratio, 4))
     });
     let text = format!(
-        "{}: Young's modulus {}{ratio}, {} kg/m³, horizon {}; breaking {}",
+        "{}: Young's modulus {}{ratio}, density {} kg/m³, horizon {}; bond failure {}",
         other.name,
         quantity(own.young(), "Pa"),
         significant(other.model.density(), 4),
@@ -197,7 +197,7 @@ fn other_material(other: &NamedMaterial, own: &MaterialConstants) -> Line {
     Line::new("material", text).with_entry("materials", entry)
 }
 
-/// A speed with whole metres per second, or with three digits where it is small.
+/// Formats a speed in whole metres per second, or with three digits if it is small.
 fn speed(speed: f64) -> String {
     match speed.abs() >= 100.0 {
         true if speed < 1e7 => format!("{speed:.0}"),
@@ -205,34 +205,34 @@ fn speed(speed: f64) -> String {
     }
 }
 
-/// How far the grid's interior is from the stiffness asked for, and what can be done about it.
+/// Error of the stiffness in the grid's interior, and how to reduce it.
 fn stiffness_error(material: &BondMaterial, constants: &BondConstants, dimension: usize) -> String {
-    /// Worth a word.
+    /// Smaller errors get no advice.
     const NOTICED: f64 = 0.01;
-    let mut line = format!("{} in bulk", deviation(constants.stiffness_error));
+    let mut line = format!("bulk {}", deviation(constants.stiffness_error));
     if dimension > 1 {
         line += &format!(
-            ", {} in shear along the axes",
+            ", shear along the axes {}",
             deviation(constants.shear_error)
         );
     }
-    line += ", of the grid's interior";
+    line += " (interior of the grid)";
     let calibration = material.modulus.calibration;
     if constants.stiffness_error.abs() > NOTICED && calibration == Calibration::Continuum {
-        line += "; modulus = \"lattice\" makes it 0 in bulk";
+        line += "; modulus = \"lattice\" eliminates the bulk error";
     }
     line
 }
 
-/// A relative deviation with its sign; what rounding leaves is none.
+/// Formats a relative deviation with its sign; rounding errors become 0.
 fn deviation(ratio: f64) -> String {
-    // Plus zero: no minus before a zero.
+    // Adding +0 turns −0 into 0.
     let rounded = (ratio * 1e6).round() * 1e-6 + 0.0;
     let sign = if rounded > 0.0 { "+" } else { "" };
     format!("{sign}{}", percent(rounded))
 }
 
-/// What cracks along the planes of the lattice cost.
+/// Energies of cracks along lattice planes.
 fn crack_planes(facts: &Facts) -> String {
     let planes: Vec<String> = facts
         .crack_planes
@@ -244,21 +244,26 @@ fn crack_planes(facts: &Facts) -> String {
         None => String::new(),
     };
     format!(
-        "energy per area over the fracture energy: {}{calibration}",
+        "energy per area relative to the fracture energy: {}{calibration}",
         planes.join(", ")
     )
 }
 
-/// What bonds can bear.
+/// Failure criterion of the bonds.
 fn breaking(constants: &MaterialConstants) -> String {
     let (stretch, energy) = (
         constants.critical_stretch(),
         constants.critical_bond_energy(),
     );
     let limit = if stretch.is_finite() {
-        format!("beyond the stretch {}", significant(stretch, 4))
+        format!("at stretch {}", significant(stretch, 4))
     } else if energy.is_finite() {
-        format!("beyond the bond energy {}", quantity(energy, "J/m⁶"))
+        format!("at bond energy {}", quantity(energy, "J/m⁶"))
+    } else if constants.strength().is_finite() {
+        return format!(
+            "at the principal stress {}",
+            quantity(constants.strength(), "Pa")
+        );
     } else {
         return "never".into();
     };
@@ -273,26 +278,23 @@ pub(super) fn surface_material(surface: &SurfaceBody) -> Vec<Line> {
         SurfaceBond::Chord => "κ |ℓ−ℓ₀|^(p−2) (ℓ−ℓ₀) n / d^(2+αp), frame-indifferent",
     };
     let areas = match surface.areas {
-        VertexAreas::Rule(AreaRule::Barycentric) => "a third of each triangle".into(),
+        VertexAreas::Rule(AreaRule::Barycentric) => "one third of each adjacent triangle".into(),
         VertexAreas::Rule(AreaRule::MixedVoronoi) => "mixed Voronoi".into(),
-        VertexAreas::Same(area) => format!("{area} m² each, not the surface's own"),
+        VertexAreas::Same(area) => format!("{area} m² per vertex, independent of the triangles"),
     };
     let same_area = match surface.areas {
         VertexAreas::Same(area) => Some(area),
         VertexAreas::Rule(_) => None,
     };
-    let own_cell = if material.self_cell {
-        "added"
+    let own_cell = if material.self_interaction {
+        "included"
     } else if material.alpha >= 0.5 {
-        "left out: for α of 1/2 and more results depend on the mesh"
+        "omitted: for α ≥ 1/2 results depend on the mesh"
     } else {
-        "left out"
+        "omitted"
     };
     let breaking = if material.critical_stretch.is_finite() {
-        format!(
-            "beyond |η|/d = {}",
-            significant(material.critical_stretch, 4)
-        )
+        format!("at |η|/d = {}", significant(material.critical_stretch, 4))
     } else {
         "never".into()
     };
@@ -312,11 +314,14 @@ pub(super) fn surface_material(surface: &SurfaceBody) -> Vec<Line> {
             "distances",
             match surface.ball {
                 Ball::Geodesic => surface.method.to_string(),
-                Ball::Euclid => format!("{}, of the vertices in a ball of space", surface.method),
+                Ball::Euclid => format!(
+                    "{}, between vertices within a Euclidean ball",
+                    surface.method
+                ),
             },
         ),
         Line::new("areas", areas).with("vertex_area", same_area),
-        Line::new("own cell", own_cell),
-        Line::new("breaking", breaking),
+        Line::new("self-interaction", own_cell),
+        Line::new("bond failure", breaking),
     ]
 }

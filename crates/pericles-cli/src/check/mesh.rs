@@ -1,4 +1,4 @@
-//! What a mesh contains.
+//! Lines of `check` about a mesh.
 
 use pericles_mesh::Summary;
 use pericles_run::units::{count, quantity, significant};
@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::line::Line;
 
-/// Kinds of elements, volume and sizes, and a line for each set of the mesh.
+/// Element types, volume and sizes, and a line per set of the mesh.
 pub(super) fn mesh(assembly: &Assembly) -> Vec<Line> {
     let Some(body) = &assembly.mesh else {
         return Vec::new();
@@ -39,7 +39,7 @@ pub(super) fn mesh(assembly: &Assembly) -> Vec<Line> {
         Line::new("element size", format!("{least} to {most}, mean {mean}"))
             .with("element_size", summary.sizes.to_vec()),
     ];
-    /// Sets with a line of their own; `pericles mesh` lists all.
+    /// Largest number of listed sets; `pericles mesh` lists all.
     const SETS: usize = 20;
     for set in summary.sets.iter().take(SETS) {
         let area = set.area.map_or(String::new(), |area| {

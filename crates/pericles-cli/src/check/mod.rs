@@ -1,4 +1,5 @@
-//! `check`: report what a run of a deck needs, without running it: as lines for people, and as JSON with every number in them.
+//! `check`: report size, memory, time step and estimated run time of a deck without running it, as text and as JSON
+//! with every printed number.
 
 mod line;
 mod material;
@@ -11,7 +12,9 @@ use std::path::Path;
 use pericles::observe::Probe;
 use pericles_deck::{Body, Model};
 use pericles_run::refinement::{Comparison, LONGEST, seconds_per_step};
-use pericles_run::units::{bytes, count, duration, percent, quantity, significant, threads};
+use pericles_run::units::{
+    bytes, count, duration, frequency, percent, quantity, significant, threads,
+};
 use pericles_run::{Assembled, Assembly, Facts, Means, Source};
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -30,7 +33,7 @@ use self::waves::plane_waves;
 /// Checks a deck.
 ///
 /// # Errors
-/// A deck that is refused.
+/// The deck is invalid.
 pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
     let count_of_threads = args.threads.start()?;
     let deck = given::deck(&args.deck, &args.overrides.set)?;
@@ -59,7 +62,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
     }
     lines.extend(plane_waves(model, &assembly));
     lines.extend(time(&facts));
-    /// Loads with a line of their own; `run.json` has all.
+    /// Largest number of listed loads; `run.json` has all.
     const LOADS: usize = 20;
     for load in facts.loads.iter().take(LOADS) {
         lines.push(Line::new("load", load.line()));
@@ -73,14 +76,14 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
     }
     lines.extend(probes(&assembly));
     for end in &facts.ends {
-        lines.push(Line::new("absorbing end", end.line()));
+        lines.push(Line::new("absorbing boundary", end.line()));
     }
     for changed in &facts.changed_defaults {
         lines.push(Line::new("changed default", changed.clone()));
     }
     if model.time.scheme.is_static() {
-        // A step goes from static state to static state: one would be the whole run.
-        let note = "that of as many iterations as each static state takes";
+        // A step leads from one static state to the next: timing one would be the whole run.
+        let note = "not estimated: it depends on the iterations per static state";
         lines.push(Line::new("run time", note));
     } else {
         let time = run_time(model, &facts, assembly, count_of_threads, &mut lines)?;
@@ -101,7 +104,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
     Ok(Exit::Done)
 }
 
-/// All that `check` knows, in SI units: the facts under the keys that they have in `model` of `run.json`, and the values of the lines.
+/// Returns all values in SI units: the facts under their keys in `model` of `run.json`, and the values of the lines.
 fn json_of(path: &Path, model: &Model, facts: &Facts, lines: &[Line]) -> Result<Value, CliError> {
     #[derive(Serialize)]
     struct Named<'a> {
@@ -121,7 +124,7 @@ fn json_of(path: &Path, model: &Model, facts: &Facts, lines: &[Line]) -> Result<
     Ok(json)
 }
 
-/// How long the run will take, from a few of its steps; what that says of two time steps is added to the lines.
+/// Estimates the run time from a few steps; for multirate schemes it also adds the lines about their speed-up.
 fn run_time(
     model: &Model,
     facts: &Facts,
@@ -143,14 +146,14 @@ fn run_time(
             &mut assembly.state,
             &mut *assembly.integrator,
             facts.dt,
-            // Not one more than the run has: histories of absorbing ends are no longer.
+            // At most as many steps as the run has: histories of absorbing boundaries have no room for more.
             facts.steps,
             LONGEST,
         )?,
     };
     let seconds = step * facts.steps as f64;
     let text = format!(
-        "about {} on {} ({}), files not counted",
+        "about {} on {} ({}), without output",
         duration(seconds),
         threads(count_of_threads),
         facts.instruction_set
@@ -177,7 +180,7 @@ fn body(model: &Model, facts: &Facts) -> Vec<Line> {
         Line::new(
             "bonds",
             format!(
-                "{} ({} directed, {} per point), kept as a {}",
+                "{} ({} directed, {} per point), force kernel: {}",
                 count(facts.bonds),
                 count(facts.directed_bonds),
                 significant(per_point, 3),
@@ -187,7 +190,7 @@ fn body(model: &Model, facts: &Facts) -> Vec<Line> {
         .with("directed_bonds_per_point", per_point),
         Line::new(
             "memory",
-            format!("about {} at the peak", bytes(facts.memory_estimate)),
+            format!("about {} (peak)", bytes(facts.memory_estimate)),
         ),
         Line::new(
             "spacing, horizon",
@@ -201,13 +204,13 @@ fn body(model: &Model, facts: &Facts) -> Vec<Line> {
         .with("horizon_ratio", ratio),
     ];
     if facts.precut_bonds > 0 {
-        let cut = Line::new("bonds cut before", count(facts.precut_bonds));
+        let cut = Line::new("pre-cracked bonds", count(facts.precut_bonds));
         lines.insert(3, cut);
     }
     lines
 }
 
-/// The fewest, mean and most neighbours of a point, where the operator knows them one by one.
+/// Smallest, mean and largest number of neighbours, if the operator gives access to single bonds.
 fn neighbours(assembly: &Assembly) -> Option<Line> {
     let local = assembly.system.operator().as_local()?;
     let count_of = |i: usize| {
@@ -230,7 +233,7 @@ fn neighbours(assembly: &Assembly) -> Option<Line> {
     Some(Line::new("neighbours", text).with("neighbours", value))
 }
 
-/// Where the probes read: at a point, or the mean over a set.
+/// Locations of the probes: a point, or the mean over a set.
 fn probes(assembly: &Assembly) -> Vec<Line> {
     let line = |probe: &Probe| {
         let mut value = json!({ "name": probe.name, "points": probe.points.len() });
@@ -258,7 +261,7 @@ fn time(facts: &Facts) -> Vec<Line> {
     if let (Some(omega), Some(bound)) = (facts.highest_frequency, facts.highest_frequency_bound) {
         let certainty = match facts.highest_frequency_failure_probability {
             Some(probability) if probability > 0.0 => {
-                format!(" (bound from random vectors, wrong with probability {probability:.0e})")
+                format!(" (bound from random vectors, fails with probability {probability:.0e})")
             }
             _ => String::new(),
         };
@@ -271,7 +274,7 @@ fn time(facts: &Facts) -> Vec<Line> {
     if let (Some(omega), Some(bound)) = (facts.limiting_frequency, facts.limiting_frequency_bound)
         && facts.refinement.is_some()
     {
-        let line = Line::new("of the coarse step", range(omega, bound));
+        let line = Line::new("coarse frequency", range(omega, bound));
         lines.push(line.with("limiting_frequency_margin", bound / omega - 1.0));
     }
     if let Some(limit) = facts.stable_step {
@@ -298,19 +301,20 @@ fn time(facts: &Facts) -> Vec<Line> {
     lines
 }
 
-/// A frequency between an estimate and a bound.
+/// Formats a frequency with its estimate and upper bound.
 fn range(omega: f64, bound: f64) -> String {
     format!(
-        "{omega:.4e} 1/s, at most {} more",
+        "{} 1/s, upper bound {} larger",
+        frequency(omega),
         percent((bound / omega - 1.0).max(0.0))
     )
 }
 
-/// A step over the stable one. A step above it is never called one of 100 %.
+/// Formats the ratio of the time step to the stable one. A step above it is never printed as 100 %.
 fn step_share(ratio: f64) -> String {
     if ratio > 1.0 {
-        format!(", {} above the stable one", percent(ratio - 1.0))
+        format!(", {} above the stable step", percent(ratio - 1.0))
     } else {
-        format!(", {} of the stable one", percent(ratio))
+        format!(", {} of the stable step", percent(ratio))
     }
 }

@@ -1,4 +1,4 @@
-//! What `check` says of two time steps in one body: whether they will pay.
+//! Lines of `check` about multirate schemes: zones, cost and expected speed-up.
 
 use pericles_run::refinement::{Comparison, RefinementFacts};
 use pericles_run::units::{count, percent, quantity, significant};
@@ -6,7 +6,7 @@ use serde_json::json;
 
 use super::line::Line;
 
-/// The lines of `check` about two time steps.
+/// Returns the lines about a multirate scheme.
 pub(super) fn lines(
     facts: &RefinementFacts,
     scheme: &str,
@@ -20,7 +20,7 @@ pub(super) fn lines(
     };
     let plain = plain_name(scheme);
     let following = if facts.follows_damage {
-        " at the start, more as bonds come near to breaking"
+        " at the start, increasing where bonds approach failure"
     } else {
         ""
     };
@@ -31,7 +31,7 @@ pub(super) fn lines(
         percent(facts.fine_fraction),
     );
     let zones = format!(
-        "{} points with the fine step, {} with the coarse step, {} of them next to fine ones",
+        "{} points with the fine step, {} with the coarse step, of which {} interact with fine points",
         count(facts.fine_points),
         count(facts.coarse_points),
         count(facts.border_points),
@@ -39,7 +39,7 @@ pub(super) fn lines(
     let over_uniform = comparison.uniform / comparison.seconds;
     let over_verlet = comparison.verlet / comparison.seconds;
     let cost = format!(
-        "{} evaluations per point and step; {plain} with the fine step everywhere {} times that ({} by the clock), velocity-verlet there {} times ({} by the clock)",
+        "{} force evaluations per point and step; with the fine step everywhere {plain} needs {} times as many ({} times the measured time), velocity-verlet {} times ({} times the measured time)",
         significant(facts.evaluations, 3),
         significant(facts.speed_up, 3),
         significant(over_uniform, 3),
@@ -47,21 +47,21 @@ pub(super) fn lines(
         significant(over_verlet, 3),
     );
     vec![
-        Line::new("two time steps", steps).with("dt_fine", fine_dt),
-        Line::new("their zones", zones),
-        Line::new("their cost", cost).with(
+        Line::new("multirate steps", steps).with("dt_fine", fine_dt),
+        Line::new("multirate zones", zones),
+        Line::new("multirate cost", cost).with(
             "refinement_by_clock",
             json!({ "speed_up": over_uniform, "speed_up_over_verlet": over_verlet }),
         ),
-        Line::new("do they pay", verdict(facts, scheme, comparison)),
+        Line::new("net speed-up", verdict(facts, scheme, comparison)),
     ]
 }
 
-/// The scheme with one step.
+/// Returns the name of the scheme with a single time step.
 fn plain_name(scheme: &str) -> &str {
     match scheme {
         "respa" => "velocity-verlet",
-        name => name.strip_suffix("-mts").unwrap_or(name),
+        name => name.strip_prefix("multirate-").unwrap_or(name),
     }
 }
 
@@ -69,12 +69,13 @@ fn verdict(facts: &RefinementFacts, scheme: &str, comparison: &Comparison) -> St
     let needless = facts
         .omega_dt_fine
         .zip(facts.omega_dt)
-        // Whole and coarse frequency within a few percent: nothing in the body asks for the smaller step.
+        // The frequencies of the body and of its coarse part agree within a few percent: no point needs the smaller
+        // step.
         .is_some_and(|(fine, coarse)| fine * f64::from(facts.ratio) < 1.05 * coarse);
     let reason = if needless {
-        "coarse and fine points have the same stable step, so the smaller one serves accuracy only"
+        "coarse and fine points have the same stable step, so the smaller step only improves accuracy"
     } else {
-        "the fine points need the smaller step"
+        "the fine points need the smaller step for stability"
     };
     let gain = comparison.verlet / comparison.seconds;
     let own = facts
@@ -82,24 +83,24 @@ fn verdict(facts: &RefinementFacts, scheme: &str, comparison: &Comparison) -> St
         .filter(|own| *own < 1.0)
         .map_or(String::new(), |own| {
             format!(
-                "; velocity-verlet with its own stable step takes {} of the evaluations",
+                "; velocity-verlet with its own stable step needs {} of the force evaluations",
                 percent(own)
             )
         });
     if gain > 1.0 {
         format!(
-            "yes: {} times faster than velocity-verlet with the fine step everywhere; {reason}{own}",
+            "{} times faster than velocity-verlet with the fine step everywhere; {reason}{own}",
             significant(gain, 3)
         )
     } else if comparison.uniform > comparison.seconds && scheme != "respa" {
         format!(
-            "only for the accuracy of {}: velocity-verlet with the fine step everywhere takes {} of the time; {reason}{own}",
+            "none, except for the accuracy of {}: velocity-verlet with the fine step everywhere takes {} of the time; {reason}{own}",
             plain_name(scheme),
             percent(gain)
         )
     } else {
         format!(
-            "no: velocity-verlet with the fine step everywhere takes {} of the time; {reason}{own}",
+            "none: velocity-verlet with the fine step everywhere takes {} of the time; {reason}{own}",
             percent(gain)
         )
     }

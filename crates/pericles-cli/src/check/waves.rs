@@ -1,4 +1,4 @@
-//! What `check` says of plane waves.
+//! Lines of `check` about plane waves.
 
 use pericles_deck::Model;
 use pericles_run::units::{percent, quantity, significant};
@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::line::Line;
 
-/// What kernel and grid do to plane waves.
+/// Returns the lines about dispersion by the kernel and by the grid.
 pub(super) fn plane_waves(model: &Model, assembly: &Assembly) -> Vec<Line> {
     let Some(waves) = assembly.plane_waves(model) else {
         return Vec::new();
@@ -20,7 +20,7 @@ pub(super) fn plane_waves(model: &Model, assembly: &Assembly) -> Vec<Line> {
     if let Some(longest) = waves.model {
         let horizons = longest / model.body.horizon();
         let text = format!(
-            "phase speed within {tolerance} of long waves from wavelengths of {} ({} horizons)",
+            "phase speed within {tolerance} of the long-wave limit for wavelengths above {} ({} horizons)",
             quantity(longest, "m"),
             significant(horizons, 3)
         );
@@ -30,10 +30,10 @@ pub(super) fn plane_waves(model: &Model, assembly: &Assembly) -> Vec<Line> {
     }
     let reference = match waves.model {
         Some(_) => "the nonlocal continuum",
-        None => "long waves",
+        None => "the long-wave limit",
     };
     let text = format!(
-        "phase speed within {tolerance} of {reference} from wavelengths of {} ({} spacings)",
+        "phase speed within {tolerance} of {reference} for wavelengths above {} ({} spacings)",
         quantity(length, "m"),
         significant(spacings, 3)
     );
@@ -46,16 +46,16 @@ pub(super) fn plane_waves(model: &Model, assembly: &Assembly) -> Vec<Line> {
     lines
 }
 
-/// A tuned kernel beside a constant one.
+/// Compares a tuned kernel with a constant one.
 fn tuned_kernel([tuned, constant]: [KernelQuality; 2], lower_bound: Option<f64>) -> Line {
     const TOLERANCE: f64 = 0.01;
     let shortest = KernelQuality::SHORTEST;
     let bound = match lower_bound {
-        Some(bound) => format!("; coefficients of at least {bound}"),
+        Some(bound) => format!("; coefficients ≥ {bound}"),
         None => String::new(),
     };
     let text = format!(
-        "within {} of long waves from {} spacings per wavelength (constant kernel: {}); at most {} off from {shortest} spacings (constant: {}){bound}",
+        "phase speed within {} of the long-wave limit above {} spacings per wavelength (constant kernel: {}); largest error above {shortest} spacings {} (constant: {}){bound}",
         percent(TOLERANCE),
         significant(tuned.spacings, 3),
         significant(constant.spacings, 3),

@@ -1,14 +1,15 @@
-//! Which states or rows of two results belong together: those at the same time.
+//! Matching of the states or rows of two results by time.
 
-/// Times within this share of the shortest interval between outputs are the same: the rest is rounding, as of a time step that was given or computed.
+/// Times closer than this fraction of the shortest output interval are equal. The tolerance covers rounding, for
+/// example between a time step that is given and one that is computed.
 const TOLERANCE: f64 = 1e-3;
 
 /// Indices of two lists of times.
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct Matches {
-    /// One of each list.
+    /// One index of each list.
     pub(super) pairs: Vec<(usize, usize)>,
-    /// Those of the first list that the second lacks, and the other way round.
+    /// Indices of the first list without a match in the second, and vice versa.
     pub(super) alone: [Vec<usize>; 2],
 }
 
@@ -18,7 +19,7 @@ pub(super) fn matched(a: &[f64], b: &[f64]) -> Matches {
     let mut matches = Matches::default();
     let (mut i, mut j) = (0, 0);
     while i < a.len() && j < b.len() {
-        // A lone state at a time has no interval: round-off of the time itself.
+        // Single times have no interval: the tolerance is the rounding of the time itself.
         let near = if near.is_finite() {
             near
         } else {
@@ -41,7 +42,7 @@ pub(super) fn matched(a: &[f64], b: &[f64]) -> Matches {
     matches
 }
 
-/// The shortest interval between different times that follow each other; infinite if there is none.
+/// Returns the shortest nonzero interval between successive times, or infinity if there is none.
 fn shortest_interval(times: &[f64]) -> f64 {
     let intervals = times.windows(2).map(|pair| pair[1] - pair[0]);
     intervals
@@ -54,7 +55,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn times_that_differ_by_rounding_are_the_same() {
+    fn times_that_differ_by_rounding_match() {
         // The next number above 70 µs.
         let next = f64::from_bits(70e-6_f64.to_bits() + 1);
         let matches = matched(&[0.0, 35e-6, 70e-6], &[0.0, 35e-6, next]);
@@ -64,7 +65,7 @@ mod tests {
     }
 
     #[test]
-    fn times_of_one_list_only_stand_alone_and_the_others_are_matched() {
+    fn unmatched_times_are_listed_and_the_others_are_paired() {
         let matches = matched(&[0.0, 1.0, 2.0, 3.0], &[0.0, 2.0, 4.0]);
         assert_eq!(matches.pairs, [(0, 0), (2, 1)]);
         assert_eq!(matches.alone, [vec![1, 3], vec![2]]);

@@ -1,4 +1,5 @@
-//! `dispersion`: what the grid and the kernel of a deck do to waves. Runs nothing unless a spectrum is to be measured.
+//! `dispersion`: analyse numerical dispersion and stability of the grid and kernel of a deck; with `--measure` also
+//! in a time-domain run.
 
 mod wavevectors;
 
@@ -11,7 +12,7 @@ use pericles_io::{IoError, OutputFolder, write_atomically};
 use pericles_run::dispersion::{
     Curves, STEPS, write_bonds, write_classes, write_polar, write_spectrum,
 };
-use pericles_run::units::{percent, quantity, significant};
+use pericles_run::units::{frequency, percent, quantity, significant};
 use pericles_run::{Interior, KernelQuality, PlaneWaves, RunError, build, readers};
 use serde_json::{Value as Json, json};
 
@@ -23,10 +24,11 @@ use crate::folder::output_folder;
 use crate::given;
 use wavevectors::AtWaveVector;
 
-/// Analyses the lattice of a deck and writes curves, polar plot, classes and a summary.
+/// Analyses the lattice of a deck and writes curves, polar plot, bond classes and a summary.
 ///
 /// # Errors
-/// A deck that is refused, a direction with more components than the body has dimensions, output that cannot be written, a spectrum of an unstable lattice.
+/// The deck is invalid, a vector has more components than the body has dimensions, output cannot be written, or the
+/// spectrum of an unstable lattice is to be measured.
 pub(crate) fn dispersion(args: &DispersionArgs) -> Result<Exit, CliError> {
     args.execution.threads.start()?;
     let deck = given::deck(&args.deck, &args.overrides.set)?;
@@ -44,7 +46,7 @@ pub(crate) fn dispersion(args: &DispersionArgs) -> Result<Exit, CliError> {
     let left_out = left_out(model, solid);
     for part in &left_out {
         console::note(format_args!(
-            "warning: plane waves are those of [material] in the interior of the body: {part}"
+            "warning: the analysis uses [material] in the interior of the body: {part}"
         ));
     }
     let curves = study.curves();
@@ -79,20 +81,20 @@ pub(crate) fn dispersion(args: &DispersionArgs) -> Result<Exit, CliError> {
     if !args.execution.quiet {
         study.print(&measured)?;
         solid.material.tuned.as_ref().map_or(Ok(()), print_tuning)?;
-        console::print(format_args!("results in {}", folder.path().display()))?;
+        console::print(format_args!("Results in {}", folder.path().display()))?;
     }
     Ok(Exit::Done)
 }
 
-/// What is known about the lattice.
+/// The analysis of a lattice.
 struct Analysis {
     lattice: BondLattice,
     contour: Contour,
     points: Vec<pericles_dispersion::ContourPoint>,
     stability: Stability,
-    /// Of the branches, m/s; none where a branch changes its nature from segment to segment.
+    /// Long-wave speeds of the branches, m/s; `None` if the branches cannot be followed from segment to segment.
     targets: Vec<Option<f64>>,
-    /// Of pressure and shear waves in the continuum, m/s.
+    /// Speeds of pressure and shear waves in the continuum, m/s.
     speeds: Vec<f64>,
     /// Speed of the bar wave √(E/ρ), m/s.
     bar: f64,
@@ -154,7 +156,7 @@ impl Analysis {
         }
     }
 
-    /// α of each class as the deck has it, with its bonds' share κ.
+    /// Writes α of each class of bonds and the volume factor κ of its bonds.
     fn write_classes(&self, material: &BondMaterial, folder: &OutputFolder) -> Result<(), IoError> {
         if !self.lattice.is_cubic() {
             return write_bonds(&folder.file("classes.csv"), &self.lattice);
@@ -201,7 +203,8 @@ impl Analysis {
         }))
     }
 
-    /// Long-wave speeds over the continuum's: smallest and largest over all directions, pressure and shear.
+    /// Returns the smallest and largest ratio over all directions of the long-wave speed to that of the continuum, for
+    /// pressure and shear waves.
     fn anisotropy(&self) -> Vec<[f64; 2]> {
         let planes = match self.lattice.dimension() {
             1 => vec![[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]],
@@ -255,18 +258,19 @@ impl Analysis {
             "measured_spectrum": measured,
             "wavevectors": wavevectors::summary(&self.wavevectors),
             "conventions": {
-                "contour": "border of the irreducible zone, or a ray, by arc length; segments share their corners",
-                "branches": "followed by the polarisation that symmetry fixes; else by likeness of polarisations",
+                "contour": "boundary of the irreducible Brillouin zone, or a ray, by arc length; segments share their corners",
+                "branches": "followed by the polarisation that symmetry determines; otherwise by similarity of polarisations",
                 "omega_verlet": "(2/dt) asin(omega dt/2)",
-                "long_wave_speed_ratios": "[smallest, largest] over directions, over the continuum's speed, pressure then shear",
+                "long_wave_speed_ratios": "[smallest, largest] over directions, relative to the continuum; pressure, then shear",
                 "body": "the interior of the body; points near its surface have fewer bonds",
                 "units": "SI",
             },
         })
     }
 
-    /// The shortest wavelength, in spacings, from which on all longer waves of all branches keep their phase velocity within `share` of that of long waves. Steps of a
-    /// segment are what it is found by; none if even the first one is off.
+    /// Returns the shortest wavelength, in spacings, above which the phase velocities of all branches are within
+    /// `share` of the long-wave limit, sampled at the points of the first segment; `None` if the first point exceeds
+    /// it.
     fn resolved(&self, share: f64) -> Option<f64> {
         let first = self.points.iter().take_while(|point| point.segment == 0);
         let limits: Vec<f64> = self.points[0]
@@ -290,7 +294,7 @@ impl Analysis {
         let names = ["pressure", "shear", "second shear"];
         for (branch, [low, high]) in self.anisotropy().into_iter().enumerate() {
             console::print(format_args!(
-                "long {} waves      {} to {} of {:.0} m/s",
+                "long {} waves      speed {} to {} times {:.0} m/s (continuum)",
                 names[branch],
                 significant(low, 5),
                 significant(high, 5),
@@ -299,7 +303,7 @@ impl Analysis {
         }
         if let Some(wavelength) = self.resolved(0.01) {
             console::print(format_args!(
-                "phase velocity      within {} for wavelengths of {} spacings and more",
+                "phase velocity      within {} of the long-wave limit for wavelengths above {} spacings",
                 percent(0.01),
                 significant(wavelength, 3)
             ))?;
@@ -307,20 +311,20 @@ impl Analysis {
         wavevectors::print(&self.wavevectors)?;
         if found.is_stable() {
             console::print(format_args!(
-                "highest frequency   {:.4e} 1/s; largest stable step {}, the deck's {}",
-                found.omega_max,
+                "highest frequency   {} 1/s; critical time step {}, time step of the deck {}",
+                frequency(found.omega_max),
                 quantity(found.dt_max(), "s"),
                 quantity(self.dt, "s")
             ))?;
         } else {
             console::print(format_args!(
-                "UNSTABLE: some waves grow, smallest ω²/k² = {:.4e} m²/s²",
-                found.smallest
+                "UNSTABLE: some waves grow exponentially, smallest ω²/k² = {} m²/s²",
+                significant(found.smallest, 5)
             ))?;
         }
         match measured["worst_deviation_in_lines"].as_f64() {
             Some(worst) => console::print(format_args!(
-                "measured spectrum   worst peak {} lines from the time-discrete curve",
+                "measured spectrum   largest deviation of a peak from the time-discrete curve: {} spectral lines",
                 significant(worst, 2)
             )),
             None => Ok(()),
@@ -328,12 +332,12 @@ impl Analysis {
     }
 }
 
-/// What a deck has that the plane waves of its first material know nothing of.
+/// Returns the parts of a deck that the plane-wave analysis of its first material does not include.
 fn left_out(model: &Model, solid: &Solid) -> Vec<String> {
     let counted = |count: usize, what: [&str; 2]| match count {
         0 => None,
-        1 => Some(format!("one {} is left out", what[0])),
-        _ => Some(format!("{count} {} are left out", what[1])),
+        1 => Some(format!("1 {} is not included", what[0])),
+        _ => Some(format!("{count} {} are not included", what[1])),
     };
     let stiffnesses = model.assignments.iter().filter_map(|one| one.stiffness);
     let refined = solid.shape.finer().len();
@@ -348,14 +352,14 @@ fn left_out(model: &Model, solid: &Solid) -> Vec<String> {
             refined,
             ["region with a finer grid", "regions with a finer grid"],
         ),
-        correction.then(|| "the surface correction is left out".to_owned()),
+        correction.then(|| "the surface correction is not included".to_owned()),
     ]
     .into_iter()
     .flatten()
     .collect()
 }
 
-/// How tuned coefficients were found and what is left of the functionals; lengths in spacings, speeds over √(E/ρ).
+/// Returns the method and residual functionals of tuned coefficients; lengths in spacings, speeds relative to √(E/ρ).
 fn tuning(table: &TunedTable) -> Json {
     let (tuning, error) = (&table.tuning, &table.assessment.error);
     json!({
@@ -390,7 +394,7 @@ fn print_tuning(table: &TunedTable) -> Result<(), IoError> {
     ))
 }
 
-/// What kernel and grid do to plane waves of any direction; SI units.
+/// Returns the dispersion errors of kernel and grid over all directions, in SI units.
 fn plane_waves(waves: PlaneWaves) -> Json {
     let quality = |kernel: KernelQuality| {
         json!({

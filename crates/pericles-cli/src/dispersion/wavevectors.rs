@@ -11,7 +11,7 @@ use crate::console;
 
 /// The modes at one wave vector, fastest first.
 pub(crate) struct AtWaveVector {
-    /// rad/m
+    /// Wave vector, rad/m.
     k: Vector,
     modes: Vec<Mode>,
     /// Time step for the time-discrete frequency, s.
@@ -19,7 +19,7 @@ pub(crate) struct AtWaveVector {
 }
 
 impl AtWaveVector {
-    /// The modes of a lattice at a wave vector (rad/m).
+    /// Computes the modes of a lattice at a wave vector (rad/m).
     pub(crate) fn of(lattice: &BondLattice, k: Vector, dt: f64) -> Self {
         let mut modes = lattice.modes(k);
         modes.reverse();
@@ -30,7 +30,7 @@ impl AtWaveVector {
         self.k.iter().map(|k| k * k).sum::<f64>().sqrt()
     }
 
-    /// ω of a mode, that of velocity Verlet, and the phase speed; none where the wave grows.
+    /// Returns ω of a mode, ω with velocity Verlet, and the phase velocity; `None` for growing waves.
     fn numbers(&self, mode: &Mode) -> [Option<f64>; 3] {
         let omega = Some(mode.omega()).filter(|omega| omega.is_finite());
         [
@@ -61,7 +61,7 @@ impl AtWaveVector {
                     significant(omega, 5),
                     significant(speed, 4)
                 ),
-                _ => "growing".into(),
+                _ => "unstable".into(),
             })
             .collect();
         let k = self.k.map(|k| significant(k, 4)).join(", ");
@@ -69,17 +69,17 @@ impl AtWaveVector {
     }
 }
 
-/// All of them, for the summary.
+/// Returns all wave vectors as JSON.
 pub(crate) fn summary(all: &[AtWaveVector]) -> Json {
     all.iter().map(AtWaveVector::json).collect()
 }
 
-/// All of them, on the screen.
+/// Prints all wave vectors.
 pub(crate) fn print(all: &[AtWaveVector]) -> Result<(), IoError> {
     all.iter().try_for_each(AtWaveVector::print)
 }
 
-/// A row for each mode; cells are empty where a wave grows.
+/// Writes a table with a row per mode; cells of growing waves are empty.
 pub(crate) fn write(path: &Path, all: &[AtWaveVector]) -> Result<(), IoError> {
     let mut columns = ["k_x", "k_y", "k_z"]
         .map(|name| Column::real(name, "rad/m"))

@@ -1,4 +1,4 @@
-//! `geodesics`: how far the ways to find distances along a surface are off, and what they cost.
+//! `geodesics`: compare accuracy and cost of methods for geodesic distances.
 
 mod shape;
 
@@ -18,7 +18,7 @@ use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
 
-/// The results as JSON.
+/// The JSON output.
 #[derive(Serialize)]
 struct Results {
     surface: String,
@@ -27,7 +27,7 @@ struct Results {
     triangles: usize,
     parts: usize,
     boundary_edges: usize,
-    /// Of the first part; none if it is open.
+    /// Genus of the first component; `None` if it is open.
     genus: Option<i64>,
     area: f64,
     volume: f64,
@@ -36,7 +36,7 @@ struct Results {
     horizon: f64,
     cautions: Vec<String>,
     methods: Vec<MethodResult>,
-    /// Distances between two vertices.
+    /// Distances between given vertices.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     between: Vec<Distance>,
 }
@@ -44,10 +44,10 @@ struct Results {
 /// The distance between two vertices by a method.
 #[derive(Serialize)]
 struct Distance {
-    /// Numbers of the vertices as the user counts them.
+    /// Vertex numbers as in the file.
     vertices: [usize; 2],
     method: String,
-    /// m; none if no path joins them.
+    /// Distance, m; `None` if no path connects them.
     distance: Option<f64>,
 }
 
@@ -65,7 +65,8 @@ struct MethodResult {
 /// Compares methods on a surface.
 ///
 /// # Errors
-/// A surface that cannot be read or fails its checks, a horizon without neighbours, output that cannot be written.
+/// The surface cannot be read or fails its checks, a vertex has no neighbour within the horizon, or output cannot be
+/// written.
 pub(crate) fn geodesics(args: &GeodesicsArgs) -> Result<Exit, CliError> {
     let surface = shape::surface(&args.surface)?;
     let checks = SurfaceChecks {
@@ -81,14 +82,14 @@ pub(crate) fn geodesics(args: &GeodesicsArgs) -> Result<Exit, CliError> {
     args.threads.start()?;
     let surface = surface.renumbered();
     let between = between(&surface, args)?;
-    let (truth, seconds) = timed(&surface, args.horizon, GeodesicMethod::Exact)?;
+    let (truth, seconds) = timed(&surface, args.horizon.metres, GeodesicMethod::Exact)?;
     let methods = args
         .methods
         .iter()
-        .map(|&method| result(&surface, args.horizon, method, &truth, seconds))
+        .map(|&method| result(&surface, args.horizon.metres, method, &truth, seconds))
         .collect::<Result<Vec<MethodResult>, CliError>>()?;
     let mean_neighbours = truth.len() as f64 / surface.len() as f64;
-    let cautions = surface.cautions(args.horizon, mean_neighbours);
+    let cautions = surface.cautions(args.horizon.metres, mean_neighbours);
     let results = Results {
         surface: args.surface.clone(),
         vertices: surface.len(),
@@ -101,7 +102,7 @@ pub(crate) fn geodesics(args: &GeodesicsArgs) -> Result<Exit, CliError> {
         volume: report.volume,
         edge_lengths: report.edge_lengths,
         angles_degrees: report.angles.map(f64::to_degrees),
-        horizon: args.horizon,
+        horizon: args.horizon.metres,
         cautions: cautions.iter().map(ToString::to_string).collect(),
         methods,
         between,
@@ -115,7 +116,7 @@ pub(crate) fn geodesics(args: &GeodesicsArgs) -> Result<Exit, CliError> {
     Ok(Exit::Done)
 }
 
-/// The distances that are asked for, by all methods.
+/// Returns the requested distances by all methods.
 fn between(surface: &Surface, args: &GeodesicsArgs) -> Result<Vec<Distance>, CliError> {
     let numbers: HashMap<usize, usize> = (0..surface.len())
         .map(|vertex| (surface.user_number(vertex), vertex))
@@ -189,12 +190,15 @@ fn print(results: &Results, report: &SurfaceReport, mean_neighbours: f64) -> Res
     let topology = match (results.parts, results.genus) {
         (1, Some(genus)) => format!("closed, genus {genus}"),
         (1, None) => format!("open, {} boundary edges", results.boundary_edges),
-        (parts, _) => format!("{parts} parts, {} boundary edges", results.boundary_edges),
+        (parts, _) => format!(
+            "{parts} disconnected components, {} boundary edges",
+            results.boundary_edges
+        ),
     };
     console::print(format_args!(
         "{}: {} vertices, {} edges, {} triangles; {topology}\n\
          area {} m², volume {} m³; edges {shortest}, {median}, {longest} m (shortest, median, longest); angles {smallest}° to {largest}°\n\
-         horizon {} m, {} median edges; {} neighbours on average\n",
+         horizon {} m ({} median edge lengths); {} neighbours on average\n",
         results.surface,
         count(results.vertices as u64),
         count(results.edges as u64),
@@ -206,13 +210,10 @@ fn print(results: &Results, report: &SurfaceReport, mean_neighbours: f64) -> Res
         significant(mean_neighbours, 3),
     ))?;
     if report.flipped > 0 {
-        console::print(format_args!(
-            "{} triangles were turned over",
-            report.flipped
-        ))?;
+        console::print(format_args!("{} triangles were reoriented", report.flipped))?;
     }
     for caution in &results.cautions {
-        console::print(format_args!("caution: {caution}"))?;
+        console::print(format_args!("warning: {caution}"))?;
     }
     console::print(format_args!(
         "{:<15} {:>14} {:>9} {:>9} {:>9} {:>9} {:>9}",
@@ -239,7 +240,7 @@ fn print(results: &Results, report: &SurfaceReport, mean_neighbours: f64) -> Res
     {
         let distance = match distance {
             Some(distance) => format!("{} m", significant(*distance, 6)),
-            None => "no path joins them".into(),
+            None => "not connected".into(),
         };
         console::print(format_args!("vertices {a} and {b}, {method}: {distance}"))?;
     }

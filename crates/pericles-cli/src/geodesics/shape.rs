@@ -1,4 +1,4 @@
-//! A surface from the command line: a shape such as `torus(1,0.4,40,20)`, else a file.
+//! Surfaces given on the command line: a shape such as `torus(1,0.4,40,20)`, or a file.
 
 use pericles_io::read_surface;
 use pericles_manifold::surface::{Surface, SurfaceError};
@@ -6,13 +6,13 @@ use pericles_run::machine;
 
 use crate::error::CliError;
 
-const ALLOWED: &str = "icosphere(LEVEL), icosphere(LEVEL,RADIUS), uv-sphere(SEGMENTS,RINGS,RADIUS), ellipsoid(LEVEL,A,B,C), \
-                       torus(MAJOR,MINOR,AROUND,ACROSS), capsule(RADIUS,LENGTH,SEGMENTS), or a file";
+const ALLOWED: &str = "expected icosphere(LEVEL), icosphere(LEVEL,RADIUS), uv-sphere(SEGMENTS,RINGS,RADIUS), ellipsoid(LEVEL,A,B,C), \
+                       torus(MAJOR,MINOR,MAJOR_SEGMENTS,MINOR_SEGMENTS), capsule(RADIUS,LENGTH,SEGMENTS), or a file";
 
-/// Makes or reads a surface.
+/// Creates or reads a surface.
 ///
 /// # Errors
-/// An unknown shape, numbers out of its range, a file that gives no surface.
+/// The shape is unknown, a parameter is out of range, or the file has no valid surface.
 pub(super) fn surface(word: &str) -> Result<Surface, CliError> {
     let Some((name, numbers)) = word.strip_suffix(')').and_then(|word| word.split_once('(')) else {
         return Ok(read_surface(word, machine::memory())?);

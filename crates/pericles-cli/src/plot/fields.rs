@@ -1,5 +1,5 @@
-//! Fields of written states as pictures. The points come from the deck or model in `run.json`, so that cells, triangles and all else are those of the run's own
-//! pictures.
+//! Pictures of the fields in an output folder. The points are built from the deck or model in `run.json`, so that the
+//! pictures have the same cells and triangles as those of the run.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -8,15 +8,15 @@ use pericles::observe::Field;
 use pericles::space::PointCloud;
 use pericles_deck::Model;
 use pericles_io::observers::{DrawnState, PictureOf};
-use pericles_io::{FieldData, write_animation};
+use pericles_io::{Extent, FieldData, write_animation};
 use pericles_run::{
-    FieldFile, Resources, Results, RunError, body_points, machine, picture_of, readers,
+    FieldFile, Resources, Results, RunError, discretise, machine, overlay, picture_of, readers,
 };
 
 use crate::args::{Format, PlotArgs};
 use crate::frames::Frames;
 
-/// Draws pictures into a folder; returns them, and the animations.
+/// Renders pictures into a folder; returns the files of pictures and animations.
 pub(super) fn draw(
     results: &Results,
     args: &PlotArgs,
@@ -27,7 +27,7 @@ pub(super) fn draw(
         if args.fields.is_empty() {
             return Ok(Vec::new());
         }
-        return Err(results.damaged("fields.pvd", "the run wrote no fields".into()));
+        return Err(results.damaged("fields.pvd", "the run wrote no field files".into()));
     };
     let source = results.source()?.read()?;
     let model = source.model();
@@ -36,17 +36,19 @@ pub(super) fn draw(
         memory: machine::memory(),
         ..readers()
     };
-    let points = body_points(model, &resources);
-    let (cloud, surface) = points.map_err(|error| source.refusal(error))?;
+    let points = discretise(model, &resources);
+    let points = points.map_err(|error| source.refusal(error))?;
+    let (cloud, surface) = (points.cloud, points.surface);
+    let overlay = overlay(model, &cloud, &points.sets).map(Arc::new);
     let body = Body {
         rows: (0..cloud.len()).map(|i| cloud.user_number(i)).collect(),
         cloud,
     };
-    let surface = surface.map(Arc::new);
     let mut pictures: Vec<PictureOf> = wanted(model, args, &last.read()?, body.cloud.dimension())?
         .into_iter()
         .map(|what| PictureOf {
             surface: surface.clone(),
+            overlay: overlay.clone(),
             steady: args.animation,
             width: args.width,
             view: args.view.map(|view| view.vector()).or(what.view),
@@ -64,8 +66,8 @@ pub(super) fn draw(
     for what in &mut pictures {
         if let Some(range) = &args.range {
             what.range = Some(range.0);
-        } else if what.range.is_none() && numbers.len() > 1 && what.field != Field::Damage {
-            // Of one range, or the colours would change their meaning from picture to picture.
+        } else if what.has_own_range() {
+            // One range for all times, so that colours are comparable.
             what.range = body.common_range(what, &states, &numbers)?;
         }
     }
@@ -90,7 +92,8 @@ pub(super) fn draw(
     Ok(stills.into_iter().flatten().chain(written).collect())
 }
 
-/// What is to be drawn: the fields that are asked for, else those of the deck's pictures, else damage where there is any, else the displacement.
+/// Returns the fields to render: those requested, else those of the deck's pictures, else the damage if there is any,
+/// else the displacement.
 fn wanted(
     model: &Model,
     args: &PlotArgs,
@@ -140,7 +143,7 @@ fn wanted(
         let found = written.iter().find(|what| what.name(dimension) == *name);
         let what = found.ok_or_else(|| {
             let names: Vec<String> = written.iter().map(|what| what.name(dimension)).collect();
-            let listing = format!("the run wrote {}", names.join(", "));
+            let listing = format!("the run wrote the fields {}", names.join(", "));
             let Some(left_out) = all.iter().find(|what| what.name(dimension) == *name) else {
                 return RunError::unknown("field", name, &names, &listing);
             };
@@ -149,11 +152,11 @@ fn wanted(
                 kind: "field",
                 name: name.clone(),
                 hint: format!(
-                    "{listing}; with \"{field}\" among names of output.fields another run writes it"
+                    "{listing}; to write it, add \"{field}\" to the names of output.fields and run again"
                 ),
             }
         })?;
-        // A deck's own picture of the field says how it is best seen.
+        // If the deck has a picture of the field, use its view and range.
         let own = model
             .output
             .pictures
@@ -170,7 +173,7 @@ fn wanted(
     args.fields.iter().map(named).collect()
 }
 
-/// All fields, whole and by component.
+/// Returns all fields, whole and by component.
 fn drawable(dimension: usize) -> Vec<PictureOf> {
     let with = |field: Field, component| PictureOf {
         component,
@@ -183,7 +186,7 @@ fn drawable(dimension: usize) -> Vec<PictureOf> {
     Field::ALL.into_iter().flat_map(parts).collect()
 }
 
-/// The columns of files that a field is in.
+/// Returns the arrays of the files that hold a field.
 fn columns(field: Field, dimension: usize) -> Vec<String> {
     if !field.is_tensor() {
         return vec![field.name().to_owned()];
@@ -194,9 +197,9 @@ fn columns(field: Field, dimension: usize) -> Vec<String> {
         .collect()
 }
 
-/// The points, and the row of each in files.
+/// The points, and the row of each point in the files.
 struct Body {
-    cloud: PointCloud,
+    cloud: Arc<PointCloud>,
     rows: Vec<usize>,
 }
 
@@ -211,7 +214,7 @@ impl Body {
         let n = self.cloud.len();
         let displacement = match data.field(Field::Displacement.name()) {
             Some(_) => self.field(Field::Displacement, state, data)?,
-            // Points that nobody wrote the displacement of are drawn at rest.
+            // Without a written displacement, points are shown in the reference configuration.
             None => vec![0.0; n * self.cloud.dimension()],
         };
         let field = self.field(what.field, state, data)?;
@@ -219,11 +222,12 @@ impl Body {
             t: state.time,
             displacement: &displacement,
             values: &what.numbers(&field, n),
+            extent: None,
         };
         Ok(what.draw_state(&self.cloud, &drawn, path)?)
     }
 
-    /// A field in the order of the points, component after component.
+    /// Returns a field in the order of the points, component-major.
     fn field(
         &self,
         field: Field,
@@ -237,7 +241,7 @@ impl Body {
         let (n, dimension) = (self.cloud.len(), self.cloud.dimension());
         if data.points.len() != 3 * n {
             return Err(damaged(format!(
-                "it has {} points, the deck's body {n}",
+                "it has {} points, but the body of the deck has {n}",
                 data.points.len() / 3
             )));
         }
@@ -245,7 +249,7 @@ impl Body {
         for name in columns(field, dimension) {
             let column = data
                 .field(&name)
-                .ok_or_else(|| damaged(format!("it has no {name}")))?;
+                .ok_or_else(|| damaged(format!("it has no array {name}")))?;
             let components = if column.components == 1 { 1 } else { dimension };
             for c in 0..components {
                 let entries = self.rows.iter().map(|row| row * column.components + c);
@@ -255,29 +259,19 @@ impl Body {
         Ok(values)
     }
 
-    /// The least and the greatest number of several pictures; none if they are all one.
+    /// Returns the range of the values of several pictures, or `None` if they are constant.
     fn common_range(
         &self,
         what: &PictureOf,
         states: &[FieldFile],
         numbers: &[usize],
     ) -> Result<Option<[f64; 2]>, RunError> {
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        let mut whole: Option<Extent> = None;
         for &number in numbers {
             let field = self.field(what.field, &states[number], &states[number].read()?)?;
-            for &value in what
-                .numbers(&field, self.cloud.len())
-                .iter()
-                .filter(|x| x.is_finite())
-            {
-                (low, high) = (low.min(value), high.max(value));
-            }
+            let extent = what.extent(&field, &what.numbers(&field, self.cloud.len()));
+            whole = Some(whole.map_or(extent, |whole| whole.union(extent)));
         }
-        if what.component.is_some() {
-            // Zero is in the middle of the colours of what has a sign.
-            let size = low.abs().max(high.abs());
-            (low, high) = (-size, size);
-        }
-        Ok((low < high).then_some([low, high]))
+        Ok(whole.map(Extent::ends).filter(|[low, high]| low < high))
     }
 }

@@ -1,10 +1,13 @@
-//! `plot`: pictures of fields and charts of histories, drawn again from an output folder.
+//! `plot`: render pictures of fields and charts of time histories from an output folder.
 
+mod curves;
 mod fields;
+mod sweep;
 
 use std::path::{Path, PathBuf};
 
-use pericles_io::IoError;
+use pericles_io::{IoError, LineChart};
+use pericles_run::sweep::is_sweep;
 use pericles_run::{Results, RunError, file_name};
 
 use crate::args::PlotArgs;
@@ -14,12 +17,20 @@ use crate::error::CliError;
 use crate::exit::Exit;
 use crate::text_chart::TextChart;
 
-/// Draws what is asked for; without a field or a column the pictures of the last state and the charts of all tables.
+pub(crate) use sweep::usual as usual_scalars;
+
+/// Renders the requested fields and columns or, by default, pictures of the last state and charts of all tables.
 ///
 /// # Errors
-/// A folder without results, files of it that are damaged, fields or columns that it has not, pictures that cannot be written.
+/// The folder has no results or damaged files, a field or column does not exist, or a picture cannot be written.
 pub(crate) fn plot(args: &PlotArgs) -> Result<Exit, CliError> {
+    if is_sweep(&args.dir) {
+        return sweep::plot(args);
+    }
     let results = Results::open(&args.dir)?;
+    if !args.y.is_empty() {
+        return curves::plot(&results, args);
+    }
     let everything = args.fields.is_empty() && args.columns.is_empty();
     let charts = if everything || !args.columns.is_empty() {
         charts_of(&results, &args.columns)?
@@ -27,14 +38,12 @@ pub(crate) fn plot(args: &PlotArgs) -> Result<Exit, CliError> {
         Vec::new()
     };
     if args.terminal {
-        // Pictures of fields need pixels.
         for (_, chart) in &charts {
             console::print(format_args!("{}", TextChart::of(chart)))?;
         }
         return Ok(Exit::Done);
     }
-    let place = args.out.clone().unwrap_or_else(|| args.dir.join("plots"));
-    std::fs::create_dir_all(&place).map_err(|error| IoError::writing(&place, error))?;
+    let place = place(args)?;
     let mut written: Vec<PathBuf> = Vec::new();
     if everything || !args.fields.is_empty() {
         written.extend(fields::draw(&results, args, &place)?);
@@ -55,7 +64,27 @@ pub(crate) fn plot(args: &PlotArgs) -> Result<Exit, CliError> {
     Ok(Exit::Done)
 }
 
-/// The charts of all tables, or of the columns that are asked for, with the names of their tables.
+/// Creates the folder of the pictures.
+fn place(args: &PlotArgs) -> Result<PathBuf, IoError> {
+    let place = args.out.clone().unwrap_or_else(|| args.dir.join("plots"));
+    std::fs::create_dir_all(&place).map_err(|error| IoError::writing(&place, error))?;
+    Ok(place)
+}
+
+/// Writes a chart into the folder of the pictures and prints its path; characters of the name that are not allowed in file names are
+/// replaced.
+fn write(chart: LineChart, name: &str, place: &Path, args: &PlotArgs) -> Result<(), IoError> {
+    let plain = |c: char| match c.is_alphanumeric() || "+-.=_".contains(c) {
+        true => c,
+        false => '_',
+    };
+    let name: String = name.chars().map(plain).collect();
+    let path = place.join(format!("{name}.{}", args.format.ending()));
+    chart.width(args.width).write(&path)?;
+    console::print(format_args!("{}", path.display()))
+}
+
+/// Returns the charts of the requested columns, by default of all, with the names of their tables.
 fn charts_of(results: &Results, columns: &[String]) -> Result<Vec<(String, Chart)>, CliError> {
     let stem = |table: &Path| file_name(table).trim_end_matches(".csv").to_owned();
     let (mut charts, mut known) = (Vec::new(), Vec::new());
@@ -71,7 +100,7 @@ fn charts_of(results: &Results, columns: &[String]) -> Result<Vec<(String, Chart
             "column",
             unknown,
             &known,
-            &format!("the tables have {}", known.join(", ")),
+            &format!("the tables have the columns {}", known.join(", ")),
         )
         .into()),
         None => Ok(charts),

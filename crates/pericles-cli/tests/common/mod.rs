@@ -1,4 +1,4 @@
-//! What the tests of the program share: running it, a small deck, and looking at folders.
+//! Shared by the tests of the program: running it, a small deck, reading output folders.
 #![allow(dead_code)] // each test file uses its part
 
 use std::collections::BTreeMap;
@@ -9,14 +9,14 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
-/// The program, to be run in a folder.
+/// Returns the program as a command in a folder.
 pub fn pericles(folder: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_pericles"));
     command.current_dir(folder).stdin(Stdio::null());
     command
 }
 
-/// Runs the program with arguments split at spaces.
+/// Runs the program; the arguments are split at spaces.
 pub fn run(folder: &Path, arguments: &str) -> Output {
     pericles(folder)
         .args(arguments.split_whitespace())
@@ -24,7 +24,7 @@ pub fn run(folder: &Path, arguments: &str) -> Output {
         .unwrap()
 }
 
-/// Runs the program and wants it to succeed.
+/// Runs the program and asserts success.
 pub fn succeed(folder: &Path, arguments: &str) -> Output {
     let output = run(folder, arguments);
     let (out, err) = (text(&output.stdout), text(&output.stderr));
@@ -36,7 +36,7 @@ pub fn succeed(folder: &Path, arguments: &str) -> Output {
     output
 }
 
-/// The exit status and the standard error.
+/// Runs the program, asserts failure, and returns exit status and standard error.
 pub fn fail(folder: &Path, arguments: &str) -> (i32, String) {
     let output = run(folder, arguments);
     (output.status.code().unwrap(), text(&output.stderr))
@@ -46,7 +46,7 @@ pub fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-/// A small notched plate that is torn apart, with every kind of output.
+/// A small notched plate that breaks, with all kinds of output.
 pub const PLATE: &str = r#"
 title = "Torn plate"
 [body]
@@ -65,10 +65,10 @@ layer = { side = "+y", cells = 1 }
 layer = { side = "-y", cells = 1 }
 [[crack]]
 segment = [["0 mm", "6 mm"], ["8 mm", "6 mm"]]
-[[prescribe]]
+[[constraint]]
 set = "top"
 velocity = ["free", "4 m/s"]
-[[prescribe]]
+[[constraint]]
 set = "bottom"
 velocity = ["free", "-4 m/s"]
 [[load]]
@@ -95,14 +95,14 @@ every = 150
 every = 60
 "#;
 
-/// A temporary folder with the plate's deck in it.
+/// Returns a temporary folder with the deck of the plate.
 pub fn with_plate() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("plate.toml"), PLATE).unwrap();
     folder
 }
 
-/// All result files of a run with their bytes: everything but run.json, checkpoints and the lock.
+/// Returns all result files of a run with their contents, except run.json, checkpoints and the lock.
 pub fn results(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut found = BTreeMap::new();
     let mut open = vec![folder.to_path_buf()];
@@ -121,7 +121,7 @@ pub fn results(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     found
 }
 
-/// Wants two runs to have left the same files with the same bytes.
+/// Asserts that two runs have written identical files.
 pub fn assert_same_results(one: &Path, other: &Path) {
     let (one, other) = (results(one), results(other));
     let names = |files: &BTreeMap<PathBuf, Vec<u8>>| files.keys().cloned().collect::<Vec<_>>();
@@ -136,16 +136,16 @@ pub fn assert_same_results(one: &Path, other: &Path) {
     }
 }
 
-/// `run.json` of an output folder.
+/// Returns `run.json` of an output folder.
 pub fn report(folder: &Path) -> Value {
     serde_json::from_str(&fs::read_to_string(folder.join("run.json")).unwrap()).unwrap()
 }
 
-/// A run in the background that is ended with the test.
+/// A run in the background that ends with the test.
 pub struct Background(Option<Child>);
 
 impl Background {
-    /// Starts a run and waits until its history has grown to some rows.
+    /// Starts a run and waits until its history has several rows.
     pub fn start(folder: &Path, arguments: &str, out: &str) -> Self {
         let child = pericles(folder)
             .args(arguments.split_whitespace())
@@ -159,7 +159,7 @@ impl Background {
         })
     }
 
-    /// Waits until a run has come to some point.
+    /// Waits until a run satisfies a condition.
     pub fn waiting(child: Child, reached: impl Fn() -> bool) -> Self {
         let mut run = Self(Some(child));
         let start = Instant::now();
@@ -171,14 +171,14 @@ impl Background {
             );
             assert!(
                 start.elapsed() < Duration::from_secs(60),
-                "the run does not begin"
+                "the run does not start"
             );
             std::thread::sleep(Duration::from_millis(2));
         }
         run
     }
 
-    /// Sends a signal by name.
+    /// Sends a signal given by name.
     pub fn signal(&self, name: &str) {
         let child = self.0.as_ref().unwrap();
         let status = Command::new("kill")
@@ -188,7 +188,7 @@ impl Background {
         assert!(status.success());
     }
 
-    /// Waits for the end.
+    /// Waits for the end of the run.
     pub fn finish(mut self) -> Output {
         self.0.take().unwrap().wait_with_output().unwrap()
     }

@@ -1,4 +1,4 @@
-//! The graph of a crate's modules: which modules use which siblings, and the cycles among them.
+//! The module graph of a crate: which modules use which siblings, and cycles among them.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -8,15 +8,15 @@ use crate::syntax::Import;
 
 type Path = Vec<String>;
 
-/// Re-exports of re-exports that are followed at most.
+/// Maximum depth of re-exports that are followed.
 const LONGEST_CHAIN: usize = 16;
 
-/// Sibling modules that use one another, directly or by way of others.
+/// Sibling modules that use one another directly or indirectly.
 pub struct Cycle {
     /// The crate and the parent module, such as `pericles::operator`.
     pub parent: String,
     pub modules: BTreeSet<String>,
-    /// The imports that make the cycle: module, sibling that it uses, and where.
+    /// The imports that form the cycle: module, sibling that it uses, location.
     imports: Vec<(String, String, String)>,
 }
 
@@ -35,18 +35,18 @@ impl fmt::Display for Cycle {
     }
 }
 
-/// The modules of one crate by their paths.
+/// The modules of a crate by path.
 struct Modules<'a> {
     sources: BTreeMap<&'a [String], &'a Source>,
 }
 
 impl<'a> Modules<'a> {
-    /// The modules that are declared outside of tests.
+    /// Modules declared outside of tests.
     fn new(sources: &'a [Source]) -> Self {
         let mut modules = Self {
             sources: BTreeMap::new(),
         };
-        // A parent comes before its children, which its declarations make part of the crate.
+        // A parent comes before its children, which it declares.
         let mut ordered: Vec<&Source> = sources.iter().collect();
         ordered.sort_by_key(|source| source.module.len());
         for source in ordered {
@@ -64,8 +64,9 @@ impl<'a> Modules<'a> {
         modules
     }
 
-    /// The modules that `path`, written in the module `from`, leads through, re-exports followed up to the module that defines the
-    /// item; the last of them is the module itself if the path names a module. `None` for a path out of the crate.
+    /// Returns the modules along `path` as written in the module `from`, following re-exports to the module that
+    /// defines the item; the last one is the module itself if the path names a module. `None` for a path out of the
+    /// crate.
     fn follow(&self, from: &[String], path: &[String], steps: usize) -> Option<Walk> {
         let mut here = from.to_vec();
         let mut walk = Walk {
@@ -87,7 +88,7 @@ impl<'a> Modules<'a> {
         let is_relative = rest.len() == path.len();
         for (position, name) in rest.iter().enumerate() {
             let Some(next) = self.name_in(&here, name, position + 1 == rest.len(), steps) else {
-                // The item is defined here, or the first name is one of the language or of another crate.
+                // The item is defined here, or the first name belongs to the language or to another crate.
                 return (!is_relative || position > 0).then_some(walk);
             };
             walk.through.extend(next.through);
@@ -100,7 +101,7 @@ impl<'a> Modules<'a> {
         Some(walk)
     }
 
-    /// What `name` means in the module `here`: a child, or what a `use` declaration there makes known.
+    /// Resolves `name` in the module `here`: a child, or an import of a `use` declaration.
     fn name_in(&self, here: &[String], name: &str, is_last: bool, steps: usize) -> Option<Walk> {
         let source = self.sources.get(here)?;
         let mut child = here.to_vec();
@@ -110,7 +111,7 @@ impl<'a> Modules<'a> {
             .imports
             .iter()
             .filter(|import| import.name.as_deref() == Some(name));
-        // A module and a function may share a name: the function is meant at the end of a path only.
+        // A module and a function may share a name: at the end of a path it is the function.
         let import = if child.is_some() && !is_last {
             None
         } else {
@@ -145,7 +146,7 @@ impl<'a> Modules<'a> {
             })
     }
 
-    /// The modules that an import in `source` uses.
+    /// Returns the modules that an import in `source` uses.
     fn used(&self, source: &Source, import: &Import) -> Vec<Path> {
         let follow = |path: &[String]| self.follow(&source.module, path, LONGEST_CHAIN);
         let first = Some(&import.path[0]);
@@ -153,7 +154,7 @@ impl<'a> Modules<'a> {
             .imports
             .iter()
             .find(|other| other.name.as_ref() == first);
-        // A path that begins with an item of a `use` declaration adds nothing to the declaration; one that begins with a module does.
+        // A path that begins with an imported item adds nothing to the import; one that begins with a module does.
         if let (None, Some(declared)) = (&import.name, declared)
             && (import.path.len() == 1
                 || follow(&declared.path).is_none_or(|walk| walk.module.is_none()))
@@ -164,16 +165,16 @@ impl<'a> Modules<'a> {
     }
 }
 
-/// Where a path leads.
+/// The target of a path.
 struct Walk {
     through: Vec<Path>,
     module: Option<Path>,
 }
 
-/// The uses among the children of one module: user and used, with the places.
+/// The uses among the children of a module: user, used module, and locations.
 type Uses = BTreeMap<(String, String), BTreeSet<(String, usize, String)>>;
 
-/// The cycles among sibling modules of the crate `name`.
+/// Returns the cycles among sibling modules of the crate `name`.
 pub fn cycles(name: &str, sources: &[Source]) -> Vec<Cycle> {
     let modules = Modules::new(sources);
     let mut uses: BTreeMap<Path, Uses> = BTreeMap::new();
@@ -218,7 +219,7 @@ fn places(uses: &Uses, modules: &BTreeSet<String>) -> Vec<(String, String, Strin
         .collect()
 }
 
-/// The strongly connected components of more than one module.
+/// Returns the strongly connected components of more than one module.
 fn components(uses: &Uses) -> Vec<BTreeSet<String>> {
     let nodes: BTreeSet<&String> = uses.keys().map(|(user, _)| user).collect();
     let reached: BTreeMap<&String, BTreeSet<String>> = nodes
@@ -253,7 +254,7 @@ fn reached_from(uses: &Uses, start: &str) -> BTreeSet<String> {
 mod tests {
     use super::*;
 
-    /// The cycles of a crate of files given as name and text, one line each.
+    /// Returns the cycles of a crate given as names and texts of files, one line each.
     fn cycles_of(files: &[(&str, &str)]) -> Vec<String> {
         let sources: Vec<Source> = files
             .iter()
@@ -319,7 +320,7 @@ mod tests {
     }
 
     #[test]
-    fn parents_children_tests_and_comments_make_no_cycle() {
+    fn parents_children_tests_and_comments_form_no_cycle() {
         let files = [
             ("lib.rs", "mod a; mod b; fn f() { a::f() }"),
             ("a/mod.rs", "mod c; mod d; pub use c::C; use crate::f;"),

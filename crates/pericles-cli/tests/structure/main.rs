@@ -1,9 +1,11 @@
-//! The structure of the workspace, read from its sources: dependencies between crates, cycles among modules, lengths of files.
+//! The structure of the workspace, from its sources: dependencies between crates, cycles among modules, lengths of
+//! files.
 //!
-//! What is known to break a rule is listed here. A list only shrinks: an entry that no longer applies fails its test.
+//! Known exceptions are listed in `known`. An entry that no longer applies fails its test.
 
 mod graph;
 mod known;
+mod phrases;
 mod source;
 mod syntax;
 
@@ -15,10 +17,11 @@ use std::sync::LazyLock;
 use graph::Cycle;
 use source::Source;
 
-/// The longest source file, in lines.
+/// Maximum length of a source file, in lines.
 const LONGEST_FILE: usize = 500;
 
-/// The crates of the workspace, each with the crates of the workspace that it may depend on. A crate comes after its dependencies.
+/// The crates of the workspace with their allowed dependencies within the workspace. A crate comes after its
+/// dependencies.
 const CRATES: &[(&str, &[&str])] = &[
     ("pericles", &[]),
     ("pericles-bench", &["pericles"]),
@@ -99,11 +102,11 @@ const CRATES: &[(&str, &[&str])] = &[
 fn crates_folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
         .parent()
-        .expect("the crate lies in the folder of all crates")
+        .expect("the crate is in the folder of all crates")
         .to_path_buf()
 }
 
-/// The names of the workspace's crates, in alphabetical order.
+/// Returns the names of the crates of the workspace in alphabetical order.
 fn crates() -> Vec<String> {
     let entries = fs::read_dir(crates_folder()).expect("the folder of all crates is readable");
     let mut names: Vec<String> = entries
@@ -120,7 +123,7 @@ fn crates() -> Vec<String> {
     names
 }
 
-/// The crates with their source files.
+/// Returns the crates with their source files.
 static SOURCES: LazyLock<Vec<(String, Vec<Source>)>> = LazyLock::new(|| {
     let read = |name: String| {
         let sources = Source::of_crate(&crates_folder().join(&name).join("src"));
@@ -161,7 +164,7 @@ fn crates_depend_on_one_another_in_one_direction() {
             let Some(other) = CRATES.iter().position(|(known, _)| *known == dependency) else {
                 continue;
             };
-            // Tests of a crate may use any crate below it; its code only those that the table allows.
+            // Tests of a crate may use any crate before it in the table; its code only the allowed ones.
             let allowed = match section.as_str() {
                 "dev-dependencies" => other < position,
                 _ => CRATES[position].1.contains(&dependency.as_str()),
@@ -245,4 +248,11 @@ fn source_files_are_short() {
             .map(|file| format!("{file} no longer exists: remove it from the list")),
     );
     fail_on(&problems);
+}
+
+#[test]
+fn texts_use_the_terms_of_the_glossary() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let found = phrases::found(&root);
+    assert!(found.is_empty(), "{}", found.join("\n"));
 }

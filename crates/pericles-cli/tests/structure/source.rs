@@ -11,7 +11,7 @@ pub struct Source {
     pub file: String,
     /// The module, as the names below the crate's root.
     pub module: Vec<String>,
-    /// The modules that the file declares outside of tests.
+    /// Modules that the file declares outside of tests.
     pub declares: Vec<String>,
     pub imports: Vec<Import>,
     pub lines: usize,
@@ -33,7 +33,7 @@ impl Source {
         }
         let tokens = syntax::tokens(text);
         let mut imports = syntax::imports(&tokens);
-        // A single name is known by a `use` declaration, which counts by itself, or by a glob.
+        // A single name comes from a `use` declaration, which is counted itself, or from a glob.
         if !imports.iter().any(Import::is_glob) {
             imports.retain(|import| import.name.is_some() || import.path.len() > 1);
         }
@@ -75,7 +75,7 @@ fn read(folder: &Path, prefix: &str, sources: &mut Vec<Source>) {
     }
 }
 
-/// The dependencies of a manifest, each with the section that names it.
+/// Returns the dependencies in a manifest, each with its section.
 pub fn dependencies(manifest: &str) -> Vec<(String, String)> {
     let mut section = String::new();
     let mut found = Vec::new();

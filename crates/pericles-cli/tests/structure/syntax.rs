@@ -1,6 +1,6 @@
-//! The little of Rust's syntax that shows what a file imports: tokens, `use` declarations, paths.
+//! A minimal parser for the imports of a Rust file: tokens, `use` declarations, paths.
 
-/// One token with the line that it stands in, from 1.
+/// A token with its line number, from 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Token {
     pub text: String,
@@ -22,7 +22,7 @@ impl Token {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Import {
     pub path: Vec<String>,
-    /// The name by which a `use` declaration at the top level of the file makes the path's item known; empty for a glob.
+    /// The name under which a `use` declaration at the top level of the file imports the item; empty for a glob.
     pub name: Option<String>,
     pub line: usize,
 }
@@ -33,8 +33,8 @@ impl Import {
     }
 }
 
-/// The tokens of `text` without comments, visibilities, string and character literals, lifetimes, and without the items
-/// behind `#[cfg(test)]`.
+/// Returns the tokens of `text` without comments, visibilities, string and character literals, lifetimes, and items
+/// with `#[cfg(test)]`.
 pub fn tokens(text: &str) -> Vec<Token> {
     without_tests(&raw_tokens(text))
 }
@@ -123,7 +123,7 @@ fn end_of_string(chars: &[char], mut i: usize) -> usize {
     i + 1
 }
 
-/// The end of the raw string whose first `#` or quotation mark is at `i`.
+/// Returns the end of the raw string whose first `#` or quotation mark is at `i`.
 fn end_of_raw_string(chars: &[char], mut i: usize) -> usize {
     let hashes = chars[i..].iter().take_while(|&&c| c == '#').count();
     i += hashes + 1;
@@ -143,7 +143,7 @@ fn end_of_raw_string(chars: &[char], mut i: usize) -> usize {
     i
 }
 
-/// The index behind the bracket that closes the one at `i`.
+/// Returns the index after the bracket that closes the one at `i`.
 fn behind_bracket(tokens: &[Token], i: usize) -> usize {
     let mut depth = 0;
     for (k, token) in tokens.iter().enumerate().skip(i) {
@@ -182,7 +182,7 @@ fn is_cfg_test(tokens: &[Token]) -> bool {
     words.len() <= tokens.len() && words.iter().zip(tokens).all(|(word, token)| token.is(word))
 }
 
-/// The index behind the item, field or statement that starts at `i`.
+/// Returns the index after the item, field or statement that starts at `i`.
 fn behind_item(tokens: &[Token], mut i: usize) -> usize {
     let words = [
         "mod", "fn", "use", "impl", "struct", "enum", "const", "static", "type", "trait",
@@ -205,7 +205,7 @@ fn behind_item(tokens: &[Token], mut i: usize) -> usize {
     i
 }
 
-/// The modules that a file declares outside of tests.
+/// Returns the modules that a file declares outside of tests.
 pub fn declared_modules(tokens: &[Token]) -> Vec<String> {
     let declarations = tokens
         .windows(3)
@@ -213,7 +213,7 @@ pub fn declared_modules(tokens: &[Token]) -> Vec<String> {
     declarations.map(|w| w[1].text.clone()).collect()
 }
 
-/// What a file imports by `use` declarations, and the paths in its code.
+/// Returns the imports of `use` declarations and the paths in the code of a file.
 pub fn imports(tokens: &[Token]) -> Vec<Import> {
     let (mut found, mut i, mut depth) = (Vec::new(), 0, 0);
     while i < tokens.len() {
@@ -253,7 +253,7 @@ pub fn imports(tokens: &[Token]) -> Vec<Import> {
     found
 }
 
-/// Reads the `use` tree at `i` below `prefix` and returns the index behind it.
+/// Parses the `use` tree at `i` below `prefix` and returns the index after it.
 fn use_tree(tokens: &[Token], mut i: usize, prefix: &[String], found: &mut Vec<Import>) -> usize {
     let mut path = prefix.to_vec();
     while i < tokens.len() {
@@ -350,7 +350,7 @@ mod tests {
     }
 
     #[test]
-    fn tests_do_not_count() {
+    fn test_modules_are_ignored() {
         let text = "
             mod a;
             #[cfg(test)]

@@ -12,7 +12,7 @@ use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 use crate::region;
 
-/// What `[body]` says besides the shape, where that is "solid" or "outline".
+/// Reads `[body]` with `shape = "solid"` or `"outline"`.
 pub(super) fn read(table: Table<'_>, dimension: usize, mut read: BodyRead) -> BodyRead {
     let boundary = match dimension {
         2 => polygons(&table),
@@ -38,11 +38,11 @@ pub(super) fn read(table: Table<'_>, dimension: usize, mut read: BodyRead) -> Bo
         .map(|part| finer(part, read.frame))
         .collect();
     if !finer.is_empty() && random {
-        table.forbid("refine", "random positions have no cells to divide");
+        table.forbid("refine", "refinement requires positions = \"lattice\"");
     } else if !finer.is_empty() && cells == Some(FilledCells::Partial) {
         table.forbid(
             "refine",
-            "only whole cells can be divided: leave `cells` out, or `refine`",
+            "refinement requires whole cells: remove `cells` or `refine`",
         );
     }
     table.finish();
@@ -83,7 +83,7 @@ fn polygons(table: &Table<'_>) -> Option<Boundary> {
     }
     table.forbid(
         "unit",
-        "lengths in a deck carry their units: only a file needs one",
+        "only a file needs a unit; lengths in a deck carry their own",
     );
     let polygons = item.list("a list of polygons, each a list of corners [x, y]")?;
     if polygons.is_empty() {
@@ -108,13 +108,13 @@ fn cells(table: &Table<'_>, random: bool) -> Option<FilledCells> {
     if random {
         table.forbid(
             "cells",
-            "only points on a lattice have partial cells: leave `positions` out, or `cells`",
+            "partial cells require positions = \"lattice\": remove `positions` or `cells`",
         );
         return Some(FilledCells::Whole);
     }
     table.choice_or_first(
         "cells",
-        "choice of cells",
+        "kind of cells",
         &[
             ("whole", FilledCells::Whole),
             ("partial", FilledCells::Partial),

@@ -1,4 +1,4 @@
-//! The words of `body.shape`.
+//! Words of `body.shape`.
 
 use super::surface::SurfaceKind;
 
@@ -18,7 +18,7 @@ pub(super) enum Kind {
     Surface(SurfaceKind),
 }
 
-/// The words.
+/// All words with their values.
 pub(super) const KINDS: [(&str, Kind); 16] = [
     ("bar", Kind::Bar),
     ("plate", Kind::Plate),
@@ -44,7 +44,7 @@ impl Kind {
             Self::Bar => 1,
             Self::Plate | Self::Disc | Self::Outline => 2,
             Self::Block | Self::Cylinder | Self::Ball | Self::Solid => 3,
-            // Points and meshes say it themselves.
+            // Points and meshes have a key for it.
             Self::Points | Self::Mesh | Self::Surface(_) => 3,
         }
     }

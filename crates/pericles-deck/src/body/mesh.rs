@@ -7,10 +7,10 @@ use super::unit::unit;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 
-/// The word for the spacing that follows from the mesh.
+/// The word for the mean element size as spacing.
 const AUTO: &str = "auto";
 
-/// What `[body]` says besides the shape, where that is "mesh".
+/// Reads `[body]` with `shape = "mesh"`.
 pub(super) fn read(table: Table<'_>, mut read: BodyRead) -> BodyRead {
     let path = table.required("file").and_then(|item| item.text());
     let unit = unit(&table);
@@ -45,7 +45,7 @@ pub(super) fn read(table: Table<'_>, mut read: BodyRead) -> BodyRead {
     read
 }
 
-/// A length, or "auto", which is the default.
+/// Reads a length or "auto", the default.
 fn spacing(table: &Table<'_>) -> Option<Option<f64>> {
     match table.optional("spacing") {
         None => {
@@ -57,7 +57,7 @@ fn spacing(table: &Table<'_>) -> Option<Option<f64>> {
     }
 }
 
-/// A name, or a list of names.
+/// Reads a name or a list of names.
 fn names(item: &Item<'_>) -> Option<Vec<String>> {
     if !item.is_list() {
         return Some(vec![item.text()?]);

@@ -1,4 +1,4 @@
-//! `[body]`: the shape, its grid and its state of stress.
+//! `[body]`: shape, grid and stress state.
 
 mod filled;
 mod kind;
@@ -32,7 +32,7 @@ use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 use crate::region::{self, Frame};
 
-/// `[body]`.
+/// Reads `[body]`.
 pub(crate) fn read(table: Option<Table<'_>>) -> BodyRead {
     let mut read = BodyRead {
         shape: None,
@@ -69,7 +69,7 @@ pub(crate) fn read(table: Option<Table<'_>>) -> BodyRead {
     let rectangular = spacings.filter(|all| all.iter().any(|dx| *dx != all[0]));
     read.frame.cells = rectangular.is_none();
     let Some(kind) = kind else {
-        // Without the shape nobody knows which other keys belong here.
+        // Without the shape, the allowed keys are unknown.
         return read;
     };
     read.frame.dimension = Some(kind.dimension());
@@ -88,7 +88,10 @@ pub(crate) fn read(table: Option<Table<'_>>) -> BodyRead {
         .collect();
     let plain = rectangular.is_none();
     if !plain && !finer.is_empty() {
-        table.forbid("refine", "only cells of one size can be divided");
+        table.forbid(
+            "refine",
+            "refinement requires equal spacings along all axes",
+        );
     }
     let positions = positions(&table, plain, &finer);
     let random = positions.is_some_and(|positions| positions.are_random());
@@ -107,17 +110,17 @@ pub(crate) fn read(table: Option<Table<'_>>) -> BodyRead {
     read
 }
 
-/// How points are arranged; only cells of one size can be left for random positions.
+/// Reads the positions of points; random positions need equal spacings along all axes and no refinement.
 fn positions(table: &Table<'_>, plain: bool, finer: &[Option<Finer>]) -> Option<Positions> {
     let positions = positions::read(table)?;
     if positions.are_random() && !plain {
         table.forbid(
             "positions",
-            "cells longer along one axis stay on their lattice",
+            "random positions require equal spacings along all axes",
         );
     }
     if positions.are_random() && !finer.is_empty() {
-        table.forbid("refine", "random positions have no cells to divide");
+        table.forbid("refine", "refinement requires positions = \"lattice\"");
     }
     Some(positions)
 }
@@ -138,17 +141,17 @@ fn surface(table: Table<'_>, kind: SurfaceKind, mut read: BodyRead) -> BodyRead 
     read
 }
 
-/// One spacing, or one for each axis of a box.
+/// Reads one spacing, or one per axis of a box.
 fn spacings(item: &Item<'_>, kind: Option<Kind>) -> Option<Vec<f64>> {
     if !item.is_list() {
         return item.positive(Quantity::Length).map(|dx| vec![dx]);
     }
     let kind = kind?;
     if !matches!(kind, Kind::Plate | Kind::Block) {
-        item.out_of_range("one length: only plates and blocks have a spacing for each axis");
+        item.out_of_range("one length; only plates and blocks have one spacing per axis");
         return None;
     }
-    let entries = item.exactly(kind.dimension(), "a length, or one for each axis")?;
+    let entries = item.exactly(kind.dimension(), "a length, or one length per axis")?;
     let lengths: Vec<Option<f64>> = entries
         .iter()
         .map(|entry| entry.positive(Quantity::Length))
@@ -157,16 +160,14 @@ fn spacings(item: &Item<'_>, kind: Option<Kind>) -> Option<Vec<f64>> {
 }
 
 fn finer(table: Table<'_>, frame: Frame) -> Option<Finer> {
-    /// More would make steps that differ as much.
+    /// Larger ratios would make time steps that differ as much.
     const MOST: u64 = 16;
     let ratio = table.required("ratio").and_then(|item| {
         let ratio = item.count()?;
         if (2..=MOST).contains(&ratio) {
             return Some(ratio as u32);
         }
-        item.out_of_range(
-            "a whole number from 2 to 16: cells are divided into so many along each axis",
-        );
+        item.out_of_range("a whole number from 2 to 16, the number of parts along each axis");
         None
     });
     let region = region::read_among_others(table, frame);
@@ -203,10 +204,11 @@ fn assemble(
     })
 }
 
-/// Periodicity and the place of points in their cells.
+/// Reads periodicity and the quadrature of cells.
 fn rules(table: &Table<'_>, kind: Kind, whole: bool) -> Option<(bool, Quadrature)> {
-    const BOX: &str = "only a bar, plate or block of cells of one size without holes has opposite faces that can be one";
-    const BAR: &str = "only the cells of a bar without holes, and with two ends, have Gauss nodes";
+    const BOX: &str =
+        "periodicity requires a bar, plate or block with one cell size and without holes";
+    const BAR: &str = "Gauss nodes require a bar that is not periodic and has no holes";
     let periodic = if matches!(kind, Kind::Bar | Kind::Plate | Kind::Block) && whole {
         table.or("periodic", false, |item| item.boolean())
     } else {

@@ -7,13 +7,13 @@ use crate::quantity::Quantity;
 use crate::reader::Table;
 use crate::region;
 
-/// A shape and, for tubes and rings, the region left out in its middle.
+/// A shape and, for tubes and rings, the region of the hole.
 pub(super) struct Outline {
     pub(super) shape: Shape,
     pub(super) bore: Option<Region>,
 }
 
-/// The shape, with its keys.
+/// Reads the keys of a shape.
 pub(super) fn shape(table: &Table<'_>, kind: Kind) -> Option<Outline> {
     let solid = |shape| Outline { shape, bore: None };
     let dimension = kind.dimension();
@@ -47,7 +47,7 @@ pub(super) fn shape(table: &Table<'_>, kind: Kind) -> Option<Outline> {
                 bore: inner?.map(|radius| Region::Ball { centre, radius }),
             })
         }
-        // Read by modules of their own.
+        // These have their own modules.
         Kind::Points | Kind::Mesh | Kind::Solid | Kind::Outline | Kind::Surface(_) => None,
         Kind::Cylinder => {
             let base = place(table, "base", dimension);
@@ -75,7 +75,7 @@ pub(super) fn shape(table: &Table<'_>, kind: Kind) -> Option<Outline> {
     }
 }
 
-/// The sides: `size`, or `length` for a bar.
+/// Reads the edge lengths: `size`, or `length` for a bar.
 fn size(table: &Table<'_>, kind: Kind) -> Option<Vec<f64>> {
     let dimension = kind.dimension();
     let item = if kind == Kind::Bar {
@@ -91,7 +91,7 @@ fn size(table: &Table<'_>, kind: Kind) -> Option<Vec<f64>> {
     };
     if let Some(other) = other {
         item.wrong_length(&format!(
-            "{dimension} entries, one for each dimension of the body; a body with so many sides is shape = {other}"
+            "{dimension} entries, one per dimension of the body; for this number of entries use shape = {other}"
         ));
         return None;
     }
@@ -103,7 +103,7 @@ fn size(table: &Table<'_>, kind: Kind) -> Option<Vec<f64>> {
     sides.into_iter().collect()
 }
 
-/// A point, by default the origin.
+/// Reads a point; the default is the origin.
 fn place(table: &Table<'_>, key: &'static str, dimension: usize) -> Option<[f64; 3]> {
     match table.optional(key) {
         Some(item) => item.vector(Quantity::Length, Some(dimension)),

@@ -1,20 +1,17 @@
-//! Section and state of stress of a body, which depend on its dimension.
+//! Cross-section and stress state of a body, which depend on its dimension.
 
 use pericles::material::StressState;
 
 use crate::quantity::Quantity;
 use crate::reader::Table;
 
-/// Area of a bar, thickness of a plate, 1 in three dimensions.
+/// Reads the area of a bar or the thickness of a plate; 1 in 3D.
 pub(super) fn section(table: &Table<'_>, dimension: usize) -> Option<f64> {
     if dimension != 1 {
         table.forbid("area", "only a bar has an area");
     }
     if dimension != 2 {
-        table.forbid(
-            "thickness",
-            "only bodies of two dimensions (plate, disc) have a thickness",
-        );
+        table.forbid("thickness", "only 2D bodies (plate, disc) have a thickness");
     }
     match dimension {
         1 => table.or("area", 1.0, |item| item.positive(Quantity::Area)),
@@ -31,11 +28,11 @@ pub(super) fn state(table: &Table<'_>, dimension: usize) -> Option<StressState> 
     if dimension == 2 {
         return table
             .required("plane")
-            .and_then(|item| item.choice("state of the plane", &PLANES));
+            .and_then(|item| item.choice("plane state", &PLANES));
     }
     table.forbid(
         "plane",
-        "only bodies of two dimensions (plate, disc) are in plane stress or plane strain",
+        "plane stress and plane strain are for 2D bodies (plate, disc)",
     );
     Some(if dimension == 1 {
         StressState::Uniaxial

@@ -5,7 +5,7 @@ use super::types::{BodyRead, PointsFile, SolidShape};
 use crate::quantity::Quantity;
 use crate::reader::Table;
 
-/// What `[body]` says besides the shape, where that is "points".
+/// Reads `[body]` with `shape = "points"`.
 pub(super) fn read(table: Table<'_>, mut read: BodyRead) -> BodyRead {
     const DIMENSIONS: [(f64, usize); 3] = [(1.0, 1), (2.0, 2), (3.0, 3)];
     let path = table.required("file").and_then(|item| item.text());

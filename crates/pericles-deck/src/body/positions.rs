@@ -1,25 +1,25 @@
-//! How points are arranged in a body: on its lattice, or at random.
+//! Positions of points: on a lattice or random.
 
 use serde::{Deserialize, Serialize};
 
 use crate::quantity::Quantity;
 use crate::reader::Table;
 
-/// How points are arranged in a body.
+/// Positions of the points of a body.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Positions {
-    /// On a lattice.
+    /// Lattice nodes.
     #[default]
     Lattice,
-    /// On a lattice whose nodes are displaced at random.
+    /// Lattice nodes with random displacements.
     Jittered {
-        /// The largest displacement along each axis, in spacings: above 0 and below ½.
+        /// Largest displacement along each axis, in spacings: above 0 and below ½.
         jitter: f64,
         /// Random seed.
         seed: u64,
     },
-    /// Blue noise (maximal Poisson disc): at random, but nowhere nearer to each other than a radius.
+    /// Blue noise (maximal Poisson-disc sampling): random with a minimum distance.
     BlueNoise {
         /// Random seed.
         seed: u64,
@@ -27,13 +27,13 @@ pub enum Positions {
 }
 
 impl Positions {
-    /// Whether they are random.
+    /// Returns whether the positions are random.
     pub fn are_random(&self) -> bool {
         *self != Self::Lattice
     }
 }
 
-/// `positions`, with `jitter` and `seed`.
+/// Reads `positions` with `jitter` and `seed`.
 pub(super) fn read(table: &Table<'_>) -> Option<Positions> {
     #[derive(Clone, Copy, PartialEq)]
     enum Word {
@@ -47,14 +47,14 @@ pub(super) fn read(table: &Table<'_>) -> Option<Positions> {
         ("blue-noise", Word::BlueNoise),
     ];
     const JITTER: f64 = 0.25;
-    let word = table.choice_or_first("positions", "arrangement of points", &WORDS);
+    let word = table.choice_or_first("positions", "kind of positions", &WORDS);
     if word.is_some_and(|word| word != Word::Jittered) {
-        table.forbid("jitter", "only positions = \"jittered\" have an amplitude");
+        table.forbid("jitter", "it requires positions = \"jittered\"");
     }
     if word == Some(Word::Lattice) {
         table.forbid(
             "seed",
-            "only positions = \"jittered\" and \"blue-noise\" are random",
+            "it requires positions = \"jittered\" or \"blue-noise\"",
         );
         return Some(Positions::Lattice);
     }

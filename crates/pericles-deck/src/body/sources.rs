@@ -1,4 +1,4 @@
-//! Bodies that come from files of meshes, surfaces and outlines.
+//! Bodies from files of meshes, surfaces and outlines.
 
 use std::path::{Path, PathBuf};
 
@@ -7,79 +7,79 @@ use serde::{Deserialize, Serialize};
 
 use super::positions::Positions;
 
-/// A mesh in a file: each element of the highest dimension is a point.
+/// A mesh file: each element of the highest dimension is a point.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MeshFile {
-    /// The file; a relative path starts at the folder of the deck.
+    /// Path of the file; a relative path starts at the deck's folder.
     #[serde(rename = "file")]
     pub path: PathBuf,
-    /// The file's unit of length, m.
+    /// Unit of length of the file, m.
     pub unit: f64,
     /// Dimension of the body, 2 or 3.
     pub dimension: usize,
-    /// The groups whose elements are the body; all elements of the highest dimension if there are none.
+    /// Groups whose elements form the body; if empty, all elements of the highest dimension.
     #[serde(default)]
     pub blocks: Vec<String>,
-    /// The spacing of the points, m; the mean size of the elements if it is not given.
+    /// Spacing of the points, m; if none, the mean element size.
     #[serde(default)]
     pub spacing: Option<f64>,
-    /// Thickness of a body in two dimensions (m), 1 in three dimensions.
+    /// Thickness of a 2D body (m); 1 in 3D.
     pub section: f64,
 }
 
-/// The inside of a closed surface or of an outline.
+/// The interior of a closed surface or an outline.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FilledShape {
-    /// What is filled.
+    /// The boundary of the interior.
     pub boundary: Boundary,
     /// Spacing of the lattice, m.
     pub spacing: f64,
-    /// Thickness of a body in two dimensions (m), 1 in three dimensions.
+    /// Thickness of a 2D body (m); 1 in 3D.
     pub section: f64,
     /// Regions without material.
     #[serde(default, rename = "hole", with = "crate::form")]
     pub holes: Vec<Region>,
-    /// Parts with smaller cells and horizon, later ones before earlier ones.
+    /// Refined parts with smaller cells and horizon; where they overlap, the last one counts.
     #[serde(default, rename = "refine", with = "crate::form")]
     pub finer: Vec<Finer>,
-    /// Which cells are points.
+    /// Selection of cells.
     #[serde(default)]
     pub cells: FilledCells,
-    /// How points are arranged.
+    /// Positions of the points.
     #[serde(default)]
     pub positions: Positions,
 }
 
-/// What is filled.
+/// The boundary of the interior.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Boundary {
-    /// A surface of triangles in a file.
+    /// A triangulated surface in a file.
     Surface {
-        /// The file; a relative path starts at the folder of the deck.
+        /// Path of the file; a relative path starts at the deck's folder.
         #[serde(rename = "file")]
         path: PathBuf,
-        /// The file's unit of length, m.
+        /// Unit of length of the file, m.
         unit: f64,
-        /// Whether the surface may have gaps: the inside is then where its winding number is above ½.
+        /// Whether the surface may have gaps; points with a winding number above ½ are then inside.
         open: bool,
     },
-    /// Polygons in the plane, m: places that an odd number of them surround are inside.
+    /// Polygons in the plane, m: points enclosed by an odd number of polygons are inside.
     Polygons(Vec<Vec<[f64; 2]>>),
-    /// The same from a file with a line `x y` for each corner and blank lines between polygons.
+    /// Polygons from a file with one line `x y` per corner and blank lines between polygons.
     PolygonFile {
-        /// The file; a relative path starts at the folder of the deck.
+        /// Path of the file; a relative path starts at the deck's folder.
         #[serde(rename = "file")]
         path: PathBuf,
-        /// The file's unit of length, m.
+        /// Unit of length of the file, m.
         unit: f64,
     },
 }
 
 impl Boundary {
-    /// Dimension of the body: 3 in a surface, 2 in polygons.
+    /// Returns the dimension of the body: 3 for a surface, 2 for polygons.
     pub fn dimension(&self) -> usize {
         match self {
             Self::Surface { .. } => 3,
@@ -87,7 +87,7 @@ impl Boundary {
         }
     }
 
-    /// The file that it is read from.
+    /// Returns the path of the file, if there is one.
     pub fn file(&self) -> Option<&Path> {
         match self {
             Self::Surface { path, .. } | Self::PolygonFile { path, .. } => Some(path),
@@ -96,19 +96,20 @@ impl Boundary {
     }
 }
 
-/// Which cells of a filled lattice are points.
+/// Selection of cells in a filled shape.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FilledCells {
-    /// Those whose centres are inside, whole.
+    /// Cells whose centres are inside, with their full volume.
     #[default]
     Whole,
-    /// All that are partly inside, with the volume of that part; cells below a tenth give it to their neighbours.
+    /// All cells that are partly inside, with the volume of that part; cells below a tenth are merged with
+    /// their neighbours.
     Partial,
 }
 
 impl FilledShape {
-    /// Whether its points lie on a lattice and have equal volumes.
+    /// Returns whether its points lie on a lattice and have equal volumes.
     pub fn is_on_lattice(&self) -> bool {
         self.cells == FilledCells::Whole && !self.positions.are_random()
     }

@@ -1,4 +1,4 @@
-//! `[body]` of a surface: its shape and the areas of its vertices.
+//! `[body]` of a 2-manifold: shape and vertex areas.
 
 use std::path::PathBuf;
 
@@ -8,83 +8,85 @@ use serde::{Deserialize, Serialize};
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 
-/// Where a surface comes from.
+/// Source of a triangulated surface.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum SurfaceShape {
-    /// Triangles of a file.
+    /// Triangles from a file.
     File {
-        /// The file; a relative path starts at the folder of the deck.
+        /// Path of the file; a relative path starts at the deck's folder.
         #[serde(rename = "file")]
         path: PathBuf,
-        /// What is allowed of it.
+        /// Accepted defects.
         #[serde(default, with = "crate::form")]
         checks: SurfaceChecks,
     },
-    /// A formula.
+    /// A parametric surface.
     Formula(SurfaceFormula),
 }
 
-/// Surfaces that are made by formula.
+/// Parametric surfaces.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum SurfaceFormula {
-    /// A sphere from an icosahedron whose edges are halved `level` times.
+    /// A subdivided icosahedron.
     Icosphere {
-        /// Halvings.
+        /// Number of subdivisions; each halves all edges.
         level: u32,
-        /// m.
+        /// Radius, m.
         radius: f64,
     },
     /// A sphere of meridians and parallels.
     UvSphere {
-        /// Meridians.
+        /// Number of meridians.
         segments: u32,
-        /// Parallels and one more.
+        /// Number of parallels, without the poles.
         rings: u32,
-        /// m.
+        /// Radius, m.
         radius: f64,
     },
     /// An icosphere stretched along the axes.
     Ellipsoid {
-        /// Halvings.
+        /// Number of subdivisions; each halves all edges.
         level: u32,
-        /// m.
+        /// Half-axes, m.
         half_axes: [f64; 3],
     },
     /// A torus about the z axis.
     Torus {
-        /// Radius of the middle line, m.
+        /// Radius of the centre line, m.
         major: f64,
         /// Radius of the tube, m.
         minor: f64,
-        /// Vertices along the middle line.
-        around: u32,
-        /// Vertices around the tube.
-        across: u32,
+        /// Number of vertices along the centre line.
+        #[serde(alias = "around")]
+        major_segments: u32,
+        /// Number of vertices around the tube.
+        #[serde(alias = "across")]
+        minor_segments: u32,
     },
-    /// A cylinder about the z axis with half spheres at its ends.
+    /// A cylinder about the z axis with hemispherical caps.
     Capsule {
-        /// m.
+        /// Radius, m.
         radius: f64,
         /// Length of the cylinder, m.
         length: f64,
-        /// Vertices around it.
+        /// Number of vertices around the circumference.
         segments: u32,
     },
 }
 
-/// The area that a vertex stands for.
+/// Areas of vertices.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum VertexAreas {
-    /// Shared out from the triangles.
+    /// Distributed from the triangles.
     Rule(#[serde(with = "crate::form")] AreaRule),
-    /// The same number for every vertex, m²: not the surface's, but what some papers compute with.
+    /// The same area for every vertex, m², as some papers use.
     Same(f64),
 }
 
-/// A word of `body.shape` that is a surface.
+/// Words of `body.shape` for 2-manifolds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum SurfaceKind {
     File,
@@ -96,7 +98,7 @@ pub(super) enum SurfaceKind {
 }
 
 impl SurfaceFormula {
-    /// How many vertices it will have, about; so many that no surface is made is no error here.
+    /// Returns the approximate number of vertices, without checking whether the surface can be made.
     pub fn vertices(&self) -> f64 {
         match *self {
             Self::Icosphere { level, .. } | Self::Ellipsoid { level, .. } => {
@@ -105,7 +107,11 @@ impl SurfaceFormula {
             Self::UvSphere {
                 segments, rings, ..
             } => f64::from(segments) * f64::from(rings),
-            Self::Torus { around, across, .. } => f64::from(around) * f64::from(across),
+            Self::Torus {
+                major_segments,
+                minor_segments,
+                ..
+            } => f64::from(major_segments) * f64::from(minor_segments),
             Self::Capsule {
                 radius,
                 length,
@@ -118,15 +124,15 @@ impl SurfaceFormula {
         }
     }
 
-    /// The surface, its vertices numbered along a space-filling curve.
+    /// Returns the surface with its vertices numbered along a space-filling curve.
     ///
     /// # Errors
-    /// What [`Surface`]'s makers refuse.
+    /// Errors of the constructors of [`Surface`].
     pub fn surface(&self) -> Result<Surface, SurfaceError> {
         Ok(self.made()?.renumbered())
     }
 
-    /// The surface, its vertices in the order in which they are made.
+    /// Returns the surface with its vertices in the order of construction.
     fn made(&self) -> Result<Surface, SurfaceError> {
         match *self {
             Self::Icosphere { level, radius } => Surface::icosphere(level, radius),
@@ -139,9 +145,9 @@ impl SurfaceFormula {
             Self::Torus {
                 major,
                 minor,
-                around,
-                across,
-            } => Surface::torus(major, minor, around, across),
+                major_segments,
+                minor_segments,
+            } => Surface::torus(major, minor, major_segments, minor_segments),
             Self::Capsule {
                 radius,
                 length,
@@ -150,20 +156,20 @@ impl SurfaceFormula {
         }
     }
 
-    /// The mean distance of vertices, m. Whether there is memory for the surface is not known here: of a large one the area is that of the smooth surface, which differs by less than a part in
-    /// ten thousand.
+    /// Returns the mean distance of vertices, m. Available memory is unknown here, so that large surfaces are
+    /// not built: their area is that of the smooth surface, which differs by less than 1e-4.
     ///
     /// # Errors
-    /// What [`Surface`]'s makers refuse, if it is not large.
+    /// Errors of the constructors of [`Surface`], unless it is large.
     fn spacing(&self) -> Result<f64, SurfaceError> {
         use std::f64::consts::PI;
         const LARGE: f64 = 2e5;
-        /// Of the icosphere whose stretched area stands for that of a smooth ellipsoid.
+        /// Level of the icosphere whose stretched area approximates that of a smooth ellipsoid.
         const COARSE: u32 = 7;
         /// The finest icosphere.
         const FINEST: u32 = 10;
         let area = match *self {
-            // Too fine is refused, not made.
+            // The constructor refuses surfaces that are too fine.
             Self::Icosphere { level, .. } | Self::Ellipsoid { level, .. } if level > FINEST => {
                 self.made()?.area()
             }
@@ -182,7 +188,7 @@ impl SurfaceFormula {
     }
 }
 
-/// The shape of `[body]`, with the mean distance of its vertices unless it is still to be read from a file.
+/// Reads the shape of `[body]`, with the mean distance of its vertices unless it comes from a file.
 pub(super) fn shape(table: &Table<'_>, kind: SurfaceKind) -> Option<(SurfaceShape, Option<f64>)> {
     let length = |key| {
         table
@@ -225,12 +231,13 @@ pub(super) fn shape(table: &Table<'_>, kind: SurfaceKind) -> Option<(SurfaceShap
         }
         SurfaceKind::Torus => {
             let (major, minor) = (length("major_radius"), length("minor_radius"));
-            let (around, across) = (number("around"), number("across"));
+            let (major_segments, minor_segments) =
+                (number("major_segments"), number("minor_segments"));
             SurfaceFormula::Torus {
                 major: major?,
                 minor: minor?,
-                around: around?,
-                across: across?,
+                major_segments: major_segments?,
+                minor_segments: minor_segments?,
             }
         }
         SurfaceKind::Capsule => {
@@ -261,7 +268,7 @@ fn file(table: &Table<'_>) -> Option<SurfaceShape> {
     })
 }
 
-/// A whole number from 1 to a hundred thousand.
+/// Reads a whole number from 1 to 100 000.
 fn small_count(item: &Item<'_>) -> Option<u32> {
     const MOST: u64 = 100_000;
     let count = item.count()?;
@@ -285,7 +292,7 @@ pub(super) fn areas(table: &Table<'_>) -> Option<VertexAreas> {
         }
         Some(item) => match item.word() {
             Some(word) if !word.contains(|c: char| c.is_ascii_digit()) => {
-                item.choice("rule for areas", &RULES)
+                item.choice("area rule", &RULES)
             }
             _ => item.positive(Quantity::Area).map(VertexAreas::Same),
         },

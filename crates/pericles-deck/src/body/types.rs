@@ -1,4 +1,4 @@
-//! What `[body]` describes.
+//! Data types of `[body]`.
 
 use std::path::{Path, PathBuf};
 
@@ -11,17 +11,17 @@ use super::sources::{FilledShape, MeshFile};
 use super::surface::{SurfaceShape, VertexAreas};
 use crate::region::Frame;
 
-/// Where the points of a body are.
+/// Source of the points of a body.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum SolidShape {
-    /// In the cells of a grid.
+    /// Cells of a grid.
     Lattice(Lattice),
-    /// As a file lists them.
+    /// Points listed in a file.
     Points(PointsFile),
-    /// In the elements of a mesh.
+    /// Elements of a mesh.
     Mesh(MeshFile),
-    /// In a closed surface or an outline.
+    /// Cells in a closed surface or an outline.
     Filled(FilledShape),
 }
 
@@ -32,25 +32,25 @@ pub struct Lattice {
     /// Shape, spacing, section and holes.
     #[serde(with = "crate::form")]
     pub grid: Grid,
-    /// Parts with smaller cells and horizon, later ones before earlier ones.
+    /// Refined parts with smaller cells and horizon; where they overlap, the last one counts.
     #[serde(default, rename = "refine", with = "crate::form")]
     pub finer: Vec<Finer>,
-    /// Whether opposite faces are one.
+    /// Whether the boundary conditions are periodic.
     #[serde(default)]
     pub periodic: bool,
-    /// Where the points of a cell are.
+    /// Quadrature points of cells.
     #[serde(default)]
     pub quadrature: Quadrature,
-    /// Spacing along each axis, m, of a box whose cells are no squares or cubes; the grid's is then the largest.
+    /// Spacing along each axis, m, of a box with anisotropic spacing; the grid then has the largest one.
     #[serde(default)]
     pub rectangular: Option<Vec<f64>>,
-    /// How points are arranged.
+    /// Positions of the points.
     #[serde(default)]
     pub positions: Positions,
 }
 
 impl From<Grid> for Lattice {
-    /// One point in the middle of each cell of a grid.
+    /// A lattice with one point at the centre of each cell.
     fn from(grid: Grid) -> Self {
         Self {
             grid,
@@ -64,7 +64,7 @@ impl From<Grid> for Lattice {
 }
 
 impl SolidShape {
-    /// The grid of an analytic shape, if it is one.
+    /// Returns the lattice of an analytic shape.
     pub fn lattice(&self) -> Option<&Lattice> {
         match self {
             Self::Lattice(lattice) => Some(lattice),
@@ -72,7 +72,7 @@ impl SolidShape {
         }
     }
 
-    /// The grid of an analytic shape, if it is one, to change it.
+    /// Returns the lattice of an analytic shape, mutably.
     pub fn lattice_mut(&mut self) -> Option<&mut Lattice> {
         match self {
             Self::Lattice(lattice) => Some(lattice),
@@ -80,7 +80,7 @@ impl SolidShape {
         }
     }
 
-    /// Whether points are given one by one, by a file, a mesh or random numbers, instead of by the nodes of a lattice.
+    /// Returns whether the points come from a file, a mesh or random numbers instead of the nodes of a lattice.
     pub fn is_listed(&self) -> bool {
         match self {
             Self::Lattice(lattice) => lattice.positions.are_random(),
@@ -99,7 +99,7 @@ impl SolidShape {
         }
     }
 
-    /// Spacing of the points, m: the largest one of a grid; none of a mesh whose elements give it.
+    /// Returns the spacing, m: the largest one of a grid; none for a mesh with automatic spacing.
     pub fn spacing(&self) -> Option<f64> {
         match self {
             Self::Lattice(lattice) => Some(lattice.grid.spacing),
@@ -109,7 +109,7 @@ impl SolidShape {
         }
     }
 
-    /// Area of a bar (m²), thickness of a body in two dimensions (m), 1 in three dimensions.
+    /// Area of a bar (m²), thickness of a 2D body (m); 1 in 3D.
     pub fn section(&self) -> f64 {
         match self {
             Self::Lattice(lattice) => lattice.grid.section,
@@ -119,7 +119,7 @@ impl SolidShape {
         }
     }
 
-    /// The file that the points come from.
+    /// Returns the path of the file of the points, if there is one.
     pub fn file(&self) -> Option<&Path> {
         match self {
             Self::Lattice(_) => None,
@@ -129,17 +129,17 @@ impl SolidShape {
         }
     }
 
-    /// Whether opposite faces are one.
+    /// Whether the boundary conditions are periodic.
     pub fn is_periodic(&self) -> bool {
         self.lattice().is_some_and(|lattice| lattice.periodic)
     }
 
-    /// Whether parts have smaller cells.
+    /// Returns whether the body has refined parts.
     pub fn is_refined(&self) -> bool {
         !self.finer().is_empty()
     }
 
-    /// The parts with smaller cells.
+    /// Returns the refined parts.
     pub fn finer(&self) -> &[Finer] {
         match self {
             Self::Lattice(lattice) => &lattice.finer,
@@ -148,13 +148,13 @@ impl SolidShape {
         }
     }
 
-    /// Whether the points are Gauss nodes.
+    /// Returns whether the points are Gauss nodes.
     pub fn has_gauss_nodes(&self) -> bool {
         let lattice = self.lattice();
         lattice.is_some_and(|lattice| lattice.quadrature == Quadrature::Gauss)
     }
 
-    /// The regions without points.
+    /// Returns the holes.
     pub fn holes(&self) -> &[Region] {
         match self {
             Self::Lattice(lattice) => &lattice.grid.holes,
@@ -163,49 +163,49 @@ impl SolidShape {
         }
     }
 
-    /// Spacing along each axis, m, of a box whose cells are no squares or cubes.
+    /// Returns the spacing along each axis, m, of a box with anisotropic spacing.
     pub fn rectangular(&self) -> Option<&[f64]> {
         self.lattice()?.rectangular.as_deref()
     }
 }
 
-/// Where the points of a cell are.
+/// Quadrature points of cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Quadrature {
-    /// One in its middle.
+    /// One point at the centre.
     #[default]
     Midpoint,
-    /// The two Gauss nodes of a bar's cell.
+    /// The two Gauss nodes of a cell of a bar.
     Gauss,
 }
 
-/// What other tables need of a body, as far as it could be read.
+/// Properties of a body that other tables need; none if they could not be read.
 pub(crate) struct BodyRead {
     pub(crate) shape: Option<SolidShape>,
     pub(crate) frame: Frame,
     pub(crate) state: Option<StressState>,
-    /// The body if it is a surface.
+    /// The body, if it is a 2-manifold.
     pub(crate) surface: Option<SurfaceRead>,
 }
 
-/// A surface, as far as it could be read.
+/// A 2-manifold, as far as it could be read.
 pub(crate) struct SurfaceRead {
     pub(crate) shape: Option<SurfaceShape>,
     pub(crate) areas: Option<VertexAreas>,
 }
 
-/// The file that lists a body's points.
+/// A file of points.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PointsFile {
-    /// The file; a relative path starts at the folder of the deck.
+    /// Path of the file; a relative path starts at the deck's folder.
     #[serde(rename = "file")]
     pub path: PathBuf,
     /// Dimension of the body.
     pub dimension: usize,
-    /// Their spacing, m.
+    /// Spacing of the points, m.
     pub spacing: f64,
-    /// Area of a bar (m²), thickness of a body in two dimensions (m), 1 in three dimensions.
+    /// Area of a bar (m²), thickness of a 2D body (m); 1 in 3D.
     pub section: f64,
 }

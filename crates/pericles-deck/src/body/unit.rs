@@ -1,11 +1,11 @@
-//! The unit of length of a file.
+//! Units of length of files.
 
 use crate::fault::Fault;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 use crate::units::{self, UnitError};
 
-/// `unit`, which must be given: files of meshes and surfaces carry none.
+/// Reads the required key `unit`; files of meshes and surfaces do not store it.
 pub(crate) fn unit(table: &Table<'_>) -> Option<f64> {
     table.required("unit").and_then(|item| of(&item))
 }
@@ -15,10 +15,10 @@ fn of(item: &Item<'_>) -> Option<f64> {
     length_unit(&text).map_err(|fault| item.report(fault)).ok()
 }
 
-/// A unit of length in metres: "mm" is 0.001, and so is "1 mm".
+/// Converts a unit of length such as "mm" or "1 mm" to metres.
 ///
 /// # Errors
-/// A text that is no unit of length.
+/// The text is not a unit of length.
 pub fn length_unit(text: &str) -> Result<f64, Fault> {
     let unknown = |unit: &str, nearest: Option<String>| Fault::UnknownUnit {
         value: text.into(),

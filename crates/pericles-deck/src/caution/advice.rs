@@ -1,4 +1,4 @@
-//! What can be done about a caution.
+//! Advice and labels of warnings.
 
 use miette::Severity;
 
@@ -11,106 +11,121 @@ impl Subject for Caution {
     fn advice(&self) -> Option<String> {
         let advice = match self {
             Self::FormerTables { text, .. } => {
-                return Some(format!("the present form, which means the same:\n\n{text}"));
+                return Some(format!(
+                    "replace it with the equivalent present form:\n\n{text}"
+                ));
             }
+            Self::FormerNames { .. } => "both still work; write the present name",
             Self::UnusedMaterial { .. } => {
-                "assign it with [[assign]] set = …, material = …, or leave it out"
+                "assign it with [[assign]] set = …, material = …, or remove it"
             }
             Self::CrackCutsNothing => {
-                "it must pass between points of the body that lie within a horizon of each other"
+                "a crack must pass between points of the body whose distance is below the horizon; check its position and unit"
             }
             Self::LargeStretch { .. } => {
-                "brittle materials break below 20 %; is the fracture energy in J/m², the modulus in Pa, the horizon in m?"
+                "usual: below 20 %; check `fracture_energy`, the modulus and the horizon, and their units (J/m², Pa, m)"
             }
             Self::CrackOutside { .. } => {
-                "places are in m unless they carry a unit; `origin` moves a body"
+                "check its coordinates and their unit (default: m); `origin` moves the body"
             }
-            Self::SoftSolid { .. } => "is the modulus in Pa? \"70 GPa\" carries its unit",
-            Self::HeavySolid { .. } => "is it in kg/m³? \"7.85 g/cm3\" carries its unit",
-            Self::TinySpacing { .. } => "is it in m? \"1 mm\" carries its unit",
+            Self::SoftSolid { .. } => {
+                "check the modulus and its unit (default: Pa), such as \"70 GPa\""
+            }
+            Self::HeavySolid { .. } => "check its unit (default: kg/m³), such as \"7.85 g/cm3\"",
+            Self::TinySpacing { .. } => "check its unit (default: m), such as \"1 mm\"",
             Self::ClosePoints { .. } => {
-                "remove one of them if it is a duplicate: the bond between them limits the time step"
+                "remove one of them if it is a duplicate; the bond between them limits the time step"
             }
             Self::UnusedCoordinate { .. } => {
-                "set the coordinate to 0, or give `dimension` so that all coordinates are used"
+                "set the coordinate to 0, or set `dimension` so that all coordinates are used"
             }
-            // Says itself what to do.
+            // The message contains the advice.
             Self::Mesh { .. } => return None,
             Self::FilledVolume { .. } => {
-                "a smaller spacing or cells = \"partial\" comes nearer; volumes where surfaces overlap are enclosed twice but filled once"
+                "use a smaller spacing or cells = \"partial\"; where surfaces overlap, the enclosed volume counts twice but is filled once"
             }
             Self::IdleHole => {
-                "check its place and its size, which must exceed the spacing; lengths without a unit are in m"
+                "check its position, its size, which must exceed the spacing, and their unit (default: m)"
             }
             Self::NothingBreaks { .. } => {
-                "give `fracture_energy` or `critical_stretch`, or leave the key out"
+                "set `fracture_energy` or `critical_stretch`, or remove the key"
             }
-            Self::NothingActs => "add [[load]], [[prescribe]] or [[initial]]",
+            Self::NothingActs => "add [[load]], [[constraint]] or [[initial]]",
             Self::StiffnessError { .. } => {
-                "modulus = \"lattice\" makes the bulk stiffness exact on a grid (\"continuum\" for spectral forces and Gauss nodes); a longer horizon brings it nearer"
+                "use modulus = \"lattice\", which is exact on a grid (\"continuum\" for spectral forces and Gauss nodes), or a larger horizon ratio"
             }
             Self::ShearStiffness { .. } => {
-                "a horizon of one spacing joins a point to few neighbours off the axes; take three spacings"
+                "use a horizon of three spacings; one spacing gives a point few neighbours off the axes"
             }
             Self::ShearAnisotropy { .. } => {
-                "influence = { function = \"isotropic\" } makes it the material's in all directions; \"conical\" is nearer to it than \"constant\""
+                "use influence = { function = \"isotropic\" }, which is exact in all directions; \"conical\" has a smaller error than \"constant\""
             }
-            Self::FastWaves { .. } => "is the density in kg/m³ and the modulus in Pa?",
-            Self::IdleClasses { .. } => "if this is meant, a shorter horizon says the same",
+            Self::FastWaves { .. } => {
+                "check the density and the modulus, and their units (default: kg/m³, Pa)"
+            }
+            Self::IdleClasses { .. } => "a shorter horizon is equivalent, if this is intended",
             Self::LoadedArea(_) => {
-                "give `area`, or use a layer of one face, such as layer = { side = \"+x\", cells = 3 }, and one [[load]] for each face"
+                "set `area`, or use a layer on one face, such as layer = { side = \"+x\", cells = 3 }, and one [[load]] per face"
             }
-            Self::LoadOnHeld { .. } => "take other points, or leave the load out",
+            Self::LoadOnHeld { .. } => "choose other points, or remove the load",
             Self::Pieces { points: 1, .. } => {
-                "a crack that passes through points takes all their bonds: shift it by half a cell; else look at holes and the horizon, unless loose points are meant"
+                "a crack through points cuts all their bonds: shift it by half a cell; otherwise check holes and the horizon, unless isolated points are intended"
             }
             Self::Pieces { .. } => {
-                "look at cracks, holes and the horizon, unless loose pieces are meant"
+                "check cracks, holes and the horizon, unless separate parts are intended"
             }
             Self::NoSupport { .. } => {
-                "they only come to rest if the loads on them are in balance; [[prescribe]] holds points"
+                "constrain them with [[constraint]]; without supports, a static state exists only if the loads on them are in equilibrium"
             }
             Self::Unbalanced { .. } => {
-                "they accelerate and never come to rest: hold points by [[prescribe]], or balance the loads"
+                "constrain points with [[constraint]], or balance the loads; otherwise these points accelerate and no static state exists"
             }
-            Self::ProbeOutside { .. } => "the nearest point is read instead",
-            Self::UnstableStep { .. } => "it is used because of allow_unstable = true",
-            Self::UncertainStep { .. } => "dt = \"auto\" stays below it",
+            Self::ProbeOutside { .. } => {
+                "the probe records the nearest point; check the coordinates of `at` and their unit (default: m)"
+            }
+            Self::UnstableStep { .. } => {
+                "it is used because allow_unstable = true; dt = \"auto\" chooses a stable step"
+            }
+            Self::UncertainStep { .. } => "use dt = \"auto\", which stays below this limit",
             Self::ShortenedStep { .. } => {
-                "give a dt that divides end, or an end that is a multiple of dt, to choose both"
+                "choose a dt that divides time.end to keep the given step"
             }
-            Self::Surface(_) => "usual: 3 to 6 median edges",
+            Self::Surface(_) => "recommended: 3 to 6 median edge lengths",
             Self::ShortPeriod { .. } => {
-                "a longer body, a shorter run or a smaller exact.window brings it down"
+                "use a longer body, a shorter run or a smaller exact.window"
             }
             Self::ShortWaves { .. } => {
                 "use a finer grid, a smoother time function or field, or a tuned influence function; `pericles dispersion` shows the speeds of all waves"
             }
             Self::GrowingWaves { .. } => {
-                "a run of such a body gains energy without limit; use positive coefficients"
+                "use positive coefficients; the energy of this body grows without bound"
             }
             Self::PoorTuning { .. } => {
-                "decay = 1 (the default) and method = \"least-squares\" do best; lower_bound limits what tuning can do"
+                "use decay = 1 (the default) and method = \"least-squares\"; a positive lower_bound limits the improvement"
             }
-            Self::FastMotion { .. } => "check the value and its unit (m/s); use a lower speed",
+            Self::FastMotion { .. } => {
+                "check the value and its unit (default: m/s), or use a lower speed"
+            }
             Self::TornAtOnce { .. } => {
-                "check speeds, displacements and the critical stretch; use a ramp or a lower speed, or no_fail for the points near supports"
+                "check speeds, displacements and the critical stretch; use a ramp, a lower speed, or no_fail for the points near supports"
             }
             Self::EmptyClasses { .. } => {
                 "use a positive lower_bound such as 0.5, or a shorter horizon"
             }
             Self::HistoricalKernels { .. } => {
-                "method = \"discrete\" is exact, \"semi-discrete\" the same boundary with exact Green functions"
+                "use method = \"discrete\", which is exact for the scheme, or \"semi-discrete\", the same boundary with exact Green functions"
             }
             Self::ExactHistory { .. } => {
-                "it costs memory that grows with the number of steps; history = \"blocked\" avoids the attempt, a larger tolerance may be met"
+                "use a larger tolerance, or history = \"blocked\" to skip the fit; the memory of the blocked history grows with the number of steps"
             }
             Self::FieldAtEnd { .. } => {
-                "`exterior_data` continues the field beyond the end; or move the end outwards"
+                "set `exterior_extent` to continue the field beyond the boundary, or move the boundary outwards"
             }
-            Self::EqualSteps => "a plain scheme does the same with less",
+            Self::EqualSteps => {
+                "use ratio > 1, or a scheme with one time step, which is less expensive"
+            }
             Self::GrowingPredictor { .. } => {
-                "predictor = \"structured\" is stable; or make dt smaller, or the run short"
+                "use predictor = \"structured\", which is stable, or a smaller dt"
             }
         };
         Some(advice.into())
@@ -118,44 +133,45 @@ impl Subject for Caution {
 
     fn label(&self) -> &'static str {
         match self {
-            Self::FormerTables { .. } => "former form",
+            Self::FormerNames { .. } => "deprecated name",
+            Self::FormerTables { .. } => "deprecated table",
             Self::CrackCutsNothing | Self::UnusedMaterial { .. } => "no effect",
             Self::CrackOutside { .. } => "outside the body",
-            Self::Pieces { .. } => "in pieces",
-            Self::LargeStretch { .. } => "very strong",
-            Self::SoftSolid { .. } => "very soft",
-            Self::HeavySolid { .. } => "very heavy",
-            Self::TinySpacing { .. } => "very small",
-            Self::ClosePoints { .. } => "very close points",
+            Self::Pieces { .. } => "disconnected",
+            Self::LargeStretch { .. } => "large critical stretch",
+            Self::SoftSolid { .. } => "low modulus",
+            Self::HeavySolid { .. } => "large density",
+            Self::TinySpacing { .. } => "small spacing",
+            Self::ClosePoints { .. } => "close points",
             Self::UnusedCoordinate { .. } => "not used",
             Self::IdleHole | Self::NothingBreaks { .. } => "no effect",
             Self::Mesh { .. } => "unusual mesh",
-            Self::FilledVolume { .. } => "another volume",
-            Self::NothingActs => "at rest",
-            Self::StiffnessError { .. } => "another stiffness",
-            Self::ShearStiffness { .. } => "little shear stiffness",
+            Self::FilledVolume { .. } => "volume differs",
+            Self::NothingActs => "no load",
+            Self::StiffnessError { .. } => "stiffness error",
+            Self::ShearStiffness { .. } => "low shear stiffness",
             Self::ShearAnisotropy { .. } => "anisotropic shear",
-            Self::FastWaves { .. } => "very light",
+            Self::FastWaves { .. } => "high wave speed",
             Self::IdleClasses { .. } => "no stiffness",
-            Self::LoadedArea(_) => "which area?",
-            Self::LoadOnHeld { .. } => "held",
-            Self::NoSupport { .. } => "loose parts",
-            Self::Unbalanced { .. } => "not in balance",
+            Self::LoadedArea(_) => "ambiguous area",
+            Self::LoadOnHeld { .. } => "constrained",
+            Self::NoSupport { .. } => "no support",
+            Self::Unbalanced { .. } => "not in equilibrium",
             Self::Surface(_) => "unusual horizon",
             Self::ProbeOutside { .. } => "outside the body",
-            Self::UnstableStep { .. } | Self::UncertainStep { .. } => "large step",
+            Self::UnstableStep { .. } | Self::UncertainStep { .. } => "large time step",
             Self::ShortenedStep { .. } => "shortened",
             Self::ShortPeriod { .. } => "short period",
             Self::ShortWaves { .. } => "short waves",
             Self::GrowingWaves { .. } => "unstable",
             Self::PoorTuning { .. } => "poorly tuned",
             Self::EmptyClasses { .. } => "no stiffness",
-            Self::FastMotion { .. } | Self::TornAtOnce { .. } => "breaks at once",
-            Self::HistoricalKernels { .. } => "historical",
+            Self::FastMotion { .. } | Self::TornAtOnce { .. } => "fast motion",
+            Self::HistoricalKernels { .. } => "growing error",
             Self::ExactHistory { .. } => "exact history",
-            Self::FieldAtEnd { .. } => "field at the end",
+            Self::FieldAtEnd { .. } => "field at the boundary",
             Self::EqualSteps => "no effect",
-            Self::GrowingPredictor { .. } => "growing waves",
+            Self::GrowingPredictor { .. } => "weakly unstable",
         }
     }
 }

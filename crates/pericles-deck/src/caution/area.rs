@@ -1,27 +1,27 @@
-//! Doubts about the area that a traction acts on.
+//! Warnings about the area on which a traction acts.
 
 use crate::wording::short;
 
-/// Why the area that is seen along an axis may not be that of the face meant.
+/// Reasons why the projected area of a set may not be that of the intended face.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum AreaDoubt {
     /// The set is thinner along another axis.
     Thinner {
-        /// The axis along which the area is seen.
+        /// The axis of projection.
         axis: usize,
-        /// That area, m².
+        /// The projected area, m².
         area: f64,
         /// The axis along which the set is thinner.
         other: usize,
-        /// The area seen along that one, m².
+        /// The area projected along that axis, m².
         face: f64,
     },
-    /// The set has parts that hide each other, or reaches much deeper in some places than in most.
+    /// The set has parts that overlap in the projection, or is much thicker in some places than in most.
     Parts {
-        /// The axis along which the area is seen.
+        /// The axis of projection.
         axis: usize,
-        /// That area, m².
+        /// The projected area, m².
         area: f64,
     },
 }
@@ -35,21 +35,21 @@ pub(super) fn doubtful_area(doubt: &AreaDoubt) -> String {
             other,
             face,
         } => format!(
-            "this traction acts on {}, the set as seen along {}; the set is a layer normal to {}, whose face has {}",
+            "this traction acts on {}, the area of the set projected along {}; the set is a layer normal to {}, whose face has {}",
             square_millimetres(*area),
             name(axis),
             name(other),
             square_millimetres(*face)
         ),
         AreaDoubt::Parts { axis, area } => format!(
-            "the set of this traction is not one layer on one face: the force on {}, the set as seen along {}, is spread over all its points",
+            "the set of this traction is not a single layer on one face: the force on {}, the area of the set projected along {}, is distributed over all its points",
             square_millimetres(*area),
             name(axis)
         ),
     }
 }
 
-/// An area with four digits.
+/// An area in mm² with four digits.
 fn square_millimetres(area: f64) -> String {
     format!("{} mm²", short(1e6 * area))
 }

@@ -3,7 +3,7 @@
 mod advice;
 mod area;
 
-use pericles::units::{quantity, significant};
+use pericles::units::{precise, quantity, significant};
 use pericles_manifold::surface::SurfaceCaution;
 
 pub use area::AreaDoubt;
@@ -12,86 +12,89 @@ use area::doubtful_area;
 
 use crate::wording::{percent, prefixed, reach, short, spot};
 
-/// Kinds of odd.
+/// Kinds of warnings.
 #[derive(Debug, Clone, thiserror::Error)]
 #[non_exhaustive]
 pub enum Caution {
-    /// Tables of former releases.
-    #[error("{} {} a former form", tables.join(", "), if tables.len() == 1 { "is" } else { "are" })]
+    /// Deprecated names.
+    #[error("deprecated {}: {}", if names.len() == 1 { "name" } else { "names" }, renamed(names))]
+    FormerNames {
+        /// Former and present names.
+        names: Vec<(&'static str, &'static str)>,
+    },
+    /// Deprecated tables.
+    #[error("{} {} deprecated", tables.join(", "), if tables.len() == 1 { "is" } else { "are" })]
     FormerTables {
-        /// As they are written in a deck.
+        /// Their headings.
         tables: Vec<&'static str>,
-        /// What takes their place.
+        /// The equivalent tables that replace them.
         text: String,
     },
-    /// A material that nothing is made of.
+    /// A material without points.
     #[error("the material `{material}` is not assigned to any set")]
     UnusedMaterial {
         /// Its name.
         material: String,
     },
-    /// A pre-crack without effect.
+    /// A pre-crack that cuts no bond.
     #[error("this crack cuts no bond")]
     CrackCutsNothing,
-    /// A pre-crack away from the body.
-    #[error(
-        "this crack lies outside of the body, which reaches {}",
-        reach(low, high)
-    )]
+    /// A pre-crack outside the body.
+    #[error("this crack lies outside the body, which extends {}", reach(low, high))]
     CrackOutside {
         /// Lowest coordinates of the body along each of its axes, m.
         low: Vec<f64>,
         /// Highest, m.
         high: Vec<f64>,
     },
-    /// A horizon that does not go well with the mesh of a surface.
+    /// A horizon that does not suit the mesh of a 2-manifold.
     #[error("{0}")]
     Surface(SurfaceCaution),
-    /// A strength that no brittle material has.
-    #[error("bonds break beyond a stretch of {:.0} % only", 100.0 * stretch)]
+    /// An implausibly large critical stretch.
+    #[error("the critical stretch is {:.0} %: implausibly large for a brittle material", 100.0 * stretch)]
     LargeStretch {
         /// The critical stretch.
         stretch: f64,
     },
-    /// A body whose bonds are far from the modulus asked for.
+    /// A body whose bulk stiffness differs from the given modulus.
     #[error(
-        "inside the body the bonds have {} of the bulk stiffness asked for",
+        "the bulk stiffness of the discretised body is {} of the given one",
         percent(1.0 + error)
     )]
     StiffnessError {
-        /// Bulk stiffness over the one asked for, less one.
+        /// Relative error of the bulk stiffness.
         error: f64,
     },
-    /// A body that resists shear along its grid far less than its material.
+    /// A body whose shear stiffness along the grid axes is far below the material's.
     #[error(
-        "inside the body the bonds have {} of the material's shear stiffness along the grid's axes",
+        "the shear stiffness of the discretised body along the grid axes is {} of the material's",
         percent(1.0 + error)
     )]
     ShearStiffness {
-        /// Shear stiffness over the continuum's, less one.
+        /// Relative error of the shear stiffness.
         error: f64,
     },
-    /// A lattice on which a state-based material is far from isotropic.
+    /// A lattice on which the shear modulus of a state-based material is anisotropic.
     #[error(
-        "inside the body the shear modulus is {} of the material's along the grid's axes and {} along its diagonals",
+        "the shear modulus of the discretised body is {} of the material's along the grid axes and {} along the diagonals",
         percent(*axes),
         percent(*diagonals)
     )]
     ShearAnisotropy {
-        /// Shear modulus along the axes over the material's.
+        /// Ratio of the shear modulus along the axes to the material's.
         axes: f64,
-        /// Along the diagonals.
+        /// The same ratio along the diagonals.
         diagonals: f64,
     },
-    /// Waves that no solid carries.
-    #[error("waves run at {speed:.3e} m/s, faster than in any solid")]
+    /// An implausibly large wave speed.
+    #[error("the speed of pressure waves is {} m/s, larger than in any solid", significant(*speed, 4))]
     FastWaves {
-        /// Of the pressure wave, m/s.
+        /// Speed of the pressure wave, m/s.
         speed: f64,
     },
-    /// A modulus of no solid.
+    /// An implausibly small Young's modulus.
     #[error(
-        "Young's modulus is {} at a density of {}: softer than any solid of this density",
+        "Young's modulus is {} at a density of {}: lower than for any solid of this density",
         quantity(*modulus, "Pa"), quantity(*density, "kg/m³")
     )]
     SoftSolid {
@@ -100,19 +103,19 @@ pub enum Caution {
         /// Density, kg/m³.
         density: f64,
     },
-    /// A density of no solid.
-    #[error("the density is {} kg/m³, more than that of any solid", significant(*density, 4))]
+    /// An implausibly large density.
+    #[error("the density is {} kg/m³, larger than for any solid", significant(*density, 4))]
     HeavySolid {
         /// Density, kg/m³.
         density: f64,
     },
-    /// A spacing below the distance of atoms.
-    #[error("the spacing is {}, less than the distance of atoms", quantity(*spacing, "m"))]
+    /// A spacing below interatomic distances.
+    #[error("the spacing is {}, below the distance between atoms", quantity(*spacing, "m"))]
     TinySpacing {
         /// Spacing, m.
         spacing: f64,
     },
-    /// Two listed points much closer than the others.
+    /// Two listed points much closer to each other than the others.
     #[error(
         "points {} and {} of the list (counted from 1) are {} apart, the mean spacing is {}",
         points[0], points[1], quantity(*distance, "m"), quantity(*spacing, "m")
@@ -125,24 +128,24 @@ pub enum Caution {
         /// Mean spacing of the points, m.
         spacing: f64,
     },
-    /// A coordinate of listed points beyond the body's dimension.
-    #[error("all points have {axis} = {}; this coordinate is not used", quantity(*value, "m"))]
+    /// A coordinate of listed points that the dimension of the body does not use.
+    #[error("the coordinate {axis} is not used: all points have {axis} = {}", quantity(*value, "m"))]
     UnusedCoordinate {
         /// The axis.
         axis: char,
         /// Its value, m.
         value: f64,
     },
-    /// Something unusual in a mesh.
+    /// An unusual property of a mesh.
     #[error("{problem}")]
     Mesh {
-        /// What.
+        /// Description.
         problem: String,
     },
-    /// Cells that fill a surface or an outline poorly.
+    /// Cells whose volume differs from that enclosed by the surface or outline.
     #[error(
-        "the cells fill {} of what the boundary encloses ({:.4e} of {:.4e} m³)",
-        percent(volume / enclosed), volume, enclosed
+        "the volume of the cells is {} of the volume that the boundary encloses ({} of {} m³)",
+        percent(volume / enclosed), significant(*volume, 4), significant(*enclosed, 4)
     )]
     FilledVolume {
         /// The volume of the cells, m³.
@@ -150,21 +153,21 @@ pub enum Caution {
         /// The volume that the boundary encloses, m³.
         enclosed: f64,
     },
-    /// A hole that takes nothing from the body.
-    #[error("this hole contains no cell centre of the body: nothing is cut out")]
+    /// A hole without effect.
+    #[error("this hole has no effect: it contains no cell centre of the body")]
     IdleHole,
-    /// A key that only breaking bonds give a meaning.
+    /// A key that has no effect without fracture.
     #[error("`{key}` has no effect: the bonds of this body never break")]
     NothingBreaks {
         /// The key.
         key: &'static str,
     },
-    /// A run in which nothing happens.
-    #[error("nothing acts on the body: it starts at rest, without loads and prescribed motion")]
+    /// A run without loads, prescribed motion and initial fields.
+    #[error("nothing acts on the body: no loads, no prescribed motion, and it starts at rest")]
     NothingActs,
-    /// Classes of bonds without stiffness at an absorbing end.
+    /// Bond classes without stiffness at an absorbing boundary.
     #[error(
-        "bonds over more than {reach} of {given} spacings have no stiffness: the exterior of the absorbing ends has none there either"
+        "bonds longer than {reach} of {given} spacings have no stiffness, in the body and in the exterior of the absorbing boundary"
     )]
     IdleClasses {
         /// Spacings within the horizon.
@@ -172,34 +175,34 @@ pub enum Caution {
         /// The longest bonds with a stiffness, in spacings.
         reach: usize,
     },
-    /// A traction on a set that is not one layer on one face.
+    /// A traction on a set that is not a single layer on one face.
     #[error("{}", doubtful_area(.0))]
     LoadedArea(AreaDoubt),
-    /// A load that supports take.
-    #[error("{} held along it: there it acts on the supports alone", share(*held, *points))]
+    /// A load on constrained points.
+    #[error("{} constrained along it: there the supports take the load", share(*held, *points))]
     LoadOnHeld {
-        /// Points of the load that are held.
+        /// Constrained points of the load.
         held: usize,
         /// Points of the load.
         points: usize,
     },
-    /// A body that hangs together in pieces only.
+    /// A disconnected body.
     #[error(
-        "from the start the body is in {pieces} pieces that no bond joins; the smallest has {}, such as that at {} m",
+        "the body is disconnected: it consists of {pieces} parts without bonds between them; the smallest has {}, such as the one at {} m",
         if *points == 1 { "one point".to_owned() } else { format!("{points} points") },
         spot(place)
     )]
     Pieces {
-        /// How many.
+        /// Number of parts.
         pieces: usize,
-        /// Points of the smallest.
+        /// Points of the smallest part.
         points: usize,
         /// One of them, m.
         place: Vec<f64>,
     },
-    /// A static body of which a part may float away.
+    /// A static body with parts that are not connected to a support.
     #[error(
-        "{points} of {of} points, such as that at {} m, are joined to no support by bonds",
+        "{points} of {of} points, such as the one at {} m, are not connected to a support by bonds",
         spot(place)
     )]
     NoSupport {
@@ -210,9 +213,9 @@ pub enum Caution {
         /// One of them, m.
         place: Vec<f64>,
     },
-    /// A static body of which a part is moved by loads that are not in balance.
+    /// A static body with parts on which the loads are not in equilibrium.
     #[error(
-        "the loads on {points} of {of} points, such as that at {} m, have {} that no support takes",
+        "the loads on {points} of {of} points, such as the one at {} m, have {} that no support takes",
         spot(place),
         net(*force, *moment)
     )]
@@ -228,78 +231,80 @@ pub enum Caution {
         /// The net moment about the centre of the part, N m.
         moment: Option<f64>,
     },
-    /// A probe away from the body.
-    #[error("the probe `{name}` lies {distance:e} m from the nearest point")]
+    /// A probe outside the body.
+    #[error("the probe `{name}` is {} away from the nearest point", quantity(*distance, "m"))]
     ProbeOutside {
         /// The probe.
         name: String,
         /// The distance, m.
         distance: f64,
     },
-    /// A step beyond the stable limit, accepted by `allow_unstable`.
-    #[error("the time step {dt:.6e} s is unstable: it exceeds the stable step of {limit:.6e} s")]
+    /// A time step above the stable limit, accepted by `allow_unstable`.
+    #[error("the time step of {} is unstable: the largest stable step is {}", precise(*dt, "s"), precise(*limit, "s"))]
     UnstableStep {
         /// The step, s.
         dt: f64,
         /// The limit, s.
         limit: f64,
     },
-    /// A step that does not divide the time of the run.
+    /// A time step that does not divide the end time.
     #[error(
-        "the run does not end after a whole number of steps of {given:.5e} s; all steps are shortened to {used:.5e} s, {count} of which end at time.end exactly"
+        "time.end is not a multiple of the time step {}: all steps are shortened to {}, so that {count} steps end exactly at time.end",
+        precise(*given, "s"), precise(*used, "s")
     )]
     ShortenedStep {
-        /// The step given, s.
+        /// The given step, s.
         given: f64,
-        /// The step used, s.
+        /// The shortened step, s.
         used: f64,
         /// Number of steps.
         count: u64,
     },
-    /// A step that may exceed the stable limit.
+    /// A time step above the limit up to which the scheme is proven to be stable.
     #[error(
-        "the time step {dt:.6e} s may be unstable: it exceeds {limit:.6e} s, up to which the scheme is stable for certain"
+        "the time step of {} may be unstable: stability is guaranteed up to {}",
+        precise(*dt, "s"), precise(*limit, "s")
     )]
     UncertainStep {
         /// The step, s.
         dt: f64,
-        /// The step that is surely stable, s.
+        /// The largest step with guaranteed stability, s.
         limit: f64,
     },
-    /// A period that waves cross within the run.
+    /// A period that waves cross during the run.
     #[error(
-        "the period of {} is short for this run: at its end the waves of the next period are about {estimate:.1e} of the pulse within {} of its middle",
+        "the period of {} is short for this run: at its end, waves from the periodic images have an amplitude of about {estimate:.1e} times that of the pulse within {} of its centre",
         quantity(*period, "m"), quantity(*window, "m")
     )]
     ShortPeriod {
         /// The period, m.
         period: f64,
-        /// Their size over the amplitude.
+        /// Ratio of their amplitude to that of the pulse.
         estimate: f64,
-        /// Where, m.
+        /// Half-width of the region of comparison, m.
         window: f64,
     },
-    /// Waves that the grid does not carry.
+    /// Waves too short for the grid.
     #[error(
-        "{:.0} % of the energy of this {what} is in waves shorter than {} or with periods below {}: on this grid their speed differs by more than {:.0} % from {}",
+        "{:.0} % of the energy of this {what} is in waves shorter than {} or with periods below {}: on this grid, their speed differs by more than {:.0} % from {}",
         100.0 * share, prefixed(*length, "m"), prefixed(*period, "s"), 100.0 * tolerance,
         if *nonlocal { "that in the nonlocal continuum" } else { "that of long waves" }
     )]
     ShortWaves {
-        /// What sends them out.
+        /// Their source.
         what: &'static str,
         /// Their share of the energy.
         share: f64,
-        /// The deviation of their speed, relative.
+        /// Relative deviation of their speed.
         tolerance: f64,
-        /// Whether the speed in the nonlocal continuum is the reference; that of long waves otherwise.
+        /// Whether the reference is the speed in the nonlocal continuum; otherwise that of long waves.
         nonlocal: bool,
-        /// The shortest period that the grid carries, s.
+        /// The shortest period that the grid resolves, s.
         period: f64,
-        /// The shortest wave that it carries, m.
+        /// The shortest wavelength that the grid resolves, m.
         length: f64,
     },
-    /// Coefficients of both signs with which some waves grow.
+    /// Coefficients of both signs that make the lattice unstable.
     #[error(
         "the coefficients of this influence function make the lattice unstable: some waves grow (smallest ω²/k² = {smallest:.3e} m²/s²)"
     )]
@@ -307,23 +312,23 @@ pub enum Caution {
         /// The smallest ω²/k², m²/s².
         smallest: f64,
     },
-    /// Tuned coefficients that disperse more than a constant influence function.
+    /// Tuned coefficients with more dispersion than a constant influence function.
     #[error(
-        "the tuned influence function carries waves worse than a constant one: within 1 % of the speed of long waves from {} spacings per wavelength (constant: {}), at most {:.1} % off from {shortest} spacings on (constant: {:.1} %)",
+        "the tuned influence function has more numerical dispersion than a constant one: the phase speed error is below 1 % from {} spacings per wavelength (constant: {}) and at most {:.1} % from {shortest} spacings (constant: {:.1} %)",
         short(spacings[0]), short(spacings[1]), 100.0 * worst[0], 100.0 * worst[1]
     )]
     PoorTuning {
-        /// Spacings per wavelength from which on the phase speed is within 1 %: tuned, constant.
+        /// Spacings per wavelength above which the phase speed error is below 1 %: tuned, constant.
         spacings: [f64; 2],
         /// The largest relative error down to `shortest`: tuned, constant.
         worst: [f64; 2],
         /// Spacings per wavelength.
         shortest: f64,
     },
-    /// A speed at which bodies break in masses.
+    /// A speed above the limiting speed of cracks.
     #[error(
 
-        "this {what} reaches {} m/s, above the {wave} of {} m/s: bonds break in masses, not along cracks",
+        "this {what} reaches {} m/s, above the {wave} of {} m/s: bonds break everywhere instead of along cracks",
         short(*speed), short(*limit)
 
     )]
@@ -334,10 +339,10 @@ pub enum Caution {
         speed: f64,
         /// The speed that cracks do not exceed, m/s.
         limit: f64,
-        /// What that speed is.
+        /// The name of that speed.
         wave: &'static str,
     },
-    /// Bonds that break before any wave has run.
+    /// Bonds that break in the first time step.
     #[error(
         "the first time step ({}) stretches bonds of {points} of {of} points beyond the critical stretch",
         prefixed(*dt, "s")
@@ -350,9 +355,9 @@ pub enum Caution {
         /// The step, s.
         dt: f64,
     },
-    /// Bonds that break but carry nothing.
+    /// Bonds that break but have no stiffness.
     #[error(
-        "{empty} of {of} classes of bonds have the coefficient 0: these bonds carry no force, but they break and count as damage"
+        "{empty} of {of} bond classes have the coefficient 0: these bonds carry no force, but they break and count as damage"
     )]
     EmptyClasses {
         /// Classes without stiffness.
@@ -360,50 +365,50 @@ pub enum Caution {
         /// All classes.
         of: usize,
     },
-    /// Kernels whose errors grow.
+    /// Absorbing-boundary kernels whose errors grow.
     #[error(
-        "the historical kernels are off by {growth:.1e} of the largest at the end of the run: their errors grow with time"
+        "the historical kernels have a relative error of {growth:.1e} at the end of the run, which grows with time"
     )]
     HistoricalKernels {
         /// The error of the Green functions.
         growth: f64,
     },
-    /// Exponentials that miss their tolerance.
+    /// Exponentials that do not meet their tolerance.
     #[error(
-        "no sum of exponentials meets the tolerance {tolerance:.0e} (the best has the error {residual:.1e}): the exact blocked history is used"
+        "no sum of exponentials meets the tolerance {tolerance:.0e} (smallest error: {residual:.1e}): the exact blocked history is used"
     )]
     ExactHistory {
-        /// What was asked for.
+        /// The requested tolerance.
         tolerance: f64,
-        /// What the best fit has.
+        /// The error of the best fit.
         residual: f64,
     },
-    /// An initial field that is not zero at an absorbing end.
+    /// An initial field that is not zero at an absorbing boundary.
     #[error(
-        "the initial field at the absorbing end {side} is {share:.1e} of its largest value; it counts as zero beyond, which is an error of that size"
+        "the initial field at the absorbing boundary {side} is {share:.1e} of its maximum, but zero is assumed beyond it, which is an error of that size"
     )]
     FieldAtEnd {
         /// The side.
         side: &'static str,
-        /// The largest value in the outer layer over that of the body.
+        /// Ratio of the maximum in the outer layer to that in the body.
         share: f64,
     },
-    /// Two time steps that are one.
-    #[error("with ratio = 1 both time steps are the same")]
+    /// A multirate scheme with equal time steps.
+    #[error("both time steps are equal: ratio = 1")]
     EqualSteps,
-    /// A predictor with which short waves grow.
+    /// A predictor that is weakly unstable.
     #[error(
-        "the backward-difference predictor is weakly unstable: ω dt is {omega_dt:.2}, above {quiet}"
+        "the backward-difference predictor is weakly unstable at this time step: ω dt = {omega_dt:.2}, recommended at most {quiet}"
     )]
     GrowingPredictor {
-        /// The highest frequency times the step.
+        /// Product of the highest frequency and the time step.
         omega_dt: f64,
-        /// Below this the growth does not show.
+        /// Value below which the growth is negligible.
         quiet: f64,
     },
 }
 
-/// all 40 points of this load are, 3 of the 40 points of this load are
+/// `all 40 points of this load are`, `3 of the 40 points of this load are`
 fn share(part: usize, whole: usize) -> String {
     if part == whole {
         format!("all {whole} points of this load are")
@@ -412,10 +417,18 @@ fn share(part: usize, whole: usize) -> String {
     }
 }
 
-/// A net force (N) and moment (N m).
+/// `a net force of 3.00 N and a net moment of 1.00 N m`
 fn net(force: Option<f64>, moment: Option<f64>) -> String {
     let force = force.map(|force| format!("a net force of {}", quantity(force, "N")));
     let moment = moment.map(|moment| format!("a net moment of {}", quantity(moment, "N m")));
     let both: Vec<String> = force.into_iter().chain(moment).collect();
     both.join(" and ")
+}
+
+fn renamed(names: &[(&str, &str)]) -> String {
+    let each: Vec<String> = names
+        .iter()
+        .map(|(former, present)| format!("`{former}` is now `{present}`"))
+        .collect();
+    each.join(", ")
 }

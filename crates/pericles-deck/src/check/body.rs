@@ -1,4 +1,4 @@
-//! Ranges of `[body]` and `[material]`.
+//! Range checks of `[body]` and `[material]`.
 
 use pericles::kernel::Influence;
 use pericles::material::{
@@ -121,7 +121,7 @@ impl Check {
             _ => 0,
         };
         if let Some(spacings) = &lattice.rectangular {
-            let allowed = "allowed: a spacing for each side of a box";
+            let allowed = "allowed: one spacing per axis, for bars, plates and blocks only";
             let right = spacings.len() == sides;
             self.within(right, key.key("spacing"), spacings.len(), allowed);
             for (k, spacing) in spacings.iter().enumerate() {
@@ -184,8 +184,7 @@ impl Check {
         let key = KeyPath::from("material");
         self.model(&key, &material.model, state, dimension);
         if let MaterialModel::StateBased(_) = &material.model {
-            let allowed =
-                "allowed: none or energy; weighted volumes account for missing bonds already";
+            let allowed = "allowed: none, energy or ghosts; the weighted volume already accounts for missing bonds";
             let right = material.surface_correction != SurfaceCorrection::Volume;
             self.within(right, key.key("surface_correction"), "volume", allowed);
         }
@@ -216,7 +215,7 @@ impl Check {
         }
     }
 
-    /// Materials beside the body's, assignments and interfaces.
+    /// Checks further materials, assignments and interfaces.
     pub(super) fn several(&mut self, model: &Model) {
         let (solid, dimension) = (model.body.solid(), model.body.dimension().clamp(1, 3));
         let own = solid.map(|solid| solid.material.name());
@@ -330,7 +329,7 @@ impl Check {
             p,
             horizon,
             bond,
-            self_cell,
+            self_interaction,
             critical_stretch,
         } = surface.material;
         let key = KeyPath::from("material");
@@ -343,12 +342,12 @@ impl Check {
         let laplacian = p == 2.0 && bond == SurfaceBond::Displacement;
         let allowed = "allowed: false, unless p = 2 and bond = \"displacement\"";
         self.within(
-            !self_cell || laplacian,
-            key.key("self_cell"),
+            !self_interaction || laplacian,
+            key.key("self_interaction"),
             "true",
             allowed,
         );
-        // Infinite for bonds that never break.
+        // Infinity: bonds never break.
         let right = critical_stretch > 0.0;
         self.within(
             right,

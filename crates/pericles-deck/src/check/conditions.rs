@@ -1,4 +1,4 @@
-//! Ranges of what acts on the body.
+//! Range checks of loads, constraints, boundaries, temperature and damping.
 
 use super::ranges::Check;
 use crate::boundary::BoundaryCondition;
@@ -16,8 +16,8 @@ impl Check {
                 self.positive(key.key("radius"), random.radius);
             }
         }
-        for (k, motion) in model.prescribe.iter().enumerate() {
-            let key = KeyPath::from("prescribe").index(k);
+        for (k, motion) in model.constraints.iter().enumerate() {
+            let key = KeyPath::from("constraint").index(k);
             if let Some(until) = motion.until {
                 self.positive(key.key("until"), until);
             }
@@ -78,14 +78,14 @@ impl Check {
             match boundary {
                 BoundaryCondition::Absorbing {
                     plan,
-                    exterior_data,
+                    exterior_extent,
                     ..
                 } => {
                     if let Some(tolerance) = plan.tolerance {
                         self.between(key.key("tolerance"), tolerance, [1e-14, 1.0]);
                     }
-                    if let Some(depth) = exterior_data {
-                        self.positive(key.key("exterior_data"), *depth);
+                    if let Some(depth) = exterior_extent {
+                        self.positive(key.key("exterior_extent"), *depth);
                     }
                 }
                 BoundaryCondition::DampingLayer {

@@ -1,4 +1,4 @@
-//! Ranges of `[time]`, `[output]` and `[checkpoint]`.
+//! Range checks of `[time]`, `[output]` and `[checkpoint]`.
 
 use pericles::observe::{Field, Schedule};
 
@@ -110,7 +110,7 @@ impl Check {
         }
     }
 
-    /// Wants a component of a field to exist.
+    /// Requires a component of a field to exist.
     fn component(
         &mut self,
         key: KeyPath,

@@ -1,4 +1,4 @@
-//! Ranges of a model's numbers: a deck is refused for them while it is read, a model made by a program is checked here.
+//! Range checks of models made by programs. Decks are checked while they are read.
 
 mod body;
 mod conditions;
@@ -12,10 +12,10 @@ use crate::remark::BuildError;
 use crate::set::Members;
 
 impl Model {
-    /// Refuses numbers out of their ranges, which are those of decks: a model that was read from a deck is never refused.
+    /// Refuses numbers out of range. The ranges are those of decks, so that a model read from a deck always passes.
     ///
     /// # Errors
-    /// All numbers out of their ranges, with their keys.
+    /// All numbers out of range, with their keys.
     pub fn check(&self) -> Result<(), BuildError> {
         let mut check = Check::default();
         let body = KeyPath::from("body");

@@ -1,4 +1,4 @@
-//! Numbers and their ranges.
+//! Collector of range errors.
 
 use pericles::PericlesError;
 
@@ -9,14 +9,14 @@ use crate::remark::{ModelProblem, Remark};
 pub(super) const POSITIVE: &str = "allowed: a positive number";
 const COUNT: &str = "allowed: a whole number of at least 1";
 
-/// What was found.
+/// Problems found so far.
 #[derive(Default)]
 pub(super) struct Check {
     pub(super) problems: Vec<ModelProblem>,
 }
 
 impl Check {
-    /// Wants a value to be in its range.
+    /// Requires a value to be in its range.
     pub(super) fn within(
         &mut self,
         right: bool,
@@ -35,7 +35,7 @@ impl Check {
         self.within(value > 0.0 && value.is_finite(), key, value, POSITIVE);
     }
 
-    /// Wants a number to be between two, both excluded.
+    /// Requires a number to be in an open interval.
     pub(super) fn between(&mut self, key: KeyPath, value: f64, [low, high]: [f64; 2]) {
         let allowed = format!("allowed: a number above {low} and below {high}");
         self.within(value > low && value < high, key, value, &allowed);

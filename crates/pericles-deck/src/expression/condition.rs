@@ -1,6 +1,7 @@
-//! Conditions: comparisons of expressions, joined by `&&`, `||` and `!`.
+//! Conditions: comparisons of expressions, combined with `&&`, `||` and `!`.
 //!
-//! `||` binds weaker than `&&`, and `&&` weaker than `!`; comparisons may be chained (`0 < x <= 1`). A comparison with something that has no value is false.
+//! Precedence from low to high: `||`, `&&`, `!`. Comparisons may be chained (`0 < x <= 1`). A comparison with
+//! NaN is false.
 
 use std::fmt;
 use std::sync::Arc;
@@ -10,10 +11,10 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::{Expression, LONGEST, Malformed};
 
-/// Parentheses within parentheses.
+/// Largest nesting depth of parentheses.
 const DEEPEST: usize = 60;
 
-/// A condition on the place and the block of a point, compiled once.
+/// A compiled condition on the position and block of a point.
 #[derive(Clone)]
 pub struct Condition {
     text: Arc<str>,
@@ -37,7 +38,7 @@ enum Comparison {
     Unequal,
 }
 
-/// Longer signs before those they begin with.
+/// Operators, longer ones before their prefixes.
 const COMPARISONS: [(&str, Comparison); 6] = [
     ("<=", Comparison::AtMost),
     (">=", Comparison::AtLeast),
@@ -48,7 +49,7 @@ const COMPARISONS: [(&str, Comparison); 6] = [
 ];
 
 impl Condition {
-    /// Reads a condition on the variables named by `allowed`.
+    /// Parses a condition on the variables named by `allowed`.
     pub(crate) fn parse(text: &str, allowed: &[&str]) -> Result<Self, Malformed> {
         if text.len() > LONGEST {
             return refuse(format!(
@@ -62,12 +63,12 @@ impl Condition {
         })
     }
 
-    /// The text it was read from.
+    /// Returns the text of the condition.
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// Whether it holds for a point of a block at a place (m).
+    /// Returns whether it holds for a point of a block at a position (m).
     pub fn holds(&self, place: [f64; 3], block: u32) -> bool {
         let [x, y, z] = place;
         self.test.holds([x, y, z, f64::NAN, f64::from(block)])
@@ -81,7 +82,7 @@ impl Test {
         }
         let text = text.trim();
         if text.is_empty() {
-            return refuse("a part of it is empty".into());
+            return refuse("it has an empty part".into());
         }
         for (sign, join) in [("||", Self::Any as fn(_) -> _), ("&&", Self::Every)] {
             let (parts, _) = split(text, &[sign])?;
@@ -105,7 +106,7 @@ impl Test {
             {
                 Some(inner) => Self::parse(inner, allowed, depth + 1),
                 None => refuse(format!(
-                    "`{text}` compares nothing; allowed: comparisons (< <= > >= == !=) such as x > 0.1, joined by && (and), || (or), ! (not)"
+                    "`{text}` is not a comparison; allowed: comparisons (< <= > >= == !=) such as x > 0.1, combined with && (and), || (or), ! (not)"
                 )),
             };
         }
@@ -150,7 +151,7 @@ fn refuse<T>(reason: String) -> Result<T, Malformed> {
     Err(Malformed { reason })
 }
 
-/// The parts of a text between signs that stand in no parenthesis, and which signs those are.
+/// Splits a text at operators outside parentheses; returns the parts and the indices of the operators.
 fn split<'t>(text: &'t str, signs: &[&str]) -> Result<(Vec<&'t str>, Vec<usize>), Malformed> {
     let (mut parts, mut found) = (Vec::new(), Vec::new());
     let (mut depth, mut from, mut skip) = (0usize, 0, 0);
@@ -161,7 +162,7 @@ fn split<'t>(text: &'t str, signs: &[&str]) -> Result<(Vec<&'t str>, Vec<usize>)
         match character {
             '(' => depth += 1,
             ')' if depth == 0 => {
-                return refuse("a parenthesis is closed that was never opened".into());
+                return refuse("a closing parenthesis has no opening one".into());
             }
             ')' => depth -= 1,
             _ if depth == 0 => {
@@ -183,7 +184,7 @@ fn split<'t>(text: &'t str, signs: &[&str]) -> Result<(Vec<&'t str>, Vec<usize>)
     Ok((parts, found))
 }
 
-/// As its text.
+/// Serialises as its text.
 impl Serialize for Condition {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_str(&self.text)
@@ -204,7 +205,7 @@ impl fmt::Debug for Condition {
     }
 }
 
-/// Equal texts are equal conditions.
+/// Compares the texts.
 impl PartialEq for Condition {
     fn eq(&self, other: &Self) -> bool {
         self.text == other.text
@@ -219,7 +220,7 @@ mod tests {
     const ALLOWED: [&str; 4] = ["x", "y", "z", "block"];
 
     #[test]
-    fn conditions_are_those_of_programmers() {
+    fn conditions_have_the_usual_precedence() {
         // At (2, 3, 5) in block 7.
         let cases = [
             ("x > 1", true),
@@ -243,15 +244,15 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_condition_is_refused() {
+    fn invalid_conditions_are_refused() {
         for (text, says) in [
-            ("x + 1", "compares nothing"),
+            ("x + 1", "is not a comparison"),
             ("(x > 1", "not closed"),
-            ("x > 1)", "never opened"),
+            ("x > 1)", "no opening one"),
             ("x > 1 &&", "empty"),
-            ("x > 1 and y > 1", "no operator before `and`"),
-            ("x = 1", "compares nothing"),
-            ("t > 1", "`t` is not known here"),
+            ("x > 1 and y > 1", "an operator is missing before `and`"),
+            ("x = 1", "is not a comparison"),
+            ("t > 1", "unknown name `t`"),
             ("x > ", "it is empty"),
             ("", "empty"),
         ] {
@@ -267,7 +268,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(512))]
         #[test]
-        fn any_text_is_read_or_refused(text in "[-+*/()<>=!&| .0-9xyzblock]{0,24}") {
+        fn arbitrary_text_never_panics(text in "[-+*/()<>=!&| .0-9xyzblock]{0,24}") {
             if let Ok(condition) = Condition::parse(&text, &ALLOWED) {
                 condition.holds([0.1, 0.2, 0.3], 4);
             }

@@ -1,4 +1,4 @@
-//! Reading an expression token by token, so that errors can be told precisely, and writing it again with every power in parentheses.
+//! Parser of expressions with precise errors. Rewrites an expression with every power in parentheses.
 
 use std::fmt::Write;
 
@@ -7,19 +7,19 @@ use crate::nearest::nearest;
 
 const CONSTANTS: [&str; 2] = ["pi", "e"];
 
-/// Parentheses within parentheses.
+/// Largest nesting depth of parentheses.
 const DEEPEST: usize = 60;
 
 #[derive(Debug, Clone, PartialEq)]
 enum Token<'a> {
-    /// Its text and value.
+    /// Text and value.
     Number(&'a str, f64),
     Name(&'a str),
     /// One of `+ - * / ^ ( )`.
     Sign(char),
 }
 
-/// The same expression with `(base)^(exponent)` for every power and `(-(…))` for every sign.
+/// Returns the expression with `(base)^(exponent)` for every power and `(-(…))` for every sign.
 pub(super) fn group_powers(text: &str, variables: &[&str]) -> Result<String, Malformed> {
     if text.len() > LONGEST {
         return refuse(format!(
@@ -39,8 +39,8 @@ pub(super) fn group_powers(text: &str, variables: &[&str]) -> Result<String, Mal
     let grouped = reader.sum()?;
     match reader.tokens.first() {
         None => Ok(grouped),
-        Some(Token::Sign(')')) => refuse("a parenthesis is closed that was never opened".into()),
-        Some(token) => refuse(format!("there is no operator before {}", shown(token))),
+        Some(Token::Sign(')')) => refuse("a closing parenthesis has no opening one".into()),
+        Some(token) => refuse(format!("an operator is missing before {}", shown(token))),
     }
 }
 
@@ -75,7 +75,7 @@ fn tokens(text: &str) -> Result<Vec<Token<'_>>, Malformed> {
         tokens.push(match first {
             '0'..='9' | '.' => match token.parse::<f64>() {
                 Ok(value) if value.is_finite() => Token::Number(token, value),
-                _ => return refuse(format!("`{token}` is no number")),
+                _ => return refuse(format!("`{token}` is not a number")),
             },
             c if c.is_ascii_alphabetic() => Token::Name(token),
             sign => Token::Sign(sign),
@@ -85,7 +85,7 @@ fn tokens(text: &str) -> Result<Vec<Token<'_>>, Malformed> {
     Ok(tokens)
 }
 
-/// Digits, a point, digits, and an exponent if digits follow it.
+/// Returns the length of a number: digits, a point, digits, and an exponent if digits follow it.
 fn number_length(text: &str) -> usize {
     let bytes = text.as_bytes();
     let digits = |from: usize| {
@@ -125,7 +125,7 @@ impl Reader<'_> {
         }
     }
 
-    /// term (± term)*
+    /// Grammar: term (± term)*
     fn sum(&mut self) -> Result<String, Malformed> {
         let mut text = self.product()?;
         while let Some(sign) = self.take_sign(&['+', '-']) {
@@ -135,7 +135,7 @@ impl Reader<'_> {
         Ok(text)
     }
 
-    /// signed (×÷ signed)*, from left to right
+    /// Grammar: signed (×÷ signed)*, from left to right
     fn product(&mut self) -> Result<String, Malformed> {
         let mut text = self.signed()?;
         while let Some(sign) = self.take_sign(&['*', '/']) {
@@ -145,7 +145,7 @@ impl Reader<'_> {
         Ok(text)
     }
 
-    /// ± signed, or a power
+    /// Grammar: ± signed, or a power
     fn signed(&mut self) -> Result<String, Malformed> {
         self.deeper(|reader| match reader.take_sign(&['+', '-']) {
             Some('-') => Ok(format!("(-({}))", reader.signed()?)),
@@ -154,7 +154,7 @@ impl Reader<'_> {
         })
     }
 
-    /// value, or value ^ signed
+    /// Grammar: value, or value ^ signed
     fn power(&mut self) -> Result<String, Malformed> {
         let base = self.value()?;
         match self.take_sign(&['^']) {
@@ -165,11 +165,11 @@ impl Reader<'_> {
 
     fn value(&mut self) -> Result<String, Malformed> {
         let Some((token, rest)) = self.tokens.split_first() else {
-            return refuse("a value is missing at its end".into());
+            return refuse("it ends where a value is expected".into());
         };
         self.tokens = rest;
         match token {
-            // Without an exponent, which is not read everywhere.
+            // Written without an exponent, which exmex does not read in all cases.
             Token::Number(_, value) => Ok(format!("{value}")),
             Token::Name(name) => self.named(name),
             Token::Sign('(') => self.parenthesis(),
@@ -184,7 +184,7 @@ impl Reader<'_> {
                 self.tokens = &self.tokens[1..];
                 Ok(format!("({inner})"))
             }
-            Some(token) => refuse(format!("there is no operator before {}", shown(token))),
+            Some(token) => refuse(format!("an operator is missing before {}", shown(token))),
             None => refuse("a parenthesis is not closed".into()),
         }
     }
@@ -212,7 +212,7 @@ impl Reader<'_> {
             names => names.join(", "),
         };
         refuse(format!(
-            "`{name}` is not known here{hint} Variables: {variables}; constants: {}; functions: {}",
+            "unknown name `{name}`{hint} Variables: {variables}; constants: {}; functions: {}",
             CONSTANTS.join(", "),
             FUNCTIONS.join(", ")
         ))

@@ -1,22 +1,22 @@
-//! Values with their first two derivatives in time, by the rules of calculus on numbers. Derivatives as expressions, which exmex has as well, recurse with
-//! their length: a sum of a hundred terms overflows the stack.
+//! Automatic differentiation: values with their first two time derivatives. Symbolic derivatives, which exmex
+//! also offers, recurse with the length of the expression: a sum of a hundred terms overflows the stack.
 
 use std::num::ParseFloatError;
 use std::str::FromStr;
 
 use exmex::{BinOp, MakeOperators, Operator};
 
-/// How a value changes with time; what is made of several is as bad as the worst of them.
+/// Smoothness of a value in time; a combination has the lowest smoothness of its parts.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Variation {
     #[default]
     Constant,
     Smooth,
-    /// By jumps or kinks, so that derivatives do not exist everywhere.
+    /// With jumps or kinks, so that derivatives do not exist everywhere.
     Rough,
 }
 
-/// A value and its derivatives.
+/// A value and its first two derivatives.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Jet {
     pub(super) value: f64,
@@ -33,7 +33,7 @@ impl Jet {
         }
     }
 
-    /// Time itself.
+    /// Returns the time t.
     pub(super) fn time(t: f64) -> Self {
         Self {
             value: t,
@@ -43,7 +43,8 @@ impl Jet {
         }
     }
 
-    /// f(u) from f, f′ and f″ at u. Of a constant nothing is asked but f: derivatives may be infinite there, and infinity times zero is no number.
+    /// Returns f(u) by the chain rule from f, f′ and f″ at u. For a constant only f is used: derivatives may
+    /// be infinite, and infinity times zero is NaN.
     fn chain(self, value: f64, derivatives: impl FnOnce(f64) -> [f64; 2]) -> Self {
         if self.variation == Variation::Constant {
             return Self::constant(value);
@@ -57,7 +58,7 @@ impl Jet {
         }
     }
 
-    /// f(u) for a function with jumps or kinks.
+    /// Returns f(u) for a function with jumps or kinks.
     fn rough(self, f: impl FnOnce(f64) -> f64) -> Self {
         match self.variation {
             Variation::Constant => Self::constant(f(self.value)),
@@ -89,7 +90,7 @@ impl Jet {
     }
 
     fn times(self, other: Self) -> Self {
-        // A constant has no part in the derivatives but as a factor.
+        // A constant enters the derivatives as a factor only.
         let scaled = |jet: Self, by: f64| {
             let part = |derivative: f64| {
                 if derivative == 0.0 {
@@ -119,7 +120,7 @@ impl Jet {
         let (u, p) = (self.value, exponent.value);
         let value = u.powf(p);
         if exponent.variation == Variation::Constant {
-            // Not p u^(p−1) where p is zero: at u = 0 that is no number.
+            // Avoids p u^(p−1) for p = 0, which is NaN at u = 0.
             let term = |factor: f64, p: f64| {
                 if factor == 0.0 {
                     0.0
@@ -146,7 +147,7 @@ impl FromStr for Jet {
     }
 }
 
-/// The functions and operators of expressions, on jets.
+/// Functions and operators of expressions for jets.
 #[derive(Clone, Debug)]
 pub(super) struct JetOperators;
 

@@ -1,10 +1,12 @@
 //! Expressions of x, y, z and t in decks.
 //!
-//! The grammar is the one of school: `+ - * /` and `^` with `-x^2 = -(x^2)` and `2^3^2 = 2^(3^2)`, parentheses, numbers, the variables `x y z t` (m and s; those the
-//! body has), the constants `pi` and `e`, and the functions of [`FUNCTIONS`]. Values are in SI units.
+//! The grammar has the usual precedence: `+ - * /` and `^` with `-x^2 = -(x^2)` and `2^3^2 = 2^(3^2)`,
+//! parentheses, numbers, the variables `x y z t` (m and s; those the body has), the constants `pi` and `e`,
+//! and the functions [`FUNCTIONS`]. Values are in SI units.
 //!
-//! Parsing and evaluation are those of exmex, on numbers or, for derivatives in time, on [jets](jet). It binds a sign tighter than a power (`-x^2 = x^2` there) and powers from left to right; what it
-//! is given has therefore every power in parentheses ([`grammar`]).
+//! exmex parses and evaluates expressions, with numbers or, for time derivatives, with [jets](jet). It binds
+//! a sign tighter than a power (`-x^2 = x^2`) and evaluates powers from left to right; therefore [`grammar`]
+//! puts every power in parentheses first.
 
 mod condition;
 mod grammar;
@@ -20,19 +22,19 @@ pub use condition::Condition;
 use exmex::{Express, FlatEx, FloatOpsFactory, MakeOperators, Operator};
 use jet::{Jet, JetOperators, Variation};
 
-/// Functions of one argument that expressions may use. `step` is 0 below zero and 1 from zero on.
+/// Functions of one argument. `step` is 0 for negative arguments, otherwise 1.
 pub(crate) const FUNCTIONS: [&str; 20] = [
     "abs", "acos", "asin", "atan", "cbrt", "ceil", "cos", "cosh", "exp", "floor", "ln", "log10",
     "round", "sign", "sin", "sinh", "sqrt", "step", "tan", "tanh",
 ];
 
-/// Names of the variables, in the order of their values. `block` belongs to conditions.
+/// Names of the variables, in the order of their values. `block` is for conditions only.
 pub(crate) const VARIABLES: [&str; 5] = ["x", "y", "z", "t", "block"];
 
-/// Longest text that is read.
+/// Largest length of an expression, in characters.
 pub(crate) const LONGEST: usize = 2000;
 
-/// exmex's operators and ours.
+/// Operators of exmex, and our own.
 #[derive(Clone, Debug)]
 struct Operators;
 
@@ -52,34 +54,34 @@ fn sign(x: f64) -> f64 {
     if x == 0.0 { 0.0 } else { x.signum() }
 }
 
-/// 0 below zero, 1 from zero on.
+/// 0 for negative arguments, otherwise 1.
 fn step(x: f64) -> f64 {
     if x >= 0.0 { 1.0 } else { 0.0 }
 }
 
 type Compiled = FlatEx<f64, Operators>;
 
-/// What is wrong with an expression, and what is allowed.
+/// An error in an expression: what is wrong, and what is allowed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Malformed {
     pub(crate) reason: String,
 }
 
-/// A function of place and time, compiled once.
+/// A compiled function of position and time.
 #[derive(Clone)]
 pub struct Expression {
     text: Arc<str>,
     compiled: Arc<Compiled>,
-    /// The values its variables take, as places in [`VARIABLES`].
+    /// Indices of its variables in [`VARIABLES`].
     variables: Arc<[usize]>,
 }
 
 impl Expression {
-    /// Reads an expression of the variables named by `allowed`.
+    /// Parses an expression of the variables named by `allowed`.
     pub(crate) fn parse(text: &str, allowed: &[&str]) -> Result<Self, Malformed> {
         let grouped = grammar::group_powers(text, allowed)?;
         let compiled = Compiled::parse(&grouped).map_err(|error| Malformed {
-            reason: format!("it cannot be understood: {error}"),
+            reason: format!("it is not a valid expression: {error}"),
         })?;
         Ok(Self::new(text, compiled))
     }
@@ -94,38 +96,39 @@ impl Expression {
         }
     }
 
-    /// The text it was read from.
+    /// Returns the text of the expression.
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// Whether its value changes with time.
+    /// Returns whether it depends on time.
     pub fn depends_on_time(&self) -> bool {
         self.variables.contains(&3)
     }
 
-    /// Whether its value changes with place.
+    /// Returns whether it depends on position.
     pub fn depends_on_place(&self) -> bool {
         self.variables.iter().any(|&v| v < 3)
     }
 
-    /// The value at a place (m) and time (s). Where the expression has none, such as the root of a negative number, it is NaN.
+    /// Returns the value at a position (m) and time (s); NaN where it is undefined, such as for the root of a
+    /// negative number.
     pub fn value(&self, [x, y, z]: [f64; 3], t: f64) -> f64 {
         self.at([x, y, z, t, f64::NAN])
     }
 
-    /// The value for all [`VARIABLES`].
+    /// Returns the value for given values of all [`VARIABLES`].
     fn at(&self, all: [f64; 5]) -> f64 {
         let mut given = [0.0; 5];
         for (given, &v) in given.iter_mut().zip(&*self.variables) {
             *given = all[v];
         }
         let given = &given[..self.variables.len()];
-        // As many values as variables: there is no other error.
+        // The number of values is right, which is the only possible error.
         self.compiled.eval(given).unwrap_or(f64::NAN)
     }
 
-    /// Its derivatives in time, unless it has jumps or kinks.
+    /// Returns its time derivatives, unless it has jumps or kinks.
     pub(crate) fn rates(&self) -> Option<Rates> {
         let grouped = grammar::group_powers(&self.text, &VARIABLES).ok()?;
         let rates = Rates {
@@ -136,16 +139,16 @@ impl Expression {
     }
 }
 
-/// The derivatives of an [`Expression`] in time.
+/// Time derivatives of an [`Expression`].
 #[derive(Debug)]
 pub(crate) struct Rates {
     compiled: FlatEx<Jet, JetOperators>,
-    /// As those of the expression.
+    /// Indices of its variables in [`VARIABLES`].
     variables: Arc<[usize]>,
 }
 
 impl Rates {
-    /// The first and the second derivative at a place (m) and time (s).
+    /// Returns the first and the second derivative at a position (m) and time (s).
     pub(crate) fn values(&self, place: [f64; 3], t: f64) -> [f64; 2] {
         let jet = self.at(place, t);
         [jet.rate, jet.second]
@@ -155,12 +158,12 @@ impl Rates {
         let [x, y, z, none] = [x, y, z, f64::NAN].map(Jet::constant);
         let all = [x, y, z, Jet::time(t), none];
         let given: Vec<Jet> = self.variables.iter().map(|&v| all[v]).collect();
-        // As many values as variables: there is no other error.
+        // The number of values is right, which is the only possible error.
         self.compiled.eval(&given).unwrap_or(none)
     }
 }
 
-/// As its text.
+/// Serialises as its text.
 impl Serialize for Expression {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_str(&self.text)
@@ -181,7 +184,7 @@ impl fmt::Debug for Expression {
     }
 }
 
-/// Equal texts are equal functions.
+/// Compares the texts.
 impl PartialEq for Expression {
     fn eq(&self, other: &Self) -> bool {
         self.text == other.text
@@ -199,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn the_grammar_is_that_of_school() {
+    fn signs_and_powers_have_the_usual_precedence() {
         let cases = [
             ("-x^2", -4.0),
             ("2 - -x^2", 6.0),
@@ -234,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_named() {
+    fn errors_name_the_mistake() {
         let cases = [
             ("", "empty"),
             ("x +", "end"),
@@ -245,7 +248,7 @@ mod tests {
             ("w + 1", "`w`"),
             ("z", "`z`"),
             ("(x", "closed"),
-            ("x)", "never opened"),
+            ("x)", "no opening one"),
             ("x $ 2", "`$`"),
             ("()", "value"),
             ("1e400", "number"),
@@ -263,7 +266,7 @@ mod tests {
     }
 
     #[test]
-    fn rates_are_derivatives() {
+    fn rates_are_time_derivatives() {
         for text in [
             "sin(3*t)*x",
             "exp(-t^2)",
@@ -285,7 +288,7 @@ mod tests {
             let place = [2.0, 3.0, 5.0];
             let at = |t: f64| f.value(place, t);
             let (t, h) = (0.4, 1e-3);
-            // Differences of fourth order.
+            // Finite differences of fourth order.
             let slope =
                 (8.0 * (at(t + h) - at(t - h)) - (at(t + 2.0 * h) - at(t - 2.0 * h))) / (12.0 * h);
             let curvature = (16.0 * (at(t + h) + at(t - h))
@@ -323,7 +326,7 @@ mod tests {
         }
     }
 
-    /// As long as a text may be: derivatives written as expressions overflow the stack here.
+    /// Symbolic derivatives of an expression of the largest length overflow the stack.
     #[test]
     fn long_sums_have_derivatives() {
         let sum = "+t^t".repeat(LONGEST / 4);
@@ -337,7 +340,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(512))]
         #[test]
-        fn any_text_is_read_or_refused(text in "[-+*/^() .,0-9etxsincopqrt]{0,24}") {
+        fn arbitrary_text_never_panics(text in "[-+*/^() .,0-9etxsincopqrt]{0,24}") {
             if let Ok(expression) = Expression::parse(&text, &VARIABLES) {
                 expression.value([0.1, 0.2, 0.3], 0.4);
             }

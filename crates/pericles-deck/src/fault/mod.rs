@@ -1,4 +1,4 @@
-//! Kinds of wrong in a deck, and what is allowed instead.
+//! Errors in decks and models.
 
 mod advice;
 mod words;
@@ -8,41 +8,41 @@ use pericles::units::quantity;
 
 use crate::wording::{bytes, count, names, shortened, spot};
 
-/// Kinds of wrong.
+/// Kinds of errors.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Fault {
-    /// The text is no TOML.
+    /// Invalid TOML.
     #[error("not valid TOML: {message}")]
     Syntax {
-        /// What the parser found.
+        /// The parser's message.
         message: String,
     },
-    /// A key that does not belong here.
+    /// An unknown key.
     #[error("unknown key `{}` in {table}", shortened(key))]
     UnknownKey {
         /// The key.
         key: String,
-        /// The table it stands in.
+        /// The table that contains it.
         table: String,
-        /// The key that may have been meant.
+        /// The most similar allowed key.
         nearest: Option<String>,
-        /// The table that it belongs to.
+        /// The table to which it belongs.
         home: Option<&'static str>,
-        /// All keys that belong here.
+        /// All allowed keys.
         allowed: Vec<String>,
     },
-    /// A key that is missing.
-    #[error("{table} lacks `{key}`, which must be given")]
+    /// A missing required key.
+    #[error("{table} lacks `{key}`, which is required")]
     MissingKey {
         /// The key.
         key: String,
         /// Other names of the key.
         synonyms: Vec<String>,
-        /// The table it should stand in.
+        /// The table that lacks it.
         table: String,
     },
-    /// None of several keys of which one is needed.
+    /// Several alternative keys, none of which is given.
     #[error("{table} lacks one of {}", names(allowed))]
     MissingChoice {
         /// The table.
@@ -50,51 +50,51 @@ pub enum Fault {
         /// The keys.
         allowed: Vec<String>,
     },
-    /// Several keys of which only one may be given.
+    /// Several mutually exclusive keys.
     #[error("{} are given together in {table}", names(given))]
     Exclusive {
         /// The keys found.
         given: Vec<String>,
         /// The table.
         table: String,
-        /// The keys to choose from.
+        /// The keys of which one is allowed.
         allowed: Vec<String>,
     },
-    /// A key that has no meaning here.
-    #[error("`{key}` has no place in {table}")]
+    /// A key that is not allowed in combination with other keys.
+    #[error("`{key}` is not allowed in {table}")]
     Misplaced {
         /// The key.
         key: String,
         /// The table.
         table: String,
-        /// When it has.
+        /// When it is allowed.
         allowed: String,
     },
-    /// A value of another kind.
-    #[error("{found} (`{value}`) where this is needed: {expected}")]
+    /// A value of the wrong type.
+    #[error("expected {expected}, found {found} (`{value}`)")]
     WrongKind {
         /// The value as written.
         value: String,
-        /// What it is.
+        /// Its type.
         found: &'static str,
-        /// What is needed.
+        /// The expected type.
         expected: String,
     },
-    /// A string that holds no number, or a number that is not finite.
+    /// A string without a number, or a number that is NaN or infinite.
     #[error("`{value}` is not a number")]
     NotANumber {
         /// The value as written.
         value: String,
-        /// What is needed.
+        /// The expected quantity.
         expected: String,
     },
     /// A number with a comma.
-    #[error("`{value}` has a comma")]
+    #[error("`{value}` contains a comma")]
     Comma {
         /// The value as written.
         value: String,
     },
-    /// An expression that cannot be read.
+    /// An invalid expression.
     #[error("the expression `{}` cannot be used: {reason}", shortened(text))]
     BadExpression {
         /// The expression.
@@ -102,33 +102,33 @@ pub enum Fault {
         /// What is wrong, and what is allowed.
         reason: String,
     },
-    /// A load or motion that ceases to have a value.
-    #[error("the {what} on `{set}` has no finite value at t = {t:.4e} s, within the run")]
+    /// A load or prescribed motion that becomes NaN or infinite.
+    #[error("the {what} on `{set}` has no finite value at t = {}, within the run", quantity(*t, "s"))]
     LostValue {
-        /// Load or prescribed motion.
+        /// `load` or `prescribed motion`.
         what: &'static str,
         /// Its set.
         set: String,
-        /// When first, s.
+        /// The first such time, s.
         t: f64,
     },
-    /// A stop condition that nothing can meet.
+    /// A stop condition that can never be met.
     #[error("the stop condition on `{set}` can never be met: {reason}")]
     NeverStops {
         /// The set.
         set: String,
-        /// Why not.
+        /// The reason.
         reason: &'static str,
     },
-    /// A surface that cannot be had from its file.
-    #[error("{file} gives no surface: {reason}")]
+    /// An invalid surface file.
+    #[error("{file} is not a valid surface: {reason}")]
     BadSurfaceFile {
         /// The file.
         file: String,
-        /// What is wrong, and where.
+        /// What is wrong, and where in the file.
         reason: String,
     },
-    /// A condition that cannot be read.
+    /// An invalid condition.
     #[error("the condition `{}` cannot be used: {reason}", shortened(text))]
     BadCondition {
         /// The condition.
@@ -136,29 +136,29 @@ pub enum Fault {
         /// What is wrong, and what is allowed.
         reason: String,
     },
-    /// Points that cannot be had from their file.
+    /// An invalid file of points.
     #[error("{reason}")]
     BadPoints {
         /// What is wrong, with the file and the line in it.
         reason: String,
     },
-    /// A mesh, surface or outline that gives no points.
+    /// An invalid mesh, surface or outline.
     #[error("{reason}")]
     BadMesh {
         /// What is wrong, with the file and the place in it.
         reason: String,
     },
-    /// A mesh of another dimension.
-    #[error("the mesh has elements of dimension {found}, the body has dimension {given}")]
+    /// A mesh whose dimension differs from that of the body.
+    #[error("the elements of the mesh have dimension {found}, but the body has dimension {given}")]
     OtherDimension {
         /// The dimension in the deck.
         given: usize,
-        /// That of the elements.
+        /// The dimension of the elements.
         found: usize,
     },
-    /// A spacing that is not that of a mesh.
+    /// A spacing that differs from the element size of a mesh.
     #[error(
-        "the mean size of the elements is {}, the spacing is given as {}",
+        "the mean element size is {}, but `spacing` is {}",
         quantity(*found, "m"), quantity(*given, "m")
     )]
     OtherElementSize {
@@ -167,94 +167,92 @@ pub enum Fault {
         /// The mean size of the elements, m.
         found: f64,
     },
-    /// A pressure without a face.
-    #[error(
-        "the set `{}` has no face that a pressure could act on",
-        shortened(set)
-    )]
+    /// A pressure on a set without faces.
+    #[error("the set `{}` has no face on which a pressure can act", shortened(set))]
     NoFaces {
         /// The set.
         set: String,
     },
-    /// A surface of triangles that is no pre-crack.
+    /// An invalid pre-crack file.
     #[error("{reason}")]
     BadCrackFile {
         /// What is wrong, with the file and the place in it.
         reason: String,
     },
-    /// A file whose content does not fit into the memory.
+    /// A file that does not fit in memory.
     #[error("{reason}")]
     LargeFile {
-        /// The file, and what it needs.
+        /// The file and the memory that it needs.
         reason: String,
     },
-    /// An initial state that cannot be read from its file.
+    /// An invalid file of initial values.
     #[error("{reason}")]
     BadInitialFile {
         /// What is wrong, with the file and the line in it.
         reason: String,
-        /// The points of the body.
+        /// The number of points of the body.
         points: usize,
     },
-    /// Listed points whose volumes belong to another spacing.
+    /// Listed points whose volumes do not match the spacing.
     #[error(
-        "the volumes of the listed points are those of cells of {found:.3e} m, not of {given:.3e} m"
+        "the volumes of the listed points correspond to a spacing of {}, but `spacing` is {}",
+        quantity(*found, "m"), quantity(*given, "m")
     )]
     OtherSpacing {
         /// The spacing of the deck, m.
         given: f64,
-        /// The size of the mean cell, m.
+        /// The spacing that corresponds to the mean volume, m.
         found: f64,
-        /// What volumes are divided by besides, by its name in `[body]`.
+        /// The key of `[body]` by which volumes are divided in 1D and 2D.
         section: Option<&'static str>,
     },
-    /// A course over time for an expression that has its own.
+    /// A time function for an expression that already depends on time.
     #[error(
-        "`{}` depends on time already and takes no time function",
+        "`{}` already depends on time and takes no time function",
         shortened(text)
     )]
     TwoCourses {
         /// The expression.
         text: String,
     },
-    /// A unit that does not exist.
+    /// An unknown unit.
     #[error("unknown unit `{}` in `{value}`", shortened(unit))]
     UnknownUnit {
         /// The value as written.
         value: String,
         /// The unit.
         unit: String,
-        /// The unit that may have been meant.
+        /// The most similar unit.
         nearest: Option<String>,
-        /// What is needed.
+        /// The expected quantity.
         expected: String,
     },
-    /// A unit of another dimension.
+    /// A unit of the wrong dimension.
     #[error("`{value}` is not {expected}")]
     WrongUnit {
         /// The value as written.
         value: String,
-        /// What is needed.
+        /// The expected quantity.
         expected: String,
-        /// With an example.
+        /// The expected quantity with an example.
         allowed: String,
     },
-    /// A number out of its range.
+    /// A value out of range.
     #[error("`{value}` is out of range")]
     OutOfRange {
         /// The value as written.
         value: String,
-        /// The range.
+        /// The allowed range.
         allowed: String,
     },
-    /// A word that is not among those allowed.
+    /// An unknown word.
     #[error("unknown {what} `{value}`")]
     UnknownWord {
-        /// What the word names.
+        /// The kind of thing that the word names.
         what: &'static str,
         /// The value as written.
         value: String,
-        /// The word that may have been meant.
+        /// The most similar allowed word.
         nearest: Option<String>,
         /// All words allowed.
         allowed: Vec<String>,
@@ -266,48 +264,48 @@ pub enum Fault {
         value: String,
         /// Its length.
         found: usize,
-        /// The length needed.
+        /// The required length.
         allowed: String,
     },
-    /// A name that cannot be used.
+    /// An invalid name.
     #[error("the name `{}` cannot be used: {reason}", shortened(name))]
     BadName {
         /// The name.
         name: String,
-        /// Why.
+        /// The reason.
         reason: &'static str,
         /// What is allowed.
         allowed: &'static str,
     },
-    /// A prescribed motion without a prescribed component.
-    #[error("every component is free: nothing is prescribed")]
+    /// A constraint without a prescribed component.
+    #[error("all components are free: this table prescribes nothing")]
     NothingPrescribed,
-    /// An override that cannot be applied.
+    /// An invalid override.
     #[error("the override `{}` cannot be applied: {reason}", shortened(text))]
     BadOverride {
         /// The override.
         text: String,
-        /// Why.
+        /// The reason.
         reason: String,
         /// What is allowed.
         allowed: String,
     },
-    /// Two prescriptions of one motion.
+    /// Points with two constraints along one axis.
     #[error(
-        "{points} points have their motion along {axis} prescribed by [[prescribe]] number {earlier} already"
+        "the motion of {points} points along {axis} is already prescribed by [[constraint]] number {earlier}"
     )]
     PrescribedTwice {
-        /// How many.
+        /// The number of points.
         points: usize,
-        /// Along which axis.
+        /// The axis.
         axis: char,
-        /// The number of the earlier one in the deck, from 1.
+        /// The number of the earlier constraint in the deck, from 1.
         earlier: usize,
     },
-    /// Points, grids and sets that do not belong together.
-    #[error("the discretisation cannot be assembled: {reason}")]
+    /// Inconsistent points, grids and sets.
+    #[error("the discretisation is inconsistent: {reason}")]
     BadDiscretisation {
-        /// What does not fit.
+        /// What is inconsistent.
         reason: String,
     },
     /// A set without points.
@@ -316,7 +314,7 @@ pub enum Fault {
         /// The set.
         set: String,
     },
-    /// A material that is assigned, but to no point.
+    /// A material that is assigned to no point.
     #[error("no point has the material `{}`", shortened(material))]
     EmptyMaterial {
         /// Its name.
@@ -324,28 +322,28 @@ pub enum Fault {
     },
     /// Points without a material.
     #[error(
-        "{points} of {of} points have no material, such as that at {} m",
+        "{points} of {of} points have no material, such as the one at {} m",
         spot(place)
     )]
     NoMaterial {
-        /// How many.
+        /// The number of points without a material.
         points: usize,
-        /// All points.
+        /// The number of all points.
         of: usize,
-        /// One of them, m.
+        /// The position of one of them, m.
         place: Vec<f64>,
     },
-    /// A material that differs from the body's in what all bonds share.
-    #[error("`{key}` in {table} differs from that of the other materials")]
+    /// A property that differs between materials but must be shared by all bonds.
+    #[error("`{key}` in {table} differs from the value of the other materials")]
     NotShared {
         /// The key.
         key: &'static str,
         /// The table.
         table: String,
     },
-    /// A set with the fine time step that bonds reach across.
+    /// A set with the fine time step that is thinner than a bond.
     #[error(
-        "the fine set `{set}` is {} thick along {axis}; it must be at least as thick as its longest bond, {}, or bonds of points with the coarse step pass over it",
+        "the fine set `{set}` is {} thick along {axis}; it must be at least as thick as its longest bond, {}, so that no bond between coarse points crosses it",
         quantity(*extent, "m"), quantity(*reach, "m")
     )]
     ThinFineSet {
@@ -353,9 +351,9 @@ pub enum Fault {
         set: String,
         /// Its extent, m.
         extent: f64,
-        /// Along this axis.
+        /// The axis.
         axis: char,
-        /// Length of its longest bond, m.
+        /// The length of its longest bond, m.
         reach: f64,
     },
     /// Two sets with the fine time step that share points.
@@ -365,92 +363,93 @@ pub enum Fault {
         first: String,
         /// The other.
         second: String,
-        /// A shared point, in the user's numbering.
+        /// A shared point, in the numbering of the field files.
         point: usize,
     },
-    /// A load whose area cannot be guessed.
-    #[error("the area that the traction acts on cannot be told: {reason}")]
+    /// A traction whose area cannot be determined.
+    #[error("the area on which the traction acts is unknown: {reason}")]
     UnknownArea {
-        /// Why.
+        /// The reason.
         reason: &'static str,
     },
-    /// A field that the forces do not have.
+    /// Fields that are not available.
     #[error("{fields} not available here: {reason}")]
     NoFields {
-        /// Which, with the verb.
+        /// The fields, with the verb: `Stress is`.
         fields: &'static str,
-        /// Why.
+        /// The reason.
         reason: &'static str,
     },
-    /// An exact solution of another problem.
-    #[error("this exact solution does not belong to this deck: {reason}")]
+    /// An exact solution that does not apply to the deck.
+    #[error("this exact solution does not apply to this deck: {reason}")]
     NoExactSolution {
-        /// Why.
+        /// The reason.
         reason: &'static str,
     },
     /// A window of comparison without points.
     #[error(
-        "the window of {window:.4e} m around x = {centre:.4e} m contains no point: the nearest one is {nearest:.4e} m away"
+        "the window of {} around x = {} contains no point: the nearest one is {} away",
+        quantity(*window, "m"), quantity(*centre, "m"), quantity(*nearest, "m")
     )]
     EmptyWindow {
-        /// Half its width, m.
+        /// Its half-width, m.
         window: f64,
-        /// Its middle, m.
+        /// Its centre, m.
         centre: f64,
-        /// Distance of the nearest point, m.
+        /// The distance of the nearest point, m.
         nearest: f64,
     },
     /// An exact solution that is too expensive.
     #[error(
-        "the exact solution would need a sum of {terms:.1e} terms for each point at the end of the run; at most {most:.0e} are allowed"
+        "the exact solution needs a sum of {terms:.1e} terms per point at the end of the run; at most {most:.0e} are allowed"
     )]
     LongSum {
-        /// Terms.
+        /// The number of terms.
         terms: f64,
-        /// Terms that are allowed.
+        /// The largest allowed number of terms.
         most: f64,
     },
-    /// A body that would need more memory than there is.
+    /// A body that exceeds the memory limit.
     #[error(
-        "the body would have {} points and need some {} of memory; {} may be taken",
+        "the body has {} points and needs about {} of memory; the limit is {}",
         count(*points), bytes(*needed), bytes(*memory as f64)
     )]
     TooLarge {
-        /// Its points, or how many there can be.
+        /// The number of points, or an upper bound.
         points: f64,
-        /// The estimate, bytes.
+        /// The estimated memory, bytes.
         needed: f64,
-        /// What may be taken, bytes.
+        /// The memory limit, bytes.
         memory: u64,
     },
-    /// A history of an absorbing end that would need more memory than there is.
+    /// A history of an absorbing boundary that exceeds the memory limit.
     #[error(
-        "the history of {} steps would need some {} of memory; {} may be taken",
+        "the history of {} steps needs about {} of memory; the limit is {}",
         count(*steps), bytes(*needed), bytes(*memory as f64)
     )]
     LongHistory {
         /// Steps of the run.
         steps: f64,
-        /// The estimate, bytes.
+        /// The estimated memory, bytes.
         needed: f64,
-        /// What may be taken, bytes.
+        /// The memory limit, bytes.
         memory: u64,
     },
-    /// Tuned coefficients with which waves grow.
+    /// Tuned coefficients that make the lattice unstable.
     #[error(
-        "the tuned coefficients make the lattice unstable: the smallest ω²/k² of its waves is {smallest:.3} E/ρ, it must be positive"
+        "the tuned coefficients make the lattice unstable: the smallest ω²/k² of its waves is {smallest:.3} E/ρ, but must be positive"
     )]
     UnstableTable {
-        /// The smallest ω²/k² over E/ρ.
+        /// The smallest ω²/k² in units of E/ρ.
         smallest: f64,
     },
-    /// The library refuses the value.
+    /// An error of the library.
     #[error(transparent)]
     Model(#[from] PericlesError),
 }
 
 impl Fault {
-    /// Whether the model is refused for the memory it needs.
+    /// Returns whether the model is refused because it exceeds the memory limit.
     pub fn is_too_large(&self) -> bool {
         matches!(
             self,

@@ -1,17 +1,17 @@
-//! Words that are not among those allowed.
+//! Errors about unknown words.
 
 use super::Fault;
 use crate::nearest::nearest;
 use crate::wording::shortened;
 
 impl Fault {
-    /// A word that is not among those allowed, with the one that may have been meant. Of many words the first 30 are named.
+    /// An unknown word, with the most similar allowed word and the first 30 allowed words.
     pub fn unknown_word<'w>(
         what: &'static str,
         word: &str,
         allowed: impl Iterator<Item = &'w str> + Clone,
     ) -> Self {
-        /// Nobody reads more; a deck with as many wrong names would take as many copies.
+        /// Bounds the length of the message and the memory for decks with many wrong names.
         const MOST: usize = 30;
         let few = allowed.clone().nth(100 * MOST).is_none();
         let meant = match few {

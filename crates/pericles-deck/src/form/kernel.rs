@@ -1,4 +1,4 @@
-//! Influence functions.
+//! Serialised form of influence functions.
 
 use pericles::kernel::{ActsOn, ClassOffset, ClassTable, Influence, InfluenceFunction};
 use serde::de::Error;
@@ -45,7 +45,7 @@ enum InfluenceFunctionForm {
 
 described!(Influence: InfluenceForm, InfluenceFunction: InfluenceFunctionForm);
 
-/// What a table per class is made from.
+/// Serialised form of a table of lattice classes.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ClassTableForm {

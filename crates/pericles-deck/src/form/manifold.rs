@@ -1,4 +1,4 @@
-//! Surfaces and their materials.
+//! Serialised form of 2-manifolds and their materials.
 
 use pericles_manifold::geodesic::GeodesicMethod;
 use pericles_manifold::surface::SurfaceChecks;
@@ -18,8 +18,9 @@ struct PowerMaterialForm {
     horizon: f64,
     #[serde(with = "crate::form")]
     bond: SurfaceBond,
-    self_cell: bool,
-    // Infinite for bonds that never break.
+    #[serde(alias = "self_cell")]
+    self_interaction: bool,
+    // Infinity: bonds never break.
     #[serde(with = "crate::form")]
     critical_stretch: f64,
 }
@@ -40,7 +41,8 @@ impl Described for GeodesicMethod {
 
     fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let word = String::deserialize(deserializer)?;
-        let unknown = |_| D::Error::custom(format!("`{word}` is none of {}", Self::NAMES));
+        let unknown =
+            |_| D::Error::custom(format!("unknown word `{word}`; allowed: {}", Self::NAMES));
         word.parse().map_err(unknown)
     }
 }

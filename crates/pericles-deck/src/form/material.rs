@@ -1,4 +1,4 @@
-//! Materials of bonds.
+//! Serialised form of materials.
 
 use pericles::family::VolumeCorrection;
 use pericles::kernel::{Influence, InfluenceFunction};

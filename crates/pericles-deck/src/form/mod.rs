@@ -1,6 +1,7 @@
-//! The serialised form of a model: that of the engine's types that it holds. Keys and words are those of decks where decks have them.
+//! Serialised form of the engine's types in a model. Keys and words are those of decks where they exist there.
 //!
-//! A field with `#[serde(with = "crate::form")]` may have any type that is [`Described`], or be an option, list, box or pair of such types.
+//! A field with `#[serde(with = "crate::form")]` has a type that is [`Described`], or an option, list, box or
+//! pair of such types.
 
 mod kernel;
 mod manifold;
@@ -16,14 +17,14 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// A type with a serialised form.
 pub(crate) trait Described: Sized {
-    /// Writes the form.
+    /// Serialises the value.
     fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error>;
 
-    /// Reads the form.
+    /// Deserialises a value.
     fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error>;
 }
 
-/// For `#[serde(with)]`.
+/// Entry point of `#[serde(with)]`.
 pub(crate) fn serialize<T: Described, S: Serializer>(
     value: &T,
     serializer: S,
@@ -31,14 +32,14 @@ pub(crate) fn serialize<T: Described, S: Serializer>(
     value.write(serializer)
 }
 
-/// For `#[serde(with)]`.
+/// Entry point of `#[serde(with)]`.
 pub(crate) fn deserialize<'de, T: Described, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<T, D::Error> {
     T::read(deserializer)
 }
 
-/// A described value as serde knows it.
+/// Adapter that serialises a described value.
 struct Writer<'a, T>(&'a T);
 
 impl<T: Described> Serialize for Writer<'_, T> {
@@ -47,7 +48,7 @@ impl<T: Described> Serialize for Writer<'_, T> {
     }
 }
 
-/// A described value as serde reads it.
+/// Adapter that deserialises a described value.
 struct Reader<T>(T);
 
 impl<'de, T: Described> Deserialize<'de> for Reader<T> {
@@ -99,7 +100,7 @@ impl<A: Described, B: Described> Described for (A, B) {
     }
 }
 
-/// Describes a type of the engine by a form that serde derives for it.
+/// Describes a type of the engine by a remote serde derive.
 macro_rules! described {
     ($($type:ty: $form:ty),* $(,)?) => {$(
         impl crate::form::Described for $type {

@@ -1,4 +1,4 @@
-//! Numbers that may be infinite, as the entries of an open box are.
+//! Serialised form of numbers that may be infinite, such as the bounds of an open box.
 
 use std::fmt;
 
@@ -7,14 +7,16 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::Described;
 
-/// Words for the numbers that JSON lacks.
+/// Words for infinite numbers, which JSON lacks.
 const WORDS: [(&str, f64); 2] = [("inf", f64::INFINITY), ("-inf", f64::NEG_INFINITY)];
 
 impl Described for f64 {
     fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match WORDS.iter().find(|(_, value)| value == self) {
             Some((word, _)) => serializer.serialize_str(word),
-            None if self.is_nan() => Err(serde::ser::Error::custom("a model holds no NaN")),
+            None if self.is_nan() => {
+                Err(serde::ser::Error::custom("NaN is not allowed in a model"))
+            }
             None => serializer.serialize_f64(*self),
         }
     }
@@ -45,7 +47,7 @@ impl Described for f64 {
                 let known = WORDS.iter().find(|(known, _)| *known == word);
                 known
                     .map(|(_, value)| *value)
-                    .ok_or_else(|| E::custom(format!("`{word}` is no number")))
+                    .ok_or_else(|| E::custom(format!("`{word}` is not a number")))
             }
         }
 
@@ -61,12 +63,12 @@ impl<const N: usize> Described for [f64; N] {
     fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let numbers = Vec::<f64>::read(deserializer)?;
         let found = numbers.len();
-        let wrong = |_| D::Error::custom(format!("{found} numbers where {N} are needed"));
+        let wrong = |_| D::Error::custom(format!("expected {N} numbers, found {found}"));
         numbers.try_into().map_err(wrong)
     }
 }
 
-/// Describes types that serde knows.
+/// Describes types that serde serialises itself.
 macro_rules! plain {
     ($($type:ty),*) => {$(
         impl Described for $type {

@@ -1,4 +1,4 @@
-//! When something is written.
+//! Serialised form of output schedules.
 
 use pericles::observe::Schedule;
 use serde::{Deserialize, Serialize};

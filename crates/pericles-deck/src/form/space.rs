@@ -1,4 +1,4 @@
-//! Grids, regions and cracks.
+//! Serialised form of grids, regions and cracks.
 
 use pericles::family::Crack;
 use pericles::space::{Face, Finer, Grid, Point, Region, Shape};

@@ -1,4 +1,4 @@
-//! Options of schemes.
+//! Serialised form of scheme options.
 
 use pericles::time::{
     Damping, Follow, InnerSolver, NewmarkOptions, RelaxationOptions, VelocityNorm,
@@ -14,7 +14,8 @@ struct FollowForm {
     every: u32,
     threshold: f64,
     layers: u32,
-    hold: u32,
+    #[serde(alias = "hold")]
+    keep_checks: u32,
 }
 
 #[derive(Serialize, Deserialize)]

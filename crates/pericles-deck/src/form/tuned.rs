@@ -1,4 +1,4 @@
-//! Tuned influence functions: how the coefficients were found and what they do to waves.
+//! Serialised form of tuned influence functions: method, coefficients and dispersion errors.
 
 use pericles::kernel::ClassOffset;
 use pericles_dispersion::Stability;

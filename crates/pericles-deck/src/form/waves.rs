@@ -1,13 +1,13 @@
-//! Absorbing ends.
+//! Serialised form of absorbing boundaries.
 
 use pericles_waves::absorbing::history::HistoryForm;
-use pericles_waves::absorbing::{EndPlan, KernelMethod};
+use pericles_waves::absorbing::{AbsorbingBoundaryPlan, KernelMethod};
 use serde::{Deserialize, Serialize};
 
 use super::described;
 
 #[derive(Serialize, Deserialize)]
-#[serde(remote = "EndPlan", deny_unknown_fields)]
+#[serde(remote = "AbsorbingBoundaryPlan", deny_unknown_fields)]
 struct EndPlanForm {
     #[serde(with = "crate::form")]
     method: KernelMethod,
@@ -18,4 +18,4 @@ struct EndPlanForm {
     verify: bool,
 }
 
-described!(EndPlan: EndPlanForm);
+described!(AbsorbingBoundaryPlan: EndPlanForm);

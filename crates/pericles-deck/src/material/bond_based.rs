@@ -1,11 +1,12 @@
-//! Bond-based materials.
+//! Reads bond-based materials.
 
-use pericles::material::{BondMaterial, CubicLaw, PairLaw, Treatment};
+use pericles::material::{Approximation, BondMaterial, CubicLaw, PairLaw};
 
 use super::keys::{
     damage, density, forbid_former_tables, form, horizon, no_fail, setting, volume_correction,
 };
 use super::scatter::scatter;
+use super::softening::{forbid_softening, softening};
 use super::types::{Material, MaterialModel};
 use crate::body::BodyRead;
 use crate::constants::{
@@ -28,15 +29,15 @@ pub(super) fn read(
     for key in ["yield_stress", "hardening"] {
         table.forbid(
             key,
-            "it belongs to model = \"state-based\" or \"correspondence\"",
+            "it requires model = \"state-based\" or \"correspondence\"",
         );
     }
     for key in ["strains", "failure", "stretch_definition", "viscosity"] {
-        table.forbid(key, "it belongs to model = \"state-based\"");
+        table.forbid(key, "it requires model = \"state-based\"");
     }
     let dimension = body.frame.dimension;
     let name = table.maybe("name", |item| item.text());
-    let law = treated(&table, law);
+    let law = approximated(&table, law);
     let density = density(&table);
     let modulus = modulus(&table, body.state);
     let extent = horizon(&table, body.frame);
@@ -53,6 +54,13 @@ pub(super) fn read(
     let fracture_calibration = fracture_calibration(&table, body, shared);
     let no_fail = no_fail(&table, sets);
     let scatter = scatter(&table);
+    let softening = match law {
+        None | Some(PairLaw::Linear | PairLaw::BondStretch) => softening(&table),
+        Some(_) => {
+            forbid_softening(&table);
+            Some(None)
+        }
+    };
     let damage = damage(&table);
     let form = form(&table);
     let rules = ConstantRules {
@@ -79,46 +87,47 @@ pub(super) fn read(
         tuned,
         no_fail: no_fail?,
         scatter: scatter?,
+        softening: softening?,
         surface_correction: surface_correction?,
         damage: damage?,
         form: form?,
     })
 }
 
-/// The law as it is taken.
-fn treated(table: &Table<'_>, law: Option<PairLaw>) -> Option<PairLaw> {
+/// Applies `approximation` to the law.
+fn approximated(table: &Table<'_>, law: Option<PairLaw>) -> Option<PairLaw> {
     #[derive(Clone, Copy)]
     enum Kind {
         Exact,
         FirstOrder,
-        As(Treatment),
+        As(Approximation),
     }
     let cubic = match law? {
         PairLaw::GreenStrain => CubicLaw::GreenStrain,
-        PairLaw::Literal57 => CubicLaw::Literal57,
+        PairLaw::CubicSoftening => CubicLaw::CubicSoftening,
         other => {
             table.forbid(
-                "treatment",
-                "it belongs to model = \"green-strain\" or \"literal57\"",
+                "approximation",
+                "it requires model = \"green-strain\" or \"cubic-softening\"",
             );
             return Some(other);
         }
     };
-    let treatment = table.choice_or_first(
-        "treatment",
-        "treatment",
+    let approximation = table.choice_or_first(
+        "approximation",
+        "approximation",
         &[
             ("exact", Kind::Exact),
             ("taylor-1", Kind::FirstOrder),
-            ("taylor-2", Kind::As(Treatment::SecondOrder)),
-            // The law itself.
+            ("taylor-2", Kind::As(Approximation::SecondOrder)),
+            // The same as the law itself, a cubic polynomial.
             ("taylor-3", Kind::Exact),
-            ("trapezoidal", Kind::As(Treatment::Trapezoidal)),
+            ("trapezoidal", Kind::As(Approximation::Trapezoidal)),
         ],
     );
-    Some(match treatment? {
+    Some(match approximation? {
         Kind::Exact => law?,
         Kind::FirstOrder => PairLaw::Linear,
-        Kind::As(treatment) => PairLaw::Treated(cubic, treatment),
+        Kind::As(approximation) => PairLaw::Approximated(cubic, approximation),
     })
 }

@@ -1,4 +1,4 @@
-//! Correspondence materials.
+//! Reads correspondence materials.
 
 use pericles::kernel::Influence;
 use pericles::material::{LinearSolid, StateInfluence, SurfaceCorrection};
@@ -7,10 +7,11 @@ use super::keys::{
     damage, density, forbid_former_tables, form, horizon, no_fail, setting, volume_correction,
 };
 use super::scatter::scatter;
+use super::softening::forbid_softening;
 use super::types::Material;
 use crate::body::BodyRead;
 use crate::constants::fracture_calibration;
-use crate::correspondence::{Correspondence, law, plasticity};
+use crate::correspondence::{Correspondence, law, plasticity, strength};
 use crate::influence::state_influence;
 use crate::reader::Table;
 use crate::set::SetNames;
@@ -41,12 +42,14 @@ pub(super) fn read(
     let horizon = extent.and_then(|extent| extent.with(given.as_ref(), body.frame.dimension));
     let calibration = fracture_calibration(&table, body, shared);
     let rules = SolidRules::closing(body.state, calibration);
+    let strength = strength(&table);
     let (elastic, failure) = (rules.elastic(&table), rules.failure(&table));
     let plasticity = plasticity(&table);
     let law = law(&table, table.has("yield_stress"));
     let stabilisation = table.worded("stabilisation", "stabilisation");
     let no_fail = no_fail(&table, sets);
     let scatter = scatter(&table);
+    forbid_softening(&table);
     let damage = damage(&table);
     let form = form(&table);
     table.finish();
@@ -70,31 +73,28 @@ pub(super) fn read(
             law: law?,
             stabilisation: stabilisation?,
             plasticity: plasticity?,
+            strength: strength?,
         })
     })
 }
 
 /// Keys of other models.
-const FORBIDDEN: [(&str, &str); 6] = [
-    ("viscosity", "it belongs to model = \"state-based\""),
+const FORBIDDEN: [(&str, &str); 5] = [
+    ("viscosity", "it requires model = \"state-based\""),
     (
-        "treatment",
-        "it belongs to model = \"green-strain\" or \"literal57\"",
+        "approximation",
+        "it requires model = \"green-strain\" or \"cubic-softening\"",
     ),
     (
         "strains",
-        "it belongs to model = \"state-based\": correspondence materials are for displacements of any size",
+        "it requires model = \"state-based\"; correspondence materials always use finite strains",
     ),
     (
         "surface_correction",
-        "the shape tensor of a correspondence material accounts for missing bonds already: a uniform deformation has the right stress at surfaces too",
-    ),
-    (
-        "failure",
-        "it belongs to model = \"state-based\": bonds of correspondence materials break by their stretch",
+        "the shape tensor of a correspondence material already accounts for missing bonds near free surfaces",
     ),
     (
         "stretch_definition",
-        "it belongs to model = \"state-based\": the critical stretch of correspondence materials is counted in the closing deformation",
+        "it requires model = \"state-based\"; correspondence materials use the definition `closing`",
     ),
 ];

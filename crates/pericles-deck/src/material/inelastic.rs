@@ -1,4 +1,4 @@
-//! Viscosity and plasticity of state-based materials.
+//! Reads viscosity and plasticity of state-based materials.
 
 use pericles::material::{Inelasticity, StressState, ViscousTerm};
 
@@ -6,14 +6,14 @@ use crate::quantity::Quantity;
 use crate::reader::Table;
 use crate::state_based::read_yield;
 
-/// How the shear of the material in a table departs from elasticity.
+/// Reads the inelastic shear behaviour of a material.
 pub(super) fn read(table: &Table<'_>, state: Option<StressState>) -> Option<Inelasticity> {
     let law = match table.has("viscosity") {
         true => {
             for key in ["yield_stress", "hardening"] {
                 table.forbid(
                     key,
-                    "a material is viscous or plastic: leave out `viscosity` or this key",
+                    "a material is either viscous or plastic: remove `viscosity` or this key",
                 );
             }
             let terms: Vec<_> = table.tables("viscosity").into_iter().map(term).collect();
@@ -25,7 +25,7 @@ pub(super) fn read(table: &Table<'_>, state: Option<StressState>) -> Option<Inel
     Some(law)
 }
 
-/// A term of the relaxation function.
+/// Reads a term of the relaxation function.
 fn term(table: Table<'_>) -> Option<ViscousTerm> {
     let share = table.required("share").and_then(|item| {
         item.within(Quantity::Number, "a number between 0 and 1", |share| {

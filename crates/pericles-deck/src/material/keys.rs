@@ -1,4 +1,4 @@
-//! Keys that all materials of solids have.
+//! Keys of all materials of solids.
 
 use pericles::family::VolumeCorrection;
 use pericles::kernel::{Influence, InfluenceFunction};
@@ -13,17 +13,14 @@ use crate::region::Frame;
 use crate::set::SetNames;
 use crate::vocabulary::HORIZONS;
 
-/// Refuses tables of former releases that could not be rewritten.
+/// Refuses deprecated tables that could not be converted.
 pub(crate) fn forbid_former_tables(table: &Table<'_>) {
     table.forbid(
         "part",
         "define materials in [materials.NAME] and assign them to sets with [[assign]]",
     );
-    table.forbid("inclusion", "give `stiffness` in [[assign]]");
-    table.forbid(
-        "interface",
-        "bonds between two materials have tables [[interface]]",
-    );
+    table.forbid("inclusion", "set `stiffness` in [[assign]]");
+    table.forbid("interface", "define interfaces in [[interface]]");
 }
 
 pub(super) fn density(table: &Table<'_>) -> Option<f64> {
@@ -40,7 +37,7 @@ pub(super) fn no_fail(table: &Table<'_>, sets: &SetNames) -> Option<Vec<String>>
     item.map_or(Some(Vec::new()), |item| sets.references(&item))
 }
 
-/// What an influence function is made for.
+/// Returns the discretisation for which an influence function is made.
 pub(super) fn setting(
     body: &BodyRead,
     extent: Option<&Extent<'_>>,
@@ -57,16 +54,16 @@ pub(super) fn setting(
     }
 }
 
-/// How bonds are kept.
+/// Reads the force kernel.
 pub(super) fn form(table: &Table<'_>) -> Option<ForceForm> {
-    table.worded("bonds", "form of bonds")
+    table.worded("bonds", "force kernel")
 }
 
-/// A horizon as written.
+/// A horizon as given in the deck.
 pub(super) enum Extent<'a> {
-    /// m
+    /// A length, m.
     Finite(f64),
-    /// As far as the influence function goes.
+    /// The extent of the influence function.
     Infinite(Item<'a>),
 }
 
@@ -78,13 +75,13 @@ impl Extent<'_> {
         }
     }
 
-    /// The horizon in metres, for a function that is known.
+    /// Returns the horizon in metres for a given influence function.
     pub(super) fn with(
         self,
         influence: Option<&Influence>,
         dimension: Option<usize>,
     ) -> Option<f64> {
-        /// Lengths of a Gaussian beyond which it is below 1e-21 of its height.
+        /// Number of lengths beyond which a Gaussian is below 1e-21.
         const ALL: f64 = 7.0;
         let item = match self {
             Self::Finite(horizon) => return Some(horizon),
@@ -105,7 +102,7 @@ impl Extent<'_> {
             }
             _ => {
                 item.out_of_range(
-                    "\"infinite\" needs a function that decays: influence = { function = \"gaussian\", length = … } without a cutoff",
+                    "\"infinite\" requires influence = { function = \"gaussian\", length = … } without a cutoff",
                 );
                 None
             }
@@ -113,12 +110,12 @@ impl Extent<'_> {
     }
 }
 
-/// The horizon, given as a length or as a multiple of the spacing.
+/// Reads the horizon, given as a length or as a multiple of the spacing.
 pub(super) fn horizon<'a>(table: &Table<'a>, frame: Frame) -> Option<Extent<'a>> {
     if frame.is_automatic() {
         table.forbid(
             "horizon_ratio",
-            "the spacing of this mesh is not known before it is read: give `horizon` as a length (usual: 3 times the mean size that `pericles mesh` prints), or `spacing` in [body]",
+            "the spacing of this mesh is unknown before the mesh is read: set `horizon` to a length (usual: 3 times the mean size that `pericles mesh` prints), or set `spacing` in [body]",
         );
     }
     let spacing = frame.spacing;
@@ -130,7 +127,7 @@ pub(super) fn horizon<'a>(table: &Table<'a>, frame: Frame) -> Option<Extent<'a>>
         "horizon" => item.within(
             Quantity::Length,
             "a length of at least one spacing (usual: 3 spacings), or \"infinite\"",
-            // Horizons are mostly whole multiples of the spacing, up to round-off.
+            // Allows for round-off: most horizons are whole multiples of the spacing.
             |horizon| horizon > 0.0 && spacing.is_none_or(|dx| horizon >= dx * (1.0 - 1e-9)),
         ),
         _ => {
@@ -150,7 +147,7 @@ pub(super) fn damage(table: &Table<'_>) -> Option<Option<DamageMeasure>> {
     let table = table.table_or_empty("damage")?;
     let count = table.choice_or_first(
         "measure",
-        "measure of damage",
+        "damage measure",
         &[("volume", false), ("count", true)],
     );
     let count_precut = table.or("count_precut", false, |item| item.boolean());

@@ -1,4 +1,4 @@
-//! State-based materials.
+//! Reads state-based materials.
 
 use pericles::kernel::Influence;
 use pericles::material::{LinearSolid, StateInfluence, SurfaceCorrection};
@@ -8,6 +8,7 @@ use super::keys::{
     damage, density, forbid_former_tables, form, horizon, no_fail, setting, volume_correction,
 };
 use super::scatter::scatter;
+use super::softening::forbid_softening;
 use super::types::Material;
 use crate::body::BodyRead;
 use crate::constants::fracture_calibration;
@@ -26,8 +27,8 @@ pub(super) fn read(
     forbid_former_tables(&table);
     correspondence::forbid_keys(&table);
     table.forbid(
-        "treatment",
-        "it belongs to model = \"green-strain\" or \"literal57\"",
+        "approximation",
+        "it requires model = \"green-strain\" or \"cubic-softening\"",
     );
     let name = table.maybe("name", |item| item.text());
     let strains = table.worded("strains", "strains");
@@ -54,6 +55,7 @@ pub(super) fn read(
     let inelastic = inelastic::read(&table, body.state);
     let no_fail = no_fail(&table, sets);
     let scatter = scatter(&table);
+    forbid_softening(&table);
     let damage = damage(&table);
     let form = form(&table);
     table.finish();
@@ -80,13 +82,13 @@ pub(super) fn read(
     })
 }
 
-/// The correction of surfaces that a state-based material can have.
+/// Reads the surface correction of a state-based material.
 fn solid_surface(table: &Table<'_>) -> Option<SurfaceCorrection> {
     if let Some(item) = table.optional("surface_correction")
         && item.is_keyword("volume")
     {
         item.out_of_range(
-            "\"none\" or \"energy\": the weighted volume of a state-based material accounts for missing bonds already, and the volume method would make bodies 6 to 15 % too stiff",
+            "\"none\", \"energy\" or \"ghosts\"; the weighted volume of a state-based material already accounts for missing bonds, and the volume method makes bodies 6 to 15 % too stiff",
         );
         return None;
     }
@@ -96,6 +98,7 @@ fn solid_surface(table: &Table<'_>) -> Option<SurfaceCorrection> {
         &[
             ("none", SurfaceCorrection::None),
             ("energy", SurfaceCorrection::Energy),
+            ("ghosts", SurfaceCorrection::Ghosts),
         ],
     )
 }

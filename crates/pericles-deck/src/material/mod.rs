@@ -1,4 +1,4 @@
-//! `[material]` and `[materials.NAME]`: constants, horizon, influence function and breaking.
+//! `[material]` and `[materials.NAME]`: constants, horizon, influence function and failure.
 
 mod bond_based;
 mod correspondence;
@@ -8,9 +8,11 @@ mod linear_solid;
 mod scatter;
 mod several;
 mod shared;
+mod softening;
 mod types;
 
 pub use scatter::{Scatter, ScatteredStrength};
+pub use softening::{BondSoftening, SofteningWord};
 pub use types::{Material, MaterialModel, NamedMaterial};
 
 pub(crate) use keys::forbid_former_tables;
@@ -23,7 +25,7 @@ use crate::body::BodyRead;
 use crate::reader::Table;
 use crate::set::SetNames;
 
-/// One table of a material. `shared`: other materials take over what is said of all bonds of the body.
+/// Reads the table of a material. `shared`: other materials inherit its shared keys.
 fn material(table: Table<'_>, body: &BodyRead, sets: &SetNames, shared: bool) -> Option<Material> {
     match model(&table) {
         Some(ModelWord::StateBased) => linear_solid::read(table, body, sets, shared),
@@ -33,7 +35,7 @@ fn material(table: Table<'_>, body: &BodyRead, sets: &SetNames, shared: bool) ->
     }
 }
 
-/// The word of `model`.
+/// Words of `model`.
 #[derive(Clone, Copy)]
 enum ModelWord {
     Law(PairLaw),
@@ -49,7 +51,7 @@ fn model(table: &Table<'_>) -> Option<ModelWord> {
             ("bond-stretch", ModelWord::Law(PairLaw::BondStretch)),
             ("linear", ModelWord::Law(PairLaw::Linear)),
             ("green-strain", ModelWord::Law(PairLaw::GreenStrain)),
-            ("literal57", ModelWord::Law(PairLaw::Literal57)),
+            ("cubic-softening", ModelWord::Law(PairLaw::CubicSoftening)),
             ("state-based", ModelWord::StateBased),
             ("correspondence", ModelWord::Correspondence),
         ],

@@ -1,4 +1,4 @@
-//! `scatter`: strength that is distributed at random.
+//! `scatter`: randomly distributed strength.
 
 use pericles::material::{Scattered, StrengthScatter};
 use serde::{Deserialize, Serialize};
@@ -10,16 +10,16 @@ use crate::reader::Table;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scatter {
-    /// What is distributed.
+    /// Distributed quantity.
     #[serde(default)]
     pub of: ScatteredStrength,
-    /// Weibull's modulus.
+    /// Weibull modulus.
     pub shape: f64,
     /// Random seed.
     pub seed: u64,
 }
 
-/// The strength that is distributed.
+/// Distributed quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ScatteredStrength {
@@ -31,7 +31,7 @@ pub enum ScatteredStrength {
 }
 
 impl Scatter {
-    /// The distribution as the engine knows it.
+    /// Returns the engine's type of the distribution.
     pub fn strength(&self) -> StrengthScatter {
         StrengthScatter {
             of: match self.of {

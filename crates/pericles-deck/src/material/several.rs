@@ -1,4 +1,4 @@
-//! The materials of a body: `[material]`, `[materials.NAME]`, or both.
+//! Materials of a body: `[material]`, `[materials.NAME]`, or both.
 
 use super::material;
 use super::shared::{difference_of_tables, same_length};
@@ -12,17 +12,19 @@ use crate::vocabulary::{HORIZONS, OWN_CONSTANTS};
 
 /// The materials of a deck.
 pub(crate) struct Materials {
-    /// Their names, that of the body's material first, whether or not they could be read.
+    /// Names, that of the body's material first, including materials that could not be read.
     pub(crate) names: Vec<String>,
-    /// The body's material: [material] if it has constants of its own, else [materials.default], else the first of [materials].
+    /// The body's material: `[material]` if it has constants of its own, otherwise `[materials.default]`,
+    /// otherwise the first of `[materials]`.
     pub(crate) own: Option<Material>,
-    /// The others.
+    /// Further materials.
     pub(crate) others: Option<Vec<NamedMaterial>>,
-    /// Where the body's material is, if it is one of [materials].
+    /// Path of the body's material, if it is in `[materials]`.
     pub(crate) place: Option<KeyPath>,
 }
 
-/// All materials. Tables of [materials] hold what they take over from [material] (see [`inherit`](crate::inheritance::inherit)).
+/// Reads all materials. Tables of `[materials]` already contain inherited keys (see
+/// [`inherit`](crate::inheritance::inherit)).
 pub(crate) fn read(root: &Table<'_>, body: &BodyRead, sets: &SetNames) -> Materials {
     let table = root.optional("materials").and_then(|item| item.table());
     let named = table.iter().flat_map(|table| table.named("material"));
@@ -67,15 +69,15 @@ pub(crate) fn read(root: &Table<'_>, body: &BodyRead, sets: &SetNames) -> Materi
         }
     };
     let mut names = vec![name];
-    // All are read before one that is wrong ends it.
+    // All are read before an error ends the function.
     let others: Vec<Option<NamedMaterial>> = named
         .into_iter()
         .map(|(name, item)| {
             if names.iter().any(|known| known == name) {
                 item.report(Fault::BadName {
                     name: name.into(),
-                    reason: "[material] has it",
-                    allowed: "allowed: a name of its own for each material",
+                    reason: "[material] has this name",
+                    allowed: "allowed: a unique name per material",
                 });
             }
             names.push(name.into());
@@ -94,14 +96,17 @@ pub(crate) fn read(root: &Table<'_>, body: &BodyRead, sets: &SetNames) -> Materi
     }
 }
 
-/// A table of [materials].
+/// Reads a table of `[materials]`.
 fn one(item: &Item<'_>, body: &BodyRead, sets: &SetNames, shared: bool) -> Option<Material> {
     let table = item.table()?;
-    table.forbid("name", "the name of the table is that of the material");
+    table.forbid(
+        "name",
+        "the heading of the table is the name of the material",
+    );
     material(table, body, sets, shared)
 }
 
-/// A table of [materials] beside the body's material, with which it must agree in what all bonds share.
+/// Reads a further table of `[materials]`, whose shared keys must agree with the body's material.
 fn other(
     item: &Item<'_>,
     own: Option<&Material>,
@@ -129,7 +134,7 @@ fn other(
     }
     let mut model = read.model;
     if same_length(own.horizon(), model.horizon()) {
-        // To the last bit.
+        // Makes both horizons bitwise equal.
         match &mut model {
             MaterialModel::Bonds(bonds) => bonds.horizon = own.horizon(),
             MaterialModel::StateBased(state) => state.solid.horizon = own.horizon(),

@@ -1,11 +1,12 @@
-//! What all materials of a body have in common.
+//! Properties that all materials of a body share.
 
 use super::types::{Material, MaterialModel};
 
-/// The first key in which two materials of one body differ though they must not.
+/// Returns the first shared key in which two materials of a body differ.
 ///
-/// A bond belongs to both of its ends: it has one law and one influence function. What is not named here, density, elastic constants, failure and the horizon of bond-based materials, may differ. A state-based
-/// material has one horizon, because the weighted volume of a point is a sum over its family.
+/// A bond belongs to both of its end points, so that it has one law and one influence function. Density,
+/// elastic constants, failure and the horizon of bond-based materials may differ. All state-based materials
+/// of a body have the same horizon, because the weighted volume of a point is a sum over its family.
 pub(crate) fn difference(a: &MaterialModel, b: &MaterialModel) -> Option<&'static str> {
     let horizon =
         matches!(a, MaterialModel::StateBased(_)) && !same_length(a.horizon(), b.horizon());
@@ -26,7 +27,7 @@ pub(crate) fn difference(a: &MaterialModel, b: &MaterialModel) -> Option<&'stati
     };
     let law_key = match (a.name() == b.name(), a) {
         (false, _) => "model",
-        (true, MaterialModel::Bonds(_)) => "treatment",
+        (true, MaterialModel::Bonds(_)) => "approximation",
         (true, MaterialModel::StateBased(_)) => "strains",
         (true, MaterialModel::Correspondence(_)) => "stabilisation",
     };
@@ -39,7 +40,7 @@ pub(crate) fn difference(a: &MaterialModel, b: &MaterialModel) -> Option<&'stati
     first(&keys)
 }
 
-/// The first key of the whole body that two tables of materials say differently.
+/// Returns the first shared key in which the tables of two materials differ.
 pub(super) fn difference_of_tables(a: &Material, b: &Material) -> Option<&'static str> {
     let keys = [
         (
@@ -48,6 +49,7 @@ pub(super) fn difference_of_tables(a: &Material, b: &Material) -> Option<&'stati
         ),
         (a.no_fail != b.no_fail, "no_fail"),
         (a.scatter != b.scatter, "scatter"),
+        (a.softening != b.softening, "softening"),
         (a.damage != b.damage, "damage"),
         (a.form != b.form, "bonds"),
     ];
@@ -59,7 +61,7 @@ fn first(keys: &[(bool, &'static str)]) -> Option<&'static str> {
     found.map(|(_, key)| *key)
 }
 
-/// Whether lengths differ by rounding only: a length and a multiple of the spacing.
+/// Returns whether two lengths are equal up to rounding, such as a length and a multiple of the spacing.
 pub(super) fn same_length(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-12 * a.abs().max(b.abs())
 }

@@ -1,4 +1,4 @@
-//! Materials as plain data.
+//! Data types of materials.
 
 use pericles::family::VolumeCorrection;
 use pericles::material::{BondMaterial, CubicLaw, PairLaw, SurfaceCorrection};
@@ -8,69 +8,74 @@ use pericles_waves::ForceForm;
 use serde::{Deserialize, Serialize};
 
 use super::scatter::Scatter;
+use super::softening::BondSoftening;
 use crate::correspondence::Correspondence;
 use crate::state_based::StateBased;
 
-/// The material with what goes with it.
+/// A material of a body.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Material {
-    /// Its name, for people, assignments and interfaces; "default" if it is left out ([`Material::name`](method@Material::name)).
+    /// Name for assignments and interfaces; "default" if none ([`Material::name`](method@Material::name)).
     #[serde(default)]
     pub name: Option<String>,
-    /// Whether points without an assignment have this material. If not, every point needs an assignment.
+    /// Whether points without an assignment have this material; otherwise every point needs an assignment.
     #[serde(default = "yes")]
     pub is_default: bool,
-    /// Law, constants, horizon and breaking.
+    /// Law, constants, horizon and failure.
     pub model: MaterialModel,
-    /// How the coefficients of the influence function were found, if it is tuned against dispersion.
+    /// Tuning result of the influence function, if it is tuned.
     #[serde(default, with = "crate::form")]
     pub tuned: Option<TunedTable>,
     /// Sets whose bonds never break.
     #[serde(default)]
     pub no_fail: Vec<String>,
-    /// What is done about the bonds that points near surfaces lack.
+    /// Correction for missing bonds near free surfaces.
     #[serde(default, with = "crate::form")]
     pub surface_correction: SurfaceCorrection,
-    /// How the strength of points scatters, if it does.
+    /// Random distribution of strength.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scatter: Option<Scatter>,
-    /// How damage is measured, if it is given.
+    /// How bonds soften before they break, if they do.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub softening: Option<BondSoftening>,
+    /// Damage measure, if it is given.
     #[serde(default, with = "crate::form")]
     pub damage: Option<DamageMeasure>,
-    /// How bonds are kept: a matter of speed only.
+    /// Force kernel; affects speed only.
     #[serde(default, with = "crate::form")]
     pub form: ForceForm,
 }
 
-/// The model of a material.
+/// Material models.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum MaterialModel {
-    /// A pair force for each bond: Poisson's ratio is fixed.
+    /// Bond-based: pair forces with a fixed Poisson's ratio.
     Bonds(#[serde(with = "crate::form")] BondMaterial),
-    /// Forces that depend on all bonds of both ends: any Poisson's ratio.
+    /// State-based: forces that depend on all bonds of both end points, with any Poisson's ratio.
     StateBased(StateBased),
-    /// Forces from the stress of a deformation gradient: any Poisson's ratio, large strain, plastic flow.
+    /// Correspondence: forces from the stress of a nonlocal deformation gradient, with any Poisson's ratio,
+    /// large strain and plasticity.
     Correspondence(Correspondence),
 }
 
 impl From<BondMaterial> for Material {
-    /// One material for the whole body, whose bonds are kept as is fastest.
+    /// A single material with the fastest force kernel.
     fn from(bonds: BondMaterial) -> Self {
         Self::from(MaterialModel::Bonds(bonds))
     }
 }
 
 impl From<StateBased> for Material {
-    /// One material for the whole body.
+    /// A single material for the whole body.
     fn from(solid: StateBased) -> Self {
         Self::from(MaterialModel::StateBased(solid))
     }
 }
 
 impl From<Correspondence> for Material {
-    /// One material for the whole body.
+    /// A single material for the whole body.
     fn from(solid: Correspondence) -> Self {
         Self::from(MaterialModel::Correspondence(solid))
     }
@@ -86,24 +91,25 @@ impl From<MaterialModel> for Material {
             no_fail: Vec::new(),
             surface_correction: SurfaceCorrection::default(),
             scatter: None,
+            softening: None,
             damage: None,
             form: ForceForm::default(),
         }
     }
 }
 
-/// A material beside the body's, assigned to sets by its name.
+/// A further material, assigned to sets by its name.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NamedMaterial {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Law, constants, horizon and breaking; what all bonds of a body share must be that of the body's material.
+    /// Law, constants, horizon and failure; shared properties must be those of the body's material.
     pub model: MaterialModel,
 }
 
 impl MaterialModel {
-    /// Mass density ρ, kg/m³.
+    /// Returns the mass density ρ, kg/m³.
     pub fn density(&self) -> f64 {
         match self {
             Self::Bonds(bonds) => bonds.density,
@@ -112,7 +118,7 @@ impl MaterialModel {
         }
     }
 
-    /// Horizon δ, m.
+    /// Returns the horizon δ, m.
     pub fn horizon(&self) -> f64 {
         match self {
             Self::Bonds(bonds) => bonds.horizon,
@@ -121,7 +127,7 @@ impl MaterialModel {
         }
     }
 
-    /// Partial volumes at the horizon.
+    /// Returns the volume correction.
     pub fn volume_correction(&self) -> VolumeCorrection {
         match self {
             Self::Bonds(bonds) => bonds.volume_correction,
@@ -130,7 +136,7 @@ impl MaterialModel {
         }
     }
 
-    /// The word of `model`, whatever the treatment of a law.
+    /// Returns the word of `model`, without the approximation.
     pub fn name(&self) -> &'static str {
         let bonds = match self {
             Self::Bonds(bonds) => bonds,
@@ -140,27 +146,31 @@ impl MaterialModel {
         match bonds.law {
             PairLaw::BondStretch => "bond-stretch",
             PairLaw::Linear => "linear",
-            PairLaw::GreenStrain | PairLaw::Treated(CubicLaw::GreenStrain, _) => "green-strain",
-            PairLaw::Literal57 | PairLaw::Treated(CubicLaw::Literal57, _) => "literal57",
+            PairLaw::GreenStrain | PairLaw::Approximated(CubicLaw::GreenStrain, _) => {
+                "green-strain"
+            }
+            PairLaw::CubicSoftening | PairLaw::Approximated(CubicLaw::CubicSoftening, _) => {
+                "cubic-softening"
+            }
         }
     }
 }
 
-/// For fields that are true if they are left out.
+/// Default of fields that are true if missing.
 fn yes() -> bool {
     true
 }
 
 impl Material {
-    /// The name of a material that has none.
+    /// Name of a material without one.
     pub const DEFAULT: &'static str = "default";
 
-    /// What assignments and interfaces call it.
+    /// Returns the name that assignments and interfaces use.
     pub fn name(&self) -> &str {
         self.name.as_deref().unwrap_or(Self::DEFAULT)
     }
 
-    /// The bond-based material, if it is one.
+    /// Returns the bond-based material, if it is one.
     pub fn bonds(&self) -> Option<&BondMaterial> {
         match &self.model {
             MaterialModel::Bonds(bonds) => Some(bonds),
@@ -168,7 +178,7 @@ impl Material {
         }
     }
 
-    /// The same, to be changed.
+    /// Returns the bond-based material mutably, if it is one.
     pub fn bonds_mut(&mut self) -> Option<&mut BondMaterial> {
         match &mut self.model {
             MaterialModel::Bonds(bonds) => Some(bonds),
@@ -176,7 +186,7 @@ impl Material {
         }
     }
 
-    /// The state-based material, if it is one.
+    /// Returns the state-based material, if it is one.
     pub fn state_based(&self) -> Option<&StateBased> {
         match &self.model {
             MaterialModel::StateBased(solid) => Some(solid),
@@ -184,7 +194,7 @@ impl Material {
         }
     }
 
-    /// The correspondence material, if it is one.
+    /// Returns the correspondence material, if it is one.
     pub fn correspondence(&self) -> Option<&Correspondence> {
         match &self.model {
             MaterialModel::Correspondence(solid) => Some(solid),
@@ -192,22 +202,22 @@ impl Material {
         }
     }
 
-    /// Mass density ρ, kg/m³.
+    /// Returns the mass density ρ, kg/m³.
     pub fn density(&self) -> f64 {
         self.model.density()
     }
 
-    /// Horizon δ, m.
+    /// Returns the horizon δ, m.
     pub fn horizon(&self) -> f64 {
         self.model.horizon()
     }
 
-    /// Partial volumes at the horizon.
+    /// Returns the volume correction.
     pub fn volume_correction(&self) -> VolumeCorrection {
         self.model.volume_correction()
     }
 
-    /// The word of `material.model`, whatever the treatment of a law.
+    /// Returns the word of `material.model`, without the approximation.
     pub fn model_name(&self) -> &'static str {
         self.model.name()
     }

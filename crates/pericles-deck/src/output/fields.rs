@@ -1,16 +1,17 @@
-//! `[output] fields`: when fields are written, which, and in which formats.
+//! `[output] fields`: schedule, names and formats of field files.
 
 use pericles::observe::{Field, Schedule};
 use serde::{Deserialize, Serialize};
 
-use super::{is_never, names, schedule};
-use crate::reader::Table;
+use super::{FieldComponent, is_never, schedule};
+use crate::reader::{Item, Table};
+use crate::set::SetNames;
 
-/// A format of fields.
+/// File formats of fields.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FieldFormat {
-    /// A VTU file for each output, and a PVD file that lists them.
+    /// One VTU file per output, and a PVD file that lists them.
     Vtu,
     /// One Exodus II file.
     Exodus,
@@ -19,45 +20,207 @@ pub enum FieldFormat {
 }
 
 impl FieldFormat {
-    /// The formats that are written unless others are asked for.
+    /// Returns the default formats.
     pub(super) fn usual() -> Vec<Self> {
         vec![Self::Vtu]
     }
 }
 
-/// What the blocks of a file with blocks are.
+/// Blocks of Exodus files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FieldBlocks {
-    /// The groups of a mesh, or the blocks of listed points.
+    /// Element groups of a mesh, or blocks of listed points.
     #[default]
     Groups,
-    /// The materials of the points.
+    /// Materials of the points.
     Materials,
+}
+
+/// Whether the field files of a body on a grid or of a mesh hold cells, with cell data, or points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(from = "CellForm", into = "CellForm")]
+pub enum CellChoice {
+    /// Cells for bodies on a grid of at most [`CellChoice::MOST_POINTS`] points.
+    #[default]
+    Auto,
+    /// Cells.
+    Always,
+    /// Points.
+    Never,
+}
+
+impl CellChoice {
+    /// Cells of more points are written only if asked for: their nodes double the size of a file of few fields.
+    pub const MOST_POINTS: usize = 1_000_000;
+
+    const AUTO: &str = "auto";
+}
+
+/// The serialised form of a [`CellChoice`]: as in decks.
+#[derive(Serialize, Deserialize)]
+#[serde(untagged)]
+enum CellForm {
+    Given(bool),
+    Word(String),
+}
+
+impl From<CellForm> for CellChoice {
+    fn from(form: CellForm) -> Self {
+        match form {
+            CellForm::Given(true) => Self::Always,
+            CellForm::Given(false) => Self::Never,
+            CellForm::Word(_) => Self::Auto,
+        }
+    }
+}
+
+impl From<CellChoice> for CellForm {
+    fn from(choice: CellChoice) -> Self {
+        match choice {
+            CellChoice::Auto => Self::Word(CellChoice::AUTO.into()),
+            CellChoice::Always => Self::Given(true),
+            CellChoice::Never => Self::Given(false),
+        }
+    }
+}
+
+/// `[output] cells`.
+pub(super) fn cells(table: &Table<'_>) -> Option<CellChoice> {
+    let Some(item) = table.optional("cells") else {
+        table.record("cells", CellChoice::AUTO);
+        return Some(CellChoice::Auto);
+    };
+    if item.is_keyword(CellChoice::AUTO) {
+        return Some(CellChoice::Auto);
+    }
+    Some(match item.boolean()? {
+        true => CellChoice::Always,
+        false => CellChoice::Never,
+    })
+}
+
+/// Numbers of points that do not change, as arrays of field files.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub enum PointNumber {
+    /// The material of the point: 1 for that of the body, 2 for the first of `[materials]` …
+    Material,
+    /// 1 for the points of a set, 0 for others.
+    Set(String),
+}
+
+impl PointNumber {
+    const MATERIAL: &str = "Material_Id";
+    const SET: &str = "Set_";
+
+    /// The number that a name stands for.
+    fn named(name: &str) -> Option<Self> {
+        match name.strip_prefix(Self::SET) {
+            Some(set) => Some(Self::Set(set.into())),
+            None => (name == Self::MATERIAL).then_some(Self::Material),
+        }
+    }
+
+    /// Name of the array.
+    pub fn name(&self) -> String {
+        match self {
+            Self::Material => Self::MATERIAL.into(),
+            Self::Set(set) => format!("{}{set}", Self::SET),
+        }
+    }
+}
+
+impl TryFrom<String> for PointNumber {
+    type Error = String;
+
+    fn try_from(name: String) -> Result<Self, String> {
+        Self::named(&name).ok_or_else(|| format!("unknown array {name}"))
+    }
+}
+
+impl From<PointNumber> for String {
+    fn from(number: PointNumber) -> Self {
+        number.name()
+    }
+}
+
+/// The arrays of field files.
+#[derive(Default)]
+pub(super) struct Names {
+    pub(super) fields: Vec<Field>,
+    pub(super) numbers: Vec<PointNumber>,
+}
+
+/// `[output.fields] names`.
+fn names(item: &Item<'_>, dimension: Option<usize>, sets: &SetNames) -> Option<Names> {
+    let one = |item: &Item<'_>| -> Option<Name> {
+        if let Some(number) = item.word().and_then(PointNumber::named) {
+            if let PointNumber::Set(set) = &number {
+                sets.check(item, set)?;
+            }
+            item.text();
+            return Some(Name::Number(number));
+        }
+        let words = field_names(dimension);
+        let fields = words.iter().map(|(word, one)| (word.as_str(), Some(*one)));
+        let numbers = [(PointNumber::MATERIAL, None), ("Set_<name>", None)];
+        let words: Vec<(&str, Option<FieldComponent>)> = fields.chain(numbers).collect();
+        match item.choice("field", &words)? {
+            Some((field, None)) => Some(Name::Field(field)),
+            Some((_, Some(_))) => {
+                item.out_of_range("whole fields: components are part of them");
+                None
+            }
+            None => {
+                item.out_of_range("\"Set_\" followed by the name of a set, such as \"Set_top\"");
+                None
+            }
+        }
+    };
+    let mut names = Names::default();
+    for name in super::each_once(item, one)? {
+        match name {
+            Name::Field(field) => names.fields.push(field),
+            Name::Number(number) => names.numbers.push(number),
+        }
+    }
+    Some(names)
+}
+
+#[derive(PartialEq)]
+enum Name {
+    Field(Field),
+    Number(PointNumber),
 }
 
 /// `[output] fields`.
 pub(super) struct Fields {
     pub(super) schedule: Schedule,
-    pub(super) names: Vec<Field>,
+    pub(super) names: Names,
     pub(super) formats: Vec<FieldFormat>,
-    pub(super) cells: bool,
+    pub(super) mesh_cells: bool,
     pub(super) blocks: FieldBlocks,
 }
 
-/// When field files are written, which fields, and how.
+/// Reads `[output] fields`.
 pub(super) fn fields(
     table: &Table<'_>,
     dimension: Option<usize>,
     usual: Vec<Field>,
     mesh: bool,
+    sets: &SetNames,
 ) -> Option<Fields> {
+    let usual = Names {
+        fields: usual,
+        numbers: Vec::new(),
+    };
     if is_never(table, "fields") {
         return Some(Fields {
             schedule: Schedule::Never,
             names: usual,
             formats: FieldFormat::usual(),
-            cells: false,
+            mesh_cells: false,
             blocks: FieldBlocks::Groups,
         });
     }
@@ -65,21 +228,18 @@ pub(super) fn fields(
     let schedule = schedule(&table, Schedule::Count(20));
     let names = match table.optional("names") {
         None => Some(usual),
-        Some(item) => names(&item, dimension),
+        Some(item) => names(&item, dimension, sets),
     };
     let formats = formats(&table);
-    let cells = if mesh {
+    let mesh_cells = if mesh {
         table.or("cells", false, |item| item.boolean())
     } else {
-        table.forbid(
-            "cells",
-            "only a mesh (shape = \"mesh\") has cells of its own",
-        );
+        table.forbid("cells", "it requires shape = \"mesh\"");
         Some(false)
     };
     let blocks = table.choice_or_first(
         "blocks",
-        "choice of blocks",
+        "kind of blocks",
         &[
             ("groups", FieldBlocks::Groups),
             ("materials", FieldBlocks::Materials),
@@ -90,12 +250,12 @@ pub(super) fn fields(
         schedule: schedule?,
         names: names?,
         formats: formats?,
-        cells: cells?,
+        mesh_cells: mesh_cells?,
         blocks: blocks?,
     })
 }
 
-/// A format, or a list of formats.
+/// Reads a format or a list of formats.
 fn formats(table: &Table<'_>) -> Option<Vec<FieldFormat>> {
     const WORDS: [(&str, FieldFormat); 3] = [
         ("vtu", FieldFormat::Vtu),
@@ -111,7 +271,7 @@ fn formats(table: &Table<'_>) -> Option<Vec<FieldFormat>> {
     }
     let items = item.list("a list of formats")?;
     if items.is_empty() {
-        item.wrong_length("at least one format; fields = \"never\" writes none");
+        item.wrong_length("at least one format; fields = \"never\" disables field files");
         return None;
     }
     let mut formats = Vec::new();
@@ -124,4 +284,22 @@ fn formats(table: &Table<'_>) -> Option<Vec<FieldFormat>> {
         formats.push(format);
     }
     Some(formats)
+}
+
+/// Returns the names of fields and of their components.
+pub(super) fn field_names(dimension: Option<usize>) -> Vec<(String, FieldComponent)> {
+    let whole = Field::ALL.iter().map(|&field| (field, None));
+    let dimension = dimension.unwrap_or(3);
+    let parts = Field::ALL.iter().flat_map(|&field| {
+        let components = 0..field.components(dimension).len();
+        components.map(move |c| (field, Some(c)))
+    });
+    let named = whole.chain(parts).map(|(field, component)| {
+        let name = match component {
+            Some(c) => format!("{}_{}", field.name(), field.components(dimension)[c]),
+            None => field.name().to_owned(),
+        };
+        (name, (field, component))
+    });
+    named.collect()
 }

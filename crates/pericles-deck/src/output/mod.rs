@@ -1,66 +1,80 @@
-//! `[output]` and `[checkpoint]`: what is written, and when.
+//! `[output]` and `[checkpoint]`: output files and their schedules.
 
 mod fields;
+mod profile;
 
-pub use fields::{FieldBlocks, FieldFormat};
+pub use fields::{CellChoice, FieldBlocks, FieldFormat, PointNumber};
+pub use profile::Profile;
 
 use pericles::observe::{Field, Schedule};
 use pericles::space::Point;
 use serde::{Deserialize, Serialize};
 
-use self::fields::{Fields, fields};
+use self::fields::{Fields, cells, field_names, fields};
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
+use crate::set::SetNames;
 use crate::vocabulary::{CHECKPOINTS, SCHEDULES};
 
-/// What a run writes.
+/// Output of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Output {
-    /// When field files are written.
+    /// Schedule of field files.
     #[serde(with = "crate::form")]
     pub fields: Schedule,
-    /// Which fields.
+    /// Names of the fields.
     #[serde(with = "crate::form")]
     pub names: Vec<Field>,
-    /// In which formats fields are written.
+    /// Integers of the points written with the fields.
+    #[serde(default)]
+    pub numbers: Vec<PointNumber>,
+    /// File formats of the fields.
     #[serde(default = "FieldFormat::usual")]
     pub formats: Vec<FieldFormat>,
-    /// Whether fields are also written on the cells of a mesh.
+    /// Whether VTU files contain cells or points.
     #[serde(default)]
-    pub cells: bool,
-    /// What the blocks of Exodus files are.
+    pub cells: CellChoice,
+    /// Whether fields are also written on the elements of a mesh, in separate files.
+    #[serde(default)]
+    pub mesh_cells: bool,
+    /// Blocks of Exodus files.
     #[serde(default)]
     pub blocks: FieldBlocks,
-    /// When a row is added to the tables of energies, probes and reactions.
+    /// Schedule of history.csv: energies, probes and reactions.
     #[serde(with = "crate::form")]
     pub history: Schedule,
-    /// Fields, or components of them, whose least and greatest value are columns of the history.
+    /// Fields or components whose minimum and maximum are columns of history.csv.
     #[serde(default, with = "crate::form")]
     pub extremes: Vec<(Field, Option<usize>)>,
-    /// The table of crack tips, if it is given; see [`Output::cracks`].
+    /// The table of crack tips, if given; see [`Output::cracks`].
     #[serde(default)]
     pub cracks: Option<CrackOutput>,
     /// The table of fragments.
     pub fragments: FragmentOutput,
     /// Precision of numbers in field files.
     pub precision: Precision,
-    /// Rate ν of the bound of the energy in the history, 1/s; none if it is not wanted.
+    /// Rate ν of the energy bound in history.csv, 1/s; none for no bound.
     #[serde(default)]
     pub energy_bound: Option<f64>,
     /// Pictures.
     #[serde(default, rename = "picture")]
     pub pictures: Vec<Picture>,
+    /// Fields along straight lines at the end of the run.
+    #[serde(default, rename = "profile", skip_serializing_if = "Vec::is_empty")]
+    pub profiles: Vec<Profile>,
 }
 
 impl Default for Output {
-    /// What a deck without `[output]` writes.
+    /// The output of a deck without `[output]`.
     fn default() -> Self {
         Self {
             fields: Schedule::Count(20),
             names: Field::USUAL.to_vec(),
             formats: FieldFormat::usual(),
-            cells: false,
+            numbers: Vec::new(),
+            cells: CellChoice::Auto,
+            mesh_cells: false,
             blocks: FieldBlocks::Groups,
             history: Schedule::Count(200),
             extremes: Vec::new(),
@@ -69,6 +83,7 @@ impl Default for Output {
             precision: Precision::Double,
             energy_bound: None,
             pictures: Vec::new(),
+            profiles: Vec::new(),
         }
     }
 }
@@ -77,10 +92,10 @@ impl Default for Output {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CrackOutput {
-    /// When a row is added.
+    /// Schedule of the rows.
     #[serde(with = "crate::form")]
     pub schedule: Schedule,
-    /// The damage beyond which a point counts as cracked.
+    /// Damage above which a point is part of a crack.
     pub threshold: f64,
 }
 
@@ -88,10 +103,10 @@ pub struct CrackOutput {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FragmentOutput {
-    /// When a row is added.
+    /// Schedule of the rows.
     #[serde(with = "crate::form")]
     pub schedule: Schedule,
-    /// The share of the body's mass from which on a piece counts as a fragment.
+    /// Smallest mass of a fragment, as a fraction of the mass of the body.
     pub smallest: f64,
 }
 
@@ -120,33 +135,33 @@ pub struct Picture {
     /// The field.
     #[serde(with = "crate::form")]
     pub field: Field,
-    /// Which component of a vector; its magnitude if none.
+    /// Component of a vector or tensor; none for its magnitude.
     #[serde(default)]
     pub component: Option<usize>,
-    /// Factor of the displacement of the points.
+    /// Magnification of displacements.
     pub scale: f64,
-    /// Values at the ends of the colour bar; those of the field if none.
+    /// Lowest and highest value of the colour bar; none for the range of the field.
     #[serde(default)]
     pub range: Option<[f64; 2]>,
-    /// The direction from which a body in space is seen; if none, from the front right and above.
+    /// Direction from which a 3D body is seen; none for the front, right and above.
     #[serde(default)]
     pub view: Option<Point>,
-    /// Whether all of them are put into an animation at the end.
+    /// Whether an animation of all pictures is written at the end.
     pub animation: bool,
-    /// When it is drawn.
+    /// Schedule.
     #[serde(with = "crate::form")]
     pub schedule: Schedule,
 }
 
-/// When a checkpoint is written.
+/// Schedule of checkpoints.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Checkpoint {
-    /// Every so much time on the clock, s.
+    /// Wall-clock time between checkpoints, s.
     Wall(f64),
-    /// Every so many steps.
+    /// Steps between checkpoints.
     Every(u64),
-    /// Every so much simulated time, s.
+    /// Simulated time between checkpoints, s.
     Interval(f64),
 }
 
@@ -156,20 +171,23 @@ impl Default for Checkpoint {
     }
 }
 
-/// `driven`: whether supports move; `surface`: whether the body is a surface, whose field files hold the kinetic energy density by default;
-/// `mesh`: whether it is a mesh, which has cells.
+/// Reads `[output]`. `driven`: whether supports move; `surface`: whether the body is a 2-manifold, whose
+/// field files contain the kinetic energy density by default; `mesh`: whether the body is a mesh, which has
+/// cells.
 pub(crate) fn read(
     table: Table<'_>,
     dimension: Option<usize>,
     driven: bool,
     surface: bool,
     mesh: bool,
+    sets: &SetNames,
 ) -> Option<Output> {
     let mut usual = Field::USUAL.to_vec();
     if surface {
         usual.push(Field::KineticEnergyDensity);
     }
-    let fields = fields(&table, dimension, usual, mesh);
+    let fields = fields(&table, dimension, usual, mesh, sets);
+    let cells = cells(&table);
     let (history, extremes) = history(&table, dimension);
     let cracks = cracks(&table, history);
     let fragments = fragments(&table);
@@ -181,7 +199,7 @@ pub(crate) fn read(
     if driven {
         table.forbid(
             "energy_bound",
-            "supports that move do work which the bound does not know",
+            "the bound does not include the work of moving supports",
         );
     }
     let energy_bound = table.maybe("energy_bound", |item| {
@@ -192,19 +210,22 @@ pub(crate) fn read(
         .into_iter()
         .map(|table| picture(table, dimension))
         .collect();
+    let profiles = profile::read(table.tables("profile"), dimension);
     table.finish();
     let Fields {
         schedule,
         names,
         formats,
-        cells,
+        mesh_cells,
         blocks,
     } = fields?;
     Some(Output {
         fields: schedule,
-        names,
+        names: names.fields,
+        numbers: names.numbers,
         formats,
-        cells,
+        cells: cells?,
+        mesh_cells,
         blocks,
         history: history?,
         extremes: extremes?,
@@ -213,6 +234,7 @@ pub(crate) fn read(
         precision: precision?,
         energy_bound: energy_bound?,
         pictures: pictures.into_iter().collect::<Option<_>>()?,
+        profiles: profiles?,
     })
 }
 
@@ -234,13 +256,13 @@ pub(crate) fn checkpoint(table: Table<'_>) -> Option<Checkpoint> {
     checkpoint
 }
 
-/// The word for a schedule that is never due.
+/// The word for no output.
 const NEVER: &str = "never";
 
-/// A field, and one of its components.
+/// A field, and optionally one of its components.
 type FieldComponent = (Field, Option<usize>);
 
-/// When rows are added to the history, and the fields whose extremes it holds.
+/// Reads the schedule of the history and the fields whose extremes it contains.
 fn history(
     table: &Table<'_>,
     dimension: Option<usize>,
@@ -260,23 +282,12 @@ fn history(
     (schedule, extremes)
 }
 
-fn names(item: &Item<'_>, dimension: Option<usize>) -> Option<Vec<Field>> {
-    let one = |item: &Item<'_>| match field(item, dimension)? {
-        (field, None) => Some(field),
-        (_, Some(_)) => {
-            item.out_of_range("whole fields: components are part of them");
-            None
-        }
-    };
-    each_once(item, one)
-}
-
-/// A list of fields, none of them twice.
+/// Reads a list of distinct fields.
 fn each_once<T: PartialEq>(
     item: &Item<'_>,
     one: impl Fn(&Item<'_>) -> Option<T>,
 ) -> Option<Vec<T>> {
-    let items = item.list("a list of names of fields")?;
+    let items = item.list("a list of field names")?;
     let mut fields = Some(Vec::new());
     for item in &items {
         match (one(item), &mut fields) {
@@ -315,11 +326,11 @@ fn schedule(table: &Table<'_>, default: Schedule) -> Option<Schedule> {
 }
 
 impl CrackOutput {
-    /// Damage of a point on a straight crack is close to a half; this finds cracks without their surroundings.
+    /// The damage on a straight crack is close to 1/2; this value detects cracks without their surroundings.
     const THRESHOLD: f64 = 0.35;
 }
 
-/// By default as often as the history.
+/// Reads the table of crack tips; the default schedule is that of the history.
 fn cracks(table: &Table<'_>, history: Option<Schedule>) -> Option<Option<CrackOutput>> {
     const THRESHOLD: f64 = CrackOutput::THRESHOLD;
     if is_never(table, "cracks") {
@@ -346,7 +357,7 @@ fn cracks(table: &Table<'_>, history: Option<Schedule>) -> Option<Option<CrackOu
     Some(given.then_some(cracks))
 }
 
-/// Only where asked for: they take a pass over all bonds.
+/// Reads the table of fragments; off by default, because it needs a pass over all bonds.
 fn fragments(table: &Table<'_>) -> Option<FragmentOutput> {
     const SMALLEST: f64 = FragmentOutput::NONE.smallest;
     let wanted = table.optional("fragments").is_some();
@@ -358,7 +369,7 @@ fn fragments(table: &Table<'_>) -> Option<FragmentOutput> {
     let smallest = table.or("smallest", SMALLEST, |item| {
         item.within(
             Quantity::Number,
-            "a share of the body's mass from 0 on, below 1",
+            "a fraction of the body's mass, at least 0 and below 1",
             |share| (0.0..1.0).contains(&share),
         )
     });
@@ -384,17 +395,14 @@ fn picture(table: Table<'_>, dimension: Option<usize>) -> Option<Picture> {
         table.maybe("view", |item| {
             let view = item.vector(Quantity::Number, Some(3))?;
             if view == [0.0; 3] {
-                item.out_of_range("a direction that is not zero");
+                item.out_of_range("a nonzero vector");
                 return None;
             }
             Some(view)
         })
     } else {
         if dimension.is_some() {
-            table.forbid(
-                "view",
-                "only bodies in three dimensions are seen from somewhere",
-            );
+            table.forbid("view", "it requires a 3D body");
         }
         Some(None)
     };
@@ -415,15 +423,20 @@ fn picture(table: Table<'_>, dimension: Option<usize>) -> Option<Picture> {
 
 fn quantity(field: Field) -> Quantity {
     match field {
-        Field::Displacement => Quantity::Length,
+        Field::Displacement | Field::Radius => Quantity::Length,
         Field::Velocity => Quantity::Velocity,
         Field::ForceDensity | Field::ExternalForce | Field::Reaction => Quantity::ForceDensity,
-        Field::Stress | Field::EquivalentStress => Quantity::Traction,
+        Field::Stress
+        | Field::EquivalentStress
+        | Field::VonMisesStress
+        | Field::PrincipalStress => Quantity::Traction,
         Field::Damage
         | Field::Strain
         | Field::Dilatation
         | Field::PlasticStrain
-        | Field::YieldFlag => Quantity::Number,
+        | Field::YieldFlag
+        | Field::PointId
+        | Field::FragmentId => Quantity::Number,
         Field::StrainEnergyDensity | Field::KineticEnergyDensity => Quantity::EnergyDensity,
         Field::Volume => Quantity::Number,
         Field::Temperature => Quantity::Temperature,
@@ -431,7 +444,7 @@ fn quantity(field: Field) -> Quantity {
 }
 
 impl Output {
-    /// The table of crack tips: as it is given, else as often as the history.
+    /// Returns the table of crack tips; the default schedule is that of the history.
     pub fn cracks(&self) -> CrackOutput {
         self.cracks.unwrap_or(CrackOutput {
             schedule: self.history,
@@ -439,12 +452,19 @@ impl Output {
         })
     }
 
-    /// Whether a field is wanted.
+    /// Returns whether field files may contain cells.
+    pub fn writes_cells(&self) -> bool {
+        self.fields != Schedule::Never
+            && self.cells != CellChoice::Never
+            && self.formats.contains(&FieldFormat::Vtu)
+    }
+
+    /// Returns whether a field is written.
     pub fn wants(&self, wanted: Field) -> bool {
         self.wants_any(|field| field == wanted)
     }
 
-    /// Whether stress or strain is wanted, which only listed bonds give.
+    /// Returns whether stress or strain is written, which needs single bonds.
     pub fn wants_tensors(&self) -> bool {
         self.wants_any(Field::is_of_bonds)
     }
@@ -452,34 +472,20 @@ impl Output {
     fn wants_any(&self, is_wanted: impl Fn(Field) -> bool) -> bool {
         let drawn = self.pictures.iter().map(|picture| picture.field);
         let extremes = self.extremes.iter().map(|(field, _)| *field);
+        let profiles = self.profiles.iter().map(|profile| profile.field);
         self.names
             .iter()
             .copied()
             .chain(drawn)
             .chain(extremes)
+            .chain(profiles)
             .any(is_wanted)
     }
 }
 
-/// A field by its name in files; vectors and tensors by magnitude or with the name of an axis the body has.
-fn field(item: &Item<'_>, dimension: Option<usize>) -> Option<(Field, Option<usize>)> {
-    let whole = Field::ALL.iter().map(|&field| (field, None));
-    let dimension = dimension.unwrap_or(3);
-    let parts = Field::ALL.iter().flat_map(|&field| {
-        let components = 0..field.components(dimension).len();
-        components.map(move |c| (field, Some(c)))
-    });
-    let named: Vec<(String, (Field, Option<usize>))> = whole
-        .chain(parts)
-        .map(|(field, component)| {
-            let name = match component {
-                Some(c) => format!("{}_{}", field.name(), field.components(dimension)[c]),
-                None => field.name().to_owned(),
-            };
-            (name, (field, component))
-        })
-        .collect();
-    item.choice("field", &named)
+/// Reads a field by its name in files, with or without an axis of the body for a component.
+fn field(item: &Item<'_>, dimension: Option<usize>) -> Option<FieldComponent> {
+    item.choice("field", &field_names(dimension))
 }
 
 fn range(item: &Item<'_>, quantity: Quantity) -> Option<[f64; 2]> {

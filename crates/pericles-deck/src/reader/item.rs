@@ -1,4 +1,4 @@
-//! One value being read.
+//! Typed access to one value.
 
 use serde_json::Value as Json;
 
@@ -10,10 +10,10 @@ use crate::quantity::Quantity;
 use crate::source::Place;
 use crate::units::{self, UnitError};
 
-/// A range in words.
+/// The range of positive numbers, in words.
 pub(crate) const POSITIVE: &str = "a positive number";
 
-/// A value with its way from the root.
+/// A value with its path from the root.
 #[derive(Clone)]
 pub(crate) struct Item<'a> {
     ledger: &'a Ledger,
@@ -35,7 +35,7 @@ impl<'a> Item<'a> {
         self.ledger.report(self.node.place, fault);
     }
 
-    /// Reports that a number is out of its range.
+    /// Reports that a value is out of range.
     pub(crate) fn out_of_range(&self, allowed: &str) {
         self.ledger
             .report_value(self.place(), |value| Fault::OutOfRange {
@@ -62,12 +62,12 @@ impl<'a> Item<'a> {
         self.ledger.note(|survey| survey.form(&self.path, form()));
     }
 
-    /// Says that its form is that of other values of this name as well.
+    /// Notes in the survey that the form of this value is the shared definition `name`.
     pub(crate) fn define(&self, name: &'static str) {
         self.ledger.note(|survey| survey.define(&self.path, name));
     }
 
-    /// The string, if it is one; for values that may be a word or something else.
+    /// Returns the string, if it is one; for values that may be a word or something else.
     pub(crate) fn word(&self) -> Option<&'a str> {
         match &self.node.value {
             Value::Text(text) => Some(text),
@@ -75,12 +75,12 @@ impl<'a> Item<'a> {
         }
     }
 
-    /// The list, if it is one.
+    /// Returns whether it is a list.
     pub(crate) fn is_list(&self) -> bool {
         matches!(self.node.value, Value::Array(_))
     }
 
-    /// The number of entries, if it is a list.
+    /// Returns the number of entries, if it is a list.
     pub(crate) fn list_length(&self) -> Option<usize> {
         match &self.node.value {
             Value::Array(items) => Some(items.len()),
@@ -103,7 +103,7 @@ impl<'a> Item<'a> {
         matches!(self.node.value, Value::Table(_))
     }
 
-    /// Whether it is this word, which is a value of its own.
+    /// Returns whether it is this keyword.
     pub(crate) fn is_keyword(&self, word: &'static str) -> bool {
         self.note(|| Form::Words(vec![word.into()]));
         let is = self.word() == Some(word);
@@ -113,7 +113,7 @@ impl<'a> Item<'a> {
         is
     }
 
-    /// A string.
+    /// Reads a string.
     pub(crate) fn text(&self) -> Option<String> {
         self.note(|| Form::Text);
         let Some(text) = self.word() else {
@@ -134,13 +134,13 @@ impl<'a> Item<'a> {
         Some(boolean)
     }
 
-    /// A whole number of at least one.
+    /// Reads a whole number of at least one.
     pub(crate) fn count(&self) -> Option<u64> {
         self.note(|| Form::Count);
         let expected = "a whole number of at least 1";
         let whole = match self.node.value {
             Value::Integer(integer) => u64::try_from(integer).ok(),
-            // 1e6 is how people write a million; beyond 2^53 a double holds no exact count.
+            // Allows 1e6 for a million; a double is not exact beyond 2^53.
             Value::Float(float) if float.fract() == 0.0 && (1.0..9e15).contains(&float) => {
                 Some(float as u64)
             }
@@ -162,7 +162,7 @@ impl<'a> Item<'a> {
         }
     }
 
-    /// A finite number in SI units.
+    /// Reads a finite number in SI units.
     pub(crate) fn quantity(&self, quantity: Quantity) -> Option<f64> {
         self.note(|| Form::Number {
             quantity,
@@ -224,12 +224,12 @@ impl<'a> Item<'a> {
         }
     }
 
-    /// A positive number.
+    /// Reads a positive number.
     pub(crate) fn positive(&self, quantity: Quantity) -> Option<f64> {
         self.within(quantity, POSITIVE, |value| value > 0.0)
     }
 
-    /// A number that satisfies a condition, given in words too.
+    /// Reads a number that satisfies a condition, which `allowed` describes.
     pub(crate) fn within(
         &self,
         quantity: Quantity,
@@ -250,7 +250,7 @@ impl<'a> Item<'a> {
         }
     }
 
-    /// One of a list of words.
+    /// Reads one of a list of words.
     pub(crate) fn choice<T: Copy>(
         &self,
         what: &'static str,
@@ -271,7 +271,7 @@ impl<'a> Item<'a> {
         None
     }
 
-    /// Reports a word that is not among those allowed.
+    /// Reports an unknown word.
     pub(crate) fn unknown_word<'w>(
         &self,
         what: &'static str,
@@ -281,7 +281,7 @@ impl<'a> Item<'a> {
         self.report(Fault::unknown_word(what, text, allowed));
     }
 
-    /// The entries of a list.
+    /// Returns the entries of a list.
     pub(crate) fn list(&self, expected: &str) -> Option<Vec<Item<'a>>> {
         self.note(|| Form::List { length: None });
         self.entries(expected)
@@ -302,8 +302,8 @@ impl<'a> Item<'a> {
         )
     }
 
-    /// The entries of a vector with one entry per dimension; any of one to three entries if the dimension is not known for an
-    /// error made elsewhere. In one dimension the number may stand without brackets.
+    /// Returns the components of a vector: one per dimension, or one to three if another error makes the
+    /// dimension unknown. In 1D the brackets may be omitted.
     pub(crate) fn components(
         &self,
         dimension: Option<usize>,
@@ -325,11 +325,11 @@ impl<'a> Item<'a> {
             return Some(items);
         }
         let allowed = match dimension {
-            Some(1) => "allowed: one entry, for the body has one dimension".into(),
+            Some(1) => "allowed: one entry, the body is 1D".into(),
             Some(dimension) => {
-                format!("allowed: {dimension} entries, one for each dimension of the body")
+                format!("allowed: {dimension} entries, one per dimension of the body")
             }
-            None => "allowed: one entry for each dimension of the body".into(),
+            None => "allowed: one entry per dimension of the body".into(),
         };
         self.ledger
             .report_value(self.place(), |value| Fault::WrongLength {
@@ -340,7 +340,7 @@ impl<'a> Item<'a> {
         None
     }
 
-    /// The entries of a list of known length.
+    /// Returns the entries of a list of given length.
     pub(crate) fn exactly(&self, length: usize, expected: &str) -> Option<Vec<Item<'a>>> {
         self.note(|| Form::List {
             length: Some(length),
@@ -358,12 +358,12 @@ impl<'a> Item<'a> {
         None
     }
 
-    /// A vector of quantities, missing components zero.
+    /// Reads a vector of quantities; missing components are zero.
     pub(crate) fn vector(&self, quantity: Quantity, dimension: Option<usize>) -> Option<[f64; 3]> {
         let items = self.components(dimension, &quantity.expected())?;
         let mut vector = Some([0.0; 3]);
         for (c, item) in items.iter().enumerate() {
-            // Go on after a bad entry: the others may be bad as well.
+            // Continue after an invalid entry to report all of them.
             match (item.quantity(quantity), &mut vector) {
                 (Some(value), Some(vector)) => vector[c] = value,
                 _ => vector = None,
@@ -372,7 +372,7 @@ impl<'a> Item<'a> {
         vector
     }
 
-    /// The entries of a table.
+    /// Returns the entries of a table.
     pub(super) fn table_entries(&self) -> Option<&'a [Entry]> {
         self.note(|| Form::Table);
         let Value::Table(entries) = &self.node.value else {
@@ -390,7 +390,7 @@ impl<'a> Item<'a> {
         &self.path
     }
 
-    /// Passes on what the library accepts and reports what it refuses.
+    /// Unwraps a result of the library and reports an error.
     pub(crate) fn accept<T>(&self, result: pericles::Result<T>) -> Option<T> {
         result.map_err(|error| self.report(error.into())).ok()
     }

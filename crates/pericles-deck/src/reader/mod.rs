@@ -1,8 +1,9 @@
 //! A thin typed reader over the located document.
 //!
-//! [`Table`] hands out the values of its keys and remembers which it was asked for; [`Table::finish`] reports the rest. [`Item`] turns one
-//! value into a number, a word, a vector …. Both return `None` after noting a [`Problem`] in the [`Ledger`], so that one pass over a deck
-//! finds everything wrong with it. The ledger also keeps where each value stood and what it became in SI units.
+//! [`Table`] returns the values of requested keys; [`Table::finish`] reports all other keys as unknown.
+//! [`Item`] converts one value to a number, a word, a vector …. Both return `None` after noting a [`Problem`]
+//! in the [`Ledger`], so that one pass over a deck reports all errors. The ledger also records the location
+//! of each value and its conversion to SI units.
 
 mod item;
 mod survey;
@@ -25,17 +26,17 @@ use crate::key_path::{KeyPath, Step};
 use crate::source::{Place, Sources};
 use crate::wording::shortened;
 
-/// Finds the table that a key belongs to.
+/// Returns the table to which a key belongs.
 pub(crate) type HomeOf = fn(&str) -> Option<&'static str>;
 
-/// What is noted while a deck is read.
+/// Problems and values recorded while a deck is read.
 pub(crate) struct Ledger {
     sources: Sources,
-    /// None for a survey: the homes of keys follow from it.
+    /// None for a survey, from which the tables of keys follow.
     home_of: Option<HomeOf>,
     problems: RefCell<Vec<Problem>>,
     reported: RefCell<HashSet<(Place, Discriminant<Fault>)>>,
-    /// Keys that are there, misspelt, with their tables: they are not missing.
+    /// Keys that are present but misspelt, with their tables; they are not reported as missing.
     misspelt: RefCell<BTreeSet<(String, String)>>,
     places: RefCell<BTreeMap<KeyPath, Place>>,
     aliases: RefCell<Vec<(KeyPath, KeyPath)>>,
@@ -44,7 +45,7 @@ pub(crate) struct Ledger {
 }
 
 impl Ledger {
-    /// A ledger whose messages about unknown keys name their tables by `home_of`.
+    /// Creates a ledger; `home_of` returns the table that messages about unknown keys name.
     pub(crate) fn new(sources: Sources, home_of: HomeOf) -> Self {
         Self {
             home_of: Some(home_of),
@@ -66,7 +67,7 @@ impl Ledger {
         }
     }
 
-    /// A ledger with a survey, which notes what the reader asks for.
+    /// Creates a ledger with a survey, which records what the reader requests.
     pub(crate) fn surveyed(sources: Sources, mut survey: Survey) -> Self {
         survey.begin();
         Self {
@@ -81,18 +82,18 @@ impl Ledger {
         }
     }
 
-    /// The table that a key belongs to.
+    /// Returns the table to which a key belongs.
     fn home_of(&self, key: &str) -> Option<&'static str> {
         self.home_of.and_then(|home_of| home_of(key))
     }
 
-    /// The root table.
+    /// Returns the root table.
     pub(crate) fn root<'a>(&'a self, root: &'a Node) -> Option<Table<'a>> {
         Item::new(self, KeyPath::default(), root).table()
     }
 
     pub(crate) fn report(&self, place: Place, fault: Fault) {
-        // What several tables take over from one is wrong once.
+        // Errors in keys that several tables inherit are reported once.
         let missing = matches!(
             fault,
             Fault::MissingKey { .. } | Fault::MissingChoice { .. }
@@ -104,19 +105,19 @@ impl Ledger {
         }
     }
 
-    /// Takes back that a key is missing: it is there, misspelt.
+    /// Removes the report of a missing key that is present but misspelt.
     fn found_misspelt(&self, key: &str, table: &str) {
         let found = (key.to_owned(), table.to_owned());
         self.misspelt.borrow_mut().insert(found);
     }
 
-    /// Reports with the text at the place.
+    /// Reports a fault with the text at a location.
     fn report_value(&self, place: Place, fault: impl FnOnce(String) -> Fault) {
         let value = self.excerpt(place);
         self.report(place, fault(value));
     }
 
-    /// The text at a place, shortened if it is long.
+    /// Returns the text at a location, shortened if it is long.
     fn excerpt(&self, place: Place) -> String {
         let at = self.sources.locate(place);
         let text = at.excerpt();
@@ -131,12 +132,12 @@ impl Ledger {
         self.places.borrow_mut().insert(path.clone(), place);
     }
 
-    /// Says that messages about the table at one path are about that at another.
+    /// Redirects messages about the table at one path to another path.
     fn alias(&self, known: KeyPath, written: KeyPath) {
         self.aliases.borrow_mut().push((known, written));
     }
 
-    /// Enters a value into the record.
+    /// Records a value.
     pub(crate) fn record(&self, path: &KeyPath, value: Json) {
         let mut slot = &mut *self.json.borrow_mut();
         for step in path.steps() {
@@ -163,7 +164,7 @@ impl Ledger {
         *slot = value;
     }
 
-    /// Closes the ledger.
+    /// Returns problems and record.
     pub(crate) fn close(self) -> Closed {
         let mut problems = self.problems.into_inner();
         let misspelt = self.misspelt.into_inner();
@@ -186,25 +187,25 @@ impl Ledger {
     }
 }
 
-/// What a ledger holds in the end.
+/// Result of reading: problems and record.
 pub(crate) struct Closed {
     pub(crate) problems: Vec<Problem>,
     pub(crate) record: Record,
     pub(crate) survey: Survey,
 }
 
-/// What a deck remembers of its text.
+/// Locations and values of a deck that was read.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Record {
     pub(crate) sources: Sources,
     places: BTreeMap<KeyPath, Place>,
-    /// Tables under the paths that messages know them by.
+    /// Paths in messages, with the paths of their tables in the text.
     aliases: Vec<(KeyPath, KeyPath)>,
     pub(crate) json: Json,
 }
 
 impl Record {
-    /// Where the first of several values stood that the deck gives, else where the last of them could have stood.
+    /// Returns the location of the first of several values that the deck sets, otherwise where the last one is missing.
     pub(crate) fn place_of_any(&self, paths: &[KeyPath]) -> Place {
         let given = paths.iter().find(|path| self.is_given(path));
         given
@@ -212,7 +213,7 @@ impl Record {
             .map_or_else(Place::default, |path| self.place(path))
     }
 
-    /// Where a value stood; where the table stood in which it could have been, if it was left out.
+    /// Returns the location of a value, or of the table that lacks it.
     pub(crate) fn place(&self, path: &KeyPath) -> Place {
         let mut path = path.clone();
         loop {
@@ -226,7 +227,7 @@ impl Record {
         }
     }
 
-    /// Whether the deck gives a value, instead of leaving it to its default.
+    /// Returns whether the deck sets a value instead of using its default.
     pub(crate) fn is_given(&self, path: &KeyPath) -> bool {
         self.given(path).is_some()
     }

@@ -1,7 +1,8 @@
-//! What the reader asks for: the keys of every table and the forms of their values, noted while right decks are read.
+//! Survey of the reader: the keys of every table and the forms of their values, recorded while valid decks are read.
 //!
-//! Only the reader knows which keys there are. A survey listens to it, so that the schema need not say it a second time. Places are named as
-//! in `body.hole[].ball.radius`; below a definition, which several places share, they begin with its name: `region.ball.radius`.
+//! The reader alone defines the keys; the schema follows from a survey of its calls. Places are named as in
+//! `body.hole[].ball.radius`; below a definition shared by several places, they begin with its name:
+//! `region.ball.radius`.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,7 +11,7 @@ use serde_json::Value as Json;
 use crate::key_path::{KeyPath, Step};
 use crate::quantity::Quantity;
 
-/// A form that a value may have.
+/// A form of a value.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Form {
     Text,
@@ -19,27 +20,27 @@ pub(crate) enum Form {
     Count,
     Number {
         quantity: Quantity,
-        /// Its range in words.
+        /// The range in words.
         allowed: Option<String>,
     },
     /// One of these words.
     Words(Vec<String>),
-    /// A list; its entries are surveyed under `[]`.
+    /// A list, with its entries under `[]`.
     List {
-        /// The only one, if there is one.
+        /// The length, if it is fixed.
         length: Option<usize>,
     },
-    /// One entry for each dimension of the body, surveyed under `[]`; in one dimension it may stand alone.
+    /// One entry per dimension of the body, under `[]`; brackets may be omitted in 1D.
     Vector,
     Table,
-    /// A table whose keys are names, each with a value of this definition.
+    /// A table whose keys are names, with values of this definition.
     Names(&'static str),
-    /// What this definition says.
+    /// A value of this definition.
     Defined(&'static str),
 }
 
 impl Form {
-    /// Widens itself to what another form allows as well, if it is of the same kind.
+    /// Merges another form of the same kind; returns whether it is of the same kind.
     fn takes_in(&mut self, other: &Self) -> bool {
         match (&mut *self, other) {
             (Self::Words(words), Self::Words(others)) => {
@@ -64,41 +65,41 @@ impl Form {
     }
 }
 
-/// A value.
+/// Survey of a value.
 #[derive(Debug, Default)]
 pub(crate) struct ValueSurvey {
     pub(crate) forms: Vec<Form>,
-    /// What it is if it is left out: several if that depends on other keys.
+    /// Defaults; several if they depend on other keys.
     pub(crate) defaults: Vec<Json>,
 }
 
-/// A table.
+/// Survey of a table.
 #[derive(Debug, Default)]
 pub(crate) struct TableSurvey {
-    /// How often it was read to its end.
+    /// Number of complete readings.
     visits: usize,
-    /// Its keys in the order in which they were asked for first, with the number of visits that needed them.
+    /// Keys in the order of their first request, with the number of readings that required them.
     keys: Vec<(&'static str, usize)>,
-    /// Keys of which at most one may be given, with the number of visits that needed one.
+    /// Mutually exclusive keys, with the number of readings that required one.
     choices: Vec<(&'static [&'static str], usize)>,
-    /// Choices that some decks give together.
+    /// Exclusive keys that some decks may give together.
     together: Vec<&'static [&'static str]>,
 }
 
 impl TableSurvey {
-    /// Its keys.
+    /// Returns the keys.
     pub(crate) fn keys(&self) -> impl Iterator<Item = &'static str> {
         self.keys.iter().map(|(key, _)| *key)
     }
 
-    /// Whether a key is always needed.
+    /// Returns whether a key is always required.
     pub(crate) fn needs(&self, key: &str) -> bool {
         self.keys
             .iter()
             .any(|(name, needed)| *name == key && *needed == self.visits)
     }
 
-    /// Keys that exclude each other, and whether one of them is always needed: by choice, or by its own name where the others have no place.
+    /// Returns mutually exclusive keys and whether one of them is always required, as a choice or by its own name.
     pub(crate) fn choices(&self) -> impl Iterator<Item = (&'static [&'static str], bool)> {
         let exclusive =
             |(keys, _): &&(&'static [&'static str], usize)| !self.together.contains(keys);
@@ -110,19 +111,19 @@ impl TableSurvey {
     }
 }
 
-/// What was noted.
+/// The survey of all decks read so far.
 #[derive(Debug, Default)]
 pub(crate) struct Survey {
     values: BTreeMap<String, ValueSurvey>,
     tables: BTreeMap<String, TableSurvey>,
-    /// Places of the present deck with their definitions.
+    /// Places of the current deck with their definitions.
     definitions: BTreeMap<KeyPath, &'static str>,
-    /// Places of the present deck where the only entry of a vector stands without brackets.
+    /// Places of the current deck with a vector component without brackets.
     bare: BTreeSet<KeyPath>,
 }
 
 impl Survey {
-    /// Goes on with another deck.
+    /// Starts another deck.
     pub(crate) fn begin(&mut self) {
         self.definitions.clear();
         self.bare.clear();
@@ -136,19 +137,19 @@ impl Survey {
         self.tables.get(place)
     }
 
-    /// All values.
+    /// Returns all values.
     pub(crate) fn values(&self) -> impl Iterator<Item = &ValueSurvey> {
         self.values.values()
     }
 
-    /// All tables with their places.
+    /// Returns all tables with their places.
     pub(crate) fn tables(&self) -> impl Iterator<Item = (&str, &TableSurvey)> {
         self.tables
             .iter()
             .map(|(place, table)| (place.as_str(), table))
     }
 
-    /// The names of all definitions.
+    /// Returns the names of all definitions.
     pub(crate) fn definitions(&self) -> Vec<&'static str> {
         let forms = self.values.values().flat_map(|value| &value.forms);
         let mut names: Vec<&'static str> = forms
@@ -162,19 +163,19 @@ impl Survey {
         names
     }
 
-    /// What lies at a place is said by a definition.
+    /// Notes that the value at a place has a shared definition.
     pub(super) fn define(&mut self, path: &KeyPath, name: &'static str) {
         self.form(path, Form::Defined(name));
         self.definitions.insert(path.clone(), name);
     }
 
-    /// As [`Self::define`], for the entries of a table of names.
+    /// The same as [`Self::define`], for the entries of a table of names.
     pub(super) fn define_named(&mut self, table: &KeyPath, entry: &KeyPath, name: &'static str) {
         self.form(table, Form::Names(name));
         self.definitions.insert(entry.clone(), name);
     }
 
-    /// A vector; whether it is an entry without brackets.
+    /// Notes a vector; `bare`: a component without brackets.
     pub(super) fn vector(&mut self, path: &KeyPath, bare: bool) {
         self.form(path, Form::Vector);
         if bare {
@@ -219,7 +220,7 @@ impl Survey {
         }
     }
 
-    /// Keys of which other decks may give one only.
+    /// Notes that usually exclusive keys may be given together.
     pub(super) fn together(&mut self, table: &KeyPath, keys: &'static [&'static str]) {
         let together = &mut self.table_at(table).together;
         if !together.contains(&keys) {
@@ -227,7 +228,7 @@ impl Survey {
         }
     }
 
-    /// A table has been read to its end.
+    /// Notes that a table has been read completely.
     pub(super) fn visited(&mut self, table: &KeyPath) {
         self.table_at(table).visits += 1;
     }
@@ -240,7 +241,7 @@ impl Survey {
         self.tables.entry(self.place(path)).or_default()
     }
 
-    /// The name of a place, from the nearest definition above it or from the root.
+    /// Returns the name of a place, from the nearest definition above it or from the root.
     fn place(&self, path: &KeyPath) -> String {
         let mut rest = Vec::new();
         let mut above = path.clone();
@@ -262,7 +263,7 @@ impl Survey {
                 Step::Key(key) => name = below(&name, key),
             }
         }
-        // A definition says all of its entry.
+        // A definition covers its component.
         if self.bare.contains(path) && !self.definitions.contains_key(path) {
             name += "[]";
         }
@@ -270,7 +271,7 @@ impl Survey {
     }
 }
 
-/// The place of a key in the table at a place.
+/// Returns the place of a key in the table at a place.
 pub(crate) fn below(table: &str, key: &str) -> String {
     if table.is_empty() {
         return key.to_owned();

@@ -1,4 +1,4 @@
-//! A table whose keys are taken one by one.
+//! Typed access to a table.
 
 use std::cell::RefCell;
 
@@ -19,9 +19,9 @@ pub(crate) struct Table<'a> {
     path: KeyPath,
     place: Place,
     entries: &'a [Entry],
-    /// Keys asked for, by their first names.
+    /// Requested keys, by their first names.
     allowed: RefCell<Vec<&'static str>>,
-    /// Keys that are no error any more.
+    /// Keys that are not reported as unknown.
     settled: RefCell<Vec<&'a str>>,
 }
 
@@ -42,7 +42,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Records the value of a key that was left out.
+    /// Records the default of a missing key.
     pub(crate) fn record(&self, key: &str, value: impl Into<Json>) {
         let (path, value) = (self.path.key(key), value.into());
         self.ledger
@@ -50,37 +50,37 @@ impl<'a> Table<'a> {
         self.ledger.record(&path, value);
     }
 
-    /// Says that tables of this name have the same keys as well.
+    /// Notes in the survey that this table has the shared definition `name`.
     pub(crate) fn define(&self, name: &'static str) {
         self.ledger.note(|survey| survey.define(&self.path, name));
     }
 
-    /// Passes on what the library accepts and reports what it refuses.
+    /// Unwraps a result of the library and reports an error.
     pub(crate) fn accept<T>(&self, result: pericles::Result<T>) -> Option<T> {
         result.map_err(|error| self.report(error.into())).ok()
     }
 
-    /// Reports something wrong with the table as a whole.
+    /// Reports a fault of the table as a whole.
     pub(crate) fn report(&self, fault: Fault) {
         self.ledger.report(self.place, fault);
     }
 
-    /// Reports something wrong with one of the keys.
+    /// Reports a fault at a location.
     pub(crate) fn report_at(&self, place: Place, fault: Fault) {
         self.ledger.report(place, fault);
     }
 
-    /// Whether a key is present, under any of its names.
+    /// Returns whether a key is present, under any of its names.
     pub(crate) fn has(&self, key: &str) -> bool {
         self.place_of(key).is_some()
     }
 
-    /// The table as messages name it.
+    /// Returns the name of the table in messages.
     pub(crate) fn name(&self) -> String {
         self.path.to_string()
     }
 
-    /// Where the value of a key stands, under any of its names.
+    /// Returns the location of the value of a key, under any of its names.
     pub(crate) fn place_of(&self, key: &str) -> Option<Place> {
         let names =
             |entry: &&Entry| entry.key == key || synonyms(key).contains(&entry.key.as_str());
@@ -90,7 +90,7 @@ impl<'a> Table<'a> {
             .map(|entry| entry.node.place)
     }
 
-    /// The value of a key that may be left out.
+    /// Returns the value of an optional key.
     pub(crate) fn optional(&self, key: &'static str) -> Option<Item<'a>> {
         let mut allowed = self.allowed.borrow_mut();
         if !allowed.contains(&key) {
@@ -123,7 +123,7 @@ impl<'a> Table<'a> {
         found.map(|entry| Item::new(self.ledger, self.path.key(key), &entry.node))
     }
 
-    /// The value of a key that must be given.
+    /// Returns the value of a required key.
     pub(crate) fn required(&self, key: &'static str) -> Option<Item<'a>> {
         let item = self.optional(key);
         self.ledger.note(|survey| survey.needed(&self.path, key));
@@ -137,7 +137,7 @@ impl<'a> Table<'a> {
         item
     }
 
-    /// At most one of several keys, with which one it is. Reports if there are more; the outer option is none then.
+    /// Returns at most one of several exclusive keys with its value; the outer option is none after reporting several.
     pub(crate) fn at_most_one(
         &self,
         keys: &'static [&'static str],
@@ -145,7 +145,7 @@ impl<'a> Table<'a> {
         self.choice_of(keys, false)
     }
 
-    /// Notes that keys which exclude each other in other decks may be given together.
+    /// Notes that keys that are exclusive in other decks may be given together.
     pub(crate) fn together(&self, keys: &'static [&'static str]) {
         self.ledger.note(|survey| survey.together(&self.path, keys));
     }
@@ -180,7 +180,7 @@ impl<'a> Table<'a> {
         Some(found.pop())
     }
 
-    /// Exactly one of several keys.
+    /// Returns exactly one of several exclusive keys with its value.
     pub(crate) fn exactly_one(
         &self,
         keys: &'static [&'static str],
@@ -200,7 +200,7 @@ impl<'a> Table<'a> {
         });
     }
 
-    /// A value that may be left out; the outer option is none if it is there and wrong.
+    /// Reads an optional value; the outer option is none if it is present and invalid.
     pub(crate) fn maybe<T>(
         &self,
         key: &'static str,
@@ -212,7 +212,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// A table within this one; an empty one if it is left out, so that its defaults are recorded.
+    /// Returns an inner table, or an empty one if it is missing, so that its defaults are recorded.
     pub(crate) fn table_or_empty(&self, key: &'static str) -> Option<Table<'a>> {
         match self.optional(key) {
             Some(item) => item.table(),
@@ -224,7 +224,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// A value with a default, which is recorded.
+    /// Reads a value with a default, which is recorded.
     pub(crate) fn or<T: Clone + Into<Json>>(
         &self,
         key: &'static str,
@@ -240,7 +240,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// A word from a list with a default, which is the first.
+    /// Reads a word from a list; the default is the first.
     pub(crate) fn choice_or_first<T: Copy>(
         &self,
         key: &'static str,
@@ -257,19 +257,19 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// A value of the engine by its word, with a default, which is the first.
+    /// Reads a value of the engine by its word; the default is the first.
     pub(crate) fn worded<T: Worded>(&self, key: &'static str, what: &'static str) -> Option<T> {
         self.choice_or_first(key, what, &T::words())
     }
 
-    /// The tables of an array of tables; none of them if the key is left out.
+    /// Returns the tables of an array of tables; empty if the key is missing.
     pub(crate) fn tables(&self, key: &'static str) -> Vec<Table<'a>> {
         self.optional(key)
             .map(|item| item.tables())
             .unwrap_or_default()
     }
 
-    /// Refuses a key that has no meaning in this table, with the reason.
+    /// Refuses a key that is not allowed in this table, with the reason.
     pub(crate) fn forbid(&self, key: &'static str, allowed: &str) {
         for entry in self
             .entries
@@ -288,7 +288,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// All keys with their values, for tables whose keys are names of things of a kind.
+    /// Returns all keys with their values, for tables whose keys are names.
     pub(crate) fn named(
         &self,
         kind: &'static str,
@@ -303,19 +303,19 @@ impl<'a> Table<'a> {
         })
     }
 
-    /// Notes a table that is not read by itself, for other tables take over its keys.
+    /// Marks all keys as known, because other tables inherit them.
     pub(crate) fn taken_over(&self) {
         self.ledger.note(|survey| survey.visited(&self.path));
     }
 
-    /// Says that messages about the values of a table are about those of another one, if it is given.
+    /// Redirects messages about the values of an inner table to another table, if one is given.
     pub(crate) fn place_as(&self, key: &str, written: Option<KeyPath>) {
         if let Some(written) = written {
             self.ledger.alias(self.path.key(key), written);
         }
     }
 
-    /// Reports keys that nobody asked for.
+    /// Reports keys that were not requested as unknown.
     pub(crate) fn finish(self) {
         self.ledger.note(|survey| survey.visited(&self.path));
         let settled = self.settled.borrow();
@@ -338,7 +338,7 @@ impl<'a> Table<'a> {
                     key: entry.key.clone(),
                     table: self.path.to_string(),
                     nearest: nearest.map(String::from),
-                    // Of a body without it, a key of other bodies is not at home either.
+                    // A key of other bodies does not belong to this table either.
                     home: nearest
                         .is_none()
                         .then(|| self.ledger.home_of(&entry.key))
@@ -352,7 +352,7 @@ impl<'a> Table<'a> {
 }
 
 impl<'a> Item<'a> {
-    /// The value as a table.
+    /// Returns the value as a table.
     pub(crate) fn table(&self) -> Option<Table<'a>> {
         let entries = self.table_entries()?;
         Some(Table::new(
@@ -363,7 +363,7 @@ impl<'a> Item<'a> {
         ))
     }
 
-    /// The tables of a list of tables.
+    /// Returns the tables of a list of tables.
     pub(crate) fn tables(&self) -> Vec<Table<'a>> {
         self.list("a list of tables, written [[…]]")
             .unwrap_or_default()

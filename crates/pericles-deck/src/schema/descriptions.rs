@@ -1,11 +1,11 @@
-//! Sentences about tables and keys.
+//! Descriptions of tables and keys.
 
 use toml::Table;
 
-/// The key under which a table says what it is itself.
+/// The key of the description of a table itself.
 const ABOUT: &str = "about";
 
-/// The sentences of `descriptions.toml`, by table and key; brackets of lists are left out of the names of tables.
+/// Descriptions from `descriptions.toml`, by table and key; names of tables have no list brackets.
 pub(super) struct Descriptions(Table);
 
 impl Descriptions {
@@ -17,12 +17,12 @@ impl Descriptions {
         )
     }
 
-    /// What is said of a table or definition.
+    /// Returns the description of a table or definition.
     pub(super) fn of_table(&self, place: &str) -> Option<&str> {
         self.get(&place.replace("[]", ""), ABOUT)
     }
 
-    /// What is said of a key.
+    /// Returns the description of a key.
     pub(super) fn of_key(&self, place: &str) -> Option<&str> {
         let place = place.replace("[]", "");
         let (table, key) = place.rsplit_once('.').unwrap_or(("", &place));
@@ -33,7 +33,7 @@ impl Descriptions {
         self.0.get(table)?.get(key)?.as_str()
     }
 
-    /// All tables and keys that something is said of; no key where it is the table.
+    /// Returns all tables and keys with a description; no key for the description of a table.
     #[cfg(test)]
     pub(super) fn all(&self) -> impl Iterator<Item = (&str, Option<&str>)> {
         self.0.iter().flat_map(|(table, keys)| {

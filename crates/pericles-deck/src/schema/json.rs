@@ -1,4 +1,4 @@
-//! The schema as JSON Schema, draft 2020-12.
+//! JSON Schema of decks, draft 2020-12.
 
 use serde_json::{Map, Value as Json, json};
 
@@ -6,7 +6,7 @@ use super::{Schema, names};
 use crate::quantity::Quantity;
 use crate::reader::{Form, POSITIVE, below};
 
-/// A decimal number without its sign, and a unit or none.
+/// Regular expression of a decimal number without sign and with an optional unit.
 const DIGITS: &str = r"(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?(\s*[^\s\d,].*)?\s*$";
 
 pub(super) fn document(schema: &Schema) -> Json {
@@ -35,7 +35,7 @@ pub(super) fn document(schema: &Schema) -> Json {
 }
 
 impl Schema {
-    /// A table with its keys under all their names.
+    /// Returns the schema of a table with its keys under all names.
     fn table(&self, place: &str) -> Map<String, Json> {
         let mut properties = Map::new();
         let (mut required, mut rules): (Vec<&str>, Vec<Json>) = (Vec::new(), Vec::new());
@@ -73,7 +73,7 @@ impl Schema {
         object
     }
 
-    /// A value with what is said of it.
+    /// Returns the schema of a value with its description.
     fn value(&self, place: &str) -> Map<String, Json> {
         let forms = self.forms(place).into_iter();
         let mut alternatives: Vec<Map<String, Json>> =
@@ -132,7 +132,7 @@ impl Schema {
         })
     }
 
-    /// All quantities that numbers have, and whether they must be positive.
+    /// Returns all quantities of numbers, and whether they must be positive.
     fn quantities(&self) -> Vec<(Quantity, bool)> {
         let mut found = Vec::new();
         for form in self.survey.values().flat_map(|value| &value.forms) {
@@ -151,7 +151,7 @@ fn is_positive(allowed: Option<&str>) -> bool {
     allowed == Some(POSITIVE)
 }
 
-/// A number in SI units, or a text with a unit.
+/// Returns the schema of a number in SI units or a text with a unit.
 fn number(quantity: Quantity, positive: bool) -> Json {
     let (plain, sign) = if positive {
         (
@@ -168,7 +168,7 @@ fn number(quantity: Quantity, positive: bool) -> Json {
     })
 }
 
-/// The name of a quantity's definition: `positive-mass-density`.
+/// Returns the name of the definition of a quantity: `positive-mass-density`.
 fn title(quantity: Quantity, positive: bool) -> String {
     let name = quantity.noun().replace(' ', "-");
     if positive {
@@ -182,7 +182,7 @@ fn reference(name: &str) -> Json {
     json!({ "$ref": format!("#/$defs/{name}") })
 }
 
-/// At most one of several keys, or exactly one.
+/// Returns the rule that at most one, or exactly one, of several keys is given.
 fn one_of(keys: impl Iterator<Item = &'static str>, needed: bool) -> Json {
     let mut alternatives: Vec<Json> = keys.map(|key| json!({ "required": [key] })).collect();
     if !needed {

@@ -1,4 +1,4 @@
-//! The schema as a reference for people, in Markdown.
+//! The reference of deck keys, in Markdown.
 
 use serde_json::Value as Json;
 
@@ -14,9 +14,9 @@ pub(super) fn document(schema: &Schema) -> String {
         ),
     };
     page.section("");
-    page.text += "\n## Shared forms\n\nWhat several keys take.\n";
+    page.text += "\n## Shared forms\n\nForms of values shared by several keys.\n";
     for name in schema.survey.definitions() {
-        // A table of the deck has its section above.
+        // Tables of the deck have a section above.
         if schema.is_shared(name) {
             continue;
         }
@@ -32,14 +32,14 @@ pub(super) fn document(schema: &Schema) -> String {
     page.text
 }
 
-/// The text as far as it is written.
+/// The page under construction.
 struct Page<'a> {
     schema: &'a Schema,
     text: String,
 }
 
 impl Page<'_> {
-    /// A table, and the tables in it.
+    /// Writes the section of a table and of the tables in it.
     fn section(&mut self, place: &str) {
         let depth = place.split('.').filter(|step| !step.is_empty()).count();
         self.heading(2 + usize::from(depth > 1), &title(place));
@@ -67,7 +67,7 @@ impl Page<'_> {
         }
     }
 
-    /// The place of the table that a value is, or of those that are its entries.
+    /// Returns the place of the table that a value is, or of the tables that are its entries.
     fn table_in(&self, place: &str) -> Option<String> {
         self.schema
             .forms(place)
@@ -112,10 +112,10 @@ impl Page<'_> {
         }
     }
 
-    /// What a key is if it is left out.
+    /// Returns the default of a key.
     fn default(&self, table: &TableSurvey, key: &str, place: &str) -> String {
         if table.needs(key) {
-            return "needed".into();
+            return "required".into();
         }
         let defaults = self
             .schema
@@ -127,7 +127,7 @@ impl Page<'_> {
         defaults.join(" or ")
     }
 
-    /// What a value may be.
+    /// Returns the forms of a value.
     fn forms(&self, place: &str) -> String {
         let forms = self.schema.forms(place).into_iter();
         let mut texts: Vec<String> = forms.map(|form| self.form(place, form)).collect();
@@ -135,7 +135,7 @@ impl Page<'_> {
         texts.join(", or ")
     }
 
-    /// What the entries of a list may be.
+    /// Returns the forms of the entries of a list.
     fn entries(&self, place: &str) -> String {
         let entries = self.forms(&format!("{place}[]"));
         if entries.contains(", or ") {
@@ -149,7 +149,7 @@ impl Page<'_> {
         match form {
             Form::Text => "text".into(),
             Form::Boolean => "`true`, `false`".into(),
-            Form::Count => "whole number from 1".into(),
+            Form::Count => "integer ≥ 1".into(),
             Form::Number { quantity, allowed } => {
                 let sign = if allowed.as_deref() == Some(POSITIVE) {
                     "positive "
@@ -177,7 +177,7 @@ impl Page<'_> {
     }
 }
 
-/// The name of a table as decks write it.
+/// Returns the heading of a table in decks.
 fn title(place: &str) -> String {
     let name = place.replace("[]", "");
     match place {
@@ -187,7 +187,7 @@ fn title(place: &str) -> String {
     }
 }
 
-/// What links to a heading end in.
+/// Returns the anchor of a heading.
 fn anchor(title: &str) -> String {
     let kept = title.to_lowercase().replace(' ', "-");
     kept.chars()
@@ -195,7 +195,7 @@ fn anchor(title: &str) -> String {
         .collect()
 }
 
-/// A default as decks write it.
+/// Returns a default as written in decks.
 fn plain(value: &Json) -> String {
     match value {
         Json::Array(entries) if !entries.is_empty() => plain(&entries[0]),

@@ -1,9 +1,10 @@
-//! The schema of decks: which keys there are, what forms their values may have and what they mean.
+//! The schema of decks: keys, forms of their values and descriptions.
 //!
-//! Keys, forms, words, ranges and defaults are what the reader asks for while it reads the [`specimens`], so that a schema and the reader cannot
-//! disagree; only the sentences that explain the keys are written down, in `descriptions.toml`. Tests want every key of the reader to have its
-//! form and its sentence, and every sentence its key. Which keys go together with which shape, model or scheme is beyond the schema: it allows
-//! more than the reader, never less. Tables of former releases are no part of it, so that editors mark them.
+//! Keys, forms, words, ranges and defaults are those that the reader requests while it reads the
+//! [`specimens`], so that schema and reader cannot disagree. Only the descriptions are written by hand, in
+//! `descriptions.toml`. Tests require a form and a description for every key of the reader, and a key for
+//! every description. The schema does not know which keys need which shape, model or scheme: it allows more
+//! than the reader, never less. It omits deprecated tables, so that editors mark them.
 
 mod descriptions;
 mod json;
@@ -21,18 +22,18 @@ use crate::deck::Deck;
 use crate::reader::{Form, Survey};
 use crate::vocabulary::synonyms;
 
-/// A JSON Schema of decks, draft 2020-12: with it editors complete keys and words, and mark what is wrong.
+/// Returns the JSON Schema of decks, draft 2020-12, with which editors complete keys and words and mark errors.
 pub fn json_schema() -> Json {
     json::document(&Schema::new())
 }
 
-/// The reference of all keys, as Markdown: a section for every table.
+/// Returns the reference of all keys in Markdown, with a section per table.
 pub fn reference() -> String {
     markdown::document(&Schema::new())
 }
 
-/// Right decks that hold every key between them, in every form it may have: each a text with the overrides that complete it. Tests of what
-/// reads decks begin with them.
+/// Returns valid decks that together contain every key in every form, each as a text with overrides. Tests of code that
+/// reads decks use them.
 pub fn specimens() -> impl Iterator<Item = (&'static str, Vec<String>)> {
     specimens::SPECIMENS.iter().map(|specimen| {
         let changes = specimen.changes.iter().map(|&text| text.into());
@@ -40,7 +41,8 @@ pub fn specimens() -> impl Iterator<Item = (&'static str, Vec<String>)> {
     })
 }
 
-/// The table that a key belongs to, as it is written in a deck: `[body]`, `[[output.picture]]`. None if there is no such key, or if several tables as near to the root have it.
+/// Returns the table to which a key belongs, as written in a deck: `[body]`, `[[output.picture]]`. None for
+/// unknown keys, or if several tables at the same depth have it.
 pub(crate) fn home_of(key: &str) -> Option<&'static str> {
     static HOMES: OnceLock<BTreeMap<&'static str, Option<String>>> = OnceLock::new();
     HOMES
@@ -54,11 +56,11 @@ fn homes(schema: &Schema) -> BTreeMap<&'static str, Option<String>> {
     let mut found: BTreeMap<&'static str, ((usize, bool), Option<String>)> = BTreeMap::new();
     for (place, table) in schema.survey.tables() {
         let first = place.split(['.', '[']).next().unwrap_or_default();
-        // What several tables share has no place of its own.
+        // Shared definitions do not belong to a single table.
         if place.is_empty() || definitions.contains(&first) && !schema.is_shared(first) {
             continue;
         }
-        // Of a table and a list of tables the table comes first.
+        // A table takes precedence over a list of tables.
         let depth = (place.split('.').count(), place.ends_with("[]"));
         let written = match place.strip_suffix("[]") {
             Some(list) => format!("[[{list}]]"),
@@ -83,7 +85,7 @@ fn homes(schema: &Schema) -> BTreeMap<&'static str, Option<String>> {
     homes.map(|(key, (_, home))| (key, home)).collect()
 }
 
-/// All that is known of decks.
+/// Survey and descriptions of decks.
 struct Schema {
     survey: Survey,
     descriptions: Descriptions,
@@ -103,14 +105,15 @@ impl Schema {
         }
     }
 
-    /// Whether a table of the deck is a definition too: [material] has the keys of every entry of [materials].
+    /// Returns whether a table of the deck is also a definition: `[material]` has the keys of every entry of
+    /// `[materials]`.
     fn is_shared(&self, place: &str) -> bool {
         let root = self.survey.table("");
         let of_the_deck = root.is_some_and(|root| root.keys().any(|key| key == place));
         of_the_deck && self.survey.definitions().contains(&place)
     }
 
-    /// The forms of a value; those that a definition says are left to it.
+    /// Returns the forms of a value, except for those covered by its definition.
     fn forms(&self, place: &str) -> Vec<&Form> {
         let all = || self.survey.value(place).into_iter().flat_map(|v| &v.forms);
         let defined = all().any(|form| matches!(form, Form::Defined(_) | Form::Names(_)));
@@ -119,7 +122,7 @@ impl Schema {
             .collect()
     }
 
-    /// What there is to say of a value: the sentences about the key, or about the definition or table that it holds.
+    /// Returns the description of a value: that of the key, the table or the definition.
     fn description(&self, place: &str) -> Option<&str> {
         let own = self.descriptions.of_key(place);
         let defined = || {
@@ -132,7 +135,7 @@ impl Schema {
             .or_else(defined)
     }
 
-    /// The ranges of a value in words, but for those that its form says.
+    /// Returns the ranges of a value in words, except for those implied by its form.
     fn ranges(&self, place: &str) -> Vec<&str> {
         let forms = self.forms(place).into_iter();
         let mut ranges: Vec<&str> = forms
@@ -149,7 +152,7 @@ impl Schema {
     }
 }
 
-/// The names of a key, the first name first.
+/// Returns the names of a key, the first name first.
 fn names(key: &'static str) -> impl Iterator<Item = &'static str> {
     std::iter::once(key).chain(synonyms(key).iter().copied())
 }
@@ -159,7 +162,7 @@ mod tests {
     use super::*;
     use crate::reader::below;
 
-    /// All keys with their places.
+    /// Returns all keys with their places.
     fn keys(schema: &Schema) -> Vec<String> {
         let tables = schema.survey.tables();
         tables
@@ -168,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn every_specimen_is_right() {
+    fn every_specimen_is_valid() {
         let refusals: Vec<String> = specimens::SPECIMENS
             .iter()
             .filter_map(|specimen| {
@@ -182,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn keys_have_homes_where_only_one_table_has_them() {
+    fn keys_of_a_single_table_have_a_home() {
         for (key, home) in [
             ("shape", Some("[body]")),
             ("E", Some("[material]")),
@@ -200,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn every_key_of_the_reader_is_explained_and_has_a_form() {
+    fn every_key_has_a_description_and_a_form() {
         let schema = Schema::new();
         let keys = keys(&schema);
         assert!(keys.len() > 200, "{}", keys.len());
@@ -221,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn every_sentence_explains_something() {
+    fn every_description_belongs_to_a_key() {
         let schema = Schema::new();
         let keys = keys(&schema);
         let known = |place: &str| keys.iter().any(|key| key.replace("[]", "") == place);
@@ -239,7 +242,10 @@ mod tests {
                         || schema.survey.definitions().contains(&table)
                 }
             };
-            assert!(explains, "[{table}] {key:?} is no key of the reader");
+            assert!(
+                explains,
+                "no key of the reader has the description [{table}] {key:?}"
+            );
         }
     }
 }

@@ -1,6 +1,6 @@
-//! Right decks that hold every key between them, in every form it may have, and leave out every key that may be left out.
+//! Valid decks that together contain every key in every form and omit every optional key.
 
-/// A deck with changes to it.
+/// A deck with overrides.
 pub(super) struct Specimen {
     pub(super) deck: &'static str,
     pub(super) changes: &'static [&'static str],
@@ -10,7 +10,7 @@ const fn specimen(deck: &'static str, changes: &'static [&'static str]) -> Speci
     Specimen { deck, changes }
 }
 
-/// The least that a bar must say.
+/// The minimal deck of a bar.
 const BAR: &str = r#"
 [body]
 shape = "bar"
@@ -79,18 +79,18 @@ random_velocity = { generator = "splitmix64", radius = 1, seed = 1 }
 random_velocity = { radius = 1 }
 [[initial]]
 file = "state.txt"
-[[prescribe]]
+[[constraint]]
 set = "top"
 velocity = [0, "free"]
 function = { kind = "ramp", start = 0, duration = 1 }
 until = 1
-[[prescribe]]
+[[constraint]]
 set = "top"
 displacement = [{ expression = "x*t" }, 1]
-[[prescribe]]
+[[constraint]]
 set = "top"
 velocity = [{ expression = "x*t" }, "free"]
-[[prescribe]]
+[[constraint]]
 set = "top"
 displacement = [1, "free"]
 [[load]]
@@ -145,6 +145,18 @@ range = [0, 1]
 [[output.picture]]
 field = "Strain_Energy_Density"
 range = [0, 1]
+[[output.profile]]
+name = "middle"
+field = "Stress_xx"
+from = [0, 0]
+to = [1, 0]
+reference = 1
+[[output.profile]]
+name = "side"
+field = "Velocity"
+from = [0, 0]
+to = [0, 1]
+reference = { expression = "x + t" }
 [checkpoint]
 wall = 1
 "#;
@@ -224,7 +236,7 @@ end = 1
 dt = 1
 "#;
 
-/// A material with every key of state-based ones.
+/// A material with every key of state-based materials.
 const STATE_BASED: &str = "material={ model = 'state-based', strains = 'small', density = 1, youngs_modulus = 2, poisson_ratio = 0.3, horizon_ratio = 3, volume_correction = 'none', \
      surface_correction = 'energy', influence = { function = 'inverse' }, fracture_energy = 1, failure = 'stretch', stretch_definition = 'bond', fracture_calibration = 'lattice', no_fail = 'top' }";
 
@@ -232,7 +244,7 @@ const STATE_BASED: &str = "material={ model = 'state-based', strains = 'small', 
 const CORRESPONDENCE: &str = "material={ model = 'correspondence', law = 'hencky', stabilisation = 'silling', density = 1, youngs_modulus = 2, poisson_ratio = 0.3, yield_stress = 0.1, hardening = 0.2, horizon_ratio = 3, \
      volume_correction = 'none', influence = { function = 'constant' }, fracture_energy = 1, fracture_calibration = 'lattice', no_fail = 'top', bonds = 'list' }";
 
-/// Materials with every key that they may give for themselves.
+/// Materials with every key that is not shared.
 const MATERIALS: &str = "materials={ \
      a = { density = 1, youngs_modulus = 1, modulus = 'lattice', poisson_ratio = 0.25, fracture_energy = 1, fracture_calibration = 'lattice', horizon_ratio = 3 }, \
      b = { density = 1, bulk_modulus = 1, critical_stretch = 1 }, \
@@ -249,7 +261,7 @@ const STATE_BASED_MATERIALS: &str = "materials={ a = { density = 1, youngs_modul
 
 const STATE_BASED_INTERFACES: &str = "interface=[{ critical_stretch = 1 }, { between = ['a', 'b'], fracture_energy = 1, failure = 'stretch', stretch_definition = 'bond' }]";
 
-/// All of them.
+/// All specimens.
 #[rustfmt::skip]
 pub(super) const SPECIMENS: &[Specimen] = &[
     specimen(BAR, &[]),
@@ -285,7 +297,7 @@ pub(super) const SPECIMENS: &[Specimen] = &[
     specimen(BAR, &["body={ shape = 'points', file = 'cloud.txt', spacing = 1, dimension = 2, plane = 'stress', thickness = 1 }"]),
     specimen(SURFACE, &["body={ shape = 'uv-sphere', segments = 8, rings = 5, radius = 1 }", "body.areas=1"]),
     specimen(SURFACE, &["body={ shape = 'ellipsoid', level = 1, half_axes = [1, 1, 1] }", "body.areas=mixed-voronoi"]),
-    specimen(SURFACE, &["body={ shape = 'torus', major_radius = 1, minor_radius = 0.3, around = 24, across = 8 }"]),
+    specimen(SURFACE, &["body={ shape = 'torus', major_radius = 1, minor_radius = 0.3, major_segments = 24, minor_segments = 8 }"]),
     specimen(SURFACE, &["body={ shape = 'capsule', radius = 1, length = 1, segments = 12 }"]),
     specimen(SURFACE, &["body={ shape = 'surface', file = 'part.stl', open = true, several = true, flip = true }"]),
     specimen(SURFACE, &["body={ shape = 'surface', file = 'part.stl' }"]),
@@ -293,7 +305,7 @@ pub(super) const SPECIMENS: &[Specimen] = &[
         SURFACE,
         &[
             "geodesics={ method = 'edge', ball = 'euclid' }",
-            "material={ model = 'power', name = 'a', density = 1, kappa = 1, alpha = 0.5, p = 2, horizon = 1, bond = 'displacement', self_cell = true, critical_stretch = 1, no_fail = 'all' }",
+            "material={ model = 'power', name = 'a', density = 1, kappa = 1, alpha = 0.5, p = 2, horizon = 1, bond = 'displacement', self_interaction = true, critical_stretch = 1, no_fail = 'all' }",
             "assign=[{ set = 'all', stiffness = 2 }]",
         ],
     ),
@@ -305,8 +317,8 @@ pub(super) const SPECIMENS: &[Specimen] = &[
     specimen(BAR, &["material.influence={ function = 'tabulated', r = 'spacing', table = [[0, 1], [3, 0.5]] }"]),
     specimen(BAR, &["material.influence={ function = 'cosines', r = 'spacing', wavenumber = 1, coefficients = [1, 0.1] }"]),
     specimen(BAR, &["material.influence={ function = 'cosines', wavenumber = 1, coefficients = [1] }"]),
-    specimen(BAR, &["material.influence={ function = 'classes', table = [[[1], 1], [[2], 1], [[3], 1]] }"]),
-    specimen(PLATE, &["material.horizon_ratio=1", "material.influence={ function = 'classes', table = [[[1, 0], 1]] }"]),
+    specimen(BAR, &["material.influence={ function = 'lattice-classes', table = [[[1], 1], [[2], 1], [[3], 1]] }"]),
+    specimen(PLATE, &["material.horizon_ratio=1", "material.influence={ function = 'lattice-classes', table = [[[1, 0], 1]] }"]),
     specimen(BAR, &["material.influence={ function = 'tuned' }"]),
     specimen(BAR, &["material.influence={ function = 'tuned', decay = 'none', lower_bound = 'none' }"]),
     specimen(BAR, &["material.influence={ function = 'tuned', lower_bound = 'auto' }"]),
@@ -330,14 +342,14 @@ pub(super) const SPECIMENS: &[Specimen] = &[
     specimen(PLATE, &[STATE_BASED, STATE_BASED_MATERIALS, "assign=[{ set = 'top', material = 'a' }]", STATE_BASED_INTERFACES]),
     specimen(PLATE, &["material={ horizon_ratio = 3 }", "materials={ default = { density = 1, youngs_modulus = 1 } }"]),
     // Other laws.
-    specimen(BAR, &["material.model=green-strain", "material.treatment=taylor-2"]),
+    specimen(BAR, &["material.model=green-strain", "material.approximation=taylor-2"]),
     specimen(PLATE, &["material.shear_modulus=1"]),
     specimen(BAR, &["material.model=green-strain"]),
-    // Bars: cracks, ends, exact solutions.
+    // Bars: cracks, absorbing boundaries, exact solutions.
     specimen(BAR, &["crack=[{ section = 5 }, { section = 5, ends = 'open' }]", "probe=[{ name = 'a', at = 5 }]"]),
-    specimen(BAR, &["prescribe=[{ set = 'left', velocity = 1, function = { kind = 'pulse', duration = 1 } }]"]),
+    specimen(BAR, &["constraint=[{ set = 'left', velocity = 1, function = { kind = 'pulse', duration = 1 } }]"]),
     specimen(BAR, &["initial=[{ velocity = { expression = 'x' } }]", "load=[{ set = 'left', traction = 1, function = { kind = 'constant' } }]"]),
-    specimen(BAR, &["boundary=[{ kind = 'absorbing', side = '-x' }, { kind = 'absorbing', side = '+x', history = 'auto', tolerance = 1e-9, verify = true, method = 'discrete', exterior_data = 1 }]"]),
+    specimen(BAR, &["boundary=[{ kind = 'absorbing', side = '-x' }, { kind = 'absorbing', side = '+x', history = 'auto', tolerance = 1e-9, verify = true, method = 'discrete', exterior_extent = 1 }]"]),
     specimen(BAR, &["exact={ solution = 'local-pulse', width = 1, amplitude = 1, centre = 0, window = 1, start = true }"]),
     specimen(BAR, &["exact={ solution = 'local-pulse', width = 1, amplitude = 1 }"]),
     specimen(BAR, &["exact={ solution = 'stretched-bar', length = 10, strain = 0.1 }"]),
@@ -348,9 +360,13 @@ pub(super) const SPECIMENS: &[Specimen] = &[
     specimen(BAR, &["time.scheme=rk3"]),
     specimen(BAR, &["time.scheme=dormand-prince", "time.dt=1", "time.tolerance=1e-6"]),
     specimen(BAR, &["time.scheme=dormand-prince", "time.dt=1"]),
-    specimen(BAR, &["time.scheme=rk4-mts", "time.ratio=4", "time.fine=left", "time.predictor=structured", "time.interpolant=hermite"]),
-    specimen(BAR, &["time.scheme=rk4-mts", "time.ratio=4", "time.fine=['left', 'right']"]),
-    specimen(BAR, &["time.scheme=respa", "time.ratio=4", "time.adaptive={ every = 4, threshold = 0.8, layers = 2, hold = 1 }"]),
+    specimen(BAR, &["time.scheme=multirate-rk4", "time.ratio=4", "time.fine=left", "time.predictor=structured", "time.interpolant=hermite"]),
+    specimen(BAR, &["time.scheme=multirate-rk4", "time.ratio=4", "time.fine=['left', 'right']"]),
+    specimen(BAR, &["output.cells=auto"]),
+    specimen(BAR, &["output.cells=true"]),
+    specimen(BAR, &["time.scheme=respa", "time.ratio=4", "time.adaptive={ every = 4, threshold = 0.8, layers = 2, keep_checks = 1 }"]),
+    specimen(BAR, &["output.cells=auto"]),
+    specimen(BAR, &["output.cells=true"]),
     specimen(BAR, &["time.scheme=respa", "time.ratio=4", "time.adaptive={}"]),
     specimen(BAR, &["time.scheme=implicit-midpoint", "time.dt=1", "time.linear_solver=direct"]),
     specimen(BAR, &["time.scheme=implicit-midpoint", "time.dt=1"]),
@@ -367,15 +383,19 @@ pub(super) const SPECIMENS: &[Specimen] = &[
     specimen(BAR, &["thermal={ expansion = 1e-5, temperature = 300, reference = 293, material = [{ name = 'default', expansion = 2e-5 }] }"]),
     specimen(BAR, &["material.scatter={ distribution = 'weibull', of = 'fracture_energy', shape = 5, seed = 2 }"]),
     specimen(BAR, &["material.scatter={ shape = 5 }"]),
+    specimen(BAR, &["material.softening={ law = 'trilinear', onset_stretch = 1e-4, knee_force = 0.3, knee_position = 0.2 }"]),
+    specimen(BAR, &["material.softening={ law = 'trilinear', onset_stretch = 1e-4 }"]),
+    specimen(PLATE, &["material={ model = 'correspondence', density = 1, youngs_modulus = 2, poisson_ratio = 0.3, horizon_ratio = 3, failure = 'principal-stress', strength = 1 }"]),
+    specimen(BAR, &["material.softening={ law = 'exponential', onset_stretch = 1e-4 }"]),
     specimen(BAR, &["damping={ mass = 1, stiffness = 1e-3 }"]),
     specimen(BAR, &["damping={ stiffness = 1e-3 }"]),
     specimen(BAR, &["thermal={ expansion = 1e-5, temperature = { expression = '300 + t' }, reference = 293 }"]),
-    specimen(BAR, &["time={ scheme = 'relaxation' }"]),
-    specimen(BAR, &["time={ end = 1, scheme = 'relaxation', damping = 'adaptive', tolerance = 1e-6, iterations = 9, load_steps = 2 }"]),
-    specimen(BAR, &["time={ end = 1, scheme = 'relaxation', damping = 0.1 }"]),
+    specimen(BAR, &["time={ scheme = 'adaptive-dynamic-relaxation' }"]),
+    specimen(BAR, &["time={ end = 1, scheme = 'adaptive-dynamic-relaxation', damping = 'adaptive', tolerance = 1e-6, iterations = 9, load_steps = 2 }"]),
+    specimen(BAR, &["time={ end = 1, scheme = 'adaptive-dynamic-relaxation', damping = 0.1 }"]),
     specimen(BAR, &["time={ scheme = 'static' }"]),
     specimen(BAR, &["time={ end = 1, scheme = 'static', tolerance = 1e-6, newton_steps = 9, load_steps = 2, rigid_modes = 'fix', breaking = 'all' }"]),
-    specimen(BAR, &["prescribe=[{ set = 'left', velocity = 0 }]", "time.stop_when=[{ set = 'left', reaction_below = 0.02 }, { set = 'left', damage_above = 0.9 }]"]),
+    specimen(BAR, &["constraint=[{ set = 'left', velocity = 0 }]", "time.stop_when=[{ set = 'left', reaction_below = 0.02 }, { set = 'left', damage_above = 0.9 }]"]),
     // Output.
     specimen(BAR, &["output={ fields = { every = 1 }, history = { interval = 1 }, cracks = { every = 1 }, fragments = { every = 1 }, energy_bound = 1 }"]),
     specimen(BAR, &["output={ fields = { count = 1 }, history = { count = 1 }, cracks = { interval = 1 }, fragments = { interval = 1 } }"]),

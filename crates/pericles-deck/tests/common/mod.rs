@@ -1,25 +1,25 @@
-//! Decks that several tests share.
+//! Decks shared by several tests.
 #![allow(dead_code)] // each test uses its part
 
 use pericles::space::Grid;
 use pericles_deck::{Deck, DeckError, Lattice, Solid};
 
-/// The body of a deck that is no surface.
+/// Returns the solid body of a deck.
 pub fn solid(deck: &Deck) -> &Solid {
     deck.model.body.solid().unwrap()
 }
 
-/// Its cells.
+/// Returns the lattice of its body.
 pub fn lattice(deck: &Deck) -> &Lattice {
     solid(deck).shape.lattice().unwrap()
 }
 
-/// Its grid.
+/// Returns the grid of its body.
 pub fn grid(deck: &Deck) -> &Grid {
     &lattice(deck).grid
 }
 
-/// A right deck of a wave on a ring.
+/// A valid deck of a wave in a periodic bar.
 pub const WAVE: &str = r#"[body]
 shape = "bar"
 length = 20
@@ -47,7 +47,7 @@ dt = 0.5
 scheme = "trigonometric"
 "#;
 
-/// A right deck of a surface.
+/// A valid deck of a 2-manifold.
 pub const SURFACE: &str = r#"[body]
 shape = "icosphere"
 level = 2
@@ -81,9 +81,9 @@ pub struct Wrong {
     pub by: &'static str,
     /// Line and column of the problem.
     pub at: (usize, usize),
-    /// What the marked text begins with.
+    /// Beginning of the marked text.
     pub marked: &'static str,
-    /// What the message must hold.
+    /// Fragments of the message.
     pub says: &'static [&'static str],
 }
 
@@ -103,7 +103,7 @@ pub const fn wrong(
     }
 }
 
-/// Wants every wrong deck to be refused where and as its case says.
+/// Requires every wrong deck to be refused at the location and with the fragments of its case.
 pub fn explained(right: &str, wrong: &[Wrong], read: &dyn Fn(&str) -> Result<(), DeckError>) {
     for case in wrong {
         assert_eq!(
@@ -113,7 +113,7 @@ pub fn explained(right: &str, wrong: &[Wrong], read: &dyn Fn(&str) -> Result<(),
             case.replace
         );
         let Err(error) = read(&right.replace(case.replace, case.by)) else {
-            panic!("`{}` is wrong", case.by)
+            panic!("`{}` is accepted", case.by)
         };
         let message = error.to_string();
         let found = error.problems().iter().any(|problem| {

@@ -1,11 +1,11 @@
-//! Discrete Fourier transforms over cubes of points.
+//! Discrete Fourier transforms on cubes of points.
 
 use std::sync::Arc;
 
 use rustfft::num_complex::Complex64;
 use rustfft::{Fft, FftPlanner};
 
-/// Forward and inverse transforms of n^dimension numbers, x fastest.
+/// Forward and inverse transforms of arrays of n^dimension numbers, x fastest.
 pub struct CubeTransform {
     nodes: usize,
     dimension: usize,
@@ -16,7 +16,7 @@ pub struct CubeTransform {
 }
 
 impl CubeTransform {
-    /// Plans for cubes with `nodes` points along an axis.
+    /// Creates the plans for cubes with `nodes` points along each axis.
     pub fn new(nodes: usize, dimension: usize) -> Self {
         let mut planner = FftPlanner::new();
         let forward = planner.plan_fft_forward(nodes);
@@ -35,13 +35,13 @@ impl CubeTransform {
         }
     }
 
-    /// Σ_x v(x) exp(−2πi m·x/n), in place.
+    /// Forward transform Σ_x v(x) exp(−2πi m·x/n), in place.
     pub fn forward(&mut self, values: &mut [Complex64]) {
         let plan = Arc::clone(&self.forward);
         self.transform(values, &*plan);
     }
 
-    /// n^−d Σ_m v(m) exp(2πi m·x/n), in place.
+    /// Inverse transform n^−d Σ_m v(m) exp(2πi m·x/n), in place.
     pub fn inverse(&mut self, values: &mut [Complex64]) {
         let plan = Arc::clone(&self.inverse);
         self.transform(values, &*plan);
@@ -49,7 +49,7 @@ impl CubeTransform {
         values.iter_mut().for_each(|value| *value *= factor);
     }
 
-    /// Transforms the fastest axis and makes it the slowest, once for every axis: then the order is the old one.
+    /// Transforms the fastest axis and makes it the slowest, once per axis, which restores the original order.
     fn transform(&mut self, values: &mut [Complex64], plan: &dyn Fft<f64>) {
         let (n, lines) = (self.nodes, values.len() / self.nodes);
         for _ in 0..self.dimension {
@@ -72,7 +72,7 @@ mod tests {
     use pericles::noise::noise;
 
     #[test]
-    fn transforms_are_the_sums_and_invert() {
+    fn transforms_equal_direct_sums_and_are_inverse() {
         for dimension in 1..=3usize {
             let n = 6usize;
             let points = n.pow(dimension as u32);

@@ -1,4 +1,4 @@
-//! A run from noise, and the lines of its spectrum.
+//! Measures the spectrum of a time-domain run that starts from noise.
 
 use crate::DispersionError;
 use std::f64::consts::TAU;
@@ -21,27 +21,27 @@ use pericles::{Control, Simulation, SimulationError};
 use pericles::{PericlesError, Result};
 use pericles::{PointScalar, System};
 
-/// How a spectrum is measured.
+/// Parameters of a spectrum measurement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SpectrumRun {
-    /// Points along every axis of the periodic box; even, so that the border of the zone is among its waves.
+    /// Points along every axis of the periodic box; even, so that the zone border is among its waves.
     pub nodes: usize,
-    /// Time steps, each a sample.
+    /// Number of time steps, each one sample.
     pub steps: usize,
-    /// Length of a step, s.
+    /// Time step, s.
     pub dt: f64,
-    /// Start of the random numbers.
+    /// Random seed.
     pub seed: u64,
 }
 
-/// One branch at one wave vector.
+/// Spectrum of one branch at one wave vector.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BranchSpectrum {
-    /// Power per line, lines at whole multiples of [`MeasuredSpectrum::line`], from zero.
+    /// Power per spectral line; lines are multiples of [`MeasuredSpectrum::line`], from zero.
     pub power: Vec<f64>,
-    /// Frequency of the highest line, by a parabola through the logarithms of it and its neighbours, 1/s.
+    /// Peak frequency, by a parabola through the logarithms of the highest line and its neighbours, 1/s.
     pub peak: f64,
-    /// The time-discrete frequency of the analysis, 1/s.
+    /// Time-discrete frequency from the analysis, 1/s.
     pub expected: f64,
 }
 
@@ -50,26 +50,28 @@ pub struct BranchSpectrum {
 pub struct WaveSpectrum {
     /// Arc length along the contour, rad/m.
     pub abscissa: f64,
-    /// rad/m
+    /// Wave vector, rad/m.
     pub k: Vector,
-    /// In the order of the contour's branches.
+    /// Branches, in the order of the contour's branches.
     pub branches: Vec<BranchSpectrum>,
 }
 
-/// What was measured.
+/// Measured spectrum.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeasuredSpectrum {
-    /// Distance of spectral lines, 2π/(steps dt), 1/s.
+    /// Spacing of spectral lines, 2π/(steps dt), 1/s.
     pub line: f64,
-    /// The wave vectors of the box on the contour, k = 0 left out, corners once.
+    /// Wave vectors of the box on the contour, without k = 0, corners once.
     pub waves: Vec<WaveSpectrum>,
 }
 
-/// The main lobe of the Hann window is two lines to each side: a frequency closer to zero than four lines overlaps with its mirror image.
+/// The main lobe of the Hann window spans two lines on each side: a peak closer to zero than four lines overlaps
+/// with its mirror image.
 const OVERLAP_LINES: f64 = 4.0;
 
 impl MeasuredSpectrum {
-    /// The largest |peak − expected| of all branches whose frequency is more than four lines, in lines, and how many there are.
+    /// Returns the largest |peak − expected|, in lines, of all branches whose frequency exceeds four lines, and the
+    /// number of these branches.
     pub fn worst_deviation(&self) -> (f64, usize) {
         let resolved = self
             .waves
@@ -78,21 +80,24 @@ impl MeasuredSpectrum {
             .filter(|branch| branch.expected > OVERLAP_LINES * self.line);
         resolved.fold((0.0, 0), |(worst, count), branch| {
             let deviation = (branch.peak - branch.expected).abs() / self.line;
-            // A peak that is not a number must not pass.
+            // A NaN peak must count as a deviation.
             let worst = if deviation <= worst { worst } else { deviation };
             (worst, count + 1)
         })
     }
 }
 
-/// Lets a periodic box swing from random displacements and finds the frequency of every branch at every wave vector of the contour.
+/// Runs a periodic box from random initial displacements and measures the frequency of every branch at every wave
+/// vector of the contour.
 ///
-/// Each step is transformed in space and projected on the polarisations of the contour, so that each series holds one frequency; a Hann window, a transform in time
-/// and a parabola through the logarithm of the power give it to about a hundredth of a line. The contour must have fixed polarisations
-/// ([`Contour::irreducible`]). Cost: `steps` evaluations of the forces; memory 16 bytes · steps for each branch and wave vector.
+/// Each step is transformed in space and projected on the polarisations of the contour, so that each time series
+/// contains one frequency. A Hann window, a transform in time and a parabola through the logarithm of the power
+/// determine it to about a hundredth of a line. The contour must have fixed polarisations
+/// ([`Contour::irreducible`]). Cost: `steps` force evaluations; memory 16 bytes · steps per branch and wave vector.
 ///
 /// # Errors
-/// An odd number of points, a contour that needs tracking or does not meet waves of the box, an unstable lattice or step.
+/// An odd number of points; a contour that needs tracking or contains no waves of the box; an unstable lattice or
+/// time step.
 pub fn measure(
     lattice: &BondLattice,
     contour: &Contour,
@@ -147,11 +152,11 @@ pub fn measure(
     Ok(MeasuredSpectrum { line, waves })
 }
 
-/// A wave of the box on the contour.
+/// Wave of the box on the contour.
 struct BoxWave {
     abscissa: f64,
     k: Vector,
-    /// Its place in the transform.
+    /// Index in the transform.
     entry: usize,
     polarisations: Vec<Vector>,
 }
@@ -180,7 +185,7 @@ fn box_waves(lattice: &BondLattice, contour: &Contour, nodes: usize) -> Result<V
         let Some(polarisations) = &segment.polarisation else {
             return Err(DispersionError::TuningChoice {
                 choice: "a measured spectrum",
-                with: "along a contour whose polarisations symmetry does not fix",
+                with: "on a contour whose polarisations are not determined by symmetry",
                 allowed: "allowed: the border of the irreducible zone",
             }
             .into());
@@ -214,14 +219,14 @@ fn box_waves(lattice: &BondLattice, contour: &Contour, nodes: usize) -> Result<V
     Ok(waves)
 }
 
-/// Runs the box; amplitudes of every wave and branch, step by step.
+/// Runs the box and returns the amplitudes of every wave and branch, step by step.
 fn swing(
     lattice: &BondLattice,
     waves: &[BoxWave],
     run: SpectrumRun,
 ) -> std::result::Result<Vec<Vec<Complex64>>, SimulationError> {
     let (n, dimension) = (run.nodes, lattice.dimension());
-    // The spacings may differ; the points of the run only count.
+    // The spacing may differ between the axes; only the points enter the run.
     let grid = Grid {
         shape: Shape::Box {
             origin: [0.0; 3],
@@ -266,7 +271,7 @@ fn swing(
         }
     };
     record(&state.u);
-    // One step more than samples: the last is not shown.
+    // One step more than samples: the last one is not observed.
     let mut simulation = Simulation::new(
         system,
         Box::new(VelocityVerlet),
@@ -281,7 +286,7 @@ fn swing(
     Ok(series)
 }
 
-/// Power of a series in lines 0 … half its length; both signs of the frequency together.
+/// Power of a series in lines 0 … half its length; both signs of the frequency combined.
 fn power(mut series: Vec<Complex64>) -> Vec<f64> {
     let n = series.len();
     for (t, z) in series.iter_mut().enumerate() {
@@ -301,7 +306,7 @@ fn power(mut series: Vec<Complex64>) -> Vec<f64> {
         .collect()
 }
 
-/// Place of the highest line, in lines.
+/// Position of the peak, in lines.
 fn peak(power: &[f64]) -> f64 {
     let inside = 1..power.len().saturating_sub(1);
     let Some(top) = inside.max_by(|a, b| power[*a].total_cmp(&power[*b])) else {
@@ -318,7 +323,7 @@ mod tests {
     use std::f64::consts::PI;
 
     #[test]
-    fn the_peak_of_a_pure_tone() {
+    fn peak_of_a_pure_tone_is_within_two_hundredths_of_a_line() {
         for frequency in [20.0, 37.31, 100.5] {
             let n = 1024;
             let tone = (0..n)
@@ -330,11 +335,11 @@ mod tests {
     }
 
     #[test]
-    fn waves_of_a_box() {
+    fn box_waves_on_the_square_contour_are_found_once() {
         let lattice = BondLattice::new(&[0.5; 3], 0.5, |_, _, _| 1.0).unwrap();
         let contour = Contour::irreducible(&lattice);
         let waves = box_waves(&lattice, &contour, 8).unwrap();
-        // Four steps a segment, the last back to Γ left out.
+        // Four steps per segment, without the last one back at Γ.
         assert_eq!(waves.len(), 15);
         let corner = &waves[11];
         assert_eq!(corner.entry, 4 + 8 * (4 + 8 * 4));

@@ -1,7 +1,8 @@
 //! Frequencies measured in the time domain.
 //!
-//! A periodic box of lattice points starts from random displacements and is stepped by velocity Verlet; the transform in space and time of its motion has its power on the
-//! dispersion curves. That is independent of the analysis but for the polarisations on which the motion is projected: without that projection every wave vector
+//! A periodic box of lattice points starts from random displacements and is integrated by velocity Verlet; the
+//! space-time transform of its motion has its power on the dispersion curves. The measurement is independent of the
+//! analysis except for the polarisations on which the motion is projected; without the projection every wave vector
 //! would show all branches. The peaks lie on the time-discrete curve (2/dt) asin(ω dt/2).
 //!
 //! ```
@@ -22,5 +23,5 @@ mod periodic;
 pub use fourier::CubeTransform;
 pub use measure::{BranchSpectrum, MeasuredSpectrum, SpectrumRun, WaveSpectrum, measure};
 pub use periodic::PeriodicForce;
-/// Complex numbers of [`CubeTransform`].
+/// Complex number type of [`CubeTransform`].
 pub use rustfft::num_complex::Complex64;

@@ -1,39 +1,43 @@
-//! The bonds of a lattice on a periodic box.
+//! Force operator of lattice bonds on a periodic box.
 
-use pericles::operator::{Capabilities, Force, InstructionSet, LinearOperator, Linearity, On};
+use pericles::operator::{
+    Capabilities, Force, InstructionSet, LinearOperator, Linearity, PointSubset,
+};
 use pericles::parallel::{BLOCK, components, components_mut, for_each_block};
 use pericles::sum::sum;
 use pericles::{PericlesError, Result};
 
 use super::super::lattice::BondLattice;
 
-/// A bond of every point, in both directions.
+/// Bond of every point, in both directions.
 #[derive(Debug, Clone, Copy)]
 struct Spoke {
-    /// a/|ξ|³, times the density
+    /// a/|ξ|³ times the density.
     factor: f64,
     xi: [f64; 3],
     length: f64,
 }
 
-/// The linear force density of a [`BondLattice`] on a box with `nodes` points along every axis whose opposite faces are one: f_i = ρ Σ_ξ a/|ξ|³ ξ (ξ·(u_{i+ξ} − u_i)).
+/// Linear force density of a [`BondLattice`] on a periodic box with `nodes` points along every axis: f_i = ρ Σ_ξ
+/// a/|ξ|³ ξ (ξ·(u_{i+ξ} − u_i)).
 ///
-/// For measuring what plane waves do; nothing breaks. Points are in grid order, x fastest. Memory: 4 bytes for each bond of each point.
+/// Used to measure plane waves; bonds do not break. Points are in grid order, x fastest. Memory: 4 bytes per bond
+/// of each point.
 pub struct PeriodicForce {
     dimension: usize,
     points: usize,
     volume: f64,
     density: f64,
     spokes: Vec<Spoke>,
-    /// The other end of spoke s of point i: entry `i * spokes + s`.
+    /// Other end of spoke s of point i: entry `i * spokes + s`.
     ends: Vec<u32>,
 }
 
 impl PeriodicForce {
-    /// The force density of a lattice whose mass density is `density` (kg/m³), on cells of volume `volume` (m³).
+    /// Creates the force density of a lattice with mass density `density` (kg/m³) on cells of volume `volume` (m³).
     ///
     /// # Errors
-    /// Fewer points than two along an axis, or more than a billion in all.
+    /// Fewer than two points along an axis, or more than a billion in total.
     pub fn new(lattice: &BondLattice, nodes: usize, volume: f64, density: f64) -> Result<Self> {
         const LIMIT: u64 = 1_000_000_000;
         if nodes < 2 {
@@ -115,12 +119,12 @@ impl PeriodicForce {
         force
     }
 
-    fn add<const D: usize>(&self, u: &[f64], on: &On<'_>, out: &mut [f64]) {
+    fn add<const D: usize>(&self, u: &[f64], on: &PointSubset<'_>, out: &mut [f64]) {
         let n = self.points;
         let u = components::<D>(u, n);
         let mut out = components_mut::<D>(out, n);
         match on {
-            On::All => {
+            PointSubset::All => {
                 let mut nothing = vec![(); n.div_ceil(BLOCK)];
                 for_each_block(out, &mut nothing, &|first, out, ()| {
                     for k in 0..out[0].len() {
@@ -131,7 +135,7 @@ impl PeriodicForce {
                     }
                 });
             }
-            On::Range(_) | On::Set(_) => {
+            PointSubset::Range(_) | PointSubset::Set(_) => {
                 let mut put = |i: usize| {
                     let force = self.force_of(&u, i);
                     for c in 0..D {
@@ -139,9 +143,9 @@ impl PeriodicForce {
                     }
                 };
                 match on {
-                    On::Range(range) => range.clone().for_each(&mut put),
-                    On::Set(set) => set.iter().for_each(|i| put(*i as usize)),
-                    On::All => {}
+                    PointSubset::Range(range) => range.clone().for_each(&mut put),
+                    PointSubset::Set(set) => set.iter().for_each(|i| put(*i as usize)),
+                    PointSubset::All => {}
                 }
             }
         }
@@ -149,7 +153,7 @@ impl PeriodicForce {
 
     fn energy_density_of<const D: usize>(&self, u: &[&[f64]; D], i: usize) -> f64 {
         let mut energy = 0.0;
-        // ½ c s² |ξ| of every bond, half of it at each end; s |ξ|² = ξ·η
+        // ½ c s² |ξ| of every bond, half of it at each end; s |ξ|² = ξ·η.
         self.each_bond(u, i, |spoke, along| {
             energy += 0.25 * spoke.factor * along * along;
         });
@@ -175,7 +179,7 @@ impl Force for PeriodicForce {
         self.dimension
     }
 
-    fn add_force(&self, _t: f64, u: &[f64], on: On<'_>, out: &mut [f64]) {
+    fn add_force(&self, _t: f64, u: &[f64], on: PointSubset<'_>, out: &mut [f64]) {
         match self.dimension {
             1 => self.add::<1>(u, &on, out),
             2 => self.add::<2>(u, &on, out),
@@ -195,7 +199,7 @@ impl Force for PeriodicForce {
 
     fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {
         let least = (0..self.points).map(density).fold(f64::INFINITY, f64::min);
-        // M is at most Σ 2a/|ξ| over all bonds, negative ones not counted in its favour.
+        // M is at most Σ 2a/|ξ| over all bonds; negative stiffnesses do not reduce the bound.
         let sum: f64 = self
             .spokes
             .iter()
@@ -206,7 +210,7 @@ impl Force for PeriodicForce {
 
     fn tangent_into(&self, t: f64, _u: &[f64], direction: &[f64], out: &mut [f64]) {
         out.fill(0.0);
-        self.add_force(t, direction, On::All, out);
+        self.add_force(t, direction, PointSubset::All, out);
     }
 
     fn directed_bonds(&self) -> u64 {
@@ -236,13 +240,13 @@ impl LinearOperator for PeriodicForce {
 }
 
 pericles::saved! {
-    impl Saved for PeriodicForce {
+    impl Checkpointed for PeriodicForce {
         dimension, points, volume, density, spokes, ends: fixed,
     }
 }
 
 impl PeriodicForce {
-    /// The mass density it was made for, kg/m³.
+    /// Mass density of the lattice, kg/m³.
     pub fn density(&self) -> f64 {
         self.density
     }

@@ -1,8 +1,8 @@
 //! Minimisation of functionals of absolute residuals.
 //!
-//! Σ_m (Σ_i w_mi |R_i|)² with w ≥ 0 is convex in the coefficients but has kinks where a residual vanishes. |R| is replaced by √(R² + ε²), still convex, and
-//! Newton's method with a line search follows the minimum as ε shrinks; each step is a quadratic program with the
-//! constraints and the bound.
+//! Σ_m (Σ_i w_mi |R_i|)² with w ≥ 0 is convex in the coefficients but not differentiable where a residual vanishes.
+//! |R| is replaced by √(R² + ε²), which is still convex, and Newton's method with a line search follows the minimum
+//! as ε decreases; each step is a quadratic program with the constraints and the bound.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -11,8 +11,8 @@ use pericles::Result;
 use super::functionals::Functionals;
 use super::solve::{Problem, Solution};
 
-/// Shrinking of ε from stage to stage, its start and its end over the largest residual. At the end a kink is narrower than the distance of
-/// quadrature nodes.
+/// Reduction factor of ε per stage, and its first and last value relative to the largest residual. The last value
+/// makes kinks narrower than the distance of quadrature nodes.
 const SHRINK: f64 = 0.2;
 const FIRST: f64 = 0.1;
 const LAST: f64 = 1e-7;
@@ -25,7 +25,7 @@ pub(super) struct Absolute<'a> {
     branches: usize,
 }
 
-/// The functional near a point.
+/// Second-order expansion of the functional at a point.
 struct Expansion {
     value: f64,
     gradient: DVector<f64>,
@@ -53,7 +53,7 @@ impl<'a> Absolute<'a> {
         }
     }
 
-    /// The minimum; `problem` carries constraints and bound.
+    /// Minimises the functional; `problem` contains constraints and bound.
     pub fn minimise(&self, problem: &Problem, ratio: f64) -> Result<Solution> {
         let start = Problem {
             rows: self.rows.clone(),
@@ -91,7 +91,7 @@ impl<'a> Absolute<'a> {
         Ok(solution)
     }
 
-    /// R/√(R² + ε²) and √(R² + ε²) of every row.
+    /// Returns R/√(R² + ε²) and √(R² + ε²) for every row.
     fn smoothed(&self, alpha: &DVector<f64>, epsilon: f64) -> (DVector<f64>, DVector<f64>) {
         let mut residual = -self.values.clone();
         residual.gemv(1.0, &self.rows, alpha, 1.0);
@@ -99,7 +99,7 @@ impl<'a> Absolute<'a> {
         (residual.component_div(&absolute), absolute)
     }
 
-    /// F_m for every functional.
+    /// Value F_m of every functional.
     fn functional(&self, absolute: &DVector<f64>) -> Vec<f64> {
         let places: Vec<f64> = absolute
             .as_slice()
@@ -145,7 +145,8 @@ impl<'a> Absolute<'a> {
     }
 }
 
-/// The quadratic program of a Newton step from α: minimise ½ (x−α)·H(x−α) + g·(x−α), as least squares with the Cholesky factor of H.
+/// Quadratic program of a Newton step from α: minimise ½ (x−α)·H(x−α) + g·(x−α), written as least squares with the
+/// Cholesky factor of H.
 fn newton(problem: &Problem, alpha: &DVector<f64>, here: &Expansion) -> Problem {
     let n = alpha.len();
     let mut ridge = 1e-14 * here.hessian.diagonal().amax();

@@ -1,10 +1,11 @@
-//! Least squares with inequalities, as a least-distance problem for non-negative least squares (Lawson & Hanson 1974, chapters 20 and 23).
+//! Least squares with inequalities, solved as a least-distance problem by non-negative least squares (Lawson &
+//! Hanson 1974, chapters 20 and 23).
 
 use nalgebra::{DMatrix, DVector};
 
 use super::least_squares::{Refusal, least_squares};
 
-/// minimise ‖E y − f‖ subject to G y ≥ h: y and the constraints that hold with equality.
+/// Minimises ‖E y − f‖ subject to G y ≥ h; returns y and the active constraints.
 pub(super) fn bounded(
     rows: &DMatrix<f64>,
     values: &DVector<f64>,
@@ -21,7 +22,7 @@ pub(super) fn bounded(
     factors.q_tr_mul(&mut right);
     let target = right.rows(0, p).into_owned();
     let triangle = factors.unpack_r();
-    // With z = R y − target the objective is the distance of z from the origin.
+    // With z = R y − target the objective is |z|.
     let Some(inverse) = triangle.try_inverse() else {
         return Err(undetermined);
     };
@@ -35,7 +36,7 @@ pub(super) fn bounded(
             h[c] /= norm;
             continue;
         }
-        // An unknown that the equations fix.
+        // An unknown determined by the equations.
         if margin[c] > 1e-12 * margin.amax() {
             return Err(Refusal::Infeasible);
         }
@@ -55,7 +56,7 @@ pub(super) fn bounded(
         return Err(Refusal::Infeasible);
     }
     let z = residual.rows(0, p) * (-unit / residual[p]);
-    // Bounds that are only just out of reach leave a small residual instead of none.
+    // Marginally infeasible bounds leave a small residual instead of none.
     let violated = (&h * unit - &g * &z).max();
     if violated > 1e-9 * unit.max(z.amax()) {
         return Err(Refusal::Infeasible);
@@ -65,7 +66,7 @@ pub(super) fn bounded(
     Ok((y, active))
 }
 
-/// minimise ‖M x − f‖ subject to x ≥ 0 (Lawson & Hanson's NNLS).
+/// Minimises ‖M x − f‖ subject to x ≥ 0 (Lawson & Hanson's NNLS).
 fn non_negative(matrix: &DMatrix<f64>, values: &DVector<f64>) -> DVector<f64> {
     let n = matrix.ncols();
     let mut x = DVector::zeros(n);
@@ -81,7 +82,7 @@ fn non_negative(matrix: &DMatrix<f64>, values: &DVector<f64>) -> DVector<f64> {
         loop {
             let columns = matrix.select_columns(&passive);
             let Ok((s, _)) = least_squares(&columns, values) else {
-                // The new column depends on the others.
+                // The new column is linearly dependent.
                 passive.retain(|c| *c != entering);
                 return x;
             };

@@ -1,26 +1,26 @@
-//! The functionals that a method forms of the residuals on a contour.
+//! Functionals that a tuning method forms of the residuals on a contour.
 
 use super::method::Method;
 use super::model::ScalingModel;
 use super::samples::{Place, Sample, places};
 
-/// Places with the residuals there and the functionals F_m = Σ_i weights[m][i] R(place i).
+/// Quadrature places with their residuals and the functionals F_m = Σ_i weights[m][i] R(place i).
 pub(super) struct Functionals {
     pub samples: Vec<Sample>,
     pub weights: Vec<Vec<f64>>,
 }
 
-/// How the integrals are taken.
+/// Quadrature of the integrals.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Quadrature {
-    /// Gauss nodes on whole pieces: exact to round-off for smooth integrands.
+    /// Gauss nodes on whole segments: exact to round-off for smooth integrands.
     Smooth,
-    /// Many short panels, for absolute values with their kinks.
+    /// Many short panels, for absolute values with kinks.
     Kinks,
 }
 
 impl Functionals {
-    /// The functionals of a method; `count` of them where the method divides the contour.
+    /// Creates the functionals of a method; `count` of them if the method divides the contour.
     pub fn new(model: &ScalingModel, method: Method, quadrature: Quadrature) -> Self {
         let contour = model.contour();
         let length = contour.length();
@@ -29,7 +29,8 @@ impl Functionals {
         let (equations, _) = model.equations();
         let count = unknowns.saturating_sub(equations.nrows());
         if method == Method::PointCollocation {
-            // In 1D the last point is the end of the zone; a closed contour ends where it begins, so that its end says nothing.
+            // In 1D the last point is the zone border; a closed contour ends where it begins, so its end is
+            // redundant.
             let parts = if bar { count } else { count + 1 };
             let places = (1..=count).map(|m| {
                 let (segment, distance) = contour.locate(m as f64 * length / parts as f64);
@@ -64,7 +65,7 @@ impl Functionals {
                     let part = (place.abscissa / length * count as f64) as usize;
                     f64::from(u8::from(part.min(count - 1) == m))
                 }
-                // In 1D the weights are 1, b₁ … b_{N−2}; in the literal reading b₁ … b_{N−1}.
+                // In 1D the weights are 1, b₁ … b_{N−2}; in the literal reading of the paper b₁ … b_{N−1}.
                 Method::Galerkin if bar && m == 0 => 1.0,
                 Method::Galerkin if bar => model.trace(m - 1, place.k),
                 Method::Galerkin | Method::LiteralGalerkin => model.trace(m, place.k),

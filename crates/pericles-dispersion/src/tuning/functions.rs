@@ -1,4 +1,4 @@
-//! Functions of |ξ| that stand for tables.
+//! Functions of |ξ| that represent tables of coefficients.
 
 use crate::DispersionError;
 use std::f64::consts::TAU;
@@ -8,8 +8,9 @@ use nalgebra::{DMatrix, DVector};
 use pericles::kernel::{ClassTable, InfluenceFunction};
 use pericles::{Result, positive};
 
-/// The influence function printed by Alebrahim et al. (2022, eq. 50) for N = 3: a₀ + Σ a_j cos(1.1 j |ξ|/D) on a grid of the given spacing, m. Its digits are
-/// rounded, so that it carries 1.9 % less modulus than α ≡ 1 should (lattice sum 0.9813); the calibration "lattice" mends that.
+/// Influence function printed by Alebrahim et al. (2022, eq. 50) for N = 3: a₀ + Σ a_j cos(1.1 j |ξ|/D) on a grid
+/// of the given spacing D, m. Its digits are rounded, so its modulus is 1.9 % below that of α ≡ 1 (lattice sum
+/// 0.9813); `calibration = "lattice"` corrects this.
 pub fn influence_alebrahim(spacing: f64) -> InfluenceFunction {
     InfluenceFunction::Cosines {
         wavenumber: 1.1 / spacing,
@@ -17,17 +18,18 @@ pub fn influence_alebrahim(spacing: f64) -> InfluenceFunction {
     }
 }
 
-/// The polygon through a table, constant below its first class.
+/// Piecewise linear interpolation of a table, constant below its first class.
 pub fn polygon(table: &ClassTable) -> InfluenceFunction {
     InfluenceFunction::Tabulated {
         table: table.chord().to_vec(),
     }
 }
 
-/// The sum a₀ + Σ a_j cos(j w r) with `terms` cosines nearest to the polygon through a table in the mean square over (0, horizon).
+/// Fits a₀ + Σ a_j cos(j w r) with `terms` cosines to the piecewise linear interpolation of a table, by least
+/// squares over (0, horizon).
 ///
 /// # Errors
-/// A wavenumber or horizon that is not positive, so many terms that the samples do not determine them.
+/// A wavenumber or horizon that is not positive, or too many terms for the samples to determine them.
 pub fn fit_cosines(
     table: &ClassTable,
     horizon: f64,

@@ -1,10 +1,10 @@
-//! Least squares without constraints, and why a problem has no solution.
+//! Unconstrained least squares, and reasons why a problem has no solution.
 
 use nalgebra::{DMatrix, DVector};
 
-/// Why there is no solution.
+/// Reason why there is no solution.
 pub(super) enum Refusal {
-    /// The equations contradict each other by this relative amount.
+    /// The equations are inconsistent by this relative amount.
     Inconsistent(f64),
     /// Fewer independent rows than unknowns.
     Undetermined { rank: usize, unknowns: usize },
@@ -12,7 +12,7 @@ pub(super) enum Refusal {
     Infeasible,
 }
 
-/// The least-squares solution of a system of full column rank, and the condition number.
+/// Returns the least-squares solution of a system of full column rank, and the condition number.
 pub(super) fn least_squares(
     rows: &DMatrix<f64>,
     values: &DVector<f64>,
@@ -47,7 +47,7 @@ pub(super) fn least_squares(
     if rank < unknowns {
         return Err(Refusal::Undetermined { rank, unknowns });
     }
-    // Both factors were computed and no singular value is cut off, so that this cannot fail.
+    // Both factors were computed and no singular value is cut off, so this cannot fail.
     let solved = svd.solve(&right.rows(0, unknowns).into_owned(), 0.0);
     let Ok(mut solution) = solved else {
         return Err(Refusal::Undetermined { rank: 0, unknowns });

@@ -1,20 +1,21 @@
-//! Choices: method, combination of branches, weights, bound.
+//! Options of tuning: method, combination of branches, weights, bound.
 
-/// Which functionals F_m of the residuals R = ω² − V²|k|² are formed (Alebrahim et al. 2022, section 3).
+/// Functionals F_m of the residuals R = ω² − V²|k|² (Alebrahim et al. 2022, section 3).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Method {
-    /// ∮ R² is minimised.
+    /// Minimises ∮ R².
     #[default]
     LeastSquares,
     /// R at equally spaced points (point collocation).
     PointCollocation,
     /// ∫R over equal parts of the contour (sub-domain collocation).
     Subdomain,
-    /// ∮ w_m R. In 1D with w = 1, b₁ … b_{N−2}, which reproduces the paper's printed numbers; else the shares of the first classes in the trace of M.
+    /// ∮ w_m R (Galerkin). In 1D with w = 1, b₁ … b_{N−2}, which reproduces the paper's printed values; otherwise
+    /// with the contributions of the first classes to the trace of M.
     Galerkin,
-    /// 1D only: ∫ b_m R with m = 1 … N−1, as the paper's equation 46 reads.
+    /// 1D only: ∫ b_m R with m = 1 … N−1, the paper's equation 46 taken literally.
     LiteralGalerkin,
-    /// ∮ |R| is minimised: the error by which tables are compared.
+    /// Minimises ∮ |R|, the error by which tables are compared.
     Absolute,
 }
 
@@ -29,7 +30,7 @@ impl Method {
         Self::Absolute,
     ];
 
-    /// Name as in decks.
+    /// Name in decks.
     pub fn name(self) -> &'static str {
         match self {
             Self::LeastSquares => "least-squares",
@@ -42,15 +43,16 @@ impl Method {
     }
 }
 
-/// How the residuals of the branches enter the functionals. The least-squares method has the first only, the absolute method the second only.
+/// Combination of the branch residuals in the functionals. The least-squares method supports the first only, the
+/// absolute method the second only.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Combination {
-    /// Σ_m F_m(e_p R_p)² + F_m(e_s R_s)² is minimised.
+    /// Minimises Σ_m F_m(e_p R_p)² + F_m(e_s R_s)².
     #[default]
     Separated,
-    /// Σ_m F_m(e_p |R_p| + e_s |R_s|)² is minimised: convex, but not smooth.
+    /// Minimises Σ_m F_m(e_p |R_p| + e_s |R_s|)²: convex, but not smooth.
     Absolute,
-    /// F_m(e_p R_p + e_s R_s) = 0. An experiment: the lattices it makes are mostly unstable.
+    /// Solves F_m(e_p R_p + e_s R_s) = 0. Experimental: most of the resulting lattices are unstable.
     SignedSum,
 }
 
@@ -58,7 +60,7 @@ impl Combination {
     /// All combinations.
     pub const ALL: [Self; 3] = [Self::Separated, Self::Absolute, Self::SignedSum];
 
-    /// Name as in decks.
+    /// Name in decks.
     pub fn name(self) -> &'static str {
         match self {
             Self::Separated => "separated",
@@ -71,18 +73,20 @@ impl Combination {
 /// Weights of the residuals.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Weights {
-    /// e_p.
+    /// Weight e_p of pressure waves.
     pub pressure: f64,
-    /// e_s.
+    /// Weight e_s of shear waves.
     pub shear: f64,
-    /// A wavenumber κ (rad per spacing): residuals are also weighted with exp(−(|k|/κ)²), so that the corner of the zone, where no lattice can be
-    /// exact, matters less. None for equal weights, as published: on plates these spend the freedom on that corner and leave waves of 10 to 50 spacings worse than α ≡ 1 does.
+    /// Wavenumber κ (rad per spacing) of an additional weight exp(−(|k|/κ)²), which reduces the influence of the
+    /// zone corner, where no lattice can be exact. `None` gives equal weights, as published: on plates these fit
+    /// mainly that corner and make waves of 10 to 50 spacings less accurate than α ≡ 1.
     pub decay: Option<f64>,
 }
 
 impl Weights {
-    /// The decay κ (rad per spacing) that decks take by default. For a horizon of three spacings it keeps the phase speed within 1 % of that of long waves down to 3.0 spacings per
-    /// wavelength in a bar and 5.6 in a plate; equal weights do so down to 23 and 27 only.
+    /// Default decay κ (rad per spacing) in decks. For a horizon of three spacings it keeps the phase speed within
+    /// 1 % of that of long waves down to 3.0 spacings per wavelength in a bar and 5.6 in a plate; equal weights do
+    /// so only down to 23 and 27.
     pub const DECAY: f64 = 1.0;
 }
 
@@ -96,15 +100,16 @@ impl Default for Weights {
     }
 }
 
-/// What is asked for.
+/// Options of a tuning problem.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Tuning {
-    /// The functionals.
+    /// Functionals.
     pub method: Method,
-    /// How branches are combined.
+    /// Combination of the branches.
     pub combination: Combination,
     /// Weights.
     pub weights: Weights,
-    /// No coefficient may be below it. The paper takes 0.5; with none, coefficients of both signs appear, with which bonds cannot break.
+    /// Lower bound of the coefficients. The paper uses 0.5. `None` allows coefficients of both signs, for which
+    /// bonds cannot break.
     pub lower_bound: Option<f64>,
 }

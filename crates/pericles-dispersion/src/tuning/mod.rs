@@ -1,17 +1,21 @@
-//! Coefficients of bond classes tuned against dispersion.
+//! Coefficients per bond class that reduce numerical dispersion.
 //!
-//! A lattice with stiffness c α_j for the bonds of class j has ω²(k) = Σ_j α_j b_j(k), linear in α on every branch whose polarisation symmetry fixes. The
-//! coefficients are chosen so that R = ω² − V²|k|² is small on the border of the irreducible zone while long waves are exact
-//! (Alebrahim, Packo, Zaccariotto & Galvanetto 2022, one and two dimensions; here in three as well).
+//! A lattice with stiffness c α_j for bonds of class j has ω²(k) = Σ_j α_j b_j(k), linear in α on every branch
+//! whose polarisation is determined by symmetry. The coefficients are chosen such that R = ω² − V²|k|² is small on
+//! the border of the irreducible zone while long waves are exact (Alebrahim, Packo, Zaccariotto & Galvanetto 2022,
+//! in one and two dimensions; extended here to three).
 //!
-//! * [`ScalingModel`] – classes, contour, constraints of a stress state and horizon ratio, in units of the spacing and √(E/ρ).
-//! * [`Tuning`] – [`Method`], [`Combination`], [`Weights`], lower bound; [`ScalingModel::tune`] gives a [`TunedTable`].
+//! * [`ScalingModel`] – bond classes, contour, constraints of a stress state and horizon ratio, in units of the
+//!   spacing and √(E/ρ).
+//! * [`Tuning`] – [`Method`], [`Combination`], [`Weights`], lower bound; [`ScalingModel::tune`] returns a
+//!   [`TunedTable`].
 //! * [`TunedTable::influence`] – the result as an influence function of a material.
-//! * [`influence_alebrahim`], [`polygon`], [`fit_cosines`] – functions of |ξ| made of tables.
+//! * [`influence_alebrahim`], [`polygon`], [`fit_cosines`] – functions of |ξ| that represent tables.
 //!
-//! At the corner of the zone the branches of a lattice meet, those of the continuum do not, so that the residual has a floor in two and three dimensions.
-//! Tables with negative entries may be unstable (see [`Assessment`]) and must not be used where bonds break. Cost: 10 ms for N = 3 in 2D, less than a
-//! second in 3D, most of it for the scan of the zone.
+//! At the zone corner the branches of a lattice meet and those of the continuum do not, so in two and three
+//! dimensions the residual has a lower limit. Tables with negative entries may be unstable (see [`Assessment`]) and
+//! must not be used with breaking bonds. Cost: 10 ms for N = 3 in 2D, less than a second in 3D, mostly for the scan
+//! of the zone.
 //!
 //! ```
 //! use pericles_dispersion::tuning::{ScalingModel, Tuning};

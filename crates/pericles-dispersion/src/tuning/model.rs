@@ -1,4 +1,4 @@
-//! The lattice model whose coefficients are sought, in units of the spacing and the bar wave speed √(E/ρ).
+//! Lattice model whose coefficients are tuned, in units of the spacing and the bar wave speed √(E/ρ).
 
 use std::cmp::Reverse;
 use std::collections::BTreeSet;
@@ -17,18 +17,18 @@ use pericles::{PericlesError, Result};
 
 use super::samples::{Sample, panels};
 
-/// A class of bonds.
+/// Bond class.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BondClass {
     /// Absolute offsets in descending order.
     pub offset: ClassOffset,
     /// |ξ| in spacings.
     pub length: f64,
-    /// Bonds of a point in this class.
+    /// Number of bonds of a point in this class.
     pub multiplicity: usize,
 }
 
-/// The classes of the bonds of a lattice, by length, and as in tables per class where two have one length.
+/// Returns the bond classes of a lattice by length; classes of equal length are kept apart, as in tables per class.
 pub fn bond_classes(lattice: &BondLattice) -> Vec<BondClass> {
     let keys = lattice.bonds().iter().map(|bond| {
         let offset = class_of(bond.offset);
@@ -48,29 +48,30 @@ pub fn bond_classes(lattice: &BondLattice) -> Vec<BondClass> {
         .collect()
 }
 
-/// How far a table is from a medium without dispersion.
+/// Dispersion error of a table.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DispersionError {
-    /// ∮ Σ_branches |R| (Alebrahim et al. 2022, eqs. 49 and 51).
+    /// Absolute error ∮ Σ_branches |R| (Alebrahim et al. 2022, eqs. 49 and 51).
     pub absolute: f64,
-    /// `absolute` over that of α ≡ 1 with the same horizon; in 1D with N = 3, as the paper has it.
+    /// `absolute` divided by that of α ≡ 1 with the same horizon; in 1D with N = 3, as in the paper.
     pub ratio: f64,
-    /// (∮ Σ_branches R²)^½.
+    /// Square error (∮ Σ_branches R²)^½.
     pub square: f64,
 }
 
-/// What a table does to waves.
+/// Wave properties of a table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Assessment {
-    /// Its errors.
+    /// Dispersion errors.
     pub error: DispersionError,
-    /// Relative residuals of the constraints on long waves.
+    /// Relative residuals of the long-wave constraints.
     pub constraints: Vec<f64>,
     /// Stability and highest frequency over the zone, in units of √(E/ρ) and the spacing.
     pub stability: Stability,
 }
 
-/// A bond-based lattice with one unknown coefficient α per class of bonds, in units of the spacing D and the speed V = √(E/ρ).
+/// Bond-based lattice with one unknown coefficient α per bond class, in units of the spacing D and the speed V =
+/// √(E/ρ).
 ///
 /// The bond constant is that of α ≡ 1 with δ = `horizon_ratio` · D:
 ///
@@ -81,7 +82,7 @@ pub struct Assessment {
 /// | plane strain | 48/(5πN³) | 6/5 | 2/5 | 1/4 |
 /// | 3D | 12/(πN⁴) | 6/5 | 2/5 | 1/4 |
 ///
-/// so that 9/8 over 9 equals 6/5 over 48/5: both plane states have the same coefficients.
+/// Since 9/8 over 9 equals 6/5 over 48/5, both plane states have the same coefficients.
 #[derive(Debug, Clone)]
 pub struct ScalingModel {
     state: StressState,
@@ -96,16 +97,16 @@ pub struct ScalingModel {
 }
 
 impl ScalingModel {
-    /// The model of a stress state with horizon `horizon_ratio` spacings and partial volumes.
+    /// Creates the model of a stress state with a horizon of `horizon_ratio` spacings and partial volumes.
     ///
     /// # Errors
-    /// A horizon below one spacing or beyond fifty.
+    /// A horizon below one spacing or above fifty.
     pub fn new(
         state: StressState,
         horizon_ratio: f64,
         correction: VolumeCorrection,
     ) -> Result<Self> {
-        // At one spacing up to round-off there is a bond.
+        // A horizon of one spacing up to round-off contains bonds.
         if !(1.0 - 1e-9..=50.0).contains(&horizon_ratio) {
             return Err(PericlesError::OutOfRange {
                 quantity: "the horizon in spacings",
@@ -156,27 +157,27 @@ impl ScalingModel {
         self.state
     }
 
-    /// Horizon over spacing.
+    /// Horizon divided by spacing.
     pub fn horizon_ratio(&self) -> f64 {
         self.ratio
     }
 
-    /// The partial volumes.
+    /// Volume correction.
     pub fn correction(&self) -> VolumeCorrection {
         self.correction
     }
 
-    /// The classes, in the order of coefficients: by length.
+    /// Bond classes in the order of the coefficients: by length.
     pub fn classes(&self) -> &[BondClass] {
         &self.classes
     }
 
-    /// The contour on which dispersion is judged: the border of the irreducible zone, measured by arc length.
+    /// Contour on which dispersion is evaluated: the border of the irreducible zone, parametrised by arc length.
     pub fn contour(&self) -> &Contour {
         &self.contour
     }
 
-    /// The lattice with given coefficients.
+    /// Returns the lattice with given coefficients.
     pub fn lattice(&self, alpha: &[f64]) -> BondLattice {
         let value = |offset| {
             let class = class_of(offset);
@@ -187,15 +188,15 @@ impl ScalingModel {
             .with_stiffness(|bond| bond.stiffness * value(bond.offset))
     }
 
-    /// Errors, constraints and stability of given coefficients.
+    /// Computes errors, constraints and stability of given coefficients.
     ///
     /// # Errors
-    /// Another number of coefficients than there are classes.
+    /// The number of coefficients is not the number of classes.
     pub fn assess(&self, alpha: &[f64]) -> Result<Assessment> {
         if alpha.len() != self.classes.len() {
             return Err(PericlesError::BadInfluence {
                 reason: format!(
-                    "{} coefficients for {} classes of bonds; one for each is needed",
+                    "{} coefficients for {} bond classes; exactly one per class is required",
                     alpha.len(),
                     self.classes.len()
                 ),
@@ -226,9 +227,9 @@ impl ScalingModel {
         })
     }
 
-    /// ∮ Σ|R| and ∮ ΣR².
+    /// Returns ∮ Σ|R| and ∮ ΣR².
     fn error(&self, lattice: &BondLattice) -> (f64, f64) {
-        /// Panels of the whole contour: the kinks of |R| limit the order.
+        /// Number of panels of the whole contour: the kinks of |R| limit the order.
         const PANELS: usize = 2400;
         let speeds = self.squared_speeds();
         let (mut absolute, mut square) = (0.0, 0.0);
@@ -244,7 +245,7 @@ impl ScalingModel {
         (absolute, square)
     }
 
-    /// Residuals of the branches at a place, as functions of the coefficients: R = row · α − value.
+    /// Residuals of the branches at a place as functions of the coefficients: R = row · α − value.
     pub(super) fn sample(&self, k: Vector, segment: usize) -> Sample {
         let square = dot(k, k);
         let speeds = self.squared_speeds();
@@ -259,7 +260,7 @@ impl ScalingModel {
         }
     }
 
-    /// The share of each class in the trace of M(k).
+    /// Contribution of a class to the trace of M(k).
     pub(super) fn trace(&self, class: usize, k: Vector) -> f64 {
         let matrix = self.parts[class].dynamical_matrix(k);
         (0..3).map(|c| matrix[c][c]).sum()
@@ -285,7 +286,7 @@ impl ScalingModel {
     }
 }
 
-/// Speeds of long waves in the continuum, over √(E/ρ).
+/// Long-wave speeds of the continuum, in units of √(E/ρ).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WaveSpeeds {
     /// Pressure waves.
@@ -294,8 +295,8 @@ pub struct WaveSpeeds {
     pub shear: f64,
 }
 
-/// The continuum's wave speeds over √(E/ρ): (1−ν)/((1+ν)(1−2ν)) and 1/(2(1+ν)), squared, with ν = 1/4 in plane strain and space; 1/(1−ν²) and
-/// 1/(2(1+ν)) with ν = 1/3 in plane stress.
+/// Wave speeds of the continuum in units of √(E/ρ). Their squares are (1−ν)/((1+ν)(1−2ν)) and 1/(2(1+ν)) with ν =
+/// 1/4 in plane strain and 3D; 1/(1−ν²) and 1/(2(1+ν)) with ν = 1/3 in plane stress.
 pub fn continuum_speeds(state: StressState) -> WaveSpeeds {
     let (pressure, shear): (f64, f64) = match state {
         StressState::Uniaxial => (1.0, 0.0),

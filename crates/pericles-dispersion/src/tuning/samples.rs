@@ -1,4 +1,4 @@
-//! Quadrature on a contour, and residuals there.
+//! Quadrature on a contour, and residuals at its nodes.
 
 use std::num::NonZeroUsize;
 
@@ -7,7 +7,7 @@ use gauss_quad::GaussLegendre;
 use crate::contour::Contour;
 use crate::vector::Vector;
 
-/// The residuals of all branches at one wave vector: R_b = rows[b] · α − values[b].
+/// Residuals of all branches at one wave vector: R_b = rows[b] · α − values[b].
 #[derive(Debug, Clone)]
 pub(super) struct Sample {
     pub k: Vector,
@@ -15,7 +15,7 @@ pub(super) struct Sample {
     pub values: Vec<f64>,
 }
 
-/// A quadrature node on a contour.
+/// Quadrature node on a contour.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Place {
     pub k: Vector,
@@ -25,7 +25,7 @@ pub(super) struct Place {
     pub weight: f64,
 }
 
-/// Gauss nodes on every piece between `breaks` (arc lengths) and corners, each cut into `cuts` equal panels.
+/// Gauss nodes on every interval between `breaks` (arc lengths) and corners, each divided into `cuts` equal panels.
 pub(super) fn places(
     contour: &Contour,
     breaks: &[f64],
@@ -62,7 +62,7 @@ pub(super) fn places(
     all
 }
 
-/// A composite rule with about `count` panels in all.
+/// Composite rule with about `count` panels in total.
 pub(super) fn panels(contour: &Contour, count: usize, nodes: usize) -> Vec<Place> {
     let length = contour.length();
     let share = |piece: f64| (count as f64 * piece / length).ceil() as usize;

@@ -1,9 +1,10 @@
 //! Least squares with linear equations and a lower bound.
 //!
-//! minimise ‖A α − b‖² subject to C α = d and α ≥ l. Equations are removed by a basis of their null space, the bound leads to a least-distance problem that
-//! non-negative least squares solves (Lawson & Hanson 1974, chapters 20 and 23): a finite method for this convex quadratic
-//! program. The bounds it finds active are then fixed and the rest is solved again by orthogonal
-//! factors, so that the result carries no more error than the equations themselves.
+//! Minimises ‖A α − b‖² subject to C α = d and α ≥ l. Equations are eliminated by a basis of their null space; the
+//! bound leads to a least-distance problem that non-negative least squares solves (Lawson & Hanson 1974, chapters
+//! 20 and 23), a finite method for this convex quadratic program. The active bounds are then fixed and the
+//! remaining problem is solved again by orthogonal factorisation, so the result has no more error than the
+//! equations themselves.
 
 use crate::DispersionError;
 use nalgebra::{DMatrix, DVector};
@@ -13,38 +14,39 @@ use pericles::Result;
 use super::bounded::bounded;
 use super::least_squares::{Refusal, least_squares};
 
-/// A problem in n unknowns.
+/// Least-squares problem in n unknowns.
 #[derive(Debug, Clone)]
 pub(super) struct Problem {
-    /// A
+    /// Matrix A.
     pub rows: DMatrix<f64>,
-    /// b
+    /// Right-hand side b.
     pub values: DVector<f64>,
-    /// C
+    /// Constraint matrix C.
     pub equations: DMatrix<f64>,
-    /// d
+    /// Constraint values d.
     pub targets: DVector<f64>,
-    /// l
+    /// Lower bound l.
     pub lower: Option<f64>,
 }
 
-/// Its solution.
+/// Solution of a [`Problem`].
 #[derive(Debug, Clone)]
 pub(super) struct Solution {
     /// The unknowns.
     pub alpha: DVector<f64>,
     /// Unknowns at the bound.
     pub active: Vec<usize>,
-    /// Condition number of the least-squares part, its columns scaled to one length; 1 if the equations leave no freedom.
+    /// Condition number of the least-squares part with columns scaled to equal length; 1 if the equations determine
+    /// all unknowns.
     pub condition: f64,
-    /// How far the optimality conditions are violated, relative to ‖b‖ (columns scaled to one length).
+    /// Violation of the optimality conditions relative to ‖b‖ (columns scaled to equal length).
     pub kkt: f64,
 }
 
-/// Relative residual beyond which equations count as contradictory.
+/// Relative residual above which equations count as inconsistent.
 const INCONSISTENT: f64 = 1e-9;
 
-/// The set of solutions of the equations: `origin + basis · y`.
+/// Set of solutions of the equations: `origin + basis · y`.
 struct Affine {
     origin: DVector<f64>,
     basis: DMatrix<f64>,
@@ -61,7 +63,7 @@ impl Affine {
         }
         let rank = range.len();
         let mut all = range;
-        // The unit vectors complete the basis, those farthest from its span first.
+        // Unit vectors complete the basis, those farthest from its span first.
         while all.len() < n {
             let left = (0..n).map(|c| {
                 let covered: f64 = all.iter().map(|q| q[c] * q[c]).sum();
@@ -92,7 +94,8 @@ impl Affine {
     }
 }
 
-/// Adds the part of `vector` orthogonal to the others, if it is longer than `shortest`. Twice is enough (Kahan).
+/// Appends the part of `vector` orthogonal to the others if it is longer than `shortest`. Two orthogonalisations
+/// suffice (Kahan).
 fn push_orthogonal(basis: &mut Vec<DVector<f64>>, mut vector: DVector<f64>, shortest: f64) {
     for _ in 0..2 {
         for q in basis.iter() {
@@ -107,7 +110,7 @@ fn push_orthogonal(basis: &mut Vec<DVector<f64>>, mut vector: DVector<f64>, shor
 }
 
 impl Problem {
-    /// Solves it.
+    /// Solves the problem.
     pub fn solve(&self) -> std::result::Result<Solution, Refusal> {
         let affine = Affine::new(&self.equations, &self.targets)?;
         let rows = &self.rows * &affine.basis;
@@ -137,7 +140,7 @@ impl Problem {
         })
     }
 
-    /// The solution with some unknowns at the bound; none if it leaves the bound elsewhere.
+    /// Returns the solution with some unknowns fixed at the bound; `None` if it violates the bound elsewhere.
     fn with_fixed(&self, fixed: &[usize], lower: f64) -> Option<(DVector<f64>, f64)> {
         let n = self.rows.ncols();
         let free: Vec<usize> = (0..n).filter(|c| !fixed.contains(c)).collect();
@@ -162,11 +165,12 @@ impl Problem {
             .then_some((alpha, condition))
     }
 
-    /// The violation of Aᵀ(Aα − b) + Cᵀλ − μ = 0, μ ≥ 0 on active bounds and zero elsewhere, and of α ≥ l.
+    /// Returns the violation of Aᵀ(Aα − b) + Cᵀλ − μ = 0, with μ ≥ 0 on active bounds and zero elsewhere, and of
+    /// α ≥ l.
     fn kkt(&self, alpha: &DVector<f64>, active: &[usize]) -> f64 {
         let n = alpha.len();
         let gradient = self.rows.transpose() * (&self.rows * alpha - &self.values);
-        // In unknowns for which every column of A has length one.
+        // In unknowns scaled such that every column of A has length one.
         let scale = DVector::from_iterator(
             n,
             self.rows
@@ -199,7 +203,7 @@ impl Problem {
         stationary.max(sign).max(below)
     }
 
-    /// The largest bound for which there is a solution, by bisection.
+    /// Finds the largest feasible bound by bisection.
     fn largest_bound(&self) -> f64 {
         let feasible = |lower: f64| {
             let n = self.rows.ncols();
@@ -229,7 +233,7 @@ impl Problem {
         low
     }
 
-    /// The error to show for a refusal.
+    /// Converts a refusal to an error message.
     pub fn refused(&self, refusal: Refusal, ratio: f64) -> DispersionError {
         let classes = self.rows.ncols();
         match refusal {
@@ -249,7 +253,7 @@ impl Problem {
         }
     }
 
-    /// Solves it, with the error to show.
+    /// Solves the problem; failures are converted to an error message.
     pub fn solution(&self, ratio: f64) -> Result<Solution> {
         Ok(self
             .solve()
@@ -276,9 +280,9 @@ mod tests {
     }
 
     proptest! {
-        /// Against all active sets, one by one.
+        /// Compares with the best of all active sets.
         #[test]
-        fn bounded_problems(seed in prop::collection::vec(-2.0f64..2.0, 41), n in 2usize..6, lower in -0.5f64..0.3) {
+        fn bounded_solution_is_the_best_of_all_active_sets(seed in prop::collection::vec(-2.0f64..2.0, 41), n in 2usize..6, lower in -0.5f64..0.3) {
             let problem = problem(&seed, n, lower);
             let Ok(found) = problem.solve() else { return Ok(()); };
             let cost = |alpha: &DVector<f64>| (&problem.rows * alpha - &problem.values).norm();
@@ -297,7 +301,7 @@ mod tests {
     }
 
     #[test]
-    fn bounds_without_solution_name_the_largest() {
+    fn infeasible_bounds_report_the_largest_feasible_one() {
         // α₀ + 1.1 α₁ = 3 and both at least l: l ≤ 3/2.1.
         let problem = problem(&[0.3, -0.7, 1.1], 2, 1.5);
         let Err(refusal) = problem.solve() else {
@@ -311,7 +315,7 @@ mod tests {
     }
 
     #[test]
-    fn contradictory_equations_are_found() {
+    fn inconsistent_equations_are_detected() {
         let mut problem = problem(&[0.3, -0.7, 1.1], 3, 0.0);
         problem.equations = DMatrix::from_row_slice(2, 3, &[1.0, 1.0, 0.0, 2.0, 2.0, 0.0]);
         problem.targets = DVector::from_row_slice(&[1.0, 1.0]);

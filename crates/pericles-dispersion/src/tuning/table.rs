@@ -1,4 +1,4 @@
-//! Tuning a model.
+//! Tuning of a model.
 
 use crate::DispersionError;
 use nalgebra::{DMatrix, DVector};
@@ -14,34 +14,36 @@ use super::model::{Assessment, BondClass, ScalingModel};
 use super::samples::Sample;
 use super::solve::Problem;
 
-/// A tuned set of coefficients.
+/// Tuned coefficients.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TunedTable {
-    /// What was asked for.
+    /// Options of the tuning problem.
     pub tuning: Tuning,
-    /// The classes, in the order of the coefficients.
+    /// Bond classes in the order of the coefficients.
     pub classes: Vec<BondClass>,
-    /// α of each class.
+    /// Coefficient α of each class.
     pub alpha: Vec<f64>,
-    /// Classes at the bound.
+    /// Classes at the lower bound.
     pub active: Vec<usize>,
-    /// Condition number of the least-squares part (columns scaled to one length). Round-off in the coefficients is about this times 1e-16.
+    /// Condition number of the least-squares part (columns scaled to equal length). Round-off in the coefficients
+    /// is about this times 1e-16.
     pub condition: f64,
-    /// Violation of the optimality conditions, relative to the data. For absolute values, whose functional is smoothed, the larger of it and the
-    /// relative decrease that one more Newton step promises.
+    /// Relative violation of the optimality conditions. For absolute values, whose functional is smoothed, the
+    /// larger of it and the relative decrease predicted for one more Newton step.
     pub kkt: f64,
-    /// What is left of the functionals that the method makes small, one row for each with an entry per branch (pressure, then shear), over V² and with the spacing as unit:
-    /// (∮ R²)^½ of least squares, ∮ |R| of the absolute method, the values F_m(R) else (F_m(|R|) of the absolute combination). Residuals carry their weights.
+    /// Remaining values of the functionals, one row for each with an entry per branch (pressure, then shear),
+    /// divided by V² and with the spacing as unit: (∮ R²)^½ for least squares, ∮ |R| for the absolute method,
+    /// otherwise F_m(R) (F_m(|R|) for the absolute combination). Residuals include their weights.
     pub functionals: Vec<Vec<f64>>,
-    /// Errors, constraints, stability.
+    /// Errors, constraints and stability.
     pub assessment: Assessment,
 }
 
 impl TunedTable {
-    /// The influence function for a grid of the given spacing, m.
+    /// Returns the influence function for a grid of the given spacing, m.
     ///
     /// # Errors
-    /// A spacing that is not positive.
+    /// The spacing is not positive.
     pub fn influence(&self, dimension: usize, spacing: f64) -> Result<Influence> {
         let entries: Vec<_> = self
             .classes
@@ -57,13 +59,14 @@ impl TunedTable {
 }
 
 impl ScalingModel {
-    /// Finds the coefficients.
+    /// Computes the coefficients.
     ///
-    /// All problems keep the constraints on long waves: Σ i α_i = N²/2 in 1D, C₁₁₁₁ = V_p² and C₁₁₂₂ = V_s² else (with C₁₂₁₂ = C₁₁₂₂, as every
-    /// bond-based lattice has it, and C₁₁₁₁ = 3 C₁₁₂₂ long waves are isotropic).
+    /// All problems satisfy the long-wave constraints: Σ i α_i = N²/2 in 1D, otherwise C₁₁₁₁ = V_p² and C₁₁₂₂ =
+    /// V_s². Every bond-based lattice has C₁₂₁₂ = C₁₁₂₂; with C₁₁₁₁ = 3 C₁₁₂₂ long waves are isotropic.
     ///
     /// # Errors
-    /// Combinations that do not exist, weights that are not positive, a lattice that cannot be isotropic, a bound without solution.
+    /// Unsupported combinations of options, weights that are not positive, a lattice that cannot be isotropic, an
+    /// infeasible bound.
     pub fn tune(&self, tuning: Tuning) -> Result<TunedTable> {
         self.check(&tuning)?;
         let absolute =
@@ -102,9 +105,10 @@ impl ScalingModel {
         })
     }
 
-    /// The same, and where the coefficients make the lattice unstable and there is no bound, the problem again with the bound zero: without negative coefficients no wave grows.
+    /// As [`ScalingModel::tune`]. If there is no bound and the coefficients make the lattice unstable, the problem
+    /// is solved again with the bound zero: without negative coefficients no wave is unstable.
     ///
-    /// In space signed coefficients are unstable for most horizons, on plates for some horizons of four spacings and more.
+    /// In 3D signed coefficients are unstable for most horizons, in 2D for some horizons of four spacings and more.
     ///
     /// # Errors
     /// As [`ScalingModel::tune`].
@@ -117,7 +121,7 @@ impl ScalingModel {
             lower_bound: Some(0.0),
             ..tuning
         });
-        // Without a solution the caller learns of the instability.
+        // Without a bounded solution the caller finds the instability in the assessment.
         Ok(bounded.unwrap_or(free))
     }
 
@@ -125,13 +129,13 @@ impl ScalingModel {
         positive("the weight of pressure waves", tuning.weights.pressure)?;
         positive("the weight of shear waves", tuning.weights.shear)?;
         if let Some(decay) = tuning.weights.decay {
-            positive("the wave number of the weight's decay", decay)?;
+            positive("the wavenumber of the weight's decay", decay)?;
         }
         if tuning.lower_bound.is_some_and(|bound| !bound.is_finite()) {
             return Err(PericlesError::OutOfRange {
                 quantity: "the lower bound of the coefficients",
                 value: tuning.lower_bound.unwrap_or(f64::NAN),
-                allowed: "any finite number (usual: 0.5)",
+                allowed: "a finite number (usually 0.5)",
             });
         }
         let refuse = |choice, with, allowed| {
@@ -157,7 +161,7 @@ impl ScalingModel {
             Method::Absolute if tuning.combination == Combination::SignedSum => refuse(
                 "the absolute method",
                 "with signed sums",
-                "allowed: separated, absolute (the same here)",
+                "allowed: separated, absolute (equivalent here)",
             ),
             _ => Ok(()),
         }
@@ -176,7 +180,7 @@ impl ScalingModel {
     }
 }
 
-/// One equation row · α = value.
+/// Equation row · α = value.
 struct Row(Vec<f64>, f64);
 
 fn scaled(sample: &Sample, factor: f64) -> Vec<Row> {
@@ -185,7 +189,7 @@ fn scaled(sample: &Sample, factor: f64) -> Vec<Row> {
         .collect()
 }
 
-/// The functionals of each branch, or of the sum of the branches.
+/// Functionals of each branch, or of the sum of the branches.
 fn integrated(functionals: &Functionals, combination: Combination) -> Vec<Row> {
     let mut all = Vec::new();
     for weights in &functionals.weights {
@@ -211,7 +215,7 @@ fn integrated(functionals: &Functionals, combination: Combination) -> Vec<Row> {
     all
 }
 
-/// What is left of each functional, branch by branch.
+/// Remaining value of each functional, branch by branch.
 fn residuals(functionals: &Functionals, tuning: &Tuning, alpha: &[f64]) -> Vec<Vec<f64>> {
     let squares = tuning.method == Method::LeastSquares;
     let absolute = tuning.method == Method::Absolute || tuning.combination == Combination::Absolute;
@@ -234,7 +238,7 @@ fn residuals(functionals: &Functionals, tuning: &Tuning, alpha: &[f64]) -> Vec<V
         .collect()
 }
 
-/// Multiplies the residuals with their weights.
+/// Multiplies the residuals by their weights.
 fn weigh(sample: &mut Sample, tuning: &Tuning) {
     let weights = tuning.weights;
     let near = weights.decay.map_or(1.0, |decay| decayed(sample.k, decay));

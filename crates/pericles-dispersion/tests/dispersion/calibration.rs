@@ -1,4 +1,4 @@
-//! Constants of bonds against what bodies do: moduli and fracture energies.
+//! Calibrated bond constants compared with the moduli and fracture energies of bodies.
 
 use std::sync::Arc;
 
@@ -88,7 +88,7 @@ fn section(state: StressState) -> f64 {
     }
 }
 
-/// Young's modulus of the continuum with this constant c: the energy of a uniform dilation, integrated.
+/// Young's modulus of the continuum with this constant c, from the integrated energy of a uniform dilation.
 fn young_of(state: StressState, c: f64, alpha: impl Fn(f64) -> f64) -> f64 {
     const STEPS: usize = 20_000;
     let dimension = state.dimension() as i32;
@@ -97,7 +97,7 @@ fn young_of(state: StressState, c: f64, alpha: impl Fn(f64) -> f64) -> f64 {
         .map(|k| (k as f64 + 0.5) * dr)
         .map(|r| alpha(r) * r.powi(dimension) * dr)
         .sum();
-    // W = ½ ∫ ½ c α ε² r dV over all directions, and W = E ε² times the factor of the state.
+    // W = ½ ∫ ½ c α ε² r dV over all directions, and W = E ε² times a factor of the stress state.
     let sphere = [2.0, std::f64::consts::TAU, 2.0 * std::f64::consts::TAU][state.dimension() - 1];
     let energy = 0.25 * c * section(state) * sphere * moment;
     energy
@@ -112,7 +112,7 @@ fn young_of(state: StressState, c: f64, alpha: impl Fn(f64) -> f64) -> f64 {
 }
 
 #[test]
-fn constants_of_every_function_have_the_modulus_of_their_integral() {
+fn bond_constants_reproduce_the_modulus_for_every_influence_function() {
     for state in STATES {
         let sides = vec![DX; state.dimension()];
         for influence in functions() {
@@ -129,7 +129,7 @@ fn constants_of_every_function_have_the_modulus_of_their_integral() {
             let alpha = |r| influence.alpha(r, 3.0 * DX);
             let own = young_of(state, c(Calibration::Continuum), alpha);
             assert!((own / YOUNG - 1.0).abs() < 1e-4, "{state:?} {influence:?}");
-            // The constant function, acting on the same.
+            // Constant influence function on the same body.
             let constant = Influence {
                 function: InfluenceFunction::Constant,
                 acts_on: influence.acts_on,
@@ -145,7 +145,7 @@ fn constants_of_every_function_have_the_modulus_of_their_integral() {
 }
 
 #[test]
-fn a_constant_micromodulus_in_one_dimension() {
+fn constant_micromodulus_in_one_dimension_has_the_closed_form() {
     // C(r) = c: E = ½ ∫ c ξ² dξ = c δ³/3.
     let delta = 3.0 * DX;
     let bar = BondMaterial {
@@ -161,7 +161,7 @@ fn a_constant_micromodulus_in_one_dimension() {
     assert!((constants.stiffness_error - (9.5 / 9.0 - 1.0)).abs() < 1e-12);
 }
 
-/// The energy density of a uniform dilation in the middle of a body, over that of the continuum.
+/// Energy density of a uniform dilation in the interior of a body, divided by that of the continuum.
 fn dilation(cloud: &Arc<PointCloud>, material: &BondMaterial, state: StressState) -> f64 {
     let constants = material.constants(cloud, state).unwrap();
     let body = BondBody::new(cloud, material, &constants);
@@ -181,7 +181,7 @@ fn dilation(cloud: &Arc<PointCloud>, material: &BondMaterial, state: StressState
 }
 
 #[test]
-fn the_lattice_modulus_is_exact_on_cells_of_unequal_sides() {
+fn lattice_calibration_is_exact_for_anisotropic_spacing() {
     let bodies = [
         (
             StressState::PlaneStress,
@@ -232,7 +232,7 @@ fn planes(constants: &BondConstants) -> Vec<(String, f64)> {
 }
 
 #[test]
-fn energies_of_crack_planes_are_those_of_the_lattice_s_bonds() {
+fn crack_plane_energies_equal_sums_over_lattice_bonds() {
     let normals = [
         vec![("(1)", [1.0, 0.0, 0.0])],
         vec![("(10)", [1.0, 0.0, 0.0]), ("(11)", [1.0, 1.0, 0.0])],
@@ -270,7 +270,7 @@ fn energies_of_crack_planes_are_those_of_the_lattice_s_bonds() {
                         "{state:?} {name}"
                     );
                 }
-                // The mean is what was asked for.
+                // The mean over the planes is the requested fracture energy.
                 let mean = named.iter().map(|(_, share)| share).sum::<f64>() / dimension as f64;
                 assert!((mean - 1.0).abs() < 1e-12);
                 assert!((found.fracture_energy / ENERGY - 1.0).abs() < 1e-12);
@@ -280,11 +280,12 @@ fn energies_of_crack_planes_are_those_of_the_lattice_s_bonds() {
 }
 
 #[test]
-fn cutting_a_plate_along_its_planes_costs_the_fracture_energy() {
+fn cutting_a_plate_dissipates_the_fracture_energy() {
     let (state, thickness) = (StressState::PlaneStrain, 0.2);
     let cloud = boxed([0.0; 3], &[24e-3, 24e-3], DX, thickness);
     for (correction, expected) in [
-        // What was asked for on average; with the continuum's stretch a crack along the grid costs this times as much.
+        // The lattice value on average; with the continuum's critical stretch a crack along the grid costs this
+        // factor more.
         (VolumeCorrection::None, 1.026),
         (VolumeCorrection::Extended, 1.034),
         (VolumeCorrection::Linear, 0.823),
@@ -312,8 +313,8 @@ fn cutting_a_plate_along_its_planes_costs_the_fracture_energy() {
     }
 }
 
-/// Energy per length of a line with this unit normal and distance from the origin, of the bonds that cross its middle: at the critical stretch, over
-/// a whole number of the lattice's periods.
+/// Energy per length of a line with this unit normal and distance from the origin: sum over the bonds that cross
+/// its middle part at the critical stretch, over a whole number of lattice periods.
 fn cut(
     cloud: &Arc<PointCloud>,
     material: &BondMaterial,
@@ -328,7 +329,7 @@ fn cut(
     let middle = dot(along, [12e-3, 12e-3, 0.0]);
     // A diagonal repeats after √2 spacings.
     let length = PERIODS * DX * if normal[0] > 0.0 { 2.0f64.sqrt() } else { 1.0 };
-    // Off the crossings of bonds, which lie symmetrically.
+    // Avoids the crossing points of bonds, which lie symmetrically.
     let from = middle + 0.137 * DX;
     let mut energy = 0.0;
     for i in 0..cloud.len() {
@@ -354,7 +355,7 @@ fn cut(
 }
 
 #[test]
-fn planes_of_cells_with_unequal_sides() {
+fn crack_plane_energies_with_anisotropic_spacing() {
     let sides = [DX, 0.75 * DX];
     let material = glass(Calibration::Lattice, breaking(FractureCalibration::Lattice));
     let state = StressState::PlaneStress;
@@ -380,7 +381,7 @@ fn planes_of_cells_with_unequal_sides() {
 }
 
 #[test]
-fn bodies_without_a_lattice_have_the_fracture_energy_of_the_continuum() {
+fn bodies_without_a_lattice_use_the_continuum_fracture_energy() {
     let grid = boxed([0.0; 3], &[8e-3, 8e-3], DX, 0.2);
     let free = PointCloud::new(2, grid.positions().to_vec(), grid.volumes().to_vec(), 0.2).unwrap();
     let state = StressState::PlaneStrain;
@@ -410,7 +411,7 @@ fn a_horizon_of_one_spacing_has_no_shear_stiffness() {
         let sides = vec![DX; state.dimension()];
         let constants = short.constants_on(&sides, 1.0, *state).unwrap();
         assert_eq!(constants.shear_error, -1.0);
-        // Against the elastic constants of the lattice: C₁₂ = C₄₄ over E/(5/4 · ½) · ¼ and the like.
+        // Compared with the elastic constants of the lattice: C₁₂ = C₄₄ over E/(5/4 · ½) · ¼ and the like.
         let usual = glass(Calibration::Continuum, Fracture::Unbreakable);
         let constants = usual.constants_on(&sides, 1.0, *state).unwrap();
         let lattice = BondLattice::of_material(&sides, 1.0, &usual, &constants).unwrap();

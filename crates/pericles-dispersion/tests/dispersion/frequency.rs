@@ -1,4 +1,4 @@
-//! The highest frequency of bodies against dense eigenvalues and against the dispersion relation of their lattice.
+//! Highest frequency of bodies compared with dense eigenvalues and with the dispersion relation of their lattice.
 
 use crate::common;
 use std::sync::Arc;
@@ -35,7 +35,7 @@ fn material(cloud: &PointCloud, ratio: f64, influence: InfluenceFunction) -> Bon
     }
 }
 
-/// The highest frequency by all eigenvalues of the dense matrix.
+/// Highest frequency from all eigenvalues of the dense matrix.
 fn dense(system: &System) -> f64 {
     let u = vec![0.0; system.dimension() * system.points()];
     let roots: Vec<f64> = system.masses().iter().map(|m| m.sqrt()).collect();
@@ -76,7 +76,7 @@ fn assert_encloses(name: &str, found: HighestFrequency, truth: f64) {
 }
 
 #[test]
-fn small_bodies_are_known_to_a_thousandth() {
+fn highest_frequency_of_small_bodies_is_accurate_to_a_thousandth() {
     let grid = |size: &[f64]| common::boxed([0.0; 3], size, 1e-3, 1.0);
     let body = |cloud: &Arc<PointCloud>, ratio, influence| -> System {
         let material = material(cloud, ratio, influence);
@@ -112,7 +112,7 @@ fn small_bodies_are_known_to_a_thousandth() {
             dense(system),
         );
     }
-    // Supports and lighter parts.
+    // With supports and lighter parts.
     let mut held = body(&plate, 3.0, constant);
     let edge = common::points(&plate, |x, _, _| x < 2e-3);
     let n = plate.len();
@@ -129,7 +129,7 @@ fn small_bodies_are_known_to_a_thousandth() {
     held.add_motion(motion).unwrap();
     let rest = vec![0.0; 2 * n];
     assert_encloses(
-        "held plate",
+        "supported plate",
         highest_frequency(&held, &rest).unwrap(),
         dense(&held),
     );
@@ -153,8 +153,8 @@ fn small_bodies_are_known_to_a_thousandth() {
 }
 
 #[test]
-fn a_bar_with_a_gaussian_of_infinite_reach_is_stable_at_its_step() {
-    // Some 60 points that all act on each other: the frequency was 1e-5 too low here.
+fn highest_frequency_is_accurate_when_all_points_interact() {
+    // About 60 points that all interact; an earlier estimate was 1e-5 too low here.
     let cloud = common::boxed([0.0; 3], &[6.0], 0.1, 1.0);
     let gaussian = |xi: [f64; 3]| (-xi[0] * xi[0]).exp() * xi[0].abs();
     let operator = ConvolutionForce::<1>::with_stiffness(
@@ -172,7 +172,7 @@ fn a_bar_with_a_gaussian_of_infinite_reach_is_stable_at_its_step() {
 }
 
 #[test]
-fn large_lattice_bodies_take_the_bound_of_their_dispersion_relation() {
+fn large_lattice_bodies_use_the_bound_of_their_dispersion_relation() {
     let cloud = common::boxed([0.0; 3], &[0.12, 0.09], 1e-3, 1.0);
     let material = BondMaterial {
         law: PairLaw::Linear,

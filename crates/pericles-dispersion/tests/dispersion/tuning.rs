@@ -1,4 +1,5 @@
-//! Tuned coefficients against published and independently computed numbers (Alebrahim et al. 2022, verified values), closed forms and optimality.
+//! Tuned coefficients compared with published and independently computed values (Alebrahim et al. 2022, verified),
+//! closed forms and optimality conditions.
 
 use std::f64::consts::PI;
 
@@ -32,7 +33,7 @@ fn close(computed: f64, expected: f64, tolerance: f64, what: &str) {
     );
 }
 
-/// Half a unit of the last digit given, for numbers with few digits.
+/// Compares to within half a unit of the last given digit.
 fn digits(computed: f64, expected: f64, places: i32, what: &str) {
     assert!(
         (computed - expected).abs() <= 0.51 * 10f64.powi(-places),
@@ -46,7 +47,7 @@ const LS: Method = Method::LeastSquares;
 const G: Method = Method::Galerkin;
 const LITERAL: Method = Method::LiteralGalerkin;
 
-/// The rows of a table of published numbers.
+/// Rows of a table of published values.
 fn rows(text: &'static str) -> Vec<Vec<&'static str>> {
     let lines = text.lines().filter(|line| !line.starts_with('#'));
     lines
@@ -72,7 +73,7 @@ const PLATE: &str =
     include_str!("../../../../validation/dispersion-and-fracture/two-dimensional.csv");
 
 #[test]
-fn one_dimension() {
+fn bar_coefficients_match_published_values() {
     let rows = rows(BAR);
     assert_eq!(rows.len(), 20);
     for row in rows {
@@ -102,7 +103,7 @@ fn one_dimension() {
 }
 
 #[test]
-fn the_original_bar() {
+fn untuned_bar_has_the_closed_form_errors() {
     for (n, ratio, omega) in [
         (1.0, 0.36554, 2.8284),
         (2.0, 0.75193, f64::NAN),
@@ -125,7 +126,7 @@ fn the_original_bar() {
 }
 
 #[test]
-fn galerkin_has_a_closed_form_for_any_horizon() {
+fn galerkin_coefficients_equal_their_closed_form() {
     for n in [3usize, 7, 10, 25, 40] {
         let table = tuned(
             &model(StressState::Uniaxial, n as f64),
@@ -143,7 +144,7 @@ fn galerkin_has_a_closed_form_for_any_horizon() {
         let b = square / 2.0 - part(&|i| i as f64);
         let (p, q) = ((n - 1) as f64, n as f64);
         let determinant = q / p - p / q;
-        // Both sides carry the round-off of the first coefficients, about N², times their conditioning.
+        // Both sides have the round-off of the first coefficients, about N², times their conditioning.
         let [x, y] = [a * q - b / q, b / p - a * p].map(|x| x / determinant);
         let misses = [table.alpha[n - 2] - x, table.alpha[n - 1] - y];
         assert!(
@@ -156,8 +157,9 @@ fn galerkin_has_a_closed_form_for_any_horizon() {
 }
 
 #[test]
-fn least_squares_is_the_tangent_galerkin() {
-    // At N = 2 the one free direction is (2, −1): ∫ R (2 b₁ − b₂) dk = 0, checked with the closed forms of ∫ b_i b_j and ∫ b_i k².
+fn least_squares_satisfies_the_stationarity_condition() {
+    // At N = 2 the one free direction is (2, −1): ∫ R (2 b₁ − b₂) dk = 0, checked with the closed forms of ∫ b_i
+    // b_j and ∫ b_i k².
     let table = tuned(
         &model(StressState::Uniaxial, 2.0),
         LS,
@@ -177,14 +179,14 @@ const SEP: Combination = Combination::Separated;
 const ABS: Combination = Combination::Absolute;
 const L1: Method = Method::Absolute;
 
-/// Half a unit of the last digit given, and a little.
+/// Half a unit of the last given digit, plus a margin.
 fn rounding(cell: &str) -> f64 {
     let places = cell.split_once('.').map_or(0, |(_, digits)| digits.len());
     0.6 * 10f64.powi(-(places as i32))
 }
 
 #[test]
-fn two_dimensions() {
+fn plate_coefficients_match_published_values() {
     let rows = rows(PLATE);
     assert_eq!(rows.len(), 35);
     for row in rows {
@@ -251,7 +253,7 @@ fn two_dimensions() {
 }
 
 #[test]
-fn the_original_plate() {
+fn untuned_plate_has_the_closed_form_speeds() {
     for (n, absolute, smallest, omega) in [
         (2.0, 98.3298, 0.0774, 1.639),
         (3.0, 112.8406, 0.0511, 1.108),
@@ -264,7 +266,7 @@ fn the_original_plate() {
         digits(found.stability.smallest, smallest, 4, "smallest");
         digits(found.stability.omega_max, omega, 3, "highest");
     }
-    // Long waves over the continuum's: along an axis and the diagonal.
+    // Long-wave speeds divided by those of the continuum: along an axis and the diagonal.
     #[rustfmt::skip]
     let rows = [
         (2.0, [1.0863, 0.8217], [0.9631, 1.1968]),
@@ -317,12 +319,12 @@ fn plane_stress_has_the_coefficients_of_plane_strain() {
 }
 
 #[test]
-fn three_dimensions() {
+fn block_coefficients_are_isotropic_and_optimal() {
     for (n, classes) in [(2.0, 4), (3.0, 9)] {
         let model = model(StressState::Spatial, n);
         assert_eq!(model.classes().len(), classes);
         let table = tuned(&model, LS, SEP);
-        // The verdict differs: with N = 3 some shear waves off the contour grow, which a bound mends.
+        // Stability differs: for N = 3 some shear waves off the contour are unstable, which a bound prevents.
         assert_eq!(table.assessment.stability.is_stable(), n == 2.0);
         assert!(table.assessment.constraints.iter().all(|c| c.abs() < 1e-12));
         assert!(table.kkt < 1e-11 && table.condition < 1e4);
@@ -340,7 +342,7 @@ fn three_dimensions() {
             close(speeds[1], exact.shear, 1e-10, "shear");
             close(speeds[2], exact.shear, 1e-10, "shear");
         }
-        // No other table on the constraints has a smaller square error: steps along them only make it larger.
+        // The square error is minimal on the constraints: any step along them increases it.
         let error = |alpha: &[f64]| model.assess(alpha).unwrap().error.square;
         let best = error(&table.alpha);
         let positive = model
@@ -359,9 +361,9 @@ fn three_dimensions() {
     }
 }
 
-/// Each table is the best for its own weights, by a plain sum over the contour.
+/// Each table is the best for its own weights, by a direct sum over the contour.
 #[test]
-fn weights_move_the_compromise() {
+fn each_table_is_optimal_for_its_own_weights() {
     let model = model(StressState::PlaneStrain, 3.0);
     let choices = [
         Weights::default(),
@@ -407,7 +409,7 @@ fn weights_move_the_compromise() {
 }
 
 #[test]
-fn other_horizons_and_partial_volumes() {
+fn tuning_supports_other_horizons_and_partial_volumes() {
     for (n, correction) in [
         (3.015, VolumeCorrection::None),
         (3.0, VolumeCorrection::Linear),
@@ -423,7 +425,7 @@ fn other_horizons_and_partial_volumes() {
         close(speeds[1], exact.shear, 1e-11, "shear");
         assert!(table.assessment.error.ratio < 0.5);
     }
-    // With N = 5 the classes (5,0) and (4,3) have one length and two unknowns.
+    // For N = 5 the classes (5,0) and (4,3) have equal length and two unknowns.
     let five = model(StressState::PlaneStrain, 5.0);
     let same: Vec<_> = five.classes().iter().filter(|c| c.length == 5.0).collect();
     assert_eq!(same.len(), 2);
@@ -431,7 +433,7 @@ fn other_horizons_and_partial_volumes() {
 }
 
 #[test]
-fn what_cannot_be_is_refused() {
+fn infeasible_tuning_problems_are_errors() {
     let refused = |state, n: f64, tuning| {
         ScalingModel::new(state, n, VolumeCorrection::None).and_then(|model| model.tune(tuning))
     };
@@ -454,7 +456,7 @@ fn what_cannot_be_is_refused() {
     let Some(&DispersionError::InfeasibleBound { largest, .. }) = error.extension() else {
         panic!("{error}")
     };
-    // The bound that error names works, a larger one does not.
+    // The bound named by the error is feasible, a larger one is not.
     let at = |bound| Tuning {
         lower_bound: Some(bound),
         ..Default::default()
@@ -486,10 +488,10 @@ fn what_cannot_be_is_refused() {
     assert!(StressState::PlaneStrain.check_poisson_ratio(0.3).is_err());
 }
 
-/// Time of the full tables; in release builds only.
+/// Computing time of the full tables; in release builds only.
 #[test]
 #[cfg_attr(debug_assertions, ignore = "times optimised code")]
-fn tables_are_made_quickly() {
+fn tables_are_computed_within_the_time_limit() {
     let start = std::time::Instant::now();
     let two = model(StressState::PlaneStrain, 3.0);
     for combination in [SEP, ABS, Combination::SignedSum] {
@@ -508,14 +510,14 @@ fn tables_are_made_quickly() {
     let space = start.elapsed().as_secs_f64();
     println!("2D N = 3: {plate:.2} s, 3D N = 3: {space:.2} s");
     assert!(stability(&three.lattice(&[1.0; 9])).is_stable());
-    // The goals are 1 s and 10 s on a free machine.
+    // The targets are 1 s and 10 s on an idle machine.
     assert!(plate < 4.0 && space < 40.0, "{plate} {space}");
 }
 
-/// The decay that decks take by default against equal weights and against a constant influence function: fewer spacings per wavelength for an error of 1 %, and
-/// smaller errors down to four spacings.
+/// Compares the default decay with equal weights and with a constant influence function: fewer spacings per
+/// wavelength for an error of 1 %, and smaller errors down to four spacings.
 #[test]
-fn the_default_decay_improves_on_a_constant_kernel() {
+fn default_decay_improves_on_a_constant_kernel() {
     for (state, n, least) in [
         (StressState::Uniaxial, 2.0, 3.9),
         (StressState::Uniaxial, 3.0, 3.1),
@@ -553,9 +555,9 @@ fn the_default_decay_improves_on_a_constant_kernel() {
     }
 }
 
-/// The functionals that are reported are those that were made small.
+/// The reported functionals are those that were minimised.
 #[test]
-fn residual_functionals() {
+fn reported_functionals_are_the_minimised_ones() {
     let model = ScalingModel::new(StressState::Uniaxial, 3.0, VolumeCorrection::None).unwrap();
     let with = |method| {
         model
@@ -565,7 +567,7 @@ fn residual_functionals() {
             })
             .unwrap()
     };
-    // As many functionals as unknowns left: all are zero.
+    // As many functionals as free unknowns: all vanish.
     for method in [
         Method::PointCollocation,
         Method::Subdomain,

@@ -1,4 +1,5 @@
-//! Plane waves of the analysis against the operators, in space and in the time domain; influence functions made against dispersion.
+//! Plane waves of the analysis compared with the force operators, in space and in the time domain; influence
+//! functions tuned against dispersion.
 
 use std::sync::Arc;
 
@@ -8,7 +9,7 @@ use pericles::material::{
     BondMaterial, Calibration, ElasticModulus, Fracture, FractureCalibration, LinearBond, Modulus,
     PairLaw, StressState,
 };
-use pericles::operator::{BondBody, BondForce, BondForm, DamageMeasure, Force, On};
+use pericles::operator::{BondBody, BondForce, BondForm, DamageMeasure, Force, PointSubset};
 use pericles::space::{Grid, PointCloud, Shape};
 use pericles_dispersion::spectrum::{PeriodicForce, SpectrumRun, measure};
 use pericles_dispersion::tuning::{
@@ -71,11 +72,11 @@ fn tuned(
 fn table_of(function: &InfluenceFunction) -> &ClassTable {
     match function {
         InfluenceFunction::Classes(table) => table,
-        other => panic!("{other:?} is no table"),
+        other => panic!("{other:?} is not a table"),
     }
 }
 
-/// −f = ρ M(k) u for a plane wave in the interior of a body.
+/// Checks −f = ρ M(k) u for a plane wave in the interior of a body.
 fn check_interior<const D: usize>(material: &BondMaterial, state: StressState) {
     let cells = 9.0;
     let cloud = body(D, cells);
@@ -107,9 +108,9 @@ fn check_interior<const D: usize>(material: &BondMaterial, state: StressState) {
         }
     }
     let mut out = vec![0.0; D * n];
-    list.add_force(0.0, &u, On::All, &mut out);
+    list.add_force(0.0, &u, PointSubset::All, &mut out);
     let mut other = vec![0.0; D * n];
-    grid.add_force(0.0, &u, On::All, &mut other);
+    grid.add_force(0.0, &u, PointSubset::All, &mut other);
     let matrix = lattice.dynamical_matrix(k);
     for row in 0..D {
         let product: f64 = (0..D).map(|c| matrix[row][c] * e[c]).sum();
@@ -128,7 +129,7 @@ fn check_interior<const D: usize>(material: &BondMaterial, state: StressState) {
 }
 
 #[test]
-fn interior_points_obey_the_dynamical_matrix() {
+fn forces_on_interior_points_equal_the_dynamical_matrix() {
     for correction in [VolumeCorrection::None, VolumeCorrection::Extended] {
         for state in [
             StressState::Uniaxial,
@@ -157,7 +158,7 @@ fn interior_points_obey_the_dynamical_matrix() {
 }
 
 #[test]
-fn tuned_tables_give_bodies_the_exact_speeds() {
+fn tuned_tables_give_exact_long_wave_speeds() {
     for correction in [VolumeCorrection::None, VolumeCorrection::Extended] {
         for state in [
             StressState::Uniaxial,
@@ -195,7 +196,7 @@ fn tuned_tables_give_bodies_the_exact_speeds() {
 }
 
 #[test]
-fn tables_that_do_not_fit_are_refused() {
+fn tables_that_do_not_fit_the_body_are_errors() {
     let cloud = body(2, 8.0);
     let strain = StressState::PlaneStrain;
     let function = tuned(strain, VolumeCorrection::None, None);
@@ -204,7 +205,7 @@ fn tables_that_do_not_fit_are_refused() {
     };
     let fits = make(function.clone());
     assert!(fits.constants(&cloud, strain).is_ok());
-    // Signed values and breaking.
+    // Signed values with breaking bonds.
     let breaks = BondMaterial {
         fracture: Fracture::Energy {
             energy: 135.0,
@@ -219,7 +220,7 @@ fn tables_that_do_not_fit_are_refused() {
             .to_string()
             .contains("negative")
     );
-    // Another reach, another spacing, another dimension.
+    // Another volume correction, another spacing, another dimension.
     for correction in [VolumeCorrection::Extended, VolumeCorrection::Linear] {
         let other = BondMaterial {
             volume_correction: correction,
@@ -259,7 +260,7 @@ fn tables_that_do_not_fit_are_refused() {
 }
 
 #[test]
-fn the_printed_influence_function() {
+fn printed_influence_function_reproduces_the_table() {
     let influence = Influence {
         function: influence_alebrahim(1.0),
         acts_on: ActsOn::Stretch,
@@ -277,7 +278,7 @@ fn the_printed_influence_function() {
     assert!((samples.fold(f64::INFINITY, f64::min) - 0.427).abs() < 6e-4);
     assert!(!influence.is_signed(3.0));
     assert!((influence.moment(2.0, 3.0) / 9.0 - 0.9784).abs() < 6e-5);
-    // Σ α|ξ| over 2πN³/3
+    // Σ α|ξ| over 2πN³/3.
     let sum: f64 = (model.classes().iter().zip(&alpha))
         .map(|(c, a)| c.multiplicity as f64 * c.length * a)
         .sum();
@@ -296,7 +297,7 @@ fn the_printed_influence_function() {
 }
 
 #[test]
-fn critical_stretches_of_the_glasses() {
+fn critical_stretches_of_glass_match_verified_values() {
     // Plane strain, δ = 0.75 mm; verified values, with c of α ≡ 1 and with c from the function's own moments.
     let table = tuned(StressState::PlaneStrain, VolumeCorrection::None, Some(0.5));
     let functions = [
@@ -353,7 +354,7 @@ fn critical_stretches_of_the_glasses() {
 }
 
 #[test]
-fn lattice_values_of_the_fracture_energy() {
+fn lattice_fracture_energies_match_reference_values() {
     let table = tuned(StressState::PlaneStrain, VolumeCorrection::None, Some(0.5));
     let half = 0.5f64.sqrt();
     for (function, grid, diagonal) in [
@@ -376,7 +377,7 @@ fn lattice_values_of_the_fracture_energy() {
 }
 
 #[test]
-fn cosines_fitted_to_a_table_follow_its_polygon() {
+fn fitted_cosines_follow_the_interpolated_table() {
     let function = tuned(StressState::PlaneStrain, VolumeCorrection::None, Some(0.5));
     let table = table_of(&function);
     let (horizon, wave) = (3.0 * DX, 1.1 / DX);
@@ -465,15 +466,15 @@ fn measured_peaks_lie_on_the_time_discrete_curve() {
     check_spectrum(StressState::Spatial, 2.0, None, spectrum_run(8, 512));
 }
 
-/// The size of the paper: 512 nodes and 8192 steps, 48² nodes and 4096 steps.
+/// Sizes of the paper: 512 nodes and 8192 steps, 48² nodes and 4096 steps.
 #[test]
-#[ignore = "a minute"]
+#[ignore = "takes a minute"]
 fn measured_peaks_at_full_size() {
     check_spectra(spectrum_run(512, 8192), spectrum_run(48, 4096));
 }
 
 #[test]
-fn unstable_tables_and_steps_are_not_run() {
+fn unstable_tables_and_steps_are_errors() {
     let unstable = unit_lattice(StressState::PlaneStrain, 3.0, Some(Method::Subdomain));
     let run = |dt| SpectrumRun {
         nodes: 16,
@@ -490,7 +491,7 @@ fn unstable_tables_and_steps_are_not_run() {
 }
 
 #[test]
-fn the_periodic_operator_is_a_force() {
+fn periodic_force_is_the_energy_gradient_and_sums_to_zero() {
     let lattice = unit_lattice(StressState::PlaneStrain, 3.0, Some(Method::LeastSquares));
     let force = PeriodicForce::new(&lattice, 12, 2.0, 3.0).unwrap();
     let n = force.points();
@@ -498,8 +499,8 @@ fn the_periodic_operator_is_a_force() {
     let u: Vec<f64> = (0..2 * n).map(wave).collect();
     let d: Vec<f64> = (0..2 * n).map(|k| wave(k + 77)).collect();
     let mut f = vec![0.0; 2 * n];
-    force.add_force(0.0, &u, On::All, &mut f);
-    // Minus the gradient of the energy; no net force; the same on a part.
+    force.add_force(0.0, &u, PointSubset::All, &mut f);
+    // Minus the gradient of the energy; zero net force; equal on a sub-domain.
     let moved = |h: f64| -> Vec<f64> { u.iter().zip(&d).map(|(u, d)| u + h * d).collect() };
     let slope = (force.energy(0.0, &moved(0.5)) - force.energy(0.0, &moved(-0.5))) / 1.0;
     let work: f64 = f.iter().zip(&d).map(|(f, d)| 2.0 * f * d).sum();
@@ -508,8 +509,8 @@ fn the_periodic_operator_is_a_force() {
         assert!(component.iter().sum::<f64>().abs() < 1e-11);
     }
     let mut part = vec![0.0; 2 * n];
-    force.add_force(0.0, &u, On::Range(5..9), &mut part);
-    force.add_force(0.0, &u, On::Set(&[0, 100]), &mut part);
+    force.add_force(0.0, &u, PointSubset::Range(5..9), &mut part);
+    force.add_force(0.0, &u, PointSubset::Set(&[0, 100]), &mut part);
     for i in [0, 5, 6, 7, 8, 100] {
         assert_eq!((part[i], part[n + i]), (f[i], f[n + i]));
     }

@@ -1,4 +1,4 @@
-//! The file of a checkpoint.
+//! File format of checkpoints.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -15,17 +15,17 @@ use crate::{IoError, write_atomically};
 
 const MAGIC: &[u8; 8] = b"PERICLES";
 const VERSION: u32 = 1;
-/// Magic, version, length and CRC-32 of the header.
+/// Bytes of magic, version, and length and CRC-32 of the header.
 const PREFIX: u64 = 24;
-/// A number of a JSON list takes 32 bytes of memory and at least two characters.
+/// A number in a JSON list takes 32 bytes of memory and at least two characters.
 const PER_CHARACTER: u64 = 16;
 
-/// A JSON value and named arrays.
+/// JSON metadata and named arrays.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Container {
-    /// Small things: the deck, step numbers, settings. Finite numbers are kept exactly; JSON knows no others.
+    /// Metadata: deck, step number, settings. Finite numbers are preserved exactly; JSON has no NaN or infinity.
     pub metadata: Value,
-    /// The arrays.
+    /// Named arrays.
     pub sections: BTreeMap<String, Section>,
 }
 
@@ -47,7 +47,7 @@ struct Entry {
 }
 
 impl Container {
-    /// A container of the arrays of an archive.
+    /// Creates a container from the arrays of an archive.
     pub fn from_archive(metadata: Value, archive: Archive) -> Self {
         let sections = archive.into_arrays().into_iter();
         Self {
@@ -58,28 +58,28 @@ impl Container {
         }
     }
 
-    /// The metadata, and the arrays as an archive.
+    /// Returns the metadata, and the arrays as an archive.
     ///
     /// # Errors
-    /// An array of a type that archives do not have, in words.
+    /// Returns an error if an array has a type that archives do not support.
     pub fn into_archive(self) -> Result<(Value, Archive), String> {
         let mut archive = Archive::default();
         for (name, section) in self.sections {
             let values = Values::try_from(section)
-                .map_err(|kind| format!("the array {name:?} has the type {kind}"))?;
+                .map_err(|kind| format!("the array {name:?} has the unsupported type {kind}"))?;
             archive.put(name, values);
         }
         Ok((self.metadata, archive))
     }
 
-    /// Writes the container, whole or not at all; equal content gives equal bytes.
+    /// Writes the container atomically; equal content gives equal bytes.
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), IoError> {
         write_atomically(path.as_ref(), |out| self.write_into(out))
     }
 
     fn write_into(&self, out: &mut (impl Write + Seek)) -> io::Result<()> {
-        // Sizes and sums are known only once the sections are written. The widest numbers reserve the room for them, so that no
-        // section needs to be held in memory in its stored form.
+        // Sizes and checksums are known only after the sections are written. Space for the longest possible
+        // numbers is reserved, so that no encoded section is held in memory.
         let mut header = Header {
             metadata: std::borrow::Cow::Borrowed(&self.metadata),
             sections: Vec::with_capacity(self.sections.len()),
@@ -116,10 +116,11 @@ impl Container {
         out.write_all(&json)
     }
 
-    /// Reads a container whose content may take so many bytes of memory.
+    /// Reads a container whose decoded content may take at most `memory` bytes.
     ///
     /// # Errors
-    /// A file that is not exactly what was written, with the reason; one whose content needs more memory.
+    /// Returns an error if the file differs from what was written (with the reason), or if its content
+    /// exceeds `memory`.
     pub fn read(path: impl AsRef<Path>, memory: u64) -> Result<Self, IoError> {
         let path = path.as_ref();
         let reading = |source| IoError::reading(path, source);
@@ -133,10 +134,10 @@ impl Container {
         )
     }
 
-    /// The container in the content of a file, which messages call by this name.
+    /// Parses the content of a container file; `name` is used in messages.
     ///
     /// # Errors
-    /// As [`Container::read`], but for a file that cannot be read.
+    /// As [`Container::read`], except for errors of reading the file.
     pub fn parse(name: impl AsRef<Path>, content: &[u8], memory: u64) -> Result<Self, IoError> {
         let length = content.len() as u64;
         Self::read_from(name.as_ref(), Cursor::new(content), length, memory)
@@ -158,7 +159,7 @@ impl Container {
         }
         file.read_exact(&mut prefix).map_err(reading)?;
         if !prefix.starts_with(MAGIC) {
-            return Err(damaged("it is no checkpoint of Pericles".into()));
+            return Err(damaged("it is not a Pericles checkpoint".into()));
         }
         let version = u32_at(&prefix, 8);
         if version != VERSION {
@@ -192,7 +193,7 @@ impl Container {
             return Err(damaged("the CRC-32 of the header does not match".into()));
         }
         let header: Header = serde_json::from_slice(&json)
-            .map_err(|error| damaged(format!("the header cannot be understood: {error}")))?;
+            .map_err(|error| damaged(format!("the header is not valid: {error}")))?;
 
         let stored = header
             .sections
@@ -257,7 +258,7 @@ fn crc_of(input: &mut impl Read) -> io::Result<u32> {
     }
 }
 
-/// Counts and sums what passes through.
+/// Counts bytes and computes the CRC-32 of everything written through it.
 struct Counted<W> {
     out: W,
     crc: Hasher,
@@ -286,7 +287,7 @@ mod tests {
 
     fn section() -> impl Strategy<Value = Section> {
         prop_oneof![
-            // bits, so that every NaN, infinity and signed zero comes up
+            // random bits, to cover NaN, infinity and signed zero
             prop::collection::vec(any::<u64>(), 0..60)
                 .prop_map(|bits| Section::F64(bits.into_iter().map(f64::from_bits).collect())),
             prop::collection::vec(any::<u64>(), 0..60).prop_map(Section::U64),
@@ -307,7 +308,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(64))]
         #[test]
-        fn what_is_written_is_read_bit_for_bit(container in container()) {
+        fn a_container_is_read_back_bit_for_bit(container in container()) {
             let folder = tempfile::tempdir().unwrap();
             let path = folder.path().join("a.chk");
             container.write(&path).unwrap();
@@ -317,7 +318,7 @@ mod tests {
         }
 
         #[test]
-        fn a_file_of_anything_is_refused(bytes in prop::collection::vec(any::<u8>(), 0..200), marked in any::<bool>()) {
+        fn a_file_of_random_bytes_is_rejected(bytes in prop::collection::vec(any::<u8>(), 0..200), marked in any::<bool>()) {
             let folder = tempfile::tempdir().unwrap();
             let path = folder.path().join("a.chk");
             let mut file = if marked { b"PERICLES\x01\0\0\0".to_vec() } else { Vec::new() };
@@ -339,7 +340,7 @@ mod tests {
     }
 
     #[test]
-    fn content_beyond_the_memory_is_refused_before_it_is_unpacked() {
+    fn content_beyond_the_memory_limit_is_rejected_before_decoding() {
         const NUMBERS: usize = 1_000_000;
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.chk");
@@ -357,7 +358,7 @@ mod tests {
     }
 
     #[test]
-    fn every_flipped_bit_and_every_truncation_is_refused() {
+    fn every_flipped_bit_and_every_truncation_is_rejected() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.chk");
         example().write(&path).unwrap();
@@ -383,7 +384,7 @@ mod tests {
     }
 
     #[test]
-    fn a_header_that_lies_is_refused_before_anything_is_allocated() {
+    fn a_false_header_is_rejected_before_memory_is_allocated() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.chk");
         let entry = |len: u64, stored: u64| json!({ "name": "u", "type": "f64", "len": len, "stored": stored, "crc32": 0, "codec": "shuffle+lz4" });
@@ -391,7 +392,7 @@ mod tests {
         for (sections, body) in [
             (json!([entry(huge, 0)]), &b""[..]),
             (json!([entry(1, huge)]), b""),
-            (json!([entry(1, huge), entry(1, 2)]), b"x"), // the sum wraps round to 1
+            (json!([entry(1, huge), entry(1, 2)]), b"x"), // the sum overflows to 1
             (json!([entry(0, 3)]), b"abc"),
         ] {
             let text = json!({ "metadata": null, "sections": sections }).to_string();
@@ -414,7 +415,7 @@ mod tests {
     }
 
     #[test]
-    fn the_layout_is_the_one_of_the_module_page() {
+    fn the_layout_matches_the_module_documentation() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.chk");
         example().write(&path).unwrap();
@@ -441,7 +442,7 @@ mod tests {
     }
 
     #[test]
-    fn a_newer_version_is_told_from_damage() {
+    fn a_newer_format_version_is_not_reported_as_damage() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.chk");
         example().write(&path).unwrap();

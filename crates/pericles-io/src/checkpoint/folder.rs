@@ -1,4 +1,4 @@
-//! The checkpoints of a run: the last two are kept, and the newest good one is found again.
+//! Folder of checkpoints: keeps the last two and finds the newest valid one.
 
 use std::fs;
 use std::io::ErrorKind;
@@ -7,49 +7,50 @@ use std::path::{Path, PathBuf};
 use super::Container;
 use crate::IoError;
 
-/// How many checkpoints are kept.
+/// Number of checkpoints kept.
 const KEPT: usize = 2;
 
-/// A folder of checkpoints named after their step, `step-000000001840.chk`.
+/// A folder of checkpoints named by step, `step-000000001840.chk`.
 #[derive(Debug, Clone)]
 pub struct CheckpointFolder {
     path: PathBuf,
 }
 
-/// The newest checkpoint that can be used.
+/// The newest valid checkpoint.
 #[derive(Debug)]
 pub struct LatestCheckpoint {
     /// The step after which it was written.
     pub step: u64,
-    /// The file.
+    /// Its file.
     pub path: PathBuf,
     /// Its content.
     pub container: Container,
-    /// Why newer ones were refused, the newest first.
+    /// Errors of newer checkpoints that were rejected, newest first.
     pub refused: Vec<IoError>,
 }
 
 impl CheckpointFolder {
-    /// Names the folder; it is made when the first checkpoint is written.
+    /// Creates a handle to the folder; the folder itself is created with the first checkpoint.
     pub fn new(path: impl Into<PathBuf>) -> Self {
         Self { path: path.into() }
     }
 
-    /// Where the folder is.
+    /// Returns the path of the folder.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// The file of a step's checkpoint.
+    /// Returns the file name of the checkpoint of a step.
     pub fn file(&self, step: u64) -> PathBuf {
         self.path.join(format!("step-{step:012}.chk"))
     }
 
-    /// Writes the checkpoint of a step and removes all but it and the one before.
+    /// Writes the checkpoint of a step and deletes all others except the previous one.
     ///
-    /// Checkpoints of later steps go too: they are left from a run that was resumed at an earlier one.
+    /// Checkpoints of later steps are deleted as well: they remain from a run that was resumed at an earlier
+    /// step.
     pub fn write(&self, step: u64, container: &Container) -> Result<PathBuf, IoError> {
-        // Not those above it: where the output folder has gone, nothing more belongs there.
+        // Parent folders are not created: if the output folder was deleted, the run must not recreate it.
         match fs::create_dir(&self.path) {
             Err(source) if source.kind() != ErrorKind::AlreadyExists => {
                 return Err(IoError::writing(&self.path, source));
@@ -69,7 +70,7 @@ impl CheckpointFolder {
         Ok(file)
     }
 
-    /// The steps that have a checkpoint, in increasing order.
+    /// Returns the steps that have a checkpoint, in increasing order.
     pub fn steps(&self) -> Result<Vec<u64>, IoError> {
         let reading = |source| IoError::reading(&self.path, source);
         let mut steps = Vec::new();
@@ -79,14 +80,15 @@ impl CheckpointFolder {
                 let digits = name.strip_prefix("step-")?.strip_suffix(".chk")?;
                 digits.parse().ok()
             });
-            // A name such as step-7.chk is not one of ours and would not be found again.
+            // Names in another form, such as step-7.chk, are not written by Pericles.
             steps.extend(step.filter(|&step| self.file(step).file_name() == Some(&name)));
         }
         steps.sort_unstable();
         Ok(steps)
     }
 
-    /// Reads the newest checkpoint that is whole, and tells which newer ones were refused and why. Its content may take so many bytes of memory.
+    /// Reads the newest valid checkpoint and reports newer ones that were rejected. Its content may take at
+    /// most `memory` bytes.
     pub fn latest_valid(&self, memory: u64) -> Result<LatestCheckpoint, IoError> {
         let mut refused = Vec::new();
         for step in self.steps()?.into_iter().rev() {
@@ -100,7 +102,7 @@ impl CheckpointFolder {
                         refused,
                     });
                 }
-                // The one before it needs as much.
+                // The previous checkpoint needs the same memory.
                 Err(error @ IoError::TooLarge { .. }) => return Err(error),
                 Err(error) => refused.push(error),
             }
@@ -131,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn the_last_two_are_kept_and_other_files_stay() {
+    fn the_last_two_checkpoints_are_kept_and_other_files_are_untouched() {
         let place = tempfile::tempdir().unwrap();
         let folder = CheckpointFolder::new(place.path().join("checkpoints"));
         for step in [20, 40, 1840] {
@@ -145,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn a_damaged_checkpoint_gives_way_to_the_one_before() {
+    fn the_previous_checkpoint_replaces_a_damaged_one() {
         let place = tempfile::tempdir().unwrap();
         let folder = CheckpointFolder::new(place.path());
         for step in [100, 200] {
@@ -158,7 +160,7 @@ mod tests {
         assert_eq!(latest.refused.len(), 1);
         assert_eq!(latest.refused[0].path(), folder.file(200));
 
-        // The run goes on from step 100: the damaged file must not push the good ones out.
+        // The run resumes from step 100: the damaged file must not displace valid ones.
         folder.write(150, &state(150)).unwrap();
         assert_eq!(folder.steps().unwrap(), [100, 150]);
 
@@ -170,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn a_folder_without_checkpoints_is_told_from_no_folder() {
+    fn an_empty_folder_and_a_missing_folder_give_different_errors() {
         let place = tempfile::tempdir().unwrap();
         let empty = CheckpointFolder::new(place.path()).latest_valid(u64::MAX);
         assert!(matches!(empty, Err(IoError::NoValidCheckpoint { .. })));

@@ -1,6 +1,6 @@
-//! Checkpoints: everything a run needs to go on bit for bit, in one file that is either whole or refused.
+//! Checkpoints: the complete state of a run in one file, from which it resumes bit for bit.
 //!
-//! A [`Container`] holds a JSON value and named arrays. The file, little-endian throughout:
+//! A [`Container`] holds a JSON value and named arrays. The file is little-endian throughout:
 //!
 //! | bytes | content |
 //! |---|---|
@@ -11,11 +11,12 @@
 //! | … | header: JSON `{metadata, sections: [{name, type, len, stored, crc32, codec}]}`, padded with spaces |
 //! | … | the sections in the order of the header, without gaps, up to the end of the file |
 //!
-//! A section's bytes are shuffled (all first bytes of some 65536 elements, then all second bytes …), which puts the slowly varying
-//! exponents side by side, and compressed as an LZ4 frame; `crc32` is that of the `stored` bytes. Every size is checked against
-//! the length of the file before anything is read, and no section is decoded before its CRC-32 has been checked.
+//! The bytes of a section are shuffled (the first bytes of up to 65536 elements, then their second bytes …),
+//! which groups slowly varying exponents, and compressed as an LZ4 frame; `crc32` is the checksum of the
+//! `stored` bytes. Every size is checked against the length of the file before data are read, and no section
+//! is decoded before its CRC-32 is verified.
 //!
-//! [`CheckpointFolder`] keeps the last two of them, so that one is left whatever happens to the other.
+//! [`CheckpointFolder`] keeps the last two checkpoints, so that one remains if the other is damaged.
 //!
 //! ```
 //! use pericles_io::{CheckpointFolder, Container, Section};

@@ -1,4 +1,4 @@
-//! One named array: its types, and its bytes shuffled and compressed.
+//! A named array: its element types, byte shuffling and compression.
 
 use std::io::{self, Read, Write};
 
@@ -6,23 +6,23 @@ use lz4_flex::frame::{FrameDecoder, FrameEncoder};
 use pericles::Values;
 use serde::{Deserialize, Serialize};
 
-/// Elements that are shuffled together; bounds the memory that coding needs.
+/// Number of elements shuffled together; bounds the memory needed for encoding.
 const CHUNK: usize = 1 << 16;
 
 /// The values of one section.
 #[derive(Debug, Clone)]
 pub enum Section {
-    /// Real numbers, kept bit for bit.
+    /// Real numbers, preserved bit for bit.
     F64(Vec<f64>),
-    /// Large whole numbers: counts, offsets.
+    /// 64-bit integers: counts, offsets.
     U64(Vec<u64>),
-    /// Whole numbers: point and bond numbers.
+    /// 32-bit integers: point and bond numbers.
     U32(Vec<u32>),
     /// Bytes: flags, bit masks.
     U8(Vec<u8>),
 }
 
-/// Equal type and equal bits, so that NaN equals itself and −0 differs from 0.
+/// Compares type and bits: NaN equals itself and −0 differs from 0.
 impl PartialEq for Section {
     fn eq(&self, other: &Self) -> bool {
         match (self, other) {
@@ -47,7 +47,7 @@ impl From<Values> for Section {
     }
 }
 
-/// Archives hold no numbers of 32 bits; the error names the type.
+/// Archives have no 32-bit integers; the error names the unsupported type.
 impl TryFrom<Section> for Values {
     type Error = &'static str;
 
@@ -61,7 +61,7 @@ impl TryFrom<Section> for Values {
     }
 }
 
-/// The type of a section's elements, as the header names it.
+/// Element type of a section, as named in the header.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum Kind {
@@ -72,7 +72,7 @@ pub(super) enum Kind {
 }
 
 impl Kind {
-    /// Bytes of one element.
+    /// Returns the size of one element in bytes.
     pub(super) fn bytes(self) -> u64 {
         match self {
             Self::F64 | Self::U64 => 8,
@@ -82,7 +82,7 @@ impl Kind {
     }
 }
 
-/// How the bytes are stored, as the header names it.
+/// Encoding of the bytes, as named in the header.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Codec {
     #[serde(rename = "shuffle+lz4")]
@@ -90,7 +90,7 @@ pub(super) enum Codec {
 }
 
 impl Section {
-    /// The number of elements.
+    /// Returns the number of elements.
     pub fn len(&self) -> usize {
         match self {
             Self::F64(values) => values.len(),
@@ -100,7 +100,7 @@ impl Section {
         }
     }
 
-    /// Whether there are no elements.
+    /// Returns whether the section is empty.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -114,7 +114,7 @@ impl Section {
         }
     }
 
-    /// Writes the stored form.
+    /// Writes the encoded form.
     pub(super) fn encode(&self, out: impl Write) -> io::Result<()> {
         match self {
             Self::F64(values) => encode(values, out),
@@ -124,7 +124,7 @@ impl Section {
         }
     }
 
-    /// Reads `len` elements from their stored form, which must hold exactly these.
+    /// Decodes exactly `len` elements.
     pub(super) fn decode(kind: Kind, len: u64, stored: impl Read) -> io::Result<Self> {
         Ok(match kind {
             Kind::F64 => Self::F64(decode(len, stored)?),
@@ -176,7 +176,8 @@ fn decode<T: Element>(len: u64, stored: impl Read) -> io::Result<Vec<T>> {
     let mut shuffled = Vec::new();
     let mut left = len;
     while left > 0 {
-        // No more than u32 elements, so the number fits everywhere. The vector grows with what is really there, not with `len`.
+        // At most u32::MAX elements, so the number fits usize. The vector grows with the data that are
+        // present, not with `len`.
         let count = left.min(CHUNK as u64) as usize;
         shuffled.resize(count * T::WIDTH, 0);
         lz4.read_exact(&mut shuffled)?;
@@ -186,7 +187,7 @@ fn decode<T: Element>(len: u64, stored: impl Read) -> io::Result<Vec<T>> {
     if lz4.read(&mut [0])? > 0 {
         return Err(io::Error::new(
             io::ErrorKind::InvalidData,
-            "more values than announced",
+            "more values than the header states",
         ));
     }
     Ok(values)
@@ -197,7 +198,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_stored_form_is_lz4_of_shuffled_little_endian_bytes() {
+    fn the_encoded_form_is_lz4_of_shuffled_little_endian_bytes() {
         let mut stored = Vec::new();
         let section = Section::U32(vec![0x0403_0201, 0x1413_1211, 0x2423_2221]);
         section.encode(&mut stored).unwrap();
@@ -211,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn chunks_join_without_a_seam() {
+    fn data_across_chunk_boundaries_are_preserved() {
         for len in [CHUNK - 1, CHUNK, CHUNK + 1, 2 * CHUNK + 7] {
             let section = Section::F64((0..len).map(|i| (i as f64).sqrt()).collect());
             let mut stored = Vec::new();
@@ -223,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wrong_length_is_refused_without_allocating_it() {
+    fn a_wrong_length_is_rejected_without_allocating_it() {
         let mut stored = Vec::new();
         Section::U64(vec![5; 1000]).encode(&mut stored).unwrap();
         for len in [999, 1001, u64::MAX] {

@@ -1,4 +1,4 @@
-//! Columns, their header, and the cells of a row.
+//! Columns, their headers, and the cells of a row.
 
 use std::path::Path;
 
@@ -13,7 +13,7 @@ pub struct Column {
 }
 
 impl Column {
-    /// A column of real numbers; the unit is empty for a pure number.
+    /// Creates a column of real numbers; `unit` is empty for dimensionless values.
     pub fn real(name: impl Into<String>, unit: impl Into<String>) -> Self {
         Self {
             name: name.into(),
@@ -22,7 +22,7 @@ impl Column {
         }
     }
 
-    /// A column of whole numbers.
+    /// Creates a column of integers.
     pub fn integer(name: impl Into<String>) -> Self {
         Self {
             name: name.into(),
@@ -31,12 +31,12 @@ impl Column {
         }
     }
 
-    /// The name, without the unit.
+    /// Returns the name, without the unit.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// The unit; empty for a pure number.
+    /// Returns the unit; empty for dimensionless values.
     pub fn unit(&self) -> &str {
         &self.unit
     }
@@ -67,9 +67,9 @@ impl Column {
 /// One value of a row.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Cell {
-    /// A real number; NaN leaves the cell empty.
+    /// A real number; NaN is written as an empty cell.
     Real(f64),
-    /// A whole number.
+    /// An integer.
     Integer(i64),
 }
 
@@ -85,19 +85,21 @@ impl From<i64> for Cell {
     }
 }
 
-/// The header of a table, with its line end.
+/// Returns the header row with its line ending.
 pub(super) fn header_row(path: &Path, columns: &[Column]) -> Result<String, IoError> {
     let cells: Vec<_> = columns.iter().map(Column::header).collect();
     if cells.is_empty() || cells.iter().any(|cell| cell.contains(['\n', '\r'])) {
         return Err(IoError::Unsuitable {
             path: path.to_path_buf(),
-            reason: "a table needs at least one column, and names of one line".into(),
+            reason: "a table needs at least one column, and column names without line breaks"
+                .into(),
         });
     }
     Ok(csv_row(&cells))
 }
 
-/// What a spreadsheet would compute: text that begins like a formula and is no number, alone or with a unit.
+/// Returns whether a spreadsheet would evaluate the text: it begins like a formula and is not a number, with
+/// or without a unit.
 fn is_formula(cell: &str) -> bool {
     let number = || {
         let first = cell.split_whitespace().next().unwrap_or_default();
@@ -106,8 +108,9 @@ fn is_formula(cell: &str) -> bool {
     cell.starts_with(['=', '@', '+', '-']) && !number()
 }
 
-/// A row of texts with its line end, those with commas, quotes or line ends quoted as in RFC 4180. Text that a spreadsheet would take for a formula gets an
-/// apostrophe in front, which spreadsheets read as "this is text".
+/// Formats a row of texts with its line ending; cells with commas, quotes or line breaks are quoted (RFC
+/// 4180). Text that a spreadsheet would evaluate as a formula is prefixed with an apostrophe, which marks it
+/// as text.
 pub fn csv_row(cells: &[String]) -> String {
     let quoted = cells.iter().map(|cell| {
         let cell = match is_formula(cell) {
@@ -128,7 +131,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_cell_is_a_formula_of_a_spreadsheet() {
+    fn cells_that_look_like_formulas_are_marked_as_text() {
         let names = [
             "=HYPERLINK(1)",
             "@SUM(1)",

@@ -1,13 +1,13 @@
-//! Tables of numbers as comma-separated text: one header row with units, then one row per output.
+//! CSV tables: one header row with units, then one row per output.
 //!
 //! ```text
 //! step,time [s],kinetic [J],tip x [m]
 //! 0,0.0,0.0,
 //! 400,1e-6,3.2147,0.05
 //! ```
-//! Real numbers are written with the fewest digits that read back to the same number; NaN is an empty cell. A header cell that
-//! holds a comma or a quote is quoted as in RFC 4180. A table can be cut back to a length known from a checkpoint and continued
-//! there, so that the file of a stopped and resumed run equals that of an uninterrupted one.
+//! Real numbers are written with the fewest digits that read back to the same value; NaN is an empty cell.
+//! Header cells with commas or quotes are quoted (RFC 4180). On resume a table is truncated to the length
+//! recorded in the checkpoint and continued, so that it equals the table of an uninterrupted run.
 //!
 //! ```
 //! use pericles_io::{Column, CsvTable, read_csv};

@@ -1,4 +1,4 @@
-//! Tables read back, for tests and studies.
+//! Reading of CSV tables, for tests and studies.
 
 use std::fs;
 use std::path::Path;
@@ -6,29 +6,29 @@ use std::path::Path;
 use super::Column;
 use crate::IoError;
 
-/// A table read back.
+/// The content of a CSV table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CsvData {
-    /// Names and units.
+    /// Names and units of the columns.
     pub columns: Vec<Column>,
-    /// One vector per column, all of the same length; empty cells are NaN.
+    /// One vector per column, all of equal length; empty cells are NaN.
     pub values: Vec<Vec<f64>>,
 }
 
 impl CsvData {
-    /// The values of the first column of this name.
+    /// Returns the values of the first column with this name.
     pub fn column(&self, name: &str) -> Option<&[f64]> {
         let index = self.columns.iter().position(|column| column.name == name)?;
         Some(&self.values[index])
     }
 
-    /// The number of rows below the header.
+    /// Returns the number of rows below the header.
     pub fn rows(&self) -> usize {
         self.values.first().map_or(0, Vec::len)
     }
 }
 
-/// Reads a table of numbers; columns of whole numbers come as reals too.
+/// Reads a table of numbers; integers are read as reals.
 pub fn read_csv(path: impl AsRef<Path>) -> Result<CsvData, IoError> {
     let path = path.as_ref();
     let text = fs::read_to_string(path).map_err(|source| match source.kind() {
@@ -59,7 +59,7 @@ pub fn read_csv(path: impl AsRef<Path>) -> Result<CsvData, IoError> {
                 text => text.parse().map_err(|_| {
                     IoError::damaged(
                         path,
-                        format!("row {row} holds {text:?}, which is no number"),
+                        format!("row {row} holds {text:?}, which is not a number"),
                     )
                 })?,
             });
@@ -68,7 +68,7 @@ pub fn read_csv(path: impl AsRef<Path>) -> Result<CsvData, IoError> {
     Ok(CsvData { columns, values })
 }
 
-/// Splits a row with quoted cells; `None` when a quote is left open.
+/// Splits a row with quoted cells; `None` if a quote is not closed.
 fn split_quoted(line: &str) -> Option<Vec<String>> {
     let mut cells = vec![String::new()];
     let mut quoted = false;

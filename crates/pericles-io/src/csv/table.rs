@@ -1,4 +1,4 @@
-//! The table that a run writes.
+//! CSV table written during a run.
 
 use std::fmt::Write as _;
 use std::fs::{File, OpenOptions};
@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use super::column::{Cell, Column, header_row};
 use crate::IoError;
 
-/// A table that grows row by row.
+/// A CSV table to which rows are appended.
 #[derive(Debug)]
 pub struct CsvTable {
     path: PathBuf,
@@ -19,7 +19,7 @@ pub struct CsvTable {
 }
 
 impl CsvTable {
-    /// Creates the table, replacing a file of that name, and writes the header.
+    /// Creates the table with its header, replacing an existing file.
     pub fn create(path: impl Into<PathBuf>, columns: &[Column]) -> Result<Self, IoError> {
         let path = path.into();
         let header = header_row(&path, columns)?;
@@ -31,9 +31,10 @@ impl CsvTable {
         Ok(table)
     }
 
-    /// Opens a table to go on after its first `length` bytes, which [`len_bytes`](Self::len_bytes) told earlier; the rest is cut off.
+    /// Reopens a table to continue after its first `length` bytes (see [`len_bytes`](Self::len_bytes)); later
+    /// bytes are removed.
     ///
-    /// Refused when the header differs, the file is shorter, or the cut is not at the end of a row.
+    /// Returns an error if the header differs, the file is shorter, or no row ends at `length`.
     pub fn reopen(
         path: impl Into<PathBuf>,
         columns: &[Column],
@@ -53,7 +54,8 @@ impl CsvTable {
 
         let found = file.metadata().map_err(reading)?.len();
         if found < length {
-            let reason = format!("it has {found} bytes, {length} were written before the stop");
+            let reason =
+                format!("it has {found} bytes, but the checkpoint expects at least {length}");
             return Err(IoError::damaged(&path, reason));
         }
         let mut start = Vec::new();
@@ -62,7 +64,7 @@ impl CsvTable {
             .read_to_end(&mut start)
             .map_err(reading)?;
         if start != header.as_bytes() || length < header.len() as u64 {
-            let reason = format!("its first row is not {:?}", header.trim_end());
+            let reason = format!("its header is not {:?}", header.trim_end());
             return Err(IoError::damaged(&path, reason));
         }
         let mut last = [0];
@@ -88,7 +90,7 @@ impl CsvTable {
         }
     }
 
-    /// Adds a row: one cell per column, whole numbers where the column holds whole numbers.
+    /// Appends a row: one cell per column, integers in integer columns.
     pub fn append(&mut self, cells: &[Cell]) -> Result<(), IoError> {
         if cells.len() != self.integers.len() {
             return Err(IoError::Shape {
@@ -112,7 +114,7 @@ impl CsvTable {
                     let kind = if integer { "whole" } else { "real" };
                     return Err(IoError::Unsuitable {
                         path: self.path.clone(),
-                        reason: format!("column {} takes {kind} numbers", number + 1),
+                        reason: format!("column {} allows only {kind} numbers", number + 1),
                     });
                 }
             };
@@ -121,14 +123,14 @@ impl CsvTable {
         self.write_row()
     }
 
-    /// Hands everything written so far to the system, so that other programs see it.
+    /// Flushes all rows to the operating system, so that other programs see them.
     pub fn flush(&mut self) -> Result<(), IoError> {
         self.file
             .flush()
             .map_err(|source| IoError::writing(&self.path, source))
     }
 
-    /// Flushes and waits until the rows are on the disk; do so before a checkpoint that remembers the length.
+    /// Flushes and syncs all rows to disk; call it before a checkpoint records the length.
     pub fn sync(&mut self) -> Result<(), IoError> {
         self.flush()?;
         self.file
@@ -137,12 +139,12 @@ impl CsvTable {
             .map_err(|source| IoError::writing(&self.path, source))
     }
 
-    /// The length of the table so far, rows not yet flushed included.
+    /// Returns the current length of the table in bytes, including rows not yet flushed.
     pub fn len_bytes(&self) -> u64 {
         self.length
     }
 
-    /// The file.
+    /// Returns the path of the file.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -174,7 +176,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(64))]
         #[test]
-        fn what_is_written_is_read_bit_for_bit(rows in prop::collection::vec(
+        fn a_table_is_read_back_bit_for_bit(rows in prop::collection::vec(
             (-(1_i64 << 53)..(1 << 53), any::<f64>(), any::<f64>()), 0..20))
         {
             let folder = tempfile::tempdir().unwrap();
@@ -192,7 +194,7 @@ mod tests {
                 prop_assert_eq!(read.column("step").unwrap()[row], step as f64);
                 for (name, value) in [("time", time), ("reaction \"left\", x", force)] {
                     let found = read.column(name).unwrap()[row];
-                    // every NaN is written alike
+                    // every NaN is written as an empty cell
                     prop_assert!(found.to_bits() == value.to_bits() || (found.is_nan() && value.is_nan()));
                 }
             }
@@ -200,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn the_text_is_what_the_module_page_says() {
+    fn the_text_matches_the_module_documentation() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("t.csv");
         let mut table = CsvTable::create(&path, &columns()).unwrap();
@@ -244,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn a_table_that_does_not_fit_is_not_reopened() {
+    fn a_table_with_another_header_or_length_is_not_reopened() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("t.csv");
         let mut table = CsvTable::create(&path, &columns()).unwrap();
@@ -268,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_of_the_wrong_shape_are_refused() {
+    fn rows_of_the_wrong_shape_are_rejected() {
         let folder = tempfile::tempdir().unwrap();
         let mut table = CsvTable::create(folder.path().join("t.csv"), &columns()).unwrap();
         let before = table.len_bytes();
@@ -287,7 +289,7 @@ mod tests {
     }
 
     #[test]
-    fn a_table_with_a_broken_row_is_refused() {
+    fn a_table_with_a_malformed_row_is_rejected() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("t.csv");
         for text in ["", "a,b\n1\n", "a\nx\n", "\"a\n1\n"] {

@@ -1,7 +1,8 @@
-//! What a run may write into its folder, on record before it does: what `--force` may remove.
+//! Manifest: the files that a run may write into its folder, recorded in advance; `--force` removes only these.
 //!
-//! The file `.manifest` has a line for each name, relative to the folder; `*` stands for one or more digits, for series such as
-//! `fields/fields_*.vtu`. Folders of versions without it are recognised by the content of their `run.json`.
+//! The file `.manifest` has one line per name, relative to the folder; `*` stands for one or more digits, for
+//! series such as `fields/fields_*.vtu`. Folders of versions without a manifest are recognised by the content
+//! of `run.json`.
 
 use std::fs;
 use std::io::{ErrorKind, Write};
@@ -12,12 +13,12 @@ use serde_json::Value;
 
 use crate::{IoError, write_atomically};
 
-/// The name of the file.
+/// Name of the manifest file.
 pub(super) const MANIFEST: &str = ".manifest";
 
 const HEADING: &str = "# Files of a Pericles run";
 
-/// Files of a run other than pictures, whose names begin with those of fields.
+/// Files of a run other than field pictures, whose names begin with a field name.
 const USUAL: [&str; 12] = [
     "run.json",
     "report.html",
@@ -33,16 +34,16 @@ const USUAL: [&str; 12] = [
     "checkpoints/failed.chk",
 ];
 
-/// The names on record.
+/// Recorded names.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Manifest {
     names: Vec<String>,
-    /// Pictures of fields, of which versions without a manifest kept no record.
+    /// Whether pictures of fields are included, which versions without a manifest did not record.
     pictures: bool,
 }
 
 impl Manifest {
-    /// The names that runs of versions without a manifest wrote.
+    /// Returns the names that versions without a manifest wrote.
     pub(super) fn usual() -> Self {
         Self {
             names: USUAL.map(String::from).to_vec(),
@@ -50,10 +51,10 @@ impl Manifest {
         }
     }
 
-    /// What is on record in a folder; none if it is no folder of a run.
+    /// Reads the manifest of a folder; `None` if the folder does not belong to a run.
     ///
     /// # Errors
-    /// A file that cannot be read.
+    /// Returns an error if a file cannot be read.
     pub(super) fn of(folder: &Path) -> Result<Option<Self>, IoError> {
         let path = folder.join(MANIFEST);
         match fs::read_to_string(&path) {
@@ -76,10 +77,10 @@ impl Manifest {
         })
     }
 
-    /// Puts names on record in a folder, beside those that are.
+    /// Adds names to the manifest of a folder.
     ///
     /// # Errors
-    /// A file that cannot be read or written.
+    /// Returns an error if a file cannot be read or written.
     pub(super) fn add(folder: &Path, names: &[String]) -> Result<(), IoError> {
         let path = folder.join(MANIFEST);
         let mut known = match fs::read_to_string(&path) {
@@ -101,13 +102,13 @@ impl Manifest {
         })
     }
 
-    /// Whether a file of this name, relative to the folder and with `/` before the last part if it is in a sub-folder, is on record.
+    /// Returns whether a file name, relative to the folder, is recorded; `/` separates a sub-folder.
     pub(super) fn has(&self, name: &str) -> bool {
         self.names.iter().any(|pattern| matches(pattern, name)) || self.pictures && is_picture(name)
     }
 }
 
-/// Whether a name is that of a pattern, whose `*` is one or more digits.
+/// Returns whether a name matches a pattern in which `*` stands for one or more digits.
 fn matches(pattern: &str, name: &str) -> bool {
     match pattern.split_once('*') {
         None => pattern == name,
@@ -122,7 +123,7 @@ fn is_number(text: &str) -> bool {
     !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit())
 }
 
-/// Whether a name is that of a picture or animation of a field.
+/// Returns whether a name is that of a field picture or animation.
 fn is_picture(name: &str) -> bool {
     let Some(name) = name.strip_prefix("pictures/") else {
         return false;
@@ -142,7 +143,7 @@ fn is_picture(name: &str) -> bool {
     })
 }
 
-/// Whether a file is the report of a run: other programs write a `run.json` as well.
+/// Returns whether a file is the report of a Pericles run: other programs write a `run.json` as well.
 fn is_report(path: &Path) -> bool {
     let report = || -> Option<Value> { serde_json::from_str(&fs::read_to_string(path).ok()?).ok() };
     report().is_some_and(|report| {
@@ -156,7 +157,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_star_is_digits_and_nothing_else() {
+    fn a_star_matches_only_digits() {
         let pattern = "fields/fields_*.vtu";
         assert!(matches(pattern, "fields/fields_000012.vtu"));
         for other in [
@@ -181,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn names_are_added_once_and_other_files_are_no_manifest() {
+    fn names_are_added_once_and_other_files_are_not_read_as_a_manifest() {
         let place = tempfile::tempdir().unwrap();
         let folder = place.path();
         assert_eq!(Manifest::of(folder).unwrap(), None);

@@ -1,4 +1,4 @@
-//! What can be wrong with a file of a surface.
+//! Errors of reading surfaces and meshes.
 
 use std::path::{Path, PathBuf};
 
@@ -8,46 +8,46 @@ use pericles_mesh::{Fault, Format, Place};
 use super::SURFACE_ENDINGS;
 use crate::IoError;
 
-/// Why a file gives no surface.
+/// Errors of reading a surface or mesh file.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeshError {
     /// The file cannot be read.
     #[error(transparent)]
     Io(#[from] IoError),
-    /// An ending that belongs to no format.
-    #[error("{}: surfaces are read from files that end in .{}", path.display(), SURFACE_ENDINGS.join(", ."))]
+    /// An unknown file extension for a surface.
+    #[error("{}: unknown surface format; allowed file extensions: .{}", path.display(), SURFACE_ENDINGS.join(", ."))]
     UnknownFormat {
         /// The file.
         path: PathBuf,
     },
-    /// An ending that belongs to no format of meshes.
-    #[error("{}: meshes are read from files that end in .{}", path.display(), Format::ENDINGS.join(", ."))]
+    /// An unknown file extension for a mesh.
+    #[error("{}: unknown mesh format; allowed file extensions: .{}", path.display(), Format::ENDINGS.join(", ."))]
     UnknownMeshFormat {
         /// The file.
         path: PathBuf,
     },
-    /// Content that is not what the format says.
+    /// Content that violates the format.
     #[error("{}{place}: {reason}", path.display())]
     Content {
         /// The file.
         path: PathBuf,
-        /// Where.
+        /// Location in the file.
         place: Place,
-        /// What is wrong, and what is allowed.
+        /// What is wrong and what is allowed.
         reason: String,
     },
-    /// Vertices and triangles that make no surface.
+    /// Vertices and triangles that do not form a surface.
     #[error("{}: {source}", path.display())]
     Surface {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         source: SurfaceError,
     },
 }
 
-/// The error of a file, read with so many bytes of memory.
+/// Converts a fault of a file that was read with a memory limit in bytes.
 pub(super) fn fault_of(fault: Fault, path: &Path, memory: u64) -> MeshError {
     let path = match fault.included {
         Some(name) => path.with_file_name(name),

@@ -1,4 +1,4 @@
-//! Fields of VTK XML files, read back: to compare runs and to re-render them.
+//! Reading of fields from VTK XML files, to compare runs and to re-render fields.
 
 use std::path::Path;
 
@@ -10,17 +10,17 @@ use crate::whole::read_whole;
 /// Reads the points and point data of a `.vtu` or `.vtp` file.
 ///
 /// # Errors
-/// A file that cannot be read or needs more than `memory` bytes; content that is not VTK XML, arrays that are damaged or not as long as the points are
-/// many.
+/// Returns an error if the file cannot be read or exceeds `memory` bytes, is not VTK XML, or has arrays that
+/// are damaged or do not match the number of points.
 pub fn read_fields(path: impl AsRef<Path>, memory: u64) -> Result<FieldData, MeshError> {
     let path = path.as_ref();
     parse_fields(path, &read_whole(path, 1, memory)?, memory)
 }
 
-/// The same of the content of a file, which messages call by this name.
+/// Parses the content of a `.vtu` or `.vtp` file; `name` is used in messages.
 ///
 /// # Errors
-/// As [`read_fields`], but for a file that cannot be read.
+/// As [`read_fields`], except for errors of reading the file.
 pub fn parse_fields(
     name: impl AsRef<Path>,
     content: &[u8],
@@ -36,10 +36,10 @@ mod tests {
     use crate::{IoError, VtkField, VtuFile};
 
     #[test]
-    fn what_was_written_comes_back() {
+    fn written_fields_are_read_back() {
         let place = tempfile::tempdir().unwrap();
         let path = place.path().join("a.vtu");
-        // Components one after the other, as Pericles keeps them.
+        // Component-major, the layout of Pericles.
         let (x, damage, u) = (
             [0.0, 1.0, 2.0, 0.5, 0.25, 0.125],
             [0.0, 0.5, 1.0],
@@ -68,13 +68,13 @@ mod tests {
     }
 
     #[test]
-    fn compressed_arrays_beyond_the_memory_are_refused_before_they_are_unpacked() {
+    fn compressed_arrays_beyond_the_memory_limit_are_rejected_before_decoding() {
         const POINTS: usize = 200_000;
         let place = tempfile::tempdir().unwrap();
         let path = place.path().join("zeros.vtu");
         VtuFile::new(1, &vec![0.0; POINTS]).write(&path).unwrap();
         let size = std::fs::metadata(&path).unwrap().len();
-        // Places of three numbers: the bytes, and the numbers made of them.
+        // Positions of three numbers: the bytes and the numbers decoded from them.
         let needed = 2 * 24 * POINTS as u64;
         assert!(10 * size < needed, "{size}");
         assert!(read_fields(&path, needed + size).is_ok());
@@ -91,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_cut_short_is_refused_at_every_length() {
+    fn a_truncated_file_is_rejected_at_every_length() {
         let place = tempfile::tempdir().unwrap();
         let path = place.path().join("a.vtu");
         let (x, damage) = ([0.0, 1.0, 2.0], [0.0, 0.5, 1.0]);

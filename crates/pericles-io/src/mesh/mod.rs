@@ -1,18 +1,19 @@
-//! Triangulated surfaces from files.
+//! Reading of triangulated surfaces and meshes.
 //!
-//! | ending | format | forms |
+//! | extension | format | variants |
 //! |---|---|---|
-//! | `.obj` | Wavefront | text; polygons, negative numbers |
+//! | `.obj` | Wavefront | text; polygons, negative indices |
 //! | `.ply` | Stanford polygons | text, binary of either byte order |
-//! | `.stl` | stereolithography | text, binary; equal corners are welded |
+//! | `.stl` | stereolithography | text, binary; coincident corners are merged |
 //! | `.off` | Object File Format | text |
-//! | `.msh` | Gmsh 2.2 and 4.1 | text, binary; triangles and quadrilaterals, other elements are left out |
+//! | `.msh` | Gmsh 2.2 and 4.1 | text, binary; triangles and quadrilaterals, other elements are ignored |
 //! | `.vtu`, `.vtp` | VTK XML | text, base64, appended, compressed with zlib; triangles, quadrilaterals, polygons |
 //!
-//! Polygons are cut into the triangles of a fan from their first corner. Vertices that no triangle uses are left out of Gmsh and VTK files, which keep
-//! other things than surfaces as well, and so change the numbers of those behind them; elsewhere they stay, to be found by the surface's checks.
-//! Counts in a file are compared with what is left of it before anything is allocated. Whether the surface is closed and oriented is not asked here: see
-//! [`Surface::checked`].
+//! Polygons are split into triangle fans from their first corner. Vertices without triangles are removed from
+//! Gmsh and VTK files, which may contain more than a surface, so that later vertices are renumbered; in other
+//! formats they are kept and reported by the checks of the surface. Counts in a file are compared with its
+//! remaining length before memory is allocated. Whether the surface is closed and consistently oriented is
+//! checked by [`Surface::checked`].
 
 mod error;
 mod fields;
@@ -29,20 +30,21 @@ use pericles_mesh::{Format, Include, RawMesh};
 use crate::whole::read_whole;
 use error::fault_of;
 
-/// Corners of an STL file nearer than this part of the surface's largest side are one vertex.
+/// Corners of an STL file closer than this fraction of the largest side of the surface are merged into one
+/// vertex.
 const WELD: f64 = 1e-9;
 
-/// Memory that a file takes over its size: its content, the numbers in it, and the surface made of them.
+/// Memory relative to the file size: the content, the parsed numbers and the surface.
 const EXPANSION: u64 = 8;
 
-/// The endings of files that are read.
+/// File extensions of surfaces.
 pub const SURFACE_ENDINGS: [&str; 7] = ["obj", "ply", "stl", "off", "msh", "vtu", "vtp"];
 
-/// Reads a surface; the ending of the file's name tells the format.
+/// Reads a surface; the file extension selects the format.
 ///
 /// # Errors
-/// A file that cannot be read or needs more than `memory` bytes, an unknown ending, content that is not what the format says, with its place, and what
-/// [`Surface::new`] refuses.
+/// Returns an error if the file cannot be read or exceeds `memory` bytes, for an unknown extension, for
+/// invalid content (with its location), and for surfaces that [`Surface::new`] rejects.
 pub fn read_surface(path: impl AsRef<Path>, memory: u64) -> Result<Surface, MeshError> {
     let path = path.as_ref();
     let format = format_of(path)?;
@@ -50,14 +52,15 @@ pub fn read_surface(path: impl AsRef<Path>, memory: u64) -> Result<Surface, Mesh
     surface(format, path, &content, memory)
 }
 
-/// The endings of files of meshes.
+/// File extensions of meshes.
 pub const MESH_ENDINGS: [&str; 13] = Format::ENDINGS;
 
-/// Reads a mesh with its sets, in the file's unit of length; the ending of the file's name tells the format. Files that an Abaqus file includes are read from its
-/// folder.
+/// Reads a mesh with its sets, in the length unit of the file; the file extension selects the format. Files
+/// included by an Abaqus file are read from its folder.
 ///
 /// # Errors
-/// A file that cannot be read or needs more than `memory` bytes, an unknown ending, content that is not what the format says, with its place.
+/// Returns an error if the file cannot be read or exceeds `memory` bytes, for an unknown extension, and for
+/// invalid content (with its location).
 pub fn read_mesh(path: impl AsRef<Path>, memory: u64) -> Result<RawMesh, MeshError> {
     let path = path.as_ref();
     let format = mesh_format_of(path)?;
@@ -69,21 +72,22 @@ pub fn read_mesh(path: impl AsRef<Path>, memory: u64) -> Result<RawMesh, MeshErr
     mesh(format, path, &content, memory, &include)
 }
 
-/// The mesh in the content of a file; its name tells the format, and is what messages call it. No other files are read.
+/// Parses the content of a mesh file; `name` selects the format and is used in messages. Included files are
+/// not read.
 ///
 /// # Errors
-/// As [`read_mesh`], but for a file that cannot be read.
+/// As [`read_mesh`], except for errors of reading the file.
 pub fn parse_mesh(
     name: impl AsRef<Path>,
     content: &[u8],
     memory: u64,
 ) -> Result<RawMesh, MeshError> {
     let name = name.as_ref();
-    let alone = |included: &str| Err(format!("{included} is included, which is not read here"));
+    let alone = |included: &str| Err(format!("the included file {included} is not read here"));
     mesh(mesh_format_of(name)?, name, content, memory, &alone)
 }
 
-/// The format of a file of a mesh.
+/// Returns the format of a mesh file.
 fn mesh_format_of(path: &Path) -> Result<Format, MeshError> {
     Format::of(path).ok_or_else(|| MeshError::UnknownMeshFormat { path: path.into() })
 }
@@ -100,10 +104,10 @@ fn mesh(
         .map_err(|fault| fault_of(fault, path, memory))
 }
 
-/// The surface in the content of a file; its name tells the format, and is what messages call it.
+/// Parses the content of a surface file; `name` selects the format and is used in messages.
 ///
 /// # Errors
-/// As [`read_surface`], but for a file that cannot be read.
+/// As [`read_surface`], except for errors of reading the file.
 pub fn parse_surface(
     name: impl AsRef<Path>,
     content: &[u8],
@@ -113,7 +117,7 @@ pub fn parse_surface(
     surface(format_of(name)?, name, content, memory)
 }
 
-/// The format of a file of a surface.
+/// Returns the format of a surface file.
 fn format_of(path: &Path) -> Result<Format, MeshError> {
     let ending = path.extension().unwrap_or_default().to_string_lossy();
     let known = SURFACE_ENDINGS.contains(&ending.to_lowercase().as_str());
@@ -123,7 +127,11 @@ fn format_of(path: &Path) -> Result<Format, MeshError> {
 }
 
 fn surface(format: Format, path: &Path, content: &[u8], memory: u64) -> Result<Surface, MeshError> {
-    let alone = |name: &str| Err(format!("{name} is not read: surfaces include no files"));
+    let alone = |name: &str| {
+        Err(format!(
+            "{name} is not read: surface files cannot include other files"
+        ))
+    };
     let mesh = format
         .parse(content, memory, &alone)
         .map_err(|fault| fault_of(fault, path, memory))?;

@@ -1,18 +1,19 @@
-//! Writing beside the run.
+//! Writing of output in a background thread.
 
 use std::sync::{Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 
 use crate::error::IoError;
 
-/// A thread that writes an output while the run goes on; a second output waits for the first, so that no more than one is held in memory.
+/// Writes output in a background thread while the run continues; the next output waits for the previous one,
+/// so that at most one is held in memory.
 ///
-/// What goes wrong is told by the next [`start`](Self::start) or [`settle`](Self::settle).
+/// Errors are returned by the next call of [`start`](Self::start) or [`settle`](Self::settle).
 #[derive(Default)]
 pub(super) struct Background(Mutex<Option<JoinHandle<Result<(), IoError>>>>);
 
 impl Background {
-    /// Lets a thread do some work, once the work before is done.
+    /// Starts a task in the thread after the previous one has finished.
     pub(super) fn start(
         &mut self,
         work: impl FnOnce() -> Result<(), IoError> + Send + 'static,
@@ -23,7 +24,7 @@ impl Background {
         Ok(())
     }
 
-    /// Waits until the work is done.
+    /// Waits until the task has finished.
     pub(super) fn settle(&self) -> Result<(), IoError> {
         let thread = self.0.lock().unwrap_or_else(PoisonError::into_inner).take();
         match thread.map(JoinHandle::join) {
@@ -35,7 +36,7 @@ impl Background {
 }
 
 impl Drop for Background {
-    /// A run that ends with an error leaves no thread behind that still writes.
+    /// Waits for the thread, so that a run that ends with an error leaves no writer behind.
     fn drop(&mut self) {
         if let Some(thread) = self.0.get_mut().ok().and_then(Option::take) {
             let _ = thread.join();
@@ -49,19 +50,21 @@ mod tests {
     use std::sync::mpsc::channel;
 
     #[test]
-    fn one_output_is_under_way_and_its_error_is_told_later() {
+    fn one_output_is_in_progress_and_its_error_is_reported_later() {
         let mut background = Background::default();
         let (go, wait) = channel::<()>();
         background
             .start(move || {
-                // Still under way while the run goes on.
-                wait.recv().expect("told to go on");
+                // Still in progress while the run continues.
+                wait.recv().expect("the sender is alive");
                 Err(IoError::damaged("file".as_ref(), "a reason"))
             })
-            .expect("nothing was under way");
+            .expect("no output was in progress");
         go.send(()).expect("the thread waits");
-        let error = background.start(|| Ok(())).expect_err("of the one before");
+        let error = background
+            .start(|| Ok(()))
+            .expect_err("the error of the previous output");
         assert!(matches!(error, IoError::Damaged { .. }), "{error}");
-        assert!(background.settle().is_ok(), "an error is told once");
+        assert!(background.settle().is_ok(), "an error is reported once");
     }
 }

@@ -1,8 +1,8 @@
-//! Columns that only some histories have.
+//! Optional columns of histories.
 
 use pericles::observe::{Field, Snapshot};
 use pericles::space::PointSet;
-use pericles::{Archive, Result, Saved};
+use pericles::{Archive, Checkpointed, Result};
 use pericles_manifold::EnergyInequality;
 use pericles_waves::exact::{ExactSolution, Miss};
 
@@ -10,21 +10,21 @@ use super::pictures::{name_of, scalar_of};
 use super::table::whole;
 use crate::csv::{Cell, Column};
 
-/// More columns of a [`History`](super::History).
-pub trait HistoryColumns: Saved + Send {
-    /// Their names and units.
+/// Additional columns of a [`History`](super::History).
+pub trait HistoryColumns: Checkpointed + Send {
+    /// Returns their names and units.
     fn columns(&self) -> Vec<Column>;
 
-    /// Their cells at a state.
+    /// Returns their cells for a state.
     fn cells(&mut self, snapshot: &Snapshot<'_>) -> Vec<Cell>;
 }
 
-/// Of schemes with inner iterations: the iterations of the last step, and what was left at its end.
+/// Columns of schemes with inner iterations: iterations of the last step, and the remaining residual.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum InnerColumns {
-    /// Implicit steps: the last change of the velocity.
+    /// Implicit steps: the last change of velocity.
     Velocity,
-    /// Relaxation: the forces out of balance over those that act.
+    /// Adaptive dynamic relaxation: the residual relative to the acting forces.
     Residual,
 }
 
@@ -43,8 +43,8 @@ impl HistoryColumns for InnerColumns {
     }
 }
 
-/// A choice of columns has no state.
-impl Saved for InnerColumns {
+/// Columns without state.
+impl Checkpointed for InnerColumns {
     fn save(&self, _archive: &mut Archive) {}
 
     fn restore(&mut self, _archive: &Archive) -> Result<()> {
@@ -52,8 +52,8 @@ impl Saved for InnerColumns {
     }
 }
 
-/// The distance from a known solution of a bar: the largest error over the points that count (m), the largest of that so far, and the root mean square error over that of the
-/// solution.
+/// Errors against an exact solution of a bar: the maximum error over selected points (m), its maximum up to
+/// now, and the root mean square error relative to that of the solution.
 pub struct ErrorColumns {
     solution: Box<dyn ExactSolution>,
     points: PointSet,
@@ -61,7 +61,7 @@ pub struct ErrorColumns {
 }
 
 impl ErrorColumns {
-    /// Errors against a solution, at some points.
+    /// Creates columns of the errors against a solution at the given points.
     pub fn new(solution: Box<dyn ExactSolution>, points: PointSet) -> Self {
         Self {
             solution,
@@ -102,20 +102,21 @@ impl HistoryColumns for ErrorColumns {
 }
 
 pericles::saved! {
-    impl Saved for ErrorColumns {
+    impl Checkpointed for ErrorColumns {
         largest: array("observer/errors/largest"),
         solution, points: fixed,
     }
 }
 
-/// The least and the greatest value over the points of fields, or of components of them; of a vector or tensor without a component those of its norm.
+/// Minimum and maximum over the points of fields or field components; vectors and tensors without a component
+/// by their norm.
 pub struct ExtremeColumns {
     fields: Vec<(Field, Option<usize>)>,
     dimension: usize,
 }
 
 impl ExtremeColumns {
-    /// Extremes of these fields of a body of this dimension.
+    /// Creates columns of the extremes of fields, for a body of the given dimension.
     pub fn new(fields: Vec<(Field, Option<usize>)>, dimension: usize) -> Self {
         Self { fields, dimension }
     }
@@ -135,7 +136,7 @@ impl HistoryColumns for ExtremeColumns {
         let extremes = self.fields.iter().flat_map(|&(field, component)| {
             let values = scalar_of(snapshot.field(field), points, component);
             let fold = |start: f64, pick: fn(f64, f64) -> f64| {
-                // A value that is no number must show: it is neither least nor greatest.
+                // NaN must not be hidden: it is neither minimum nor maximum.
                 values
                     .iter()
                     .fold(start, |found, &value| match value.is_nan() {
@@ -154,12 +155,12 @@ impl HistoryColumns for ExtremeColumns {
 }
 
 pericles::saved! {
-    impl Saved for ExtremeColumns {
+    impl Checkpointed for ExtremeColumns {
         fields, dimension: fixed,
     }
 }
 
-/// What kinetic plus elastic energy cannot exceed, and by how much they stay below it, J.
+/// Upper bound of kinetic plus elastic energy and the margin below it, J.
 pub struct EnergyBoundColumns(pub EnergyInequality);
 
 impl HistoryColumns for EnergyBoundColumns {
@@ -180,7 +181,7 @@ impl HistoryColumns for EnergyBoundColumns {
     }
 }
 
-impl Saved for EnergyBoundColumns {
+impl Checkpointed for EnergyBoundColumns {
     fn save(&self, archive: &mut Archive) {
         let Self(inequality) = self;
         inequality.save(archive);

@@ -7,10 +7,11 @@ use pericles::observe::{CrackTracker, Field, ObserveError, Observer, Snapshot};
 use super::table::{AXES, ObserverTable, step_and_time, whole};
 use crate::csv::{Cell, Column};
 
-/// The tip of the crack that grows from each pre-crack: `cracks.csv`.
+/// Tip of the crack that grows from each pre-crack: `cracks.csv`.
 ///
-/// One row per crack and output. Columns: step, time, crack (numbered from 1 in the order of the deck), reference position of the tip, its advance from
-/// the pre-crack, points of the crack. While the crack has not grown by a spacing the position is empty and the advance zero: points beside the
+/// One row per crack and output. Columns: step, time, crack (numbered from 1 in the order of the deck),
+/// reference position of the tip, its advance from the pre-crack, number of points of the crack. Until the
+/// crack has grown by one spacing, the position is empty and the advance is zero, because points beside the
 /// pre-crack may count as damaged from the start.
 pub struct Cracks {
     table: ObserverTable,
@@ -19,7 +20,7 @@ pub struct Cracks {
 }
 
 impl Cracks {
-    /// The tips found by a tracker in a body of this dimension.
+    /// Creates the observer from a tracker, for a body of the given dimension.
     pub fn new(path: impl Into<PathBuf>, tracker: CrackTracker, dimension: usize) -> Self {
         let mut columns = step_and_time();
         columns.push(Column::integer("crack"));
@@ -58,7 +59,7 @@ impl Observer for Cracks {
 }
 
 pericles::saved! {
-    impl Saved for Cracks {
+    impl Checkpointed for Cracks {
         table: part,
         tracker, dimension: fixed,
     }

@@ -5,39 +5,46 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use pericles::observe::{Field, ObserveError, Observer, Snapshot};
 use pericles::space::PointCloud;
-use pericles::{Archive, Result, Saved, Values};
+use pericles::{Archive, Checkpointed, Result, Values};
 use pericles_manifold::surface::Surface;
 
 use super::background::Background;
+use super::cell_mesh::CellMesh;
+use super::field_columns::{Column, FieldSelection, VtuColumn};
 use super::table::misfit;
 use crate::error::IoError;
 use crate::numbering::Numbering;
-use crate::vtk::{PvdSeries, VtkField, VtuCells, VtuFile};
+use crate::vtk::{PvdSeries, VtkField, VtuFile};
 
 const KEY: &str = "observer/fields";
 const CELLS_KEY: &str = "observer/cells";
 
-/// Fields as a VTK series: `fields.pvd` and `fields/fields_000000.vtu` …, in the user's numbering of the points.
+/// Fields as a VTK series: `fields.pvd` and `fields/fields_000000.vtu` …, in the user's order of points.
 ///
-/// The files hold the reference positions; displaced ones are a "Warp By Vector" away. Their bytes depend on the state alone.
+/// The files hold the reference positions; the filter "Warp By Vector" shows displaced ones. Their bytes depend on the state alone.
 ///
-/// Files are compressed and written by a thread of their own while the run goes on, one at a time.
+/// Points are written as such, as the vertices of the triangles of a surface, or as cells whose fields are cell data; the displacement is then also
+/// written at the nodes, as the mean of the cells that meet there.
+///
+/// Files are compressed and written in a background thread while the run continues, one at a time.
 pub struct FieldSeries {
     folder: PathBuf,
     single_precision: bool,
     series: Option<Arc<Mutex<PvdSeries>>>,
-    /// Outputs so far, the one under way among them.
+    /// Number of outputs, including the one in progress.
     outputs: usize,
     surface: Option<Arc<Surface>>,
-    cells: Option<Arc<MeshCells>>,
-    wanted: Vec<Field>,
+    cells: Option<Arc<CellMesh>>,
+    /// Name of the files, and of what a checkpoint holds.
+    name: SeriesName,
+    wanted: FieldSelection,
     /// Made at the first output.
     body: Option<Arc<FixedPart>>,
     background: Background,
 }
 
 impl FieldSeries {
-    /// A series in an output folder, whose sub-folder `fields` must be there.
+    /// Creates a series in an output folder, whose sub-folder `fields` must exist.
     pub fn new(folder: impl Into<PathBuf>, single_precision: bool) -> Self {
         Self {
             folder: folder.into(),
@@ -46,25 +53,35 @@ impl FieldSeries {
             outputs: 0,
             surface: None,
             cells: None,
-            wanted: Field::USUAL.to_vec(),
+            name: SeriesName::Fields,
+            wanted: FieldSelection {
+                fields: Field::USUAL.to_vec(),
+                marks: Vec::new(),
+            },
             body: None,
             background: Background::default(),
         }
     }
 
-    /// The same with these fields; of tensors each component is a field of its own, `Stress_xx` …
-    pub fn with(mut self, fields: &[Field]) -> Self {
-        self.wanted = fields.to_vec();
+    /// Sets the fields. A tensor is written as one array with named components, and each component as an array of its own, `Stress_xx` …
+    pub fn with(mut self, wanted: FieldSelection) -> Self {
+        self.wanted = wanted;
         self
     }
 
-    /// The same on the cells of a mesh, one for each point: `cells.pvd` and `cells/cells_000000.vtu` …
-    pub fn on_cells(mut self, cells: Arc<MeshCells>) -> Self {
+    /// Writes the fields on cells, one for each point.
+    pub fn on_cells(mut self, cells: Arc<CellMesh>) -> Self {
         self.cells = Some(cells);
         self
     }
 
-    /// The same for a surface, whose triangles become cells.
+    /// Names the files `cells.pvd` and `cells/cells_000000.vtu` …, for a second series of the same run.
+    pub fn as_second(mut self) -> Self {
+        self.name = SeriesName::Cells;
+        self
+    }
+
+    /// Writes the triangles of a surface as cells.
     pub fn of_surface(mut self, surface: Arc<Surface>) -> Self {
         self.surface = Some(surface);
         self
@@ -80,10 +97,7 @@ impl FieldSeries {
         };
         let series = Arc::clone(series);
         let output = self.output(snapshot);
-        let name = match self.cells {
-            Some(_) => format!("cells/cells_{:06}.vtu", self.outputs),
-            None => PvdSeries::field_file(self.outputs),
-        };
+        let name = self.name.file(self.outputs);
         let path = self.folder.join(&name);
         self.background.start(move || {
             output.write(&path)?;
@@ -95,19 +109,7 @@ impl FieldSeries {
     }
 
     fn series_file(&self) -> PathBuf {
-        let name = match self.cells {
-            Some(_) => "cells.pvd",
-            None => "fields.pvd",
-        };
-        self.folder.join(name)
-    }
-
-    /// The key of what a checkpoint holds.
-    fn key(&self) -> &'static str {
-        match self.cells {
-            Some(_) => CELLS_KEY,
-            None => KEY,
-        }
+        self.folder.join(self.name.series())
     }
 
     fn output(&mut self, snapshot: &Snapshot<'_>) -> Output {
@@ -116,17 +118,7 @@ impl FieldSeries {
         let body = self
             .body
             .get_or_insert_with(|| Arc::new(FixedPart::of(cloud, surface)));
-        let numbering = &body.numbering;
-        let columns: Vec<Column> = self
-            .wanted
-            .iter()
-            .flat_map(|&field| columns(field, snapshot))
-            .map(|(name, vector, array)| Column {
-                name,
-                vector,
-                values: numbering.apply(array).into_owned(),
-            })
-            .collect();
+        let columns = self.wanted.columns(snapshot, &body.numbering);
         Output {
             body: Arc::clone(body),
             cells: self.cells.clone(),
@@ -137,23 +129,39 @@ impl FieldSeries {
     }
 }
 
-/// The cells of a mesh, one for each point in the user's order.
-#[derive(Debug, Clone)]
-pub struct MeshCells {
-    /// Positions of the nodes, m: x of all, then y, then z.
-    pub nodes: Vec<f64>,
-    /// The cells.
-    pub cells: VtuCells,
+/// Names of the files of a series.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum SeriesName {
+    Fields,
+    Cells,
 }
 
-/// A named field in the user's order of points.
-struct Column {
-    name: String,
-    vector: bool,
-    values: Vec<f64>,
+impl SeriesName {
+    fn series(self) -> &'static str {
+        match self {
+            Self::Fields => "fields.pvd",
+            Self::Cells => "cells.pvd",
+        }
+    }
+
+    /// The file of an output.
+    fn file(self, output: usize) -> String {
+        match self {
+            Self::Fields => PvdSeries::field_file(output),
+            Self::Cells => format!("cells/cells_{output:06}.vtu"),
+        }
+    }
+
+    /// The key of what a checkpoint holds.
+    fn key(self) -> &'static str {
+        match self {
+            Self::Fields => KEY,
+            Self::Cells => CELLS_KEY,
+        }
+    }
 }
 
-/// What all files of a run share, in the user's order of points.
+/// Data shared by all files of a run, in the user's order of points.
 struct FixedPart {
     dimension: usize,
     positions: Vec<f64>,
@@ -178,10 +186,10 @@ impl FixedPart {
     }
 }
 
-/// What a file holds, taken from a snapshot that will not wait.
+/// Content of one file, copied from a snapshot that does not outlive the step.
 struct Output {
     body: Arc<FixedPart>,
-    cells: Option<Arc<MeshCells>>,
+    cells: Option<Arc<CellMesh>>,
     time: f64,
     columns: Vec<Column>,
     single_precision: bool,
@@ -198,16 +206,25 @@ impl Output {
         if let Some(triangles) = &body.triangles {
             file = file.triangles(triangles);
         }
-        for column in &self.columns {
-            let field = if column.vector {
-                VtkField::vector(&column.name, &column.values)
-            } else {
-                VtkField::scalar(&column.name, &column.values)
-            };
-            file = file.field(if self.single_precision {
-                field.in_single_precision()
-            } else {
-                field
+        let points = body.positions.len() / body.dimension;
+        let arrays = self.columns.iter();
+        let arrays: Vec<VtuColumn<'_>> = arrays
+            .flat_map(|column| column.in_vtu(body.dimension, points))
+            .collect();
+        for array in &arrays {
+            file = file.field(array.field(self.single_precision));
+        }
+        let displacement = self.cells.as_ref().and_then(|cells| {
+            let name = Field::Displacement.name();
+            let column = self.columns.iter().find(|column| column.name == name)?;
+            Some(cells.at_nodes(column.values()))
+        });
+        if let Some(displacement) = &displacement {
+            let field = VtkField::vector(Field::Displacement.name(), displacement);
+            let field = field.unit(Field::Displacement.unit());
+            file = file.node_field(match self.single_precision {
+                true => field.in_single_precision(),
+                false => field,
             });
         }
         file.write(path)
@@ -216,9 +233,7 @@ impl Output {
 
 impl Observer for FieldSeries {
     fn observe(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), ObserveError> {
-        for field in &self.wanted {
-            snapshot.check(*field)?;
-        }
+        self.wanted.check(snapshot)?;
         Ok(self.write(snapshot)?)
     }
 
@@ -231,17 +246,18 @@ impl Observer for FieldSeries {
     }
 }
 
-impl Saved for FieldSeries {
+impl Checkpointed for FieldSeries {
     fn save(&self, archive: &mut Archive) {
-        let key = self.key();
+        let key = self.name.key();
         let Self {
             outputs,
-            // Opened again.
+            // The series is reopened.
             series: _,
             folder: _,
             single_precision: _,
             surface: _,
             cells: _,
+            name: _,
             wanted: _,
             body: _,
             background: _,
@@ -251,8 +267,13 @@ impl Saved for FieldSeries {
 
     fn restore(&mut self, archive: &Archive) -> Result<()> {
         let mut entries = 0;
-        archive.u64_into(self.key(), std::slice::from_mut(&mut entries))?;
+        archive.u64_into(self.name.key(), std::slice::from_mut(&mut entries))?;
         self.outputs = entries as usize;
+        // A series that an earlier release began on points continues on points.
+        let first = self.folder.join(self.name.file(0));
+        if self.outputs > 0 && !VtuFile::has_cell_data(first) {
+            self.cells = None;
+        }
         self.series = (entries > 0)
             .then(|| PvdSeries::reopen(self.series_file(), self.outputs))
             .transpose()
@@ -260,21 +281,4 @@ impl Saved for FieldSeries {
             .map(|series| Arc::new(Mutex::new(series)));
         Ok(())
     }
-}
-
-/// A field as columns of a file: name, whether it is a vector, numbers.
-pub(super) fn columns<'a>(
-    field: Field,
-    snapshot: &'a Snapshot<'_>,
-) -> Vec<(String, bool, &'a [f64])> {
-    let array = snapshot.field(field);
-    if !field.is_tensor() {
-        return vec![(field.name().to_owned(), field.is_vector(), array)];
-    }
-    let cloud = snapshot.system().cloud();
-    let components = field.components(cloud.dimension()).iter();
-    components
-        .zip(array.chunks(cloud.len()))
-        .map(|(component, array)| (format!("{}_{component}", field.name()), false, array))
-        .collect()
 }

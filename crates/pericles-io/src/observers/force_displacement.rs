@@ -1,4 +1,4 @@
-//! The force–displacement curve of static states.
+//! Force–displacement curve of static states.
 
 use std::path::PathBuf;
 
@@ -10,10 +10,12 @@ use crate::csv::{Cell, Column, read_csv};
 use crate::error::IoError;
 use crate::picture::{Axis, Curve, LineChart};
 
-/// The mean displacement and the force of each prescribed motion along each of its axes: `force_displacement.csv`, and at the end of the run a chart of them, `force_displacement.png`.
+/// Mean displacement and force of each prescribed motion along each of its axes: `force_displacement.csv`,
+/// and a chart `force_displacement.png` at the end of the run.
 ///
-/// Columns: step, time, then `<name>_displacement_<axis>` in metres and `<name>_force_<axis>` in newtons. The force is that of the support on the body. Displacements are those of the body, so that they are
-/// right where a scheme scales what is prescribed. The chart shows the motions whose displacement changes.
+/// Columns: step, time, then `<name>_displacement_<axis>` in metres and `<name>_force_<axis>` in newtons. The
+/// force is that of the support on the body. Displacements are taken from the body, so that they are correct
+/// if a scheme scales the prescribed values. The chart shows the motions whose displacement changes.
 pub struct ForceDisplacement {
     table: ObserverTable,
     path: PathBuf,
@@ -24,7 +26,8 @@ pub struct ForceDisplacement {
 }
 
 impl ForceDisplacement {
-    /// The curve of a system with these motions, which must be the system's own; table and chart are files.
+    /// Creates the observer for a system with these motions, which must be those of the system; `table` and
+    /// `chart` are file paths.
     pub fn new(
         table: impl Into<PathBuf>,
         chart: impl Into<PathBuf>,
@@ -78,7 +81,7 @@ impl ForceDisplacement {
     }
 }
 
-/// The columns of displacement and force.
+/// Returns the names of the displacement and force columns.
 fn names(motion: &str, axis: usize) -> [String; 2] {
     ["displacement", "force"].map(|what| format!("{motion}_{what}_{}", AXES[axis]))
 }
@@ -105,7 +108,7 @@ impl Observer for ForceDisplacement {
 }
 
 pericles::saved! {
-    impl Saved for ForceDisplacement {
+    impl Checkpointed for ForceDisplacement {
         table: part,
         path, chart, title, pairs: fixed,
     }

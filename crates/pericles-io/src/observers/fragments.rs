@@ -7,17 +7,18 @@ use pericles::observe::{Fragments, ObserveError, Observer, Snapshot};
 use super::table::{ObserverTable, step_and_time, whole};
 use crate::csv::Column;
 
-/// What the bonds that are left hold together: `fragments.csv`.
+/// Fragments, the pieces connected by intact bonds: `fragments.csv`.
 ///
-/// One row per output. Columns: step, time, number of fragments, mass of the heaviest piece; number and mass of the pieces below the smallest fragment; number and mass of the
-/// points that have lost all bonds.
+/// One row per output. Columns: step, time, number of fragments, mass of the heaviest piece; number and mass
+/// of pieces smaller than a fragment; number and mass of points without bonds.
 pub struct FragmentCourse {
     table: ObserverTable,
     smallest: f64,
 }
 
 impl FragmentCourse {
-    /// A piece of at least the share `smallest` of the body's mass is a fragment.
+    /// Creates the observer; a piece with at least the fraction `smallest` of the body's mass counts as a
+    /// fragment.
     pub fn new(path: impl Into<PathBuf>, smallest: f64) -> Self {
         let mut columns = step_and_time();
         columns.push(Column::integer("fragments"));
@@ -53,7 +54,7 @@ impl Observer for FragmentCourse {
 }
 
 pericles::saved! {
-    impl Saved for FragmentCourse {
+    impl Checkpointed for FragmentCourse {
         table: part,
         smallest: fixed,
     }

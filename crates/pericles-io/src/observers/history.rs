@@ -1,4 +1,4 @@
-//! The energy account over time.
+//! Energy balance over time.
 
 use std::path::PathBuf;
 
@@ -10,9 +10,10 @@ use crate::csv::{Cell, Column};
 
 /// Energies, momentum and broken bonds: `history.csv`.
 ///
-/// Columns: step, time, kinetic, elastic and dissipated energy, external work (loads and supports, since the start), the correction by which the
-/// energy that the time scheme itself conserves differs, the balance (the sum of the energies and the correction, less the work and the energy at the
-/// start; zero if nothing is lost), momentum along each axis of the body, broken bonds, and what is added by [`History::with`].
+/// Columns: step, time, kinetic, elastic and dissipated energy, external work (loads and supports, since the
+/// start), the correction by which the energy conserved by the time scheme differs, the balance (sum of
+/// energies and correction, minus the work and the initial energy; zero if energy is conserved), momentum
+/// along each axis of the body, broken bonds, and the columns added by [`History::with`].
 pub struct History {
     table: ObserverTable,
     dimension: usize,
@@ -20,7 +21,7 @@ pub struct History {
 }
 
 impl History {
-    /// A history of a body of this dimension.
+    /// Creates a history for a body of the given dimension.
     pub fn new(path: impl Into<PathBuf>, dimension: usize) -> Self {
         let mut columns = step_and_time();
         for name in [
@@ -44,7 +45,7 @@ impl History {
         }
     }
 
-    /// The same with more columns.
+    /// Adds columns.
     #[must_use]
     pub fn with(mut self, columns: impl HistoryColumns + 'static) -> Self {
         self.table.add_columns(columns.columns());
@@ -78,7 +79,7 @@ impl Observer for History {
 }
 
 pericles::saved! {
-    impl Saved for History {
+    impl Checkpointed for History {
         table, more: part,
         dimension: fixed,
     }

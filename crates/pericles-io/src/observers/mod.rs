@@ -1,23 +1,26 @@
-//! Observers that write files: what a run leaves behind.
+//! Observers that write the output files of a run.
 //!
 //! | observer | files | content |
 //! |---|---|---|
 //! | [`FieldSeries`] | `fields.pvd`, `fields/fields_000000.vtu` … | all fields on the points |
-//! | [`ResultFile`] | `fields.exo`, `fields.vtkhdf` | the same in one file |
-//! | [`History`] | `history.csv` | energies and their balance, momentum, broken bonds; where there are such, the distance from a known solution, a bound of the energy, inner iterations |
+//! | [`ResultFile`] | `fields.exo`, `fields.vtkhdf` | all fields on the points, in one file |
+//! | [`History`] | `history.csv` | energies and their balance, momentum, broken bonds; if available, errors against an exact solution, an energy bound, inner iterations |
 //! | [`Reactions`] | `reactions.csv` | forces of supports |
 //! | [`ForceDisplacement`] | `force_displacement.csv`, `force_displacement.png` | displacements and forces of supports at static states |
 //! | [`Cracks`] | `cracks.csv` | crack tips |
-//! | [`FragmentCourse`] | `fragments.csv` | pieces that bonds hold together |
-//! | [`Probes`] | `probes.csv` | displacement and velocity at chosen places |
-//! | [`SurfaceCourse`] | `surface.csv` | stretch of a surface, energy bound, concentrations of energy |
-//! | [`Pictures`] | `pictures/Damage-000000.png` …, `pictures/Damage.apng` | a field as a picture, and all of them as an animation |
+//! | [`FragmentCourse`] | `fragments.csv` | pieces connected by intact bonds |
+//! | [`Probes`] | `probes.csv` | displacement and velocity at probe positions |
+//! | [`SurfaceCourse`] | `surface.csv` | stretch of a surface, energy bound, localisation of energy |
+//! | [`Profile`] | `profile_<name>.csv`, `profile_<name>.png` | a field along a straight line at the end of a run, with a known solution if there is one |
+//! | [`Pictures`] | `pictures/Damage-000000.png` …, `pictures/Damage.apng` | pictures of a field and their animation |
 //!
-//! What they write depends on the states they are shown alone: no clock, path or number of threads enters a file. Each remembers in a checkpoint how
-//! much it has written ([`Saved`](pericles::Saved)); restored, it cuts its files back to that and goes on, so that the files of a stopped and resumed
-//! run equal those of an uninterrupted one byte for byte. Rows reach the system as they are written, and the disk before a checkpoint does.
+//! The content depends only on the observed states: not on the clock, path or number of threads. Each
+//! observer records in a checkpoint how much it has written ([`Checkpointed`](pericles::Checkpointed)); after a restore it
+//! truncates its files to that length and continues, so that the files of a stopped and resumed run equal
+//! those of an uninterrupted one byte for byte. Rows are flushed to the operating system when they are
+//! written, and synced to disk before a checkpoint.
 //!
-//! Errors of files travel through the simulation as boxed [`IoError`](crate::IoError).
+//! File errors pass through the simulation as boxed [`IoError`](crate::IoError).
 //!
 //! ```
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -52,27 +55,35 @@
 //! ```
 
 mod background;
+mod cell_mesh;
 mod columns;
 mod cracks;
+mod field_columns;
 mod fields;
 mod force_displacement;
 mod fragments;
 mod history;
+mod overlay;
 mod pictures;
 mod probes;
+mod profile;
 mod reactions;
 mod result_file;
 mod surface;
 mod table;
 
+pub use cell_mesh::CellMesh;
 pub use columns::{EnergyBoundColumns, ErrorColumns, ExtremeColumns, HistoryColumns, InnerColumns};
 pub use cracks::Cracks;
-pub use fields::{FieldSeries, MeshCells};
+pub use field_columns::{FieldSelection, PointMark};
+pub use fields::FieldSeries;
 pub use force_displacement::ForceDisplacement;
 pub use fragments::FragmentCourse;
 pub use history::History;
+pub use overlay::Overlay;
 pub use pictures::{DrawnState, PictureOf, Pictures};
 pub use probes::Probes;
+pub use profile::{Profile, Reference};
 pub use reactions::Reactions;
 pub use result_file::{ResultFile, ResultFormat};
 pub use surface::SurfaceCourse;

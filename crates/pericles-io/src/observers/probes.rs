@@ -1,4 +1,4 @@
-//! Displacement and velocity at chosen places over time.
+//! Displacement and velocity at probe positions over time.
 
 use std::path::PathBuf;
 
@@ -7,7 +7,7 @@ use pericles::observe::{ObserveError, Observer, Probe, Snapshot};
 use super::table::{AXES, ObserverTable, step_and_time, whole};
 use crate::csv::{Cell, Column};
 
-/// The readings of probes: `probes.csv`.
+/// Displacement and velocity at probes: `probes.csv`.
 ///
 /// Columns: step, time, then for each probe `<name>_u_<axis>` (m) and `<name>_v_<axis>` (m/s).
 pub struct Probes {
@@ -17,7 +17,7 @@ pub struct Probes {
 }
 
 impl Probes {
-    /// Probes in a body of this dimension.
+    /// Creates the observer of probes in a body of the given dimension.
     pub fn new(path: impl Into<PathBuf>, probes: Vec<Probe>, dimension: usize) -> Self {
         let mut columns = step_and_time();
         for probe in &probes {
@@ -53,7 +53,7 @@ impl Observer for Probes {
 }
 
 pericles::saved! {
-    impl Saved for Probes {
+    impl Checkpointed for Probes {
         table: part,
         probes, dimension: fixed,
     }

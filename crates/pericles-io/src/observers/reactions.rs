@@ -1,4 +1,4 @@
-//! The forces of supports over time.
+//! Reaction forces over time.
 
 use std::path::PathBuf;
 
@@ -10,13 +10,13 @@ use crate::csv::{Cell, Column};
 
 /// The force of the support on the body for each prescribed motion and axis: `reactions.csv`.
 ///
-/// Columns: step, time, then `<name>_<axis>` in newtons. The reaction is Σ V (ρ a − f − b) over the held points.
+/// Columns: step, time, then `<name>_<axis>` in newtons. The reaction is Σ V (ρ a − f − b) over the constrained points.
 pub struct Reactions {
     table: ObserverTable,
 }
 
 impl Reactions {
-    /// The reactions of a system with these motions; they must be the system's own.
+    /// Creates the observer for a system with these motions, which must be those of the system.
     pub fn new(path: impl Into<PathBuf>, motions: &[PrescribedMotion]) -> Self {
         let mut columns = step_and_time();
         for motion in motions {
@@ -43,7 +43,7 @@ impl Observer for Reactions {
 }
 
 pericles::saved! {
-    impl Saved for Reactions {
+    impl Checkpointed for Reactions {
         table: part,
     }
 }

@@ -3,14 +3,14 @@
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use pericles::observe::{Field, ObserveError, Observer, Snapshot};
-use pericles::{Archive, Result, Saved, Values};
+use pericles::observe::{ObserveError, Observer, Snapshot};
+use pericles::{Archive, Checkpointed, Result, Values};
 use pericles_mesh::results::{
     ExodusLayout, ExodusWriter, FieldSpec, VtkHdfLayout, VtkHdfWriter, WriteError,
 };
 
 use super::background::Background;
-use super::fields::columns;
+use super::field_columns::FieldSelection;
 use super::table::misfit;
 use crate::error::IoError;
 use crate::result_body::{ResultBody, write_error};
@@ -20,25 +20,25 @@ use crate::result_body::{ResultBody, write_error};
 pub enum ResultFormat {
     /// Exodus II: points as spheres with radius and volume, blocks, node sets.
     Exodus,
-    /// VTKHDF with room for so many outputs.
+    /// VTKHDF with space for a maximum number of outputs.
     VtkHdf {
-        /// At least the number of outputs of the whole run.
+        /// Upper bound of the number of outputs of the whole run.
         outputs: usize,
     },
 }
 
-/// Fields on the points in one file that grows output by output, in the user's numbering of the points. A killed run leaves a whole file of the outputs before; a resumed one
-/// continues it to the same bytes.
+/// Fields on the points in one file that grows with each output, in the user's order of points. After a
+/// killed run the file is valid up to the last complete output; a resumed run continues it to the same bytes.
 ///
-/// Outputs are written by a thread of their own while the run goes on, one at a time.
+/// Outputs are written in a background thread while the run continues, one at a time.
 pub struct ResultFile {
     path: PathBuf,
     format: ResultFormat,
     body: Arc<ResultBody>,
-    wanted: Vec<Field>,
+    wanted: FieldSelection,
     is_single: bool,
     writer: Option<Arc<Mutex<Writer>>>,
-    /// Outputs so far, the one under way among them.
+    /// Number of outputs, including the one in progress.
     outputs: usize,
     background: Background,
 }
@@ -56,7 +56,7 @@ impl Writer {
         }
     }
 
-    /// Brings what was written to the disk.
+    /// Syncs the file to disk.
     fn sync(&self) -> std::io::Result<()> {
         match self {
             Self::Exodus(writer) => writer.sync(),
@@ -66,42 +66,24 @@ impl Writer {
 }
 
 impl ResultFile {
-    /// A file of these fields.
+    /// Creates a file of these fields.
     pub fn new(
         path: impl Into<PathBuf>,
         format: ResultFormat,
         body: Arc<ResultBody>,
-        wanted: &[Field],
+        wanted: FieldSelection,
         is_single: bool,
     ) -> Self {
         Self {
             path: path.into(),
             format,
             body,
-            wanted: wanted.to_vec(),
+            wanted,
             is_single,
             writer: None,
             outputs: 0,
             background: Background::default(),
         }
-    }
-
-    /// Each component of a tensor is a field of its own, as in the series of VTU files.
-    fn fields(&self) -> Vec<FieldSpec> {
-        let dimension = self.body.dimension;
-        let specs = self.wanted.iter().flat_map(|field| {
-            let name = field.name();
-            match (field.is_tensor(), field.is_vector()) {
-                (true, _) => {
-                    let parts = field.components(dimension).iter();
-                    let part = |part: &&str| FieldSpec::new(format!("{name}_{part}"), 1);
-                    parts.map(part).collect()
-                }
-                (false, true) => vec![FieldSpec::new(name, dimension)],
-                (false, false) => vec![FieldSpec::new(name, 1)],
-            }
-        });
-        specs.collect()
     }
 
     /// The writer after a number of outputs: of a new file if there are none.
@@ -117,7 +99,7 @@ impl ResultFile {
                     blocks: body.blocks.clone(),
                     sets: body.sets.clone(),
                     globals: Vec::new(),
-                    fields: self.fields(),
+                    fields: self.wanted.specs(body.dimension),
                     is_single: self.is_single,
                 };
                 let writer = match outputs {
@@ -130,7 +112,7 @@ impl ResultFile {
                 let layout = VtkHdfLayout {
                     dimension: body.dimension,
                     positions: &body.positions,
-                    fields: self.fields(),
+                    fields: self.wanted.specs(body.dimension),
                     constants: vec![(FieldSpec::new("Volume", 1), &body.volumes)],
                     outputs: most,
                     is_single: self.is_single,
@@ -154,15 +136,12 @@ impl ResultFile {
             }
         };
         let numbering = &self.body.numbering;
-        let arrays: Vec<Vec<f64>> = self
-            .wanted
-            .iter()
-            .flat_map(|&field| columns(field, snapshot))
-            .map(|(_, _, array)| numbering.apply(array).into_owned())
-            .collect();
+        let columns = self.wanted.columns(snapshot, numbering);
+        let points = snapshot.system().points();
         let (time, path) = (snapshot.state().t, self.path.clone());
         self.background.start(move || {
-            let values: Vec<&[f64]> = arrays.iter().map(Vec::as_slice).collect();
+            let arrays = columns.iter().flat_map(|column| column.arrays(points));
+            let values: Vec<&[f64]> = arrays.collect();
             let mut writer = writer.lock().unwrap_or_else(PoisonError::into_inner);
             let written = writer.append(time, &values);
             written.map_err(|error| write_error(&path, error))
@@ -171,7 +150,7 @@ impl ResultFile {
         Ok(())
     }
 
-    /// Waits for the output under way and brings all of them to the disk.
+    /// Waits for the output in progress and syncs the file to disk.
     fn sync(&self) -> std::result::Result<(), IoError> {
         self.background.settle()?;
         let Some(writer) = &self.writer else {
@@ -192,9 +171,7 @@ impl ResultFile {
 
 impl Observer for ResultFile {
     fn observe(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), ObserveError> {
-        for field in &self.wanted {
-            snapshot.check(*field)?;
-        }
+        self.wanted.check(snapshot)?;
         Ok(self.write(snapshot)?)
     }
 
@@ -207,15 +184,15 @@ impl Observer for ResultFile {
     }
 }
 
-impl Saved for ResultFile {
+impl Checkpointed for ResultFile {
     fn save(&self, archive: &mut Archive) {
         let key = self.key();
         let Self {
             outputs,
-            // Opened again.
+            // The file is reopened.
             writer: _,
             background: _,
-            // Given again.
+            // Given again by the constructor.
             path: _,
             format: _,
             body: _,

@@ -1,4 +1,4 @@
-//! The course of a surface over time.
+//! Measures of a surface over time.
 
 use std::path::PathBuf;
 
@@ -10,10 +10,11 @@ use crate::csv::{Cell, Column};
 
 const KEY: &str = "observer/surface/bound";
 
-/// Surface stretch, margin of the energy bound, concentration of elastic energy: `surface.csv`.
+/// Stretch of a surface, margin of the energy bound, localisation of elastic energy: `surface.csv`.
 ///
-/// Columns: step, time, stretch S/S₀ − 1, margin √E(0) + ∫‖b‖/√(2ρ) − √E(t), localisation (largest energy density over the mean), share of the energy in the
-/// top 2 % of vertices, zones of concentrated energy, area and centre of the largest, inverted triangles, edges stretched beyond twice their length.
+/// Columns: step, time, stretch S/S₀ − 1, margin √E(0) + ∫‖b‖/√(2ρ) − √E(t), localisation (maximum energy
+/// density over its mean), fraction of the energy in the top 2 % of vertices, number of zones of concentrated
+/// energy, area and centre of the largest, inverted triangles, edges stretched beyond twice their length.
 pub struct SurfaceCourse {
     table: ObserverTable,
     measure: SurfaceMeasure,
@@ -21,7 +22,7 @@ pub struct SurfaceCourse {
 }
 
 impl SurfaceCourse {
-    /// The course of a surface.
+    /// Creates the observer of a surface.
     pub fn new(path: impl Into<PathBuf>, measure: SurfaceMeasure) -> Self {
         let mut columns = step_and_time();
         columns.push(Column::real("stretch", ""));
@@ -70,7 +71,7 @@ impl Observer for SurfaceCourse {
 }
 
 pericles::saved! {
-    impl Saved for SurfaceCourse {
+    impl Checkpointed for SurfaceCourse {
         table: part,
         bound: array("{KEY}"),
         measure: fixed,

@@ -1,18 +1,18 @@
-//! A table that an observer fills, and that goes on after a resume where its checkpoint was written.
+//! Table written by an observer; after a resume it continues from its checkpoint.
 
 use std::cell::RefCell;
 use std::path::PathBuf;
 
-use pericles::{Archive, PericlesError, Result, Saved, Values};
+use pericles::{Archive, Checkpointed, PericlesError, Result, Values};
 
 use crate::csv::{Cell, Column, CsvTable};
 use crate::error::IoError;
 
-/// Created at the first row of a fresh run, cut back and reopened by a restore.
+/// Created at the first row of a new run; truncated and reopened by a restore.
 pub(super) struct ObserverTable {
     path: PathBuf,
     columns: Vec<Column>,
-    /// The array's name in archives.
+    /// Name of the array in archives.
     key: &'static str,
     open: RefCell<Open>,
 }
@@ -20,7 +20,7 @@ pub(super) struct ObserverTable {
 #[derive(Default)]
 struct Open {
     table: Option<CsvTable>,
-    /// Trouble met while saving, which has no way to report it: told at the next row.
+    /// Error that occurred while saving, which cannot report errors; returned with the next row.
     trouble: Option<IoError>,
 }
 
@@ -34,12 +34,12 @@ impl ObserverTable {
         }
     }
 
-    /// Adds columns to a table that has no rows yet.
+    /// Adds columns to a table without rows.
     pub(super) fn add_columns(&mut self, columns: Vec<Column>) {
         self.columns.extend(columns);
     }
 
-    /// Adds a row and hands it to the system, so that a table can be followed while the run goes on.
+    /// Appends and flushes a row, so that the table can be followed during the run.
     pub(super) fn append(&self, cells: &[Cell]) -> std::result::Result<(), IoError> {
         let open = &mut *self.open.borrow_mut();
         if let Some(trouble) = open.trouble.take() {
@@ -53,7 +53,7 @@ impl ObserverTable {
         table.flush()
     }
 
-    /// Creates the file with its header if it is not there yet, for tables that may stay without rows.
+    /// Creates the file with its header if it does not exist, for tables that may have no rows.
     pub(super) fn touch(&self) -> std::result::Result<(), IoError> {
         let open = &mut *self.open.borrow_mut();
         if open.table.is_none() {
@@ -63,8 +63,8 @@ impl ObserverTable {
     }
 }
 
-impl Saved for ObserverTable {
-    /// Notes the length; the rows are on the disk when the checkpoint that remembers it is.
+impl Checkpointed for ObserverTable {
+    /// Records the length after syncing the rows to disk.
     fn save(&self, archive: &mut Archive) {
         let Self {
             open,
@@ -82,7 +82,7 @@ impl Saved for ObserverTable {
         archive.put(*key, Values::U64(vec![length]));
     }
 
-    /// Cuts the file back to the noted length.
+    /// Truncates the file to the recorded length.
     fn restore(&mut self, archive: &Archive) -> Result<()> {
         let mut length = 0;
         archive.u64_into(self.key, std::slice::from_mut(&mut length))?;
@@ -98,19 +98,19 @@ impl Saved for ObserverTable {
     }
 }
 
-/// A file that does not go with the checkpoint, as the library reports it.
+/// Converts the error of a file that does not match the checkpoint.
 pub(super) fn misfit(error: IoError) -> PericlesError {
     PericlesError::BadArchive {
         reason: error.to_string(),
     }
 }
 
-/// The columns every table begins with.
+/// Returns the first columns of every table.
 pub(super) fn step_and_time() -> Vec<Column> {
     vec![Column::integer("step"), Column::real("time", "s")]
 }
 
-/// Counts in tables are far below the limit.
+/// Converts a count; counts in tables are far below the limit.
 pub(super) fn whole(count: u64) -> Cell {
     Cell::Integer(i64::try_from(count).unwrap_or(i64::MAX))
 }

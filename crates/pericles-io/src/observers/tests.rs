@@ -1,4 +1,4 @@
-//! A small plate that breaks under the eyes of all observers.
+//! A small plate that fractures, observed by all observers.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -13,7 +13,7 @@ use pericles::operator::{BondForce, Breaking, DamageMeasure};
 use pericles::round_trip::check_resume;
 use pericles::space::{Face, Grid, Region, Shape};
 use pericles::time::{State, VelocityVerlet};
-use pericles::{Archive, Control, Outcome, PointScalar, Saved, Simulation, System, Values};
+use pericles::{Archive, Checkpointed, Control, Outcome, PointScalar, Simulation, System, Values};
 use pericles_manifold::EnergyInequality;
 use pericles_waves::exact::LineSolution;
 
@@ -22,7 +22,7 @@ use crate::{IoError, read_csv};
 
 const STEPS: u64 = 60;
 
-/// A notched plate whose upper edge is pulled at constant speed while the lower one is held.
+/// A notched plate whose upper edge moves at constant velocity while the lower edge is fixed.
 fn simulation(folder: &Path) -> Simulation {
     let shape = Shape::Box {
         origin: [0.0; 3],
@@ -90,7 +90,7 @@ fn simulation(folder: &Path) -> Simulation {
     )
     .animated();
     let cracks = Cracks::new(folder.join("cracks.csv"), tracker, 2);
-    // Not the solution of this body: what counts is that the largest error is carried on.
+    // Not the exact solution of this body: the test only needs that the maximum error is saved and restored.
     let line = LineSolution {
         young: 1.0,
         density: 1.0,
@@ -157,11 +157,11 @@ fn tables_agree_with_the_simulation() {
     let broken = run.system().operator().broken_bonds();
     assert!(
         broken > 10,
-        "the plate must break for this test to mean anything: {broken}"
+        "the test requires that the plate breaks: {broken}"
     );
     assert_eq!(last("broken_bonds"), broken as f64);
     let sum = last("kinetic_energy") + last("elastic_energy") + last("dissipated_energy");
-    // The pulled layer moves from the start.
+    // The upper layer moves from the start.
     let initial = history.column("kinetic_energy").unwrap()[0];
     assert!(initial > 0.0);
     let balance = sum + last("scheme_correction") - last("external_work") - initial;
@@ -172,7 +172,7 @@ fn tables_agree_with_the_simulation() {
     assert!(reactions.column("+y_y").unwrap()[5] > 0.0);
     assert!(
         reactions.column("+y_x").is_none(),
-        "free axes have no column"
+        "unconstrained axes have no column"
     );
 
     let cracks = read("cracks.csv");
@@ -210,7 +210,7 @@ fn stopped_and_resumed_runs_leave_the_same_bytes() {
         let folder = tempfile::tempdir().unwrap();
         let mut first = simulation(folder.path());
         let mut archive = Archive::default();
-        // The checkpoint lies a few steps before the stop: what was written in between must be cut off.
+        // The checkpoint is a few steps before the stop: output written in between must be removed.
         first
             .run(|run| {
                 if run.state().step == stop {
@@ -243,13 +243,13 @@ fn stopped_and_resumed_runs_leave_the_same_bytes() {
 }
 
 #[test]
-fn observers_are_resumed() {
+fn observers_resume_from_checkpoints() {
     let folder = tempfile::tempdir().unwrap();
     check_resume(|| simulation(folder.path()), [23]).unwrap();
 }
 
 #[test]
-fn a_table_that_was_tampered_with_is_refused() {
+fn a_modified_table_is_rejected_on_resume() {
     let folder = tempfile::tempdir().unwrap();
     let run = whole_run(folder.path());
     let mut archive = Archive::default();
@@ -260,7 +260,7 @@ fn a_table_that_was_tampered_with_is_refused() {
 }
 
 #[test]
-fn more_pictures_than_there_are_are_refused() {
+fn missing_pictures_are_rejected_on_resume() {
     let folder = tempfile::tempdir().unwrap();
     let run = whole_run(folder.path());
     let mut archive = Archive::default();
@@ -278,7 +278,7 @@ fn more_pictures_than_there_are_are_refused() {
 }
 
 #[test]
-fn trouble_with_a_file_arrives_as_an_io_error() {
+fn file_errors_are_returned_as_io_errors() {
     let folder = tempfile::tempdir().unwrap();
     let mut run = simulation(folder.path());
     fs::remove_dir(folder.path().join("fields")).unwrap();

@@ -1,4 +1,4 @@
-//! Pictures that follow one another in one file: animated PNG, which browsers and most viewers play and every other reader shows the first picture of.
+//! Animated PNG, which browsers and most viewers play; other readers show its first picture.
 
 use std::fs::File;
 use std::io::{self, BufReader};
@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use super::bitmap::encoding;
 use crate::{IoError, write_atomically};
 
-/// Pictures a second.
+/// Frames per second.
 const RATE: u16 = 10;
 
-/// A picture as it stands in a file of ours.
+/// A picture as read from a file.
 struct Still {
     width: usize,
     height: usize,
@@ -29,7 +29,9 @@ impl Still {
             .map_err(|error| damaged(error.to_string()))?;
         let info = reader.info();
         if (info.color_type, info.bit_depth) != (png::ColorType::Rgb, png::BitDepth::Eight) {
-            return Err(damaged("it has other colours than our pictures".into()));
+            return Err(damaged(
+                "it is not an 8-bit RGB picture, the format that Pericles writes".into(),
+            ));
         }
         let (width, height) = (info.width as usize, info.height as usize);
         let mut rgb = vec![0; 3 * width * height];
@@ -39,7 +41,7 @@ impl Still {
         Ok(Self { width, height, rgb })
     }
 
-    /// The same on white paper of another size, from the upper left corner.
+    /// Returns the picture at the upper left of white paper of another size.
     fn on(&self, [width, height]: [usize; 2]) -> Vec<u8> {
         let mut paper = vec![255; 3 * width * height];
         for (row, old) in paper
@@ -52,12 +54,13 @@ impl Still {
     }
 }
 
-/// Puts pictures of ours into one file that shows them one after another, ten a second, over and over. It is as large as the largest of them.
+/// Combines pictures written by Pericles into one looping animation with ten frames per second. Its size is
+/// that of the largest picture.
 ///
-/// Two passes over the files, one picture in memory at a time; the new file is written whole or not at all.
+/// The files are read twice, with one picture in memory at a time; the animation is written atomically.
 ///
 /// # Errors
-/// No pictures; a file that is not a picture of ours; a file that cannot be written.
+/// Returns an error for no pictures, a file that is not a picture of Pericles, or a file that cannot be written.
 pub fn write_animation(stills: &[PathBuf], path: impl AsRef<Path>) -> Result<(), IoError> {
     let path = path.as_ref();
     let mut size = [0, 0];
@@ -94,7 +97,7 @@ mod tests {
     use crate::picture::bitmap::Bitmap;
 
     #[test]
-    fn every_picture_comes_back_in_its_turn() {
+    fn all_frames_are_read_back_in_order() {
         let folder = tempfile::tempdir().unwrap();
         let stills: Vec<PathBuf> = [(31, 17), (20, 25), (31, 17)]
             .iter()
@@ -126,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_picture_is_refused() {
+    fn files_that_are_not_pictures_are_rejected() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("moving.apng");
         let none = write_animation(&[], &path);

@@ -1,17 +1,17 @@
-//! Numbers on a grid, by colour, beneath the curves of a chart.
+//! Colour map of values on a grid, below the curves of a chart.
 
 use super::colour::ColourMap;
 use super::drawing::Drawing;
 use super::frame::{ColourBar, Frame, finite_range, widened};
 use pericles::units::Shown;
 
-/// A map of numbers over both axes of a [`LineChart`](super::LineChart), with a colour bar.
+/// Values over both axes of a [`LineChart`](super::LineChart), drawn by colour with a colour bar.
 #[derive(Debug, Clone)]
 #[must_use]
 pub struct Backdrop {
     pub(super) name: String,
     unit: String,
-    /// Ends of the columns, ascending.
+    /// Boundaries of the columns, ascending.
     columns: Vec<f64>,
     y: (f64, f64),
     rows: usize,
@@ -20,8 +20,9 @@ pub struct Backdrop {
 }
 
 impl Backdrop {
-    /// `values` column by column, each from the bottom up; `columns` are the ends of the columns along x, one more than there are columns, and the equal rows lie between
-    /// the ends `y`.
+    /// Creates a backdrop from `values`, column by column, each from the bottom up. `columns` are the
+    /// boundaries of the columns along x, one more than there are columns; the rows divide the range `y`
+    /// equally.
     pub fn new(columns: &[f64], y: (f64, f64), rows: usize, values: &[f64]) -> Self {
         Self {
             name: String::new(),
@@ -34,20 +35,20 @@ impl Backdrop {
         }
     }
 
-    /// What the numbers are, and their unit.
+    /// Sets the quantity and its unit.
     pub fn label(mut self, name: impl Into<String>, unit: impl Into<String>) -> Self {
         self.name = name.into();
         self.unit = unit.into();
         self
     }
 
-    /// The numbers at the ends of the colour bar; otherwise the smallest and the largest.
+    /// Sets the values at the ends of the colour bar; by default the minimum and maximum.
     pub fn range(mut self, low: f64, high: f64) -> Self {
         self.range = Some((low, high));
         self
     }
 
-    /// How many numbers there must be, and how many there are.
+    /// Returns the expected and the given number of values.
     pub(super) fn lengths(&self) -> (usize, usize) {
         let columns = self.columns.len().saturating_sub(1);
         (columns * self.rows, self.values.len())
@@ -63,10 +64,12 @@ impl Backdrop {
             low,
             high,
             shown: Shown::for_size(low.abs().max(high.abs()), &self.unit),
+            clipped: [false; 2],
+            categories: Vec::new(),
         }
     }
 
-    /// Fills the cells; `factors` are those of shown numbers on both axes.
+    /// Fills the cells; `factors` convert values to shown numbers on both axes.
     pub(super) fn draw(
         &self,
         drawing: &mut Drawing,
@@ -77,7 +80,7 @@ impl Backdrop {
         let area = frame.area;
         let place = |x: f64, y: f64| {
             let (x, y) = frame.place(x / factors[0], y / factors[1]);
-            // Whole pixels: neighbouring cells leave no seam.
+            // Whole pixels avoid gaps between neighbouring cells.
             (
                 x.clamp(area.left, area.right).round(),
                 y.clamp(area.top, area.bottom).round(),

@@ -1,4 +1,4 @@
-//! A picture in memory: smoothed strokes and areas by `tiny-skia`, and the PNG file.
+//! Bitmap with antialiased strokes and areas (`tiny-skia`), and PNG output.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -12,25 +12,26 @@ use crate::{IoError, write_atomically};
 pub(super) type Rgb = [u8; 3];
 
 pub(super) const WHITE: Rgb = [255, 255, 255];
-/// Text, axes and ticks.
+/// Colour of text, axes and ticks.
 pub(super) const INK: Rgb = [38, 38, 38];
 
-/// The sizes that are drawn, in pixels; a raster of the largest still fits into memory.
+/// Allowed sizes in pixels; a raster of the largest size fits into memory.
 pub(super) const SIZES: std::ops::RangeInclusive<u32> = 200..=16_000;
 
-/// Segments that are rasterised together. The time grows with the square of their number where they cross the same rows.
+/// Number of segments rasterised together. The time grows quadratically with the number of segments that
+/// cross the same rows.
 const TOGETHER: usize = 500;
 
-/// How lines are drawn.
+/// Style of lines.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Pen {
     pub(super) width: f64,
     pub(super) colour: Rgb,
-    /// Lengths of dashes and of the gaps between them, of which the round ends take a part.
+    /// Lengths of dashes and gaps; the round caps take part of the gaps.
     pub(super) dash: Option<[f64; 2]>,
 }
 
-/// Pixels in rows from the top; the pixel (i, j) covers the square from (i, j) to (i + 1, j + 1).
+/// Pixels in rows from the top; pixel (i, j) covers the square from (i, j) to (i + 1, j + 1).
 #[derive(Debug, Clone)]
 pub(super) struct Bitmap {
     width: usize,
@@ -69,7 +70,7 @@ impl Bitmap {
         pixels.flat_map(|pixel| &pixel[..3]).copied().collect()
     }
 
-    /// Lays a colour over a pixel; pixels outside are left out.
+    /// Blends a colour over a pixel; pixels outside are ignored.
     pub(super) fn blend(&mut self, i: i64, j: i64, colour: Rgb, cover: f64) {
         let (Ok(i), Ok(j)) = (usize::try_from(i), usize::try_from(j)) else {
             return;
@@ -89,7 +90,7 @@ impl Bitmap {
         }
     }
 
-    /// The page that `tiny-skia` draws on; none without pixels.
+    /// Returns the pixmap that `tiny-skia` draws on; `None` if it has no pixels.
     fn page(&mut self) -> Option<PixmapMut<'_>> {
         PixmapMut::from_bytes(&mut self.rgba, self.width as u32, self.height as u32)
     }
@@ -114,7 +115,7 @@ impl Bitmap {
         }
     }
 
-    /// Strokes with round ends and joints. A single point is a dot.
+    /// Strokes lines with round caps and joins. A single point gives a dot.
     pub(super) fn stroke(&mut self, lines: &[Vec<(f64, f64)>], pen: Pen) {
         let dash = (pen.dash).map(|lengths| lengths.map(|length| length as f32).to_vec());
         let stroke = Stroke {
@@ -124,7 +125,7 @@ impl Bitmap {
             dash: dash.and_then(|lengths| StrokeDash::new(lengths, 0.0)),
             ..Stroke::default()
         };
-        // The pattern of dashes runs on over the whole line.
+        // The dash pattern continues over the whole line.
         let together = pen.dash.map_or(TOGETHER, |_| usize::MAX);
         let Some(mut page) = self.page() else {
             return;
@@ -164,12 +165,12 @@ impl Bitmap {
         }
     }
 
-    /// Writes the picture, whole or not at all.
+    /// Writes the picture to a file atomically.
     pub(super) fn write_png(&self, path: &Path) -> Result<(), IoError> {
         write_atomically(path, |out| self.encode(out))
     }
 
-    /// Writes the picture as PNG.
+    /// Encodes the picture as PNG.
     pub(super) fn encode(&self, out: impl Write) -> io::Result<()> {
         let mut encoder = png::Encoder::new(out, self.width as u32, self.height as u32);
         encoder.set_color(png::ColorType::Rgb);
@@ -180,14 +181,14 @@ impl Bitmap {
     }
 }
 
-/// A line through places.
+/// Returns a path through points.
 fn path(places: &[(f64, f64)]) -> PathBuilder {
     let mut path = PathBuilder::new();
     for (k, &(x, y)) in places.iter().enumerate() {
         if k == 0 {
             path.move_to(x as f32, y as f32);
         }
-        // To the first place as well: the only one makes a dot.
+        // Includes the first point, so that a single point gives a dot.
         path.line_to(x as f32, y as f32);
     }
     path
@@ -199,7 +200,7 @@ fn paint([r, g, b]: Rgb, cover: f64) -> Paint<'static> {
     paint
 }
 
-/// What the encoder failed of, as an error of files.
+/// Converts an error of the PNG encoder.
 pub(super) fn encoding(error: png::EncodingError) -> io::Error {
     match error {
         png::EncodingError::IoError(error) => error,
@@ -239,7 +240,7 @@ mod tests {
         }
     }
 
-    /// The area that is black, in pixels.
+    /// Black area in pixels.
     fn inked(bitmap: &Bitmap) -> f64 {
         let values = bitmap.rgb().into_iter();
         values.map(|v| 1.0 - f64::from(v) / 255.0).sum::<f64>() / 3.0
@@ -253,14 +254,14 @@ mod tests {
             let mut bitmap = Bitmap::white(200, 200);
             bitmap.stroke(&[vec![a, (100.0, 100.0), b]], pen(4.0, None));
             let dark = inked(&bitmap);
-            // a rectangle of 120 × 4 and two half discs of radius 2
+            // rectangle of 120 × 4 and two half discs of radius 2
             let area = 120.0 * 4.0 + std::f64::consts::PI * 4.0;
             assert!((dark - area).abs() < 0.02 * area, "{angle}: {dark}");
         }
     }
 
     #[test]
-    fn a_polygon_covers_its_area_and_nothing_outside_the_picture_is_touched() {
+    fn a_polygon_covers_its_area_and_is_clipped_to_the_picture() {
         let mut bitmap = Bitmap::white(40, 40);
         bitmap.fill_polygon(&[(10.0, 10.0), (30.0, 10.0), (20.0, 25.0)], [0, 0, 0]);
         let dark = inked(&bitmap);
@@ -286,7 +287,7 @@ mod tests {
         let filled = area_of(&|page| page.fill_disc((50.0, 30.0), 3.0, [0, 0, 0]));
         assert!((dot - disc).abs() < 0.05 * disc, "{dot}");
         assert!((filled - disc).abs() < 0.05 * disc, "{filled}");
-        // 100 = 2 × (20 + 18) + 20 + 4: three dashes with round ends, one of them round the corner
+        // 100 = 2 × (20 + 18) + 20 + 4: three dashes with round caps, one of them around the corner
         let line = vec![(10.0, 10.0), (60.0, 10.0), (60.0, 40.0), (80.0, 40.0)];
         let dash = Some([20.0, 18.0]);
         let dashed = area_of(&|page| page.stroke(std::slice::from_ref(&line), pen(6.0, dash)));
@@ -295,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn long_lines_are_as_if_drawn_in_one_go() {
+    fn long_lines_are_drawn_in_pieces_without_visible_joints() {
         let line: Vec<_> = (0..=4 * TOGETHER)
             .map(|k| {
                 (

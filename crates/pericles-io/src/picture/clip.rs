@@ -1,4 +1,5 @@
-//! Lines cut to a rectangle, in pixels: curves may leave their chart by any factor, beyond what a rasteriser's floats can tell apart or hold.
+//! Clipping of lines to a rectangle, in pixels: curves may exceed the chart by more than the single precision
+//! of the rasteriser resolves.
 
 use super::frame::Area;
 
@@ -6,7 +7,7 @@ pub(super) fn inside((x, y): (f64, f64), area: Area) -> bool {
     x >= area.left - 0.5 && x <= area.right + 0.5 && y >= area.top - 0.5 && y <= area.bottom + 0.5
 }
 
-/// The parts of a line inside an area, without points that lie on the one before.
+/// Returns the pieces of a line inside an area, without repeated points.
 pub(super) fn clipped(line: &[(f64, f64)], area: Area) -> Vec<Vec<(f64, f64)>> {
     let mut pieces: Vec<Vec<(f64, f64)>> = Vec::new();
     if let [only] = line {
@@ -28,7 +29,7 @@ pub(super) fn clipped(line: &[(f64, f64)], area: Area) -> Vec<Vec<(f64, f64)>> {
     pieces
 }
 
-/// The part of a segment inside an area (Y.-D. Liang, B. Barsky, ACM Transactions on Graphics 3, 1984).
+/// Returns the part of a segment inside an area (Y.-D. Liang, B. Barsky, ACM Transactions on Graphics 3, 1984).
 fn clipped_segment(a: (f64, f64), b: (f64, f64), area: Area) -> Option<((f64, f64), (f64, f64))> {
     let (dx, dy) = (b.0 - a.0, b.1 - a.1);
     let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
@@ -47,7 +48,7 @@ fn clipped_segment(a: (f64, f64), b: (f64, f64), area: Area) -> Option<((f64, f6
             leave = leave.min(room / speed);
         }
     }
-    // ends inside are kept as they are, so that the next segment starts at the same place
+    // end points inside are kept exactly, so that the next segment starts at the same point
     let at = |s: f64, end| {
         if s == 0.0 || s == 1.0 {
             end
@@ -58,7 +59,7 @@ fn clipped_segment(a: (f64, f64), b: (f64, f64), area: Area) -> Option<((f64, f6
     (enter <= leave).then(|| (at(enter, a), at(leave, b)))
 }
 
-/// The length of a line inside an area; a single point counts as one.
+/// Returns the length of a line inside an area; a single point counts as one.
 pub(super) fn length_inside(line: &[(f64, f64)], area: Area) -> f64 {
     if let [only] = line {
         return if inside(*only, area) { 1.0 } else { 0.0 };
@@ -81,7 +82,7 @@ mod tests {
     };
 
     #[test]
-    fn lines_are_cut_where_they_cross_the_border() {
+    fn lines_are_clipped_where_they_cross_the_border() {
         let zigzag = [
             (-5.0, 5.0),
             (5.0, 5.0),
@@ -96,7 +97,7 @@ mod tests {
         assert_eq!(clipped(&zigzag, AREA), expected);
         assert_eq!(length_inside(&zigzag, AREA).round(), 18.0);
         assert!(clipped(&[(-1.0, 5.0), (-1.0, 9.0)], AREA).is_empty());
-        // passes the corner
+        // passes beside the corner
         assert!(clipped(&[(-5.0, 5.0), (5.0, -6.0)], AREA).is_empty());
         assert_eq!(clipped(&[(5.0, 5.0)], AREA), vec![vec![(5.0, 5.0)]]);
         assert!(clipped(&[], AREA).is_empty());

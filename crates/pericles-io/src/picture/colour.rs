@@ -1,19 +1,22 @@
-//! Colour maps, as tables of colours at equal distances with straight lines between them.
+//! Colour maps: tables of equidistant colours with linear interpolation.
 
 use super::bitmap::Rgb;
 
-/// From a number to a colour.
+/// A map from numbers to colours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum ColourMap {
-    /// From dark blue over green to yellow: equal steps look equal, in grey too. For damage, energies, sizes.
+    /// Sequential, from dark blue over green to yellow, perceptually uniform also in grey. For damage,
+    /// energies, sizes.
     #[default]
     Viridis,
-    /// From blue over light grey to red, zero in the middle. For displacements, velocities and everything with a sign.
+    /// Diverging, from blue over light grey to red, with zero in the middle. For displacements, velocities
+    /// and other signed quantities.
     Diverging,
 }
 
-/// Every sixteenth of `viridis` by N. Smith and S. van der Walt (2015), <https://bids.github.io/colormap/>, public domain (CC0).
+/// Every sixteenth colour of `viridis` by N. Smith and S. van der Walt (2015),
+/// <https://bids.github.io/colormap/>, public domain (CC0).
 const VIRIDIS: [Rgb; 17] = [
     [68, 1, 84],
     [72, 24, 106],
@@ -34,7 +37,8 @@ const VIRIDIS: [Rgb; 17] = [
     [253, 231, 37],
 ];
 
-/// Every sixteenth of the cool to warm map of K. Moreland, Diverging color maps for scientific visualization, ISVC 2009,
+/// Every sixteenth colour of the cool to warm map of K. Moreland, Diverging color maps for scientific
+/// visualization, ISVC 2009,
 /// <https://www.kennethmoreland.com/color-maps/>.
 const COOL_TO_WARM: [Rgb; 17] = [
     [59, 76, 192],
@@ -56,11 +60,11 @@ const COOL_TO_WARM: [Rgb; 17] = [
     [180, 4, 38],
 ];
 
-/// Where there is no number.
+/// Colour of missing values.
 pub(super) const NO_VALUE: Rgb = [170, 170, 170];
 
-/// Colours of curves, told apart by colour-blind readers too: M. Okabe and K. Ito, Color universal design (2008); black and the
-/// yellow, which is faint on white, come last.
+/// Curve colours that colour-blind readers can distinguish: M. Okabe and K. Ito, Color universal design
+/// (2008); black and yellow, which is faint on white, come last.
 pub(super) const CURVES: [Rgb; 8] = [
     [0, 114, 178],
     [213, 94, 0],
@@ -73,7 +77,8 @@ pub(super) const CURVES: [Rgb; 8] = [
 ];
 
 impl ColourMap {
-    /// The colour of a number between 0 and 1; numbers outside take the colour of the nearer end, NaN is grey.
+    /// Returns the colour of a number between 0 and 1; numbers outside take the colour of the nearer end, NaN
+    /// is grey.
     pub fn colour(self, fraction: f64) -> [u8; 3] {
         if fraction.is_nan() {
             return NO_VALUE;
@@ -93,7 +98,7 @@ impl ColourMap {
     }
 }
 
-/// The same colour darker, for faces in the shade.
+/// Darkens a colour, for faces in shade.
 pub(super) fn shaded(colour: Rgb, light: f64) -> Rgb {
     colour.map(|value| (f64::from(value) * light).round() as u8)
 }
@@ -108,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn viridis_grows_lighter_all_the_way() {
+    fn the_luminance_of_viridis_increases_monotonically() {
         let light: Vec<_> = (0..=255)
             .map(|k| luminance(ColourMap::Viridis.colour(f64::from(k) / 255.0)))
             .collect();
@@ -127,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn ends_and_middles_are_as_tabulated() {
+    fn colours_at_the_ends_and_in_the_middle_match_the_tables() {
         assert_eq!(ColourMap::Viridis.colour(-1.0), [68, 1, 84]);
         assert_eq!(ColourMap::Viridis.colour(f64::INFINITY), [253, 231, 37]);
         assert_eq!(ColourMap::Viridis.colour(0.5), [33, 144, 140]);

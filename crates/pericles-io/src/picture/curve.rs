@@ -1,12 +1,13 @@
-//! Axes and curves of a chart, and how a curve is drawn.
+//! Axes and curves of a chart.
 
 use super::bitmap::{Pen, Rgb};
 use super::colour::CURVES;
 use super::drawing::Drawing;
 use super::frame::{Scale, Sizes, finite_range, widened};
+use super::ticks::Ticks;
 use pericles::units::Shown;
 
-/// White space beyond the data, as a part of the axis.
+/// White space beyond the data, as a fraction of the axis.
 const MARGIN: f64 = 0.04;
 
 /// One axis of a chart.
@@ -17,37 +18,59 @@ pub struct Axis {
     unit: String,
     logarithmic: bool,
     range: Option<(f64, f64)>,
+    marks: Vec<(f64, String)>,
 }
 
 impl Axis {
-    /// A quantity and its SI unit; empty for a pure number.
+    /// Creates an axis of a quantity with its SI unit; empty for a dimensionless quantity.
     pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
         Self {
             name: name.into(),
             unit: unit.into(),
             logarithmic: false,
             range: None,
+            marks: Vec::new(),
         }
     }
 
-    /// Equal distances for equal ratios; numbers that are not positive are left out.
+    /// Labels positions by name, such as the symmetry points of a path through the Brillouin zone, instead of by numbers.
+    pub fn marks(mut self, marks: Vec<(f64, String)>) -> Self {
+        self.marks = marks;
+        self
+    }
+
+    /// Returns the ticks of a scale; `wanted` is their approximate number.
+    pub(super) fn ticks(&self, scale: &Scale, shown: &Shown, wanted: usize) -> Ticks {
+        if self.marks.is_empty() {
+            return scale.ticks(wanted);
+        }
+        let marks = self.marks.iter();
+        Ticks {
+            major: marks
+                .map(|(value, name)| (value / shown.factor, name.clone()))
+                .collect(),
+            minor: Vec::new(),
+        }
+    }
+
+    /// Makes the axis logarithmic; values that are not positive are omitted.
     pub fn logarithmic(mut self) -> Self {
         self.logarithmic = true;
         self
     }
 
-    /// The ends of the axis; otherwise they follow the data.
+    /// Sets the range of the axis; by default it follows the data.
     pub fn range(mut self, low: f64, high: f64) -> Self {
         self.range = Some((low, high));
         self
     }
 
-    /// Whether a number has a place on the axis.
+    /// Returns whether the axis can show a value.
     pub(super) fn allows(&self, value: f64) -> bool {
         value.is_finite() && (!self.logarithmic || value > 0.0)
     }
 
-    /// How numbers are shown and the scale in shown numbers.
+    /// Returns the unit prefix and the scale in shown numbers.
     pub(super) fn scale(&self, values: impl Iterator<Item = f64>) -> (Shown, Scale) {
         let logarithmic = self.logarithmic;
         let (low, high) = match self.range {
@@ -61,7 +84,7 @@ impl Axis {
                     } else {
                         (1.0, 10.0)
                     };
-                    // at least a factor of two, so that a tick finds its place
+                    // at least a factor of two, so that it contains a tick
                     let factor = (2.0 * low / high).max(1.0).sqrt() * (high / low).powf(MARGIN);
                     (low / factor, high * factor)
                 } else {
@@ -99,7 +122,8 @@ pub struct Curve {
 }
 
 impl Curve {
-    /// A line through the points in their order; a point that is not finite interrupts it. A curve without a name is not in the key.
+    /// Creates a line through the points in their order; it is interrupted at points that are not finite. A
+    /// curve without a name is not in the legend.
     pub fn line(name: impl Into<String>, x: &[f64], y: &[f64]) -> Self {
         Self {
             name: name.into(),
@@ -112,33 +136,33 @@ impl Curve {
         }
     }
 
-    /// Markers at the points, and no line.
+    /// Creates markers at the points, without a line.
     pub fn points(name: impl Into<String>, x: &[f64], y: &[f64]) -> Self {
         let mut curve = Self::line(name, x, y).with_markers();
         curve.line = false;
         curve
     }
 
-    /// Marks the points too.
+    /// Adds markers at the points.
     pub fn with_markers(mut self) -> Self {
         self.markers = true;
         self
     }
 
-    /// Dashes instead of a full line, for a reference.
+    /// Draws a dashed line, for a reference.
     pub fn dashed(mut self) -> Self {
         self.dashed = true;
         self
     }
 
-    /// Its colour; otherwise the next of a set that colour-blind readers can tell apart.
+    /// Sets the colour; by default the next one of a set that colour-blind readers can distinguish.
     pub fn colour(mut self, colour: [u8; 3]) -> Self {
         self.colour = Some(colour);
         self
     }
 }
 
-/// How a curve is drawn.
+/// Style of a curve.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Look {
     number: usize,
@@ -160,7 +184,7 @@ impl Look {
         drawing.stroke(lines, self.pen);
     }
 
-    /// A disc, square, diamond or triangle, in turn.
+    /// Draws a marker: disc, square, diamond or triangle, in turn.
     pub(super) fn mark(&self, drawing: &mut Drawing, (x, y): (f64, f64)) {
         let (r, colour) = (2.0 * self.pen.width, self.pen.colour);
         let corners: &[(f64, f64)] = match self.number % 4 {

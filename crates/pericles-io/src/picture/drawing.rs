@@ -1,24 +1,24 @@
-//! A picture as shapes on a page, from which pixels or SVG are made.
+//! A picture as a list of shapes, from which pixels or SVG are produced.
 
 use super::bitmap::{Bitmap, Pen, Rgb};
 use super::raster::Raster;
 use super::text::{self, Style};
 
-/// A place on the page: pixels from the left and from the top.
+/// A position in pixels from the left and from the top.
 pub(super) type Spot = (f64, f64);
 
-/// What lies on the page, later shapes over earlier ones.
+/// A shape; later shapes cover earlier ones.
 #[derive(Debug)]
 pub(super) enum Shape {
-    /// Its sides at whole pixels.
+    /// A rectangle with sides at whole pixels.
     Rectangle {
         from: Spot,
         to: Spot,
         colour: Rgb,
-        /// 1 hides what lies below.
+        /// Opacity; 1 hides what lies below.
         cover: f64,
     },
-    /// Lines with round ends and joints.
+    /// Lines with round caps and joins.
     Strokes {
         lines: Vec<Vec<Spot>>,
         pen: Pen,
@@ -83,7 +83,7 @@ impl Drawing {
         });
     }
 
-    /// A level or upright line of at least one pixel.
+    /// Draws a horizontal or vertical line of at least one pixel.
     pub(super) fn rule(&mut self, from: Spot, to: Spot, width: f64, colour: Rgb) {
         let half = (width.round().max(1.0) / 2.0).max(0.5);
         let low = (from.0.min(to.0) - half, from.1.min(to.1) - half);
@@ -91,7 +91,7 @@ impl Drawing {
         self.fill_rectangle(low, high, colour, 1.0);
     }
 
-    /// The outline of a rectangle.
+    /// Draws the outline of a rectangle.
     pub(super) fn outline(&mut self, from: Spot, to: Spot, width: f64, colour: Rgb) {
         let corners = [from, (to.0, from.1), to, (from.0, to.1)];
         for (k, &corner) in corners.iter().enumerate() {
@@ -115,7 +115,7 @@ impl Drawing {
         self.shapes.push(Shape::Polygon { corners, colour });
     }
 
-    /// Sets a text; seen along its direction, the place is in the middle of its capitals.
+    /// Adds a text; along its direction, `place` is at half the height of its capitals.
     pub(super) fn text(&mut self, text: &str, place: Spot, style: Style) {
         if !text.is_empty() {
             let text = text.to_owned();
@@ -127,7 +127,7 @@ impl Drawing {
         self.shapes.push(Shape::Cells { cells, left, top });
     }
 
-    /// The pixels.
+    /// Renders the shapes.
     pub(super) fn to_bitmap(&self) -> Bitmap {
         let mut bitmap = Bitmap::white(self.width, self.height);
         for shape in &self.shapes {

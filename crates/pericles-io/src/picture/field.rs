@@ -1,4 +1,4 @@
-//! A scalar field on the points of a body.
+//! Picture of a scalar field on the points of a body.
 
 use std::path::Path;
 
@@ -6,15 +6,16 @@ use super::bitmap::SIZES;
 use super::colour::ColourMap;
 use super::curve::{Axis, Curve};
 use super::drawing::Drawing;
+use super::extent::{Extent, is_signed};
 use super::frame::{ColourBar, Header, finite_range, widened};
 use super::line_chart::LineChart;
 use super::scene::{Drawn, Facet, Scene};
 use super::write::write;
 use super::{plane, solid};
 use crate::IoError;
-use pericles::units::{Shown, quantity};
+use pericles::units::{Shown, quantity, significant};
 
-/// The edges of the cells that the points stand for, in metres.
+/// Edge lengths of the cells of the points, m.
 #[derive(Debug, Clone, Copy)]
 pub enum CellSize<'a> {
     /// Equal squares or cubes.
@@ -50,14 +51,17 @@ pub struct FieldPicture<'a> {
     length_unit: &'static str,
     title: String,
     time: Option<f64>,
-    colours: ColourMap,
+    load_factor: Option<f64>,
+    lines: Vec<Vec<[f64; 2]>>,
+    colours: Option<ColourMap>,
+    categories: bool,
     range: Option<(f64, f64)>,
     window: Option<([f64; 3], [f64; 3])>,
     view: [f64; 3],
     width: u32,
 }
 
-/// Across a triangle, as long as twice its area.
+/// Returns the normal of a triangle, as long as twice its area.
 fn normal([a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
     let u: [f64; 3] = std::array::from_fn(|k| b[k] - a[k]);
     let v: [f64; 3] = std::array::from_fn(|k| c[k] - a[k]);
@@ -69,7 +73,7 @@ fn normal([a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
 }
 
 impl<'a> FieldPicture<'a> {
-    /// `values` on points in 1, 2 or 3 dimensions; positions are x of all points, then y, then z.
+    /// Creates a picture of `values` on points in 1, 2 or 3 dimensions; positions are component-major.
     pub fn new(
         dimension: usize,
         positions: &'a [f64],
@@ -88,86 +92,111 @@ impl<'a> FieldPicture<'a> {
             length_unit: "m",
             title: String::new(),
             time: None,
-            colours: ColourMap::default(),
+            load_factor: None,
+            lines: Vec::new(),
+            colours: None,
+            categories: false,
             range: None,
             window: None,
-            // from the front right, a little above: x runs to the right, z upwards
+            // From the front right, slightly above: x points to the right, z upwards.
             view: [0.5, -1.0, 0.6],
             width: 1200,
         }
     }
 
-    /// Draws triangles between the points, in three dimensions, in place of the points' cells: a shaded surface.
+    /// Draws a shaded surface of triangles between the points in place of their cells, in three dimensions.
     pub fn triangles(mut self, triangles: &'a [[u32; 3]]) -> Self {
         self.triangles = triangles;
         self
     }
 
-    /// What the values are, and their SI unit; empty for a pure number.
+    /// Sets the quantity and its SI unit; empty for a dimensionless quantity.
     pub fn label(mut self, name: impl Into<String>, unit: impl Into<String>) -> Self {
         self.name = name.into();
         self.unit = unit.into();
         self
     }
 
-    /// Lengths are pure numbers, as in problems without units; they are in metres otherwise.
+    /// Treats lengths as dimensionless, for problems without units; the default is metres.
     pub fn without_units(mut self) -> Self {
         self.length_unit = "";
         self
     }
 
-    /// Draws the points at their displaced places, the displacement (x of all points, then y …) enlarged by `scale`. The field of a bar is a curve over the reference coordinate, displaced or
-    /// not.
+    /// Draws the points at displaced positions, with the displacement (component-major) magnified by `scale`.
+    /// The field of a bar is always drawn as a curve over the reference coordinate.
     pub fn displacement(mut self, displacement: &'a [f64], scale: f64) -> Self {
         self.displacement = Some((displacement, scale));
         self
     }
 
-    /// The line above the picture.
+    /// Sets the title above the picture.
     pub fn title(mut self, title: impl Into<String>) -> Self {
         self.title = title.into();
         self
     }
 
-    /// The time in seconds, for the stamp in the upper right corner.
+    /// Sets the load factor, shown in the upper right corner instead of the time.
+    pub fn load_factor(mut self, factor: f64) -> Self {
+        self.load_factor = Some(factor);
+        self
+    }
+
+    /// Sets the time in seconds, shown in the upper right corner.
     pub fn time(mut self, time: f64) -> Self {
         self.time = Some(time);
         self
     }
 
-    /// The colours; [`ColourMap::Viridis`] if not chosen.
-    pub fn colours(mut self, colours: ColourMap) -> Self {
-        self.colours = colours;
+    /// Adds lines on a plane body, such as pre-cracks and interfaces, as polylines of positions in m.
+    pub fn lines(mut self, lines: Vec<Vec<[f64; 2]>>) -> Self {
+        self.lines = lines;
         self
     }
 
-    /// The values at the ends of the colour bar. Otherwise they are the smallest and the largest value, and for
-    /// [`ColourMap::Diverging`] the largest size to both sides of zero.
+    /// Sets the colour map; the default is [`ColourMap::Diverging`] for values of both signs, otherwise
+    /// [`ColourMap::Viridis`].
+    pub fn colours(mut self, colours: ColourMap) -> Self {
+        self.colours = Some(colours);
+        self
+    }
+
+    /// Treats the values as identification numbers: the most frequent ones have a colour each, with their share
+    /// of the points in the legend; all others are grey.
+    pub fn categories(mut self) -> Self {
+        self.categories = true;
+        self
+    }
+
+    /// Sets the values at the ends of the colour bar; the default is the [`Extent`] of the values. Arrows at the ends of the bar
+    /// show that values lie beyond.
     pub fn range(mut self, low: f64, high: f64) -> Self {
         self.range = Some((low, high));
         self
     }
 
-    /// The part of space that is shown, by opposite corners, so that the pictures of a series have the same axes. Otherwise it is
-    /// what the displaced body fills.
+    /// Sets the region shown, by opposite corners, so that the pictures of a series have the same axes. The
+    /// default is the extent of the displaced body.
     pub fn window(mut self, low: [f64; 3], high: [f64; 3]) -> Self {
         self.window = Some((low, high));
         self
     }
 
-    /// The direction from a solid to the eye.
+    /// Sets the viewing direction, from a solid to the viewer.
     pub fn view(mut self, view: [f64; 3]) -> Self {
         self.view = view;
         self
     }
 
-    /// The width of the picture in pixels, from 200 to 16 000; 1200 if not chosen. The height follows the body.
+    /// Sets the width in pixels, 200 to 16 000; the default is 1200. The height follows from the shape of the
+    /// body.
     pub fn width(mut self, width: u32) -> Self {
         self.width = width;
         self
     }
 
-    /// Draws the picture and writes it, whole or not at all: as SVG, the cells as an image in it, into a file that ends so, as PNG into any other.
+    /// Draws the picture and writes it atomically: as SVG, with the cells as an embedded image, if the file
+    /// name ends in `.svg`; otherwise as PNG.
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), IoError> {
         let path = path.as_ref();
         write(&self.draw(path)?, path)
@@ -200,18 +229,18 @@ impl<'a> FieldPicture<'a> {
         if !(1..=3).contains(&self.dimension) {
             let given = self.dimension;
             return Err(unsuitable(format!(
-                "a body of dimension {given}; 1, 2 and 3 are allowed"
+                "the body has dimension {given}; allowed: 1, 2 and 3"
             )));
         }
         if !SIZES.contains(&self.width) {
             let (width, least, most) = (self.width, SIZES.start(), SIZES.end());
             return Err(unsuitable(format!(
-                "a width of {width} pixels; {least} to {most} are allowed"
+                "the width is {width} pixels; allowed: {least} to {most}"
             )));
         }
         if self.view.iter().any(|c| !c.is_finite()) || self.view == [0.0; 3] {
             return Err(unsuitable(
-                "the view needs a direction that is finite and not zero".into(),
+                "the view direction must be finite and not zero".into(),
             ));
         }
         let n = self.values.len();
@@ -234,7 +263,7 @@ impl<'a> FieldPicture<'a> {
         }
         if self.triangles.iter().flatten().any(|&k| k as usize >= n) {
             return Err(unsuitable(format!(
-                "triangles have corners beyond the {n} points"
+                "triangles refer to points beyond the {n} points of the body"
             )));
         }
         if let Some((low, high)) = self.window {
@@ -242,14 +271,14 @@ impl<'a> FieldPicture<'a> {
                 (0..self.dimension).all(|c| low[c] < high[c] && (high[c] - low[c]).is_finite());
             if !fits {
                 return Err(unsuitable(
-                    "the window needs a lower and a higher corner".into(),
+                    "the lower corner of the window must lie below the upper corner in every coordinate".into(),
                 ));
             }
         }
         Ok(())
     }
 
-    /// The displaced place of a point; zero in the dimensions that the body does not have.
+    /// Returns the displaced position of a point; zero in dimensions that the body does not have.
     fn place(&self, point: usize) -> [f64; 3] {
         let n = self.values.len();
         std::array::from_fn(|c| {
@@ -263,25 +292,36 @@ impl<'a> FieldPicture<'a> {
     }
 
     fn colour_bar(&self) -> ColourBar {
-        let (low, high) = self.range.unwrap_or_else(|| {
-            let (low, high) = finite_range(self.values.iter().copied());
-            match self.colours {
-                ColourMap::Diverging if low <= high => {
-                    let size = low.abs().max(high.abs());
-                    (-size, size)
+        if self.categories {
+            return ColourBar::of_numbers(self.values);
+        }
+        let [low, high] = match self.range {
+            Some((low, high)) => [low, high],
+            None => {
+                let [low, high] = Extent::of(self.values, 0.0).ends();
+                match self.colours {
+                    Some(ColourMap::Diverging) => {
+                        let size = low.abs().max(high.abs());
+                        [-size, size]
+                    }
+                    _ => [low, high],
                 }
-                _ => (low, high),
             }
-        });
-        let (low, high) = match (widened(low, high), self.colours) {
-            ((0.0, high), ColourMap::Diverging) if self.range.is_none() => (-high, high),
-            (range, _) => range,
         };
+        let (low, high) = widened(low, high);
+        let colours = self.colours.unwrap_or(match is_signed(low, high) {
+            true => ColourMap::Diverging,
+            false => ColourMap::Viridis,
+        });
+        let (least, most) = finite_range(self.values.iter().copied());
+        let slack = 1e-6 * (high - low);
         ColourBar {
-            map: self.colours,
+            map: colours,
             low,
             high,
             shown: Shown::for_size(low.abs().max(high.abs()), &self.unit),
+            clipped: [least < low - slack, most > high + slack],
+            categories: Vec::new(),
         }
     }
 
@@ -298,7 +338,7 @@ impl<'a> FieldPicture<'a> {
                     0.0
                 }
             });
-            // After a blow-up some places are not finite; the rest is still worth seeing.
+            // If the solution has diverged, some positions are not finite; the others are still drawn.
             if middle.iter().any(|c| !c.is_finite()) {
                 continue;
             }
@@ -333,10 +373,11 @@ impl<'a> FieldPicture<'a> {
             header,
             length_unit: self.length_unit,
             view: self.view,
+            lines: self.lines.clone(),
         }
     }
 
-    /// The triangles whose corners are all at finite places.
+    /// Returns the triangles whose corners are finite.
     fn facets(&self) -> Vec<Facet> {
         if self.triangles.is_empty() {
             return Vec::new();
@@ -368,12 +409,14 @@ impl<'a> FieldPicture<'a> {
     }
 
     fn stamp(&self) -> String {
-        self.time
-            .map(|time| format!("t = {}", quantity(time, "s")))
-            .unwrap_or_default()
+        match (self.load_factor, self.time) {
+            (Some(factor), _) => format!("load factor {}", significant(factor, 3)),
+            (None, Some(time)) => format!("t = {}", quantity(time, "s")),
+            (None, None) => String::new(),
+        }
     }
 
-    /// What is said of displacements that are drawn larger than they are: places along the axes would else be read as those of the body.
+    /// Returns a note on magnified displacements: the axes do not apply to magnified positions.
     fn note(&self) -> String {
         let enlarged = self.displacement.filter(|(_, scale)| *scale != 1.0);
         enlarged
@@ -381,8 +424,8 @@ impl<'a> FieldPicture<'a> {
             .unwrap_or_default()
     }
 
-    /// The field of a bar as a curve over the reference coordinate. Over displaced places a displacement as large as the bar's features would shear the curve, and a symmetric field would
-    /// not look symmetric.
+    /// Draws the field of a bar as a curve over the reference coordinate. Over displaced positions, large
+    /// displacements would shear the curve, and a symmetric field would not look symmetric.
     fn along_the_bar(&self) -> LineChart {
         let mut order: Vec<usize> = (0..self.values.len()).collect();
         order.sort_by(|&a, &b| self.positions[a].total_cmp(&self.positions[b]));

@@ -1,6 +1,7 @@
-//! What surrounds the data: axes, header and colour bar.
+//! Axes, header and colour bar of a picture.
 
 use super::bitmap::{INK, Rgb};
+use super::category::Category;
 use super::colour::ColourMap;
 use super::drawing::Drawing;
 use super::text::{self, Align, Style};
@@ -9,7 +10,8 @@ use pericles::units::Shown;
 
 const GRID: Rgb = [224, 224, 224];
 
-/// Sizes in pixels, for a picture of a certain width. They make text readable when a width of 1200 is shown on half a page.
+/// Sizes in pixels for a given width of the picture. Text is readable when a width of 1200 is shown on half a
+/// page.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sizes {
     pub(super) tick_text: f64,
@@ -33,12 +35,12 @@ impl Sizes {
         }
     }
 
-    /// Room below a plot for ticks and a label.
+    /// Returns the space below a plot for ticks and a label.
     pub(super) fn below(&self) -> f64 {
         self.tick + 1.5 * self.tick_text + 1.3 * self.label_text + self.gap
     }
 
-    /// Room beside a plot for ticks and a label that runs upwards.
+    /// Returns the space beside a plot for ticks and a vertical label.
     pub(super) fn beside(&self, ticks: &Ticks) -> f64 {
         let labels = ticks.longest(|label| text::width(label, self.tick_text));
         2.0 * self.gap + 1.3 * self.label_text + labels + 1.5 * self.tick
@@ -64,7 +66,7 @@ impl Area {
     }
 }
 
-/// The numbers along one direction.
+/// A range of values, linear or logarithmic.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Scale {
     pub(super) low: f64,
@@ -73,7 +75,7 @@ pub(super) struct Scale {
 }
 
 impl Scale {
-    /// Where a number lies, 0 at the low and 1 at the high end.
+    /// Returns the position of a value, 0 at the low and 1 at the high end.
     pub(super) fn fraction(&self, value: f64) -> f64 {
         if self.logarithmic {
             (value / self.low).ln() / (self.high / self.low).ln()
@@ -91,7 +93,7 @@ impl Scale {
     }
 }
 
-/// One axis as drawn.
+/// Label and ticks of an axis.
 #[derive(Debug, Clone)]
 pub(super) struct AxisText {
     pub(super) ticks: Ticks,
@@ -107,7 +109,7 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    /// The place of a point in pixels.
+    /// Returns the position of a point in pixels.
     pub(super) fn place(&self, x: f64, y: f64) -> (f64, f64) {
         (
             self.area.left + self.x.fraction(x) * self.area.width(),
@@ -184,12 +186,12 @@ impl Frame {
     }
 }
 
-/// The lines above the plot: the title with the time, and the label of the colour bar.
+/// The lines above the plot: title and time, and the label of the colour bar.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Header {
     pub(super) title: String,
     pub(super) stamp: String,
-    /// Below the title.
+    /// Note below the title.
     pub(super) note: String,
     pub(super) bar_label: String,
 }
@@ -239,22 +241,54 @@ impl Header {
     }
 }
 
-/// The key from colours to numbers, right of the plot.
+/// Colour bar to the right of the plot.
 #[derive(Debug, Clone)]
 pub(super) struct ColourBar {
     pub(super) map: ColourMap,
     pub(super) low: f64,
     pub(super) high: f64,
     pub(super) shown: Shown,
+    /// Whether values lie beyond the low and the high end; arrows show it.
+    pub(super) clipped: [bool; 2],
+    /// Categories shown in place of a continuous scale, from the top; empty for quantities.
+    pub(super) categories: Vec<Category>,
 }
 
 impl ColourBar {
+    /// Returns the bar for identification numbers: a colour for each of the most frequent ones.
+    pub(super) fn of_numbers(numbers: &[f64]) -> Self {
+        Self {
+            map: ColourMap::Viridis,
+            low: 0.0,
+            high: 1.0,
+            shown: Shown::for_size(1.0, ""),
+            clipped: [false; 2],
+            categories: Category::legend(numbers),
+        }
+    }
+
     pub(super) fn colour(&self, value: f64) -> Rgb {
+        if let Some(last) = self.categories.last() {
+            let own = self.categories.iter().find(|entry| entry.number == value);
+            return own.unwrap_or(last).colour;
+        }
         self.map.colour((value - self.low) / (self.high - self.low))
     }
 
-    /// Ticks for a bar of this height in pixels.
+    /// Returns the ticks for a bar of this height in pixels.
     pub(super) fn ticks(&self, height: f64, sizes: &Sizes) -> Ticks {
+        if !self.categories.is_empty() {
+            let count = self.categories.len();
+            let place =
+                |k: usize| self.high - (k as f64 + 0.5) / count as f64 * (self.high - self.low);
+            let labels = self.categories.iter().enumerate();
+            return Ticks {
+                major: labels
+                    .map(|(k, entry)| (place(k), entry.label.clone()))
+                    .collect(),
+                ..Ticks::default()
+            };
+        }
         let factor = self.shown.factor;
         let wanted = (height / (3.0 * sizes.tick_text)).clamp(2.0, 8.0) as usize;
         Ticks::linear(self.low / factor, self.high / factor, wanted)
@@ -264,23 +298,44 @@ impl ColourBar {
         1.3 * sizes.label_text
     }
 
-    /// Room from the plot to the right end of the picture.
+    /// Returns the width from the plot to the right edge of the picture.
     pub(super) fn room(ticks: &Ticks, sizes: &Sizes) -> f64 {
         let labels = ticks.longest(|label| text::width(label, sizes.tick_text));
         2.0 * sizes.gap + Self::thickness(sizes) + 1.5 * sizes.tick + labels + sizes.gap
     }
 
-    /// Draws beside the right end of the plot, over its whole height.
+    /// Draws the bar to the right of the plot, over its whole height.
     pub(super) fn draw(&self, drawing: &mut Drawing, plot: Area, ticks: &Ticks, sizes: &Sizes) {
         let left = (plot.right + 2.0 * sizes.gap).round();
         let right = (left + Self::thickness(sizes)).round();
-        let (top, bottom) = (plot.top.round(), plot.bottom.round());
+        let (mut top, mut bottom) = (plot.top.round(), plot.bottom.round());
+        let arrow = Self::thickness(sizes).round();
+        let middle = 0.5 * (left + right);
+        if self.clipped[1] {
+            let corners = vec![(left, top + arrow), (right, top + arrow), (middle, top)];
+            drawing.fill_polygon(corners, self.map.colour(1.0));
+            top += arrow;
+        }
+        if self.clipped[0] {
+            let corners = vec![
+                (left, bottom - arrow),
+                (right, bottom - arrow),
+                (middle, bottom),
+            ];
+            drawing.fill_polygon(corners, self.map.colour(0.0));
+            bottom -= arrow;
+        }
         let height = bottom - top;
+        let count = self.categories.len() as f64;
         for row in 0..height as usize {
             let fraction = 1.0 - (row as f64 + 0.5) / height;
             let j = top + row as f64;
-            let colour = self.map.colour(fraction);
-            // Down to the row below, which is drawn over it: readers of SVG leave seams between neighbours.
+            let colour = match self.categories.get(((1.0 - fraction) * count) as usize) {
+                Some(entry) => entry.colour,
+                None => self.map.colour(fraction),
+            };
+            // Each row extends into the row below, which is drawn over it: SVG viewers show gaps between
+            // neighbours.
             let end = (j + 2.0).min(bottom);
             drawing.fill_rectangle((left, j), (right, end), colour, 1.0);
         }
@@ -299,7 +354,7 @@ impl ColourBar {
     }
 }
 
-/// A range that can be drawn: finite, and wider than rounding errors.
+/// Widens a range that is not finite or narrower than rounding errors.
 pub(super) fn widened(low: f64, high: f64) -> (f64, f64) {
     if !low.is_finite() || !high.is_finite() || low > high {
         return (0.0, 1.0);
@@ -314,7 +369,7 @@ pub(super) fn widened(low: f64, high: f64) -> (f64, f64) {
     }
 }
 
-/// The smallest and the largest of the finite numbers.
+/// Returns the minimum and maximum of the finite values.
 pub(super) fn finite_range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     values
         .filter(|value| value.is_finite())
@@ -328,7 +383,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ranges_without_width_are_widened() {
+    fn ranges_of_zero_width_are_widened() {
         assert_eq!(widened(0.0, 0.0), (0.0, 1.0));
         assert_eq!(widened(2.0, 2.0), (1.9, 2.1));
         assert_eq!(widened(-1.0, 3.0), (-1.0, 3.0));
@@ -341,7 +396,7 @@ mod tests {
     }
 
     #[test]
-    fn a_logarithmic_scale_has_equal_decades() {
+    fn decades_have_equal_width_on_a_logarithmic_scale() {
         let scale = Scale {
             low: 1e-2,
             high: 1e2,

@@ -13,7 +13,7 @@ use super::write::write;
 use crate::IoError;
 use pericles::units::quantity;
 
-/// Curves over a common axis.
+/// A chart of curves over common axes.
 #[derive(Debug, Clone)]
 #[must_use = "nothing is drawn before `write`"]
 pub struct LineChart {
@@ -27,17 +27,17 @@ pub struct LineChart {
     height: u32,
 }
 
-/// The names of curves with samples of their pens: its measures in pixels.
+/// Size of the legend in pixels: curve names with samples of their lines.
 struct KeySize {
     sample: f64,
-    /// Of a name.
+    /// Width of a name.
     room: f64,
     width: f64,
     height: f64,
 }
 
 impl LineChart {
-    /// A chart without curves yet.
+    /// Creates a chart without curves.
     pub fn new(x: Axis, y: Axis) -> Self {
         Self {
             x,
@@ -51,13 +51,13 @@ impl LineChart {
         }
     }
 
-    /// The line above the chart.
+    /// Sets the title above the chart.
     pub fn title(mut self, title: impl Into<String>) -> Self {
         self.header.title = title.into();
         self
     }
 
-    /// The time in seconds, for the stamp in the upper right corner.
+    /// Sets the time in seconds, shown in the upper right corner.
     pub fn time(self, time: f64) -> Self {
         self.stamp(format!("t = {}", quantity(time, "s")))
     }
@@ -73,39 +73,40 @@ impl LineChart {
         self
     }
 
-    /// Puts a map of numbers beneath the curves. The axes should have the map's range.
+    /// Sets a colour map of values below the curves. The axes should have the same range.
     pub fn backdrop(mut self, backdrop: Backdrop) -> Self {
         self.header.bar_label.clone_from(&backdrop.name);
         self.backdrop = Some(backdrop);
         self
     }
 
-    /// Puts the key to the right of the plot, where it hides nothing; else it stands in the emptiest corner. Beside a backdrop's colour bar there is no room for it.
+    /// Places the legend to the right of the plot, where it hides nothing; by default it is in the emptiest
+    /// corner. It is not available with the colour bar of a backdrop.
     pub fn key_beside(mut self) -> Self {
         self.key_beside = true;
         self
     }
 
-    /// The width in pixels, from 200 to 16 000; 1200 if not chosen. The height follows at 5 : 8.
+    /// Sets the width in pixels, 200 to 16 000; the default is 1200. The aspect ratio is 8 : 5.
     pub fn width(self, width: u32) -> Self {
         let height = (f64::from(width) * 0.625).round() as u32;
         self.size(width, height.max(*SIZES.start()))
     }
 
-    /// Width and height in pixels, from 200 to 16 000 each.
+    /// Sets width and height in pixels, 200 to 16 000 each.
     pub fn size(mut self, width: u32, height: u32) -> Self {
         self.width = width;
         self.height = height;
         self
     }
 
-    /// Draws the chart and writes it, whole or not at all: as SVG into a file that ends so, as PNG into any other.
+    /// Draws the chart and writes it atomically: as SVG if the file name ends in `.svg`, otherwise as PNG.
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), IoError> {
         let path = path.as_ref();
         write(&self.draw(path)?, path)
     }
 
-    /// Draws the chart as PNG into memory; `name` stands for it in messages.
+    /// Encodes the chart as PNG in memory; `name` is used in messages.
     pub fn to_png(&self, name: &str) -> Result<Vec<u8>, IoError> {
         let path = Path::new(name);
         let mut bytes = Vec::new();
@@ -132,7 +133,11 @@ impl LineChart {
         let top = self.header.height(&sizes).max(2.0 * sizes.gap).round();
         let bottom = (f64::from(self.height) - sizes.below()).round();
         let y_text = AxisText {
-            ticks: y.ticks(((bottom - top) / (3.0 * sizes.tick_text)).clamp(2.0, 9.0) as usize),
+            ticks: self.y.ticks(
+                &y,
+                &y_shown,
+                ((bottom - top) / (3.0 * sizes.tick_text)).clamp(2.0, 9.0) as usize,
+            ),
             label: y_shown.label(&self.y.name),
         };
         let left = sizes.beside(&y_text.ticks).round();
@@ -148,16 +153,16 @@ impl LineChart {
         }
         let beside = self.key_beside && bar.is_none();
         if beside {
-            // A third of the picture at most: longer names are fitted.
+            // At most a third of the picture: longer names are shrunk.
             let key = self.key_size((right - left) / 3.0, &sizes);
             right -= (key.width + sizes.gap).round();
         }
         let wanted = ((right - left) / (6.0 * sizes.tick_text)).clamp(2.0, 10.0) as usize;
         let x_text = AxisText {
-            ticks: x.ticks(wanted),
+            ticks: self.x.ticks(&x, &x_shown, wanted),
             label: x_shown.label(&self.x.name),
         };
-        // A label under the right end must not be cut.
+        // The label at the right end must not be clipped.
         let overhang = x_text
             .ticks
             .longest(|label| text::width(label, sizes.tick_text));
@@ -203,12 +208,12 @@ impl LineChart {
         Ok(drawing)
     }
 
-    /// Whether both axes can show a point.
+    /// Returns whether both axes can show a point.
     fn allows(&self, (x, y): (f64, f64)) -> bool {
         self.x.allows(x) && self.y.allows(y)
     }
 
-    /// A curve in pixels, in pieces with gaps where there is no number.
+    /// Returns the pieces of a curve in pixels, interrupted at missing values.
     fn pieces(&self, curve: &Curve, frame: &Frame, factors: [f64; 2]) -> Vec<Vec<(f64, f64)>> {
         let mut pieces = vec![Vec::new()];
         for point in &curve.points {
@@ -231,7 +236,7 @@ impl LineChart {
             return Err(IoError::Unsuitable {
                 path: path.to_path_buf(),
                 reason: format!(
-                    "a chart of {width} × {height} pixels; {least} to {most} are allowed"
+                    "the chart is {width} × {height} pixels; allowed: {least} to {most} each"
                 ),
             });
         }
@@ -240,7 +245,7 @@ impl LineChart {
             if expected != given {
                 return Err(IoError::Shape {
                     path: path.to_path_buf(),
-                    what: "numbers of the backdrop".into(),
+                    what: "the backdrop".into(),
                     expected,
                     given,
                 });
@@ -260,13 +265,13 @@ impl LineChart {
         Ok(())
     }
 
-    /// The curves that have a name, with their numbers.
+    /// Returns the named curves with their indices.
     fn named(&self) -> impl Iterator<Item = (usize, &Curve)> {
         let curves = self.curves.iter().enumerate();
         curves.filter(|(_, curve)| !curve.name.is_empty())
     }
 
-    /// The key's size where it may be this wide.
+    /// Returns the size of the legend for a maximum width.
     fn key_size(&self, most: f64, sizes: &Sizes) -> KeySize {
         let sample = 2.2 * sizes.tick_text;
         let room = most - sample - 3.0 * sizes.gap;
@@ -282,7 +287,7 @@ impl LineChart {
         }
     }
 
-    /// The key, in the corner where it hides the least of the curves.
+    /// Draws the legend in the corner where it covers least of the curves.
     fn draw_key_within(
         &self,
         drawing: &mut Drawing,
@@ -317,7 +322,7 @@ impl LineChart {
         }
     }
 
-    /// The key with its upper left corner at a place.
+    /// Draws the legend with its upper left corner at a position.
     fn draw_key(&self, drawing: &mut Drawing, key: &KeySize, place: (f64, f64), sizes: &Sizes) {
         if self.named().next().is_none() {
             return;
@@ -342,7 +347,7 @@ impl LineChart {
     }
 }
 
-/// The line and the markers of a curve, as far as they lie in an area.
+/// Draws the line and the markers of a curve inside an area.
 fn draw_curve(
     drawing: &mut Drawing,
     curve: &Curve,

@@ -1,13 +1,16 @@
-//! Pictures as PNG or SVG files: a field on the points of a body, and charts of curves.
+//! Pictures as PNG or SVG files: fields on the points of a body, and charts of curves.
 //!
-//! * [`FieldPicture`]: every point as a filled cell at its displaced place, coloured by a scalar, with colour bar, time stamp and
-//!   lengths in a fitting unit. A body in the plane has axes; a body in space is seen in parallel projection along a chosen
-//!   direction, nearer cells in front; a bar is drawn as a curve over its length.
-//! * [`LineChart`]: named curves, with markers, dashes and logarithmic axes where wanted; a [`Backdrop`] puts a map of numbers beneath them.
-//! * [`write_animation`]: pictures one after another in one file.
+//! * [`FieldPicture`]: every point as a filled cell at its displaced position, coloured by a scalar, with
+//!   colour bar, time stamp and suitable length unit. A plane body has axes; a solid is shown in parallel
+//!   projection along a chosen direction, with hidden cells removed; a bar is drawn as a curve over its
+//!   length.
+//! * [`LineChart`]: named curves, with optional markers, dashes and logarithmic axes; a [`Backdrop`] adds a
+//!   colour map below them.
+//! * [`write_animation`]: several pictures as an animation in one file.
 //!
-//! Quantities come in SI units and are shown with the SI prefix that suits their size. The bytes of a picture depend on its data
-//! alone. Text is set in the font inside the crate (DejaVu Sans), lines and glyphs are antialiased; nothing of the system is used.
+//! Quantities are given in SI units and shown with a suitable SI prefix. The bytes of a picture depend on its
+//! data alone. Text uses the embedded font DejaVu Sans; lines and glyphs are antialiased; no system fonts or
+//! libraries are used.
 //!
 //! ```
 //! use pericles_io::{Axis, CellSize, ColourMap, Curve, FieldPicture, LineChart};
@@ -31,10 +34,12 @@
 mod animation;
 mod backdrop;
 mod bitmap;
+mod category;
 mod clip;
 mod colour;
 mod curve;
 mod drawing;
+mod extent;
 mod field;
 mod frame;
 mod line_chart;
@@ -51,6 +56,7 @@ pub use animation::write_animation;
 pub use backdrop::Backdrop;
 pub use colour::ColourMap;
 pub use curve::{Axis, Curve};
+pub use extent::Extent;
 pub use field::{CellSize, FieldPicture};
 pub use line_chart::LineChart;
 pub use pericles::units::quantity;

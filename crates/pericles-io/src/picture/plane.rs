@@ -1,20 +1,21 @@
-//! A plane body with its axes.
+//! Picture of a plane body with axes.
 
-use super::drawing::Drawing;
+use super::bitmap::{INK, Pen, WHITE};
+use super::drawing::{Drawing, Spot};
 use super::frame::{Area, AxisText, ColourBar, Frame, Scale, Sizes};
 use super::raster::Raster;
 use super::scene::Scene;
 use super::ticks::Ticks;
 use pericles::units::Shown;
 
-/// White space around the body, as a part of its larger side.
+/// White space around the body, as a fraction of its larger side.
 const MARGIN: f64 = 0.03;
 
-/// The height of the plot over the width of the picture stays between these; a slender body gets white space.
+/// Bounds of the ratio of plot height to picture width; a slender body is surrounded by white space.
 const FLATTEST: f64 = 0.16;
 const TALLEST: f64 = 1.1;
 
-/// Fine pixels per pixel and direction, see [`Raster`].
+/// Subpixels per pixel and direction, see [`Raster`].
 const FINE: usize = 2;
 
 pub(super) fn draw(scene: &Scene) -> Drawing {
@@ -26,7 +27,7 @@ pub(super) fn draw(scene: &Scene) -> Drawing {
     let margin = MARGIN * largest;
     let (ew, eh) = (bw + 2.0 * margin, bh + 2.0 * margin);
 
-    // The labels take room, the room decides the size of the plot, and that which labels there are: twice is enough.
+    // The labels need space, which changes the size of the plot and thereby the labels: two iterations suffice.
     let (mut left, mut right) = (100.0 * width / 1200.0, 130.0 * width / 1200.0);
     let mut height = 0.0;
     let mut y_ticks = Ticks::default();
@@ -71,6 +72,22 @@ pub(super) fn draw(scene: &Scene) -> Drawing {
     }
     let mut drawing = Drawing::new(scene.width, (area.bottom + sizes.below()).ceil() as usize);
     drawing.cells(raster, left as usize, top as usize);
+    let lines = scene.lines.iter().map(|line| {
+        let place = |p: &[f64; 2]| frame.place(p[0] / shown.factor, p[1] / shown.factor);
+        line.iter().map(place).collect()
+    });
+    let lines: Vec<Vec<Spot>> = lines.collect();
+    if !lines.is_empty() {
+        // Dark lines with a light rim, visible on all colours.
+        for (width, colour) in [(3.0 * sizes.line, WHITE), (sizes.line, INK)] {
+            let pen = Pen {
+                width,
+                colour,
+                dash: None,
+            };
+            drawing.stroke(lines.clone(), pen);
+        }
+    }
 
     let x = AxisText {
         ticks: frame

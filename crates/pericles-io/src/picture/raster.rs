@@ -1,41 +1,43 @@
-//! Filled cells: at every pixel the cell with the smallest key wins, the distance from its middle in the plane and the depth in
-//! space, so that neighbours share a clean border and the order of the points does not matter where their keys differ.
+//! Rasterisation of filled cells: at every pixel the cell with the smallest key is visible. The key is the
+//! distance from the cell centre in the plane and the depth in space, so that neighbours share a clean border
+//! and the order of points does not matter.
 //!
-//! Of faces of equal depth the one of the smaller number wins, so that the order in which they are drawn does not matter at all. Large faces that lie behind
-//! all that is drawn in their place are found by the largest key of every tile of pixels: a rod seen end on has as many layers as cells along it.
+//! Among faces of equal depth the one with the smaller number is visible, so that the drawing order does not
+//! matter. Large hidden faces are skipped by the largest key of every tile of pixels: a rod seen end on has
+//! as many layers as cells along it.
 
 use std::ops::Range;
 
 use super::bitmap::{Bitmap, Rgb, WHITE};
 
-/// A picture of cells, finer than the pixels it ends up in.
+/// A raster of cells with several subpixels per pixel.
 #[derive(Debug)]
 pub(super) struct Raster {
     width: usize,
     height: usize,
-    /// Fine pixels per pixel and direction; their mean smooths the edges.
+    /// Subpixels per pixel and direction; their mean smooths the edges.
     fine: usize,
     key: Vec<f32>,
-    /// The number of the face that has the key.
+    /// Number of the face that has the key.
     owner: Vec<u32>,
     colour: Vec<Rgb>,
-    /// The largest key of each tile; none where pixels have changed since it was found.
+    /// Largest key of each tile; `None` where pixels have changed since it was computed.
     tiles: Vec<Option<f32>>,
-    /// Pixels that were looked at.
+    /// Number of pixels visited.
     #[cfg(test)]
     visited: usize,
 }
 
-/// Fine pixels across a tile.
+/// Side length of a tile in subpixels.
 const TILE: usize = 16;
 
-/// A parallelogram in space: its middle and the two half edges; (x, y) in pixels, then the distance from the viewer.
+/// A parallelogram in space: centre and two half edges; (x, y) in pixels, then the distance from the viewer.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Face {
     pub(super) middle: [f64; 3],
     pub(super) a: [f64; 3],
     pub(super) b: [f64; 3],
-    /// How far the seam around the face lies behind it: far enough for every neighbour to cover it.
+    /// Depth of the border around the face behind the face itself: large enough for every neighbour to cover it.
     pub(super) seam: f64,
 }
 
@@ -55,9 +57,9 @@ impl Raster {
         }
     }
 
-    /// The fine pixels from `low` to `high`, as far as they lie inside `size`.
+    /// Returns the subpixels from `low` to `high` inside `size`.
     fn range(low: f64, high: f64, size: usize) -> Range<usize> {
-        // from the first to the last pixel whose middle is inside; a cast of a negative number gives zero
+        // from the first to the last pixel whose centre is inside; casting a negative number gives zero
         let first = (low - 0.5).ceil().max(0.0) as usize;
         let end = ((high - 0.5).floor() + 1.0).max(0.0) as usize;
         first..end.min(size)
@@ -77,7 +79,8 @@ impl Raster {
         }
     }
 
-    /// Whether all of a rectangle of pixels is covered by what is nearer than this key. Small ones are not looked at: drawing them costs no more.
+    /// Returns whether a rectangle of pixels is completely covered by nearer faces. Small rectangles are not
+    /// tested, because drawing them is as cheap.
     fn hides(&mut self, columns: &Range<usize>, rows: &Range<usize>, key: f32) -> bool {
         if columns.len() * rows.len() < TILE * TILE {
             return false;
@@ -106,8 +109,8 @@ impl Raster {
             .fold(f32::NEG_INFINITY, |most, &key| most.max(key))
     }
 
-    /// A cell seen flat: middle and half edges in pixels. It reaches a tenth further than it is large, and half a pixel at least, so
-    /// that a stretched grid stays closed while an open crack shows.
+    /// Draws a cell in the plane: centre and half edges in pixels. It is enlarged by a tenth and at least
+    /// half a pixel, so that a stretched grid stays closed while an open crack remains visible.
     pub(super) fn cell(&mut self, middle: (f64, f64), half: (f64, f64), colour: Rgb) {
         let fine = self.fine as f64;
         let (x, y) = (middle.0 * fine, middle.1 * fine);
@@ -123,7 +126,7 @@ impl Raster {
         }
     }
 
-    /// A face seen from any side, with a seam of half a pixel around it so that no light shines between neighbours.
+    /// Draws a face seen from any direction, with a border of half a pixel that closes gaps between neighbours.
     pub(super) fn face(&mut self, face: &Face, number: u32, colour: Rgb) {
         let fine = self.fine as f64;
         let [x, y, depth] = [face.middle[0] * fine, face.middle[1] * fine, face.middle[2]];
@@ -131,11 +134,11 @@ impl Raster {
         let [bx, by] = [face.b[0] * fine, face.b[1] * fine];
         let det = ax * by - ay * bx;
         let (length_a, length_b) = (ax.hypot(ay), bx.hypot(by));
-        // seen edge on: nothing to fill
+        // seen edge-on: no visible area
         if det.abs() <= 1e-9 * length_a * length_b || det == 0.0 {
             return;
         }
-        // Half a pixel, measured along each edge
+        // Half a pixel, measured along each edge.
         let slack = |length: f64| 1.0 + 0.5 * length / det.abs();
         let (most_s, most_t) = (slack(length_b), slack(length_a));
         let reach = |a: f64, b: f64| most_s * a.abs() + most_t * b.abs();
@@ -168,18 +171,18 @@ impl Raster {
         }
     }
 
-    /// A triangle in space, (x, y) in pixels and the distance from the viewer; `colour` takes the shares of the three corners. A seam of half a pixel around it
-    /// keeps neighbours closed.
+    /// Draws a triangle in space, (x, y) in pixels and the distance from the viewer; `colour` takes the
+    /// barycentric coordinates. A border of half a pixel closes gaps between neighbours.
     pub(super) fn triangle(&mut self, corners: [[f64; 3]; 3], colour: impl Fn([f64; 3]) -> Rgb) {
         let fine = self.fine as f64;
         let [a, b, c] = corners.map(|[x, y, depth]| [x * fine, y * fine, depth]);
         let doubled = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
-        // seen edge on: nothing to fill
+        // seen edge-on: no visible area
         if doubled.abs() < 1e-9 {
             return;
         }
         let edge = |p: [f64; 3], q: [f64; 3]| (q[0] - p[0]).hypot(q[1] - p[1]);
-        // Half a pixel over the height above each corner's opposite edge.
+        // Half a pixel relative to the height above each corner's opposite edge.
         let slack = [edge(b, c), edge(c, a), edge(a, b)].map(|edge| 0.5 * edge / doubled.abs());
         let bounds = |k: usize| {
             let values = [a[k], b[k], c[k]];
@@ -200,18 +203,22 @@ impl Raster {
                 let shares = [area(b, c), area(c, a), area(a, b)];
                 if (0..3).all(|k| shares[k] >= -slack[k]) {
                     let depth = shares[0] * a[2] + shares[1] * b[2] + shares[2] * c[2];
-                    self.put(i, j, depth as f32, colour(shares));
+                    let key = depth as f32;
+                    // Colours take longer than what hides most of them.
+                    if key < self.key[j * self.width + i] {
+                        self.put(i, j, key, colour(shares));
+                    }
                 }
             }
         }
     }
 
-    /// Width and height in whole pixels.
+    /// Returns width and height in whole pixels.
     pub(super) fn size(&self) -> (usize, usize) {
         (self.width / self.fine, self.height / self.fine)
     }
 
-    /// Lays the picture on a bitmap, its corner at (left, top). What no cell covers stays as it was.
+    /// Draws the raster on a bitmap with its corner at (left, top). Uncovered pixels are unchanged.
     pub(super) fn lay_on(&self, bitmap: &mut Bitmap, left: usize, top: usize) {
         let fine = self.fine;
         for j in 0..self.height / fine {
@@ -255,7 +262,7 @@ mod tests {
     fn a_stretched_grid_is_closed_and_a_crack_is_open() {
         let mut raster = Raster::new(200, 40, 2);
         for k in 0..10 {
-            // 15 % stretched, and torn open by 6 pixels after the fifth cell
+            // 15 % stretched, with a gap of 6 pixels after the fifth cell
             let x = 10.0 + 11.5 * f64::from(k) + if k > 4 { 6.0 } else { 0.0 };
             raster.cell((x, 20.0), (5.0, 5.0), if k % 2 == 0 { RED } else { BLUE });
         }
@@ -301,7 +308,7 @@ mod tests {
         }
     }
 
-    /// Layers of 10 × 10 square cells one behind the other, by their distance from the viewer; each layer a little askew.
+    /// Layers of 10 × 10 square cells behind each other, slightly tilted, by their distance from the viewer.
     fn layers(order: impl Iterator<Item = u32>) -> Raster {
         let mut raster = Raster::new(400, 400, 2);
         for layer in order {
@@ -327,7 +334,7 @@ mod tests {
     fn hidden_layers_are_not_visited_and_pictures_do_not_depend_on_the_order() {
         let one = layers(0..1).visited;
         let many = layers(0..50);
-        // Seams between the cells of the first layer let the second one through.
+        // Gaps between the cells of the first layer show the second one.
         assert!(many.visited < 4 * one, "{} {one}", many.visited);
         let reversed = layers((0..50).rev());
         assert!(reversed.visited > 40 * one);

@@ -1,9 +1,9 @@
-//! What the pictures of plane bodies and of solids have in common.
+//! Data shared by the pictures of plane bodies and solids.
 
 use super::bitmap::Rgb;
 use super::frame::{ColourBar, Header};
 
-/// Where a cell is drawn, its half edges, and its colour.
+/// A cell to draw: position, half edges and colour.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Drawn {
     pub(super) middle: [f64; 3],
@@ -11,30 +11,32 @@ pub(super) struct Drawn {
     pub(super) colour: Rgb,
 }
 
-/// A triangle of a surface as it is drawn.
+/// A triangle of a surface to draw.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Facet {
     pub(super) corners: [[f64; 3]; 3],
-    /// Sums of the normals of the triangles that meet in each corner.
+    /// Sums of the normals of the triangles that share each corner.
     pub(super) normals: [[f64; 3]; 3],
     pub(super) values: [f64; 3],
 }
 
-/// The cells or triangles of a body with what stands around them.
+/// The cells or triangles of a body with title, time and colour bar.
 #[derive(Debug)]
 pub(super) struct Scene {
     pub(super) width: usize,
     pub(super) cells: Vec<Drawn>,
-    /// Triangles in place of cells.
+    /// Triangles, drawn instead of cells.
     pub(super) facets: Vec<Facet>,
-    /// Opposite corners of the part that is shown.
+    /// Opposite corners of the region shown.
     pub(super) low: [f64; 3],
     pub(super) high: [f64; 3],
-    /// Whether these corners were asked for: they then are not drawn together to what is there.
+    /// Whether the region was set explicitly; otherwise it is reduced to the visible content.
     pub(super) window: bool,
     pub(super) bar: ColourBar,
     pub(super) header: Header,
-    /// The unit of lengths; empty for pure numbers.
+    /// Length unit; empty for dimensionless lengths.
     pub(super) length_unit: &'static str,
     pub(super) view: [f64; 3],
+    /// Lines on a plane body, m.
+    pub(super) lines: Vec<Vec<[f64; 2]>>,
 }

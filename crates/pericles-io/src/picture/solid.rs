@@ -1,4 +1,4 @@
-//! A solid in parallel projection: cells as little blocks, nearer ones in front, with the directions of the axes and a length.
+//! Solids in parallel projection: cells as boxes with hidden faces removed, axis directions and a scale bar.
 
 use super::bitmap::{INK, Pen, Rgb};
 use super::colour::shaded;
@@ -15,10 +15,10 @@ const MARGIN: f64 = 0.03;
 const FLATTEST: f64 = 0.2;
 const TALLEST: f64 = 0.9;
 
-/// Beyond so many cells edges are left unsmoothed, for the sake of time.
+/// Maximum number of cells with antialiased edges, to limit the time.
 const MANY: usize = 300_000;
 
-/// The light on faces turned away from it, as a part of the full light.
+/// Light on faces turned away from the source, as a fraction of full light.
 const SHADE: f64 = 0.75;
 
 /// Colours of the axes x, y, z, as usual in computer graphics but dark enough for white paper.
@@ -28,7 +28,7 @@ const AXES: [(&str, Rgb); 3] = [
     ("z", [30, 60, 200]),
 ];
 
-/// Unit vectors on the screen: to the right, upwards, and towards the eye.
+/// Unit vectors of the screen: to the right, upwards, and towards the viewer.
 #[derive(Debug, Clone, Copy)]
 struct View {
     right: [f64; 3],
@@ -39,7 +39,7 @@ struct View {
 impl View {
     fn new(direction: [f64; 3]) -> Self {
         let eye = normalised(direction);
-        // z is up, and y if one looks along z
+        // z points up, or y when looking along z.
         let upright = if eye[2].abs() > 0.999 {
             [0.0, 1.0, 0.0]
         } else {
@@ -53,14 +53,15 @@ impl View {
         }
     }
 
-    /// To the right, upwards, towards the eye.
+    /// Projects a point: to the right, upwards, towards the viewer.
     fn project(&self, p: [f64; 3]) -> [f64; 3] {
         [dot(p, self.right), dot(p, self.up), dot(p, self.eye)]
     }
 
-    /// The light on a surface with this normal, from above the left shoulder; the side towards the eye is seen.
+    /// Returns the light on a surface with this normal, from above left of the viewer; normals are taken
+    /// towards the viewer.
     fn light_on(&self, normal: [f64; 3]) -> f64 {
-        /// The light where the lamp does not reach.
+        /// Light on surfaces that the source does not reach.
         const AMBIENT: f64 = 0.6;
         let lamp: [f64; 3] =
             std::array::from_fn(|k| self.eye[k] + 0.7 * self.up[k] - 0.5 * self.right[k]);
@@ -72,7 +73,7 @@ impl View {
         AMBIENT + (1.0 - AMBIENT) * towards.max(0.0)
     }
 
-    /// The light on the visible faces across the three axes, from above the left shoulder; the brightest has all of it.
+    /// Returns the light on the visible faces across the three axes; the brightest has full light.
     fn light(&self) -> [f64; 3] {
         let lamp: [f64; 3] =
             std::array::from_fn(|k| self.eye[k] + 0.7 * self.up[k] - 0.4 * self.right[k]);
@@ -143,9 +144,9 @@ pub(super) fn draw(scene: &Scene) -> Drawing {
     drawing
 }
 
-/// What the body fills on the screen: lowest and highest coordinates to the right and upwards, m.
+/// Returns the extent of the body on the screen: minimum and maximum coordinates to the right and upwards, m.
 fn extent(scene: &Scene, view: &View) -> ([f64; 2], [f64; 2]) {
-    // Its box.
+    // Its bounding box.
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     for corner in 0..8 {
         let p = std::array::from_fn(|c| {
@@ -160,7 +161,7 @@ fn extent(scene: &Scene, view: &View) -> ([f64; 2], [f64; 2]) {
             high[c] = high[c].max(value);
         }
     }
-    // A surface need not fill its box.
+    // A surface need not fill its bounding box.
     if !scene.facets.is_empty() && !scene.window {
         let (mut least, mut most) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for corner in scene.facets.iter().flat_map(|facet| facet.corners) {
@@ -177,18 +178,18 @@ fn extent(scene: &Scene, view: &View) -> ([f64; 2], [f64; 2]) {
     (low, high)
 }
 
-/// From places in space to pixels of the plot.
+/// Mapping from positions in space to pixels of the plot.
 struct Placing {
     view: View,
-    /// The middle of the plot on the screen, m.
+    /// Centre of the plot on the screen, m.
     middle: [f64; 2],
     per_metre: f64,
-    /// Half of the plot, in pixels.
+    /// Half the size of the plot, in pixels.
     half: [f64; 2],
 }
 
 impl Placing {
-    /// To the right, downwards and away from the eye, relative to a place on the screen.
+    /// Maps to the right, downwards and away from the viewer, relative to a position on the screen.
     fn relative(&self, p: [f64; 3], of: [f64; 2]) -> [f64; 3] {
         let [x, y, near] = self.view.project(p);
         [
@@ -198,18 +199,18 @@ impl Placing {
         ]
     }
 
-    /// In the plot.
+    /// Maps to pixels of the plot.
     fn place(&self, p: [f64; 3]) -> [f64; 3] {
         let [x, y, far] = self.relative(p, self.middle);
         [x + self.half[0], y + self.half[1], far]
     }
 }
 
-/// Cells as boxes of which three faces are seen.
+/// Draws cells as boxes with three visible faces.
 fn draw_cells(raster: &mut Raster, scene: &Scene, placing: &Placing) {
     let view = &placing.view;
     let light = view.light();
-    // Nearer ones first, so that what they hide can be left out.
+    // Front to back, so that hidden faces can be skipped.
     let mut order: Vec<(usize, f64)> = (scene.cells.iter())
         .map(|cell| -dot(cell.middle, view.eye))
         .enumerate()
@@ -236,7 +237,7 @@ fn draw_cells(raster: &mut Raster, scene: &Scene, placing: &Placing) {
     }
 }
 
-/// Triangles of a surface, lit by their normals.
+/// Draws triangles of a surface, lit by their normals.
 fn draw_facets(raster: &mut Raster, scene: &Scene, placing: &Placing) {
     for facet in &scene.facets {
         let corners = facet.corners.map(|corner| placing.place(corner));
@@ -251,7 +252,7 @@ fn draw_facets(raster: &mut Raster, scene: &Scene, placing: &Placing) {
     }
 }
 
-/// The directions of the axes, in the lower left corner.
+/// Draws the axis directions in the lower left corner.
 fn draw_directions(drawing: &mut Drawing, view: &View, area: Area, arm: f64, sizes: &Sizes) {
     let reach = arm + 0.8 * sizes.tick_text;
     let from = (
@@ -261,7 +262,7 @@ fn draw_directions(drawing: &mut Drawing, view: &View, area: Area, arm: f64, siz
     let mut axes: Vec<_> = (0..3)
         .map(|c| (c, [view.right[c], view.up[c], view.eye[c]]))
         .collect();
-    // the one that points most towards the eye last, over the others
+    // the axis nearest to the viewing direction is drawn last, over the others
     axes.sort_by(|(_, a), (_, b)| a[2].total_cmp(&b[2]));
     for (c, [x, y, _]) in axes {
         let (name, colour) = AXES[c];
@@ -282,7 +283,8 @@ fn draw_directions(drawing: &mut Drawing, view: &View, area: Area, arm: f64, siz
     }
 }
 
-/// A bar of a round length, below the middle; in parallel projection it holds for every line across the view.
+/// Draws a scale bar of a round length below the plot; in parallel projection it holds for every line across
+/// the viewing direction.
 fn draw_length(drawing: &mut Drawing, area: Area, (per_metre, unit): (f64, &str), sizes: &Sizes) {
     let length = round_below(0.25 * area.width() / per_metre);
     let half = 0.5 * length * per_metre;
@@ -298,7 +300,7 @@ fn draw_length(drawing: &mut Drawing, area: Area, (per_metre, unit): (f64, &str)
     drawing.text(&round_quantity(length, unit), place, style);
 }
 
-/// A round number with its unit and without noughts at its end: `20 mm`.
+/// Formats a round number with its unit and without trailing zeros: `20 mm`.
 fn round_quantity(length: f64, unit: &str) -> String {
     let text = quantity(length, unit);
     match text.split_once(' ') {
@@ -323,7 +325,7 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 }
 
 fn normalised(v: [f64; 3]) -> [f64; 3] {
-    // Squares of the largest and smallest numbers are infinite and zero.
+    // Squares of the largest and smallest numbers overflow and underflow.
     let largest = max_norm(&v);
     let v = v.map(|c| c / largest);
     let length = dot(v, v).sqrt();
@@ -335,7 +337,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_screen_is_right_handed_from_every_side() {
+    fn screen_axes_are_right_handed_from_every_direction() {
         for direction in [
             [0.5, -1.0, 0.6],
             [0.0, 0.0, 3.0],
@@ -361,7 +363,7 @@ mod tests {
     }
 
     #[test]
-    fn lengths_are_written_without_noughts() {
+    fn lengths_are_written_without_trailing_zeros() {
         for (length, text) in [
             (0.02, "20 mm"),
             (5e-7, "500 nm"),

@@ -1,4 +1,4 @@
-//! Drawings as SVG: shapes and text stay what they are, the cells of a body become an image.
+//! SVG output: shapes and text stay vectors, the cells of a body become an image.
 
 use std::fmt::Write as _;
 use std::io;
@@ -11,13 +11,13 @@ use super::raster::Raster;
 use super::text::{self, Align, Direction, Style};
 use crate::xml::escaped;
 
-/// Fonts that have the signs of pictures, the one in which PNG files are set first.
+/// Fonts with the characters of pictures; the first one is used in PNG files.
 const FONTS: &str = "DejaVu Sans, Verdana, sans-serif";
 
-/// The whole file.
+/// Returns the complete SVG file.
 ///
 /// # Errors
-/// An image that cannot be encoded.
+/// Returns an error if an image cannot be encoded.
 pub(super) fn document(drawing: &Drawing) -> io::Result<String> {
     let (width, height) = (drawing.width(), drawing.height());
     let mut page = Page(format!(
@@ -31,12 +31,12 @@ pub(super) fn document(drawing: &Drawing) -> io::Result<String> {
     Ok(page.0)
 }
 
-/// The text as far as it is written.
+/// The text written so far.
 struct Page(String);
 
 impl Page {
     fn line(&mut self, line: std::fmt::Arguments<'_>) {
-        // A string takes any text.
+        // Writing into a String cannot fail.
         let _ = writeln!(self.0, "{line}");
     }
 
@@ -107,7 +107,7 @@ impl Page {
             Align::Middle => "middle",
             Align::End => "end",
         };
-        // The base line lies below the middle of the capitals; text that runs upwards is turned about its place.
+        // The baseline lies below the middle of the capitals; vertical text is rotated about its position.
         let below = text::HALF_CAPITAL * style.size;
         let place = match style.direction {
             Direction::Right => {
@@ -120,7 +120,7 @@ impl Page {
                 short(below)
             ),
         };
-        // With the length of this font no other one runs into its neighbours.
+        // Fixing the length of this font prevents text in another font from overlapping its neighbours.
         self.line(format_args!(
             "<text {place} font-size=\"{}\" text-anchor=\"{anchor}\" textLength=\"{}\" lengthAdjust=\"spacingAndGlyphs\" fill=\"{}\">{}</text>",
             short(style.size),
@@ -144,7 +144,7 @@ impl Page {
     }
 }
 
-/// A line as a path; a single point is a dot.
+/// Returns a line as a path; a single point is a dot.
 fn course(line: &[Spot]) -> String {
     let mut path = String::new();
     for (k, &place) in line.iter().enumerate() {
@@ -165,7 +165,7 @@ fn hex([r, g, b]: Rgb) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
-/// Hundredths of a pixel are fine enough.
+/// Rounds to hundredths of a pixel.
 fn short(number: f64) -> f64 {
     (100.0 * number).round() / 100.0
 }
@@ -176,7 +176,7 @@ mod tests {
     use crate::picture::bitmap::Pen;
 
     #[test]
-    fn every_shape_is_there_and_text_is_escaped() {
+    fn every_shape_is_written_and_text_is_escaped() {
         let mut drawing = Drawing::new(300, 200);
         let black = [0, 0, 0];
         drawing.fill_rectangle((1.2, 2.0), (10.0, 20.4), [255, 0, 128], 0.5);

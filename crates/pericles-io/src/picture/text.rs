@@ -1,4 +1,4 @@
-//! Text in the font inside the crate.
+//! Text in the embedded font.
 
 use std::sync::LazyLock;
 
@@ -7,15 +7,15 @@ use ab_glyph::{Font, FontRef, GlyphId, PxScale, ScaleFont};
 use super::bitmap::{Bitmap, Rgb};
 
 static FONT: LazyLock<FontRef<'static>> = LazyLock::new(|| {
-    // The bytes are part of the program: only a broken build could fail here, and the tests would see it.
+    // The bytes are part of the program: this can fail only in a broken build, which the tests detect.
     FontRef::try_from_slice(include_bytes!("../../assets/DejaVuSans-subset.ttf"))
-        .expect("the font inside the crate is sound")
+        .expect("the embedded font is valid")
 });
 
-/// Half the height of a capital in DejaVu Sans over its size (1493 of 2048 units).
+/// Half the height of capitals in DejaVu Sans relative to its size (1493 of 2048 units).
 pub(super) const HALF_CAPITAL: f64 = 0.3645;
 
-/// Which end of the text lies at the given place.
+/// Which end of the text is at the given position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Align {
     Start,
@@ -23,17 +23,17 @@ pub(super) enum Align {
     End,
 }
 
-/// Where the text runs.
+/// Direction of the text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Direction {
     Right,
     Up,
 }
 
-/// How a text is set.
+/// Style of a text.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Style {
-    /// The size of the font (its em) in pixels.
+    /// Font size (em) in pixels.
     pub(super) size: f64,
     pub(super) align: Align,
     pub(super) direction: Direction,
@@ -60,7 +60,7 @@ impl Style {
         self
     }
 
-    /// The same, made smaller if the text would otherwise be longer than `room`.
+    /// Reduces the size if the text would be longer than `room`.
     pub(super) fn fitted(mut self, text: &str, room: f64) -> Self {
         let length = width(text, self.size);
         if length > room && room > 0.0 {
@@ -75,7 +75,7 @@ fn scale(size: f64) -> PxScale {
     PxScale::from(size as f32 * FONT.height_unscaled() / em)
 }
 
-/// Places of the glyphs along the line and the length of the whole, in pixels.
+/// Returns the positions of the glyphs along the line and the total length, in pixels.
 fn place(text: &str, size: f64) -> (Vec<(GlyphId, f32)>, f32) {
     let font = FONT.as_scaled(scale(size));
     let mut at = 0.0;
@@ -93,12 +93,12 @@ fn place(text: &str, size: f64) -> (Vec<(GlyphId, f32)>, f32) {
     (glyphs, at)
 }
 
-/// The length of a text in pixels.
+/// Returns the length of a text in pixels.
 pub(super) fn width(text: &str, size: f64) -> f64 {
     f64::from(place(text, size).1)
 }
 
-/// Sets a text at (x, y); seen along its direction, y is the middle of its capitals.
+/// Draws a text at (x, y); along its direction, y is at half the height of its capitals.
 pub(super) fn draw(bitmap: &mut Bitmap, text: &str, (x, y): (f64, f64), style: Style) {
     let (glyphs, length) = place(text, style.size);
     let back = match style.align {
@@ -106,7 +106,7 @@ pub(super) fn draw(bitmap: &mut Bitmap, text: &str, (x, y): (f64, f64), style: S
         Align::Middle => f64::from(length) / 2.0,
         Align::End => f64::from(length),
     };
-    // Along and across the line, in whole pixels across: a base line between two rows of pixels looks blurred.
+    // Across the line, positions are whole pixels: a baseline between two rows of pixels looks blurred.
     let (along, across) = match style.direction {
         Direction::Right => (x - back, y),
         Direction::Up => (-y - back, x),
@@ -125,7 +125,7 @@ pub(super) fn draw(bitmap: &mut Bitmap, text: &str, (x, y): (f64, f64), style: S
             let j = corner.y as i64 + i64::from(j);
             let (i, j) = match style.direction {
                 Direction::Right => (i, j),
-                // turned a quarter: along the line is up, from pixel k to pixel −1 − k
+                // rotated by 90°: the line runs upwards, from pixel k to pixel −1 − k
                 Direction::Up => (j, -1 - i),
             };
             bitmap.blend(i, j, style.colour, f64::from(cover));
@@ -137,7 +137,7 @@ pub(super) fn draw(bitmap: &mut Bitmap, text: &str, (x, y): (f64, f64), style: S
 mod tests {
     use super::*;
 
-    /// The box of the pixels that are not white: left, top, right, bottom (exclusive).
+    /// Returns the box of the pixels that are not white: left, top, right, bottom (exclusive).
     fn ink(bitmap: &Bitmap) -> (usize, usize, usize, usize) {
         let mut found = (usize::MAX, usize::MAX, 0, 0);
         for j in 0..bitmap.height() {
@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn the_font_has_every_sign_that_pictures_use() {
+    fn the_font_has_all_characters_used_in_pictures() {
         let signs = "AZaz09 [](),.·×−-+=%°µΩαβγδεηθκλνξπρστφψω∂∇∞√≤≥≈Δ²³⁰¹⁴⁵⁶⁷⁸⁹⁻₀₁∥";
         for sign in signs.chars() {
             assert_ne!(FONT.glyph_id(sign), GlyphId(0), "{sign}");
@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn text_fills_the_place_its_width_announces() {
+    fn drawn_text_has_the_computed_width() {
         let text = "HEIGHTH";
         let length = width(text, 40.0);
         for (align, start) in [
@@ -173,7 +173,7 @@ mod tests {
             let mut bitmap = Bitmap::white(400, 100);
             draw(&mut bitmap, text, (200.0, 50.0), Style::new(40.0, align));
             let (left, top, right, bottom) = ink(&bitmap);
-            // the stems of H stand 0.1 em inside its advance
+            // the stems of H are 0.1 em inside its advance width
             assert!((left as f64 - start - 4.0).abs() < 1.5, "{align:?} {left}");
             assert!(
                 (right as f64 - start - length + 4.0).abs() < 1.5,
@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn upward_text_is_the_level_one_turned() {
+    fn vertical_text_is_rotated_horizontal_text() {
         let (mut level, mut up) = (Bitmap::white(200, 200), Bitmap::white(200, 200));
         let style = Style::new(30.0, Align::Middle);
         draw(&mut level, "Energy", (100.0, 80.0), style);
@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn a_long_text_is_made_to_fit() {
+    fn long_text_is_reduced_to_fit() {
         let style = Style::new(30.0, Align::Start).fitted("a long title of a picture", 100.0);
         assert!((width("a long title of a picture", style.size) - 100.0).abs() < 1.0);
     }

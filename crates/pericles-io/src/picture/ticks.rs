@@ -1,4 +1,4 @@
-//! Places and labels of ticks.
+//! Positions and labels of ticks.
 
 use pericles::units::{power_of_ten, superscript};
 
@@ -12,7 +12,7 @@ pub(super) struct Ticks {
 }
 
 impl Ticks {
-    /// Multiples of 1, 2 or 5 times a power of ten from `low` to `high`: about `wanted` of them, and two at least.
+    /// Returns about `wanted` multiples of 1, 2 or 5 times a power of ten from `low` to `high`, at least two.
     pub(super) fn linear(low: f64, high: f64, wanted: usize) -> Self {
         if low.is_nan() || high.is_nan() || high <= low || !(high - low).is_finite() {
             return Self::default();
@@ -20,7 +20,7 @@ impl Ticks {
         let (mut mantissa, mut power) = step((high - low) / wanted.max(1) as f64);
         loop {
             let step = f64::from(mantissa) * power_of_ten(power);
-            // A little beyond the ends, so that rounding loses no tick there
+            // Slightly beyond the ends, so that rounding does not drop a tick there
             let slack = 1e-9 * (high - low) / step;
             let first = (low / step - slack).ceil();
             let last = (high / step + slack).floor();
@@ -45,7 +45,7 @@ impl Ticks {
         }
     }
 
-    /// Powers of ten from `low` to `high`; over less than two decades 2 and 5 times these too.
+    /// Returns powers of ten from `low` to `high`; over less than two decades also 2 and 5 times these.
     pub(super) fn logarithmic(low: f64, high: f64, wanted: usize) -> Self {
         if !(low > 0.0 && high > low && high.is_finite()) {
             return Self::default();
@@ -78,7 +78,7 @@ impl Ticks {
         ticks
     }
 
-    /// The longest label under a measure of length.
+    /// Returns the longest label by the given measure of length.
     pub(super) fn longest(&self, width: impl Fn(&str) -> f64) -> f64 {
         self.major
             .iter()
@@ -87,11 +87,11 @@ impl Ticks {
     }
 }
 
-/// The smallest of 1, 2, 5 times a power of ten that is not below `raw`, as mantissa and power.
+/// Returns the smallest of 1, 2, 5 times a power of ten that is at least `raw`, as mantissa and exponent.
 fn step(raw: f64) -> (u8, i32) {
     let power = raw.log10().floor() as i32;
     let mantissa = raw / power_of_ten(power);
-    // the slack keeps a step of exactly 0.2 from becoming 0.5
+    // the tolerance keeps a step of exactly 0.2 from becoming 0.5
     match mantissa - 1e-9 {
         m if m <= 1.0 => (1, power),
         m if m <= 2.0 => (2, power),
@@ -100,7 +100,7 @@ fn step(raw: f64) -> (u8, i32) {
     }
 }
 
-/// The largest of 1, 2, 5 times a power of ten that is not above `limit`.
+/// Returns the largest of 1, 2, 5 times a power of ten that is at most `limit`.
 pub(super) fn round_below(limit: f64) -> f64 {
     let power = limit.log10().floor() as i32;
     let mantissa = limit / power_of_ten(power) + 1e-9;
@@ -120,7 +120,7 @@ fn logarithmic_label(mantissa: i32, power: i32) -> String {
 fn without_minus_zero(label: String) -> String {
     match label.strip_prefix('-') {
         Some(rest) if rest.chars().all(|c| c == '0' || c == '.') => rest.to_owned(),
-        // a real minus sign, as wide as a digit
+        // a typographic minus sign, as wide as a digit
         Some(rest) => format!("−{rest}"),
         None => label,
     }
@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn decades_are_labelled_and_divided() {
+    fn decades_are_labelled_and_subdivided() {
         let ticks = Ticks::logarithmic(1e-3, 1e1, 6);
         assert_eq!(labels(&ticks), ["10⁻³", "10⁻²", "10⁻¹", "10⁰", "10¹"]);
         assert_eq!(ticks.minor.len(), 4 * 8);
@@ -180,7 +180,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn labels_tell_their_values_and_lie_inside(low in -1e6_f64..1e6, size in 1e-3_f64..1e6, wanted in 2_usize..12) {
+        fn labels_match_their_values_and_lie_inside_the_range(low in -1e6_f64..1e6, size in 1e-3_f64..1e6, wanted in 2_usize..12) {
             let high = low + size;
             let ticks = Ticks::linear(low, high, wanted);
             prop_assert!((2..=5.max(wanted + 1)).contains(&ticks.major.len()));

@@ -1,4 +1,4 @@
-//! Drawings as files.
+//! Writing of drawings to files.
 
 use std::io::Write;
 use std::path::Path;
@@ -7,7 +7,7 @@ use super::drawing::Drawing;
 use super::svg;
 use crate::{IoError, write_atomically};
 
-/// Writes a drawing, whole or not at all: as SVG into a file that ends so, as PNG into any other.
+/// Writes a drawing atomically: as SVG if the file name ends in `.svg`, otherwise as PNG.
 pub(super) fn write(drawing: &Drawing, path: &Path) -> Result<(), IoError> {
     if path.extension().is_some_and(|ending| ending == "svg") {
         let text = svg::document(drawing).map_err(|error| IoError::writing(path, error))?;

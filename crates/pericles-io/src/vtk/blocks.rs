@@ -1,22 +1,22 @@
-//! One appended array: a table of sizes, then zlib-compressed blocks.
+//! Appended array: a table of sizes, followed by zlib-compressed blocks.
 //!
 //! ```text
 //! [number of blocks] [bytes in a block] [bytes in the last one, 0 if it is full] [compressed bytes of every block …]  data …
 //! ```
-//! All numbers are u64. The table comes first but is known last: its place is kept and filled in afterwards, so that one block is
-//! all that is held in memory.
+//! All numbers are u64. The table precedes the blocks but is known only after them: space is reserved and
+//! filled in afterwards, so that only one block is in memory.
 
 use std::io::{self, Seek, SeekFrom, Write};
 
 use flate2::{Compress, Compression, FlushCompress, Status};
 
-/// VTK's own block size; every element size divides it, so that no element straddles two blocks.
+/// VTK's own block size; it is a multiple of every element size, so that no element spans two blocks.
 pub(super) const BLOCK: usize = 32768;
 
-/// The fastest level: positions and displacements compress little at any.
+/// The fastest compression level: positions and displacements compress little at any level.
 const LEVEL: Compression = Compression::fast();
 
-/// Writes `count` elements of `W` bytes, `element(i)` being the i-th, at the present place of `out`.
+/// Writes `count` elements of `W` bytes, `element(i)` being the i-th, at the current position of `out`.
 pub(super) fn write_array<const W: usize>(
     out: &mut (impl Write + Seek),
     count: usize,

@@ -1,11 +1,11 @@
 //! Cells between points.
 
-/// The cell type of a single point in VTK.
+/// VTK cell type of a single point.
 const VTK_VERTEX: u8 = 1;
-/// That of a triangle.
+/// VTK cell type of a triangle.
 const VTK_TRIANGLE: u8 = 5;
 
-/// Cells of several kinds between points.
+/// Cells of several types between points.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct VtuCells {
     pub(super) corners: Vec<u32>,
@@ -14,16 +14,28 @@ pub struct VtuCells {
 }
 
 impl VtuCells {
-    /// Adds a cell: its type in VTK, such as 10 of tetrahedra and 12 of hexahedra, and its corners, numbers of points from 0.
+    /// Adds a cell by its VTK type, such as 10 for tetrahedra and 12 for hexahedra, and its corners (point
+    /// numbers from 0).
     pub fn push(&mut self, vtk_type: u8, corners: &[u32]) {
         self.corners.extend_from_slice(corners);
         self.ends.push(self.corners.len() as u64);
         self.types.push(vtk_type);
     }
 
-    /// Number of cells.
+    /// Returns the number of cells.
     pub fn len(&self) -> usize {
         self.types.len()
+    }
+
+    /// The corners of all cells, one cell after the other.
+    pub fn corners(&self) -> &[u32] {
+        &self.corners
+    }
+
+    /// The corners of one cell.
+    pub fn corners_of(&self, cell: usize) -> &[u32] {
+        let start = cell.checked_sub(1).map_or(0, |before| self.ends[before]);
+        &self.corners[start as usize..self.ends[cell] as usize]
     }
 
     /// Whether there are none.
@@ -48,7 +60,7 @@ impl Cells<'_> {
         }
     }
 
-    /// The number of corners of the first cells.
+    /// Returns the number of corners of the first `cells` cells.
     pub(super) fn end(&self, cells: usize) -> usize {
         match self {
             Self::Vertices(_) => cells,
@@ -60,7 +72,7 @@ impl Cells<'_> {
         }
     }
 
-    /// The k-th corner of all cells one after the other.
+    /// Returns the k-th corner in the concatenated list of all cells.
     pub(super) fn corner(&self, k: usize) -> i64 {
         match self {
             Self::Vertices(_) => k as i64,

@@ -1,4 +1,4 @@
-//! A reader of our `.vtu` files for the tests, written against the format and not against the writer.
+//! Reader of our `.vtu` files for tests, written from the format specification and independent of the writer.
 
 use std::collections::BTreeMap;
 use std::io::Read;

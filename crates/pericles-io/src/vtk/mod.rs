@@ -1,11 +1,11 @@
-//! Fields on points in the files of the Visualization Toolkit, for ParaView, VisIt, PyVista and meshio.
+//! VTK files of fields on points, for ParaView, VisIt, PyVista and meshio.
 //!
-//! * `.vtu` ([`VtuFile`]): one output. An unstructured grid with one vertex cell per point; point data as appended raw binary,
-//!   little-endian, in zlib-compressed blocks; the time as field data `TimeValue`. Vectors have three components, missing ones are
-//!   zero. The bytes depend on the data alone.
-//! * `.pvd` ([`PvdSeries`]): the collection that gives every `.vtu` its time. This is the file to open.
+//! * `.vtu` ([`VtuFile`]): one output. An unstructured grid with one vertex cell per point; point data as
+//!   appended raw binary, little-endian, in zlib-compressed blocks; the time as field data `TimeValue`.
+//!   Vectors have three components, missing ones are zero. The bytes depend on the data alone.
+//! * `.pvd` ([`PvdSeries`]): the collection that assigns a time to every `.vtu`. Open this file in a viewer.
 //!
-//! Arrays come as Pericles keeps them, one component after the other (`u[c * n + i]`), and are interleaved while they are written.
+//! Arrays are passed in component-major layout (`u[c * n + i]`) and are interleaved during writing.
 //! Reference: the VTK XML file formats, <https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html>.
 //!
 //! ```
@@ -28,9 +28,11 @@ mod blocks;
 mod cells;
 #[cfg(test)]
 pub(crate) mod decode;
+mod field;
 mod pvd;
 mod vtu;
 
 pub use cells::VtuCells;
+pub use field::VtkField;
 pub use pvd::PvdSeries;
-pub use vtu::{VtkField, VtuFile};
+pub use vtu::VtuFile;

@@ -1,4 +1,4 @@
-//! The `.pvd` collection: which `.vtu` file belongs to which time.
+//! The `.pvd` collection, which assigns times to `.vtu` files.
 
 use std::fs;
 use std::io::Write;
@@ -11,7 +11,7 @@ const START: &str = "<?xml version=\"1.0\"?>\n\
                      <VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n";
 const END: &str = "</Collection>\n</VTKFile>\n";
 
-/// A series of outputs. The file is small and rewritten whole at every output, so that it can be opened while the run goes on.
+/// A series of outputs. The file is small and rewritten at every output, so that it can be opened during the run.
 #[derive(Debug)]
 pub struct PvdSeries {
     path: PathBuf,
@@ -19,7 +19,7 @@ pub struct PvdSeries {
 }
 
 impl PvdSeries {
-    /// Starts an empty series, replacing a file of that name.
+    /// Creates an empty series, replacing an existing file.
     pub fn create(path: impl Into<PathBuf>) -> Result<Self, IoError> {
         let series = Self {
             path: path.into(),
@@ -29,7 +29,7 @@ impl PvdSeries {
         Ok(series)
     }
 
-    /// The outputs of a series: times in seconds, and files relative to the folder of the `.pvd`.
+    /// Reads the outputs of a series: times in seconds, and files relative to the folder of the `.pvd`.
     pub fn read(path: impl AsRef<Path>) -> Result<Vec<(f64, PathBuf)>, IoError> {
         let path = path.as_ref();
         let text = fs::read_to_string(path).map_err(|source| IoError::reading(path, source))?;
@@ -42,27 +42,28 @@ impl PvdSeries {
             .filter(|entry| entry.starts_with("DataSet "));
         entries
             .map(|entry| {
-                let reason = "an output without time or file";
+                let reason = "an output has no time or no file";
                 output(entry).ok_or_else(|| IoError::damaged(path, reason))
             })
             .collect()
     }
 
-    /// Opens a series written by Pericles to go on after its first `entries` outputs; later ones are dropped.
+    /// Reopens a series written by Pericles to continue after its first `entries` outputs; later ones are
+    /// dropped.
     pub fn reopen(path: impl Into<PathBuf>, entries: usize) -> Result<Self, IoError> {
         let path = path.into();
         let text = fs::read_to_string(&path).map_err(|source| IoError::reading(&path, source))?;
         let lines: Vec<_> = text
             .strip_prefix(START)
             .and_then(|rest| rest.strip_suffix(END))
-            .ok_or_else(|| IoError::damaged(&path, "it is no collection written by Pericles"))?
+            .ok_or_else(|| IoError::damaged(&path, "it is not a collection written by Pericles"))?
             .lines()
             .map(str::to_owned)
             .collect();
         if lines.len() < entries {
             let found = lines.len();
             let reason =
-                format!("it lists {found} outputs, {entries} were written before the stop");
+                format!("it lists {found} outputs, but the checkpoint expects at least {entries}");
             return Err(IoError::damaged(&path, reason));
         }
         let mut series = Self {
@@ -80,7 +81,7 @@ impl PvdSeries {
             return Err(IoError::Unsuitable {
                 path: self.path.clone(),
                 reason: format!(
-                    "output {file:?} at time {time}; a finite time and a name of one line are needed"
+                    "output {file:?} at time {time}; the time must be finite and the name must not contain line breaks"
                 ),
             });
         }
@@ -91,22 +92,22 @@ impl PvdSeries {
         self.write()
     }
 
-    /// The number of outputs so far.
+    /// Returns the number of outputs.
     pub fn len(&self) -> usize {
         self.entries.len()
     }
 
-    /// Whether there is no output yet.
+    /// Returns whether there are no outputs.
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty()
     }
 
-    /// The file.
+    /// Returns the path of the file.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// The usual name of the k-th output, relative to the `.pvd`: `fields/fields_000000.vtu`.
+    /// Returns the usual name of the k-th output, relative to the `.pvd`: `fields/fields_000000.vtu`.
     pub fn field_file(index: usize) -> String {
         format!("fields/fields_{index:06}.vtu")
     }
@@ -122,7 +123,7 @@ impl PvdSeries {
     }
 }
 
-/// What stands behind an opening up to the next quotation mark.
+/// Returns the text after `opening` up to the next quotation mark.
 fn quoted<'a>(text: &'a str, opening: &str) -> Option<&'a str> {
     let (_, rest) = text.split_once(opening)?;
     Some(rest.split_once('"')?.0)
@@ -159,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn a_series_that_is_too_short_or_foreign_is_refused() {
+    fn a_series_that_is_too_short_or_from_another_program_is_rejected() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.pvd");
         let mut series = PvdSeries::create(&path).unwrap();

@@ -5,154 +5,36 @@ use std::path::Path;
 
 use super::blocks::write_array;
 use super::cells::{Cells, VtuCells};
+use super::field::{Header, VtkField};
 use crate::xml::escaped;
 use crate::{IoError, write_atomically};
 
-/// Room for an offset: `offset="` + 20 digits of the largest u64 + `"`.
+/// Space for an offset: `offset="` + 20 digits of the largest u64 + `"`.
 const OFFSET_WIDTH: usize = 29;
-
-/// A named field on the points.
-#[derive(Debug, Clone, Copy)]
-pub struct VtkField<'a> {
-    name: &'a str,
-    values: Values<'a>,
-}
-
-#[derive(Debug, Clone, Copy)]
-enum Values<'a> {
-    Real {
-        data: &'a [f64],
-        vector: bool,
-        single: bool,
-    },
-    Int(&'a [i32]),
-    Byte(&'a [u8]),
-}
-
-impl<'a> VtkField<'a> {
-    /// One real number per point.
-    pub fn scalar(name: &'a str, data: &'a [f64]) -> Self {
-        Self::real(name, data, false)
-    }
-
-    /// A vector per point: one, two or three slices of n values, one after the other; missing components are written as zero.
-    pub fn vector(name: &'a str, data: &'a [f64]) -> Self {
-        Self::real(name, data, true)
-    }
-
-    fn real(name: &'a str, data: &'a [f64], vector: bool) -> Self {
-        let single = false;
-        let values = Values::Real {
-            data,
-            vector,
-            single,
-        };
-        Self { name, values }
-    }
-
-    /// One whole number per point.
-    pub fn integers(name: &'a str, data: &'a [i32]) -> Self {
-        let values = Values::Int(data);
-        Self { name, values }
-    }
-
-    /// One small number per point, for masks and kinds.
-    pub fn bytes(name: &'a str, data: &'a [u8]) -> Self {
-        let values = Values::Byte(data);
-        Self { name, values }
-    }
-
-    /// Rounds real numbers to single precision in the file, which halves their size.
-    pub fn in_single_precision(mut self) -> Self {
-        if let Values::Real { single, .. } = &mut self.values {
-            *single = true;
-        }
-        self
-    }
-
-    fn data_type(&self) -> &'static str {
-        match self.values {
-            Values::Real { single: false, .. } => "Float64",
-            Values::Real { single: true, .. } => "Float32",
-            Values::Int(_) => "Int32",
-            Values::Byte(_) => "UInt8",
-        }
-    }
-
-    fn is_vector(&self) -> bool {
-        matches!(self.values, Values::Real { vector: true, .. })
-    }
-
-    fn check(&self, path: &Path, points: usize) -> Result<(), IoError> {
-        let given = match self.values {
-            Values::Real { data, .. } => data.len(),
-            Values::Int(data) => data.len(),
-            Values::Byte(data) => data.len(),
-        };
-        let fits = if self.is_vector() {
-            (1..=3).any(|components| given == components * points)
-        } else {
-            given == points
-        };
-        if !fits {
-            return Err(IoError::Shape {
-                path: path.to_path_buf(),
-                what: format!("field {:?}", self.name),
-                expected: points,
-                given,
-            });
-        }
-        Ok(())
-    }
-
-    fn write(&self, out: &mut (impl Write + Seek), points: usize) -> io::Result<()> {
-        match self.values {
-            Values::Int(data) => write_array(out, points, |i| data[i].to_le_bytes()),
-            Values::Byte(data) => write_array(out, points, |i| [data[i]]),
-            Values::Real {
-                data,
-                vector,
-                single,
-            } => {
-                let count = if vector { 3 * points } else { points };
-                let value = |k| {
-                    if vector {
-                        interleaved(data, points, k)
-                    } else {
-                        data[k]
-                    }
-                };
-                if single {
-                    write_array(out, count, |k| (value(k) as f32).to_le_bytes())
-                } else {
-                    write_array(out, count, |k| value(k).to_le_bytes())
-                }
-            }
-        }
-    }
-}
 
 /// Entry `k` of (x, y, z) of point 0, of point 1 …, from component-major data; zero where a component is missing.
 fn interleaved(data: &[f64], points: usize, k: usize) -> f64 {
     data.get(k % 3 * points + k / 3).copied().unwrap_or(0.0)
 }
 
-/// The points of one output and the fields on them.
+/// The points of one output and their fields.
 #[derive(Debug, Clone)]
 pub struct VtuFile<'a> {
     dimension: usize,
     positions: &'a [f64],
     time: f64,
     fields: Vec<VtkField<'a>>,
+    node_fields: Vec<VtkField<'a>>,
     triangles: &'a [[u32; 3]],
     cells: Option<&'a VtuCells>,
 }
 
-/// The end of every file.
+/// End of every file.
 const END: &[u8] = b"</AppendedData>\n</VTKFile>\n";
 
 impl VtuFile<'_> {
-    /// Whether a file is there and has its end. Files are written whole or not at all: one without it was cut afterwards.
+    /// Returns whether the file exists and is complete. Files are written atomically: one without its end was
+    /// truncated afterwards.
     pub fn is_whole(path: impl AsRef<Path>) -> bool {
         let end = || -> std::io::Result<bool> {
             let mut file = std::fs::File::open(path)?;
@@ -163,42 +45,64 @@ impl VtuFile<'_> {
         };
         end().unwrap_or(false)
     }
+
+    /// Whether the fields of a file are those of cells.
+    pub(crate) fn has_cell_data(path: impl AsRef<Path>) -> bool {
+        /// The arrays are announced within so many bytes.
+        const HEAD: u64 = 1 << 16;
+        let head = || -> std::io::Result<Vec<u8>> {
+            let mut head = Vec::new();
+            std::fs::File::open(path)?
+                .take(HEAD)
+                .read_to_end(&mut head)?;
+            Ok(head)
+        };
+        let mark: &[u8] = b"<CellData>";
+        head().is_ok_and(|head| head.windows(mark.len()).any(|window| window == mark))
+    }
 }
 
 impl<'a> VtuFile<'a> {
-    /// Points at `positions`: x of all points, then y in two and z in three dimensions.
+    /// Creates a file of points at `positions`, component-major.
     pub fn new(dimension: usize, positions: &'a [f64]) -> Self {
         Self {
             dimension,
             positions,
             time: 0.0,
             fields: Vec::new(),
+            node_fields: Vec::new(),
             triangles: &[],
             cells: None,
         }
     }
 
-    /// The time of the output in seconds.
+    /// Sets the time of the output in seconds.
     pub fn time(mut self, time: f64) -> Self {
         self.time = time;
         self
     }
 
-    /// Takes triangles between the points as cells, in place of the points themselves.
+    /// Sets triangles between the points as cells, in place of vertex cells.
     pub fn triangles(mut self, triangles: &'a [[u32; 3]]) -> Self {
         self.triangles = triangles;
         self
     }
 
-    /// Takes cells between the points; fields are then those of the cells.
+    /// Sets cells between the points; fields then belong to the cells.
     pub fn on_cells(mut self, cells: &'a VtuCells) -> Self {
         self.cells = Some(cells);
         self
     }
 
-    /// Adds a field; the names must differ.
+    /// Adds a field; names must be unique.
     pub fn field(mut self, field: VtkField<'a>) -> Self {
         self.fields.push(field);
+        self
+    }
+
+    /// Adds a field on the corners of the cells; the names of such fields must differ.
+    pub fn node_field(mut self, field: VtkField<'a>) -> Self {
+        self.node_fields.push(field);
         self
     }
 
@@ -209,7 +113,7 @@ impl<'a> VtuFile<'a> {
         write_atomically(path, |out| self.write_into(out, points))
     }
 
-    /// Checks that everything fits and returns the number of points.
+    /// Checks names and lengths and returns the number of points.
     fn check(&self, path: &Path) -> Result<usize, IoError> {
         let unsuitable = |reason: String| IoError::Unsuitable {
             path: path.to_path_buf(),
@@ -218,7 +122,7 @@ impl<'a> VtuFile<'a> {
         if !(1..=3).contains(&self.dimension) {
             let given = self.dimension;
             return Err(unsuitable(format!(
-                "points of dimension {given}; 1, 2 and 3 are allowed"
+                "the points have dimension {given}; allowed: 1, 2 and 3"
             )));
         }
         if !self.time.is_finite() {
@@ -237,20 +141,22 @@ impl<'a> VtuFile<'a> {
         let corners = corners.chain(self.cells.iter().flat_map(|cells| &cells.corners));
         if let Some(corner) = corners.copied().find(|&corner| corner as usize >= points) {
             return Err(unsuitable(format!(
-                "a cell has the corner {corner}, of {points} points"
+                "a cell refers to point {corner}, but there are only {points} points"
             )));
         }
         let places = self.cells.map_or(points, VtuCells::len);
-        for (number, field) in self.fields.iter().enumerate() {
-            field.check(path, places)?;
-            let name = field.name;
-            if name.is_empty() || name.chars().any(char::is_control) {
-                return Err(unsuitable(format!(
-                    "field name {name:?}; use a name of one line"
-                )));
-            }
-            if self.fields[..number].iter().any(|other| other.name == name) {
-                return Err(unsuitable(format!("two fields are called {name:?}")));
+        for (fields, places) in [(&self.fields, places), (&self.node_fields, points)] {
+            for (number, field) in fields.iter().enumerate() {
+                field.check(path, places)?;
+                let name = field.name;
+                if name.is_empty() || name.chars().any(char::is_control) {
+                    return Err(unsuitable(format!(
+                        "field name {name:?}; use a name of one line"
+                    )));
+                }
+                if fields[..number].iter().any(|other| other.name == name) {
+                    return Err(unsuitable(format!("two fields are called {name:?}")));
+                }
             }
         }
         Ok(points)
@@ -263,11 +169,18 @@ impl<'a> VtuFile<'a> {
             (None, triangles) => Cells::Triangles(triangles),
         };
         let cells = shape.len();
-        let (places_of_fields, data) = match self.cells {
-            Some(_) => (cells, "CellData"),
-            None => (points, "PointData"),
+        // The fields of the nodes come first if there are cells.
+        let sections = match self.cells {
+            Some(_) => [
+                ("PointData", &self.node_fields, points),
+                ("CellData", &self.fields, cells),
+            ],
+            None => [
+                ("PointData", &self.fields, points),
+                ("CellData", &self.node_fields, 0),
+            ],
         };
-        // Places in the file where the offsets go, in the order of the appended arrays.
+        // Positions in the file of the offsets, in the order of the appended arrays.
         let mut places = Vec::new();
         write!(
             out,
@@ -275,23 +188,34 @@ impl<'a> VtuFile<'a> {
              <VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\" \
              compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n<FieldData>\n\
              <DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">{:?}</DataArray>\n</FieldData>\n\
-             <Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">\n<{data}>\n",
+             <Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">\n",
             self.time
         )?;
-        for field in &self.fields {
-            let components = if field.is_vector() { 3 } else { 1 };
-            let name = escaped(field.name);
-            places.push(announce(out, field.data_type(), &name, components)?);
+        for (section, fields, _) in &sections {
+            if !fields.is_empty() {
+                writeln!(out, "<{section}>")?;
+                for field in *fields {
+                    places.push(announce(out, &field.header())?);
+                }
+                writeln!(out, "</{section}>")?;
+            }
         }
-        write!(out, "</{data}>\n<Points>\n")?;
-        places.push(announce(out, "Float64", "Points", 3)?);
+        let plain = |data_type, name, components| Header {
+            data_type,
+            name,
+            components,
+            component_names: &[],
+            unit: "",
+        };
+        writeln!(out, "<Points>")?;
+        places.push(announce(out, &plain("Float64", "Points", 3))?);
         write!(out, "</Points>\n<Cells>\n")?;
         for (data_type, name) in [
             ("Int64", "connectivity"),
             ("Int64", "offsets"),
             ("UInt8", "types"),
         ] {
-            places.push(announce(out, data_type, name, 1)?);
+            places.push(announce(out, &plain(data_type, name, 1))?);
         }
         write!(
             out,
@@ -300,9 +224,11 @@ impl<'a> VtuFile<'a> {
 
         let start = out.stream_position()?;
         let mut offsets = Vec::with_capacity(places.len());
-        for field in &self.fields {
-            offsets.push(out.stream_position()? - start);
-            field.write(out, places_of_fields)?;
+        for (_, fields, places) in sections {
+            for field in fields {
+                offsets.push(out.stream_position()? - start);
+                field.write(out, places)?;
+            }
         }
         offsets.push(out.stream_position()? - start);
         write_array(out, 3 * points, |k| {
@@ -326,20 +252,32 @@ impl<'a> VtuFile<'a> {
 }
 
 /// Writes the element that announces an appended array, and returns where its offset goes.
-fn announce(
-    out: &mut (impl Write + Seek),
-    data_type: &str,
-    name: &str,
-    components: usize,
-) -> io::Result<u64> {
-    write!(out, "<DataArray type=\"{data_type}\" Name=\"{name}\" ")?;
-    // Said of a scalar, some readers make n × 1 matrices of it.
-    if components > 1 {
-        write!(out, "NumberOfComponents=\"{components}\" ")?;
+fn announce(out: &mut (impl Write + Seek), header: &Header<'_>) -> io::Result<u64> {
+    let name = escaped(header.name);
+    write!(
+        out,
+        "<DataArray type=\"{}\" Name=\"{name}\" ",
+        header.data_type
+    )?;
+    // Given for a scalar, some readers make n × 1 matrices of it.
+    if header.components > 1 {
+        write!(out, "NumberOfComponents=\"{}\" ", header.components)?;
+    }
+    for (number, name) in header.component_names.iter().enumerate() {
+        write!(out, "ComponentName{number}=\"{name}\" ")?;
     }
     write!(out, "format=\"appended\" ")?;
     let place = out.stream_position()?;
-    writeln!(out, "{:OFFSET_WIDTH$}/>", "")?;
+    write!(out, "{:OFFSET_WIDTH$}", "")?;
+    if header.unit.is_empty() {
+        writeln!(out, "/>")?;
+    } else {
+        let unit = escaped(header.unit);
+        writeln!(
+            out,
+            "><InformationKey name=\"UNITS_LABEL\" location=\"vtkDataArray\">{unit}</InformationKey></DataArray>"
+        )?;
+    }
     Ok(place)
 }
 
@@ -358,7 +296,7 @@ mod tests {
 
     #[test]
     fn every_array_is_read_back_over_several_blocks() {
-        // 3 · 8 · 7001 bytes: six blocks, the last one part full
+        // 3 · 8 · 7001 bytes: six blocks, the last one partially filled
         let n = 7001;
         let (x, u, e) = (wave(2 * n, 0.0), wave(2 * n, 1.0), wave(n, 2.0));
         let kind: Vec<i32> = (0..n as i32).map(|i| 7 - i).collect();
@@ -399,7 +337,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(48))]
         #[test]
-        fn bits_survive_for_any_size_and_dimension(
+        fn arrays_are_read_back_bit_for_bit_for_any_size_and_dimension(
             dimension in 1_usize..=3, n in prop_oneof![0_usize..40, 4090_usize..4102, 1360_usize..1370],
             components in 1_usize..=3, seed in any::<u64>())
         {
@@ -428,7 +366,7 @@ mod tests {
     }
 
     #[test]
-    fn equal_data_give_equal_bytes_in_any_place() {
+    fn equal_data_give_equal_bytes_in_any_folder() {
         let folder = tempfile::tempdir().unwrap();
         let x = wave(300, 0.0);
         let write = |name: &str| {
@@ -442,7 +380,7 @@ mod tests {
     }
 
     #[test]
-    fn fields_that_do_not_fit_are_refused_and_nothing_is_written() {
+    fn inconsistent_fields_are_rejected_and_nothing_is_written() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.vtu");
         let (x, long) = (wave(6, 0.0), wave(4, 0.0));

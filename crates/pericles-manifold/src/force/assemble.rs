@@ -1,4 +1,4 @@
-//! The operator of a surface from its parts.
+//! Assembles the force operator of a surface.
 
 use std::sync::Arc;
 
@@ -14,28 +14,29 @@ use pericles::Result;
 use pericles::operator::Force;
 use pericles::space::PointCloud;
 
-/// A surface of one material: all that its operator is made of.
+/// Input of the force operator of a surface of one material.
 #[derive(Debug, Clone, Copy)]
 pub struct SurfaceBody<'a> {
     /// The surface.
     pub surface: &'a Surface,
-    /// Its vertices as points, with their areas as volumes.
+    /// Its vertices as points; the volumes are vertex areas.
     pub cloud: &'a Arc<PointCloud>,
-    /// The pairs of vertices that are bonds, with their distances.
+    /// The bonds: pairs of vertices with their distances.
     pub pairs: &'a GeodesicPairs,
     /// The material.
     pub material: &'a PowerMaterial,
-    /// κ of each point over the material's; empty if all are the same. A bond has the mean of its ends.
+    /// Stiffness factor of each point, κ over the material's κ; empty means 1 everywhere. A bond uses the mean
+    /// of its two ends.
     pub stiffness: &'a [f64],
     /// Points whose bonds never break.
     pub no_fail: &'a [u32],
 }
 
 impl SurfaceBody<'_> {
-    /// The operator.
+    /// Assembles the force operator.
     ///
     /// # Errors
-    /// What [`PowerMaterial::check`] refuses.
+    /// As [`PowerMaterial::check`].
     pub fn operator(&self) -> Result<Box<dyn Force>> {
         self.material.check()?;
         Ok(match self.material.p {
@@ -58,7 +59,7 @@ impl SurfaceBody<'_> {
         }
     }
 
-    /// The operator of a given law: [`SurfaceBody::operator`] chooses the law that belongs to the material.
+    /// Assembles the operator for a given law; [`SurfaceBody::operator`] chooses the law from the material.
     pub fn force<L: SurfaceLaw>(&self, law: L) -> SurfaceForce<L> {
         let areas = self.cloud.volumes();
         let mean = |i: usize, j: usize| match self.stiffness {
@@ -66,7 +67,7 @@ impl SurfaceBody<'_> {
             stiffness => 0.5 * (stiffness[i] + stiffness[j]),
         };
         let factor = |i: usize, j: usize, d: f64| mean(i, j) * self.material.weight(d) * areas[j];
-        let bonds = SurfaceBonds::new(self.pairs, factor, self.self_cells(&mean));
+        let bonds = SurfaceBonds::new(self.pairs, factor, self.self_interactions(&mean));
         let limits = self
             .material
             .critical_stretch
@@ -75,13 +76,14 @@ impl SurfaceBody<'_> {
         SurfaceForce::new(law, Arc::clone(self.cloud), bonds, limits)
     }
 
-    /// The self-cell term ½ (c_i + c_j) w_ij / A_i of every edge, w being the cotangent weights: its energy is that of Dirichlet's integral.
-    fn self_cells(&self, mean: &impl Fn(usize, usize) -> f64) -> Vec<Extra> {
-        if !self.material.self_cell {
+    /// Self-interaction term ½ (c_i + c_j) w_ij / A_i of every edge, with cotangent weights w: its energy is
+    /// the Dirichlet integral.
+    fn self_interactions(&self, mean: &impl Fn(usize, usize) -> f64) -> Vec<Extra> {
+        if !self.material.self_interaction {
             return Vec::new();
         }
         let areas = self.cloud.volumes();
-        let c = |i: u32| self.material.self_cell_stiffness(areas[i as usize]);
+        let c = |i: u32| self.material.self_interaction_stiffness(areas[i as usize]);
         let cotangents = self.surface.cotangents();
         let mut extra = Vec::with_capacity(2 * cotangents.edges.len());
         for (&[i, j], weight) in cotangents.edges.iter().zip(&cotangents.weights) {
@@ -92,7 +94,7 @@ impl SurfaceBody<'_> {
         extra
     }
 
-    /// (s d)² of every entry; infinite where bonds never break.
+    /// Breaking limit (s d)² of every entry, s being the critical stretch; infinite where bonds cannot break.
     fn limits(&self, bonds: &SurfaceBonds) -> Vec<f64> {
         let mut held = vec![false; self.cloud.len()];
         for &i in self.no_fail {

@@ -1,4 +1,4 @@
-//! The bonds of a surface with their weights.
+//! Bonds of a surface with their weights.
 
 use std::ops::Range;
 
@@ -6,26 +6,29 @@ use crate::geodesic::GeodesicPairs;
 use pericles::lanes::LANES;
 use pericles::operator::prefetch::prefetch;
 
-/// Bonds in compressed rows of eight, each with the factor w_ij A_j of its force: 12 bytes a directed bond, and the padding.
+/// Bonds in compressed rows, padded to groups of eight, each with the force factor w_ij A_j: 12 bytes per
+/// directed bond, plus padding.
 ///
-/// Point i owns the groups `start[i]..start[i + 1]`; padding names the point itself and has weight zero. Neighbours are below the number of points.
+/// Point i owns the groups `start[i]..start[i + 1]`. Padding refers to the point itself with weight zero. All
+/// neighbour numbers are below the number of points.
 #[derive(Debug, Clone)]
 pub struct SurfaceBonds {
     start: Vec<usize>,
     neighbours: Vec<u32>,
     weights: Vec<f64>,
-    /// Bonds of each group.
+    /// Number of bonds in each group, without padding.
     present: Vec<u8>,
 }
 
-/// Entries that stand beside those of the pairs: point, neighbour, factor.
+/// Additional entry: point, neighbour, factor.
 pub(super) type Extra = (u32, u32, f64);
 
 impl SurfaceBonds {
-    /// The bonds of all pairs, with `factor(i, j, distance)` = w_ij A_j, and `extra` factors (in any order), which are added to a pair's own or make a new bond.
+    /// Builds the bonds of all pairs with `factor(i, j, distance)` = w_ij A_j. The factors in `extra` (any
+    /// order) are added to the existing bond of a pair or create a new bond.
     ///
     /// # Panics
-    /// If a neighbour is no point.
+    /// If a neighbour is not a point.
     pub(super) fn new(
         pairs: &GeodesicPairs,
         factor: impl Fn(usize, usize, f64) -> f64,
@@ -83,23 +86,23 @@ impl SurfaceBonds {
         self.start.len() - 1
     }
 
-    /// Whether there are no points.
+    /// Returns true if there are no points.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Directed bonds.
+    /// Number of directed bonds.
     pub fn directed(&self) -> u64 {
         self.present.iter().map(|g| u64::from(g.count_ones())).sum()
     }
 
-    /// The groups of a point.
+    /// Groups of a point.
     #[inline(always)]
     pub(super) fn groups(&self, i: usize) -> Range<usize> {
         self.start[i]..self.start[i + 1]
     }
 
-    /// The neighbours of a group.
+    /// Neighbours of a group.
     #[inline(always)]
     pub(super) fn group(&self, group: usize) -> &[u32; LANES] {
         self.neighbours[group * LANES..]
@@ -107,7 +110,7 @@ impl SurfaceBonds {
             .expect("groups are whole")
     }
 
-    /// Asks for a group that will be read soon.
+    /// Prefetches a group that will be read soon.
     #[inline(always)]
     pub(super) fn prefetch(&self, group: usize) {
         prefetch(&self.weights, group * LANES);
@@ -123,7 +126,7 @@ impl SurfaceBonds {
         &mut self.weights
     }
 
-    /// The bonds of a point: entry and neighbour.
+    /// Iterates over the bonds of a point: entry and neighbour.
     pub fn row(&self, i: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
         self.groups(i).flat_map(move |g| {
             (0..LANES)

@@ -1,4 +1,4 @@
-//! Breaking of bonds of a surface.
+//! Bond breaking on a surface.
 
 use rayon::prelude::*;
 
@@ -6,46 +6,46 @@ use super::bonds::SurfaceBonds;
 use super::law::SurfaceLaw;
 use pericles::lanes::{F64x8, Real};
 use pericles::operator::CoarseBreak;
-use pericles::operator::On;
+use pericles::operator::PointSubset;
 use pericles::operator::records::Records;
 use pericles::parallel::BLOCK;
 use pericles::{Archive, BreakingBond, StepEnd, Values};
 use pericles::{PericlesError, Result};
 
-/// What is broken, and what it takes to break the rest. A broken bond has weight zero.
+/// Broken bonds and the limits of the intact ones. A broken bond has weight zero.
 pub(super) struct Breaking {
     /// (s d)² of every entry, m².
     pub limits: Vec<f64>,
-    /// Broken entries, both of each bond, with the weights they had.
+    /// Broken entries, both directions of each bond, with their original weights.
     pub broken: Vec<(usize, f64)>,
-    /// J.
+    /// Dissipated energy, J.
     pub dissipated: f64,
-    /// Bonds broken by steps too coarse for them since they were taken last.
+    /// Bonds broken in steps too coarse to resolve them, since the list was last taken.
     pub coarse: Vec<CoarseBreak>,
 }
 
-/// The end of a step as breaking sees it.
+/// End of a step, as needed for breaking.
 pub(super) struct Step<'a> {
     pub end: &'a StepEnd<'a>,
     pub areas: &'a [f64],
     pub reference: &'a Records,
-    /// Marks of the points whose bonds are decided; all of them if none.
+    /// Marks of the points whose bonds are decided; `None` means all.
     pub partners: Option<&'a [bool]>,
 }
 
-/// Values at j less those at i, of a component-major field on n points.
+/// Difference of a component-major field on n points: value at j minus value at i.
 fn difference(field: &[f64], n: usize, i: usize, j: usize) -> [f64; 3] {
     std::array::from_fn(|c| field[c * n + j] - field[c * n + i])
 }
 
-/// Whether the bond of an entry is left and longer in |η|² than a limit.
+/// Returns true if the bond of an entry is intact and |η|² exceeds a limit.
 fn is_over(bonds: &SurfaceBonds, entry: usize, u: &[f64], [i, j]: [usize; 2], limit: f64) -> bool {
     let eta = difference(u, bonds.len(), i, j);
     eta.iter().map(|x| x * x).sum::<f64>() > limit && bonds.weights()[entry] != 0.0
 }
 
 impl Breaking {
-    /// Marks the points with a bond that is left and stretched beyond a fraction of what it stands.
+    /// Marks the points with an intact bond stretched beyond a given fraction of its critical stretch.
     pub fn mark_endangered(
         &self,
         bonds: &SurfaceBonds,
@@ -66,13 +66,14 @@ impl Breaking {
             .for_each(|(i, mark)| *mark |= near(i));
     }
 
-    /// Breaks what is stretched too far among the bonds of the points named by `on`. Both ends of a bond see the same |η|, bit for bit.
+    /// Breaks the overstretched bonds of the points in `on`. Both ends of a bond compute the same |η|, bit for
+    /// bit.
     pub fn decide<L: SurfaceLaw>(
         &mut self,
         law: L,
         bonds: &mut SurfaceBonds,
         step: &Step<'_>,
-        on: &On<'_>,
+        on: &PointSubset<'_>,
     ) {
         let n = bonds.len();
         let over = |i: usize| {
@@ -85,13 +86,13 @@ impl Breaking {
             rows.map(move |(entry, j)| (i, entry, j))
         };
         let found: Vec<(usize, usize, usize)> = match on {
-            On::All => (0..n)
+            PointSubset::All => (0..n)
                 .into_par_iter()
                 .with_min_len(BLOCK)
                 .flat_map_iter(over)
                 .collect(),
-            On::Range(range) => range.clone().flat_map(over).collect(),
-            On::Set(set) => set.iter().flat_map(|&i| over(i as usize)).collect(),
+            PointSubset::Range(range) => range.clone().flat_map(over).collect(),
+            PointSubset::Set(set) => set.iter().flat_map(|&i| over(i as usize)).collect(),
         };
         for (i, entry, j) in found {
             let weight = bonds.weights()[entry];
@@ -105,7 +106,8 @@ impl Breaking {
                 [0.0; 3]
             };
             let eta = difference(step.end.u, n, i, j);
-            // A chord's elongation at the critical |η| depends on the direction of η: its energy there is not known.
+            // The elongation of a chord at critical |η| depends on the direction of η, so its energy there is
+            // unknown.
             let critical = (!L::CHORD).then(|| {
                 let square: f64 = eta.iter().map(|x| x * x).sum();
                 let part = (self.limits[entry] / square).sqrt();
@@ -140,7 +142,7 @@ impl Breaking {
             broken,
             dissipated,
             limits: _,
-            // Settled in every step.
+            // Handled in every step; not saved.
             coarse: _,
         } = self;
         let entries = broken.iter().map(|&(entry, _)| entry as u64);
@@ -154,7 +156,7 @@ impl Breaking {
             "operator/dissipated",
             std::slice::from_mut(&mut self.dissipated),
         )?;
-        // Backwards: of an entry that is named twice the first weight is its own.
+        // In reverse order: for an entry listed twice, the first weight is the original one.
         for (entry, weight) in self.broken.drain(..).rev() {
             bonds.weights_mut()[entry] = weight;
         }

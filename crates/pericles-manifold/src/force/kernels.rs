@@ -1,6 +1,7 @@
-//! The loops over the bonds of a surface, one text for every law and instruction set.
+//! Loops over the bonds of a surface, generic over law and instruction set.
 //!
-//! A point's bonds are taken eight at a time. Displacements are read as rows of four numbers, one row a neighbour, and turned into lanes in registers.
+//! Bonds of a point are processed eight at a time. Displacements are read as rows of four numbers, one row per
+//! neighbour, and transposed into lanes in registers.
 
 use super::bonds::SurfaceBonds;
 use super::law::SurfaceLaw;
@@ -9,21 +10,22 @@ use pericles::lanes::{F64x8, Lanes, for_each_instruction_set, vector};
 use pericles::operator::records::Records;
 use pericles::operator::rows::Rows;
 
-/// Groups between the one that is computed and the one that is asked for: 3 kB, some hundred nanoseconds of work. Half as far is slower, twice as far no faster.
+/// Prefetch distance in groups: 3 kB, some hundred nanoseconds of work. Half of it is slower, twice is no
+/// faster.
 const AHEAD: usize = 32;
 
-/// A list of bonds with the chords at rest.
+/// Bond list with reference positions.
 pub(super) struct Bonds<'a> {
     list: &'a SurfaceBonds,
-    /// Reference positions, empty if the law does not need them.
+    /// Reference positions; empty if the law does not use them.
     reference: &'a Records,
-    /// Marks of the points whose bonds count; all of them if none.
+    /// Marks of the points whose bonds count; `None` means all.
     partners: Option<&'a [bool]>,
 }
 
 impl<'a> Bonds<'a> {
     /// # Panics
-    /// If there are not as many reference positions as points, and not none.
+    /// If the number of reference positions is neither zero nor the number of points.
     pub fn new(list: &'a SurfaceBonds, reference: &'a Records) -> Self {
         assert!(reference.is_empty() || reference.len() == list.len());
         Self {
@@ -33,7 +35,7 @@ impl<'a> Bonds<'a> {
         }
     }
 
-    /// The bonds whose other end is marked, one mark per point.
+    /// Restricts to bonds whose other end is marked; one mark per point.
     pub fn to(self, partners: &'a [bool]) -> Self {
         Self {
             partners: Some(partners),
@@ -49,7 +51,8 @@ impl<'a> Bonds<'a> {
         for k in 0..LANES {
             indices[k] = neighbours[k] as usize;
         }
-        // SAFETY: neighbours are below the number of points, which `SurfaceBonds` guarantees; `field` has as many rows: see `checked`.
+        // SAFETY: `SurfaceBonds` guarantees that neighbours are below the number of points, and `field` has as
+        // many rows: see `checked`.
         let there = unsafe { T::gather(field, indices) };
         vector(|c| there[c] - here[c])
     }
@@ -65,8 +68,8 @@ impl<'a> Bonds<'a> {
         vector(|c| T::splat(field[i][c]))
     }
 
-    /// Factors of the eight bonds of a group, zero for those that do not count. The list is read from start to end, faster than the processor reads ahead by itself:
-    /// entries of later groups are asked for.
+    /// Factors of the eight bonds of a group, zero for bonds that do not count. Later groups are prefetched:
+    /// the list is read faster than the hardware prefetcher keeps up with.
     #[inline(always)]
     fn weights<T: Lanes>(&self, group: usize) -> T {
         self.list.prefetch(group + AHEAD);
@@ -84,7 +87,7 @@ impl<'a> Bonds<'a> {
         }
     }
 
-    /// ξ of a group, if the law needs it.
+    /// ξ of a group, if the law uses it.
     #[inline(always)]
     fn chords<T: Lanes, L: SurfaceLaw>(&self, i: usize, group: usize) -> [T; 3] {
         if L::CHORD {
@@ -110,7 +113,7 @@ fn force_rows_body<T: Lanes, L: SurfaceLaw>(
     out: &mut [&mut [f64]; 3],
 ) {
     let u = bonds.checked(u);
-    // No closure here: one that is not inlined would take the baseline's instructions.
+    // Not a closure: one that is not inlined would be compiled for the baseline instruction set.
     for k in 0..rows.count() {
         let i = rows.at(k);
         let here: [T; 3] = Bonds::here(u, i);
@@ -185,7 +188,7 @@ fn tangent_rows_body<T: Lanes, L: SurfaceLaw>(
 }
 
 for_each_instruction_set! {
-    /// Adds the force density of the rows to `out` (indexed from the block's first point).
+    /// Adds the force density of the rows to `out`, indexed from the block's first point.
     pub(super) fn force_rows [L: SurfaceLaw] <L> (
         law: L,
         bonds: &Bonds<'_>,
@@ -207,7 +210,7 @@ for_each_instruction_set! {
 }
 
 for_each_instruction_set! {
-    /// The derivative of the force density in a direction.
+    /// Adds the directional derivative of the force density to `out`.
     pub(super) fn tangent_rows [L: SurfaceLaw] <L> (
         law: L,
         bonds: &Bonds<'_>,

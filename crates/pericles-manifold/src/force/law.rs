@@ -1,20 +1,21 @@
-//! Forces of bonds on a surface: powers of the relative displacement.
+//! Pair laws of surface bonds: powers of the relative displacement.
 
 use pericles::lanes::{Lanes, dot, vector};
 
-/// r ↦ r^(p−2), of the square of r.
+/// The map r ↦ r^(p−2), evaluated from r².
 pub trait Exponent: Copy + Send + Sync + 'static {
-    /// p.
+    /// The exponent p.
     fn p(self) -> f64;
-    /// r^(p−2) from r²; zero or one at r = 0.
+    /// Returns r^(p−2) from r²; zero or one at r = 0.
     fn factor<T: Lanes>(self, square: T) -> T;
 }
 
-/// p − 2 = 2 · SQUARES + ROOTS/2, with ROOTS from 0 to 3: whole and half-whole exponents, by roots and products only.
+/// Integer and half-integer exponents p − 2 = 2 · SQUARES + ROOTS/2 with ROOTS from 0 to 3, by square roots and
+/// products only.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct HalfInteger<const ROOTS: usize, const SQUARES: usize>;
 
-/// Any p ≥ 2, by the power function.
+/// Any exponent p ≥ 2, by the power function.
 #[derive(Debug, Clone, Copy)]
 pub struct AnyExponent(pub f64);
 
@@ -63,31 +64,32 @@ impl Exponent for AnyExponent {
     }
 }
 
-/// The force of a bond on a surface per unit of weight, for the relative displacement η and, where it is needed, the chord ξ at rest.
+/// Force of a surface bond per unit weight as a function of the relative displacement η and, if needed, the
+/// reference chord ξ.
 pub trait SurfaceLaw: Copy + Send + Sync + 'static {
-    /// Whether ξ is needed.
+    /// True if the law uses ξ.
     const CHORD: bool;
-    /// Whether the force is linear in η.
+    /// Returns true if the force is linear in η.
     fn is_linear(self) -> bool;
-    /// The force on the point the bond starts from.
+    /// Force on the point at which the bond starts.
     fn force<T: Lanes>(self, xi: [T; 3], eta: [T; 3]) -> [T; 3];
-    /// The energy whose gradient in η is the force.
+    /// Energy, whose gradient with respect to η is the force.
     fn energy<T: Lanes>(self, xi: [T; 3], eta: [T; 3]) -> T;
-    /// The derivative of the force in the direction d.
+    /// Derivative of the force in the direction d.
     fn tangent<T: Lanes>(self, xi: [T; 3], eta: [T; 3], d: [T; 3]) -> [T; 3];
-    /// The largest eigenvalue of the tangent at rest, of a bond of chord |ξ|.
+    /// Largest eigenvalue of the tangent of an undeformed bond.
     fn stiffness_at_rest(self) -> f64;
 }
 
-/// |η|^(p−2) η: the force follows the difference of displacements (Coclite, Coclite, Maddalena, Politi 2022, equation 2.6). Rigid rotations cost energy.
+/// |η|^(p−2) η: the force follows the difference of displacements (Coclite, Coclite, Maddalena, Politi 2022, equation 2.6). Rigid rotations change the energy.
 #[derive(Debug, Clone, Copy)]
 pub struct DisplacementBond<E>(pub E);
 
-/// |e|^(p−2) e n with e = |ξ+η| − |ξ| and n along ξ+η: the force follows the change of the chord's length. Rigid motions cost nothing.
+/// |e|^(p−2) e n with e = |ξ+η| − |ξ| and n along ξ+η: the force follows the elongation of the chord. Invariant under rigid motions.
 #[derive(Debug, Clone, Copy)]
 pub struct ChordBond<E>(pub E);
 
-/// Keeps quotients finite where a bond has no length: padding, whose weight is zero.
+/// Keeps quotients finite for bonds of zero length (padding, whose weight is zero).
 #[inline(always)]
 fn nonzero<T: Lanes>(x: T) -> T {
     x.max(T::splat(f64::MIN_POSITIVE))
@@ -126,7 +128,7 @@ impl<E: Exponent> SurfaceLaw for DisplacementBond<E> {
     }
 }
 
-/// (elongation e, deformed chord y, its length)
+/// Returns (elongation e, deformed chord y, |y|).
 #[inline(always)]
 fn elongation<T: Lanes>(xi: [T; 3], eta: [T; 3]) -> (T, [T; 3], T) {
     let y: [T; 3] = vector(|c| xi[c] + eta[c]);

@@ -1,15 +1,21 @@
-//! Peridynamics on surfaces: bonds over geodesic distances, forces that are powers of the relative displacement.
+//! Peridynamic forces on closed surfaces (2-manifolds): bonds over geodesic distances, forces that are powers
+//! of the relative displacement.
 //!
-//! > (K u)_i = Σ_j κ_ij |u_j − u_i|^(p−2) (u_j − u_i) A_j / d_ij^(2+αp),  e_i = 1/(2p) Σ_j κ_ij |u_j − u_i|^p A_j / d_ij^(2+αp)
+//! > (K u)_i = Σ_j κ_ij |u_j − u_i|^(p−2) (u_j − u_i) A_j / d_ij^(2+αp),
+//! >
+//! > e_i = 1/(2p) Σ_j κ_ij |u_j − u_i|^p A_j / d_ij^(2+αp)
 //!
-//! over the vertices within the horizon (Coclite, Coclite, Maddalena, Politi 2022, equations 2.6 and 2.7, with the restoring sign). Areas stand where other
-//! bodies have volumes: forces are per area (N/m²), energies e per area (J/m²). K is minus the gradient of Σ A_i e_i over A_i, and momentum is conserved.
-//! For p = 2 the operator is linear, the same for the three components. The exponents 2, 2.5 … 5.5 are computed by roots and products, others by
-//! the power function.
+//! summed over the vertices within the horizon (Coclite, Coclite, Maddalena, Politi 2022, equations 2.6 and
+//! 2.7, with the restoring sign). Vertex areas A take the place of volumes: forces are per area (N/m²),
+//! energies e per area (J/m²). K is minus the gradient of Σ A_i e_i divided by A_i, and momentum is conserved.
+//! For p = 2 the operator is linear and the same for the three components. The exponents 2, 2.5 … 5.5 are
+//! evaluated by square roots and products, others by the power function.
 //!
-//! A bond costs a load of 12 bytes and of its neighbour's row: about 1.1 ns for p = 2 and 1.2 ns for p = 3 with AVX-512 (Xeon of family 6, model 207, one thread; reading 12 bytes a bond and nothing else takes 1.1), where the
-//! memory is the limit. `cargo bench -p pericles-manifold --bench surface` measures it beside the memory's bandwidth. Surfaces can be taken apart by zones
-//! ([`LocalForce`](pericles::operator::LocalForce), [`SplitForce`](pericles::operator::SplitForce)), so schemes with two time steps serve them too.
+//! Cost: a bond loads 12 bytes and the row of its neighbour, about 1.1 ns for p = 2 and 1.2 ns for p = 3 with
+//! AVX-512 (Xeon of family 6, model 207, one thread; reading 12 bytes per bond without computing takes 1.1 ns),
+//! so the loops are memory-bound. `cargo bench -p pericles-manifold --bench surface` measures it against the
+//! memory bandwidth. Surface forces can be split by zones ([`LocalForce`](pericles::operator::LocalForce),
+//! [`SplitForce`](pericles::operator::SplitForce)), so multirate schemes apply to them.
 //!
 //! ```
 //! use std::sync::Arc;
@@ -24,7 +30,7 @@
 //! let cloud = Arc::new(sphere.points(sphere.vertex_areas(AreaRule::Barycentric))?);
 //! let material = PowerMaterial {
 //!     density: 1.0, kappa: 1.0, alpha: 0.5, p: 3.0, horizon: 0.5,
-//!     bond: SurfaceBond::Displacement, self_cell: false, critical_stretch: f64::INFINITY,
+//!     bond: SurfaceBond::Displacement, self_interaction: false, critical_stretch: f64::INFINITY,
 //! };
 //! let body = SurfaceBody { surface: &sphere, cloud: &cloud, pairs: &pairs, material: &material, stiffness: &[], no_fail: &[] };
 //! let operator = body.operator()?;

@@ -1,4 +1,4 @@
-//! The force operator of a surface.
+//! Force operator of a surface.
 
 use std::sync::Arc;
 
@@ -14,23 +14,24 @@ use pericles::operator::pool::{Lent, Pool};
 use pericles::operator::records::pack;
 use pericles::operator::rows::Rows;
 use pericles::operator::{
-    Breakable, Capabilities, Force, InstructionSet, LinearOperator, Linearity, LocalForce, On,
-    SplitForce,
+    Breakable, Capabilities, Force, InstructionSet, LinearOperator, Linearity, LocalForce,
+    PointSubset, SplitForce,
 };
 use pericles::operator::{CoarseBreak, each_once};
 use pericles::parallel::{BLOCK, components_mut, for_each_block};
 use pericles::space::PointCloud;
-use pericles::{Archive, Saved, StepEnd};
+use pericles::{Archive, Checkpointed, StepEnd};
 
-/// (K u)_i = Σ_j w_ij A_j f(η_ij) over the bonds of a surface: force per area, N/m².
+/// Force per area (N/m²) (K u)_i = Σ_j w_ij A_j f(η_ij), summed over the bonds of a surface.
 ///
-/// A gather per point over [`SurfaceBonds`], in parallel blocks. Displacements are packed to rows of four once an evaluation, so that a bond reads one
-/// row; a broken bond has weight zero. Memory: 12 bytes a directed bond, 8 more where bonds can break, and 64 a point.
+/// Gathers per point over [`SurfaceBonds`], in parallel blocks. Displacements are packed into rows of four once
+/// per evaluation, so a bond reads one row. A broken bond has weight zero. Memory: 12 bytes per directed bond,
+/// 8 more if bonds can break, and 64 per point.
 pub struct SurfaceForce<L: SurfaceLaw> {
     law: L,
     cloud: Arc<PointCloud>,
     bonds: SurfaceBonds,
-    /// Positions at rest, if the law needs chords.
+    /// Reference positions, if the law uses chords.
     reference: Vec<Row>,
     breaking: Option<Breaking>,
     records: Pool<Vec<Row>>,
@@ -38,7 +39,8 @@ pub struct SurfaceForce<L: SurfaceLaw> {
 }
 
 impl<L: SurfaceLaw> SurfaceForce<L> {
-    /// The operator of a law on bonds; `limits` are the squares of the largest |η| of all entries (m²), none if bonds never break.
+    /// Creates the operator of a law; `limits` holds the squared critical |η| of every entry (m²) and is empty
+    /// if bonds never break.
     pub(super) fn new(
         law: L,
         cloud: Arc<PointCloud>,
@@ -67,7 +69,7 @@ impl<L: SurfaceLaw> SurfaceForce<L> {
         }
     }
 
-    /// Runs the loops with another instruction set; for tests and benchmarks.
+    /// Selects another instruction set; for tests and benchmarks.
     pub fn with_instruction_set(mut self, set: InstructionSet) -> Self {
         if InstructionSet::available().contains(&set) {
             self.instruction_set = set;
@@ -88,12 +90,12 @@ impl<L: SurfaceLaw> SurfaceForce<L> {
 
     fn sweep<const C: usize>(
         &self,
-        on: &On<'_>,
+        on: &PointSubset<'_>,
         out: &mut [f64],
         rows: impl Fn(&Rows<'_>, &mut [&mut [f64]; C]) + Sync,
     ) {
         let n = self.points();
-        // A vector of nothing: no memory is taken.
+        // A vector of a zero-sized type allocates no memory.
         let mut nothing = vec![(); n.div_ceil(BLOCK)];
         for_each_block(
             components_mut::<C>(out, n),
@@ -106,14 +108,14 @@ impl<L: SurfaceLaw> SurfaceForce<L> {
         );
     }
 
-    fn add_force_of(&self, bonds: &Bonds<'_>, u: &[f64], on: &On<'_>, out: &mut [f64]) {
+    fn add_force_of(&self, bonds: &Bonds<'_>, u: &[f64], on: &PointSubset<'_>, out: &mut [f64]) {
         let u = self.packed(u);
         self.sweep::<3>(on, out, |rows, out| {
             force_rows(self.instruction_set, self.law, bonds, &u, rows, out);
         });
     }
 
-    fn decide(&mut self, step: &StepEnd<'_>, on: &On<'_>, partners: Option<&[bool]>) {
+    fn decide(&mut self, step: &StepEnd<'_>, on: &PointSubset<'_>, partners: Option<&[bool]>) {
         let step = Step {
             end: step,
             areas: self.cloud.volumes(),
@@ -135,14 +137,14 @@ impl<L: SurfaceLaw> Force for SurfaceForce<L> {
         3
     }
 
-    fn add_force(&self, _t: f64, u: &[f64], on: On<'_>, out: &mut [f64]) {
+    fn add_force(&self, _t: f64, u: &[f64], on: PointSubset<'_>, out: &mut [f64]) {
         self.add_force_of(&Bonds::new(&self.bonds, &self.reference), u, &on, out);
     }
 
     fn add_energy_density(&self, _t: f64, u: &[f64], out: &mut [f64]) {
         let u = self.packed(u);
         let bonds = Bonds::new(&self.bonds, &self.reference);
-        self.sweep::<1>(&On::All, out, |rows, out| {
+        self.sweep::<1>(&PointSubset::All, out, |rows, out| {
             energy_rows(self.instruction_set, self.law, &bonds, &u, rows, out);
         });
     }
@@ -155,7 +157,8 @@ impl<L: SurfaceLaw> Force for SurfaceForce<L> {
         self.cloud.domain().sum(self.points(), energy)
     }
 
-    /// ω² ≤ max_i (2/ρ_i) Σ_j |w_ij| A_j for p = 2, by Gershgorin's discs; zero for p > 2, where nothing is stiff at rest.
+    /// Gershgorin bound ω² ≤ max_i (2/ρ_i) Σ_j |w_ij| A_j for p = 2; zero for p > 2, where the tangent vanishes
+    /// at rest.
     fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {
         let row = |i: usize| -> f64 {
             self.bonds
@@ -168,7 +171,7 @@ impl<L: SurfaceLaw> Force for SurfaceForce<L> {
         (largest * self.law.stiffness_at_rest()).sqrt()
     }
 
-    fn end_step(&mut self, step: &StepEnd<'_>, on: On<'_>, out: &mut [f64]) {
+    fn end_step(&mut self, step: &StepEnd<'_>, on: PointSubset<'_>, out: &mut [f64]) {
         self.decide(step, &on, None);
         self.add_force(step.t, step.u, on, out);
     }
@@ -179,7 +182,7 @@ impl<L: SurfaceLaw> Force for SurfaceForce<L> {
         }
         let (u, direction) = (self.packed(u), self.packed(direction));
         let bonds = Bonds::new(&self.bonds, &self.reference);
-        self.sweep::<3>(&On::All, out, |rows, out| {
+        self.sweep::<3>(&PointSubset::All, out, |rows, out| {
             tangent_rows(
                 self.instruction_set,
                 self.law,
@@ -262,7 +265,7 @@ impl<L: SurfaceLaw> Breakable for SurfaceForce<L> {
         self.breaking.is_some()
     }
 
-    /// The part of the area within the horizon whose bonds are broken.
+    /// Fraction of the area within the horizon whose bonds are broken.
     fn damage_into(&self, out: &mut [f64]) {
         if self.breaking.is_none() {
             return out.fill(0.0);
@@ -284,7 +287,7 @@ impl<L: SurfaceLaw> Breakable for SurfaceForce<L> {
     }
 
     fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
-        // A broken bond has lost its weight.
+        // The weight of a broken bond was set to zero.
         let weights = self.bonds.weights();
         for i in 0..self.points() {
             let row = self.bonds.row(i);
@@ -302,7 +305,14 @@ impl<L: SurfaceLaw> Breakable for SurfaceForce<L> {
 }
 
 impl<L: SurfaceLaw> SplitForce for SurfaceForce<L> {
-    fn add_force_from(&self, _t: f64, u: &[f64], on: On<'_>, partners: &[bool], out: &mut [f64]) {
+    fn add_force_from(
+        &self,
+        _t: f64,
+        u: &[f64],
+        on: PointSubset<'_>,
+        partners: &[bool],
+        out: &mut [f64],
+    ) {
         let bonds = Bonds::new(&self.bonds, &self.reference).to(partners);
         self.add_force_of(&bonds, u, &on, out);
     }
@@ -310,7 +320,7 @@ impl<L: SurfaceLaw> SplitForce for SurfaceForce<L> {
     fn end_step_from(
         &mut self,
         step: &StepEnd<'_>,
-        on: On<'_>,
+        on: PointSubset<'_>,
         partners: &[bool],
         out: &mut [f64],
     ) {
@@ -322,15 +332,15 @@ impl<L: SurfaceLaw> SplitForce for SurfaceForce<L> {
 impl<L: SurfaceLaw> LinearOperator for SurfaceForce<L> {
     fn apply_into(&self, u: &[f64], out: &mut [f64]) {
         out.fill(0.0);
-        self.add_force(0.0, u, On::All, out);
+        self.add_force(0.0, u, PointSubset::All, out);
     }
 }
 
-impl<L: SurfaceLaw> Saved for SurfaceForce<L> {
+impl<L: SurfaceLaw> Checkpointed for SurfaceForce<L> {
     fn save(&self, archive: &mut Archive) {
         let Self {
             breaking,
-            // Broken bonds are those of `breaking`.
+            // Rebuilt from `breaking`.
             bonds: _,
             law: _,
             cloud: _,

@@ -1,4 +1,4 @@
-//! Which pairs of vertices are bonds: those near along the surface, or those near in space.
+//! Selects the bonds of a surface: pairs of vertices within a geodesic or a Euclidean ball.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -8,24 +8,28 @@ use pericles::cache::Cache;
 use pericles::family::pairs_where;
 use pericles::{PericlesError, Result};
 
-/// The neighbourhood of a vertex. Distances of bonds are along the surface for both.
+/// Neighbourhood of a vertex. In both cases the distance of a bond is measured along the surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Ball {
-    /// Vertices nearer than the horizon along the surface.
+    /// Vertices within the horizon along the surface.
     #[default]
     Geodesic,
-    /// Vertices nearer than the horizon on the straight line. On a thin or folded body these are on opposite walls too: then it is refused.
+    /// Vertices within the horizon on the straight line. An error is returned if such a ball reaches an
+    /// opposite wall of a thin or folded body.
     Euclid,
 }
 
-/// A path along the surface may be so many times as long as the straight line, half a circle to its diameter; what is farther lies on another wall.
+/// Largest ratio of geodesic to straight distance: half a circle over its diameter. Pairs beyond it lie on
+/// opposite walls.
 const LONGEST: f64 = FRAC_PI_2;
 
 impl Ball {
-    /// The pairs of vertices in each other's ball of radius `delta` (m), with their distances along the surface, by way of a cache.
+    /// Returns the pairs of vertices within each other's ball of radius `delta` (m) with their geodesic
+    /// distances, using a cache.
     ///
     /// # Errors
-    /// As [`geodesic_pairs`](super::geodesic_pairs); a Euclidean ball that holds vertices more than π/2 times as far along the surface.
+    /// As [`geodesic_pairs`](super::geodesic_pairs); a Euclidean ball contains vertices more than π/2 times as
+    /// far along the surface.
     pub fn pairs(
         self,
         surface: &Surface,
@@ -43,7 +47,7 @@ impl Ball {
     }
 }
 
-/// The pairs on straight lines shorter than `delta`, with their distances among those within the longest path.
+/// Selects the pairs with a straight distance below `delta` from the pairs within the longest path.
 fn euclidean(surface: &Surface, delta: f64, near: &GeodesicPairs) -> Result<GeodesicPairs> {
     let cloud = surface.points(vec![1.0; surface.len()])?;
     let (start, neighbour) = pairs_where(&cloud, delta, &|_, _, chord| chord < delta);
@@ -78,7 +82,7 @@ mod tests {
     use pericles::cache::NoCache;
 
     #[test]
-    fn the_euclidean_ball_holds_chords_and_measures_paths() {
+    fn euclidean_ball_selects_by_chord_and_stores_geodesic_distance() {
         let sphere = Surface::icosphere(3, 1.0).unwrap();
         let pairs = |ball: Ball, delta| {
             ball.pairs(&sphere, delta, GeodesicMethod::Edge, &NoCache)
@@ -97,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn opposite_walls_are_not_joined() {
+    fn euclidean_ball_that_reaches_an_opposite_wall_is_an_error() {
         let flat = Surface::ellipsoid(3, [1.0, 1.0, 0.1]).unwrap();
         let pairs = Ball::Euclid.pairs(&flat, 0.3, GeodesicMethod::Edge, &NoCache);
         let error = pairs.unwrap_err();

@@ -1,29 +1,30 @@
-//! How far the distances of a method are from the true ones.
+//! Errors of geodesic distances compared with a reference.
 
 use super::{GeodesicMethod, GeodesicPairs, geodesic_pairs};
 use crate::surface::Surface;
 use pericles::Result;
 
-/// Relative errors d/d_true − 1 of a method, over all pairs that are truly nearer than the horizon, and what they do to the families.
+/// Relative errors d/d_ref − 1 of a method over all pairs whose reference distance is below the horizon, and
+/// the resulting changes of the families.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GeodesicErrors {
     /// Mean error.
     pub mean: f64,
     /// Root mean square error.
     pub rms: f64,
-    /// Largest error, as absolute value.
+    /// Largest absolute error.
     pub max: f64,
-    /// Part of the true pairs that the method places beyond the horizon.
+    /// Fraction of the reference pairs that the method places beyond the horizon.
     pub lost: f64,
-    /// Pairs that the method alone places within the horizon, as part of the true ones.
+    /// Pairs that only the method places within the horizon, as a fraction of the reference pairs.
     pub extra: f64,
 }
 
-/// By how much the search is widened to find the pairs that a method places beyond the horizon.
+/// Factor by which the search radius grows until all reference pairs are found.
 const WIDER: f64 = 1.3;
 
 impl GeodesicErrors {
-    /// Compares a method with the true distances, `truth` holding all pairs nearer than `delta` (m).
+    /// Compares a method with reference distances; `truth` holds all pairs nearer than `delta` (m).
     ///
     /// # Errors
     /// As [`geodesic_pairs`].
@@ -33,7 +34,7 @@ impl GeodesicErrors {
         method: GeodesicMethod,
         truth: &GeodesicPairs,
     ) -> Result<Self> {
-        // Every method joins all vertices of a part, so that the search finds all of them in the end.
+        // Every method connects all vertices of a component, so the search finds all pairs eventually.
         let mut reach = WIDER * delta;
         loop {
             let found = geodesic_pairs(surface, reach, method)?;
@@ -44,7 +45,8 @@ impl GeodesicErrors {
         }
     }
 
-    /// Compares pairs found by a method with the true ones nearer than `delta` (m); `None` if a true pair is not among them.
+    /// Compares the pairs found by a method with the reference pairs nearer than `delta` (m); `None` if a
+    /// reference pair is missing.
     pub fn new(found: &GeodesicPairs, truth: &GeodesicPairs, delta: f64) -> Option<Self> {
         let (mut sum, mut squares, mut max) = (0.0, 0.0, 0.0f64);
         let mut lost = 0;

@@ -1,17 +1,23 @@
-//! Shortest paths on the polyhedron itself, by propagation of windows.
+//! Exact shortest paths on a polyhedron by window propagation.
 //!
-//! All shortest paths that cross the same triangles form a fan of straight rays once these triangles are laid flat. A *window* is the part of an edge that
-//! such a fan crosses, with the image of the fan's centre in the plane of the next triangle and the distance σ of that centre from the source (not zero
-//! if paths have bent at a saddle vertex before). A window that enters a triangle gives its third corner a distance, and leaves through one or both of
-//! the other edges. Windows are taken in the order of their distance from the source, so that all that start beyond the horizon are never made.
+//! All shortest paths that cross the same sequence of triangles form a fan of straight rays when these
+//! triangles are unfolded into a plane. A *window* is the part of an edge that such a fan crosses, with the
+//! image of the fan's centre in the plane of the next triangle and the distance σ of that centre from the
+//! source (non-zero if paths have bent at a saddle vertex before). A window that enters a triangle gives a
+//! distance to its third corner and leaves through one or both of the other edges. Windows are processed in
+//! order of their distance from the source, so windows that start beyond the horizon are never created.
 //!
-//! Three rules keep the windows few; none of them drops one that carries a shortest path:
-//! * of the windows that enter a triangle through the same edge and see its third corner, the one that is nearest to it passes on either side, any
-//!   other one only on the side on which it enters (Chen & Han 1990: one angle, one split);
-//! * a window all of whose rays are cut short by a path through one of the corners nearby is dropped (Xin & Wang 2009, theorem 3.2);
-//! * paths bend at vertices with a total angle of at least 2π only, leaving an angle of at least π on either side (Mitchell, Mount, Papadimitriou 1987).
+//! Three rules limit the number of windows; none of them drops one that carries a shortest path:
+//! * of the windows that enter a triangle through the same edge and see its third corner, the nearest one
+//!   passes on both sides, any other only on the side on which it enters (Chen & Han 1990: one angle, one
+//!   split);
+//! * a window whose rays are all longer than a path through one of the nearby corners is dropped (Xin & Wang
+//!   2009, theorem 3.2);
+//! * paths bend only at vertices with a total angle of at least 2π, leaving an angle of at least π on either
+//!   side (Mitchell, Mount, Papadimitriou 1987).
 //!
-//! Time per source O(n² log n) at worst in the n triangles within the horizon; on smooth surfaces a few windows per edge.
+//! Time per source: O(n² log n) in the worst case for n triangles within the horizon; on smooth surfaces a few
+//! windows per edge.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -21,22 +27,23 @@ use super::GeodesicPairs;
 use super::unfolding::{Exit, Panel, Unfolding};
 use crate::surface::{HalfEdges, Surface};
 
-/// Windows narrower than this part of their edge are dropped: rounding.
+/// Windows narrower than this fraction of their edge are dropped as round-off.
 const NARROWEST: f64 = 1e-13;
 
-/// Rays that enter a panel nearer to each other than this part of the edge are the same.
+/// Rays closer to each other than this fraction of the edge are treated as equal.
 const SAME_RAY: f64 = 1e-9;
 
-/// A path counts as shorter than another one if it is so beyond rounding.
+/// Factor by which a path must be shorter to count as shorter, beyond round-off.
 const SHORTER: f64 = 1.0 - 1e-12;
 
-/// Slack of the angles between which paths leave a saddle, rad: more windows, the same distances.
+/// Tolerance of the angles at which paths leave a saddle, rad: adds windows, does not change distances.
 const SLACK: f64 = 1e-7;
 
-/// Events of vertices among those of windows.
+/// Bit that marks vertex events in the queue of windows.
 const VERTEX: u32 = 1 << 31;
 
-/// Part of an edge that straight rays from one image of their centre cross, in the frame of the panel they enter.
+/// Part of an edge crossed by straight rays from one image of their centre, in the frame of the panel they
+/// enter.
 #[derive(Debug, Clone, Copy)]
 struct Window {
     half_edge: u32,
@@ -46,7 +53,7 @@ struct Window {
     sigma: f64,
 }
 
-/// The best way so far to see a corner through the opposite edge.
+/// Best path so far to a corner through the opposite edge.
 #[derive(Debug, Clone, Copy)]
 struct Sight {
     distance: f64,
@@ -59,14 +66,15 @@ const UNSEEN: Sight = Sight {
     entry: 0.0,
 };
 
-/// The direction in which a shortest path reaches a vertex, looking back: an angle from a half-edge that starts there.
+/// Direction in which a shortest path reaches a vertex, looking back: an angle from a half-edge that starts
+/// there.
 #[derive(Debug, Clone, Copy)]
 struct Arrival {
     half_edge: u32,
     angle: f64,
 }
 
-/// All pairs of vertices whose distance is below `delta`.
+/// Finds all pairs of vertices whose distance is below `delta`.
 pub(super) fn pairs(surface: &Surface, half_edges: HalfEdges, delta: f64) -> GeodesicPairs {
     let unfolding = Unfolding::new(surface, half_edges);
     GeodesicPairs::search(
@@ -76,7 +84,7 @@ pub(super) fn pairs(surface: &Surface, half_edges: HalfEdges, delta: f64) -> Geo
     )
 }
 
-/// The distance of two vertices, which is `most` at most.
+/// Returns the distance of two vertices, which is at most `most`.
 pub(super) fn distance(
     surface: &Surface,
     half_edges: HalfEdges,
@@ -95,19 +103,19 @@ pub(super) fn distance(
     found
 }
 
-/// What one thread keeps from source to source: only what a search has touched is reset after it.
+/// Working memory of one thread; only entries touched by a search are reset after it.
 struct Search<'a> {
     unfolding: &'a Unfolding,
     delta: f64,
     distance: Vec<f64>,
     arrival: Vec<Arrival>,
     reached: Vec<u32>,
-    /// Of each corner, numbered by the half-edge that starts there.
+    /// Per corner, numbered by the half-edge that starts there.
     sight: Vec<Sight>,
     seen: Vec<u32>,
     windows: Vec<Window>,
     free: Vec<u32>,
-    /// Distances as bits, which for positive numbers sort alike, and events; the lowest first.
+    /// Min-heap of distances and events. Distances are stored as bits, which for positive numbers sort alike.
     queue: BinaryHeap<Reverse<(u64, u32)>>,
 }
 
@@ -161,7 +169,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Notes that a path of this length reaches a vertex.
+    /// Records a path of this length to a vertex.
     fn reach(&mut self, vertex: u32, distance: f64, arrival: impl FnOnce() -> Arrival) {
         let known = &mut self.distance[vertex as usize];
         if distance >= *known || distance >= self.delta {
@@ -178,7 +186,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Sends paths out of a vertex: of the source in all directions, of a vertex with this total angle in those that leave π on either side.
+    /// Propagates paths from a vertex: from the source in all directions, from a vertex with this total angle
+    /// in those that leave π on either side.
     fn leave(&mut self, vertex: u32, sigma: f64, total: Option<f64>) {
         let unfolding = self.unfolding;
         let around = unfolding.half_edges.around(vertex as usize);
@@ -194,7 +203,7 @@ impl<'a> Search<'a> {
         };
         let arrival = self.arrival[vertex as usize];
         let mut corner = arrival.half_edge;
-        // Directions of a corner, counted from that of the arrival.
+        // Directions to a corner, measured from the direction of arrival.
         let mut begin = -arrival.angle;
         let straight = [PI - SLACK, total - PI + SLACK];
         for _ in 0..around.len() {
@@ -206,8 +215,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Sends paths out of a vertex between two directions into the triangle of a half-edge that starts there, angles being counted from the half-edge, and
-    /// along its two edges.
+    /// Propagates paths from a vertex between two directions into the triangle of a half-edge that starts
+    /// there, and along its two edges. Angles are measured from the half-edge.
     fn leave_through(&mut self, half_edge: u32, sigma: f64, fan: [f64; 2]) {
         let unfolding = self.unfolding;
         let panel = &unfolding.panels[half_edge as usize];
@@ -256,7 +265,8 @@ impl<'a> Search<'a> {
                 }
                 *best = Sight { distance, entry };
             } else {
-                // Around flat vertices rays of several windows run into the apex together: which of them is first, or on which side, is rounding.
+                // Around flat vertices the rays of several windows meet at the apex; which comes first, or on
+                // which side, is round-off.
                 let same = SAME_RAY * panel.length;
                 left &= entry < best.entry + same;
                 right &= entry > best.entry - same;
@@ -277,8 +287,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Sends the rays from an image through an exit: those between the rays through two places, or, where there is none, up to the end of the exit, which
-    /// then is met exactly.
+    /// Propagates the rays from an image through an exit: those between the rays through two given places. A
+    /// missing place stands for the end of the exit, which is then met exactly.
     fn pass(&mut self, image: [f64; 2], sigma: f64, exit: &Exit, between: [Option<[f64; 2]>; 2]) {
         if exit.beyond == HalfEdges::NONE {
             return;
@@ -302,7 +312,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Whether a path through a corner of the edge or the triangle beyond cuts all rays of a window short.
+    /// Returns true if a path through a corner of the edge or of the triangle beyond is shorter than all rays
+    /// of a window.
     fn is_cut_short(&self, window: &Window, panel: &Panel) -> bool {
         let [x, y] = window.image;
         let to_low = window.sigma + length(window.low - x, y);
@@ -336,7 +347,7 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Plain, for `hypot` guards against overflow at several times the cost.
+/// Plain square root; `hypot` guards against overflow at several times the cost.
 fn length(x: f64, y: f64) -> f64 {
     (x * x + y * y).sqrt()
 }

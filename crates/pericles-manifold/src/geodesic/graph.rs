@@ -8,7 +8,7 @@ use super::unfolding::panel;
 use crate::surface::{HalfEdges, Surface, difference, norm};
 use pericles::space::Point;
 
-/// A graph with lengths, in compressed rows. The first nodes are the vertices of the surface.
+/// Weighted graph in compressed rows. The first nodes are the vertices of the surface.
 pub(super) struct Graph {
     vertices: usize,
     start: Vec<usize>,
@@ -17,7 +17,7 @@ pub(super) struct Graph {
 }
 
 impl Graph {
-    /// From undirected links.
+    /// Builds the graph from undirected links.
     fn new(vertices: usize, nodes: usize, links: &[(u32, u32, f64)]) -> Self {
         let mut start = vec![0; nodes + 1];
         for &(a, b, _) in links {
@@ -46,14 +46,14 @@ impl Graph {
         }
     }
 
-    /// The edges of the triangles.
+    /// Graph of the triangle edges.
     pub(super) fn of_edges(surface: &Surface, half_edges: &HalfEdges) -> Self {
         let links: Vec<(u32, u32, f64)> = edge_links(surface, half_edges).collect();
         Self::new(surface.len(), surface.len(), &links)
     }
 
-    /// The edges of the triangles, and the straight lines across two of them: flattened about their edge, the line between the corners opposite it must
-    /// cross the edge inside.
+    /// Graph of the triangle edges and the diagonals of triangle pairs: the straight line between the two
+    /// corners opposite an edge, if it crosses that edge when both triangles are unfolded.
     pub(super) fn with_diagonals(surface: &Surface, half_edges: &HalfEdges) -> Self {
         let mut links: Vec<(u32, u32, f64)> = edge_links(surface, half_edges).collect();
         let lengths = surface.half_edge_lengths(half_edges);
@@ -74,10 +74,11 @@ impl Graph {
         Self::new(surface.len(), surface.len(), &links)
     }
 
-    /// Straight lines through the triangles, between corners and `points` evenly spaced points on each edge (Lanthier, Maheshwari, Sack 1997).
+    /// Graph of straight lines through the triangles, between corners and `points` evenly spaced points on each
+    /// edge (Lanthier, Maheshwari, Sack 1997).
     pub(super) fn with_points(surface: &Surface, half_edges: &HalfEdges, points: u32) -> Self {
         let mut places = surface.positions().to_vec();
-        // The first point on each half-edge's edge.
+        // The first point on the edge of each half-edge.
         let mut first = vec![0; half_edges.len()];
         let mut links = Vec::new();
         let between = |places: &[Point], a: u32, b: u32| {
@@ -120,7 +121,7 @@ impl Graph {
         Self::new(surface.len(), places.len(), &links)
     }
 
-    /// All pairs of vertices whose shortest path is below `delta`.
+    /// Finds all pairs of vertices whose shortest path is below `delta`.
     pub(super) fn pairs(&self, delta: f64) -> GeodesicPairs {
         GeodesicPairs::search(
             self.vertices,
@@ -129,7 +130,8 @@ impl Graph {
         )
     }
 
-    /// The length of the shortest path between two vertices, from either end; none if there is no path.
+    /// Returns the length of the shortest path between two vertices, searched from both ends; `None` if there
+    /// is no path.
     pub(super) fn distance(&self, [a, b]: [u32; 2]) -> Option<f64> {
         if a == b {
             return Some(0.0);
@@ -147,7 +149,7 @@ impl Graph {
         shortest
     }
 
-    /// Dijkstra's search from one vertex up to `delta`.
+    /// Runs Dijkstra's algorithm from one vertex up to `delta`.
     fn search(&self, source: u32, delta: f64, front: &mut Front, row: &mut Vec<(u32, f64)>) {
         front.reach(source, 0.0);
         while let Some(Reverse((bits, node))) = front.heap.pop() {
@@ -169,7 +171,7 @@ impl Graph {
     }
 }
 
-/// The edges of the triangles as links.
+/// Triangle edges as links.
 fn edge_links<'a>(
     surface: &'a Surface,
     half_edges: &'a HalfEdges,
@@ -180,11 +182,11 @@ fn edge_links<'a>(
     })
 }
 
-/// What one thread keeps from source to source: only what a search has touched is reset after it.
+/// Working memory of one thread; only entries touched by a search are reset after it.
 struct Front {
     distance: Vec<f64>,
     touched: Vec<u32>,
-    /// Distances as bits, which for positive numbers sort alike, and nodes; the lowest first.
+    /// Min-heap of distances and nodes. Distances are stored as bits, which for positive numbers sort alike.
     heap: BinaryHeap<Reverse<(u64, u32)>>,
 }
 

@@ -1,29 +1,31 @@
-//! The ways to find distances.
+//! Methods for geodesic distances.
 
 use std::fmt;
 use std::str::FromStr;
 
 use pericles::{PericlesError, Result};
 
-/// How distances along a surface are found. As text: `exact`, `edge`, `edge-diagonals`, `steiner(3)`.
+/// Method for distances along a surface. As text: `exact`, `edge`, `edge-diagonals`, `steiner(3)`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum GeodesicMethod {
-    /// On the triangles themselves, without error.
+    /// Exact shortest paths on the triangles.
     #[default]
     Exact,
     /// Along the edges of the triangles.
     Edge,
-    /// Along the edges, and along straight lines between the corners opposite an edge that cross it once its two triangles are laid flat.
+    /// Along the edges and the diagonals of triangle pairs: straight lines between the two corners opposite an
+    /// edge that cross it when both triangles are unfolded.
     EdgeDiagonals,
-    /// Along straight lines through triangles, between corners and this many evenly spaced points on each edge.
+    /// Along straight lines through the triangles, between corners and this many evenly spaced points on each
+    /// edge.
     Steiner(u32),
 }
 
 impl GeodesicMethod {
-    /// The largest number of points on an edge: links grow with its square.
+    /// Largest number of points on an edge; the number of links grows with its square.
     pub const MOST_POINTS: u32 = 32;
 
-    /// What texts are allowed.
+    /// Allowed texts.
     pub const NAMES: &str = "exact, edge, edge-diagonals, steiner(1) to steiner(32)";
 
     pub(super) fn checked(self) -> Result<Self> {
@@ -51,10 +53,10 @@ impl fmt::Display for GeodesicMethod {
     }
 }
 
-/// A text that names no method.
+/// Text that is not a method.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "\"{given}\" is no way to find distances; allowed: {}",
+    "\"{given}\" is not a method for geodesic distances; allowed: {}",
     GeodesicMethod::NAMES
 )]
 pub struct UnknownMethod {
@@ -84,7 +86,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_are_read_back() {
+    fn text_of_a_method_parses_to_the_same_method() {
         for method in [
             GeodesicMethod::Exact,
             GeodesicMethod::Edge,

@@ -1,18 +1,20 @@
-//! Distances along a surface, of all pairs of vertices nearer than a horizon.
+//! Geodesic distances of all pairs of vertices within a horizon.
 //!
-//! | method | what | error |
+//! | method | paths | error |
 //! |---|---|---|
-//! | [`GeodesicMethod::Exact`] | shortest paths on the polyhedron, by windows | rounding; as a distance on the smooth surface O(h²) |
+//! | [`GeodesicMethod::Exact`] | shortest paths on the polyhedron, by windows | round-off; with respect to the smooth surface O(h²) |
 //! | [`GeodesicMethod::Edge`] | shortest paths along the edges (Dijkstra) | does not vanish with refinement: up to 15.5 % on equilateral triangles |
-//! | [`GeodesicMethod::EdgeDiagonals`] | edges, and straight lines across pairs of triangles | does not vanish: up to 5 % |
+//! | [`GeodesicMethod::EdgeDiagonals`] | edges and diagonals of pairs of triangles | does not vanish: up to 5 % |
 //! | [`GeodesicMethod::Steiner`] | straight lines between k points on each edge | does not vanish: 3 %, 1.5 %, 0.6 % for k = 2, 3, 5 |
 //!
-//! (Largest errors on icospheres of the unit sphere within 0.5, where the study `manifolds/geodesics` measures them.) Coclite, Coclite, Maddalena and
-//! Politi (2022) take distances along edges; with these the peridynamic operator does not converge to that of the smooth surface.
+//! (Largest errors on icospheres of the unit sphere within 0.5, measured by the study `manifolds/geodesics`.)
+//! Coclite, Coclite, Maddalena and Politi (2022) use distances along edges; with these the peridynamic operator
+//! does not converge to that of the smooth surface.
 //!
-//! All sources are independent: each is searched by one thread, up to the horizon only, so that the cost is that of the pairs found. Distances are
-//! symmetric to the last bit, and do not depend on the number of threads. [`geodesic_pairs_cached`] keeps them from run to run.
-//! [`Ball`] says which pairs are bonds: those near along the surface, or those near in space.
+//! Sources are independent: each is searched by one thread, up to the horizon only, so the cost is proportional
+//! to the number of pairs found. Distances are symmetric to the last bit and do not depend on the number of
+//! threads. [`geodesic_pairs_cached`] stores them between runs. [`Ball`] selects the bonds: pairs within a
+//! geodesic or a Euclidean ball.
 //!
 //! ```
 //! use pericles_manifold::geodesic::{GeodesicMethod, geodesic_pairs};
@@ -45,13 +47,12 @@ use graph::Graph;
 use crate::surface::{HalfEdges, Surface};
 use pericles::{PericlesError, Result, positive};
 
-/// The pairs of vertices whose distance is below `delta` (m), with their distances.
-///
-/// d_ij is the lower of what the searches from i and from j find.
+/// Returns the pairs of vertices whose distance is below `delta` (m), with their distances. d_ij is the smaller
+/// of the distances found from i and from j.
 ///
 /// # Errors
-/// `delta` is not positive; the surface is no oriented manifold; a vertex has no neighbour; more points on an edge than
-/// [`GeodesicMethod::MOST_POINTS`], or none.
+/// `delta` is not positive; the surface is not an oriented manifold; a vertex has no neighbour; the number of
+/// points on an edge is zero or above [`GeodesicMethod::MOST_POINTS`].
 pub fn geodesic_pairs(
     surface: &Surface,
     delta: f64,
@@ -76,13 +77,15 @@ pub fn geodesic_pairs(
     Ok(pairs)
 }
 
-/// The length of the shortest path between two vertices, m, however long; none if no path joins them. The lower of what the searches from both ends find.
+/// Returns the length of the shortest path between two vertices, m, without a limit on its length; `None` if no
+/// path connects them. The smaller of the lengths found from both ends.
 ///
 /// # Errors
-/// The surface is no oriented manifold; more points on an edge than [`GeodesicMethod::MOST_POINTS`], or none.
+/// The surface is not an oriented manifold; the number of points on an edge is zero or above
+/// [`GeodesicMethod::MOST_POINTS`].
 ///
 /// # Panics
-/// Vertices that the surface does not have.
+/// If the surface does not have these vertices.
 pub fn geodesic_distance(
     surface: &Surface,
     [a, b]: [usize; 2],
@@ -93,7 +96,7 @@ pub fn geodesic_distance(
     let ends = [a as u32, b as u32];
     Ok(match method.checked()? {
         GeodesicMethod::Exact => {
-            // No path is longer than that along edges.
+            // The shortest path along edges is an upper bound.
             let along_edges = Graph::of_edges(surface, &half_edges).distance(ends);
             along_edges.map(|most| exact::distance(surface, half_edges, ends, most))
         }

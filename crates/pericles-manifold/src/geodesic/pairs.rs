@@ -2,8 +2,8 @@
 
 use rayon::prelude::*;
 
-/// Pairs of vertices with their distances, in compressed rows: the neighbours of vertex i are entries `start[i]..start[i + 1]`. Each pair is there twice,
-/// with the same distance.
+/// Pairs of vertices with their distances, in compressed rows: the neighbours of vertex i are entries
+/// `start[i]..start[i + 1]`. Each pair is stored twice, with the same distance.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GeodesicPairs {
     /// First entry of each vertex, and the number of entries at the end.
@@ -15,10 +15,10 @@ pub struct GeodesicPairs {
 }
 
 impl GeodesicPairs {
-    /// Finds the row of every vertex on all cores and makes the result symmetric: a pair that is found from either end belongs to both rows, with the
-    /// lower of the two distances.
+    /// Searches the row of every vertex in parallel and makes the result symmetric: a pair found from either
+    /// end belongs to both rows, with the smaller of the two distances.
     ///
-    /// `search(state, i, row)` puts the neighbours of i into `row`, each once, in any order.
+    /// `search(state, i, row)` writes the neighbours of i into `row`, each once, in any order.
     pub(super) fn search<S>(
         vertices: usize,
         state: impl Fn() -> S + Sync + Send,
@@ -36,7 +36,7 @@ impl GeodesicPairs {
         Self::symmetric(&rows)
     }
 
-    /// From rows with ascending neighbours.
+    /// Builds symmetric pairs from rows with ascending neighbours.
     pub(super) fn symmetric(rows: &[Vec<(u32, f64)>]) -> Self {
         let turned = transposed(rows);
         let merged: Vec<Vec<(u32, f64)>> = rows
@@ -62,12 +62,12 @@ impl GeodesicPairs {
         self.start.len() - 1
     }
 
-    /// Number of entries: each pair counts twice.
+    /// Number of entries; each pair counts twice.
     pub fn len(&self) -> usize {
         self.neighbour.len()
     }
 
-    /// Whether there are no pairs.
+    /// Returns true if there are no pairs.
     pub fn is_empty(&self) -> bool {
         self.neighbour.is_empty()
     }
@@ -78,7 +78,7 @@ impl GeodesicPairs {
         (&self.neighbour[row.clone()], &self.distance[row])
     }
 
-    /// The distance of two vertices, m, if it is below the horizon.
+    /// Returns the distance of two vertices, m, if it is below the horizon.
     pub fn between(&self, a: usize, b: usize) -> Option<f64> {
         let (neighbours, distances) = self.row(a);
         let place = neighbours.binary_search(&(b as u32)).ok()?;
@@ -124,7 +124,7 @@ fn transposed(rows: &[Vec<(u32, f64)>]) -> Transposed {
     Transposed { start, entries }
 }
 
-/// Both rows in one, the lower distance where they share a neighbour.
+/// Merges two rows, with the smaller distance for shared neighbours.
 fn merge(a: &[(u32, f64)], b: &[(u32, f64)]) -> Vec<(u32, f64)> {
     let (mut a, mut b) = (a.iter().copied().peekable(), b.iter().copied().peekable());
     let mut merged = Vec::new();
@@ -150,7 +150,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_pair_found_from_one_end_belongs_to_both() {
+    fn pair_found_from_one_end_is_stored_in_both_rows() {
         let rows = vec![vec![(1, 0.5), (2, 0.9)], vec![(0, 0.4)], vec![]];
         let pairs = GeodesicPairs::symmetric(&rows);
         assert_eq!(pairs.start, [0, 2, 3, 4]);

@@ -1,4 +1,4 @@
-//! Pairs kept from run to run.
+//! Cache of geodesic pairs.
 
 use super::{GeodesicMethod, GeodesicPairs, geodesic_pairs};
 use crate::surface::Surface;
@@ -6,10 +6,11 @@ use pericles::Result;
 use pericles::cache::{Cache, Key};
 use pericles::{Archive, Values};
 
-/// Changes when distances do.
+/// Cache kind; the number changes when the computed distances change.
 const KIND: &str = "geodesics-1";
 
-/// [`geodesic_pairs`], asked of a cache first. The key holds the surface, the horizon and the method, to the last bit.
+/// As [`geodesic_pairs`], using a cache. The key contains the surface, the horizon and the method, to the last
+/// bit.
 ///
 /// # Errors
 /// As [`geodesic_pairs`].
@@ -41,7 +42,7 @@ pub fn geodesic_pairs_cached(
     Ok(pairs)
 }
 
-/// Each pair once, from its lower end.
+/// Packs each pair once, from the vertex with the lower number.
 fn packed(pairs: &GeodesicPairs) -> Archive {
     let (mut counts, mut neighbours, mut lengths) = (Vec::new(), Vec::new(), Vec::new());
     for vertex in 0..pairs.vertices() {
@@ -62,7 +63,8 @@ fn packed(pairs: &GeodesicPairs) -> Archive {
     archive
 }
 
-/// The pairs, if the arrays are such as [`packed`] makes for this many vertices and this horizon.
+/// Unpacks pairs; `None` if the arrays are not as [`packed`] writes them for this number of vertices and this
+/// horizon.
 fn unpacked(archive: &Archive, vertices: usize, delta: f64) -> Option<GeodesicPairs> {
     let counts = archive.u64s("counts").ok()?;
     let lengths = archive.f64s("distances").ok()?;
@@ -128,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn stored_pairs_are_found_again_and_wrong_ones_computed_again() {
+    fn cached_pairs_are_reused_and_invalid_ones_recomputed() {
         let cache = Memory::default();
         let stored = || cache.0.lock().unwrap().len();
         let sphere = Surface::icosphere(2, 1.0).unwrap();

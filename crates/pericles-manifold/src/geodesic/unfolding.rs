@@ -1,10 +1,12 @@
-//! Triangles laid flat, each beside the edge it is entered through.
+//! Triangles unfolded into a plane, each next to the edge through which it is entered.
 
 use crate::surface::{HalfEdges, Surface};
 
-/// A triangle in the plane, seen from one of its half-edges: that one runs from the origin along x, the third corner (the apex) lies at y > 0.
+/// Triangle in the plane, seen from one of its half-edges: the half-edge runs from the origin along x, the
+/// third corner (the apex) lies at y > 0.
 ///
-/// Whoever enters the triangle through the half-edge leaves it through the left edge, between origin and apex, or the right one, between apex and target.
+/// A path that enters the triangle through the half-edge leaves it through the left edge, between origin and
+/// apex, or the right edge, between apex and target.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Panel {
     /// Length of the half-edge.
@@ -15,22 +17,23 @@ pub(super) struct Panel {
     pub(super) left: Exit,
     /// The edge on the right.
     pub(super) right: Exit,
-    /// Where the half-edge starts.
+    /// Vertex at which the half-edge starts.
     pub(super) origin: u32,
-    /// Where it leads.
+    /// Vertex at which it ends.
     pub(super) target: u32,
     /// The vertex at the apex.
     pub(super) apex_vertex: u32,
 }
 
-/// An edge through which a panel is left, with the frame of the panel beyond it: its half-edge along x, the panel left behind at y < 0.
+/// Edge through which a panel is left, with the frame of the panel beyond: its half-edge lies along x, the
+/// panel left behind at y < 0.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Exit {
     /// The half-edge of the panel beyond, or [`HalfEdges::NONE`].
     pub(super) beyond: u32,
     /// Length of the edge.
     pub(super) length: f64,
-    /// Where the half-edge beyond starts.
+    /// Start of the half-edge beyond.
     start: [f64; 2],
     /// Its direction.
     along: [f64; 2],
@@ -46,7 +49,7 @@ impl Exit {
         }
     }
 
-    /// A point of the panel in the frame of the one beyond.
+    /// Transforms a point of this panel into the frame of the one beyond.
     pub(super) fn place(&self, point: [f64; 2]) -> [f64; 2] {
         let [x, y] = [point[0] - self.start[0], point[1] - self.start[1]];
         let [tx, ty] = self.along;
@@ -54,17 +57,17 @@ impl Exit {
     }
 }
 
-/// All panels of a surface, one per half-edge, and what else the search needs to know of its shape.
+/// All panels of a surface, one per half-edge, and the angles that the search needs.
 pub(super) struct Unfolding {
     pub(super) half_edges: HalfEdges,
     pub(super) panels: Vec<Panel>,
-    /// Angle between a half-edge and the one before it, at its origin.
+    /// Angle between a half-edge and the previous one, at its origin.
     pub(super) angles: Vec<f64>,
-    /// Sum of the angles at each vertex where shortest paths can pass: at saddles and flat vertices.
+    /// Total angle at each vertex that shortest paths can pass (saddles and flat vertices).
     pub(super) passable: Vec<Option<f64>>,
 }
 
-/// How far below 2π the sum of the angles may lie for a vertex to count as flat: the rounding of the angles.
+/// Tolerance below 2π within which the total angle of a vertex counts as flat: round-off of the angles.
 const FLAT: f64 = 1e-9;
 
 impl Unfolding {
@@ -97,7 +100,7 @@ impl Unfolding {
     }
 }
 
-/// The panel of a half-edge.
+/// Builds the panel of a half-edge.
 pub(super) fn panel(half_edges: &HalfEdges, lengths: &[f64], h: u32) -> Panel {
     let (next, previous) = (HalfEdges::next(h), HalfEdges::previous(h));
     let [base, right, left] = [h, next, previous].map(|h| lengths[h as usize]);

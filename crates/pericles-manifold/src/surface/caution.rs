@@ -1,26 +1,26 @@
-//! What should be known about a horizon on a surface.
+//! Warnings about the horizon on a surface.
 
 use std::fmt;
 
 use super::Surface;
 
-/// Something about the horizon on a surface that a user should know.
+/// Warning about the horizon on a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum SurfaceCaution {
-    /// The horizon is short.
+    /// The horizon is small.
     ShortHorizon {
-        /// Horizon over median edge.
+        /// Horizon divided by the median edge length.
         ratio: f64,
     },
-    /// The horizon is long.
+    /// The horizon is large.
     LongHorizon {
-        /// Horizon over median edge.
+        /// Horizon divided by the median edge length.
         ratio: f64,
     },
-    /// There are few bonds.
+    /// The vertices have few neighbours.
     FewNeighbours {
-        /// Neighbours of a vertex, on average.
+        /// Mean number of neighbours per vertex.
         mean: f64,
     },
 }
@@ -30,22 +30,25 @@ impl fmt::Display for SurfaceCaution {
         match self {
             Self::ShortHorizon { ratio } => write!(
                 f,
-                "the horizon is {ratio:.2} median edges; below 2 the directions of bonds are those of the mesh"
+                "the horizon is {ratio:.2} median edge lengths; with fewer than 2 the bond directions follow the \
+                mesh. Increase `horizon` or refine the surface"
             ),
             Self::LongHorizon { ratio } => write!(
                 f,
-                "the horizon is {ratio:.1} median edges; above 15 time and memory grow with its square and little is gained"
+                "the horizon is {ratio:.1} median edge lengths; above 15 time and memory grow with its square at \
+                little gain in accuracy. Reduce `horizon` or coarsen the surface"
             ),
             Self::FewNeighbours { mean } => write!(
                 f,
-                "vertices have {mean:.1} neighbours on average; with fewer than 12 the sums are coarse"
+                "vertices have {mean:.1} neighbours on average; with fewer than 12 the quadrature is inaccurate. \
+                Increase `horizon` or refine the surface"
             ),
         }
     }
 }
 
 impl Surface {
-    /// What should be known about a horizon (m) that gives vertices this many neighbours on average.
+    /// Returns the warnings for a horizon (m) that gives vertices this mean number of neighbours.
     pub fn cautions(&self, horizon: f64, mean_neighbours: f64) -> Vec<SurfaceCaution> {
         let ratio = horizon / self.median_edge();
         let mut cautions = Vec::new();

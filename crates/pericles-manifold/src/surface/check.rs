@@ -1,81 +1,82 @@
-//! Is a surface a closed manifold, well enough cut into triangles?
+//! Checks that a surface is a closed manifold with well-shaped triangles.
 
 use super::half_edges::{origins, sorted_by_edge};
 use super::weld::same_places;
 use super::{HalfEdges, Surface, SurfaceError};
 
-/// The smallest area of a triangle, as a part of the square of the surface's largest side.
+/// Smallest allowed triangle area as a fraction of the square of the surface's largest side.
 const SMALLEST_AREA: f64 = 1e-12;
 
-/// Vertices nearer to each other than this part of the surface's largest side are one vertex given twice.
+/// Vertices closer than this fraction of the surface's largest side count as duplicates.
 const SAME_PLACE: f64 = 1e-12;
 
-/// What a surface is checked for, besides what is never allowed.
+/// Optional relaxations of the surface checks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct SurfaceChecks {
-    /// Allow edges with one triangle.
+    /// Allow boundary edges (edges with one triangle).
     pub open: bool,
-    /// Allow parts that do not hang together.
+    /// Allow several disconnected components.
     pub several_components: bool,
-    /// Turn over triangles that run the wrong way, instead of refusing them.
+    /// Fix inconsistent triangle orientation instead of returning an error.
     pub flip: bool,
 }
 
-/// A part of a surface that hangs together.
+/// Connected component of a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Component {
-    /// Vertices.
+    /// Number of vertices.
     pub vertices: usize,
-    /// Edges.
+    /// Number of edges.
     pub edges: usize,
-    /// Edges with one triangle.
+    /// Number of edges with one triangle.
     pub boundary_edges: usize,
-    /// Triangles.
+    /// Number of triangles.
     pub triangles: usize,
-    /// The enclosed volume, m³; of an open part without meaning.
+    /// Enclosed volume, m³; meaningless for an open component.
     pub volume: f64,
 }
 
 impl Component {
-    /// The Euler number V − E + F.
+    /// Euler characteristic V − E + F.
     pub fn euler(&self) -> i64 {
         self.vertices as i64 - self.edges as i64 + self.triangles as i64
     }
 
-    /// The number of handles g, from V − E + F = 2 − 2g; of a closed part only.
+    /// Genus g (number of handles), from V − E + F = 2 − 2g; for closed components only.
     pub fn genus(&self) -> Option<i64> {
         (self.boundary_edges == 0).then(|| (2 - self.euler()) / 2)
     }
 }
 
-/// What a checked surface is like.
+/// Properties of a checked surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SurfaceReport {
-    /// Edges.
+    /// Number of edges.
     pub edges: usize,
-    /// Edges with one triangle.
+    /// Number of edges with one triangle.
     pub boundary_edges: usize,
-    /// Triangles that were turned over.
+    /// Number of triangles whose orientation was reversed.
     pub flipped: usize,
-    /// Parts that hang together, the one with most triangles first.
+    /// Connected components in descending order of size.
     pub components: Vec<Component>,
-    /// The smallest and the largest angle of the triangles, rad.
+    /// Smallest and largest angle of the triangles, rad.
     pub angles: [f64; 2],
-    /// The shortest, the median and the longest edge, m.
+    /// Shortest, median and longest edge, m.
     pub edge_lengths: [f64; 3],
-    /// Area of the triangles, m².
+    /// Total area of the triangles, m².
     pub area: f64,
     /// Enclosed volume, m³.
     pub volume: f64,
 }
 
 impl Surface {
-    /// Checks the surface and says what it is like. In this order: no triangle without area, no two vertices in one place, no vertex without triangle;
-    /// two triangles to every edge; neighbouring triangles run their edge in opposite directions; one fan of triangles to every vertex; one part; outside
-    /// is outside.
+    /// Checks the surface and returns it with its properties. Conditions, in this order: no degenerate
+    /// triangle, no duplicate vertices, no vertex without a triangle; two triangles per edge; consistent
+    /// orientation of neighbouring triangles; one fan of triangles per vertex; one component; outward
+    /// orientation.
     ///
     /// # Errors
-    /// The first condition that does not hold, with the number of places where it does not and the first of them.
+    /// The first violated condition, with the number of violations and the first of them.
     pub fn checked(mut self, checks: SurfaceChecks) -> Result<(Self, SurfaceReport), SurfaceError> {
         self.check_triangles()?;
         self.check_vertices()?;
@@ -199,10 +200,11 @@ impl Surface {
         }
     }
 
-    /// Turns triangles over until neighbours agree; of the two ways to do so in a part, the one that turns fewer. Returns how many were turned.
+    /// Reverses triangles until neighbours agree, as few as possible in each component. Returns the number
+    /// reversed.
     fn orient(&mut self) -> Result<usize, SurfaceError> {
         let origin = origins(self);
-        // Neighbours with whether they must be turned against each other.
+        // Neighbours, and whether the two must be oriented against each other.
         let mut neighbours: Vec<Vec<(u32, bool)>> = vec![Vec::new(); self.triangles.len()];
         for group in sorted_by_edge(&origin).chunk_by(|a, b| a.0 == b.0) {
             if let [(_, a), (_, b)] = *group {
@@ -258,7 +260,7 @@ impl Surface {
         volumes
     }
 
-    /// Turns over the closed parts of negative volume.
+    /// Reverses closed components of negative volume.
     fn turn_out(&mut self, half_edges: &HalfEdges, part: &[u32], volumes: &[f64]) -> usize {
         let mut closed = vec![true; volumes.len()];
         for h in 0..half_edges.len() as u32 {
@@ -320,7 +322,7 @@ impl Surface {
     }
 }
 
-/// The part each triangle belongs to, numbered by first triangle.
+/// Component of each triangle, numbered by first triangle.
 fn parts(half_edges: &HalfEdges) -> Vec<u32> {
     let triangles = half_edges.len() / 3;
     let mut part = vec![u32::MAX; triangles];

@@ -1,4 +1,4 @@
-//! What can be wrong with a surface.
+//! Errors of surface validation.
 
 impl From<SurfaceError> for pericles::PericlesError {
     fn from(error: SurfaceError) -> Self {
@@ -6,43 +6,46 @@ impl From<SurfaceError> for pericles::PericlesError {
     }
 }
 
-/// Why a surface is refused. Numbers of vertices and triangles are those under which they were given, from 0.
+/// Reason why a surface is invalid. Vertices and triangles have the numbers under which they were given, from
+/// 0.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SurfaceError {
-    /// A parameter of a shape outside its range.
+    /// A shape parameter is outside its range.
     #[error("{quantity} is {value}; allowed: {allowed}")]
     Parameter {
-        /// What the number stands for.
+        /// Name of the parameter.
         quantity: &'static str,
-        /// The number given.
+        /// Value given.
         value: f64,
-        /// What is allowed.
+        /// Allowed values.
         allowed: &'static str,
     },
     /// No triangles.
     #[error("the surface has no triangles; at least four are needed to enclose something")]
     Empty,
-    /// More vertices or triangles than can be numbered.
-    #[error("the surface has {count} {what}; at most {limit} are possible")]
+    /// Too many vertices or triangles to number.
+    #[error(
+        "the surface has {count} {what}; the largest allowed number is {limit}. Use a coarser surface"
+    )]
     TooLarge {
-        /// Vertices or triangles.
+        /// "vertices" or "triangles".
         what: &'static str,
-        /// How many.
+        /// Number given.
         count: usize,
-        /// The limit.
+        /// Largest allowed number.
         limit: usize,
     },
-    /// A coordinate that is no number.
-    #[error("the coordinate {value} of vertex {vertex} is not a finite number")]
+    /// A coordinate is NaN or infinite.
+    #[error("vertex {vertex} has the coordinate {value}; coordinates must be finite numbers")]
     NotFinite {
         /// The vertex.
         vertex: usize,
         /// The coordinate given.
         value: f64,
     },
-    /// A triangle with a corner that does not exist.
-    #[error("triangle {triangle} has the corner {vertex}, but the surface has vertices 0 to {} only", vertices - 1)]
+    /// A triangle refers to a vertex that does not exist.
+    #[error("triangle {triangle} refers to vertex {vertex}, but the surface has vertices 0 to {} only", vertices - 1)]
     NoSuchVertex {
         /// The triangle.
         triangle: usize,
@@ -53,83 +56,86 @@ pub enum SurfaceError {
     },
     /// Edges with one triangle.
     #[error(
-        "the surface is open: {edges} edge(s) belong to one triangle only, the first joins vertices {} and {}; close the surface or allow an open one \
-         (the theory is that of closed surfaces)", first[0], first[1]
+        "the surface is open: {edges} edge(s) belong to one triangle only, the first joins vertices {} and {}; close \
+        the surface or allow open surfaces (the theory assumes closed ones)", first[0], first[1]
     )]
     Open {
-        /// How many edges.
+        /// Number of edges.
         edges: usize,
-        /// The first.
+        /// Vertices of the first.
         first: [usize; 2],
     },
     /// Edges with more than two triangles.
     #[error(
-        "the surface is no manifold: {edges} edge(s) belong to more than two triangles, the first joins vertices {} and {} and belongs to \
-         {triangles}; every edge must belong to two", first[0], first[1]
+        "the surface is not a manifold: {edges} edge(s) belong to more than two triangles, the first joins vertices \
+        {} and {} and belongs to {triangles}; every edge must belong to two", first[0], first[1]
     )]
     NonManifoldEdge {
-        /// How many edges.
+        /// Number of edges.
         edges: usize,
-        /// The first.
+        /// Vertices of the first.
         first: [usize; 2],
-        /// Triangles of the first.
+        /// Number of triangles of the first.
         triangles: usize,
     },
-    /// Vertices at which sheets touch.
+    /// Parts of the surface meet in a vertex only.
     #[error(
-        "{vertices} vertex(es) join sheets that touch in a point only, the first is vertex {first}; the triangles around a vertex must form one fan"
+        "{vertices} vertex(es) join parts of the surface that meet in a point only, the first is vertex {first}; the \
+        triangles around a vertex must form one fan"
     )]
     BowTie {
-        /// How many vertices.
+        /// Number of vertices.
         vertices: usize,
-        /// The first.
+        /// The first vertex.
         first: usize,
     },
-    /// Neighbouring triangles of opposite orientation.
+    /// Neighbouring triangles have opposite orientations.
     #[error(
-        "{edges} edge(s) are run in the same direction by both of their triangles, the first joins vertices {} and {}; turn triangles over so that all \
-         run counter-clockwise seen from outside, or ask for flipping", first[0], first[1]
+        "triangle orientation is inconsistent: {edges} edge(s) run in the same direction in both of their triangles, \
+        the first joins vertices {} and {}; order all corners counter-clockwise seen from outside, or enable `flip`", first[0], first[1]
     )]
     Flipped {
-        /// How many edges.
+        /// Number of edges.
         edges: usize,
-        /// The first.
+        /// Vertices of the first.
         first: [usize; 2],
     },
-    /// No orientation exists.
+    /// The surface is not orientable.
     #[error(
-        "the surface has one side only (like a Klein bottle): its triangles cannot be oriented"
+        "the surface is one-sided (like a Klein bottle): its triangles cannot be oriented consistently"
     )]
     OneSided,
-    /// All triangles the wrong way round.
+    /// All triangles are oriented inwards.
     #[error(
-        "the triangles run clockwise seen from outside (the enclosed volume is {volume:e} m³); turn all of them over, or ask for flipping"
+        "the triangles run clockwise seen from outside (the enclosed volume is {}); reverse all of them, \
+        or enable `flip`", pericles::units::quantity(*volume, "m³")
     )]
     InsideOut {
         /// The enclosed volume, m³.
         volume: f64,
     },
-    /// Triangles without area.
+    /// Degenerate triangles.
     #[error(
-        "{triangles} triangle(s) have (nearly) no area, the first is triangle {first} with {area:e} m²; at least {limit:e} m² are needed (1e-12 of the \
-         square of the surface's size)"
+        "{triangles} triangle(s) are degenerate, the first is triangle {first} with an area of {} m²; at least \
+        {} m² are required (1e-12 of the square of the surface's size)",
+        pericles::units::significant(*area, 3), pericles::units::significant(*limit, 3)
     )]
     Degenerate {
-        /// How many triangles.
+        /// Number of triangles.
         triangles: usize,
-        /// The first.
+        /// The first triangle.
         first: usize,
         /// Its area, m².
         area: f64,
         /// The smallest area allowed, m².
         limit: f64,
     },
-    /// Vertices in the same place.
+    /// Duplicate vertices.
     #[error(
-        "{vertices} vertex(es) lie where another one lies, the first two are {} and {}; weld them", first[0], first[1]
+        "{vertices} vertex(es) coincide with another one, the first two are {} and {}; weld them", first[0], first[1]
     )]
     Duplicate {
-        /// How many vertices.
+        /// Number of vertices.
         vertices: usize,
         /// The first pair.
         first: [usize; 2],
@@ -139,32 +145,35 @@ pub enum SurfaceError {
         "{vertices} vertex(es) belong to no triangle, the first is vertex {first}; remove them"
     )]
     Unreferenced {
-        /// How many vertices.
+        /// Number of vertices.
         vertices: usize,
-        /// The first.
+        /// The first vertex.
         first: usize,
     },
-    /// Parts that do not hang together.
+    /// The surface is disconnected.
     #[error(
-        "the surface has {components} parts that do not hang together, of {} and {} triangles …; give one of them, or allow several", sizes[0], sizes[1]
+        "the surface has {components} disconnected components, of {} and {} triangles …; keep one of them, or allow \
+        several", sizes[0], sizes[1]
     )]
     SeveralComponents {
-        /// How many.
+        /// Number of components.
         components: usize,
-        /// Triangles of the two largest.
+        /// Number of triangles of the two largest.
         sizes: [usize; 2],
     },
-    /// A ball in space that holds parts of a surface that are far apart along it.
+    /// A Euclidean ball contains parts of the surface that are far apart along it.
     #[error(
-        "vertices {} and {} are {chord} m apart in space, within the horizon, but more than {reach} m along the surface: the Euclidean ball joins opposite walls; take the geodesic ball or a shorter horizon",
-        .vertices[0], .vertices[1]
+        "vertices {} and {} are {} apart in space, within the horizon, but more than {} along the \
+        surface: the Euclidean ball joins opposite walls; use the geodesic ball or a smaller horizon",
+        vertices[0], vertices[1],
+        pericles::units::quantity(*chord, "m"), pericles::units::quantity(*reach, "m")
     )]
     Folded {
-        /// Numbers of the vertices as they were given.
+        /// The vertices, as numbered in the input.
         vertices: [usize; 2],
-        /// The straight line between them, m.
+        /// Straight distance between them, m.
         chord: f64,
-        /// The longest path that counts, m.
+        /// Longest accepted path, m.
         reach: f64,
     },
 }

@@ -1,29 +1,30 @@
-//! Neighbourhood of triangles, edges and vertices.
+//! Adjacency of triangles, edges and vertices.
 
 use super::{Surface, SurfaceError};
 
-/// The directed edges of a surface's triangles.
+/// Half-edges (directed edges) of a triangulated surface.
 ///
-/// Half-edge 3t + k runs from corner k of triangle t to the next corner. Its twin runs back along the same edge in the neighbouring triangle. Every edge
-/// has one or two half-edges; the twin of a half-edge on a boundary is [`HalfEdges::NONE`].
+/// Half-edge 3t + k runs from corner k of triangle t to the next corner. Its twin runs back along the same edge
+/// in the neighbouring triangle. Every edge has one or two half-edges; the twin of a half-edge on a boundary is
+/// [`HalfEdges::NONE`].
 #[derive(Debug, Clone)]
 pub struct HalfEdges {
     origin: Vec<u32>,
     twin: Vec<u32>,
-    /// Half-edges that start at a vertex, in compressed rows.
+    /// Half-edges that start at each vertex, in compressed rows.
     around_start: Vec<u32>,
     around: Vec<u32>,
 }
 
 impl HalfEdges {
-    /// No half-edge.
+    /// Marks a missing half-edge.
     pub const NONE: u32 = u32::MAX;
 
-    /// Joins the triangles of a surface.
+    /// Builds the half-edges of a surface.
     ///
     /// # Errors
-    /// [`SurfaceError::NonManifoldEdge`] and [`SurfaceError::Flipped`]: twins exist only where at most two triangles share an edge and run it in
-    /// opposite directions.
+    /// [`SurfaceError::NonManifoldEdge`] and [`SurfaceError::Flipped`]: twins exist only where at most two
+    /// triangles share an edge, in opposite directions.
     pub fn new(surface: &Surface) -> Result<Self, SurfaceError> {
         let origin = origins(surface);
         let sorted = sorted_by_edge(&origin);
@@ -69,27 +70,27 @@ impl HalfEdges {
         self.origin.len()
     }
 
-    /// Never true.
+    /// Always false.
     pub fn is_empty(&self) -> bool {
         self.origin.is_empty()
     }
 
-    /// The vertex a half-edge starts at.
+    /// Vertex at which a half-edge starts.
     pub fn origin(&self, half_edge: u32) -> u32 {
         self.origin[half_edge as usize]
     }
 
-    /// The vertex a half-edge leads to.
+    /// Vertex at which a half-edge ends.
     pub fn target(&self, half_edge: u32) -> u32 {
         self.origin[Self::next(half_edge) as usize]
     }
 
-    /// The half-edge back along the same edge, or [`HalfEdges::NONE`].
+    /// Half-edge back along the same edge, or [`HalfEdges::NONE`].
     pub fn twin(&self, half_edge: u32) -> u32 {
         self.twin[half_edge as usize]
     }
 
-    /// The next half-edge of the same triangle.
+    /// Next half-edge of the same triangle.
     pub fn next(half_edge: u32) -> u32 {
         if half_edge % 3 == 2 {
             half_edge - 2
@@ -98,7 +99,7 @@ impl HalfEdges {
         }
     }
 
-    /// The half-edge before it in the same triangle.
+    /// Previous half-edge of the same triangle.
     pub fn previous(half_edge: u32) -> u32 {
         if half_edge.is_multiple_of(3) {
             half_edge + 2
@@ -107,26 +108,26 @@ impl HalfEdges {
         }
     }
 
-    /// The half-edges that start at a vertex, one per triangle around it, ascending.
+    /// Half-edges that start at a vertex, one per triangle around it, ascending.
     pub fn around(&self, vertex: usize) -> &[u32] {
         let row = self.around_start[vertex] as usize..self.around_start[vertex + 1] as usize;
         &self.around[row]
     }
 
-    /// One half-edge of every edge, the one whose number is lower than its twin's, ascending.
+    /// Iterates over the edges: of each pair of twins the half-edge with the lower number, ascending.
     pub fn edges(&self) -> impl Iterator<Item = u32> + '_ {
         (0..self.len() as u32).filter(|&h| self.twin(h) > h)
     }
 
-    /// Whether a boundary runs through a vertex.
+    /// Returns true if the vertex lies on a boundary.
     pub fn on_boundary(&self, vertex: usize) -> bool {
         self.around(vertex)
             .iter()
             .any(|&h| self.twin(h) == Self::NONE || self.twin(Self::previous(h)) == Self::NONE)
     }
 
-    /// The half-edges that start at a vertex, in the order in which its triangles follow each other counter-clockwise; at a boundary from its first
-    /// triangle on. Of a vertex that joins several fans, one fan.
+    /// Half-edges that start at a vertex, in counter-clockwise order of its triangles; at a boundary from the
+    /// first triangle on. For a vertex that joins several fans, one fan.
     pub fn fan(&self, vertex: usize) -> Vec<u32> {
         let around = self.around(vertex);
         let Some(&any) = around.first() else {
@@ -139,7 +140,7 @@ impl HalfEdges {
             .unwrap_or(any);
         let mut fan = vec![first];
         loop {
-            // The edge on the left of a triangle's corner is the one that comes into it.
+            // The left edge at a corner of a triangle is the half-edge that ends there.
             let next = self.twin(Self::previous(fan[fan.len() - 1]));
             if next == Self::NONE || next == first {
                 return fan;
@@ -149,12 +150,12 @@ impl HalfEdges {
     }
 }
 
-/// The vertex every half-edge starts at.
+/// Vertex at which every half-edge starts.
 pub(super) fn origins(surface: &Surface) -> Vec<u32> {
     surface.triangles().iter().flatten().copied().collect()
 }
 
-/// Every half-edge with the vertices it joins, the lower first, sorted.
+/// Half-edges with their two vertices, the lower first, sorted.
 pub(super) fn sorted_by_edge(origin: &[u32]) -> Vec<([u32; 2], u32)> {
     let mut sorted: Vec<([u32; 2], u32)> = (0..origin.len() as u32)
         .map(|h| {
@@ -166,7 +167,7 @@ pub(super) fn sorted_by_edge(origin: &[u32]) -> Vec<([u32; 2], u32)> {
     sorted
 }
 
-/// The numbers of entries by value, in compressed rows.
+/// Indices of entries grouped by value, in compressed rows.
 pub(super) fn rows(values: usize, entries: &[u32]) -> (Vec<u32>, Vec<u32>) {
     let mut start = vec![0u32; values + 1];
     for &value in entries {

@@ -1,52 +1,54 @@
-//! Areas, volumes, angles and weights.
+//! Areas, volumes, angles and cotangent weights.
 
 use super::{HalfEdges, Surface, cross, difference, dot, norm};
 use pericles::Result;
 use pericles::space::{Point, PointCloud};
 
-/// How the area of the triangles is shared out among their corners.
+/// Rule that distributes the area of triangles to their corners.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum AreaRule {
-    /// A third of each triangle to each corner.
+    /// One third of each triangle to each corner.
     #[default]
     Barycentric,
-    /// The points of a triangle that are nearest to a corner, as long as it is not obtuse; else half of it to the obtuse corner and a quarter to each of
-    /// the others (Meyer, Desbrun, Schröder, Barr 2003, section 3.3).
+    /// Voronoi areas if the triangle is not obtuse; otherwise half of it to the obtuse corner and a quarter to
+    /// each of the others (Meyer, Desbrun, Schröder, Barr 2003, section 3.3).
     MixedVoronoi,
 }
 
-/// Weights of the cotangent Laplacian: Σ_j w_ij (u_j − u_i) ≈ A_i Δu at vertex i, with w_ij = ½ (cot α + cot β), α and β the angles opposite the edge.
+/// Weights of the cotangent Laplacian: Σ_j w_ij (u_j − u_i) ≈ A_i Δu at vertex i, with w_ij = ½ (cot α + cot
+/// β), α and β the angles opposite the edge.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cotangents {
-    /// The edges, the lower vertex first, ascending.
+    /// Edges, the lower vertex first, ascending.
     pub edges: Vec<[u32; 2]>,
     /// One weight per edge.
     pub weights: Vec<f64>,
 }
 
 impl Surface {
-    /// The vertices as points of a body, with their areas (m²) where other bodies have volumes: densities are then per area.
+    /// Returns the vertices as points of a body, with areas (m²) in place of volumes; densities are then per
+    /// area.
     ///
     /// # Errors
-    /// Areas that are not positive, or not one a vertex.
+    /// An area is not positive, or the number of areas is not the number of vertices.
     pub fn points(&self, areas: Vec<f64>) -> Result<PointCloud> {
         let spacing = (self.area() / self.len() as f64).sqrt();
         PointCloud::of_areas(self.positions(), areas, spacing, self.user_numbers())
     }
 
-    /// The area of the triangles, m².
+    /// Total area of the triangles, m².
     pub fn area(&self) -> f64 {
         self.triangle_areas().sum()
     }
 
-    /// The areas of the triangles, m².
+    /// Areas of the triangles, m².
     pub fn triangle_areas(&self) -> impl Iterator<Item = f64> + '_ {
         self.triangles
             .iter()
             .map(|&triangle| 0.5 * norm(normal(self.corners(triangle))))
     }
 
-    /// The enclosed volume ⅙ Σ a · (b × c), m³: positive if the triangles run counter-clockwise seen from outside.
+    /// Enclosed volume ⅙ Σ a · (b × c), m³: positive if the triangles run counter-clockwise seen from outside.
     pub fn volume(&self) -> f64 {
         let sixfold: f64 = self
             .triangles
@@ -59,7 +61,7 @@ impl Surface {
         sixfold / 6.0
     }
 
-    /// The area that each vertex stands for, m²; they sum to the area of the surface.
+    /// Area associated with each vertex, m²; their sum is the area of the surface.
     pub fn vertex_areas(&self, rule: AreaRule) -> Vec<f64> {
         let mut areas = vec![0.0; self.len()];
         for &triangle in &self.triangles {
@@ -75,7 +77,7 @@ impl Surface {
         areas
     }
 
-    /// The edges, the lower vertex first, ascending.
+    /// Edges, the lower vertex first, ascending.
     pub fn edges(&self) -> Vec<[u32; 2]> {
         let mut edges: Vec<[u32; 2]> = self
             .triangles
@@ -88,12 +90,12 @@ impl Surface {
         edges
     }
 
-    /// The distance of two vertices in space, m.
+    /// Straight distance of two vertices, m.
     pub fn chord(&self, a: usize, b: usize) -> f64 {
         norm(difference(self.positions[a], self.positions[b]))
     }
 
-    /// The median of the edges' lengths, m.
+    /// Median edge length, m.
     pub fn median_edge(&self) -> f64 {
         let mut lengths: Vec<f64> = self
             .edges()
@@ -104,7 +106,7 @@ impl Surface {
         *lengths.select_nth_unstable_by(middle, f64::total_cmp).1
     }
 
-    /// The weights of the cotangent Laplacian.
+    /// Weights of the cotangent Laplacian.
     pub fn cotangents(&self) -> Cotangents {
         let mut halves: Vec<([u32; 2], f64)> = Vec::with_capacity(3 * self.triangles.len());
         for &triangle in &self.triangles {
@@ -114,7 +116,7 @@ impl Surface {
                 halves.push(([a.min(b), a.max(b)], 0.5 * cotangents[k]));
             }
         }
-        // Stable: the two halves of an edge are added in the order of their triangles.
+        // A stable sort: the two halves of an edge are added in the order of their triangles.
         halves.sort_by_key(|&(edge, _)| edge);
         let (mut edges, mut weights) = (Vec::new(), Vec::new());
         for group in halves.chunk_by(|a, b| a.0 == b.0) {
@@ -124,7 +126,7 @@ impl Surface {
         Cotangents { edges, weights }
     }
 
-    /// The smallest and the largest angle of the triangles, rad.
+    /// Smallest and largest angle of the triangles, rad.
     pub fn angle_range(&self) -> [f64; 2] {
         let mut range = [f64::INFINITY, f64::NEG_INFINITY];
         for &triangle in &self.triangles {
@@ -135,12 +137,12 @@ impl Surface {
         range
     }
 
-    /// The angles of a triangle, rad, in the order of its corners.
+    /// Angles of a triangle, rad, in the order of its corners.
     pub fn corner_angles(&self, triangle: [u32; 3]) -> [f64; 3] {
         corner_angles(self.corners(triangle))
     }
 
-    /// The sum of the triangles' angles at each vertex, rad: below 2π where the surface is curved like a sphere, above at saddles.
+    /// Total angle of the triangles at each vertex, rad: below 2π at convex vertices, above at saddles.
     pub fn total_angles(&self) -> Vec<f64> {
         let mut totals = vec![0.0; self.len()];
         for &triangle in &self.triangles {
@@ -152,12 +154,12 @@ impl Surface {
         totals
     }
 
-    /// The lengths of the half-edges, m.
+    /// Lengths of the half-edges, m.
     pub fn half_edge_lengths(&self, half_edges: &HalfEdges) -> Vec<f64> {
         (0..half_edges.len() as u32)
             .map(|h| {
                 let (a, b) = (half_edges.origin(h), half_edges.target(h));
-                // The lower vertex first, so that both directions have the same bits.
+                // The lower vertex comes first, so that both directions give the same bits.
                 self.chord(a.min(b) as usize, a.max(b) as usize)
             })
             .collect()

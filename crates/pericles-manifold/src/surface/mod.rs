@@ -1,8 +1,10 @@
-//! Triangulated surfaces in space: the bodies of peridynamics on closed manifolds.
+//! Triangulated closed surfaces (2-manifolds) in space.
 //!
-//! A [`Surface`] is vertices and triangles, made by formula ([`Surface::icosphere`], [`Surface::torus`] …) or from arrays. [`Surface::checked`] tells
-//! whether it is a closed, oriented, connected manifold, and which of seven conditions it breaks if not. [`HalfEdges`] walks over it. Areas of vertices
-//! sum to the area of the triangles ([`AreaRule`]); [`Surface::cotangents`] are the weights of the Laplacian that belongs to linear elements.
+//! A [`Surface`] consists of vertices and triangles, created by a formula ([`Surface::icosphere`],
+//! [`Surface::torus`] …) or from arrays. [`Surface::checked`] checks that it is a closed, oriented, connected
+//! manifold and reports which of seven conditions it violates. [`HalfEdges`] holds its adjacency. Vertex areas
+//! sum to the area of the triangles ([`AreaRule`]); [`Surface::cotangents`] are the weights of the Laplacian of
+//! linear elements.
 //!
 //! ```
 //! use pericles_manifold::surface::{AreaRule, Surface, SurfaceChecks};
@@ -31,10 +33,11 @@ pub use measure::{AreaRule, Cotangents};
 
 use pericles::space::Point;
 
-/// A surface made of triangles.
+/// Triangulated surface.
 ///
-/// The corners of a triangle run counter-clockwise seen from outside. Vertices are kept in the order given unless [`Surface::renumbered`] is called;
-/// [`Surface::user_number`] is the number under which a vertex was given.
+/// The corners of a triangle run counter-clockwise seen from outside. Vertices keep the given order unless
+/// [`Surface::renumbered`] is called; [`Surface::user_number`] returns the number under which a vertex was
+/// given.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surface {
     positions: Vec<Point>,
@@ -43,13 +46,15 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// A surface from positions (m) and corners of triangles. Nothing is checked here but that the numbers make sense: see [`Surface::checked`].
+    /// Creates a surface from positions (m) and triangle corners. Only the validity of the numbers is checked:
+    /// see [`Surface::checked`].
     ///
     /// # Errors
-    /// No triangle, more vertices than 2³² − 2, a coordinate that is no finite number, a corner that is no vertex.
+    /// No triangle, more vertices than 2³² − 2, a coordinate that is NaN or infinite, or a corner that is not a
+    /// vertex.
     pub fn new(positions: Vec<Point>, triangles: Vec<[u32; 3]>) -> Result<Self, SurfaceError> {
         let vertices = positions.len();
-        // Half-edges, three a triangle, are numbered in 32 bits too.
+        // Half-edges, three per triangle, are numbered in 32 bits too.
         let limit = u32::MAX as usize / 3 - 1;
         for (what, count) in [("vertices", vertices), ("triangles", triangles.len())] {
             if count > limit {
@@ -96,17 +101,17 @@ impl Surface {
         self.positions.len()
     }
 
-    /// Never true: a surface has at least one triangle.
+    /// Always false: a surface has at least one triangle.
     pub fn is_empty(&self) -> bool {
         self.positions.is_empty()
     }
 
-    /// The number under which a vertex was given.
+    /// Number under which a vertex was given.
     pub fn user_number(&self, vertex: usize) -> usize {
         self.user_numbers[vertex] as usize
     }
 
-    /// The numbers under which the vertices were given.
+    /// Numbers under which the vertices were given.
     pub fn user_numbers(&self) -> &[u32] {
         &self.user_numbers
     }
@@ -123,7 +128,7 @@ impl Surface {
         bounds
     }
 
-    /// The positions of a triangle's corners.
+    /// Positions of a triangle's corners.
     pub(crate) fn corners(&self, triangle: [u32; 3]) -> [Point; 3] {
         triangle.map(|vertex| self.positions[vertex as usize])
     }

@@ -1,13 +1,13 @@
-//! An order of vertices in which neighbours on the surface are near in memory.
+//! Renumbers vertices so that neighbours on the surface are close in memory.
 
 use super::Surface;
 use pericles::space::hilbert_order;
 
 impl Surface {
-    /// The same surface with its vertices in the order of a Hilbert curve through its bounding cube, and its triangles in the order of their lowest
-    /// corner.
+    /// Returns the surface with its vertices in the order of a Hilbert curve through its bounding cube, and its
+    /// triangles in the order of their lowest corner.
     ///
-    /// [`Surface::user_number`] still gives the number under which a vertex was given. Cost O(V log V).
+    /// [`Surface::user_number`] still returns the number under which a vertex was given. Cost O(V log V).
     pub fn renumbered(&self) -> Self {
         let order = hilbert_order(&self.positions);
         let mut new_number = vec![0u32; self.len()];
@@ -43,7 +43,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     #[test]
-    fn renumbering_keeps_the_surface_and_shortens_its_edges() {
+    fn renumbering_keeps_the_surface_and_reduces_index_distance_of_neighbours() {
         let surface = Surface::torus(1.0, 0.4, 40, 30).unwrap();
         let renumbered = surface.renumbered();
         assert!((surface.volume() - renumbered.volume()).abs() < 1e-14);

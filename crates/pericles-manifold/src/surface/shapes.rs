@@ -1,4 +1,4 @@
-//! Surfaces by formula.
+//! Surfaces defined by formulas.
 
 use std::collections::HashMap;
 use std::f64::consts::PI;
@@ -6,14 +6,15 @@ use std::f64::consts::PI;
 use super::{Surface, SurfaceError, cross, difference, dot, norm};
 use pericles::space::Point;
 
-/// The finest icosphere: 10 · 4^10 + 2 vertices are ten million.
+/// Finest icosphere: 10 · 4^10 + 2 ≈ ten million vertices.
 const FINEST: u32 = 10;
 
 impl Surface {
-    /// A sphere about the origin: an icosahedron whose edges are halved `level` times, new vertices being moved out to the sphere.
+    /// Creates a sphere about the origin: an icosahedron subdivided `level` times, with new vertices projected
+    /// onto the sphere.
     ///
-    /// The twelve corners lie at (0, ±1, ±φ) and cyclic permutations, φ the golden ratio, so that the poles are vertices from level 1 on.
-    /// V = 10 · 4^level + 2, T = 20 · 4^level.
+    /// The twelve corners lie at (0, ±1, ±φ) and cyclic permutations, with φ the golden ratio, so the poles are
+    /// vertices from level 1 on. V = 10 · 4^level + 2, T = 20 · 4^level.
     pub fn icosphere(level: u32, radius: f64) -> Result<Self, SurfaceError> {
         positive("the radius of the icosphere, m", radius)?;
         if level > FINEST {
@@ -31,7 +32,8 @@ impl Surface {
         Self::new(positions, triangles)
     }
 
-    /// A sphere about the origin with `rings` circles of latitude of `segments` vertices each, and the two poles on the z axis.
+    /// Creates a sphere about the origin with `rings` circles of latitude of `segments` vertices each, and two
+    /// poles on the z axis.
     pub fn uv_sphere(segments: u32, rings: u32, radius: f64) -> Result<Self, SurfaceError> {
         positive("the radius of the sphere, m", radius)?;
         at_least("the number of segments around the sphere", segments, 3)?;
@@ -42,7 +44,7 @@ impl Surface {
         spun(segments, profile.collect(), [radius, -radius])
     }
 
-    /// An ellipsoid about the origin with the given half axes: an icosphere that is stretched.
+    /// Creates an ellipsoid about the origin with the given half axes: a stretched icosphere.
     pub fn ellipsoid(level: u32, half_axes: [f64; 3]) -> Result<Self, SurfaceError> {
         for half_axis in half_axes {
             positive("a half axis of the ellipsoid, m", half_axis)?;
@@ -52,21 +54,22 @@ impl Surface {
         Ok(surface)
     }
 
-    /// A torus about the z axis with `around` vertices along the tube's centre line (radius `major`) and `across` around the tube (radius `minor`).
+    /// Creates a torus about the z axis with `around` vertices along the major circle (radius `major`) and
+    /// `across` along the minor circle (radius `minor`).
     ///
-    /// Vertex (i, j), number i · across + j, lies at ((R + r cos b) cos a, (R + r cos b) sin a, r sin b) with a = 2πi/around, b = 2πj/across; the
-    /// quadrilaterals are cut along (i, j)–(i+1, j+1).
+    /// Vertex (i, j), number i · across + j, lies at ((R + r cos b) cos a, (R + r cos b) sin a, r sin b) with
+    /// a = 2πi/around, b = 2πj/across; quadrilaterals are divided along (i, j)–(i+1, j+1).
     pub fn torus(major: f64, minor: f64, around: u32, across: u32) -> Result<Self, SurfaceError> {
-        positive("the radius of the tube, m", minor)?;
+        positive("the minor radius of the torus, m", minor)?;
         if !(major.is_finite() && major > minor) {
             return Err(SurfaceError::Parameter {
-                quantity: "the radius of the torus' centre line, m",
+                quantity: "the major radius of the torus, m",
                 value: major,
-                allowed: "more than the radius of the tube",
+                allowed: "more than the minor radius",
             });
         }
-        at_least("the number of vertices around the torus", around, 3)?;
-        at_least("the number of vertices across its tube", across, 3)?;
+        at_least("the number of major segments of the torus", around, 3)?;
+        at_least("the number of minor segments of the torus", across, 3)?;
         few(around, across)?;
         let mut positions = Vec::new();
         let mut triangles = Vec::new();
@@ -85,8 +88,8 @@ impl Surface {
         Self::new(positions, triangles)
     }
 
-    /// A capsule about the z axis: a tube of the given length between two half spheres. There are `segments` vertices around it; the rings are as far
-    /// apart as the vertices within a ring.
+    /// Creates a capsule about the z axis: a tube of the given length between two half spheres. It has
+    /// `segments` vertices around it; the distance between rings is about that of vertices within a ring.
     pub fn capsule(radius: f64, length: f64, segments: u32) -> Result<Self, SurfaceError> {
         positive("the radius of the capsule, m", radius)?;
         positive("the length of the capsule's tube, m", length)?;
@@ -114,7 +117,8 @@ impl Surface {
     }
 }
 
-/// A surface of revolution about the z axis: rings at (distance from the axis, height), from top to bottom, between two poles.
+/// Creates a surface of revolution about the z axis from rings (distance from the axis, height), from top to
+/// bottom, between two poles.
 fn spun(segments: u32, profile: Vec<[f64; 2]>, poles: [f64; 2]) -> Result<Surface, SurfaceError> {
     let rings = u32::try_from(profile.len()).unwrap_or(u32::MAX);
     few(segments, rings)?;
@@ -176,7 +180,7 @@ fn icosahedron() -> (Vec<Point>, Vec<[u32; 3]>) {
     (corners.into_iter().map(unit).collect(), triangles)
 }
 
-/// Cuts every triangle into four; the new vertices are moved to the unit sphere.
+/// Divides every triangle into four and projects the new vertices onto the unit sphere.
 fn halve(positions: &mut Vec<Point>, triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
     let mut middles: HashMap<[u32; 2], u32> = HashMap::with_capacity(triangles.len() * 3 / 2);
     let mut finer = Vec::with_capacity(4 * triangles.len());
@@ -234,10 +238,10 @@ fn at_least(quantity: &'static str, value: u32, least: u32) -> Result<(), Surfac
     })
 }
 
-/// Refuses a grid of vertices that would not fit into memory, before it is made.
+/// Returns an error for a grid of vertices too large for memory, before it is created.
 fn few(a: u32, b: u32) -> Result<(), SurfaceError> {
     let count = u64::from(a) * u64::from(b);
-    // As many as the finest icosphere has.
+    // The size of the finest icosphere.
     let limit = 10 * 4u64.pow(FINEST) + 2;
     if count <= limit {
         return Ok(());

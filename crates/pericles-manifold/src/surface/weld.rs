@@ -1,4 +1,4 @@
-//! Surfaces with fewer vertices.
+//! Welding and removal of vertices.
 
 use std::collections::HashMap;
 
@@ -6,8 +6,8 @@ use super::{Surface, SurfaceError, difference, norm};
 use pericles::space::Point;
 
 impl Surface {
-    /// The surface with vertices nearer to each other than `tolerance` (m) made one, the first of them; triangles that lose a corner by it are left out.
-    /// Vertices are numbered anew.
+    /// Returns the surface with vertices closer than `tolerance` (m) merged into the first of them; triangles
+    /// that collapse are removed and vertices renumbered.
     ///
     /// # Errors
     /// [`SurfaceError::Empty`] if no triangle is left.
@@ -24,10 +24,10 @@ impl Surface {
         self.with_vertices(&keep, triangles)
     }
 
-    /// The surface without the vertices that belong to no triangle. Vertices are numbered anew.
+    /// Returns the surface without vertices that belong to no triangle. Vertices are renumbered.
     ///
     /// # Errors
-    /// None but those of [`Surface::new`].
+    /// As [`Surface::new`].
     pub fn without_unreferenced(&self) -> Result<Self, SurfaceError> {
         let mut used = vec![false; self.len()];
         for &vertex in self.triangles.iter().flatten() {
@@ -57,7 +57,7 @@ impl Surface {
     }
 }
 
-/// For each point the first one that lies within `tolerance` of it, itself if there is none before it.
+/// For each point, returns the first point within `tolerance` of it, or the point itself.
 ///
 /// Points are sorted into cubes of side `tolerance`, of which 27 are searched.
 pub(super) fn same_places(positions: &[Point], tolerance: f64) -> Vec<u32> {

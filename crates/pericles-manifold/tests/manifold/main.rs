@@ -1,4 +1,4 @@
-//! Tests of the crate in one program: what is generic is compiled once for all of them.
+//! All tests of the crate in one program, so that generic code is compiled once.
 
 mod manifolds;
 mod surface;

@@ -1,7 +1,8 @@
-//! Nodes inside a closed surface, by the signed crossings of lines along z.
+//! Nodes inside a closed surface, from the signed crossings of lines along z.
 //!
-//! All decisions are signs of determinants, computed exactly (Shewchuk 1997). A node is meant at (x + ε, y + ε², z + ε³): where a surface passes through a
-//! node, the node is inside of exactly one of two bodies that share the surface. Counts are integers, so that the result does not depend on threads.
+//! All decisions are signs of determinants, computed exactly (Shewchuk 1997). A node stands for the point
+//! (x + ε, y + ε², z + ε³): if a surface passes through a node, the node is inside exactly one of two bodies
+//! that share the surface. Counts are integers, so that the result does not depend on threads.
 
 use rayon::prelude::*;
 use robust::{Coord3D, orient2d, orient3d};
@@ -11,18 +12,19 @@ use super::lattice::{Filled, Lattice};
 use super::rows::{Rows, coord, sign};
 use super::surface::TriangleSurface;
 
-/// The nodes of a lattice inside a closed surface: those with a winding number of one at least. What surfaces enclose twice counts once, a cavity is empty.
+/// Finds the nodes of a lattice inside a closed surface: those with a winding number of at least one. Volume
+/// enclosed twice counts once; cavities are empty.
 ///
 /// # Errors
-/// An open surface, and a lattice with too many nodes.
+/// Returns an error for an open surface and for a lattice with too many nodes.
 pub fn fill(surface: &TriangleSurface, spacing: [f64; 3]) -> Result<Filled, FillError> {
     fill_nodes(surface, Lattice::around(surface.bounds(), spacing)?)
 }
 
-/// [`fill`] with a lattice, which need not cover the surface.
+/// Like [`fill`] with a given lattice, which need not cover the surface.
 ///
 /// # Errors
-/// An open surface.
+/// Returns an error for an open surface.
 pub fn fill_nodes(surface: &TriangleSurface, lattice: Lattice) -> Result<Filled, FillError> {
     let rows = Rows::new(surface, lattice);
     let enclosed = surface.signed_volume();
@@ -57,13 +59,13 @@ pub fn fill_nodes(surface: &TriangleSurface, lattice: Lattice) -> Result<Filled,
     })
 }
 
-/// Lines of a row whose crossings do not add up to zero.
+/// Lines of a row whose signed crossings do not sum to zero.
 struct OpenColumns {
     count: usize,
     first: Option<usize>,
 }
 
-/// Fills a row of columns; `changes` has an entry for every node of a column and one more, all zero before and after.
+/// Fills a row of columns; `changes` has one entry more than a column has nodes, all zero before and after.
 fn fill_row(
     rows: &Rows<'_>,
     row: usize,
@@ -88,7 +90,7 @@ fn fill_row(
         .zip(inside.chunks_mut(nz))
         .enumerate();
     for (column, (changes, inside)) in columns {
-        // All nodes below a crossing are in or out by it.
+        // A crossing changes all nodes below it.
         let mut winding = changes[nz];
         for (change, inside) in changes[..nz].iter().zip(inside).rev() {
             *inside = winding >= 1;
@@ -103,12 +105,12 @@ fn fill_row(
     open
 }
 
-/// The number of the first node above a triangle that a line crosses.
+/// Returns the number of the first node above a triangle that a line crosses.
 fn first_above(lattice: &Lattice, corners: &[[f64; 3]; 3], up: i32, x: f64, y: f64) -> usize {
     let nz = lattice.counts[2];
     let height = crossing_height(corners, x, y);
     let guess = (height - lattice.coordinate(2, 0)) / lattice.spacing[2];
-    // A cast keeps the number in range and makes zero of NaN.
+    // The cast clamps the number to the range and maps NaN to zero.
     let mut node = (guess.ceil().max(0.0) as usize).min(nz);
     let above = |node: usize| up * side_of(corners, [x, y, lattice.coordinate(2, node)]) > 0;
     while node < nz && !above(node) {
@@ -120,7 +122,7 @@ fn first_above(lattice: &Lattice, corners: &[[f64; 3]; 3], up: i32, x: f64, y: f
     node
 }
 
-/// z of the point where a line along z meets the plane of a triangle, rounded.
+/// Returns z of the intersection of a line along z with the plane of a triangle, rounded.
 pub(super) fn crossing_height(corners: &[[f64; 3]; 3], x: f64, y: f64) -> f64 {
     let [a, b, c] = *corners;
     let (p, q) = (
@@ -131,7 +133,8 @@ pub(super) fn crossing_height(corners: &[[f64; 3]; 3], x: f64, y: f64) -> f64 {
     a[2] - (normal[0] * (x - a[0]) + normal[1] * (y - a[1])) / normal[2]
 }
 
-/// On which side of a triangle's plane the point q + (ε, ε², ε³) is: 1 on that of its normal.
+/// Returns the side of a triangle's plane on which the point q + (ε, ε², ε³) lies: 1 in the direction of the
+/// normal.
 fn side_of(corners: &[[f64; 3]; 3], q: [f64; 3]) -> i32 {
     let point = |[x, y, z]: [f64; 3]| Coord3D { x, y, z };
     let [a, b, c] = *corners;
@@ -139,7 +142,7 @@ fn side_of(corners: &[[f64; 3]; 3], q: [f64; 3]) -> i32 {
     if exact != 0 {
         return exact;
     }
-    // q is in the plane: the first component of the normal that is not zero decides.
+    // q is in the plane: the first non-zero component of the normal decides.
     let component = |c1: usize, c2: usize| {
         let [a, b, c] = corners.map(|corner| coord(corner[c1], corner[c2]));
         sign(orient2d(a, b, c))

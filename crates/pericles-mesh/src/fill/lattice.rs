@@ -1,29 +1,31 @@
-//! Lattices, and the nodes of them that are inside of something.
+//! Lattices and subsets of their nodes.
 
 use super::FillError;
 
-/// A side may be longer than a whole number of spacings by this part of a spacing without another node.
+/// Tolerance, in spacings, by which a side may exceed a multiple of the spacing without an additional node.
 const SLACK: f64 = 1e-9;
 
-/// The largest number of nodes in the box of a lattice.
+/// Maximum number of nodes in the box of a lattice.
 const MOST_NODES: f64 = 4e9;
 
-/// The nodes of a lattice in a box, symmetric about its centre: node i of n along an axis is at centre + (2 i − n + 1) spacing / 2.
+/// The nodes of a lattice in a box, symmetric about its centre: node i of n along an axis is at centre + (2 i
+/// − n + 1) spacing / 2.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lattice {
-    /// The centre of the box.
+    /// Centre of the box.
     pub centre: [f64; 3],
-    /// Distances of neighbours along the axes.
+    /// Spacings along the axes.
     pub spacing: [f64; 3],
     /// Numbers of nodes along the axes.
     pub counts: [usize; 3],
 }
 
 impl Lattice {
-    /// The smallest lattice whose cells cover a box, with n = ⌈side / spacing⌉ nodes along each axis, and at least one.
+    /// Returns the smallest lattice whose cells cover a box, with n = ⌈side / spacing⌉ nodes along each axis,
+    /// at least one.
     ///
     /// # Errors
-    /// A spacing that is not positive, and more than 4·10⁹ nodes.
+    /// Returns an error for a spacing that is not positive and for more than 4·10⁹ nodes.
     pub fn around(bounds: [[f64; 3]; 2], spacing: [f64; 3]) -> Result<Self, FillError> {
         let mut counts = [1; 3];
         let mut nodes = 1.0;
@@ -48,44 +50,46 @@ impl Lattice {
         })
     }
 
-    /// A coordinate of the nodes with this number along an axis.
+    /// Returns the coordinate along an axis of the nodes with this number.
     pub fn coordinate(&self, axis: usize, number: usize) -> f64 {
         let steps = 2.0 * number as f64 - (self.counts[axis] as f64 - 1.0);
         self.centre[axis] + steps * (0.5 * self.spacing[axis])
     }
 
-    /// The position of a node.
+    /// Returns the position of a node.
     pub fn position(&self, node: [usize; 3]) -> [f64; 3] {
         std::array::from_fn(|c| self.coordinate(c, node[c]))
     }
 
-    /// The number of nodes in the box.
+    /// Returns the number of nodes in the box.
     pub fn len(&self) -> usize {
         self.counts.iter().product()
     }
 
-    /// Never true: there is at least one node.
+    /// Always false: there is at least one node.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The volume of a cell.
+    /// Returns the volume of a cell.
     pub fn cell_volume(&self) -> f64 {
         self.spacing.iter().product()
     }
 
-    /// The numbers along an axis of the nodes whose coordinates lie between two numbers, with one more on both sides, so that rounding leaves out none.
+    /// Returns the numbers along an axis of the nodes with coordinates between `low` and `high`, extended by
+    /// one on both sides against rounding.
     pub(super) fn range(&self, axis: usize, low: f64, high: f64) -> std::ops::Range<usize> {
         let first = self.coordinate(axis, 0);
         let place = |x: f64| (x - first) / self.spacing[axis];
-        // Casts keep numbers in range and make zero of NaN.
+        // Casts clamp numbers to the range and map NaN to zero.
         let begin = (place(low).floor() - 1.0).max(0.0) as usize;
         let end = (place(high).ceil() + 2.0).max(0.0) as usize;
         let count = self.counts[axis];
         begin.min(count)..end.min(count)
     }
 
-    /// The lattice of the parts of a box of cells, of which `first` is the first one and which has `counts` cells: each is divided into `ratio` along the first `dimension` axes.
+    /// Returns the lattice of the sub-cells of a box of cells that begins at `first` and has `counts` cells:
+    /// each is divided into `ratio` along the first `dimension` axes.
     pub fn divided_box(
         &self,
         first: [usize; 3],
@@ -104,7 +108,7 @@ impl Lattice {
         fine
     }
 
-    /// The lattice of parts: each cell is divided into so many along x and y.
+    /// Returns the lattice of sub-cells: each cell is divided into `parts` along x and y.
     pub(super) fn divided(&self, parts: usize) -> Self {
         let mut fine = *self;
         for c in 0..2 {
@@ -115,29 +119,29 @@ impl Lattice {
     }
 }
 
-/// The nodes of a lattice that are inside of a surface or an outline.
+/// The nodes of a lattice inside a surface or an outline.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Filled {
     pub(super) lattice: Lattice,
-    /// By column (x fastest, then y), then along z.
+    /// Columns (x fastest, then y), each along z.
     pub(super) inside: Vec<bool>,
     pub(super) enclosed: f64,
     pub(super) was_turned: bool,
 }
 
 impl Filled {
-    /// The lattice.
+    /// Returns the lattice.
     pub fn lattice(&self) -> &Lattice {
         &self.lattice
     }
 
-    /// Whether a node is inside.
+    /// Returns whether a node is inside.
     pub fn contains(&self, [i, j, k]: [usize; 3]) -> bool {
         let [nx, _, nz] = self.lattice.counts;
         self.inside[(j * nx + i) * nz + k]
     }
 
-    /// The nodes that are inside, x running fastest, then y, then z.
+    /// Returns the nodes inside; x varies fastest, then y, then z.
     pub fn nodes(&self) -> impl Iterator<Item = [usize; 3]> {
         let [nx, ny, nz] = self.lattice.counts;
         let all =
@@ -145,27 +149,28 @@ impl Filled {
         all.filter(|&node| self.contains(node))
     }
 
-    /// The number of nodes that are inside.
+    /// Returns the number of nodes inside.
     pub fn len(&self) -> usize {
         self.inside.iter().filter(|inside| **inside).count()
     }
 
-    /// Whether no node is inside.
+    /// Returns whether no node is inside.
     pub fn is_empty(&self) -> bool {
         !self.inside.contains(&true)
     }
 
-    /// The volume of the cells of all nodes that are inside; of an outline their area.
+    /// Returns the total volume of the cells of the nodes inside; for an outline their area.
     pub fn volume(&self) -> f64 {
         self.len() as f64 * self.lattice.cell_volume()
     }
 
-    /// The volume that the surface encloses, Σ a · (b × c) / 6 over its triangles: what is enclosed twice counts twice. Of an outline its area.
+    /// Returns the enclosed volume of the surface, Σ a · (b × c) / 6 over its triangles: volume enclosed
+    /// twice counts twice. For an outline its area.
     pub fn enclosed_volume(&self) -> f64 {
         self.enclosed
     }
 
-    /// Whether all triangles looked inwards: the surface was turned inside out.
+    /// Returns whether all triangles pointed inwards, so that the orientation of the surface was reversed.
     pub fn was_turned(&self) -> bool {
         self.was_turned
     }

@@ -1,13 +1,13 @@
 //! Lattices in closed surfaces and outlines.
 //!
-//! | what | function |
+//! | result | function |
 //! |---|---|
 //! | nodes of a lattice inside a closed surface, exactly | [`fill`] |
-//! | the same of a surface with holes, by the winding number | [`fill_open`] |
-//! | the same for a given lattice, such as that of smaller cells in a part of the body | [`fill_nodes`], [`fill_open_nodes`], [`Outline::fill_nodes`] |
-//! | parts of cells, for cells on the boundary | [`fill_partially`], [`fill_open_partially`] |
+//! | nodes inside a surface with holes, by the winding number | [`fill_open`] |
+//! | nodes of a given lattice, such as smaller cells in a region of the body | [`fill_nodes`], [`fill_open_nodes`], [`Outline::fill_nodes`] |
+//! | volume fractions of cells, for cells on the boundary | [`fill_partially`], [`fill_open_partially`] |
 //! | nodes of a plane lattice inside polygons | [`Outline::fill`] |
-//! | parts of plane cells | [`Outline::fill_partially`] |
+//! | area fractions of plane cells | [`Outline::fill_partially`] |
 //!
 //! Results do not depend on the number of threads.
 
@@ -28,11 +28,11 @@ pub use partial::{PartialCells, fill_partially};
 pub use surface::TriangleSurface;
 pub use winding::{WindingTree, fill_open, fill_open_nodes};
 
-/// Why a surface or an outline cannot be filled.
+/// Errors of filling a surface or an outline.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FillError {
-    /// A coordinate is NaN or infinite.
+    /// A coordinate that is NaN or infinite.
     #[error("vertex {vertex} (from 0) has the coordinate {value}; it must be a finite number")]
     NotFinite {
         /// The vertex, from 0.
@@ -40,54 +40,54 @@ pub enum FillError {
         /// The coordinate.
         value: f64,
     },
-    /// A corner of a triangle is no vertex.
+    /// A corner that is not the number of a vertex.
     #[error(
-        "triangle {triangle} has the corner {corner}; there are {vertices} vertices, numbered from 0"
+        "triangle {triangle} refers to vertex {corner}; there are only {vertices} vertices, numbered from 0"
     )]
     NoSuchVertex {
         /// The triangle, from 0.
         triangle: usize,
-        /// The corner.
+        /// The invalid corner.
         corner: u32,
         /// The number of vertices.
         vertices: usize,
     },
-    /// There is nothing to fill.
+    /// A surface without triangles.
     #[error("the surface has no triangles")]
     Empty,
-    /// A polygon of an outline with too few corners.
-    #[error("polygon {polygon} of the outline has {corners} corner(s); at least 3 are needed")]
+    /// A polygon with fewer than three corners.
+    #[error("polygon {polygon} of the outline has {corners} corner(s); at least 3 are required")]
     FewCorners {
         /// The polygon, from 0.
         polygon: usize,
         /// The number of its corners.
         corners: usize,
     },
-    /// A spacing that is no positive number.
+    /// A spacing that is not a positive number.
     #[error("the spacing is {value}; it must be a positive number")]
     Spacing {
         /// The spacing.
         value: f64,
     },
-    /// A displacement of nodes that is too large.
-    #[error("the amplitude is {value} spacings; allowed: from 0 to below 0.5")]
+    /// An amplitude of random displacements outside its range.
+    #[error("the amplitude is {value} spacings; allowed: at least 0 and below 0.5")]
     Amplitude {
         /// The amplitude, in spacings.
         value: f64,
     },
-    /// More nodes than there may be.
+    /// A lattice with too many nodes.
     #[error(
-        "the lattice would have {nodes:.3e} nodes; at most {most:.3e} are possible. Use a larger spacing"
+        "the lattice would have {nodes:.3e} nodes; allowed: at most {most:.3e}. Use a larger spacing"
     )]
     TooMany {
         /// The number of nodes in the box.
         nodes: f64,
-        /// The largest number.
+        /// The maximum number.
         most: f64,
     },
-    /// Lines through the surface that enter it more often than they leave it, or the reverse.
+    /// An open surface: lines along z do not enter and leave it equally often.
     #[error(
-        "the surface is open: {columns} of {all} lines along z leave it more or less often than they enter it, one of them at {}. Close the surface, or fill it by the winding number",
+        "the surface is open: {columns} of {all} lines along z do not enter and leave it equally often, one of them at {}. Close the surface, or fill it by the winding number",
         crate::digits::place(*at)
     )]
     Open {

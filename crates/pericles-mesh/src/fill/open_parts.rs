@@ -1,4 +1,4 @@
-//! Parts of cells inside a surface that need not be closed.
+//! Volume fractions of cells inside a surface with holes.
 
 use rayon::prelude::*;
 
@@ -11,12 +11,14 @@ use super::winding::{WindingTree, fill_open_nodes};
 /// Samples of a cell along each axis.
 const SAMPLES: usize = 4;
 
-/// The cells of a lattice that are at least partly inside a surface with holes: the part of a cell is that of 4 × 4 × 4 samples with a winding number above ½, a multiple of 1/64. Only cells
-/// that a triangle may meet, and those with a neighbour on the other side, are sampled; the others are whole or empty. A cell below a tenth gives its volume to the nearest cells beside
-/// it that are not, in equal shares.
+/// Finds the cells of a lattice that are at least partly inside a surface with holes. The volume fraction of
+/// a cell is that of 4 × 4 × 4 samples with a winding number above ½, a multiple of 1/64. Only cells that may
+/// intersect a triangle, and those with a neighbour on the other side, are sampled; the others are full or
+/// empty. A cell with a fraction below 0.1 distributes its volume equally among its nearest neighbours above
+/// 0.1.
 ///
 /// # Errors
-/// A lattice with too many nodes.
+/// Returns an error for a lattice with too many nodes.
 pub fn fill_open_partially(
     surface: &TriangleSurface,
     spacing: [f64; 3],
@@ -45,7 +47,7 @@ pub fn fill_open_partially(
     Ok(gathered(lattice, &parts))
 }
 
-/// The share of the samples of a cell that are inside.
+/// Returns the fraction of the samples of a cell that are inside.
 fn sampled(tree: &WindingTree, outward: f64, lattice: &Lattice, cell: [usize; 3]) -> f64 {
     let centre = lattice.position(cell);
     let offset = |sample: usize| (sample as f64 + 0.5) / SAMPLES as f64 - 0.5;
@@ -62,7 +64,7 @@ fn sampled(tree: &WindingTree, outward: f64, lattice: &Lattice, cell: [usize; 3]
     (0..all).filter(is_inside).count() as f64 / all as f64
 }
 
-/// Which cells meet the box of a triangle; columns along z.
+/// Marks the cells that intersect the bounding box of a triangle; columns along z.
 fn cells_at_triangles(surface: &TriangleSurface, lattice: &Lattice) -> Vec<bool> {
     let [nx, _, nz] = lattice.counts;
     let mut meets = vec![false; lattice.len()];
@@ -71,7 +73,7 @@ fn cells_at_triangles(surface: &TriangleSurface, lattice: &Lattice) -> Vec<bool>
         let ranges: [_; 3] = std::array::from_fn(|c| {
             let x = corners.map(|corner| corner[c]);
             let (low, high) = (x[0].min(x[1]).min(x[2]), x[0].max(x[1]).max(x[2]));
-            // A range has one cell more on both sides.
+            // The range is extended by one cell on both sides.
             lattice.range(c, low, high)
         });
         for j in ranges[1].clone() {
@@ -84,7 +86,7 @@ fn cells_at_triangles(surface: &TriangleSurface, lattice: &Lattice) -> Vec<bool>
     meets
 }
 
-/// Marks the cells that have a neighbour on the other side: where the surface has holes no triangle is near.
+/// Marks the cells that have a neighbour on the other side: at holes of the surface no triangle is near.
 fn mark_sides(filled: &Filled, is_marked: &mut [bool]) {
     let [nx, ny, nz] = filled.lattice().counts;
     let place = |[i, j, k]: [usize; 3]| (j * nx + i) * nz + k;

@@ -1,4 +1,4 @@
-//! Plane lattices in polygons.
+//! Plane lattices inside polygons.
 
 use rayon::prelude::*;
 use robust::orient2d;
@@ -8,13 +8,14 @@ use super::lattice::{Filled, Lattice};
 use super::partial::{PartialCells, gathered};
 use super::rows::{coord, sign};
 
-/// Closed polygons in the plane, in either direction. A point is inside where an odd number of them surrounds it: polygons inside others are holes.
+/// Closed polygons in the plane, with either orientation. A point is inside if an odd number of polygons
+/// surrounds it, so that polygons inside others are holes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outline {
     polygons: Vec<Vec<[f64; 2]>>,
 }
 
-/// Twice the signed area of a polygon, positions taken from its first corner.
+/// Returns twice the signed area of a polygon, with positions relative to its first corner.
 fn twice_area(polygon: &[[f64; 2]]) -> f64 {
     let [x, y] = polygon[0];
     let pairs = polygon.windows(2);
@@ -31,12 +32,12 @@ fn edges(polygon: &[[f64; 2]]) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
     polygon.iter().copied().zip(next.copied())
 }
 
-/// Whether the line at x + ε crosses an edge.
+/// Returns whether the line at x + ε crosses an edge.
 fn crosses(a: [f64; 2], b: [f64; 2], x: f64) -> bool {
     (a[0] <= x) != (b[0] <= x)
 }
 
-/// Whether the point (x + ε, y + ε²) is above an edge that the line at x + ε crosses.
+/// Returns whether the point (x + ε, y + ε²) is above an edge that the line at x + ε crosses.
 fn is_above(a: [f64; 2], b: [f64; 2], [x, y]: [f64; 2]) -> bool {
     let (left, right) = if a[0] <= b[0] { (a, b) } else { (b, a) };
     let ends = (coord(left[0], left[1]), coord(right[0], right[1]));
@@ -47,7 +48,7 @@ fn is_above(a: [f64; 2], b: [f64; 2], [x, y]: [f64; 2]) -> bool {
     }
 }
 
-/// The mean of a height that rises linearly from `low` to `high`, cut off below 0 and above 1.
+/// Returns the mean of a height that varies linearly from `low` to `high`, clipped to [0, 1].
 fn mean_height([low, high]: [f64; 2]) -> f64 {
     let share_below = |y: f64| match high > low {
         true => ((y - low) / (high - low)).clamp(0.0, 1.0),
@@ -60,10 +61,11 @@ fn mean_height([low, high]: [f64; 2]) -> f64 {
 }
 
 impl Outline {
-    /// An outline of polygons. The last corner of each is joined with its first.
+    /// Creates an outline of polygons; the last corner of each is connected with its first.
     ///
     /// # Errors
-    /// No polygon, a polygon with fewer than three corners, a coordinate that is not finite.
+    /// Returns an error for no polygons, a polygon with fewer than three corners, or a coordinate that is not
+    /// finite.
     pub fn new(polygons: Vec<Vec<[f64; 2]>>) -> Result<Self, FillError> {
         if polygons.is_empty() {
             return Err(FillError::FewCorners {
@@ -85,14 +87,14 @@ impl Outline {
         Ok(Self { polygons })
     }
 
-    /// Whether a point, meant at (x + ε, y + ε²), is inside.
+    /// Returns whether a point, standing for (x + ε, y + ε²), is inside.
     pub fn contains(&self, point: [f64; 2]) -> bool {
         let edges = self.polygons.iter().flat_map(|polygon| edges(polygon));
         let above = edges.filter(|&(a, b)| crosses(a, b, point[0]) && !is_above(a, b, point));
         above.count() % 2 == 1
     }
 
-    /// The area inside, of polygons that do not cross each other: areas of holes are taken off.
+    /// Returns the enclosed area of polygons that do not cross each other, without holes.
     pub fn area(&self) -> f64 {
         let area = |number: usize| {
             let polygon = &self.polygons[number];
@@ -101,7 +103,7 @@ impl Outline {
         (0..self.polygons.len()).map(area).sum()
     }
 
-    /// 1 of a polygon that surrounds material, −1 of a hole: one that an odd number of the others surrounds.
+    /// Returns 1 for a polygon around material, −1 for a hole: a polygon surrounded by an odd number of others.
     fn sense(&self, number: usize) -> f64 {
         let first = self.polygons[number][0];
         let others = self.polygons.iter().enumerate();
@@ -114,8 +116,9 @@ impl Outline {
         if around.count() % 2 == 0 { 1.0 } else { -1.0 }
     }
 
-    /// The cells of a lattice that are at least partly inside, with the exact part of each, but for rounding: the area of the polygons clipped to the cell, of
-    /// polygons that do not cross each other. A cell below a tenth gives its area to the nearest cells beside it that are not, in equal shares.
+    /// Finds the cells of a lattice that are at least partly inside, with exact area fractions up to
+    /// rounding: the area of the polygons clipped to the cell, for polygons that do not cross each other. A
+    /// cell with a fraction below 0.1 distributes its area equally among its nearest neighbours above 0.1.
     ///
     /// # Errors
     /// As [`Outline::fill`].
@@ -135,17 +138,18 @@ impl Outline {
         Ok(gathered(lattice, &parts))
     }
 
-    /// The parts of the cells of a column: Σ ± ∫ (height of the edge within the cell) dx over the edges, divided by the area of a cell. `senses` are the signs of
-    /// edges towards larger x.
+    /// Returns the area fractions of the cells of a column: Σ ± ∫ (height of the edge within the cell) dx
+    /// over the edges, divided by the area of a cell. `senses` are the signs of edges in the direction of
+    /// increasing x.
     fn parts_of_column(&self, lattice: &Lattice, column: usize, senses: &[f64]) -> Vec<f64> {
-        /// Parts of a cell that are rounding errors.
+        /// Fractions below this are rounding errors.
         const ROUNDING: f64 = 1e-12;
         let [dx, dy, _] = lattice.spacing;
         let ny = lattice.counts[1];
         let centre = lattice.coordinate(0, column);
         let sides = [centre - 0.5 * dx, centre + 0.5 * dx];
         let mut parts = vec![0.0; ny];
-        // What lies below row k is added to all rows below it at the end.
+        // Contributions below row k are added to all rows below it at the end.
         let mut below = vec![0.0; ny + 1];
         for (polygon, sense) in self.polygons.iter().zip(senses) {
             for (a, b) in edges(polygon) {
@@ -154,7 +158,7 @@ impl Outline {
                     false => (b, a, -sense),
                 };
                 let (from, to) = (left[0].max(sides[0]), right[0].min(sides[1]));
-                // Not of edges along y either.
+                // Also skips edges along y.
                 if from >= to {
                     continue;
                 }
@@ -186,7 +190,7 @@ impl Outline {
         parts
     }
 
-    /// The corners of the smallest box that holds all polygons, at z = 0.
+    /// Returns the corners of the bounding box of all polygons, at z = 0.
     pub fn bounds(&self) -> [[f64; 3]; 2] {
         let mut bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
         for corner in self.polygons.iter().flatten() {
@@ -199,16 +203,16 @@ impl Outline {
         bounds
     }
 
-    /// The nodes of a lattice inside, with one node along z, at z = 0.
+    /// Finds the nodes of a lattice inside, with one node along z, at z = 0.
     ///
     /// # Errors
-    /// A spacing that is not positive, too many nodes.
+    /// Returns an error for a spacing that is not positive and for too many nodes.
     pub fn fill(&self, spacing: [f64; 2]) -> Result<Filled, FillError> {
         let lattice = Lattice::around(self.bounds(), [spacing[0], spacing[1], 1.0])?;
         Ok(self.fill_nodes(lattice))
     }
 
-    /// [`Outline::fill`] with a lattice, which need not cover the outline.
+    /// Like [`Outline::fill`] with a given lattice, which need not cover the outline.
     pub fn fill_nodes(&self, lattice: Lattice) -> Filled {
         let [nx, ny, _] = lattice.counts;
         let columns: Vec<Vec<bool>> = (0..nx)
@@ -224,7 +228,7 @@ impl Outline {
         }
     }
 
-    /// Which nodes of a line along y are inside.
+    /// Returns which nodes of a line along y are inside.
     fn column(&self, lattice: &Lattice, column: usize) -> Vec<bool> {
         let x = lattice.coordinate(0, column);
         let ny = lattice.counts[1];

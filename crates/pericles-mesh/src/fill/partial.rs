@@ -1,4 +1,4 @@
-//! Parts of cells inside a closed surface.
+//! Volume fractions of cells inside a closed surface.
 
 use rayon::prelude::*;
 
@@ -8,28 +8,29 @@ use super::lattice::Lattice;
 use super::rows::Rows;
 use super::surface::TriangleSurface;
 
-/// Lines through a cell along x and along y.
+/// Number of lines through a cell along x and along y.
 const LINES: usize = 4;
 
-/// Cells below this part give their volume to their nearest neighbours.
+/// Cells below this fraction distribute their volume among their nearest neighbours.
 const LEAST: f64 = 0.1;
 
-/// Cells of a lattice with the part of each that is inside a surface or an outline.
+/// Cells of a lattice with their volume fractions inside a surface or an outline.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PartialCells {
     /// The lattice.
     pub lattice: Lattice,
-    /// The cells, x running fastest, then y, then z.
+    /// The cells; x varies fastest, then y, then z.
     pub cells: Vec<[usize; 3]>,
-    /// The part of each cell, which is above 1 where a neighbour's volume was added.
+    /// Volume fraction of each cell; above 1 where the volume of a neighbour was added.
     pub parts: Vec<f64>,
 }
 
-/// The cells of a lattice that are at least partly inside a closed surface: along 4 × 4 lines through each cell the length inside is exact but for rounding.
-/// A cell below a tenth gives its volume to the nearest cells beside it that are not, in equal shares.
+/// Finds the cells of a lattice that are at least partly inside a closed surface: along 4 × 4 lines through
+/// each cell the length inside is exact up to rounding. A cell with a fraction below 0.1 distributes its
+/// volume equally among its nearest neighbours above 0.1.
 ///
 /// # Errors
-/// As [`fill`](super::fill).
+/// The same as for [`fill`](super::fill).
 pub fn fill_partially(
     surface: &TriangleSurface,
     spacing: [f64; 3],
@@ -58,7 +59,8 @@ pub fn fill_partially(
     Ok(gathered(lattice, &parts))
 }
 
-/// Adds the lengths of a row of lines to the cells, as parts of their volume; the places of lines that are open.
+/// Adds the lengths of a row of lines to the volume fractions of the cells; returns the positions of lines
+/// through open parts of the surface.
 fn fill_lines(
     rows: &Rows<'_>,
     row: usize,
@@ -70,7 +72,7 @@ fn fill_lines(
     let mut crossings: Vec<(usize, f64, i32)> = Vec::new();
     rows.crossings(row, |line, corners, up| {
         let height = crossing_height(corners, rows.lattice.coordinate(0, line), y);
-        // Rounding must not lead out of the triangle.
+        // Rounding must not lead outside the triangle.
         let z = corners.map(|corner| corner[2]);
         let (low, high) = (z[0].min(z[1]).min(z[2]), z[0].max(z[1]).max(z[2]));
         let height = if height.is_nan() {
@@ -80,7 +82,7 @@ fn fill_lines(
         };
         crossings.push((line, height, up * outward));
     });
-    // From above: of crossings at one place those that lead in come first.
+    // From above; at equal heights, entering crossings come first.
     crossings.sort_by(|a, b| a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)).then(b.2.cmp(&a.2)));
     let nz = lattice.counts[2];
     let mut open = Vec::new();
@@ -104,7 +106,7 @@ fn fill_lines(
     open
 }
 
-/// Adds what the interval from low to high takes of each cell of a column.
+/// Adds the part of the interval from low to high in each cell of a column.
 fn add_length(lattice: &Lattice, cells: &mut [f64], low: f64, high: f64) {
     let share = 1.0 / (LINES * LINES) as f64;
     let spacing = lattice.spacing[2];
@@ -116,7 +118,7 @@ fn add_length(lattice: &Lattice, cells: &mut [f64], low: f64, high: f64) {
     }
 }
 
-/// The cells that are kept, with the volumes of those that are not.
+/// Returns the retained cells, including the volume of the cells removed.
 pub(super) fn gathered(lattice: Lattice, parts: &[f64]) -> PartialCells {
     let [nx, ny, nz] = lattice.counts;
     let place = |[i, j, k]: [usize; 3]| (j * nx + i) * nz + k;
@@ -131,7 +133,7 @@ pub(super) fn gathered(lattice: Lattice, parts: &[f64]) -> PartialCells {
             true => nearest_kept(&lattice, cell, |other| parts[place(other)] >= LEAST),
             false => Vec::new(),
         };
-        // A part without neighbours, of a very thin body, stays.
+        // A small fraction without retained neighbours, in a very thin body, is kept.
         if !nearest.is_empty() {
             kept[place(cell)] = 0.0;
         }
@@ -148,7 +150,7 @@ pub(super) fn gathered(lattice: Lattice, parts: &[f64]) -> PartialCells {
     }
 }
 
-/// The nearest of the 26 neighbours that are kept, all that are equally near.
+/// Returns the nearest of the 26 neighbours that are retained, including ties.
 fn nearest_kept(
     lattice: &Lattice,
     cell: [usize; 3],

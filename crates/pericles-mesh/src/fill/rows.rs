@@ -1,14 +1,14 @@
-//! Lines along z through a surface, and the triangles that they cross.
+//! Intersections of a surface with lines along z.
 //!
-//! A line is meant at (x + ε, y + ε²), with an infinitely small ε: then it meets no edge and no corner, and two triangles that share an edge agree on which of
-//! them it crosses.
+//! A line stands for (x + ε, y + ε²) with infinitesimal ε, so that it meets no edge and no corner, and two
+//! triangles with a common edge agree on which of them it crosses.
 
 use robust::{Coord, orient2d};
 
 use super::lattice::Lattice;
 use super::surface::TriangleSurface;
 
-/// The triangles that may be crossed by the lines of each row, which have the same y.
+/// The triangles that the lines of each row, which have equal y, may cross.
 pub(super) struct Rows<'a> {
     pub(super) lattice: Lattice,
     pub(super) surface: &'a TriangleSurface,
@@ -20,12 +20,12 @@ pub(super) fn coord(x: f64, y: f64) -> Coord<f64> {
     Coord { x, y }
 }
 
-/// The sign of a number: −1, 0 or 1.
+/// Returns the sign of a number: −1, 0 or 1.
 pub(super) fn sign(x: f64) -> i32 {
     i32::from(x > 0.0) - i32::from(x < 0.0)
 }
 
-/// The smallest and the largest of three numbers.
+/// Returns the minimum and maximum of three numbers.
 fn extent(x: [f64; 3]) -> (f64, f64) {
     (x[0].min(x[1]).min(x[2]), x[0].max(x[1]).max(x[2]))
 }
@@ -61,7 +61,8 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Calls `crossed(number of the line along x, corners, 1 or −1)` for every triangle that a line of a row crosses; 1 if the triangle looks up.
+    /// Calls `crossed(number of the line along x, corners, 1 or −1)` for every triangle crossed by a line of
+    /// a row; 1 if the normal of the triangle points upwards.
     pub(super) fn crossings(
         &self,
         row: usize,
@@ -88,12 +89,13 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// Whether the line at (x + ε, y + ε²) crosses a triangle: 1 if the triangle looks up, −1 if it looks down.
+/// Returns whether the line at (x + ε, y + ε²) crosses a triangle: 1 if its normal points upwards, −1 if
+/// downwards.
 fn crosses(corners: &[[f64; 3]; 3], x: f64, y: f64) -> Option<i32> {
     let side = |k: usize| {
         let (a, b) = (corners[k], corners[(k + 1) % 3]);
         let exact = sign(orient2d(coord(a[0], a[1]), coord(b[0], b[1]), coord(x, y)));
-        // Zero: the sign of −(b_y − a_y) ε + (b_x − a_x) ε². Zero again: the triangle is vertical.
+        // Zero: the sign of −(b_y − a_y) ε + (b_x − a_x) ε² decides. Zero again: the triangle is vertical.
         match (exact, sign(a[1] - b[1])) {
             (0, 0) => sign(b[0] - a[0]),
             (0, shifted) => shifted,

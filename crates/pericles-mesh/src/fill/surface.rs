@@ -1,4 +1,4 @@
-//! Surfaces made of triangles.
+//! Triangulated surfaces.
 
 use std::collections::HashMap;
 
@@ -6,8 +6,8 @@ use super::FillError;
 use crate::element::{cross, dot};
 use crate::raw::RawMesh;
 
-/// Triangles, whose corners run counter-clockwise seen from outside. They may form several closed surfaces, which may overlap; a surface inside another one whose
-/// triangles look the other way is a cavity.
+/// Triangles with corners counter-clockwise as seen from outside. They may form several closed surfaces,
+/// which may overlap; an inner surface of opposite orientation is a cavity.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TriangleSurface {
     positions: Vec<[f64; 3]>,
@@ -15,10 +15,11 @@ pub struct TriangleSurface {
 }
 
 impl TriangleSurface {
-    /// A surface from positions and corners.
+    /// Creates a surface from positions and corners.
     ///
     /// # Errors
-    /// No triangle, a coordinate that is not finite, a corner that is no vertex.
+    /// Returns an error for no triangles, a coordinate that is not finite, or a corner that is not the number
+    /// of a vertex.
     pub fn new(positions: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Result<Self, FillError> {
         if triangles.is_empty() {
             return Err(FillError::Empty);
@@ -44,31 +45,31 @@ impl TriangleSurface {
         })
     }
 
-    /// The plane cells of a mesh, in a unit of length (m).
+    /// Creates a surface from the plane cells of a mesh, with the unit of length in m.
     ///
     /// # Errors
-    /// As [`TriangleSurface::new`].
+    /// The same as for [`TriangleSurface::new`].
     pub fn of_mesh(mesh: &RawMesh, unit: f64) -> Result<Self, FillError> {
         let positions = mesh.nodes.iter().map(|x| x.map(|x| x * unit));
         Self::new(positions.collect(), mesh.triangles())
     }
 
-    /// The number of triangles.
+    /// Returns the number of triangles.
     pub fn len(&self) -> usize {
         self.triangles.len()
     }
 
-    /// Never true: there is at least one triangle.
+    /// Always false: there is at least one triangle.
     pub fn is_empty(&self) -> bool {
         self.triangles.is_empty()
     }
 
-    /// The corners of a triangle.
+    /// Returns the corners of a triangle.
     pub fn corners(&self, triangle: usize) -> [[f64; 3]; 3] {
         self.triangles[triangle].map(|vertex| self.positions[vertex as usize])
     }
 
-    /// The corners of the smallest box that holds all triangles.
+    /// Returns the corners of the bounding box of all triangles.
     pub fn bounds(&self) -> [[f64; 3]; 2] {
         let mut bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
         for &vertex in self.triangles.iter().flatten() {
@@ -80,9 +81,10 @@ impl TriangleSurface {
         bounds
     }
 
-    /// The number of edges of triangles that no triangle passes in the opposite direction, by the positions of their ends: zero of closed surfaces that are oriented.
+    /// Returns the number of triangle edges that no other triangle traverses in the opposite direction, compared
+    /// by the positions of their ends: zero for closed, consistently oriented surfaces.
     pub fn unmatched_edges(&self) -> usize {
-        // Zeros of both signs are one place.
+        // Zeros of both signs are the same position.
         let key = |x: [f64; 3]| x.map(|x| (x + 0.0).to_bits());
         let mut edges: HashMap<[[u64; 3]; 2], i64> = HashMap::new();
         for triangle in 0..self.len() {
@@ -100,7 +102,8 @@ impl TriangleSurface {
         unmatched.sum::<u64>() as usize
     }
 
-    /// The enclosed volume Σ a · (b × c) / 6, negative if the triangles look inwards. Positions are taken from the first vertex of the first triangle.
+    /// Returns the enclosed volume Σ a · (b × c) / 6, negative if the triangles point inwards. Positions are
+    /// relative to the first vertex of the first triangle.
     pub fn signed_volume(&self) -> f64 {
         let origin = self.corners(0)[0];
         let six = (0..self.len()).map(|triangle| {

@@ -1,7 +1,8 @@
-//! The winding number of a surface that need not be closed.
+//! Winding number of a surface that need not be closed.
 //!
-//! w(q) = Σ Ω / 4π over the triangles, Ω the solid angle under which one is seen from q (van Oosterom and Strackee 1983). Triangles that are far away are taken
-//! together, by the dipole Σ a n and the first moment Σ a n (x − c)ᵀ about their centre c (Barill et al. 2018).
+//! w(q) = Σ Ω / 4π over the triangles, where Ω is the solid angle of a triangle seen from q (van Oosterom and
+//! Strackee 1983). Distant triangles are grouped and approximated by the dipole Σ a n and the first moment Σ
+//! a n (x − c)ᵀ about their centre c (Barill et al. 2018).
 
 use rayon::prelude::*;
 
@@ -10,10 +11,10 @@ use super::lattice::{Filled, Lattice};
 use super::surface::TriangleSurface;
 use crate::element::{cross, dot};
 
-/// Triangles in a leaf.
+/// Number of triangles in a leaf.
 const LEAF: usize = 8;
 
-/// Triangles beyond so many radii of their box are taken together.
+/// Triangles farther than this many radii of their box are approximated together.
 const FAR: f64 = 2.0;
 
 fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
@@ -24,7 +25,7 @@ fn norm(a: [f64; 3]) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// Triangles that are taken together.
+/// A group of triangles.
 struct Node {
     centre: [f64; 3],
     radius: f64,
@@ -32,21 +33,21 @@ struct Node {
     dipole: [f64; 3],
     /// Σ a n_i (x − c)_j.
     moment: [[f64; 3]; 3],
-    /// Places in the order of the tree.
+    /// Range of triangles in the order of the tree.
     begin: usize,
     end: usize,
-    /// The other child; the first one follows its parent. None of leaves.
+    /// The second child; the first one follows its parent. `None` for leaves.
     second: Option<usize>,
 }
 
-/// A tree of triangles.
+/// Tree of triangles for the winding number.
 pub struct WindingTree {
     corners: Vec<[[f64; 3]; 3]>,
     nodes: Vec<Node>,
 }
 
 impl WindingTree {
-    /// The tree of a surface.
+    /// Builds the tree of a surface.
     pub fn new(surface: &TriangleSurface) -> Self {
         let corners = (0..surface.len()).map(|triangle| surface.corners(triangle));
         let mut tree = Self {
@@ -57,7 +58,7 @@ impl WindingTree {
         tree
     }
 
-    /// Makes the node of a range of triangles, and its children.
+    /// Creates the node of a range of triangles, and its children.
     fn divide(&mut self, begin: usize, end: usize) {
         let number = self.nodes.len();
         let node = self.node(begin, end);
@@ -77,7 +78,7 @@ impl WindingTree {
             0,
             |best, c| if extents[c] > extents[best] { c } else { best },
         );
-        // A stable sort: equal middles stay in the order of the file.
+        // A stable sort: equal centres keep the order of the file.
         part.sort_by(|a, b| middle_of(a, axis).total_cmp(&middle_of(b, axis)));
         let middle = begin + (end - begin) / 2;
         self.divide(begin, middle);
@@ -127,7 +128,7 @@ impl WindingTree {
         node
     }
 
-    /// The winding number at a point.
+    /// Returns the winding number at a point.
     pub fn winding_number(&self, point: [f64; 3]) -> f64 {
         self.solid_angle(0, point) / (4.0 * std::f64::consts::PI)
     }
@@ -150,7 +151,8 @@ impl WindingTree {
 }
 
 impl Node {
-    /// The solid angle by the dipole and the first moment: the gradient of r / |r|³ is δ_ij / |r|³ − 3 r_i r_j / |r|⁵.
+    /// Returns the solid angle from the dipole and the first moment: the gradient of r / |r|³ is δ_ij / |r|³
+    /// − 3 r_i r_j / |r|⁵.
     fn far(&self, r: [f64; 3], distance: f64) -> f64 {
         let cube = distance.powi(3);
         let trace = self.moment[0][0] + self.moment[1][1] + self.moment[2][2];
@@ -159,7 +161,7 @@ impl Node {
     }
 }
 
-/// The solid angle of a triangle, positive if it is seen from the inside.
+/// Returns the solid angle of a triangle, positive if seen from inside.
 fn solid_angle(corners: &[[f64; 3]; 3], point: [f64; 3]) -> f64 {
     let [a, b, c] = corners.map(|corner| minus(corner, point));
     let (la, lb, lc) = (norm(a), norm(b), norm(c));
@@ -168,18 +170,19 @@ fn solid_angle(corners: &[[f64; 3]; 3], point: [f64; 3]) -> f64 {
     2.0 * volume.atan2(below)
 }
 
-/// The nodes of a lattice where the winding number of a surface is above ½: the surface may have holes. Nodes within about a spacing of a hole are
-/// decided by the smooth surface that closes it.
+/// Finds the nodes of a lattice where the winding number of a surface exceeds ½; the surface may have holes.
+/// Nodes within about one spacing of a hole are decided by the smooth closure of the hole that the winding
+/// number implies.
 ///
 /// # Errors
-/// A lattice with too many nodes.
+/// Returns an error for a lattice with too many nodes.
 pub fn fill_open(surface: &TriangleSurface, spacing: [f64; 3]) -> Result<Filled, FillError> {
     let lattice = Lattice::around(surface.bounds(), spacing)?;
     let tree = WindingTree::new(surface);
     Ok(fill_open_nodes(surface, &tree, lattice))
 }
 
-/// [`fill_open`] with a tree of the surface and a lattice, which need not cover the surface.
+/// Like [`fill_open`] with a tree of the surface and a given lattice, which need not cover the surface.
 pub fn fill_open_nodes(surface: &TriangleSurface, tree: &WindingTree, lattice: Lattice) -> Filled {
     let enclosed = surface.signed_volume();
     let outward = if enclosed < 0.0 { -1.0 } else { 1.0 };

@@ -1,14 +1,15 @@
-//! Exodus II, as netCDF: blocks of elements, node sets, side sets and element sets.
+//! Exodus II files (netCDF): element blocks, node sets, side sets and element sets.
 //!
-//! Blocks without names are called `block_ID`, sets `nodelist_ID`, `sideset_ID` and `elemset_ID`. Spheres are points with the volume of the second attribute of their block
-//! (radius, volume), or of the nodal variable `Volume`.
+//! Unnamed blocks are called `block_ID`, sets `nodelist_ID`, `sideset_ID` and `elemset_ID`. Spheres are
+//! points whose volume is the second attribute of their block (radius, volume) or the nodal variable
+//! `Volume`.
 
 use crate::cell::CellKind;
 use crate::fault::Fault;
 use crate::netcdf::{NetCdf, Variable};
 use crate::raw::{Cells, FaceSet, NamedList, RawMesh};
 
-/// The kind of elements of a type, by its beginning and the number of nodes; none of types that are not used.
+/// Returns the cell type by the prefix of the type name and the number of nodes; `None` for unsupported types.
 fn kind_of(name: &str, nodes: usize) -> Option<CellKind> {
     let name = name.to_ascii_uppercase();
     let begins = |words: &[&str]| words.iter().any(|word| name.starts_with(word));
@@ -37,7 +38,7 @@ fn kind_of(name: &str, nodes: usize) -> Option<CellKind> {
 struct Reading<'a> {
     file: NetCdf<'a>,
     mesh: RawMesh,
-    /// The cell of each element; none of elements that are not used.
+    /// Cell of each element; `None` for elements that are not used.
     elements: Vec<Option<u32>>,
     is_plane: bool,
 }
@@ -46,7 +47,7 @@ pub(super) fn parse(content: &[u8], memory: u64) -> Result<RawMesh, Fault> {
     let file = NetCdf::new(content, memory)?;
     if file.dimension("num_processors").is_some_and(|n| n > 1) {
         return Err(Fault::of_file(
-            "the file is one piece of several: join the pieces with epu first",
+            "the file is one part of a decomposed mesh; join the parts with epu first",
         ));
     }
     let mut reading = Reading {
@@ -80,7 +81,7 @@ impl Reading<'_> {
         let count = axes.first().map_or(0, Vec::len);
         if axes.len() > 3 || axes.iter().any(|axis| axis.len() != count) {
             return Err(Fault::of_file(
-                "the coordinates of the nodes are not 1 to 3 arrays of equal length",
+                "the node coordinates are not 1 to 3 arrays of equal length",
             ));
         }
         self.mesh.nodes = (0..count)
@@ -89,7 +90,7 @@ impl Reading<'_> {
         Ok(())
     }
 
-    /// Names of blocks or sets: those of the file, or a word and the identity.
+    /// Returns the names of blocks or sets: those of the file, or a word and the ID.
     fn names(
         &self,
         names: &str,
@@ -115,10 +116,10 @@ impl Reading<'_> {
         Ok((0..count).map(name).collect())
     }
 
-    /// The number of blocks or sets, each of which has a variable or is empty.
+    /// Returns the number of blocks or sets; each one has a variable or is empty.
     fn count(&self, dimension: &str) -> Result<usize, Fault> {
         let count = self.file.dimension(dimension).unwrap_or(0);
-        // Each has an identity of four bytes.
+        // Each has an ID of four bytes.
         let most = self.file.bytes() / 4;
         usize::try_from(count)
             .ok()
@@ -126,7 +127,7 @@ impl Reading<'_> {
             .ok_or_else(|| {
                 let bytes = self.file.bytes();
                 Fault::of_file(format!(
-                    "{dimension} is {count}, but the {bytes} bytes of the file hold {most} at most"
+                    "{dimension} is {count}, but the {bytes} bytes of the file hold at most {most}"
                 ))
             })
     }
@@ -176,7 +177,7 @@ impl Reading<'_> {
         Ok(())
     }
 
-    /// A node, numbered from 1 in the file.
+    /// Returns the index of a node, numbered from 1 in the file.
     fn node(&self, number: i64, set: &str) -> Result<u32, Fault> {
         let node = number
             .checked_sub(1)
@@ -184,25 +185,26 @@ impl Reading<'_> {
         let node = node.filter(|&node| (node as usize) < self.mesh.nodes.len());
         node.ok_or_else(|| {
             Fault::of_file(format!(
-                "{set:?} has the node {number}; the nodes are numbered 1 to {}",
+                "{set:?} refers to node {number}; nodes are numbered 1 to {}",
                 self.mesh.nodes.len()
             ))
         })
     }
 
-    /// An element, numbered from 1 in the file.
+    /// Returns the index of an element, numbered from 1 in the file.
     fn element(&self, number: i64, set: &str) -> Result<Option<u32>, Fault> {
         let element = number.checked_sub(1).and_then(|n| usize::try_from(n).ok());
         let element = element.and_then(|element| self.elements.get(element));
         element.copied().ok_or_else(|| {
             Fault::of_file(format!(
-                "{set:?} has the element {number}; the elements are numbered 1 to {}",
+                "{set:?} refers to element {number}; elements are numbered 1 to {}",
                 self.elements.len()
             ))
         })
     }
 
-    /// Volumes of spheres: of the attribute named volume or the second one, or of the nodal variable Volume.
+    /// Reads volumes of spheres: the attribute named volume, or the second attribute, or the nodal variable
+    /// Volume.
     fn point_volumes(&mut self, block: usize, cells: &[u32]) -> Result<(), Fault> {
         let attributes = self.file.variable(&format!("attrib{block}"));
         let width = |v: &Variable| usize::try_from(v.last_length()).unwrap_or(1);
@@ -288,7 +290,7 @@ impl Reading<'_> {
         Ok(())
     }
 
-    /// Adds a side of a cell. Shells in space have two faces, which are the shell itself, then their edges.
+    /// Adds a side of a cell. Shells in space have two faces, both the shell itself, followed by their edges.
     fn side(&self, cell: u32, side: i64, set: &str, faces: &mut Cells) -> Result<(), Fault> {
         let (kind, corners) = (
             self.mesh.cells.kind(cell as usize),
@@ -310,7 +312,7 @@ impl Reading<'_> {
                 Ok(())
             }
             None => Err(Fault::of_file(format!(
-                "{set:?} has the side {side} of element {} ({kind}); its sides are numbered 1 to {}",
+                "{set:?} refers to side {side} of element {} ({kind}); its sides are numbered 1 to {}",
                 self.mesh.cells.number(cell as usize),
                 kind.facets().len() + first as usize - 1
             ))),

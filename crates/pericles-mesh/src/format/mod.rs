@@ -1,8 +1,8 @@
-//! Formats of meshes and surfaces.
+//! File formats of meshes and surfaces.
 //!
-//! | ending | format | forms |
+//! | extension | format | variants |
 //! |---|---|---|
-//! | `.obj` | Wavefront | text; polygons, negative numbers |
+//! | `.obj` | Wavefront | text; polygons, negative indices |
 //! | `.ply` | Stanford polygons | text, binary of either byte order |
 //! | `.stl` | stereolithography | text, binary |
 //! | `.off` | Object File Format | text |
@@ -11,8 +11,8 @@
 //! | `.inp` | Abaqus | text; parts, instances, sets, surfaces |
 //! | `.e`, `.exo`, `.ex2`, `.g`, `.gen` | Exodus II | classic netCDF (CDF-1, CDF-2, CDF-5); netCDF-4 (HDF5) with the feature `netcdf4` |
 //!
-//! A polygon of more than four corners is cut into the triangles of a fan from its first corner. Counts in a file are compared with what is left of it
-//! before anything is allocated.
+//! A polygon with more than four corners is split into a triangle fan from its first corner. Counts in a file
+//! are compared with its remaining length before memory is allocated.
 
 mod abaqus;
 mod exodus;
@@ -30,10 +30,10 @@ use std::path::Path;
 use crate::fault::Fault;
 use crate::raw::RawMesh;
 
-/// Reads an included file by the name given in the mesh file, and returns its content or the reason why it cannot be read.
+/// Reads an included file by the name given in the mesh file; returns its content or an error message.
 pub type Include<'a> = dyn Fn(&str) -> Result<Vec<u8>, String> + 'a;
 
-/// A format of meshes or surfaces.
+/// A file format of meshes or surfaces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
     /// Wavefront OBJ.
@@ -55,12 +55,12 @@ pub enum Format {
 }
 
 impl Format {
-    /// The endings of files that are read.
+    /// File extensions.
     pub const ENDINGS: [&str; 13] = [
         "obj", "ply", "stl", "off", "msh", "vtu", "vtp", "inp", "e", "exo", "ex2", "g", "gen",
     ];
 
-    /// The format of a file by the ending of its name.
+    /// Returns the format by the file extension.
     pub fn of(path: &Path) -> Option<Self> {
         let ending = path.extension()?.to_string_lossy().to_lowercase();
         Some(match ending.as_str() {
@@ -76,28 +76,29 @@ impl Format {
         })
     }
 
-    /// Whether the corners of every triangle are given again, so that equal ones have to be merged.
+    /// Returns whether the format repeats the corners of every triangle, so that equal ones must be merged.
     pub fn repeats_corners(self) -> bool {
         self == Self::Stl
     }
 
-    /// Whether a file may have nodes that belong to other things than its surfaces.
+    /// Returns whether a file may have nodes that do not belong to its surfaces.
     pub fn is_mixed(self) -> bool {
         !matches!(self, Self::Obj | Self::Ply | Self::Stl | Self::Off)
     }
 
-    /// The mesh in the content of a file. `include` reads the files that an Abaqus file includes. Arrays of VTK and netCDF-4 files may be compressed and may take
-    /// `memory` bytes; those of other formats take little more than the content.
+    /// Parses the content of a mesh file. `include` reads files included by an Abaqus file. Arrays of VTK and
+    /// netCDF-4 files may be compressed and may take up to `memory` bytes; those of other formats take little
+    /// more than the content.
     ///
     /// # Errors
-    /// Content that is not what the format says, with its place.
+    /// Returns an error for content that violates the format, with its location.
     pub fn parse(
         self,
         content: &[u8],
         memory: u64,
         include: &Include<'_>,
     ) -> Result<RawMesh, Fault> {
-        // Editors on Windows write a mark of the byte order before a text. The header of an STL file may be any bytes.
+        // Windows editors write a byte order mark before text. The header of an STL file may contain any bytes.
         let content = match content.strip_prefix(b"\xef\xbb\xbf") {
             Some(text) if self != Self::Stl => text,
             _ => content,

@@ -1,4 +1,5 @@
-//! Wavefront OBJ: lines `v x y z` and `f a b c …`, a corner being `vertex`, `vertex/texture` or `vertex/texture/normal`. Everything else is left out.
+//! Wavefront OBJ: lines `v x y z` and `f a b c …`, where a corner is `vertex`, `vertex/texture` or
+//! `vertex/texture/normal`. Everything else is ignored.
 
 use crate::fault::Fault;
 use crate::raw::RawMesh;
@@ -20,7 +21,7 @@ pub(crate) fn parse(content: &[u8]) -> Result<RawMesh, Fault> {
                     .collect::<Result<Vec<u32>, Fault>>()?;
                 if corners.len() < 3 {
                     let reason = format!(
-                        "a face of {} corner(s); at least 3 are needed",
+                        "the face has {} corner(s); at least 3 are required",
                         corners.len()
                     );
                     return Err(Fault::at_line(line, reason));
@@ -35,7 +36,8 @@ pub(crate) fn parse(content: &[u8]) -> Result<RawMesh, Fault> {
     Ok(mesh)
 }
 
-/// Vertices are numbered from 1 on; negative numbers count back from the last vertex so far.
+/// Parses a corner: vertices are numbered from 1; negative numbers count back from the last vertex defined so
+/// far.
 fn corner(word: &str, vertices: usize, line: usize) -> Result<u32, Fault> {
     let number: Option<i64> = word
         .split('/')
@@ -50,7 +52,7 @@ fn corner(word: &str, vertices: usize, line: usize) -> Result<u32, Fault> {
         .ok_or_else(|| {
             Fault::at_line(
                 line,
-                format!("{word:?} is no corner; allowed: numbers of vertices from 1 on, or back from -1 to -{vertices}"),
+                format!("{word:?} is not a valid corner; allowed: vertex numbers from 1, or relative ones from -1 to -{vertices}"),
             )
         })
 }

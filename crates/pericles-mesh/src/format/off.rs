@@ -1,4 +1,5 @@
-//! OFF: the word OFF, the numbers of vertices, faces and edges, coordinates, and for each face its number of corners and the corners, from 0.
+//! OFF: the word OFF, the numbers of vertices, faces and edges, the coordinates, and for each face its number
+//! of corners and the corners, from 0.
 
 use crate::fault::Fault;
 use crate::raw::RawMesh;
@@ -7,7 +8,7 @@ use crate::scan::Words;
 pub(crate) fn parse(content: &[u8]) -> Result<RawMesh, Fault> {
     let mut words = Words::new(content, Some(b'#'));
     let head = words.word("the word OFF")?;
-    // Colours, normals and textures follow the coordinates of a vertex on its line.
+    // Colours, normals and textures follow the coordinates of a vertex on the same line.
     if !matches!(head, "OFF" | "COFF" | "NOFF" | "CNOFF" | "STOFF") {
         return Err(words.fault(format!("the file begins with {head:?}, not with OFF")));
     }
@@ -24,11 +25,11 @@ pub(crate) fn parse(content: &[u8]) -> Result<RawMesh, Fault> {
         let corners = words.count("corners", 1)?;
         if corners < 3 {
             return Err(words.fault(format!(
-                "a face of {corners} corner(s); at least 3 are needed"
+                "the face has {corners} corner(s); at least 3 are required"
             )));
         }
         let corners = (0..corners)
-            .map(|_| words.number("a number of a vertex"))
+            .map(|_| words.number("a vertex number"))
             .collect::<Result<Vec<u32>, Fault>>()?;
         mesh.polygon(&corners);
         words.skip_line();

@@ -1,11 +1,12 @@
-//! PLY: a header that says which elements follow and what each consists of, then the elements, as text or binary of either byte order.
+//! PLY: a header that defines the elements and their properties, then the elements, as text or binary of
+//! either byte order.
 
 use crate::fault::Fault;
 use crate::raw::RawMesh;
 use crate::scan::Words;
 use crate::scan::{Bytes, Scalar, no_vertex, vertex_number};
 
-/// The largest number of elements without properties: they take no room in the file.
+/// Maximum number of elements without properties, which take no space in the file.
 const MOST_EMPTY: u64 = 1 << 20;
 
 struct Element {
@@ -16,7 +17,7 @@ struct Element {
 
 struct Property {
     name: String,
-    /// Of the number of entries, if it is a list.
+    /// Type of the list length, if it is a list.
     list: Option<Scalar>,
     scalar: Scalar,
 }
@@ -26,7 +27,7 @@ enum Form {
     Binary { little: bool },
 }
 
-/// Numbers of a text or of bytes.
+/// Numbers in text or binary form.
 enum Numbers<'a> {
     Text(Words<'a>),
     Binary(Bytes<'a>),
@@ -54,21 +55,21 @@ impl Numbers<'_> {
         }
     }
 
-    /// The entries of a list.
+    /// Reads the entries of a list.
     fn list(&mut self, count: Scalar, entry: Scalar) -> Result<Vec<i64>, Fault> {
         let length = match self {
-            Self::Text(words) => words.count("entries of a list", 1)?,
+            Self::Text(words) => words.count("list entries", 1)?,
             Self::Binary(bytes) => {
                 let length = bytes.integer(count)?;
                 let length = u64::try_from(length)
-                    .map_err(|_| bytes.fault(format!("a list of {length} entries")))?;
-                bytes.room(length, entry.bytes(), "entries of a list")?
+                    .map_err(|_| bytes.fault(format!("the list length {length} is not valid")))?;
+                bytes.room(length, entry.bytes(), "list entries")?
             }
         };
         (0..length).map(|_| self.integer(entry)).collect()
     }
 
-    /// Reads over a property that nobody wants.
+    /// Skips a property that is not used.
     fn skip(&mut self, property: &Property) -> Result<(), Fault> {
         let Some(count) = property.list else {
             return self.real(property.scalar).map(|_| ());
@@ -87,7 +88,7 @@ pub(crate) fn parse(content: &[u8]) -> Result<RawMesh, Fault> {
         return Err(words.fault("the file does not begin with the word ply"));
     }
     let (form, elements) = header(&mut words)?;
-    // Binary data begin right after the line's end.
+    // Binary data begin directly after the end of the line.
     let data = (words.position() + 1).min(content.len());
     let mut numbers = match form {
         Form::Text => Numbers::Text(words),
@@ -110,7 +111,7 @@ pub(crate) fn parse(content: &[u8]) -> Result<RawMesh, Fault> {
     Ok(mesh)
 }
 
-/// A count is believed only if the file is long enough.
+/// Checks that the file is long enough for a count.
 fn check_count(numbers: &Numbers<'_>, element: &Element, length: usize) -> Result<(), Fault> {
     let smallest = element
         .properties
@@ -125,7 +126,7 @@ fn check_count(numbers: &Numbers<'_>, element: &Element, length: usize) -> Resul
         .map_or(MOST_EMPTY, |room| room as u64);
     if element.count > room {
         return Err(numbers.fault(format!(
-            "{} elements \"{}\" are announced, but the {left} bytes left hold {room} at most",
+            "{} elements \"{}\" are declared, but the remaining {left} bytes hold at most {room}",
             element.count, element.name
         )));
     }
@@ -145,7 +146,7 @@ fn header(words: &mut Words<'_>) -> Result<(Form, Vec<Element>), Fault> {
                     "binary_big_endian" => Form::Binary { little: false },
                     other => {
                         return Err(words.fault(format!(
-                            "the format {other:?}; allowed: ascii, binary_little_endian, binary_big_endian"
+                            "unknown format {other:?}; allowed: ascii, binary_little_endian, binary_big_endian"
                         )));
                     }
                 });
@@ -159,7 +160,7 @@ fn header(words: &mut Words<'_>) -> Result<(Form, Vec<Element>), Fault> {
                 let property = property(words)?;
                 match elements.last_mut() {
                     Some(element) => element.properties.push(property),
-                    None => return Err(words.fault("a property before any element")),
+                    None => return Err(words.fault("a property is given before any element")),
                 }
             }
             "end_header" => break,
@@ -170,7 +171,7 @@ fn header(words: &mut Words<'_>) -> Result<(Form, Vec<Element>), Fault> {
     words.skip_line();
     match form {
         Some(form) => Ok((form, elements)),
-        None => Err(words.fault("the header names no format")),
+        None => Err(words.fault("the header does not specify a format")),
     }
 }
 
@@ -202,7 +203,7 @@ fn scalar(words: &Words<'_>, name: &str) -> Result<Scalar, Fault> {
         "double" | "float64" => Scalar::F64,
         _ => {
             return Err(words.fault(format!(
-                "the type {name:?}; allowed: char, uchar, short, ushort, int, uint, float, double"
+                "unknown type {name:?}; allowed: char, uchar, short, ushort, int, uint, float, double"
             )));
         }
     })
@@ -230,7 +231,7 @@ fn face(numbers: &mut Numbers<'_>, element: &Element, mesh: &mut RawMesh) -> Res
                 let corners = numbers.list(count, property.scalar)?;
                 if corners.len() < 3 {
                     return Err(numbers.fault(format!(
-                        "a face of {} corner(s); at least 3 are needed",
+                        "the face has {} corner(s); at least 3 are required",
                         corners.len()
                     )));
                 }

@@ -1,19 +1,20 @@
-//! STL: triangles with their corners' coordinates, as text (`solid … facet … vertex x y z`) or binary (80 bytes, a count, 50 bytes each).
+//! STL: triangles with the coordinates of their corners, as text (`solid … facet … vertex x y z`) or binary
+//! (80 bytes, a count, 50 bytes each).
 
 use crate::fault::Fault;
 use crate::raw::RawMesh;
 use crate::scan::Words;
 use crate::scan::{Bytes, Scalar};
 
-/// Bytes before the count, and of a triangle: normal, three corners, two bytes.
+/// Bytes before the count, and bytes of a triangle: normal, three corners, two bytes.
 const HEADER: usize = 80;
 const TRIANGLE: usize = 50;
 
-/// Bytes that are looked at to tell a text.
+/// Number of bytes examined to recognise text.
 const GLANCE: usize = 1024;
 
 pub(crate) fn parse(content: &[u8]) -> Result<RawMesh, Fault> {
-    // Some binary files begin with "solid" as well; soon there are bytes that no text has.
+    // Some binary files also begin with "solid", but soon contain bytes that do not occur in text.
     let begin = &content[..content.len().min(GLANCE)];
     let is_text = begin.iter().all(|byte| byte.is_ascii() && *byte != 0);
     if content.starts_with(b"solid") && is_text {
@@ -28,7 +29,7 @@ fn text(content: &[u8]) -> Result<RawMesh, Fault> {
     let mut mesh = RawMesh::default();
     let mut corners = Vec::new();
     words.next();
-    // The name of the solid, which may hold any word.
+    // The name of the solid, which may contain any words.
     words.skip_line();
     let mut ended = false;
     while let Some(word) = words.next() {
@@ -40,7 +41,7 @@ fn text(content: &[u8]) -> Result<RawMesh, Fault> {
             "endfacet" => {
                 if corners.len() != 3 {
                     return Err(words.fault(format!(
-                        "a facet of {} vertices; it must have 3",
+                        "the facet has {} vertices; it must have 3",
                         corners.len()
                     )));
                 }
@@ -59,7 +60,7 @@ fn text(content: &[u8]) -> Result<RawMesh, Fault> {
         }
     }
     if !ended || !corners.is_empty() {
-        return Err(words.fault("the file ends where endsolid should follow"));
+        return Err(words.fault("unexpected end of file; expected endsolid"));
     }
     Ok(mesh)
 }
@@ -82,7 +83,7 @@ fn binary(content: &[u8]) -> Result<RawMesh, Fault> {
         bytes.take(2)?;
         let first = triangle
             .checked_mul(3)
-            .ok_or_else(|| bytes.fault("too many triangles; at most 1431655765 are possible"))?;
+            .ok_or_else(|| bytes.fault("too many triangles; allowed: at most 1431655765"))?;
         mesh.polygon(&[first, first + 1, first + 2]);
     }
     Ok(mesh)

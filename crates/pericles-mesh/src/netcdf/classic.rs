@@ -1,8 +1,9 @@
 //! Classic netCDF files: CDF-1, CDF-2 (64-bit offsets) and CDF-5 (64-bit data).
 //!
-//! All numbers are big-endian. A file is a magic number, the number of records, dimensions, attributes, variables with the places of their values, then
-//! the values: those of fixed variables one after the other, then records with the values of all variables that have the record dimension. Lengths in the
-//! header of a variable may be wrong by design (beyond 4 GiB) and are computed instead.
+//! All numbers are big-endian. A file consists of a magic number, the number of records, dimensions,
+//! attributes, variables with the offsets of their values, then the values: those of fixed variables one
+//! after the other, then records with the values of all variables that have the record dimension. Lengths in
+//! the header of a variable may be wrong by design (beyond 4 GiB) and are computed instead.
 
 use super::{READINGS, Type, Values, Variable};
 use crate::fault::Fault;
@@ -19,7 +20,7 @@ impl Header<'_> {
         Ok(self.bytes.integer(Scalar::U32)? as u64)
     }
 
-    /// A size: eight bytes in CDF-5, else four.
+    /// Reads a size: eight bytes in CDF-5, otherwise four.
     fn size(&mut self) -> Result<u64, Fault> {
         match self.version {
             5 => self.bytes.integer(Scalar::U64).map(|size| size as u64),
@@ -27,15 +28,15 @@ impl Header<'_> {
         }
     }
 
-    /// A tag and the number of entries that follow.
+    /// Reads a tag and the number of entries that follow.
     fn list(&mut self, tag: u64, what: &str) -> Result<usize, Fault> {
         let found = self.int()?;
         let count = self.size()?;
         if found != tag && (found != 0 || count != 0) {
-            let reason = format!("the tag {found} where {what} (tag {tag}) should begin");
+            let reason = format!("found tag {found}, expected {what} (tag {tag})");
             return Err(self.bytes.fault(reason));
         }
-        // A name's length and another number at least.
+        // At least the length of a name and another number.
         self.bytes.room(count, 8, what)
     }
 
@@ -67,13 +68,13 @@ impl Header<'_> {
             (11, 5) => Type::Number(Scalar::U64),
             _ => {
                 return Err(self.bytes.fault(format!(
-                    "the type {number} of values; allowed: 1 to 6, in CDF-5 to 11"
+                    "unknown data type {number}; allowed: 1 to 6, in CDF-5 1 to 11"
                 )));
             }
         })
     }
 
-    /// Attributes, of which texts are kept.
+    /// Reads attributes; only text is kept.
     fn attributes(&mut self) -> Result<Vec<(String, String)>, Fault> {
         let mut attributes = Vec::new();
         for _ in 0..self.list(12, "attributes")? {
@@ -91,7 +92,7 @@ impl Header<'_> {
     }
 }
 
-/// The header of a file.
+/// Reads the header of a file.
 pub(super) fn open(content: &[u8]) -> Result<NetCdf<'_>, Fault> {
     let version = match content {
         [b'C', b'D', b'F', version @ (1 | 2 | 5), ..] => *version,
@@ -117,7 +118,7 @@ pub(super) fn open(content: &[u8]) -> Result<NetCdf<'_>, Fault> {
     let of_records = variables.iter().filter(|v| v.has_records);
     let sizes: Vec<u64> = of_records.map(Variable::bytes).collect();
     let record_bytes = match sizes[..] {
-        // One variable alone is not padded.
+        // A single record variable is not padded.
         [only] => only,
         _ => sizes.iter().fold(0, |sum: u64, &size| {
             sum.saturating_add(size.checked_next_multiple_of(4).unwrap_or(u64::MAX))
@@ -148,7 +149,7 @@ fn variable_of(header: &mut Header<'_>, dimensions: &[(String, u64)]) -> Result<
             Some(number) => own.push(number),
             None => {
                 let reason = format!(
-                    "the variable {name} has the dimension {number}; there are {}",
+                    "the variable {name} refers to dimension {number}; there are only {}",
                     dimensions.len()
                 );
                 return Err(header.bytes.fault(reason));
@@ -162,7 +163,7 @@ fn variable_of(header: &mut Header<'_>, dimensions: &[(String, u64)]) -> Result<
         1 => header.int()?,
         _ => header.bytes.integer(Scalar::U64)? as u64,
     };
-    // The record dimension has the length zero and comes first.
+    // The record dimension has length zero and comes first.
     let has_records = own.first().is_some_and(|&d| dimensions[d].1 == 0);
     let fixed = own.iter().skip(usize::from(has_records));
     let len = fixed.fold(1u64, |len, &d| len.saturating_mul(dimensions[d].1));
@@ -178,7 +179,7 @@ fn variable_of(header: &mut Header<'_>, dimensions: &[(String, u64)]) -> Result<
     })
 }
 
-/// The bytes of a variable, of one record where it has records.
+/// Returns the bytes of a variable, or of one record.
 pub(super) fn data<'a>(
     (content, record_bytes): (&'a [u8], u64),
     variable: &Variable,
@@ -199,7 +200,7 @@ pub(super) fn data<'a>(
     });
     data.ok_or_else(|| {
         Fault::of_file(format!(
-            "the variable {} needs {length} bytes from byte {begin} on, but the file has {}",
+            "the variable {} needs {length} bytes from byte {begin}, but the file has {}",
             variable.name,
             content.len()
         ))

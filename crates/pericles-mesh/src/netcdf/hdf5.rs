@@ -1,7 +1,8 @@
-//! netCDF-4 files: HDF5 files whose data sets are dimensions and variables.
+//! netCDF-4 files: HDF5 files whose datasets are dimensions and variables.
 //!
-//! A dimension is a data set with the attribute `CLASS = "DIMENSION_SCALE"`; its shape is the length. Arrays of characters are data sets of strings of one
-//! byte. A variable has records if its first dimension is unlimited.
+//! A dimension is a dataset with the attribute `CLASS = "DIMENSION_SCALE"`; its shape is the length.
+//! Character arrays are datasets of strings of one byte. A variable has records if its first dimension is
+//! unlimited.
 
 use std::cell::Cell;
 
@@ -15,7 +16,7 @@ fn damaged(error: Error) -> Fault {
     Fault::of_file(format!("the netCDF-4 file cannot be read: {error}"))
 }
 
-/// The type of values and whether they are little-endian; none of types that are neither numbers nor characters.
+/// Returns the value type and whether it is little-endian; `None` for types other than numbers and characters.
 fn type_of(datatype: &Datatype) -> Option<(Type, bool)> {
     let (scalar, order) = match datatype {
         Datatype::String { size: 1, .. } => return Some((Type::Character, false)),
@@ -53,7 +54,8 @@ fn type_of(datatype: &Datatype) -> Option<(Type, bool)> {
     }
 }
 
-/// The dimensions and variables of a file, whose values may take `memory` bytes, or as much as the file if that is more.
+/// Reads the dimensions and variables of a file, whose values may take up to `memory` bytes, or the size of
+/// the file if that is larger.
 pub(super) fn open<'a>(content: &[u8], memory: u64) -> Result<NetCdf<'a>, Fault> {
     let file = File::from_bytes(content.to_vec()).map_err(damaged)?;
     let mut records = 0;
@@ -100,7 +102,7 @@ pub(super) fn open<'a>(content: &[u8], memory: u64) -> Result<NetCdf<'a>, Fault>
     })
 }
 
-/// The attributes that are texts.
+/// Returns the text attributes.
 fn texts_of(dataset: &Dataset) -> Result<Vec<(String, String)>, Fault> {
     let attributes = dataset.attrs().map_err(damaged)?.into_iter();
     let texts = attributes.filter_map(|(key, value)| {
@@ -110,7 +112,7 @@ fn texts_of(dataset: &Dataset) -> Result<Vec<(String, String)>, Fault> {
     Ok(texts.collect())
 }
 
-/// The bytes of a variable, of one record where it has records. `room` is the largest number of bytes that a chunk may take.
+/// Returns the bytes of a variable, or of one record. `room` is the maximum size of a chunk in bytes.
 pub(super) fn data(
     file: &File,
     variable: &Variable,
@@ -133,7 +135,7 @@ pub(super) fn data(
     match data.len() as u64 == variable.bytes() {
         true => Ok(data),
         false => Err(Fault::of_file(format!(
-            "the variable {} has {} bytes; {} are needed",
+            "the variable {} has {} bytes; expected {}",
             variable.name,
             data.len(),
             variable.bytes()

@@ -1,6 +1,7 @@
-//! netCDF files, as Exodus II is written in: dimensions, and variables with their values.
+//! netCDF files, the container of Exodus II: dimensions and variables.
 //!
-//! Classic files (CDF-1, CDF-2, CDF-5) are read by this crate; netCDF-4 files, which are HDF5 files, with the feature `netcdf4`.
+//! Classic files (CDF-1, CDF-2, CDF-5) are read directly; netCDF-4 files, which are HDF5 files, with the
+//! feature `netcdf4`.
 
 mod classic;
 #[cfg(feature = "netcdf4")]
@@ -12,62 +13,63 @@ use std::cell::Cell;
 use crate::fault::Fault;
 use crate::scan::{Bytes, Scalar};
 
-/// A file, whose dimensions and variables are known.
+/// A file with parsed dimensions and variables.
 pub(crate) struct NetCdf<'a> {
     values: Values<'a>,
-    /// The number of bytes of the file.
+    /// Size of the file in bytes.
     bytes: usize,
     records: u64,
     dimensions: Vec<(String, u64)>,
     variables: Vec<Variable>,
-    /// Bytes of values that may still be read: neither variables that overlap nor compressed ones can multiply a file without limit.
+    /// Remaining bytes of values that may be read: neither overlapping nor compressed variables can expand a
+    /// file without limit.
     room: Cell<u64>,
 }
 
-/// Where values are read from.
+/// Source of the values.
 enum Values<'a> {
     Classic {
         content: &'a [u8],
-        /// Bytes of a record.
+        /// Size of a record in bytes.
         record_bytes: u64,
     },
     #[cfg(feature = "netcdf4")]
     Hdf5(hdf5_pure::File),
 }
 
-/// Times that the bytes of a file may be read.
+/// Maximum number of times that the bytes of a file may be read.
 const READINGS: u64 = 4;
 
 /// A variable.
 #[derive(Debug)]
 pub(crate) struct Variable {
     name: String,
-    /// The length of the last dimension.
+    /// Length of the last dimension.
     last_length: u64,
     attributes: Vec<(String, String)>,
     scalar: Type,
     /// Whether the numbers are little-endian.
     little: bool,
-    /// The first byte of the values in a classic file.
+    /// Offset of the values in a classic file.
     begin: u64,
     has_records: bool,
-    /// Values of the whole variable, or of one record.
+    /// Number of values of the variable, or of one record.
     len: u64,
 }
 
 impl Variable {
-    /// The text of an attribute.
+    /// Returns the text of an attribute.
     pub(crate) fn attribute(&self, name: &str) -> Option<&str> {
         let found = self.attributes.iter().find(|(given, _)| given == name);
         found.map(|(_, text)| text.as_str())
     }
 
-    /// The length of the last dimension; 1 of a variable without dimensions.
+    /// Returns the length of the last dimension; 1 for a variable without dimensions.
     pub(crate) fn last_length(&self) -> u64 {
         self.last_length
     }
 
-    /// The bytes of the whole variable, or of one record.
+    /// Returns the size of the variable, or of one record, in bytes.
     fn bytes(&self) -> u64 {
         self.len.saturating_mul(self.scalar.bytes())
     }
@@ -89,10 +91,11 @@ impl Type {
 }
 
 impl<'a> NetCdf<'a> {
-    /// The dimensions and variables of a file. Values of netCDF-4 files, which may be compressed, may take `memory` bytes.
+    /// Parses the dimensions and variables of a file. Values of netCDF-4 files, which may be compressed, may
+    /// take up to `memory` bytes.
     ///
     /// # Errors
-    /// A file that is not netCDF or is damaged; netCDF-4 without the feature `netcdf4`.
+    /// Returns an error if the file is not netCDF or is damaged, or is netCDF-4 without the feature `netcdf4`.
     pub(crate) fn new(content: &'a [u8], memory: u64) -> Result<Self, Fault> {
         if content.starts_with(b"\x89HDF") {
             #[cfg(feature = "netcdf4")]
@@ -101,34 +104,34 @@ impl<'a> NetCdf<'a> {
             let _ = memory;
             #[cfg(not(feature = "netcdf4"))]
             return Err(Fault::of_file(
-                "the file is netCDF-4 (HDF5), which this build does not read; allowed: classic netCDF (CDF-1, CDF-2, CDF-5). Convert it: ncks -5 IN OUT, or nccopy -k cdf5 IN OUT; or build Pericles with the feature netcdf4",
+                "the file is netCDF-4 (HDF5), which this build does not support; allowed: classic netCDF (CDF-1, CDF-2, CDF-5). Convert it with ncks -5 IN OUT or nccopy -k cdf5 IN OUT, or build Pericles with the feature netcdf4",
             ));
         }
         classic::open(content)
     }
 
-    /// The number of bytes of the file.
+    /// Returns the size of the file in bytes.
     pub(crate) fn bytes(&self) -> usize {
         self.bytes
     }
 
-    /// The number of records.
+    /// Returns the number of records.
     pub(crate) fn records(&self) -> u64 {
         self.records
     }
 
-    /// The length of a dimension.
+    /// Returns the length of a dimension.
     pub(crate) fn dimension(&self, name: &str) -> Option<u64> {
         let found = self.dimensions.iter().find(|(given, _)| given == name);
         found.map(|&(_, length)| length)
     }
 
-    /// The variable of this name.
+    /// Returns the variable with this name.
     pub(crate) fn variable(&self, name: &str) -> Option<&Variable> {
         self.variables.iter().find(|variable| variable.name == name)
     }
 
-    /// The bytes of a variable, of its record where it has records.
+    /// Returns the bytes of a variable, or of one record.
     fn data(&self, variable: &Variable, record: u64) -> Result<Cow<'_, [u8]>, Fault> {
         let length = variable.bytes();
         let data: Cow<'_, [u8]> = match &self.values {
@@ -161,11 +164,11 @@ impl<'a> NetCdf<'a> {
         let Type::Number(scalar) = variable.scalar else {
             let name = &variable.name;
             return Err(Fault::of_file(format!(
-                "the variable {name} holds text, not numbers"
+                "the variable {name} contains text, not numbers"
             )));
         };
         let mut bytes = Bytes::new(&data, 0, variable.little);
-        // All bytes are there: the length is no more than theirs.
+        // All bytes are present, so the length is bounded by them.
         let mut numbers = Vec::with_capacity(variable.len as usize);
         for _ in 0..variable.len {
             numbers.push(read(&mut bytes, scalar)?);
@@ -173,17 +176,17 @@ impl<'a> NetCdf<'a> {
         Ok(numbers)
     }
 
-    /// The values of a variable, or of its record, as whole numbers.
+    /// Returns the values of a variable, or of one record, as integers.
     pub(crate) fn whole(&self, variable: &Variable, record: u64) -> Result<Vec<i64>, Fault> {
         self.numbers(variable, record, |bytes, scalar| bytes.integer(scalar))
     }
 
-    /// The values of a variable, or of its record.
+    /// Returns the values of a variable, or of one record.
     pub(crate) fn real(&self, variable: &Variable, record: u64) -> Result<Vec<f64>, Fault> {
         self.numbers(variable, record, |bytes, scalar| bytes.real(scalar))
     }
 
-    /// The texts of a variable, as many as its dimensions but the last one say.
+    /// Returns the texts of a variable: one per entry of all dimensions except the last.
     pub(crate) fn texts(&self, variable: &Variable) -> Result<Vec<String>, Fault> {
         let data = self.data(variable, 0)?;
         let length = usize::try_from(variable.last_length).unwrap_or(usize::MAX);

@@ -1,15 +1,16 @@
-//! Points from the elements of a mesh: one point for each, at its centroid, with its volume.
+//! Points from mesh elements: one point per element, at its centroid, with its volume.
 //!
-//! Elements of the highest dimension become points; those of lower dimension only define sets. Groups, face sets and node sets of the mesh become sets of
-//! points:
+//! Elements of the highest dimension become points; elements of lower dimension only define sets. Groups,
+//! face sets and node sets of the mesh become point sets:
 //!
 //! | in the mesh | points of the set | area |
 //! |---|---|---|
-//! | group of elements that are points | these elements | – |
+//! | group of elements that become points | these elements | – |
 //! | face set, or group of elements one dimension lower | elements that own one of its faces | of these faces |
 //! | node set, or group of elements of still lower dimension | elements that have one of its nodes | – |
 //!
-//! Names are unique: where two kinds of sets share one, elements keep it, and the others get ` (faces)` or ` (nodes)` at their end.
+//! Names are unique: if several kinds of sets share one, element sets keep it, and ` (faces)` or ` (nodes)`
+//! is appended to the others.
 
 mod near;
 mod problem;
@@ -27,14 +28,14 @@ use crate::cell::CellKind;
 use crate::element::{Measure, is_folded, measure};
 use crate::raw::RawMesh;
 
-/// How a mesh becomes points.
+/// Options for the conversion of a mesh to points.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PointOptions {
-    /// The file's unit of length, m.
+    /// Length unit of the file, m.
     pub unit: f64,
-    /// The thickness of a plane mesh, m; not used for solids.
+    /// Thickness of a plane mesh, m; not used for solids.
     pub thickness: f64,
-    /// The groups whose elements are taken; all elements of the highest dimension without it.
+    /// Groups whose elements are used; by default all elements of the highest dimension.
     pub blocks: Option<Vec<String>>,
 }
 
@@ -51,44 +52,44 @@ impl Default for PointOptions {
 /// The points of a mesh, in the order of its elements.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeshPoints {
-    /// 2 of plane meshes, 3 of solids.
+    /// 2 for plane meshes, 3 for solids.
     pub dimension: usize,
     /// Centroids of the elements, m.
     pub positions: Vec<[f64; 3]>,
     /// Volumes, m³.
     pub volumes: Vec<f64>,
-    /// Sizes d = (V / thickness)^(1/dimension), m; V^(1/3) of solids.
+    /// Element sizes d = (V / thickness)^(1/dimension), m; V^(1/3) for solids.
     pub sizes: Vec<f64>,
-    /// The cell of the mesh that each point is.
+    /// Cell of the mesh for each point.
     pub cells: Vec<u32>,
     /// Sets of points, with unique names.
     pub sets: Vec<PointSet>,
-    /// What is unusual, but no error.
+    /// Warnings.
     pub warnings: Vec<Problem>,
 }
 
 impl MeshPoints {
-    /// Number of points.
+    /// Returns the number of points.
     pub fn len(&self) -> usize {
         self.positions.len()
     }
 
-    /// Never true: a mesh without points is an error.
+    /// Always false: a mesh without points is an error.
     pub fn is_empty(&self) -> bool {
         self.positions.is_empty()
     }
 
-    /// The set of this name.
+    /// Returns the set with this name.
     pub fn set(&self, name: &str) -> Option<&PointSet> {
         self.sets.iter().find(|set| set.name == name)
     }
 
-    /// The mean size of the elements, m: the spacing of the body.
+    /// Returns the mean size of the elements, m, which is the spacing of the body.
     pub fn mean_size(&self) -> f64 {
         self.sizes.iter().sum::<f64>() / self.len() as f64
     }
 
-    /// The points that hold the smallest and the largest element.
+    /// Returns the points with the smallest and the largest element.
     pub fn extremes(&self) -> [usize; 2] {
         let (mut least, mut most) = (0, 0);
         for (point, &size) in self.sizes.iter().enumerate() {
@@ -102,7 +103,8 @@ impl MeshPoints {
         [least, most]
     }
 
-    /// What is doubtful of the sizes of the elements with a horizon (m): the largest should be at most half of it, and none below an eighth of the largest.
+    /// Checks the element sizes against a horizon (m): the largest should be at most half of it, and none
+    /// smaller than an eighth of the largest.
     pub fn check_sizes(&self, horizon: f64) -> Vec<Problem> {
         let [least, most] = self.extremes();
         let at = |point: usize| ElementSize {
@@ -125,18 +127,19 @@ impl MeshPoints {
     }
 }
 
-/// Part of a cube of the element's side below which its volume counts as none.
+/// Volume relative to the cube of the element's size below which it counts as zero.
 const NO_VOLUME: f64 = 1e-14;
 
-/// Sides of a body below and above which its unit is doubted, m.
+/// Range of the largest side of a body, m, outside which the unit is doubtful.
 const LIKELY_SIDES: [f64; 2] = [1e-3, 100.0];
 
 impl RawMesh {
-    /// The points of the mesh and their sets.
+    /// Converts the mesh to points and sets.
     ///
     /// # Errors
-    /// A mesh that [`RawMesh::check`] refuses, without elements of dimension 2 or 3 (or points with volumes), with a folded element or one without volume, a
-    /// plane mesh outside a plane of constant z, and blocks that are not there.
+    /// Returns an error for a mesh that [`RawMesh::check`] rejects, a mesh without elements of dimension 2 or
+    /// 3 (or points with volumes), a folded element or one without volume, a plane mesh outside a plane of
+    /// constant z, and blocks that do not exist.
     pub fn points(&self, options: &PointOptions) -> Result<MeshPoints, Problem> {
         self.check()?;
         let (dimension, cells) = self.elements(options)?;
@@ -181,7 +184,7 @@ impl RawMesh {
         Ok(points)
     }
 
-    /// The dimension of the elements that become points, and these.
+    /// Returns the dimension of the elements that become points, and the elements.
     fn elements(&self, options: &PointOptions) -> Result<(usize, Vec<u32>), Problem> {
         let all = 0..self.cells.len() as u32;
         let candidates: Vec<u32> = match &options.blocks {
@@ -238,7 +241,7 @@ impl RawMesh {
         nodes.collect()
     }
 
-    /// Volume and centroid of an element, in the file's unit.
+    /// Returns volume and centroid of an element, in the units of the file.
     fn element(&self, cell: u32) -> Result<Measure, Problem> {
         let kind = self.cells.kind(cell as usize);
         let corners = self.cells.corners(cell as usize);
@@ -271,7 +274,7 @@ impl RawMesh {
         !volume.is_finite()
             || volume.abs()
                 <= NO_VOLUME * side.powi(kind.dimension() as i32) * {
-                    // A point has a given volume: it must be positive.
+                    // The given volume of a point must be positive.
                     if kind == CellKind::Point { 0.0 } else { 1.0 }
                 }
     }
@@ -302,7 +305,7 @@ impl MeshPoints {
             let x = self.positions.iter().map(|x| x[c]);
             x.clone().fold(f64::MIN, f64::max) - x.fold(f64::MAX, f64::min)
         };
-        // Centroids lie half an element inside.
+        // Centroids are half an element inside.
         let side = (0..3).map(extent).fold(0.0, f64::max) + self.mean_size();
         if !(LIKELY_SIDES[0]..=LIKELY_SIDES[1]).contains(&side) {
             self.warnings.push(Problem::DoubtfulUnit { side });

@@ -1,4 +1,4 @@
-//! Points near the faces of a set: layers thicker than one element, for supports.
+//! Points near the faces of a set: layers thicker than one element, for constraints.
 
 use rayon::prelude::*;
 
@@ -8,14 +8,15 @@ use crate::raw::RawMesh;
 
 type Point = [f64; 3];
 
-/// The largest number of cells along an axis of the grid of faces.
+/// Maximum number of cells along an axis of the grid of faces.
 const MOST_CELLS: f64 = 128.0;
 
 fn minus(a: Point, b: Point) -> Point {
     std::array::from_fn(|c| a[c] - b[c])
 }
 
-/// The square of the distance of a point from a triangle, which may be a line or a point (Ericson, Real-Time Collision Detection, 5.1.5).
+/// Returns the squared distance of a point from a triangle, which may degenerate to a line or a point
+/// (Ericson, Real-Time Collision Detection, 5.1.5).
 fn square_distance(p: Point, [a, b, c]: [Point; 3]) -> f64 {
     let at = |s: f64, t: f64| -> Point {
         std::array::from_fn(|k| a[k] + s * (b[k] - a[k]) + t * (c[k] - a[k]))
@@ -53,7 +54,7 @@ fn square_distance(p: Point, [a, b, c]: [Point; 3]) -> f64 {
     square_to(at(vb / sum, vc / sum))
 }
 
-/// Triangles by the cells of a grid, each in all cells that its box, widened by a distance, meets.
+/// Triangles in the cells of a grid: each in all cells that its bounding box, enlarged by a distance, meets.
 struct Grid {
     low: Point,
     side: f64,
@@ -104,7 +105,7 @@ impl Grid {
         place.min(self.counts[axis] - 1)
     }
 
-    /// The triangles that may be near a point.
+    /// Returns the triangles that may be near a point.
     fn near(&self, x: Point) -> &[u32] {
         let is_outside = |c: usize| {
             let high = self.low[c] + self.side * self.counts[c] as f64;
@@ -119,8 +120,9 @@ impl Grid {
 }
 
 impl MeshPoints {
-    /// The points whose positions are within a distance (m) of the faces of a set, ascending; `None` if there is no face set of this name. A support should be as
-    /// thick as a horizon, while the elements that own the faces are one layer. `mesh` and `unit` are those that the points are made of.
+    /// Returns the points within a distance (m) of the faces of a set, ascending; `None` if there is no face
+    /// set of this name. A constrained layer should be as thick as the horizon, while the elements that own
+    /// the faces form a single layer. `mesh` and `unit` must be those from which the points were created.
     pub fn near_faces(
         &self,
         mesh: &RawMesh,
@@ -177,13 +179,13 @@ mod tests {
                 }
             }
             let (found, least) = (square_distance(p, triangle).sqrt(), least.sqrt());
-            // Nodes of the search are 0.01 apart.
+            // The sampling points are 0.01 apart.
             assert!(
                 found <= least + 1e-12 && least - found < 0.012,
                 "{p:?}: {found} {least}"
             );
         }
-        // A triangle that is a line, and one that is a point.
+        // A triangle degenerate to a line, and one degenerate to a point.
         assert_eq!(
             square_distance(
                 [1.0, 2.0, 0.0],

@@ -1,4 +1,4 @@
-//! What can be wrong with a mesh, as errors and warnings.
+//! Errors and warnings about a mesh.
 
 use std::fmt;
 
@@ -6,7 +6,7 @@ use crate::cell::CellKind;
 use crate::digits::short;
 use crate::raw::InvalidMesh;
 
-/// An element's size and centroid, m.
+/// Size and centroid of an element, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ElementSize {
     /// The size, m.
@@ -34,7 +34,7 @@ fn kind_list(counts: &[(CellKind, usize)]) -> String {
         .iter()
         .map(|(kind, count)| format!("{count} {}", kind.word(*count)));
     match counts {
-        [] => "no elements (Gmsh saves only elements in physical groups once there is a group: add the volume to one, or set Mesh.SaveAll)".to_owned(),
+        [] => "no elements (if there are physical groups, Gmsh saves only their elements: add the volume to a group, or set Mesh.SaveAll)".to_owned(),
         _ => words.collect::<Vec<_>>().join(", ") + " only",
     }
 }
@@ -47,91 +47,91 @@ fn corner_list(corners: &[[f64; 3]]) -> String {
     words.collect::<Vec<_>>().join(" ")
 }
 
-/// What is wrong with a mesh.
+/// Error or warning about a mesh.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Problem {
-    /// Numbers or coordinates that make no mesh.
+    /// Numbers or coordinates that do not define a mesh.
     #[error(transparent)]
     Invalid(#[from] InvalidMesh),
-    /// There is nothing that could become points.
+    /// No elements that could become points.
     #[error(
-        "the mesh has {}; elements of dimension 2 or 3, or points with volumes, are needed",
+        "the mesh has {}; elements of dimension 2 or 3, or points with volumes, are required",
         kind_list(kinds)
     )]
     NoElements {
-        /// The number of cells of every kind.
+        /// Number of cells of each type.
         kinds: Vec<(CellKind, usize)>,
     },
-    /// A block that is asked for is not in the mesh.
-    #[error("the mesh has no block {name:?}; it has {}", list(known))]
+    /// A selected block that is not in the mesh.
+    #[error("the mesh has no block {name:?}; available: {}", list(known))]
     UnknownBlock {
-        /// The name.
+        /// Its name.
         name: String,
-        /// The names of all groups.
+        /// Names of all groups.
         known: Vec<String>,
     },
-    /// The volume of an element is positive at one corner and negative at another.
+    /// An element whose volume is positive at one corner and negative at another.
     #[error(
-        "element {number} ({kind}) is folded: its corners are {}",
+        "element {number} ({kind}) is folded (inverted at some of its corners): its corners are {}",
         corner_list(corners)
     )]
     Folded {
-        /// The number of the element in the file.
+        /// Number of the element in the file.
         number: u64,
-        /// Its kind.
+        /// Its type.
         kind: CellKind,
-        /// Its corners, in the file's unit.
+        /// Its corners, in the units of the file.
         corners: Vec<[f64; 3]>,
     },
     /// Elements without volume.
-    #[error("{count} element(s) have no volume, the first of them element {first}")]
+    #[error("{count} element(s) have zero volume, the first is element {first}")]
     NoVolume {
-        /// The number of the first one in the file.
+        /// Number of the first one in the file.
         first: u64,
-        /// How many there are.
+        /// Number of such elements.
         count: usize,
     },
-    /// A plane mesh with several z.
-    #[error("the mesh consists of triangles and quadrilaterals with z from {} to {}; a plane mesh must lie in a plane of constant z, a solid one have solid elements", short(*low), short(*high))]
+    /// A plane mesh with several values of z.
+    #[error("the mesh consists of triangles and quadrilaterals with z from {} to {}; a plane mesh must lie in a plane of constant z, a solid mesh needs solid elements", short(*low), short(*high))]
     NotPlane {
-        /// The smallest z, in the file's unit.
+        /// Minimum of z, in the units of the file.
         low: f64,
-        /// The largest z.
+        /// Maximum of z.
         high: f64,
     },
-    /// Elements larger than half the horizon. A warning.
-    #[error("fewer than 2 cells in a horizon of {} m: the elements have sizes from {smallest} to {largest}; refine the mesh, or choose a horizon of at least twice the largest size", short(*horizon))]
+    /// Warning: elements larger than half the horizon.
+    #[error("the horizon of {} m spans fewer than 2 elements: the element sizes range from {smallest} to {largest}; refine the mesh, or choose a horizon of at least twice the largest size", short(*horizon))]
     Coarse {
-        /// The smallest element.
+        /// Smallest element.
         smallest: ElementSize,
-        /// The largest element.
+        /// Largest element.
         largest: ElementSize,
-        /// The horizon, m.
+        /// Horizon, m.
         horizon: f64,
     },
-    /// Elements too different in size. A warning.
+    /// Warning: elements of very different size.
     #[error(
-        "the elements have sizes from {smallest} to {largest}, which differ more than 8 : 1; make the mesh more uniform"
+        "the element sizes range from {smallest} to {largest}, a ratio above 8 : 1; make the mesh more uniform"
     )]
     Graded {
-        /// The smallest element.
+        /// Smallest element.
         smallest: ElementSize,
-        /// The largest element.
+        /// Largest element.
         largest: ElementSize,
     },
-    /// A body of unlikely size. A warning.
-    #[error("the largest side of the mesh is {} m: is the unit of the file right?", short(*side))]
+    /// Warning: a body of unlikely size.
+    #[error("the largest side of the mesh is {} m; check the unit of the file", short(*side))]
     DoubtfulUnit {
-        /// The largest side, m.
+        /// Largest side, m.
         side: f64,
     },
-    /// Faces of a set that belong to no point. A warning.
-    #[error("{count} face(s) of the set {name:?} belong to no element")]
+    /// Warning: faces of a set that do not belong to any point.
+    #[error("{count} face(s) of the set {name:?} do not belong to any element")]
     UnownedFaces {
-        /// The name of the set.
+        /// Name of the set.
         name: String,
-        /// How many there are.
+        /// Number of such faces.
         count: usize,
     },
 }

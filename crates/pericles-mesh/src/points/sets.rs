@@ -1,4 +1,4 @@
-//! Sets of points from groups, face sets and node sets of a mesh.
+//! Point sets from groups, face sets and node sets of a mesh.
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -7,33 +7,33 @@ use crate::cell::CellKind;
 use crate::element::facet_measure;
 use crate::raw::{Cells, RawMesh};
 
-/// What defines a set of points.
+/// Origin of a point set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum SetKind {
-    /// The points are the elements of a group.
+    /// Elements of a group.
     Elements,
-    /// The points are the elements that own a face of a face set.
+    /// Elements that own a face of a face set.
     Faces,
-    /// The points are the elements that have a node of a node set.
+    /// Elements that have a node of a node set.
     Nodes,
 }
 
-/// A named set of points.
+/// A named point set.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PointSet {
-    /// The name: that of the file, made unique.
+    /// Name of the file, made unique.
     pub name: String,
-    /// What defines it.
+    /// Origin.
     pub kind: SetKind,
     /// The points, ascending.
     pub points: Vec<u32>,
-    /// The area of the faces, m²: of solids, of edges times the thickness. None of other sets.
+    /// Area of the faces, m²; for edges, length times thickness. `None` for other sets.
     pub area: Option<f64>,
-    /// The faces, as numbers of nodes of the mesh; empty of other sets.
+    /// Faces as node numbers of the mesh; empty for other sets.
     pub faces: Cells,
 }
 
-/// A set before it has points.
+/// A set before its points are determined.
 struct Definition {
     name: String,
     kind: SetKind,
@@ -54,7 +54,7 @@ impl Definition {
     }
 }
 
-/// All sets, and warnings about them.
+/// Returns all sets and warnings about them.
 pub(super) fn point_sets(
     mesh: &RawMesh,
     dimension: usize,
@@ -65,7 +65,7 @@ pub(super) fn point_sets(
     let mut warnings = Vec::new();
     let areas = own_faces(mesh, cells, &mut definitions, &mut warnings);
     have_nodes(mesh, cells, &mut definitions);
-    // Lengths of edges times the thickness, areas of faces.
+    // Areas of faces; lengths of edges times the thickness.
     let scale = match dimension {
         2 => options.unit * options.thickness,
         _ => options.unit * options.unit,
@@ -86,7 +86,7 @@ pub(super) fn point_sets(
     (sets, warnings)
 }
 
-/// What each group, face set and node set of the mesh defines.
+/// Returns the definitions from all groups, face sets and node sets of the mesh.
 fn definitions(mesh: &RawMesh, dimension: usize, cells: &[u32]) -> Vec<Definition> {
     let mut point_of = vec![None; mesh.cells.len()];
     for (point, &cell) in (0u32..).zip(cells) {
@@ -126,7 +126,7 @@ fn definitions(mesh: &RawMesh, dimension: usize, cells: &[u32]) -> Vec<Definitio
     all
 }
 
-/// The corners of a face in ascending order: what two cells that share it agree on.
+/// The corners of a face in ascending order, equal for two cells that share it.
 type Key = (CellKind, [u32; 4]);
 
 fn key(kind: CellKind, corners: impl Iterator<Item = u32>) -> Key {
@@ -138,13 +138,13 @@ fn key(kind: CellKind, corners: impl Iterator<Item = u32>) -> Key {
     (kind, sorted)
 }
 
-/// The sets with a face, and whether an element owns it.
+/// The sets that contain a face, and whether an element owns it.
 struct Owned {
     sets: Vec<u32>,
     is_owned: bool,
 }
 
-/// Adds the elements that own a face of a face set; gives the area of the faces that are owned, in units of the file.
+/// Adds the elements that own a face of a face set; returns the area of these faces, in the units of the file.
 fn own_faces(
     mesh: &RawMesh,
     cells: &[u32],
@@ -229,7 +229,8 @@ fn have_nodes(mesh: &RawMesh, cells: &[u32], definitions: &mut [Definition]) {
     }
 }
 
-/// Elements keep their names, faces and nodes give way; what still is not unique is numbered.
+/// Makes names unique: element sets keep their names, face and node sets get a suffix, and remaining
+/// duplicates are numbered.
 fn name_uniquely(sets: &mut [PointSet]) {
     let mut order: Vec<usize> = (0..sets.len()).collect();
     order.sort_by_key(|&set| sets[set].kind);

@@ -1,4 +1,4 @@
-//! What is in a mesh, for people and scripts.
+//! Summary of a mesh.
 
 use super::{MeshPoints, SetKind};
 use crate::cell::CellKind;
@@ -7,34 +7,34 @@ use crate::raw::RawMesh;
 /// A set in a summary.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SetSummary {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// What defines it.
+    /// Origin.
     pub kind: SetKind,
-    /// Its number of points.
+    /// Number of points.
     pub points: usize,
-    /// The area of its faces, m².
+    /// Area of the faces, m².
     pub area: Option<f64>,
 }
 
-/// What is in a mesh, in SI units.
+/// Summary of a mesh in SI units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Summary {
-    /// The number of nodes.
+    /// Number of nodes.
     pub nodes: usize,
-    /// The number of cells of every kind.
+    /// Number of cells of each type.
     pub kinds: Vec<(CellKind, usize)>,
-    /// The number of elements of types that are not used.
+    /// Number of elements of unsupported types.
     pub left_out: Vec<(String, usize)>,
-    /// The number of points.
+    /// Number of points.
     pub points: usize,
-    /// The number of points in no group of elements.
+    /// Number of points that are in no element group.
     pub in_no_group: usize,
-    /// The volume of all points, m³.
+    /// Total volume of the points, m³.
     pub volume: f64,
-    /// The corners of the box that holds the nodes of all elements, m.
+    /// Corners of the bounding box of the nodes of all elements, m.
     pub bounds: [[f64; 3]; 2],
-    /// The least, mean and largest size of an element, m.
+    /// Minimum, mean and maximum element size, m.
     pub sizes: [f64; 3],
     /// The sets.
     pub sets: Vec<SetSummary>,
@@ -43,7 +43,7 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// The summary of a mesh and the points made of it with this unit of length (m).
+    /// Summarises a mesh and the points created from it, with the unit of length in m.
     pub fn new(mesh: &RawMesh, points: &MeshPoints, unit: f64) -> Self {
         let mut grouped = vec![false; points.len()];
         for set in points

@@ -1,4 +1,4 @@
-//! Area vectors of face sets, for pressures.
+//! Area vectors of face sets, for pressure loads.
 
 use super::MeshPoints;
 use crate::element::{cross, dot};
@@ -15,7 +15,8 @@ fn mean(points: &[Point]) -> Point {
     std::array::from_fn(|c| points.iter().map(|x| x[c]).sum::<f64>() / points.len() as f64)
 }
 
-/// The area times the normal of a face, ∫ n dA; of an edge in the plane its length times the normal. The direction follows the corners.
+/// Returns the area times the normal of a face, ∫ n dA; for an edge in the plane, its length times the
+/// normal. The direction follows from the order of the corners.
 fn area_vector(corners: &[Point]) -> Point {
     match *corners {
         [a, b] => [b[1] - a[1], a[0] - b[0], 0.0],
@@ -26,10 +27,13 @@ fn area_vector(corners: &[Point]) -> Point {
 }
 
 impl MeshPoints {
-    /// For each point of a face set ∫ n dA over the faces of the set that its element owns, m², with the outward normal n of the element; of edges times the thickness (m). `None` if
-    /// there is no face set of this name. `mesh`, `unit` and `thickness` are those that the points are made of.
+    /// Returns ∫ n dA (m²) for each point of a face set, over the faces of the set that its element owns,
+    /// with the outward normal n of the element; for edges, times the thickness (m). Returns `None` if there
+    /// is no face set of this name. `mesh`, `unit` and `thickness` must be those from which the points were
+    /// created.
     ///
-    /// A pressure p acts on point k with the force −p ∫ n dA. The sum over a closed surface is zero; a face between two elements of the set counts for both, in opposite directions.
+    /// A pressure p exerts the force −p ∫ n dA on each point. The sum over a closed surface is zero; a face
+    /// between two elements of the set counts for both, with opposite directions.
     pub fn face_vectors(
         &self,
         mesh: &RawMesh,

@@ -1,9 +1,11 @@
 //! Blue noise by parallel dart throwing.
 //!
-//! The box is divided into cells of side r/√D, which hold one point at most. In each round a dart falls into every part of a cell that may have room; a dart
-//! that is inside of the body and no nearer than r to any point becomes a point. Between rounds parts are halved along each axis, and parts that one point
-//! covers or that lie outside of the body are given up, so that darts fall where room is left (Ebeida et al. 2012). Cells are taken in 3^D groups: two cells
-//! of one group are too far apart for their darts to meet, so that all may fall at once (Wei 2008). The order of the groups is random in each round.
+//! The box is divided into cells of side r/√D, which contain at most one point. In each round a dart is
+//! thrown into every part of a cell that may have space; a dart inside the body and at least r away from all
+//! points becomes a point. Between rounds the parts are halved along each axis, and parts covered by a point
+//! or outside the body are discarded, so that darts are thrown only where space is left (Ebeida et al. 2012).
+//! Cells are processed in 3^D groups: two cells of a group are so far apart that their darts cannot conflict,
+//! so that they are processed in parallel (Wei 2008). The order of the groups is random in each round.
 
 use rayon::prelude::*;
 
@@ -14,15 +16,15 @@ use crate::fill::FillError;
 /// Rounds, each with the number of times that cells have been halved.
 const LEVELS: [u32; 8] = [0, 0, 1, 2, 3, 4, 5, 6];
 
-/// The largest number of cells.
+/// Maximum number of cells.
 const MOST_CELLS: f64 = 4e9;
 
-/// The mean spacing of points that are nowhere nearer than r and leave no room for another is r over these numbers, in 1, 2 and 3 dimensions:
-/// ρ^(1/D) with the densities ρ r^D of random sequential addition at saturation, 0.7476 (Rényi 1958), 0.5471 · 4/π and 0.3841 · 6/π
-/// (Zhang and Torquato 2013).
+/// The mean spacing of a saturated set of points with minimum distance r is r divided by these numbers in 1,
+/// 2 and 3 dimensions: ρ^(1/D) with the densities ρ r^D of random sequential addition at saturation, 0.7476
+/// (Rényi 1958), 0.5471 · 4/π and 0.3841 · 6/π (Zhang and Torquato 2013).
 const SATURATED: [f64; 3] = [0.7476, 0.8346, 0.9018];
 
-/// A part of a cell: the cell, and the place of the part along each axis at the present level.
+/// A part of a cell: the cell, and the index of the part along each axis at the current level.
 #[derive(Debug, Clone, Copy)]
 struct Part {
     cell: u32,
@@ -37,17 +39,18 @@ struct Discs<'a> {
     counts: [usize; 3],
     seed: u64,
     inside: &'a Inside<'a>,
-    /// The point in each cell.
+    /// Point in each cell.
     points: Vec<Option<u32>>,
     positions: Vec<[f64; 3]>,
 }
 
-/// Random points in a body, nowhere nearer to each other than a radius that makes their mean spacing about `spacing`: 0.748, 0.835 or 0.902 of it in 1, 2 or
-/// 3 dimensions. Coordinates beyond `dimension` are those of the lower corner of `bounds`, a box that holds the body. Parts of a body that are thinner than half
-/// a spacing may be missed. Points are ordered by their cells, x running fastest.
+/// Creates random points in a body with a mean spacing of about `spacing`; their minimum distance is 0.748,
+/// 0.835 or 0.902 times `spacing` in 1, 2 or 3 dimensions. Coordinates beyond `dimension` are those of the
+/// lower corner of `bounds`, a box that contains the body. Regions thinner than half a spacing may be missed.
+/// Points are ordered by their cells; x varies fastest.
 ///
 /// # Errors
-/// A spacing that is not positive, a box of too many cells.
+/// Returns an error for a spacing that is not positive and for a box with too many cells.
 pub fn blue_noise(
     bounds: [[f64; 3]; 2],
     dimension: usize,
@@ -98,7 +101,7 @@ impl Discs<'_> {
         [cell % nx, cell / nx % ny, cell / (nx * ny)]
     }
 
-    /// The lower corner of a part, and its side.
+    /// Returns the lower corner of a part, and its side length.
     fn corner(&self, part: Part, level: u32) -> ([f64; 3], f64) {
         let side = self.side / f64::from(1u32 << level);
         let place = self.place(part.cell as usize);
@@ -109,7 +112,7 @@ impl Discs<'_> {
         (corner, side)
     }
 
-    /// The points in the cells within two of a cell.
+    /// Returns the points in the cells within two cells of a cell.
     fn points_near(&self, cell: usize) -> Vec<[f64; 3]> {
         let place = self.place(cell);
         let range = |c: usize| place[c].saturating_sub(2)..(place[c] + 3).min(self.counts[c]);
@@ -125,7 +128,8 @@ impl Discs<'_> {
         near
     }
 
-    /// The dart that becomes a point of a cell in a round, if one of those of its parts does. The first part is chosen at random.
+    /// Throws a dart into each part of a cell and returns the first one that becomes a point. The first part
+    /// is chosen at random.
     fn thrown(&self, parts: &[Part], round: usize, level: u32) -> Option<[f64; 3]> {
         let cell = parts[0].cell;
         let near = self.points_near(cell as usize);
@@ -145,7 +149,7 @@ impl Discs<'_> {
         })
     }
 
-    /// Whether a part may have room: no point covers it, and a corner or the centre is inside of the body.
+    /// Returns whether a part may have space: no point covers it, and a corner or the centre is inside the body.
     fn may_have_room(&self, part: Part, level: u32, near: &[[f64; 3]]) -> bool {
         let (corner, side) = self.corner(part, level);
         let farthest = |point: &[f64; 3]| {
@@ -172,7 +176,7 @@ impl Discs<'_> {
                 .any(|bits: u32| (self.inside)(at([0, 1, 2].map(|c| f64::from(bits >> c & 1)))))
     }
 
-    /// The parts of a cell that may have room, of its parts at the level before.
+    /// Returns the halved parts of a cell that may have space.
     fn halved(&self, parts: &[Part], level: u32) -> Vec<Part> {
         let cell = parts[0].cell as usize;
         if self.points[cell].is_some() {

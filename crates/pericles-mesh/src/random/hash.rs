@@ -1,13 +1,13 @@
-//! Random numbers by what they are for.
+//! Counter-based random numbers.
 
-/// The finishing steps of SplitMix64 (Steele, Lea and Flood 2014).
+/// Finalisation of SplitMix64 (Steele, Lea and Flood 2014).
 fn mixed(mut x: u64) -> u64 {
     x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     x ^ (x >> 31)
 }
 
-/// A random whole number for a seed and three numbers.
+/// Returns a random integer for a seed and three numbers.
 pub(super) fn bits(seed: u64, a: u64, b: u64, c: u64) -> u64 {
     const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
     [a, b, c].into_iter().fold(mixed(seed ^ STEP), |state, x| {
@@ -15,7 +15,7 @@ pub(super) fn bits(seed: u64, a: u64, b: u64, c: u64) -> u64 {
     })
 }
 
-/// A random number in [0, 1) for a seed and three numbers.
+/// Returns a random number in [0, 1) for a seed and three numbers.
 pub(super) fn uniform(seed: u64, a: u64, b: u64, c: u64) -> f64 {
     (bits(seed, a, b, c) >> 11) as f64 / (1u64 << 53) as f64
 }
@@ -25,8 +25,9 @@ mod tests {
     use super::uniform;
 
     #[test]
-    fn numbers_are_uniform_and_independent_of_their_neighbours() {
-        // Mean 1/2 and correlation 0 with standard errors 1/√(12 n) and 1/(12 √n): five of them.
+    fn numbers_are_uniform_and_uncorrelated_with_their_neighbours() {
+        // Mean 1/2 and correlation 0 with standard errors 1/√(12 n) and 1/(12 √n); tolerance of five standard
+        // errors.
         let n = 100_000u64;
         for shift in [[1, 0, 0], [0, 1, 0], [0, 0, 1]] {
             let number =

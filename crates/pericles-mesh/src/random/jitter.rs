@@ -1,4 +1,4 @@
-//! Lattices whose nodes are displaced.
+//! Lattices with randomly displaced nodes.
 
 use rayon::prelude::*;
 
@@ -6,14 +6,16 @@ use super::Inside;
 use super::hash::uniform;
 use crate::fill::{FillError, Lattice};
 
-/// How often a displacement that leads out of the body is halved before the node stays.
+/// Number of times that a displacement out of the body is halved before the node stays in place.
 const HALVINGS: i32 = 4;
 
-/// The positions of some nodes of a lattice, each displaced along the first `dimension` axes by at most `amplitude` spacings, uniformly at random. A displacement that leads
-/// out of the body is halved until it does not, or left out. Each point keeps the volume of its cell.
+/// Returns the positions of lattice nodes, each displaced along the first `dimension` axes by at most
+/// `amplitude` spacings, uniformly at random. A displacement out of the body is halved until the position is
+/// inside, or omitted. Each point keeps the volume of its cell.
 ///
 /// # Errors
-/// An amplitude that is not between 0 and ½: with more, points of neighbouring cells could meet.
+/// Returns an error for an amplitude outside 0 ≤ amplitude < ½: with more, points of neighbouring cells could
+/// coincide.
 pub fn jittered(
     lattice: &Lattice,
     nodes: &[[usize; 3]],

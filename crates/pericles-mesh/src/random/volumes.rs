@@ -1,4 +1,4 @@
-//! Volumes of points that lie anywhere.
+//! Volumes of irregular points.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -7,10 +7,10 @@ use rayon::prelude::*;
 use super::Inside;
 use crate::fill::{FillError, Lattice};
 
-/// Samples of a body along each spacing.
+/// Samples of a body per spacing.
 const SAMPLES: f64 = 4.0;
 
-/// Points by the cells of a grid.
+/// Points sorted into the cells of a grid.
 struct Buckets<'a> {
     grid: Lattice,
     positions: &'a [[f64; 3]],
@@ -56,14 +56,14 @@ impl<'a> Buckets<'a> {
         (k * ny + j) * nx + i
     }
 
-    /// The nearest point, of equally near ones the first; none where there are no points.
+    /// Returns the nearest point, the first one if several are equally near; `None` without points.
     fn nearest(&self, x: [f64; 3]) -> Option<u32> {
         let cell = self.cell(x);
         let least_spacing = self.grid.spacing.iter().copied().fold(f64::MAX, f64::min);
         let most = self.grid.counts.iter().copied().max().unwrap_or(1);
         let mut best: Option<(f64, u32)> = None;
         for ring in 0..=most {
-            // Points beyond a ring are farther than ring − 1 spacings.
+            // Points beyond a ring are farther away than ring − 1 spacings.
             let bound = (ring as f64 - 1.0).max(0.0) * least_spacing;
             if best.is_some_and(|(square, _)| square < bound * bound) {
                 break;
@@ -82,7 +82,7 @@ impl<'a> Buckets<'a> {
         best.map(|(_, point)| point)
     }
 
-    /// The points in the cells whose largest distance along an axis is `ring`.
+    /// Visits the points in the cells at a maximum distance of `ring` cells along an axis.
     fn visit_ring(&self, cell: [usize; 3], ring: usize, mut visit: impl FnMut(u32)) {
         let range = |c: usize| {
             let end = (cell[c] + ring + 1).min(self.grid.counts[c]);
@@ -105,11 +105,12 @@ impl<'a> Buckets<'a> {
     }
 }
 
-/// Volumes of points by the part of the body that is nearest to each (Voronoi cells), from 4 samples for each `spacing` along each axis. Their sum is the
-/// volume of the samples inside; every point has one sample at least. Axes beyond `dimension` count as one unit long.
+/// Returns volumes of points from their Voronoi cells within the body, with 4 samples per `spacing` along
+/// each axis. Their sum is the volume of the samples inside; every point has at least one sample. Axes beyond
+/// `dimension` have unit length.
 ///
 /// # Errors
-/// A spacing that is not positive, a box of too many samples.
+/// Returns an error for a spacing that is not positive and for a box with too many samples.
 pub fn nearest_volumes(
     positions: &[[f64; 3]],
     bounds: [[f64; 3]; 2],
@@ -129,7 +130,7 @@ pub fn nearest_volumes(
     let samples = lattice_of(spacing / SAMPLES)?;
     let counts: Vec<AtomicU32> = positions.iter().map(|_| AtomicU32::new(0)).collect();
     let [nx, ny, nz] = samples.counts;
-    // Whole numbers: the order of additions does not matter.
+    // Integers: the order of additions does not matter.
     let found: u64 = (0..ny * nz)
         .into_par_iter()
         .map(|row| {

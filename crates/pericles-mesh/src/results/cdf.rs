@@ -1,8 +1,8 @@
-//! The header of a CDF-2 file (classic netCDF with 64-bit offsets), and the places of its values.
+//! Header of a CDF-2 file (classic netCDF with 64-bit offsets), and the offsets of its values.
 
 use super::{WriteError, unsuitable};
 
-/// Types of values.
+/// Value types.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Type {
     Character = 2,
@@ -28,7 +28,7 @@ pub(super) enum Attribute {
     Float(f32),
 }
 
-/// A variable; the record dimension is the one of length zero, and comes first.
+/// A variable; the record dimension has length zero and comes first.
 struct Variable {
     name: String,
     dimensions: Vec<usize>,
@@ -44,23 +44,23 @@ pub(super) struct Header {
     variables: Vec<Variable>,
 }
 
-/// Where everything is.
+/// Offsets in the file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Places {
-    /// The header, for no records.
+    /// The header, for zero records.
     pub(super) header: Vec<u8>,
-    /// The place of each variable, of its first record if it has records.
+    /// Offset of each variable, or of its first record.
     pub(super) begins: Vec<u64>,
-    /// The place of the first record.
+    /// Offset of the first record.
     pub(super) first_record: u64,
     pub(super) record_bytes: u64,
 }
 
-/// Sizes of a variable that the format can hold.
+/// Maximum size of a variable in the format.
 const MOST_BYTES: u64 = u32::MAX as u64 - 3;
 
 impl Header {
-    /// Adds a dimension. Zero is the length of the record dimension.
+    /// Adds a dimension; length zero marks the record dimension.
     pub(super) fn dimension(
         &mut self,
         name: impl Into<String>,
@@ -69,7 +69,7 @@ impl Header {
         let name = name.into();
         let Ok(length) = u32::try_from(length) else {
             return unsuitable(format!(
-                "{name} is {length}; Exodus files hold at most {}",
+                "{name} is {length}; Exodus files allow at most {}",
                 u32::MAX
             ));
         };
@@ -81,7 +81,7 @@ impl Header {
         self.attributes.push((name.to_owned(), attribute));
     }
 
-    /// Adds a variable, and gives its number.
+    /// Adds a variable and returns its index.
     pub(super) fn variable(
         &mut self,
         name: impl Into<String>,
@@ -105,7 +105,7 @@ impl Header {
         }
     }
 
-    /// Header and places.
+    /// Computes header and offsets.
     pub(super) fn places(&self) -> Result<Places, WriteError> {
         let begin = self.bytes(&vec![0; self.variables.len()])?.len() as u64;
         let mut begins = vec![0; self.variables.len()];
@@ -135,7 +135,7 @@ impl Header {
             .is_some_and(|&d| self.dimensions[d].1 == 0)
     }
 
-    /// Bytes of a variable or of its record, padded.
+    /// Returns the padded size of a variable or of its record, in bytes.
     fn size(&self, variable: &Variable) -> Result<u64, WriteError> {
         let lengths = variable
             .dimensions
@@ -145,7 +145,7 @@ impl Header {
         let size = lengths.fold(variable.kind.bytes(), u64::saturating_mul);
         if size > MOST_BYTES {
             return unsuitable(format!(
-                "{} would take {size} bytes; a variable of an Exodus file takes less than 4 GiB, so that at most {:.1e} points are possible",
+                "{} would take {size} bytes; a variable of an Exodus file is limited to 4 GiB, which allows at most {:.1e} points",
                 variable.name,
                 MOST_BYTES as f64 / variable.kind.bytes() as f64
             ));
@@ -178,14 +178,14 @@ impl Header {
     }
 }
 
-/// A tag and a count; both are zero of an empty list.
+/// Writes a tag and a count; both are zero for an empty list.
 fn list(out: &mut Vec<u8>, tag: u32, count: usize) {
     let tag = if count == 0 { 0 } else { tag };
     out.extend(tag.to_be_bytes());
     out.extend((count as u32).to_be_bytes());
 }
 
-/// A length and a text, padded.
+/// Writes a length and a text, padded.
 fn text(out: &mut Vec<u8>, text: &str) {
     out.extend((text.len() as u32).to_be_bytes());
     out.extend(text.as_bytes());

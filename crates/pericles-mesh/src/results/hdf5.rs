@@ -1,9 +1,9 @@
-//! A minimal HDF5 file: groups, attributes and contiguous datasets whose places are known before anything is written.
+//! Minimal HDF5 writer: groups, attributes and contiguous datasets with offsets known in advance.
 //!
-//! Superblock 0, object headers of version 1, groups by symbol tables, no checksums (HDF5 File Format Specification 3.0). Numbers are little-endian; an
-//! address that is not used has all bits set.
+//! Superblock 0, object headers of version 1, groups by symbol tables, no checksums (HDF5 File Format
+//! Specification 3.0). Numbers are little-endian; all bits of an undefined address are set.
 
-/// Types of numbers.
+/// Number types.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Type {
     U8,
@@ -48,7 +48,7 @@ impl Type {
     }
 }
 
-/// The value of an attribute.
+/// Value of an attribute.
 #[derive(Debug, Clone)]
 pub(super) enum Value {
     Text(&'static str),
@@ -62,14 +62,14 @@ pub(super) struct Object {
     pub(super) name: String,
     pub(super) attributes: Vec<(&'static str, Value)>,
     pub(super) kind: Kind,
-    /// Where its header is, if that must be known.
+    /// Address of its header, if it is prescribed.
     pub(super) header: Option<u64>,
 }
 
 #[derive(Debug, Clone)]
 pub(super) enum Kind {
     Group(Vec<Object>),
-    /// Type, lengths, and the place of the data with their length in bytes.
+    /// Type, shape, address and size of the data in bytes.
     Dataset(Type, Vec<u64>, u64, u64),
 }
 
@@ -94,7 +94,7 @@ impl Object {
     }
 }
 
-/// The largest number of members of a group: twice the K of leaves.
+/// Maximum number of members of a group: twice K of the leaf nodes.
 pub(super) const MOST_MEMBERS: usize = 2 * LEAF_K;
 const LEAF_K: usize = 64;
 const NODE_K: usize = 16;
@@ -106,7 +106,7 @@ fn padded(mut bytes: Vec<u8>) -> Vec<u8> {
     bytes
 }
 
-/// The dataspace message: one number without lengths.
+/// Returns the dataspace message; an empty shape gives a scalar.
 fn dataspace(lengths: &[u64]) -> Vec<u8> {
     let mut message = vec![1, lengths.len() as u8, 0, 0, 0, 0, 0, 0];
     for length in lengths {
@@ -148,7 +148,7 @@ fn attribute(name: &str, value: &Value) -> Vec<u8> {
     message
 }
 
-/// An object header with its messages, each a type and data.
+/// Returns an object header with its messages, each a type and data.
 fn object_header(messages: Vec<(u16, Vec<u8>)>) -> Vec<u8> {
     let mut body = Vec::new();
     let count = messages.len() as u16;
@@ -168,7 +168,7 @@ fn object_header(messages: Vec<(u16, Vec<u8>)>) -> Vec<u8> {
     header
 }
 
-/// The header of an object; of a group with the places of its tree and its heap.
+/// Returns the header of an object; for a group with the addresses of its B-tree and heap.
 pub(super) fn header_of(object: &Object, group: Option<[u64; 2]>) -> Vec<u8> {
     let mut messages = Vec::new();
     match &object.kind {
@@ -179,7 +179,7 @@ pub(super) fn header_of(object: &Object, group: Option<[u64; 2]>) -> Vec<u8> {
         Kind::Dataset(kind, lengths, place, bytes) => {
             messages.push((1, dataspace(lengths)));
             messages.push((3, kind.message()));
-            // No fill value; space exists from the beginning.
+            // No fill value; space is allocated at creation.
             messages.push((5, vec![2, 1, 1, 0]));
             let mut layout = vec![3, 1];
             layout.extend(place.to_le_bytes());
@@ -193,15 +193,16 @@ pub(super) fn header_of(object: &Object, group: Option<[u64; 2]>) -> Vec<u8> {
     object_header(messages)
 }
 
-/// The metadata of a file: all but the data of datasets.
+/// The metadata of a file: everything except the data of datasets.
 pub(super) struct Skeleton {
     bytes: Vec<u8>,
-    /// Places of trees and heaps of groups, by the place of the header.
+    /// Addresses of B-tree and heap of groups, by the address of the header.
     groups: Vec<(u64, [u64; 2])>,
 }
 
 impl Skeleton {
-    /// The metadata of a file of so many bytes; the first `reserved` bytes after the superblock's page are left to headers with a given place.
+    /// Creates the metadata of a file of `file_bytes` bytes; `reserved` bytes after the page of the
+    /// superblock are reserved for headers with prescribed addresses.
     pub(super) fn new(root: &Object, reserved: usize, file_bytes: u64) -> Self {
         let mut skeleton = Self {
             bytes: vec![0; reserved.max(SUPERBLOCK)],
@@ -217,7 +218,7 @@ impl Skeleton {
         for address in [0, NONE, file_bytes, NONE, 0, header] {
             block.extend(address.to_le_bytes());
         }
-        // The root's entry keeps the places of its tree and its heap.
+        // The root entry contains the addresses of its B-tree and heap.
         block.extend(1u32.to_le_bytes());
         block.extend([0; 4]);
         for place in places {
@@ -231,7 +232,7 @@ impl Skeleton {
         &self.bytes
     }
 
-    /// Places of the tree and the heap of the group with this header.
+    /// Returns the addresses of B-tree and heap of the group with this header.
     pub(super) fn places_of(&self, header: u64) -> [u64; 2] {
         let found = self.groups.iter().find(|(place, _)| *place == header);
         found.map_or([NONE; 2], |&(_, places)| places)
@@ -250,7 +251,7 @@ impl Skeleton {
         begin as u64
     }
 
-    /// Adds an object with its members; the place of its header.
+    /// Adds an object with its members; returns the address of its header.
     fn add(&mut self, object: &Object) -> u64 {
         let places = match &object.kind {
             Kind::Group(members) => Some(self.add_members(members)),
@@ -261,11 +262,11 @@ impl Skeleton {
         header
     }
 
-    /// The tree, the table and the heap of a group; the places of tree and heap.
+    /// Adds B-tree, symbol table and heap of a group; returns the addresses of B-tree and heap.
     fn add_members(&mut self, members: &[Object]) -> [u64; 2] {
         let mut sorted: Vec<&Object> = members.iter().collect();
         sorted.sort_by(|a, b| a.name.cmp(&b.name));
-        // Names, the first of which is empty.
+        // Names; the first one is empty.
         let mut names = vec![0; 8];
         let mut table = b"SNOD\x01\0".to_vec();
         table.extend((sorted.len() as u16).to_le_bytes());
@@ -284,7 +285,7 @@ impl Skeleton {
         let table = self.put(None, &table);
         let names_place = self.put(None, &names);
         let mut heap = b"HEAP\0\0\0\0".to_vec();
-        // No free block in the names: the mark is one.
+        // The heap has no free block, which is marked by the value one.
         for number in [names.len() as u64, 1, names_place] {
             heap.extend(number.to_le_bytes());
         }

@@ -1,11 +1,12 @@
-//! Results of a run in one file that grows output by output: Exodus II and VTKHDF.
+//! Results of a run in one file that grows with each output: Exodus II and VTKHDF.
 //!
-//! | format | readers | a killed run leaves | resuming |
+//! | format | readers | after a killed run | resume |
 //! |---|---|---|---|
-//! | Exodus II ([`ExodusWriter`]) | ParaView, VisIt, VTK, Ensight, scripts | a whole file of the outputs before | after any number of outputs, with the same bytes |
-//! | VTKHDF ([`VtkHdfWriter`]) | VTK 9.3 and ParaView 5.12 or newer; h5py | a whole file of the outputs before | the same |
+//! | Exodus II ([`ExodusWriter`]) | ParaView, VisIt, VTK, Ensight, scripts | a valid file with the previous outputs | after any number of outputs, with the same bytes |
+//! | VTKHDF ([`VtkHdfWriter`]) | VTK 9.3 and ParaView 5.12 or newer; h5py | a valid file with the previous outputs | as Exodus II |
 //!
-//! Arrays are component-major: component c of point i is entry c · n + i. Vectors of two components get a third one of zeros.
+//! Arrays are component-major: component c of point i is entry c · n + i. Vectors with two components are
+//! written with a third component of zero.
 
 mod cdf;
 mod exodus;
@@ -23,14 +24,14 @@ use std::io::{self, Seek, SeekFrom, Write};
 /// A field on the points.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FieldSpec {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// 1 of scalars, 2 or 3 of vectors, 6 of symmetric tensors (xx, yy, zz, xy, yz, xz), or any other number.
+    /// 1 for scalars, 2 or 3 for vectors, 6 for symmetric tensors (xx, yy, zz, xy, yz, xz), or any other number.
     pub components: usize,
 }
 
 impl FieldSpec {
-    /// A field.
+    /// Creates a field.
     pub fn new(name: impl Into<String>, components: usize) -> Self {
         Self {
             name: name.into(),
@@ -38,7 +39,7 @@ impl FieldSpec {
         }
     }
 
-    /// The number of numbers that are written for each point.
+    /// Returns the number of values written per point.
     fn columns(&self) -> usize {
         match self.components {
             2 => 3,
@@ -47,17 +48,17 @@ impl FieldSpec {
     }
 }
 
-/// Why results are not written.
+/// Errors of writing results.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum WriteError {
-    /// The system's reason.
+    /// The error of the operating system.
     #[error(transparent)]
     Io(#[from] io::Error),
-    /// Data that do not fit together or cannot be stored.
+    /// Inconsistent data or data that cannot be stored.
     #[error("{0}")]
     Unsuitable(String),
-    /// A file that is to be continued is not of this run.
+    /// A file to be continued that does not belong to this run.
     #[error("the file cannot be continued: {0}")]
     NotContinued(String),
 }
@@ -76,7 +77,7 @@ fn check_fields<'a>(fields: impl IntoIterator<Item = &'a FieldSpec>) -> Result<(
     Ok(())
 }
 
-/// Checks that there is an array for each field, with a number for each component of each point.
+/// Checks that there is an array for each field, with one value per component and point.
 fn check_values(fields: &[FieldSpec], values: &[&[f64]], points: usize) -> Result<(), WriteError> {
     if fields.len() != values.len() {
         return unsuitable(format!(
@@ -88,7 +89,7 @@ fn check_values(fields: &[FieldSpec], values: &[&[f64]], points: usize) -> Resul
     for (field, values) in fields.iter().zip(values) {
         if values.len() != field.components * points {
             return unsuitable(format!(
-                "the field {:?} has {} numbers; {points} points of {} components need {}",
+                "the field {:?} has {} values; {points} points of {} components need {}",
                 field.name,
                 values.len(),
                 field.components,
@@ -99,7 +100,7 @@ fn check_values(fields: &[FieldSpec], values: &[&[f64]], points: usize) -> Resul
     Ok(())
 }
 
-/// Size of numbers and order of bytes.
+/// Size and byte order of numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Numbers {
     is_single: bool,
@@ -111,7 +112,7 @@ impl Numbers {
         if self.is_single { 4 } else { 8 }
     }
 
-    /// Writes so many numbers at a place of a file.
+    /// Writes numbers at an offset of a file.
     fn write_at(
         self,
         file: &mut (impl Write + Seek),

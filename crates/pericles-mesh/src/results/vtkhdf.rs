@@ -1,9 +1,10 @@
-//! VTKHDF 2.0: an unstructured grid of points with fields over time, in one HDF5 file.
+//! Writer of VTKHDF 2.0: an unstructured grid of points with fields over time, in one HDF5 file.
 //!
-//! The number of outputs is known before the run, so the file is laid out once and every number has a known place. The points are stored once, as one cell of
-//! the type poly-vertex. Readers believe the number of steps, which two headers in one page hold: the length of `Steps/Values` and the attribute `NSteps`. They are
-//! written together after each output, so that a killed run leaves a whole file. Before the first output the file has another name, for a file without
-//! steps cannot be read.
+//! The number of outputs is known before the run, so that the file is laid out once and every value has a
+//! fixed offset. The points are stored once, as one cell of type poly-vertex. Readers use the number of
+//! steps, which is stored in two headers on one page: the length of `Steps/Values` and the attribute
+//! `NSteps`. Both are written together after each output, so that a killed run leaves a valid file. Until the
+//! first output the file has another name, because a file without steps cannot be read.
 
 use std::fs::{File, OpenOptions};
 use std::io::{Read, Seek, SeekFrom, Write};
@@ -12,29 +13,29 @@ use std::path::{Path, PathBuf};
 use super::hdf5::{Kind, MOST_MEMBERS, Object, Skeleton, Type, Value, header_of};
 use super::{FieldSpec, Numbers, WriteError, check_fields, check_values, unsuitable};
 
-/// The largest number of outputs: several numbers for each are held in memory.
+/// Maximum number of outputs: several numbers for each are kept in memory.
 const MOST_OUTPUTS: usize = 1 << 24;
 
-/// A page: headers that change are written in one piece of it.
+/// Page size: headers that change are written in one piece.
 const PAGE: u64 = 4096;
 
-/// Bytes of a page for the header of the values; that of the steps follows.
+/// Part of a page reserved for the header of the values, bytes; the header of the steps follows.
 const HALF: u64 = 512;
 
-/// What a file holds.
+/// Content of a VTKHDF file.
 #[derive(Debug, Clone)]
 pub struct VtkHdfLayout<'a> {
-    /// Number of coordinates of a point.
+    /// Number of coordinates per point.
     pub dimension: usize,
     /// Positions, component-major, m.
     pub positions: &'a [f64],
     /// Fields on the points.
     pub fields: Vec<FieldSpec>,
-    /// Fields that do not change, with their component-major values: volumes, materials.
+    /// Constant fields with their component-major values: volumes, materials.
     pub constants: Vec<(FieldSpec, &'a [f64])>,
-    /// The number of outputs of the whole run.
+    /// Number of outputs of the whole run.
     pub outputs: usize,
-    /// Whether numbers are written with four bytes in place of eight.
+    /// Whether numbers are written in single precision.
     pub is_single: bool,
 }
 
@@ -68,13 +69,13 @@ impl VtkHdfLayout<'_> {
         }
         if all.len() > MOST_MEMBERS {
             return unsuitable(format!(
-                "{} fields; at most {MOST_MEMBERS} are possible",
+                "{} fields are given; allowed: at most {MOST_MEMBERS}",
                 all.len()
             ));
         }
         for (k, field) in all.iter().enumerate() {
             if field.name.is_empty() || field.name.contains(['/', '\0']) || field.name == "." {
-                return unsuitable(format!("{:?} cannot be the name of a field", field.name));
+                return unsuitable(format!("{:?} is not a valid field name", field.name));
             }
             if all[..k].iter().any(|other| other.name == field.name) {
                 return unsuitable(format!("two fields have the name {:?}", field.name));
@@ -84,7 +85,7 @@ impl VtkHdfLayout<'_> {
     }
 }
 
-/// Places of numbers in the file.
+/// Offsets of values in the file.
 struct Plan {
     skeleton: Skeleton,
     file_bytes: u64,
@@ -94,12 +95,12 @@ struct Plan {
     connectivity: u64,
     fields: Vec<u64>,
     constants: Vec<u64>,
-    /// Small arrays with their numbers.
+    /// Small arrays with their values.
     small: Vec<(u64, Vec<i64>)>,
     types: u64,
 }
 
-/// Hands out places of data behind the metadata.
+/// Allocates offsets of data after the metadata.
 struct Space {
     next: u64,
 }
@@ -117,7 +118,7 @@ impl Space {
         let place = self.next.next_multiple_of(64);
         let end = bytes.and_then(|bytes| place.checked_add(bytes));
         let (Some(bytes), Some(end)) = (bytes, end.filter(|&end| end < 1 << 62)) else {
-            return unsuitable(format!("{name} would take more bytes than a file can have"));
+            return unsuitable(format!("{name} would exceed the maximum file size"));
         };
         self.next = end;
         let object = Object {
@@ -130,7 +131,7 @@ impl Space {
     }
 }
 
-/// Lengths of an array of so many rows.
+/// Returns the shape of an array with a number of rows.
 fn lengths(rows: u64, field: &FieldSpec) -> Vec<u64> {
     match field.columns() {
         1 => vec![rows],
@@ -138,7 +139,7 @@ fn lengths(rows: u64, field: &FieldSpec) -> Vec<u64> {
     }
 }
 
-/// The metadata take less than this, whatever the fields are.
+/// Upper bound of the size of the metadata for any fields.
 const METADATA: u64 = 1 << 18;
 
 impl Plan {
@@ -235,7 +236,7 @@ impl Plan {
         })
     }
 
-    /// The page with the two headers that hold the number of steps.
+    /// Returns the page with the two headers that contain the number of steps.
     fn page(&self, outputs: u64) -> Vec<u8> {
         let mut values = self.values.clone();
         if let Kind::Dataset(_, lengths, ..) = &mut values.kind {
@@ -260,11 +261,11 @@ impl Plan {
     }
 }
 
-/// A file with room for all outputs of a run.
+/// A file with space for all outputs of a run.
 pub struct VtkHdfWriter {
     file: File,
     plan: Plan,
-    /// The name until the first output, and the one from then on.
+    /// The name until the first output, and the name afterwards.
     hidden: Option<(PathBuf, PathBuf)>,
     fields: Vec<FieldSpec>,
     points: usize,
@@ -273,7 +274,7 @@ pub struct VtkHdfWriter {
     outputs: usize,
 }
 
-/// The name of a file before its first output.
+/// Returns the name of a file before its first output.
 fn hidden_name(path: &Path) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_owned();
     name.push(".part");
@@ -281,10 +282,11 @@ fn hidden_name(path: &Path) -> PathBuf {
 }
 
 impl VtkHdfWriter {
-    /// Makes a file without outputs; it gets its name with the first one.
+    /// Creates a file without outputs; it gets its final name with the first output.
     ///
     /// # Errors
-    /// A file that cannot be written, arrays that do not fit together, names that HDF5 cannot hold.
+    /// Returns an error if the file cannot be written, the array lengths are inconsistent, or a name is not
+    /// allowed in HDF5.
     pub fn create(path: impl AsRef<Path>, layout: &VtkHdfLayout<'_>) -> Result<Self, WriteError> {
         layout.check()?;
         let path = path.as_ref();
@@ -297,7 +299,8 @@ impl VtkHdfWriter {
             .truncate(true)
             .open(&hidden)?;
         file.write_all(plan.skeleton.bytes())?;
-        // Readers refuse a file that is shorter than it says; what is not written takes no room on most systems.
+        // Readers reject a file that is shorter than declared; on most systems, unwritten parts take no disk
+        // space.
         file.set_len(plan.file_bytes)?;
         let mut writer = Self::of(file, plan, layout);
         writer.hidden = Some((hidden, path.to_path_buf()));
@@ -329,7 +332,7 @@ impl VtkHdfWriter {
             self.file.write_all(&bytes)?;
         }
         self.file.seek(SeekFrom::Start(self.plan.types))?;
-        // The type of a poly-vertex.
+        // Cell type poly-vertex.
         self.file.write_all(&[2])?;
         let positions = layout.positions;
         let coordinate = |k: usize| match k % 3 < layout.dimension {
@@ -353,7 +356,7 @@ impl VtkHdfWriter {
     /// Continues a file after a number of outputs.
     ///
     /// # Errors
-    /// A file that cannot be written, is of another layout, or holds fewer outputs.
+    /// Returns an error if the file cannot be written, has another layout, or contains fewer outputs.
     pub fn resume(
         path: impl AsRef<Path>,
         layout: &VtkHdfLayout<'_>,
@@ -370,7 +373,7 @@ impl VtkHdfWriter {
         layout.check()?;
         let plan = Plan::new(layout)?;
         let mut file = OpenOptions::new().read(true).write(true).open(path)?;
-        let other = || WriteError::NotContinued("its layout is that of another run".into());
+        let other = || WriteError::NotContinued("its layout belongs to another run".into());
         if file.metadata()?.len() != plan.file_bytes {
             return Err(other());
         }
@@ -390,7 +393,7 @@ impl VtkHdfWriter {
         };
         if held < outputs {
             return Err(WriteError::NotContinued(format!(
-                "it holds {held} outputs; {outputs} are needed"
+                "it contains {held} outputs; expected at least {outputs}"
             )));
         }
         let mut writer = Self::of(file, plan, layout);
@@ -399,15 +402,15 @@ impl VtkHdfWriter {
         Ok(writer)
     }
 
-    /// Brings what was written to the disk.
+    /// Syncs the file to disk.
     ///
     /// # Errors
-    /// The system's refusal.
+    /// Returns the error of the operating system.
     pub fn sync(&self) -> std::io::Result<()> {
         self.file.sync_data()
     }
 
-    /// The number of outputs.
+    /// Returns the number of outputs.
     pub fn outputs(&self) -> usize {
         self.outputs
     }
@@ -415,12 +418,13 @@ impl VtkHdfWriter {
     /// Writes an output: the time (s), and a component-major array for each field.
     ///
     /// # Errors
-    /// A file that cannot be written, arrays that do not fit together, more outputs than were announced.
+    /// Returns an error if the file cannot be written, the array lengths are inconsistent, or the number of
+    /// outputs is exceeded.
     pub fn append(&mut self, time: f64, values: &[&[f64]]) -> Result<(), WriteError> {
         check_values(&self.fields, values, self.points)?;
         if self.outputs == self.most {
             return unsuitable(format!(
-                "the file has room for {} outputs, which are all written",
+                "the file has space for {} outputs, which are all written",
                 self.most
             ));
         }
@@ -444,7 +448,7 @@ impl VtkHdfWriter {
         self.publish()
     }
 
-    /// Writes the number of steps, and gives the file its name after the first.
+    /// Updates the number of steps, and renames the file after the first output.
     fn publish(&mut self) -> Result<(), WriteError> {
         self.file.seek(SeekFrom::Start(PAGE))?;
         self.file.write_all(&self.plan.page(self.outputs as u64))?;

@@ -1,15 +1,15 @@
-//! Numbers of a binary file, with their places.
+//! Reading of numbers from binary files, with their offsets.
 
 use crate::fault::Fault;
 
-/// A binary file read number by number.
+/// Reader of a binary file.
 pub(crate) struct Bytes<'a> {
     data: &'a [u8],
     at: usize,
     little: bool,
 }
 
-/// Types of numbers.
+/// Number types.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Scalar {
     I8,
@@ -48,12 +48,12 @@ impl<'a> Bytes<'a> {
         Fault::at_byte(self.at, reason)
     }
 
-    /// The next bytes.
+    /// Returns the next bytes.
     pub(crate) fn take(&mut self, count: usize) -> Result<&'a [u8], Fault> {
         let left = self.data.len().saturating_sub(self.at);
         if count > left {
             return Err(self.fault(format!(
-                "the file ends: {count} more byte(s) are needed, {left} are left"
+                "unexpected end of file: {count} more byte(s) expected, {left} left"
             )));
         }
         let taken = &self.data[self.at..self.at + count];
@@ -61,13 +61,13 @@ impl<'a> Bytes<'a> {
         Ok(taken)
     }
 
-    /// Checks that there can be so many things of at least so many bytes.
+    /// Checks that the remaining bytes can contain `count` items of at least `bytes_each` bytes.
     pub(crate) fn room(&self, count: u64, bytes_each: usize, what: &str) -> Result<usize, Fault> {
         let left = self.data.len().saturating_sub(self.at);
         let room = (left / bytes_each.max(1)) as u64;
         if count > room {
             return Err(self.fault(format!(
-                "{count} {what} are announced, but the {left} bytes left hold {room} at most"
+                "{count} {what} are declared, but the remaining {left} bytes hold at most {room}"
             )));
         }
         Ok(count as usize)
@@ -102,16 +102,16 @@ impl<'a> Bytes<'a> {
             Scalar::U64 => {
                 let number = u64::from_le_bytes(self.array()?);
                 i64::try_from(number)
-                    .map_err(|_| self.fault(format!("{number} is too large a number")))?
+                    .map_err(|_| self.fault(format!("the number {number} is too large")))?
             }
             Scalar::F32 | Scalar::F64 => {
-                return Err(self.fault("real numbers stand where whole numbers must"));
+                return Err(self.fault("found real numbers, expected integers"));
             }
         })
     }
 }
 
-/// The number of a vertex, if it is one.
+/// Returns a vertex number if it is valid.
 pub(crate) fn vertex_number(number: i64) -> Option<u32> {
     u32::try_from(number)
         .ok()
@@ -119,5 +119,5 @@ pub(crate) fn vertex_number(number: i64) -> Option<u32> {
 }
 
 pub(crate) fn no_vertex(number: i64) -> String {
-    format!("{number} is no number of a vertex; they run from 0 to at most 4294967294")
+    format!("{number} is not a valid vertex number; allowed: 0 to 4294967294")
 }

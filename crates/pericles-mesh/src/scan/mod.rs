@@ -1,4 +1,5 @@
-//! Words of texts and numbers of binary files, with their places, and with counts that are compared with what is left of a file.
+//! Reading of words of text files and numbers of binary files, with their locations; counts are checked
+//! against the remaining length.
 
 mod bytes;
 mod numbering;

@@ -1,19 +1,19 @@
-//! Numbers of nodes or elements in a file, and their places.
+//! Mapping from node or element numbers of a file to indices.
 
 use std::collections::HashMap;
 use std::num::NonZeroU32;
 
-/// Which place each number in a file has. Numbers that are nearly consecutive take four bytes each.
+/// Map from numbers in a file to indices. Nearly consecutive numbers take four bytes each.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Numbering {
-    /// Place + 1 by number.
+    /// Index + 1 by number.
     dense: Vec<Option<NonZeroU32>>,
     sparse: HashMap<i64, u32>,
     len: usize,
 }
 
 impl Numbering {
-    /// Gives a number its place; `false` if it has one already.
+    /// Assigns an index to a number; returns `false` if it already has one.
     pub(crate) fn insert(&mut self, number: i64, place: u32) -> bool {
         let next = place.checked_add(1).and_then(NonZeroU32::new);
         let limit = 4 * self.len + 1024;
@@ -39,7 +39,7 @@ impl Numbering {
         true
     }
 
-    /// The place of a number.
+    /// Returns the index of a number.
     pub(crate) fn get(&self, number: i64) -> Option<u32> {
         let dense = usize::try_from(number).ok();
         let dense = dense.and_then(|index| self.dense.get(index).copied().flatten());

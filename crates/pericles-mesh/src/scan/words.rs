@@ -1,15 +1,15 @@
-//! Words of a text, with their lines.
+//! Reading of words from text, with their lines.
 
 use std::str::FromStr;
 
 use crate::fault::Fault;
 
-/// A text read word by word.
+/// Word-by-word reader of a text.
 pub(crate) struct Words<'a> {
     text: &'a [u8],
     at: usize,
     line: usize,
-    /// From here to the end of its line, text is a comment.
+    /// Character that begins a comment up to the end of the line.
     comment: Option<u8>,
 }
 
@@ -23,17 +23,17 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// The line of what was read last.
+    /// Returns the line of the last word read.
     pub(crate) fn line(&self) -> usize {
         self.line
     }
 
-    /// Where the next byte is.
+    /// Returns the offset of the next byte.
     pub(crate) fn position(&self) -> usize {
         self.at
     }
 
-    /// Goes on elsewhere further on.
+    /// Continues at a later position.
     pub(crate) fn skip_to(&mut self, position: usize) {
         let position = position.min(self.text.len());
         self.line += count_lines(&self.text[self.at..position]);
@@ -44,7 +44,7 @@ impl<'a> Words<'a> {
         Fault::at_line(self.line, reason)
     }
 
-    /// The next word; none at the end.
+    /// Returns the next word; `None` at the end.
     pub(crate) fn next(&mut self) -> Option<&'a str> {
         loop {
             let byte = *self.text.get(self.at)?;
@@ -61,11 +61,11 @@ impl<'a> Words<'a> {
         let ends = |byte: &u8| byte.is_ascii_whitespace() || Some(*byte) == self.comment;
         let length = self.text[start..].iter().position(ends);
         self.at = length.map_or(self.text.len(), |length| start + length);
-        // What is no text becomes a word that is no number and no key.
+        // Bytes that are not UTF-8 become a word that is neither a number nor a keyword.
         Some(std::str::from_utf8(&self.text[start..self.at]).unwrap_or("\u{fffd}"))
     }
 
-    /// The words up to the end of the line.
+    /// Returns the words up to the end of the line.
     pub(crate) fn rest_of_line(&mut self) -> impl Iterator<Item = &'a str> {
         let start = self.at;
         self.skip_line();
@@ -75,7 +75,7 @@ impl<'a> Words<'a> {
             .split_ascii_whitespace()
     }
 
-    /// Goes to the end of the line.
+    /// Skips to the end of the line.
     pub(crate) fn skip_line(&mut self) {
         let rest = &self.text[self.at..];
         self.at += rest
@@ -84,22 +84,22 @@ impl<'a> Words<'a> {
             .unwrap_or(rest.len());
     }
 
-    /// The next word, which must be there.
+    /// Returns the next word or an error.
     pub(crate) fn word(&mut self, what: &str) -> Result<&'a str, Fault> {
         match self.next() {
             Some(word) => Ok(word),
-            None => Err(self.fault(format!("the file ends where {what} should follow"))),
+            None => Err(self.fault(format!("unexpected end of file; expected {what}"))),
         }
     }
 
-    /// The next word as a number.
+    /// Returns the next word as a number.
     pub(crate) fn number<T: FromStr>(&mut self, what: &str) -> Result<T, Fault> {
         let word = self.word(what)?;
         word.parse()
             .map_err(|_| self.fault(format!("{word:?} is not {what}")))
     }
 
-    /// Three coordinates.
+    /// Reads three coordinates.
     pub(crate) fn point(&mut self) -> Result<[f64; 3], Fault> {
         let mut point = [0.0; 3];
         for x in &mut point {
@@ -108,15 +108,15 @@ impl<'a> Words<'a> {
         Ok(point)
     }
 
-    /// A number of things to follow, each of at least so many words.
+    /// Reads the number of items that follow, each with at least `words_each` words.
     pub(crate) fn count(&mut self, what: &str, words_each: usize) -> Result<usize, Fault> {
         let count: u64 = self.number(&format!("a number of {what}"))?;
         let left = self.text.len() - self.at;
-        // A word is a character and a space.
+        // A word takes at least a character and a space.
         let room = (left / (2 * words_each.max(1)) + 1) as u64;
         if count > room {
             return Err(self.fault(format!(
-                "{count} {what} are announced, but the {left} bytes left hold {room} at most"
+                "{count} {what} are declared, but the remaining {left} bytes hold at most {room}"
             )));
         }
         Ok(count as usize)

@@ -1,6 +1,6 @@
-//! Classic netCDF files for the tests, written from the format's description and not with the library.
+//! Classic netCDF files for the tests, written from the format description, independent of the library.
 
-/// A variable: name, dimensions, an attribute of text, and its numbers.
+/// A variable: name, dimensions, a text attribute, and values.
 pub struct Variable {
     pub name: String,
     pub dimensions: Vec<usize>,
@@ -48,7 +48,7 @@ pub fn file(version: u8, dimensions: &[(&str, u64)], variables: &[Variable]) -> 
             out.extend(name(word));
             out.extend(size(*length));
         }
-        // No attributes of the file.
+        // No global attributes.
         out.extend(0u32.to_be_bytes());
         out.extend(size(0));
         out.extend(11u32.to_be_bytes());

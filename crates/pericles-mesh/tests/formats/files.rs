@@ -1,8 +1,8 @@
-//! One small mesh in all formats: a cube beside a wedge, with sets.
+//! A small mesh in all formats: a cube and an adjacent wedge, with sets.
 
 use super::cdf::{self, Values, variable};
 
-/// A cube of side 1 and, at x = 1 to 2, half of another one.
+/// A cube of side 1 and, at x = 1 to 2, half of a second one.
 pub const NODES: [[f64; 3]; 10] = [
     [0.0, 0.0, 0.0],
     [1.0, 0.0, 0.0],
@@ -20,7 +20,7 @@ pub const WEDGE: [u32; 6] = [1, 8, 2, 5, 9, 6];
 /// The face x = 0 of the cube.
 pub const FACE: [u32; 4] = [0, 4, 7, 3];
 
-/// Numbers with the first one added.
+/// Numbers increased by `first`.
 fn numbers(corners: &[u32], first: u32, separator: &str) -> String {
     let words: Vec<String> = corners.iter().map(|c| (c + first).to_string()).collect();
     words.join(separator)
@@ -47,7 +47,8 @@ fn plus(corners: &[u32]) -> Vec<i32> {
     corners.iter().map(|&c| c as i32 + 1).collect()
 }
 
-/// Groups: "left part" (1), "right" (2), "all" (3) of solids, "x0" (1) of faces, "tip" (1) of points. An element of two groups stands twice.
+/// Groups: "left part" (1), "right" (2), "all" (3) of solids, "x0" (1) of faces, "tip" (1) of points. An
+/// element of two groups is listed twice.
 pub fn gmsh_2(binary: bool) -> Vec<u8> {
     let mut file = format!("$MeshFormat\n2.2 {} 8\n", u8::from(binary)).into_bytes();
     if binary {
@@ -65,7 +66,7 @@ pub fn gmsh_2(binary: bool) -> Vec<u8> {
         }
     }
     file.extend(b"$EndNodes\n$Elements\n6\n");
-    // Type, number, group, nodes; the second cube and the second wedge are in the group of all.
+    // Type, number, group, nodes; the repeated cube and wedge belong to the group "all".
     let elements: [(i32, i32, i32, &[u32]); 6] = [
         (15, 1, 1, &[9]),
         (3, 2, 1, &FACE),
@@ -158,14 +159,14 @@ pub fn gmsh_4(binary: bool) -> Vec<u8> {
     file
 }
 
-/// One file without parts.
+/// A file without parts.
 pub fn abaqus() -> Vec<u8> {
     let mut file = "*HEADING\nA cube and a wedge, not data\n** a comment\n*Node\n".to_owned();
     for k in 0..10 {
         file += &format!("{}, {}\n", k + 1, coordinates(k, ", "));
     }
     let cube = numbers(&CUBE, 1, ", ");
-    // The second line of the cube follows a comma; the wedge has nodes of second order behind its corners.
+    // The second line of the cube follows a comma; the wedge has second-order nodes after its corners.
     let (begin, end) = cube.split_at(12);
     file += &format!(
         "*ELEMENT, TYPE=C3D8R, ELSET=\"left part\"\n3, {begin}\n{end}\n*element, type=c3d6,\nelset=right\n"
@@ -208,7 +209,7 @@ pub fn exodus(version: u8) -> Vec<u8> {
         ("num_elem_sets", 1),
         ("two", 2),
     ];
-    // The second block is empty and has no variable; the set of elements has no name.
+    // The second block is empty and has no variable; the element set has no name.
     let variables = [
         variable("coordx", &[2], axis(0)),
         variable("coordy", &[2], axis(1)),
@@ -233,7 +234,7 @@ pub fn exodus(version: u8) -> Vec<u8> {
     cdf::file(version, &dimensions, &variables)
 }
 
-/// Cells as hexahedron or voxel and wedge, in one piece or two.
+/// Cells as hexahedron or voxel and wedge, in one or two pieces.
 pub fn vtu(voxel: bool, pieces: bool) -> Vec<u8> {
     let cube = match voxel {
         // x runs fastest, then y, then z.
@@ -278,7 +279,7 @@ pub fn vtu(voxel: bool, pieces: bool) -> Vec<u8> {
     format!("<?xml version='1.0'?>\n<VTKFile type='UnstructuredGrid'>\n<UnstructuredGrid>\n{all}</UnstructuredGrid>\n</VTKFile>\n").into_bytes()
 }
 
-/// All of them, by their endings.
+/// All files, with their extensions.
 pub fn all() -> Vec<(&'static str, Vec<u8>)> {
     let mut files = vec![("inp", abaqus())];
     for flag in [false, true] {

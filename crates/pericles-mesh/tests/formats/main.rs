@@ -1,4 +1,4 @@
-//! Readers of meshes: one mesh in all formats, what is particular to each, and files that are damaged.
+//! Mesh readers: one mesh in all formats, format-specific features, and damaged files.
 
 mod cdf;
 mod files;
@@ -9,7 +9,7 @@ use pericles_mesh::{CellKind, Fault, Format, MeshPoints, Place, PointOptions, Ra
 use proptest::prelude::*;
 
 fn alone(name: &str) -> Result<Vec<u8>, String> {
-    Err(format!("{name} is not there"))
+    Err(format!("{name} does not exist"))
 }
 
 fn read(ending: &str, content: &[u8]) -> Result<RawMesh, Fault> {
@@ -32,7 +32,7 @@ fn set(points: &MeshPoints, name: &str) -> (SetKind, Vec<u32>) {
 }
 
 #[test]
-fn one_mesh_in_all_formats_gives_equal_points_and_sets() {
+fn every_format_gives_the_same_points_and_sets() {
     for (number, (ending, content)) in files::all().iter().enumerate() {
         let (_, points) = points(ending, content);
         assert_eq!(points.len(), 2, "{ending} {number}");
@@ -69,7 +69,7 @@ fn one_mesh_in_all_formats_gives_equal_points_and_sets() {
 }
 
 #[test]
-fn a_byte_order_mark_and_line_ends_of_windows_change_nothing() {
+fn byte_order_marks_and_windows_line_endings_are_ignored() {
     let text = String::from_utf8(files::abaqus()).unwrap();
     let windows = format!("\u{feff}{}", text.replace('\n', "\r\n"));
     let (plain, other) = (
@@ -83,7 +83,7 @@ fn a_byte_order_mark_and_line_ends_of_windows_change_nothing() {
 }
 
 #[test]
-fn elements_of_gmsh_2_in_two_groups_are_one_element() {
+fn gmsh_2_elements_listed_in_two_groups_are_merged() {
     let (mesh, _) = points("msh", &files::gmsh_2(false));
     assert_eq!(
         mesh.cells.counts(),
@@ -99,9 +99,9 @@ fn elements_of_gmsh_2_in_two_groups_are_one_element() {
 }
 
 #[test]
-fn nodes_and_elements_of_abaqus_may_share_a_name() {
+fn abaqus_node_and_element_sets_may_share_a_name() {
     let (_, points) = points("inp", &files::abaqus());
-    // The element set keeps the name; the nodes 2 and 3 belong to both elements.
+    // The element set keeps the name; nodes 2 and 3 belong to both elements.
     assert_eq!(set(&points, "right (nodes)"), (SetKind::Nodes, vec![0, 1]));
     assert_eq!(set(&points, "both"), (SetKind::Elements, vec![0, 1]));
     // Free faces: five squares of the cube, two triangles, a square and a rectangle of the wedge.
@@ -113,8 +113,8 @@ const PART: &str = "*PART, NAME=Bar\n*NODE\n1, 0, 0, 0\n2, 2, 0, 0\n3, 2, 1, 0\n
     *ELEMENT, TYPE=C3D8, ELSET=Solid\n1, 1, 2, 3, 4, 5, 6, 7, 8\n*NSET, NSET=End\n1, 4, 5, 8\n*END PART\n";
 
 #[test]
-fn instances_are_moved_then_turned_and_their_sets_have_their_names() {
-    // The second instance is moved by 3 along x, then turned by 90° about the axis x = 3, y = 0.
+fn instances_are_translated_then_rotated_and_prefix_their_sets() {
+    // The second instance is translated by 3 along x, then rotated by 90° about the axis x = 3, y = 0.
     let file = format!(
         "{PART}*ASSEMBLY, NAME=A\n*INSTANCE, NAME=One, PART=Bar\n*END INSTANCE\n*INSTANCE, NAME=Two, PART=bar\n3., 0., 0.\n3., 0., 0., 3., 0., 1., 90.\n*END INSTANCE\n\
          *ELSET, ELSET=Picked, INSTANCE=Two, INTERNAL\n1\n*ELSET, ELSET=Mine, INSTANCE=Two\n1\n*SURFACE, NAME=Top\nPicked, S2\n*NSET, NSET=Ends\nOne.End, Two.End\n*END ASSEMBLY\n"
@@ -142,7 +142,7 @@ fn instances_are_moved_then_turned_and_their_sets_have_their_names() {
 }
 
 #[test]
-fn a_mesh_may_stand_within_its_instance() {
+fn a_mesh_may_be_defined_within_its_instance() {
     let inside = PART
         .replace("*PART, NAME=Bar\n", "")
         .replace("*END PART\n", "");
@@ -163,7 +163,7 @@ fn parts_without_instances_and_included_files_are_read() {
         "part.inp" => Ok(PART.as_bytes().to_vec()),
         "loop.inp" => Ok(b"*INCLUDE, INPUT=loop.inp\n".to_vec()),
         "bad.inp" => Ok(b"*NODE\n1, x\n".to_vec()),
-        _ => Err(format!("{name} is not there")),
+        _ => Err(format!("{name} does not exist")),
     };
     let parse = |content: &str| Format::Abaqus.parse(content.as_bytes(), u64::MAX, &include);
     let mesh = parse("*include, input=part.inp\n").unwrap();
@@ -171,7 +171,7 @@ fn parts_without_instances_and_included_files_are_read() {
     let fault = parse("\n*INCLUDE, INPUT=gone.inp\n").unwrap_err();
     assert_eq!(
         (fault.place, fault.reason.as_str()),
-        (Place::Line(2), "gone.inp is not there")
+        (Place::Line(2), "gone.inp does not exist")
     );
     let fault = parse("*INCLUDE, INPUT=bad.inp\n").unwrap_err();
     assert_eq!(
@@ -179,14 +179,11 @@ fn parts_without_instances_and_included_files_are_read() {
         (Some("bad.inp"), Place::Line(2))
     );
     let fault = parse("*INCLUDE, INPUT=loop.inp\n").unwrap_err();
-    assert!(
-        fault.reason.contains("a depth of more than 8 files"),
-        "{fault}"
-    );
+    assert!(fault.reason.contains("at most 8 nested files"), "{fault}");
 }
 
 #[test]
-fn spheres_of_exodus_have_their_own_volumes() {
+fn exodus_spheres_have_given_volumes() {
     use cdf::{Values, variable};
     let dimensions = [
         ("time_step", 0),
@@ -220,8 +217,8 @@ fn spheres_of_exodus_have_their_own_volumes() {
 }
 
 #[test]
-fn elements_of_second_order_are_their_corners() {
-    // A quadratic tetrahedron of VTK and of Gmsh, whose orders of the middle nodes differ.
+fn second_order_elements_are_reduced_to_their_corners() {
+    // A quadratic tetrahedron of VTK and of Gmsh, whose mid-side nodes are ordered differently.
     let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let middle = |a: usize, b: usize| [0, 1, 2].map(|c| 0.5 * (corners[a][c] + corners[b][c]));
     let ends = [(0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3)];
@@ -266,7 +263,7 @@ fn surfaces_are_read_as_triangles_and_quadrilaterals() {
 }
 
 #[test]
-fn faults_have_their_place_and_what_is_allowed() {
+fn errors_report_their_location_and_what_is_allowed() {
     let fault = |ending: &str, content: &[u8]| read(ending, content).unwrap_err().to_string();
     for (ending, content, parts) in [
         (
@@ -277,28 +274,28 @@ fn faults_have_their_place_and_what_is_allowed() {
         (
             "inp",
             "*NODE\n1, 0\n1, 1\n",
-            vec![":3: node 1 is there twice"],
+            vec![":3: node 1 is defined twice"],
         ),
         ("inp", "*ELEMENT\n", vec![":1: *ELEMENT has no TYPE"]),
         (
             "inp",
             "*NODE\n1, 0\n*ELEMENT, TYPE=T3D2\n5, 1, 9\n",
-            vec![":4: element 5 has the node 9"],
+            vec![":4: element 5 refers to node 9"],
         ),
         (
             "inp",
             "*ELEMENT, TYPE=C3D4\n5, 1, 2, 3\n*STEP\n",
-            vec![":3: element 5 (C3D4) has 3 nodes; it needs 4"],
+            vec![":3: element 5 (C3D4) has 3 nodes; expected 4"],
         ),
         (
             "inp",
             "*NODE, SYSTEM=C\n",
-            vec![":1: nodes in the system C; allowed: R"],
+            vec![":1: the nodes are given in the coordinate system C; allowed: R"],
         ),
         (
             "inp",
             "*NGEN\n",
-            vec![":1: *NGEN makes nodes", "write the mesh out"],
+            vec![":1: *NGEN generates nodes", "write the complete mesh"],
         ),
         (
             "inp",
@@ -313,45 +310,45 @@ fn faults_have_their_place_and_what_is_allowed() {
         (
             "inp",
             "*INSTANCE, NAME=I, PART=P\n",
-            vec!["the instance \"I\" is of a part that is not there"],
+            vec!["the instance \"I\" refers to a part that is not defined"],
         ),
         (
             "inp",
             "*NODE\n1, 0\n*ELEMENT, TYPE=S3, ELSET=E\n1, 1, 1, 1\n*SURFACE, NAME=F\nE, S9\n",
-            vec!["the face S9 of element 1 (tri)", "3 faces"],
+            vec!["face S9 of element 1 (tri)", "3 faces"],
         ),
         ("exo", "nothing", vec!["byte 0", "CDF"]),
         ("exo", "\u{89}HDF", vec!["CDF"]),
         (
             "exo",
             "CDF\u{1}\0\0\0\0\0\0\0\u{a}\u{7f}\0\0\0",
-            vec!["2130706432 dimensions are announced", "hold"],
+            vec!["2130706432 dimensions are declared", "hold"],
         ),
         (
             "msh",
             "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n999999 0 0 0\n",
-            vec![":5: 999999 entities are announced"],
+            vec![":5: 999999 entities are declared"],
         ),
         (
             "vtu",
             "<VTKFile><UnstructuredGrid><Points><DataArray type='Float32' format='ascii'>0 0 0</DataArray></Points><Cells><DataArray type='Int32' Name='connectivity' format='ascii'>0 0 0</DataArray><DataArray type='Int32' Name='offsets' format='ascii'>3</DataArray><DataArray type='Int32' Name='types' format='ascii'>12</DataArray></Cells></UnstructuredGrid></VTKFile>",
-            vec!["cell 0 (hex) has 3 corners; 8 are needed"],
+            vec!["cell 0 (hex) has 3 corners; expected 8"],
         ),
     ] {
         let message = fault(ending, content.as_bytes());
         assert!(parts.iter().all(|part| message.contains(part)), "{message}");
     }
-    // The node of an element beyond the nodes.
+    // An element refers to a node that does not exist.
     let mut wrong = files::exodus(2);
     let place = wrong
         .windows(4)
         .rposition(|w| w == 9i32.to_be_bytes())
         .unwrap();
     wrong[place + 3] = 99;
-    assert!(fault("e", &wrong).contains("has the node 99; the nodes are numbered 1 to 10"));
+    assert!(fault("e", &wrong).contains("refers to node 99; nodes are numbered 1 to 10"));
 }
 
-/// Everything that follows a reader: nothing may panic.
+/// Calls all functions that follow a reader; none may panic.
 fn use_all(ending: &str, content: &[u8]) {
     if let Ok(mesh) = read(ending, content) {
         let _ = mesh.check();
@@ -366,7 +363,7 @@ fn use_all(ending: &str, content: &[u8]) {
 }
 
 #[test]
-fn every_prefix_of_every_file_is_read_or_refused() {
+fn every_truncated_file_is_read_or_rejected() {
     for (ending, content) in files::all() {
         for length in 0..content.len() {
             use_all(ending, &content[..length]);
@@ -377,7 +374,7 @@ fn every_prefix_of_every_file_is_read_or_refused() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(4000))]
     #[test]
-    fn changed_bytes_never_panic(file in 0usize..20, changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
+    fn corrupted_files_never_cause_a_panic(file in 0usize..20, changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
                                  cut in any::<prop::sample::Index>()) {
         let files = files::all();
         let (ending, content) = &files[file % files.len()];

@@ -1,11 +1,11 @@
-//! The area that a traction acts on, when the deck leaves it out.
+//! The loaded area of a traction, if the deck does not give it.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use pericles::space::{PointCloud, Region};
 use pericles_deck::AreaDoubt;
 
-/// The axis normal to the loaded face: that of a layer's face, else that of the load.
+/// Returns the axis normal to the loaded face: the axis of a layer's face, otherwise that of the load.
 pub(crate) fn normal_axis(
     region: Option<&Region>,
     acts_along: &[bool; 3],
@@ -18,21 +18,22 @@ pub(crate) fn normal_axis(
         (Some(axis), None) => Ok(axis),
         (None, _) => Err("the traction is zero"),
         (Some(_), Some(_)) => {
-            Err("the set is no layer, and the traction is not along one of the axes")
+            Err("the set is not a layer, and the traction is not parallel to an axis")
         }
     }
 }
 
-/// Whether a set is a layer of a face.
+/// Returns whether a set is a layer at a face.
 pub(crate) fn is_layer(region: Option<&Region>) -> bool {
     matches!(region, Some(Region::Layer { .. }))
 }
 
-/// What is doubtful about the area of a set that is no layer by its definition, seen along `axis`: a set that is one layer on one face has none.
+/// Returns the doubt about the projected area along `axis` of a set that is not defined as a layer; `None` if its
+/// points form a single layer at one face.
 pub(crate) fn doubt(cloud: &PointCloud, points: &[u32], axis: usize) -> Option<AreaDoubt> {
-    /// How much deeper a layer may be along the axis than along another.
+    /// Largest depth of a layer along the axis, relative to another axis.
     const DEEPER: f64 = 1.5;
-    /// How much deeper a column may be than the median one: caps of balls and cylinders are.
+    /// Largest depth of a column, relative to the median; caps of spheres and cylinders are uneven.
     const UNEVEN: usize = 4;
     let area = seen_along(cloud, points, axis);
     let levels = columns(cloud, points, axis);
@@ -59,8 +60,8 @@ pub(crate) fn doubt(cloud: &PointCloud, points: &[u32], axis: usize) -> Option<A
     })
 }
 
-/// The area of a set seen along an axis, m²: that of the cells which no other cell of the set hides. For a box it is a face of the box, for a
-/// layer of a cylinder the cells of its base.
+/// Returns the projected area of a set along an axis, m²: the area of the cells that no other cell of the set hides.
+/// For a box it is the area of a face, for a layer of a cylinder that of the cells of its base.
 pub(crate) fn seen_along(cloud: &PointCloud, points: &[u32], axis: usize) -> f64 {
     let count = columns(cloud, points, axis).len();
     let across = (0..cloud.dimension()).filter(|&c| c != axis);
@@ -68,14 +69,14 @@ pub(crate) fn seen_along(cloud: &PointCloud, points: &[u32], axis: usize) -> f64
     count as f64 * cloud.section() * cell
 }
 
-/// The cells of a set by columns along an axis: the levels that each column has.
+/// Groups the cells of a set into columns along an axis; returns the levels of each column.
 fn columns(cloud: &PointCloud, points: &[u32], axis: usize) -> BTreeMap<[i64; 3], BTreeSet<i64>> {
     let dimension = cloud.dimension();
     let [corner, _] = cloud.bounds();
     let mut columns: BTreeMap<[i64; 3], BTreeSet<i64>> = BTreeMap::new();
     for &i in points {
         let place = cloud.point(i as usize);
-        // Centres of cells, divided ones too, lie well inside the large cells.
+        // Cell centres, also of refined cells, lie well inside the large cells.
         let cell = |c: usize| ((place[c] - corner[c]) / cloud.cell_side(c)).floor() as i64;
         let column = std::array::from_fn(|c| {
             if c == axis || c >= dimension {
@@ -95,7 +96,7 @@ mod tests {
     use pericles::space::{Face, Grid, Shape, rectangular_cells};
 
     #[test]
-    fn faces_of_boxes_and_bases_of_cylinders() {
+    fn projected_areas_of_boxes_and_cylinders_are_exact() {
         let points = |shape, section| {
             let holes = vec![];
             Grid {
@@ -131,12 +132,12 @@ mod tests {
             height: 2.0,
         };
         let rod = points(rod, 1.0);
-        // Twenty cells along the axis hide each other.
+        // Twenty cells along the axis count once.
         close(area(&rod, 0), rod.len() as f64 / 20.0 * 0.01);
     }
 
     #[test]
-    fn sets_that_are_no_single_layer_are_doubted() {
+    fn sets_that_are_not_a_single_layer_are_reported() {
         let plate = Grid {
             shape: Shape::Box {
                 origin: [0.0; 3],
@@ -158,7 +159,7 @@ mod tests {
         let close = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-12, "{a} {b}");
         let right = set(&|x, _| x > 7.7);
         assert_eq!(doubt(&cloud, &right, 0), None);
-        // Shear on a box three cells deep: the load's own axis sees its narrow side.
+        // Shear on a box three cells deep: the projection along the load is its narrow side.
         match doubt(&cloud, &right, 1) {
             Some(AreaDoubt::Thinner {
                 axis: 1,
@@ -171,7 +172,7 @@ mod tests {
             }
             other => panic!("{other:?}"),
         }
-        // Opposite faces, and two that meet in an edge.
+        // Opposite faces, and two faces with a common edge.
         for union in [
             set(&|x, _| !(0.3..7.7).contains(&x)),
             set(&|x, y| x > 7.7 || y > 3.7),
@@ -185,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn the_axis_is_that_of_the_layer_or_of_the_load() {
+    fn the_normal_axis_follows_from_the_layer_or_the_load() {
         let layer = Region::Layer {
             face: Face {
                 axis: 1,

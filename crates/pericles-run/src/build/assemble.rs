@@ -1,4 +1,4 @@
-//! From points and sets to what can be run.
+//! Assembly of a model from its points and sets.
 
 use std::sync::Arc;
 
@@ -15,15 +15,15 @@ use super::discretise::discretise;
 use super::refusal::{at, at_path};
 use super::resources::Resources;
 
-/// Makes forces and conditions of a model on its points, and finds the time step.
+/// Builds forces, conditions and scheme of a model on its points, and determines the time step.
 ///
-/// The run ends at `time.end` exactly: an automatic step is the longest stable one of which a whole number ends there; a given step that does
-/// not divide the time is shortened to the next one that does, with a warning. What takes long to compute and depends on few inputs comes
-/// from the cache of the resources if it is there, and is stored there if it is not.
+/// The run ends at `time.end` exactly: an automatic step is the largest stable one that divides the time; a given
+/// step that does not divide it is reduced to the next one that does, with a warning. Expensive results are read from
+/// the cache of the resources if available, and stored there otherwise.
 ///
 /// # Errors
-/// Numbers out of their ranges; what the engine refuses, at the key of the model that caused it; a step that is not stable; points, grids and sets that do not belong
-/// together.
+/// A value is out of range, the engine rejects a part of the model (reported at its key), the step is unstable, or
+/// points, grids and sets are inconsistent.
 pub fn assemble(
     model: &Model,
     discretisation: Discretisation,
@@ -48,7 +48,7 @@ pub fn assemble(
             assembler.surface_parts(body, surface, &discretisation, resources, &mut warnings)?
         }
         (Body::Surface(_), None) => {
-            let reason = "the points are not those of a surface".into();
+            let reason = "the points do not belong to a surface".into();
             return Err(at_path("body", Fault::BadDiscretisation { reason }));
         }
         (Body::Solid(solid), _) => assembler.grid_parts(solid, &discretisation, &mut warnings)?,
@@ -62,6 +62,8 @@ pub fn assemble(
         density,
     } = parts;
     assembler.refuse_fields(&bonds)?;
+    assembler.check_cells(&discretisation)?;
+    assembler.check_point_numbers(sets)?;
     let mut system = System::new(Arc::clone(cloud), bonds.operator, density)
         .map_err(|error| at("material.density", error))?;
     let mut state = assembler.initial_state(cloud, sets, resources)?;
@@ -136,10 +138,11 @@ pub fn assemble(
     })
 }
 
-/// Discretises and assembles the model of a deck. Relative paths start at the deck's folder, whatever the resources say.
+/// Discretises and assembles the model of a deck. Paths are relative to the folder of the deck, not that of the
+/// resources.
 ///
 /// # Errors
-/// As [`discretise`] and [`assemble`], with the places in the text of the deck.
+/// As [`discretise`] and [`assemble`], with locations in the text of the deck.
 pub fn build(deck: &Deck, resources: &Resources<'_>) -> Result<Assembly, DeckError> {
     let resources = Resources {
         folder: deck.folder(),

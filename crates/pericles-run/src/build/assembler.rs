@@ -1,4 +1,4 @@
-//! What assembles a model.
+//! The assembler of a model.
 
 use pericles::family::{Crack, EndRule};
 use pericles::space::PointSet;
@@ -7,21 +7,22 @@ use pericles_deck::{BuildError, Fault, Keys, Model};
 use super::discretisation::Sets;
 use super::refusal::at_path;
 
-/// Makes the parts of an assembly; each module of this folder adds the methods of its subject.
+/// Builds the parts of an assembly; the modules of this folder add methods.
 #[derive(Clone, Copy)]
 pub(super) struct Assembler<'a> {
     pub(super) model: &'a Model,
-    /// The pre-cracks; none before they are read.
+    /// The pre-cracks; empty before they are read.
     pub(super) cracks: &'a [(Crack, EndRule)],
 }
 
 impl<'a> Assembler<'a> {
-    /// For a model whose pre-cracks are not read yet.
+    /// Creates the assembler of a model whose pre-cracks are not yet read.
     pub(super) fn new(model: &'a Model) -> Self {
         Self { model, cracks: &[] }
     }
 
-    /// The points of a set. A model read from a deck names only sets that it defines; one made by a program may not.
+    /// Returns the points of a set. A model from a deck refers only to sets that it defines; one built by a program
+    /// may not.
     pub(super) fn members<'s>(
         self,
         sets: &'s Sets,

@@ -1,4 +1,4 @@
-//! What is run: the equation of motion with its state, scheme and time step.
+//! The assembled model: equation of motion, state, scheme and time step.
 
 use std::sync::Arc;
 
@@ -18,47 +18,48 @@ use super::loads::LoadReport;
 use super::mesh_body::MeshBody;
 use super::step::damped_step;
 
-/// A body ready to be run.
+/// An assembled model, ready to run.
 pub struct Assembly {
     /// The points.
     pub cloud: Arc<PointCloud>,
-    /// The sets by name, "all" first.
+    /// The sets with their names, "all" first.
     pub sets: Sets,
     /// The surface, if the body is one.
     pub surface: Option<Arc<Surface>>,
     /// The mesh, if the points are its elements.
     pub mesh: Option<Arc<MeshBody>>,
-    /// The constants of the material; none for a surface, whose pair law has its own.
+    /// The constants of the material; `None` for a surface.
     pub constants: Option<MaterialConstants>,
-    /// The constants of the materials beside the body's, in the order of [`Model::materials`](pericles_deck::Model::materials).
+    /// The constants of the other materials, in the order of [`Model::materials`](pericles_deck::Model::materials).
     pub other_materials: Vec<MaterialConstants>,
-    /// How the bonds are kept.
+    /// The force kernel.
     pub form: ForceForm,
-    /// Bonds that pre-cracks cut.
+    /// Number of bonds cut by pre-cracks.
     pub precut_bonds: u64,
-    /// The pre-cracks in the order of the deck, for following their tips.
+    /// The pre-cracks in the order of the deck, for tracking their tips.
     pub cracks: Vec<TrackedCrack>,
     /// The equation of motion with loads and prescribed motions.
     pub system: System,
-    /// The state at the start.
+    /// The initial state.
     pub state: State,
     /// The scheme.
     pub integrator: Box<dyn Integrator>,
-    /// The frequency that limits the step at the start, the highest unless the scheme has two time steps; none if nothing resists motion, and the deck gives the step.
+    /// The frequency that limits the step at the start: the highest, except for multirate schemes; `None` without
+    /// stiffness, if the deck gives the step.
     pub frequency: Option<HighestFrequency>,
-    /// The highest frequency of the body with its absorbing ends at the start, whatever the scheme.
+    /// The highest frequency of the body with its absorbing boundaries at the start, for any scheme.
     pub body_frequency: Option<HighestFrequency>,
     /// The time step, s.
     pub dt: f64,
     /// Number of steps.
     pub steps: u64,
-    /// Where the motion is read.
+    /// The probes.
     pub probes: Vec<PointProbe>,
-    /// The absorbing ends.
+    /// The absorbing boundaries.
     pub ends: Vec<(Side, EndReport)>,
-    /// A known solution to compare with.
+    /// An exact solution for comparison.
     pub exact: Option<ExactReference>,
-    /// What the loads come to, in the order of the deck.
+    /// Resultants of the loads, in the order of the deck.
     pub loads: Vec<LoadReport>,
     /// Conditions that end the run before its last step.
     pub stops: Vec<StopWhen>,
@@ -66,22 +67,22 @@ pub struct Assembly {
     pub warnings: Vec<ModelWarning>,
     /// The strongest damping of layers, 1/s.
     pub(super) damping: f64,
-    /// Whether the run goes on where its energy grows.
+    /// Whether the run continues if its energy grows.
     pub(super) allow_unstable: bool,
 }
 
 impl Assembly {
-    /// The largest stable step of the scheme, without a safety factor, s.
+    /// Returns the largest stable step of the scheme, without a safety factor, s.
     pub fn stable_step(&self) -> Option<f64> {
         let limit = self.integrator.stability_limit()?;
         let undamped = self.frequency?.stable_step(limit, 1.0);
         Some(damped_step(undamped, self.damping))
     }
 
-    /// The run; observers are still to be added.
+    /// Converts the assembly into a simulation without observers.
     ///
     /// # Errors
-    /// An assembly that was changed so that its parts no longer fit each other.
+    /// The parts of the assembly were changed and are inconsistent.
     pub fn simulation(self) -> Result<Simulation, PericlesError> {
         let (frequency, allow_unstable) = (self.frequency, self.allow_unstable);
         let mut simulation = Simulation::new(

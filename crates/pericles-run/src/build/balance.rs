@@ -1,4 +1,4 @@
-//! Whether supports and loads let a static body come to rest.
+//! Checks constraints and loads of static bodies for equilibrium.
 
 use pericles::System;
 use pericles::space::PointCloud;
@@ -6,13 +6,13 @@ use pericles_deck::{Caution, ModelWarning, Remark};
 
 use super::assembler::Assembler;
 
-/// Components of a rigid motion along three axes and about them, or of a force and a moment.
+/// Components of a rigid-body motion along and about three axes, or of a force and a moment.
 type Rigid = [f64; 6];
 
-/// A net force and moment of less than this share of the loads are rounding errors.
+/// Net forces and moments below this fraction of the loads are rounding errors.
 const BALANCED: f64 = 1e-6;
 
-/// A part of a body: the points that bonds join.
+/// A connected part of a body.
 struct Part {
     /// One of its points.
     first: usize,
@@ -22,15 +22,15 @@ struct Part {
     /// The largest distance of a point from the centre, m.
     size: f64,
     is_held: bool,
-    /// Rigid motions that supports prevent, orthonormal.
+    /// Rigid-body motions prevented by constraints, orthonormal.
     held: Vec<Rigid>,
-    /// The net force (N) and moment over `size` (N) of the loads.
+    /// The net force (N) and moment divided by `size` (N) of the loads.
     net: Rigid,
-    /// The sum of the loads' magnitudes, N.
+    /// The sum of the magnitudes of the loads, N.
     loads: f64,
-    /// The largest net force and moment that no support takes.
+    /// The largest net force and moment without a constraint.
     worst: Rigid,
-    /// Whether they are more than a rounding error.
+    /// Whether they exceed the rounding error.
     is_unbalanced: bool,
 }
 
@@ -43,7 +43,8 @@ fn norm(x: &[f64]) -> f64 {
 }
 
 impl Part {
-    /// The displacements of a place along axis c by the six rigid motions, rotations by `size` over the distance.
+    /// Returns the displacements of a position along axis c by the six rigid-body motions; rotations are scaled by
+    /// `size`.
     fn motions(&self, place: [f64; 3], c: usize, rotates: bool) -> Rigid {
         let [x, y, z] =
             std::array::from_fn(|k| (place[k] - self.centre[k]) / self.size.max(f64::MIN_POSITIVE));
@@ -57,7 +58,7 @@ impl Part {
         row
     }
 
-    /// What of a motion or force is not along those that supports prevent.
+    /// Returns the part of a motion or force that is orthogonal to the prevented motions.
     fn free(&self, mut row: Rigid) -> Rigid {
         for held in &self.held {
             let along = dot(held, &row);
@@ -68,9 +69,9 @@ impl Part {
         row
     }
 
-    /// Adds a motion that a support prevents.
+    /// Adds a motion that a constraint prevents.
     fn hold(&mut self, row: Rigid) {
-        /// Below this share it is prevented already.
+        /// Below this fraction it is already prevented.
         const NEW: f64 = 1e-6;
         self.is_held = true;
         if self.held.len() == 6 {
@@ -83,7 +84,7 @@ impl Part {
         }
     }
 
-    /// Compares the loads of one time with those before.
+    /// Updates the largest imbalance with the loads of one time.
     fn judge(&mut self) {
         let rest = self.free(self.net);
         if norm(&rest) > BALANCED * self.loads {
@@ -95,7 +96,7 @@ impl Part {
         (self.net, self.loads) = ([0.0; 6], 0.0);
     }
 
-    /// The warning about it in a body of so many points.
+    /// Returns the warning about this part of a body of `of` points.
     fn caution(&self, of: usize, cloud: &PointCloud) -> Caution {
         let (points, place) = (self.points, position(cloud, self.first));
         let [force, moment] = [&self.worst[..3], &self.worst[3..]].map(norm);
@@ -111,7 +112,8 @@ impl Part {
 }
 
 impl Assembler<'_> {
-    /// Warns of a static body of which a part can move as a rigid body, until `end` (s): the loads on it are not in balance, or no support holds it.
+    /// Warns of a static body with a part that can move as a rigid body until `end` (s), because the loads on it are
+    /// not in equilibrium or it has no constraint.
     pub(super) fn judge_supports(
         &self,
         system: &System,
@@ -154,12 +156,12 @@ impl Assembler<'_> {
     }
 }
 
-/// A point's position, as long as the body has dimensions, m.
+/// Returns the position of a point, with as many components as the body has dimensions, m.
 fn position(cloud: &PointCloud, i: usize) -> Vec<f64> {
     cloud.point(i)[..cloud.dimension()].to_vec()
 }
 
-/// The parts of a body, and the number of the part of each point; `piece` names the part of a point by one of its points.
+/// Returns the parts of a body and the part of each point; `piece` identifies the part of a point by one of its points.
 fn parts(cloud: &PointCloud, piece: &[usize]) -> (Vec<Part>, Vec<u32>) {
     let mut parts: Vec<Part> = Vec::new();
     let mut number = vec![u32::MAX; cloud.len()];
@@ -198,7 +200,7 @@ fn parts(cloud: &PointCloud, piece: &[usize]) -> (Vec<Part>, Vec<u32>) {
     (parts, part_of)
 }
 
-/// Notes the rigid motions that supports prevent.
+/// Collects the rigid-body motions that constraints prevent.
 fn hold(system: &System, parts: &mut [Part], part_of: &[u32]) {
     let cloud = system.cloud();
     let rotates = !cloud.is_periodic();
@@ -215,7 +217,7 @@ fn hold(system: &System, parts: &mut [Part], part_of: &[u32]) {
 
 /// Sums the loads of each part at times until `end`.
 fn load(system: &System, end: f64, parts: &mut [Part], part_of: &[u32]) {
-    /// Ramps and pulses of usual lengths have their peaks among these.
+    /// Number of sampled times, which include the peaks of common ramps and pulses.
     const TIMES: usize = 12;
     let cloud = system.cloud();
     let (n, dimension) = (cloud.len(), cloud.dimension());

@@ -1,4 +1,4 @@
-//! Force and material of a body.
+//! Force operator and material of a body.
 
 use pericles::material::BondMaterial;
 use pericles::observe::{Field, TrackedCrack};
@@ -6,22 +6,22 @@ use pericles::operator::{BondBody, CompositeBody, Feature};
 use pericles::space::PointSet;
 use pericles::{Need, PericlesError, PointScalar};
 use pericles_deck::{
-    BuildError, Caution, Fault, KeyPath, MaterialModel, ModelWarning, Remark, Scheme, Solid,
-    SurfaceBody,
+    BuildError, Caution, CellChoice, Fault, KeyPath, MaterialModel, ModelWarning, PointNumber,
+    Remark, Scheme, Solid, SurfaceBody,
 };
 use pericles_manifold::surface::Surface;
 use pericles_waves::{AssembledForce, ForceForm};
 
 use super::assembler::Assembler;
 use super::constants::MaterialConstants;
-use super::discretisation::{Discretisation, Grids, Sets};
+use super::discretisation::{Discretisation, Grids, Sets, is_on_grid};
 use super::graded::have_several_horizons;
 use super::materials::{Between, Composition};
 use super::refusal::{at_material, at_path};
 use super::resources::Resources;
 use crate::composition::requirements;
 
-/// Force and material of a body.
+/// Force operator and material of a body.
 pub(super) struct BodyParts {
     pub(super) constants: Option<MaterialConstants>,
     pub(super) others: Vec<MaterialConstants>,
@@ -31,7 +31,7 @@ pub(super) struct BodyParts {
 }
 
 impl Assembler<'_> {
-    /// Of a body on a grid or of listed points.
+    /// Builds the parts of a body on a grid or of listed points.
     pub(super) fn grid_parts(
         &self,
         solid: &Solid,
@@ -90,6 +90,7 @@ impl Assembler<'_> {
             body,
             classes: classes.as_ref(),
             correction: solid.material.surface_correction,
+            softening: solid.material.softening.map(|own| own.softening()),
         };
         let (bonds, cracks) =
             self.bonds(solid, composite, (grids, &materials, &interfaces), warnings)?;
@@ -110,7 +111,7 @@ impl Assembler<'_> {
         })
     }
 
-    /// Of a surface.
+    /// Builds the parts of a surface.
     pub(super) fn surface_parts(
         &self,
         body: &SurfaceBody,
@@ -139,7 +140,7 @@ impl Assembler<'_> {
         })
     }
 
-    /// Refuses the dilatation, the plastic strain and the temperature of a body that has none.
+    /// Rejects output of dilatation, plastic strain or temperature for bodies without them.
     pub(super) fn refuse_fields(&self, bonds: &AssembledForce) -> Result<(), BuildError> {
         let capabilities = bonds.operator.capabilities();
         let refuse = |is_meant, fields, reason| {
@@ -167,13 +168,41 @@ impl Assembler<'_> {
             return refuse(
                 |field| field == Field::Temperature,
                 "the field Temperature is",
-                "only bodies with thermal expansion have a temperature; give [thermal]",
+                "only bodies with thermal expansion have a temperature; add [thermal]",
             );
         }
         Ok(())
     }
 
-    /// The key that asks for some fields.
+    /// Rejects `cells = true` for a body without cells.
+    pub(super) fn check_cells(&self, discretisation: &Discretisation) -> Result<(), BuildError> {
+        let has_cells = discretisation.mesh.is_some()
+            || discretisation.surface.is_some()
+            || is_on_grid(self.model, &discretisation.cloud);
+        match self.model.output.cells {
+            CellChoice::Always if !has_cells => {
+                let fault = Fault::OutOfRange {
+                    value: "true".into(),
+                    allowed: "allowed: \"auto\" and false; the points of this body have no cells"
+                        .into(),
+                };
+                Err(at_path("output.cells", fault))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Rejects `Set_<name>` of an unknown set.
+    pub(super) fn check_point_numbers(&self, sets: &Sets) -> Result<(), BuildError> {
+        for number in &self.model.output.numbers {
+            if let PointNumber::Set(name) = number {
+                self.members(sets, name, "output.fields.names")?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns the key that requests the fields.
     fn field_key(&self, is_meant: fn(Field) -> bool) -> KeyPath {
         match self
             .model
@@ -185,11 +214,22 @@ impl Assembler<'_> {
             Some(k) if !self.model.output.names.iter().any(|field| is_meant(*field)) => {
                 KeyPath::from("output.picture").index(k)
             }
-            _ => "output.fields.names".into(),
+            _ => match self
+                .model
+                .output
+                .profiles
+                .iter()
+                .position(|one| is_meant(one.field))
+            {
+                Some(k) if !self.model.output.names.iter().any(|field| is_meant(*field)) => {
+                    KeyPath::from("output.profile").index(k)
+                }
+                _ => "output.fields.names".into(),
+            },
         }
     }
 
-    /// The points of the sets whose bonds never break.
+    /// Returns the points of the sets whose bonds do not break.
     pub(super) fn union_of(&self, sets: &Sets, names: &[String]) -> Result<PointSet, BuildError> {
         let mut points = PointSet::new();
         for name in names {
@@ -200,7 +240,7 @@ impl Assembler<'_> {
         Ok(points)
     }
 
-    /// The form that a model asks for, or one that its scheme and output can do with.
+    /// Returns the force kernel of a model, or one compatible with its scheme and output.
     fn form(
         &self,
         solid: &Solid,
@@ -221,7 +261,7 @@ impl Assembler<'_> {
         }
     }
 
-    /// The operator, and what the pre-cracks took from it.
+    /// Builds the operator; also returns the bonds cut by pre-cracks.
     fn bonds(
         &self,
         solid: &Solid,
@@ -256,7 +296,7 @@ impl Assembler<'_> {
     }
 }
 
-/// Whether a scheme has a need.
+/// Returns whether a scheme has a need.
 fn has_need(scheme: &Scheme, need: Need) -> bool {
     requirements(scheme).iter().any(|one| one.need == need)
 }

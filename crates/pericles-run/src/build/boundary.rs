@@ -1,4 +1,4 @@
-//! Absorbing ends of a model.
+//! Absorbing boundaries of a model.
 
 use pericles::kernel::InfluenceFunction;
 use pericles::space::PointCloud;
@@ -9,8 +9,8 @@ use pericles_deck::{
     ALL, BoundaryCondition, BuildError, Caution, Fault, KeyPath, ModelWarning, Remark, Solid,
 };
 use pericles_waves::absorbing::{
-    AbsorbingEnd, AbsorbingError, EndPlan, EndReport, FreeWave, LatticeScheme, LatticeStencil,
-    LatticeStep, MidpointEnd, OuterLayer, Side, history::HistoryForm,
+    AbsorbingBoundaryPlan, AbsorbingEnd, AbsorbingError, EndReport, FreeWave, LatticeScheme,
+    LatticeStencil, LatticeStep, MidpointEnd, OuterLayer, Side, history::HistoryForm,
 };
 
 use super::assembler::Assembler;
@@ -19,18 +19,18 @@ use super::refusal::{at, at_path};
 use super::resources::Resources;
 use super::step::Steps;
 
-/// An end to be made once the step is known.
+/// An absorbing boundary that is built once the time step is known.
 pub(super) struct End {
     path: KeyPath,
     layer: OuterLayer,
     scheme: LatticeScheme,
-    plan: EndPlan,
-    /// Displacements and velocities of the exterior's sites.
+    plan: AbsorbingBoundaryPlan,
+    /// Displacements and velocities of the exterior sites.
     beyond: Option<[Vec<f64>; 2]>,
 }
 
 impl Assembler<'_> {
-    /// The outer layers that the exterior continues.
+    /// Returns the outer layers at the absorbing boundaries.
     pub(super) fn ends(
         &self,
         system: &System,
@@ -68,16 +68,16 @@ impl Assembler<'_> {
             let BoundaryCondition::Absorbing {
                 side,
                 plan,
-                exterior_data,
+                exterior_extent,
             } = *boundary
             else {
                 continue;
             };
             let Some(scheme) = LatticeScheme::of(kind) else {
-                return Err(wrong_scheme("an absorbing end", LatticeScheme::KINDS));
+                return Err(wrong_scheme("an absorbing boundary", LatticeScheme::KINDS));
             };
-            if scheme != LatticeScheme::VelocityVerlet && exterior_data.is_some() {
-                let what = "exterior_data";
+            if scheme != LatticeScheme::VelocityVerlet && exterior_extent.is_some() {
+                let what = "exterior_extent";
                 return Err(refuse(AbsorbingError::VerletOnly { what }));
             }
             if sides.contains(&side) {
@@ -85,12 +85,12 @@ impl Assembler<'_> {
                 return Err(refuse(AbsorbingError::Twice { side }));
             }
             sides.push(side);
-            let (layer, beyond) = match exterior_data {
+            let (layer, beyond) = match exterior_extent {
                 None => (OuterLayer::of(system, side, state, &no_fail), None),
                 Some(depth) => {
                     self.refuse_initial_files()?;
                     exterior += depth / system.cloud().spacing();
-                    self.check_exterior(&path.key("exterior_data"), exterior, resources)?;
+                    self.check_exterior(&path.key("exterior_extent"), exterior, resources)?;
                     let layer = OuterLayer::with_motion_beyond(system, side, &no_fail);
                     (layer, Some(self.fields_beyond(side, depth, system.cloud())))
                 }
@@ -106,7 +106,7 @@ impl Assembler<'_> {
         Ok(ends)
     }
 
-    /// Refuses initial states from files where the initial fields are continued beyond the body.
+    /// Rejects initial states from files if the initial fields extend beyond the body.
     fn refuse_initial_files(&self) -> Result<(), BuildError> {
         let Some(k) = self
             .model
@@ -118,8 +118,8 @@ impl Assembler<'_> {
         };
         let fault = Fault::Misplaced {
             key: "file".into(),
-            table: "an [[initial]] of a deck with `exterior_data`".into(),
-            allowed: "a file holds no values beyond the body; give `displacement` and `velocity` as expressions".into(),
+            table: "an [[initial]] of a deck with `exterior_extent`".into(),
+            allowed: "a file has no values beyond the body; give `displacement` and `velocity` as expressions".into(),
         };
         Err(at_path(
             KeyPath::from("initial").index(k).key("file"),
@@ -127,7 +127,7 @@ impl Assembler<'_> {
         ))
     }
 
-    /// The initial fields of all points, continued beyond an end; displacement and velocity of each site.
+    /// Evaluates the initial fields beyond a boundary; returns displacement and velocity of each site.
     fn fields_beyond(&self, side: Side, depth: f64, cloud: &PointCloud) -> [Vec<f64>; 2] {
         let spacing = cloud.spacing();
         let (last, step) = match side {
@@ -154,7 +154,7 @@ impl Assembler<'_> {
         fields
     }
 
-    /// Makes the ends for the run's steps.
+    /// Builds the absorbing boundaries for the steps of the run.
     pub(super) fn add_ends(
         &self,
         system: &mut System,
@@ -164,7 +164,7 @@ impl Assembler<'_> {
         resources: &Resources<'_>,
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<Vec<(Side, EndReport)>, BuildError> {
-        /// An initial field of this share at an end is worth a warning.
+        /// Initial fields above this fraction at a boundary lead to a warning.
         const NOTABLE_FIELD: f64 = 1e-10;
         let largest = [&start.u, &start.v].map(max_norm);
         let mut reports = Vec::new();
@@ -198,7 +198,8 @@ impl Assembler<'_> {
                 sites += own;
                 self.check_history(&path, sites, count as f64, resources)?;
             }
-            let make = |plan: EndPlan| plan.history(&stencil, step, count, resources.cache);
+            let make =
+                |plan: AbsorbingBoundaryPlan| plan.history(&stencil, step, count, resources.cache);
             let mut made = make(end.plan);
             if let Err(AbsorbingError::Fit {
                 tolerance,
@@ -236,8 +237,12 @@ impl Assembler<'_> {
                 let another = || make(end.plan).map(|(history, _)| history).map_err(refuse);
                 let histories = [another()?, another()?];
                 let wave = FreeWave::new(&stencil, steps.dt, [u, v], largest, histories);
-                let refuse =
-                    |error| at_path(path.key("exterior_data"), PericlesError::from(error).into());
+                let refuse = |error| {
+                    at_path(
+                        path.key("exterior_extent"),
+                        PericlesError::from(error).into(),
+                    )
+                };
                 made = made.with_free_wave(wave.map_err(refuse)?);
             }
             system.add_boundary(Box::new(made));
@@ -245,7 +250,8 @@ impl Assembler<'_> {
         Ok(reports)
     }
 
-    /// Warns where the longest bonds of a table of classes have no stiffness: the exterior, read off the bonds, does not know of them.
+    /// Warns if the longest bonds of a table of classes have no stiffness: the exterior, derived from the bonds,
+    /// lacks them.
     fn judge_reach(
         &self,
         solid: &Solid,
@@ -263,7 +269,7 @@ impl Assembler<'_> {
     }
 }
 
-/// The highest frequency of the lattices beyond the ends, 1/s; 0 without ends.
+/// Returns the highest frequency of the exterior lattices, 1/s; 0 without absorbing boundaries.
 pub(super) fn exterior_frequency(ends: &[End]) -> f64 {
     ends.iter()
         .map(|end| end.layer.stencil.highest_frequency())

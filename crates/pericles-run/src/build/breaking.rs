@@ -1,7 +1,7 @@
-//! Speeds with which bonds break in masses rather than along cracks.
+//! Warnings about velocities that break most bonds instead of forming cracks.
 
 use pericles::System;
-use pericles::operator::On;
+use pericles::operator::PointSubset;
 use pericles::time::State;
 use pericles_deck::{Caution, KeyPath, ModelWarning, Remark};
 
@@ -9,12 +9,12 @@ use super::assembler::Assembler;
 use super::constants::MaterialConstants;
 use super::step::Steps;
 
-/// Times at which prescribed speeds are looked at.
+/// Number of times at which prescribed velocities are sampled.
 const SAMPLES: usize = 200;
 
 impl Assembler<'_> {
-    /// Warns of initial and prescribed speeds above the Rayleigh speed, and of such as stretch bonds beyond the critical stretch within the first step, where bonds can break. Static
-    /// states have no speeds.
+    /// Warns of initial and prescribed velocities above the Rayleigh speed, and of velocities that stretch bonds
+    /// beyond the critical stretch within the first step, if bonds can break. Static states have no velocities.
     pub(super) fn judge_breaking(
         &self,
         system: &System,
@@ -34,7 +34,7 @@ impl Assembler<'_> {
         let waves = constants.waves(density, solid.state);
         let limit = waves.transverse.map_or(waves.pressure, |t| t.rayleigh);
         let first = |key: &str| KeyPath::from(key).index(0);
-        // A body that moves as a whole is at rest for an observer that moves with it.
+        // Velocities relative to the mean: a translation of the whole body breaks no bonds.
         let speed = largest_speed(
             &about_mean(&state.v, system.dimension()),
             system.dimension(),
@@ -46,7 +46,7 @@ impl Assembler<'_> {
         for (k, speed) in prescribed_speeds(system, steps).into_iter().enumerate() {
             if speed > limit && system.motions()[k].points.len() < system.points() {
                 let caution = fast("prescribed motion", speed, limit, system.dimension());
-                warnings.push(Remark::new(KeyPath::from("prescribe").index(k), caution));
+                warnings.push(Remark::new(KeyPath::from("constraint").index(k), caution));
             }
         }
         let mut u: Vec<f64> = state.u.clone();
@@ -56,9 +56,9 @@ impl Assembler<'_> {
         let mut torn = torn(system, &u);
         let mut path = first("initial");
         if torn == 0 {
-            system.place_on(steps.dt, &On::All, &mut u);
+            system.place_on(steps.dt, &PointSubset::All, &mut u);
             torn = self::torn(system, &u);
-            path = first("prescribe");
+            path = first("constraint");
         }
         if torn > 0 {
             let caution = Caution::TornAtOnce {
@@ -71,7 +71,7 @@ impl Assembler<'_> {
     }
 }
 
-/// The largest speed of each motion over the run, m/s.
+/// Returns the largest speed of each prescribed motion during the run, m/s.
 fn prescribed_speeds(system: &System, steps: &Steps) -> Vec<f64> {
     let (n, dimension) = (system.points(), system.dimension());
     let mut largest = vec![0.0f64; system.motions().len()];
@@ -81,7 +81,7 @@ fn prescribed_speeds(system: &System, steps: &Steps) -> Vec<f64> {
     let mut v = vec![0.0; dimension * n];
     for sample in 0..SAMPLES {
         let t = steps.count as f64 * steps.dt * sample as f64 / SAMPLES as f64;
-        system.drive_on(t, &On::All, &mut v);
+        system.drive_on(t, &PointSubset::All, &mut v);
         for (largest, motion) in largest.iter_mut().zip(system.motions()) {
             let axes: Vec<usize> = motion.axes().collect();
             let square =
@@ -106,7 +106,7 @@ fn fast(what: &'static str, speed: f64, limit: f64, dimension: usize) -> Caution
     }
 }
 
-/// Points with bonds beyond the critical stretch.
+/// Returns the number of points with bonds beyond the critical stretch.
 fn torn(system: &System, u: &[f64]) -> usize {
     let Some(breaking) = system.operator().capabilities().breaking else {
         return 0;
@@ -116,14 +116,14 @@ fn torn(system: &System, u: &[f64]) -> usize {
     marks.iter().filter(|mark| **mark).count()
 }
 
-/// The largest norm of a component-major field of vectors.
+/// Returns the largest norm of a component-major vector field.
 fn largest_speed(v: &[f64], dimension: usize) -> f64 {
     let n = v.len() / dimension;
     let square = |i: usize| (0..dimension).map(|c| v[c * n + i].powi(2)).sum::<f64>();
     (0..n).map(square).fold(0.0, f64::max).sqrt()
 }
 
-/// A field of vectors without its mean.
+/// Subtracts the mean of a vector field.
 fn about_mean(v: &[f64], dimension: usize) -> Vec<f64> {
     let n = v.len() / dimension;
     let components = v.chunks(n).flat_map(|component| {

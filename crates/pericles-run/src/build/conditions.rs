@@ -18,7 +18,7 @@ use super::refusal::{at, at_path};
 use super::resources::Resources;
 
 impl Assembler<'_> {
-    /// Entries for the same point replace each other in the order of the deck.
+    /// Builds the initial state; later entries for a point replace earlier ones.
     pub(super) fn initial_state(
         &self,
         cloud: &PointCloud,
@@ -72,7 +72,7 @@ impl Assembler<'_> {
         Ok(state)
     }
 
-    /// The rows of a file with the initial state: for each point, in the user's order, its displacement, m, and velocity, m/s.
+    /// Reads the initial state from a file: displacement, m, and velocity, m/s, of each point in the user's order.
     fn initial_rows(
         &self,
         path: &KeyPath,
@@ -91,7 +91,8 @@ impl Assembler<'_> {
         )
     }
 
-    /// The whole body is drawn, in the user's order, whatever the set: a point's velocity depends on seed and number only.
+    /// Random velocities are drawn for the whole body in the user's order, independent of the set, so that the
+    /// velocity of a point depends only on seed and number.
     fn add_random(
         random: RandomVelocity,
         cloud: &PointCloud,
@@ -115,8 +116,8 @@ impl Assembler<'_> {
         sets: &Sets,
     ) -> Result<(), BuildError> {
         let mut names: Vec<String> = Vec::new();
-        for (k, motion) in self.model.prescribe.iter().enumerate() {
-            // Two motions of one set (along different axes) need two names in tables.
+        for (k, motion) in self.model.constraints.iter().enumerate() {
+            // Several motions of one set (along different axes) need distinct names in tables.
             let mut name = motion.set.clone();
             let mut number = 1;
             while names.contains(&name) {
@@ -124,7 +125,7 @@ impl Assembler<'_> {
                 name = format!("{}_{number}", motion.set);
             }
             names.push(name.clone());
-            let path = KeyPath::from("prescribe").index(k);
+            let path = KeyPath::from("constraint").index(k);
             let points = self.members(sets, &motion.set, path.key("set"))?.clone();
             let function = motion.function.smooth_function();
             let function = function.map_err(|fault| at_path(path.key("function"), fault))?;
@@ -148,18 +149,18 @@ impl Assembler<'_> {
         Ok(())
     }
 
-    /// Refuses a motion of points that an earlier one moves along the same axis.
+    /// Rejects a second prescribed motion of a point along the same axis.
     fn refuse_second_motion(
         &self,
         k: usize,
         points: &[u32],
         sets: &Sets,
     ) -> Result<(), BuildError> {
-        let later = &self.model.prescribe[k];
-        for (earlier, other) in self.model.prescribe[..k].iter().enumerate() {
-            let path = KeyPath::from("prescribe").index(earlier);
+        let later = &self.model.constraints[k];
+        for (earlier, other) in self.model.constraints[..k].iter().enumerate() {
+            let path = KeyPath::from("constraint").index(earlier);
             let others = self.members(sets, &other.set, &path)?;
-            // Sets are in order.
+            // Sets are sorted.
             let shared = points.iter().filter(|i| others.binary_search(i).is_ok());
             let (shared, both) = (
                 shared.count(),
@@ -171,7 +172,7 @@ impl Assembler<'_> {
                     axis: ['x', 'y', 'z'][c],
                     earlier: earlier + 1,
                 };
-                return Err(at_path(KeyPath::from("prescribe").index(k), fault));
+                return Err(at_path(KeyPath::from("constraint").index(k), fault));
             }
         }
         Ok(())
@@ -190,7 +191,7 @@ impl Assembler<'_> {
                 ProbePlace::Set(set) => self.members(sets, set, path.key("set"))?.clone(),
                 ProbePlace::At(place) => {
                     let (nearest, distance) = nearest(cloud, *place);
-                    // Inside a cell no place is farther from its centre than half a diagonal.
+                    // Positions inside a cell are within half a diagonal of its centre.
                     let diagonal = (cloud.dimension() as f64).sqrt() * cloud.spacing();
                     if distance > 0.5 * diagonal * (1.0 + 1e-9) {
                         let name = probe.name.clone();
@@ -209,7 +210,7 @@ impl Assembler<'_> {
     }
 }
 
-/// The point nearest to a place, and its distance.
+/// Returns the point nearest to a position, and its distance.
 fn nearest(cloud: &PointCloud, place: Point) -> (u32, f64) {
     let nearest = cloud.nearest(place);
     let found = cloud.point(nearest);

@@ -1,23 +1,23 @@
-//! The constants of a material, whatever its model.
+//! Constants of materials of all models.
 
 use pericles::material::{
     BondConstants, CrackPlane, ElasticWaves, FractureCalibration, LinearSolidConstants, StressState,
 };
 use pericles_solids::correspondence::CorrespondenceConstants;
 
-/// The constants of a material's forces.
+/// The constants of a material.
 #[derive(Debug, Clone, PartialEq)]
 pub enum MaterialConstants {
-    /// Of a bond-based material.
+    /// Constants of a bond-based material.
     Bonds(BondConstants),
-    /// Of a state-based material.
+    /// Constants of a state-based material.
     StateBased(LinearSolidConstants),
-    /// Of a correspondence material.
+    /// Constants of a correspondence material.
     Correspondence(CorrespondenceConstants),
 }
 
 impl MaterialConstants {
-    /// Those of a bond-based material.
+    /// Returns the constants of a bond-based material.
     pub fn bonds(&self) -> Option<&BondConstants> {
         match self {
             Self::Bonds(constants) => Some(constants),
@@ -25,7 +25,7 @@ impl MaterialConstants {
         }
     }
 
-    /// Elastic constants and limits of a state-based or correspondence material.
+    /// Returns elastic constants and limits of a state-based or correspondence material.
     pub fn state_based(&self) -> Option<&LinearSolidConstants> {
         match self {
             Self::Bonds(_) => None,
@@ -34,7 +34,7 @@ impl MaterialConstants {
         }
     }
 
-    /// Young's modulus, Pa.
+    /// Returns Young's modulus, Pa.
     pub fn young(&self) -> f64 {
         match self {
             Self::Bonds(constants) => constants.young,
@@ -43,7 +43,7 @@ impl MaterialConstants {
         }
     }
 
-    /// ρ c² of longitudinal waves, Pa.
+    /// Returns ρ c² of longitudinal waves, Pa.
     pub fn longitudinal_modulus(&self, state: StressState) -> f64 {
         match self {
             Self::Bonds(constants) => state.longitudinal_modulus(constants.young),
@@ -52,7 +52,7 @@ impl MaterialConstants {
         }
     }
 
-    /// Speeds of waves for a density (kg/m³).
+    /// Returns the wave speeds for a density (kg/m³).
     pub fn waves(&self, density: f64, state: StressState) -> ElasticWaves {
         match self {
             Self::Bonds(constants) => ElasticWaves::of(constants.young, density, state),
@@ -65,7 +65,15 @@ impl MaterialConstants {
         }
     }
 
-    /// The critical stretch; infinite where bonds do not break by their stretch.
+    /// The largest principal stress that bonds bear, Pa; infinite unless they break by their stress.
+    pub fn strength(&self) -> f64 {
+        match self {
+            Self::Bonds(_) | Self::StateBased(_) => f64::INFINITY,
+            Self::Correspondence(solid) => solid.strength,
+        }
+    }
+
+    /// Returns the critical stretch; infinite if bonds do not break by their stretch.
     pub fn critical_stretch(&self) -> f64 {
         match self {
             Self::Bonds(constants) => constants.critical_stretch,
@@ -74,7 +82,7 @@ impl MaterialConstants {
         }
     }
 
-    /// The critical bond energy w_c, J/m⁶; infinite where bonds do not break by their energy.
+    /// Returns the critical bond energy w_c, J/m⁶; infinite if bonds do not break by their energy.
     pub fn critical_bond_energy(&self) -> f64 {
         match self {
             Self::Bonds(_) => f64::INFINITY,
@@ -83,7 +91,7 @@ impl MaterialConstants {
         }
     }
 
-    /// The fracture energy, J/m²; infinite if bonds never break.
+    /// Returns the fracture energy, J/m²; infinite if bonds do not break.
     pub fn fracture_energy(&self) -> f64 {
         match self {
             Self::Bonds(constants) => constants.fracture_energy,
@@ -92,7 +100,7 @@ impl MaterialConstants {
         }
     }
 
-    /// How the limits of bonds follow from the fracture energy; none if no fracture energy is given.
+    /// Returns the calibration by the fracture energy; `None` if no fracture energy is given.
     pub fn fracture_calibration(&self) -> Option<FractureCalibration> {
         match self {
             Self::Bonds(constants) => constants.fracture_calibration,
@@ -101,7 +109,8 @@ impl MaterialConstants {
         }
     }
 
-    /// What cracks along planes of the lattice cost; empty if bonds never break, and for bodies without a lattice.
+    /// Returns the energies of cracks along lattice planes; empty if bonds do not break, and for bodies without a
+    /// lattice.
     pub fn crack_planes(&self) -> &[CrackPlane] {
         match self {
             Self::Bonds(constants) => &constants.crack_planes,

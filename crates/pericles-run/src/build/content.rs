@@ -1,4 +1,5 @@
-//! Plane waves in a deck's body: what the kernel and the grid do to them, and which loads, motions and initial values send out waves that the grid distorts.
+//! Plane waves in the body of a deck: dispersion by kernel and grid, and warnings about loads, motions and initial
+//! values with waves that the grid does not resolve.
 
 use pericles::boundary::MotionKind;
 use pericles::kernel::{Influence, InfluenceFunction};
@@ -15,40 +16,41 @@ use super::assembler::Assembler;
 use super::assembly::Assembly;
 use super::refusal::{HORIZON, at, at_path};
 
-/// Deviation of the phase speed from which waves count as distorted.
+/// Waves with a larger error of the phase speed are not resolved.
 const TOLERANCE: f64 = 0.05;
 
-/// Share of the energy from which a warning is due.
+/// Fraction of the energy in unresolved waves that leads to a warning.
 const SHARE: f64 = 0.05;
 
-/// What a deck's body does to plane waves of any direction.
+/// Dispersion of plane waves of any direction in the body of a deck.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlaneWaves {
-    /// The shortest wave (m) whose phase speed in the nonlocal continuum is within [`Resolved::tolerance`] of `grid` of that of long waves; none for coefficients per class of bonds, which
-    /// have no continuum.
+    /// The shortest wavelength (m) whose phase speed in the nonlocal continuum is within [`Resolved::tolerance`] of
+    /// `grid` of the long-wave limit; `None` for coefficients per class of bonds, which have no continuum.
     pub model: Option<f64>,
-    /// The shortest waves whose phase speed on the grid is within the tolerance of that in the nonlocal continuum, or of that of long waves where there is no continuum.
+    /// The shortest waves whose phase speed on the grid is within the tolerance of that in the nonlocal continuum or,
+    /// without a continuum, of the long-wave limit.
     pub grid: Resolved,
-    /// For tuned coefficients: how they do and how a constant influence function would do.
+    /// For tuned coefficients: their quality and that of a constant influence function.
     pub tuning: Option<[KernelQuality; 2]>,
 }
 
-/// How well a kernel carries waves on its grid.
+/// Dispersion error of a kernel on its grid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KernelQuality {
-    /// Spacings per wavelength from which on the phase speed is within 1 % of that of long waves.
+    /// Spacings per wavelength above which the phase speed is within 1 % of the long-wave limit.
     pub spacings: f64,
     /// The largest relative error of the phase speed down to [`KernelQuality::SHORTEST`] spacings per wavelength.
     pub worst: f64,
 }
 
 impl KernelQuality {
-    /// Spacings per wavelength down to which kernels are compared.
+    /// Smallest number of spacings per wavelength in comparisons of kernels.
     pub const SHORTEST: f64 = 4.0;
 
     fn of(lattice: &BondLattice) -> Self {
         let errors = PhaseErrors::new(lattice);
-        // The zone ends at two spacings per wavelength.
+        // The boundary of the Brillouin zone corresponds to two spacings per wavelength.
         let end = errors.end();
         Self {
             spacings: 2.0 * end / errors.resolved(0.01).wavenumber,
@@ -58,28 +60,28 @@ impl KernelQuality {
 }
 
 impl Assembly {
-    /// The interior of the body: what plane waves know of it.
+    /// Returns the interior of the body for plane-wave analysis.
     ///
     /// # Errors
-    /// A body whose points lie on no regular grid.
+    /// The points of the body do not form a regular grid.
     pub fn interior<'a>(&'a self, model: &'a Model) -> Result<Interior<'a>, BuildError> {
         Assembler::new(model).interior(self)
     }
 
-    /// What the body does to plane waves; none for bodies that lie on no grid or are of several materials.
+    /// Returns the dispersion of plane waves; `None` for bodies without a grid or with several materials.
     pub fn plane_waves(&self, model: &Model) -> Option<PlaneWaves> {
         Assembler::new(model).plane_waves(self)
     }
 
-    /// Warns of kernels that do not keep what they are made for, and of loads, motions and initial values whose waves the grid distorts. What
-    /// the nonlocal model itself does to short waves is no matter of the grid and not warned of. Bodies that lie on no grid, or are of several
-    /// materials, are not judged.
+    /// Warns of kernels that are less accurate than intended, and of loads, motions and initial values with waves
+    /// that the grid does not resolve. Dispersion of the nonlocal model itself leads to no warning. Bodies without a
+    /// grid or with several materials are not checked.
     pub fn judge_waves(&self, model: &Model) -> Vec<ModelWarning> {
         Assembler::new(model).judge_waves(self)
     }
 }
 
-/// The interior of a body on a grid; of several materials the first one.
+/// The interior of a body on a grid; of several materials only the first.
 pub struct Interior<'a> {
     /// The bonds of a point.
     pub lattice: BondLattice,
@@ -99,7 +101,7 @@ impl<'a> Assembler<'a> {
         let Some((material, constants)) = bonds_of(solid, assembly) else {
             let fault = Fault::OutOfRange {
                 value: solid.material.model_name().into(),
-                allowed: "allowed: a bond-based model, whose lattice is one of single bonds".into(),
+                allowed: "allowed: a bond-based model".into(),
             };
             return Err(at_path("material.model", fault));
         };
@@ -131,7 +133,7 @@ impl<'a> Assembler<'a> {
         }
     }
 
-    /// What the body does to plane waves; none for bodies that lie on no grid or are of several materials.
+    /// Returns the dispersion of plane waves; `None` for bodies without a grid or with several materials.
     fn plane_waves(self, assembly: &Assembly) -> Option<PlaneWaves> {
         let solid = self.model.body.solid()?;
         let (material, constants) = bonds_of(solid, assembly)?;
@@ -168,8 +170,7 @@ impl<'a> Assembler<'a> {
         })
     }
 
-    /// Warns of kernels that do not keep what they are made for, and of loads, motions and initial values whose waves the grid distorts. What the nonlocal model itself does to short waves
-    /// is no matter of the grid and not warned of. Bodies that lie on no grid, or are of several materials, are not judged.
+    /// See [`Assembly::judge_waves`].
     fn judge_waves(self, assembly: &Assembly) -> Vec<ModelWarning> {
         let body = self.model.body.solid();
         let Some((solid, waves)) = body.zip(self.plane_waves(assembly)) else {
@@ -217,14 +218,14 @@ impl<'a> Assembler<'a> {
             };
             judge(&KeyPath::from("load").index(k), "load", in_time(&g, from));
         }
-        for (k, motion) in self.model.prescribe.iter().enumerate() {
-            // A motion sends out its velocity.
+        for (k, motion) in self.model.constraints.iter().enumerate() {
+            // A prescribed motion emits waves by its velocity.
             let moved = assembly
                 .system
                 .motions()
                 .get(k)
                 .map_or(0, |m| m.points.len());
-            // What moves all points at once sends out nothing.
+            // A motion of all points emits no waves.
             if !motion.moves() || moved == assembly.cloud.len() {
                 continue;
             }
@@ -252,7 +253,7 @@ impl<'a> Assembler<'a> {
                 (false, true) => course(&field, t),
             };
             judge(
-                &KeyPath::from("prescribe").index(k),
+                &KeyPath::from("constraint").index(k),
                 "prescribed motion",
                 in_time(&g, 0.0),
             );
@@ -260,7 +261,7 @@ impl<'a> Assembler<'a> {
         warnings
     }
 
-    /// Warns of waves that grow, and of tuned coefficients that do worse than a constant influence function.
+    /// Warns of unstable waves, and of tuned coefficients that are less accurate than a constant influence function.
     fn judge_kernel(
         &self,
         solid: &Solid,
@@ -294,7 +295,7 @@ impl<'a> Assembler<'a> {
     }
 }
 
-/// The bond-based material of a body with its constants, if it is one.
+/// Returns the bond-based material of a body with its constants, if it has one.
 fn bonds_of<'a>(
     solid: &'a Solid,
     assembly: &'a Assembly,
@@ -303,7 +304,7 @@ fn bonds_of<'a>(
     Some((solid.material.bonds()?, constants))
 }
 
-/// How a field goes over time, at the origin; 1 where it does not change.
+/// Returns the time history of a field at the origin; 1 if it is constant.
 fn course(field: &[Component], t: f64) -> f64 {
     field
         .iter()

@@ -1,4 +1,4 @@
-//! Forces of a body of correspondence materials.
+//! Forces of bodies of correspondence materials.
 
 use pericles::material::{BondFailure, BondLimits};
 use pericles::operator::Feature;
@@ -19,7 +19,7 @@ use super::materials::PairRule;
 use super::refusal::{at, at_material, at_path};
 
 impl Assembler<'_> {
-    /// Force and materials of a body of correspondence materials.
+    /// Builds force operator and materials of a body of correspondence materials.
     pub(super) fn correspondence_parts(
         &self,
         solid: &Solid,
@@ -83,7 +83,7 @@ impl Assembler<'_> {
             no_fail: &no_fail,
             damage: material.damage.unwrap_or_default(),
         };
-        // Forms that transform are refused above.
+        // Spectral force kernels are rejected above.
         let form = self
             .heated_form(material.form)?
             .of_bonds()
@@ -105,7 +105,7 @@ impl Assembler<'_> {
         })
     }
 
-    /// What bonds between two materials can bear, where the deck says so.
+    /// Returns the limits of bonds between two materials, if the deck gives them.
     fn stretches_between(
         &self,
         solid: &Solid,
@@ -133,7 +133,7 @@ impl Assembler<'_> {
         Ok(found)
     }
 
-    /// Refuses what correspondence bodies do not represent, and forms that do not represent them.
+    /// Rejects features that correspondence materials do not support, and force kernels that do not support them.
     fn refuse_correspondence_features(&self, solid: &Solid) -> Result<(), BuildError> {
         let shape = &solid.shape;
         let mut assignments = self.model.assignments.iter();

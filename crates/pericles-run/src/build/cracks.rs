@@ -1,6 +1,6 @@
-//! Pre-cracks: their surfaces, and what they cut.
+//! Pre-cracks: their surfaces and the bonds that they cut.
 
-use pericles::family::{Crack, Cut, EndRule};
+use pericles::family::{BondCut, Crack, EndRule};
 use pericles::observe::TrackedCrack;
 use pericles::space::PointCloud;
 use pericles_deck::{BuildError, CrackSurface, Fault, KeyPath, ModelWarning, Remark};
@@ -10,7 +10,7 @@ use super::refusal::at_path;
 use super::resources::Resources;
 
 impl Assembler<'_> {
-    /// The surfaces of the pre-cracks; triangles are read from their files.
+    /// Returns the surfaces of the pre-cracks; triangulated ones are read from their files.
     pub(super) fn read_cracks(
         &self,
         resources: &Resources<'_>,
@@ -39,7 +39,7 @@ impl Assembler<'_> {
                     }
                 }
             };
-            // The library tells what is wrong with a crack, not with which.
+            // The error of the engine does not contain the number of the crack.
             surface
                 .cutter(crack.ends, 0.0)
                 .map_err(|error| at_path(path, error.into()))?;
@@ -48,11 +48,11 @@ impl Assembler<'_> {
         read.collect()
     }
 
-    /// The pre-cracks with the points at which they cut bonds; warns of those that cut none.
+    /// Returns the pre-cracks with the points at which they cut bonds; warns of those that cut none.
     pub(super) fn tracked_cracks(
         &self,
         surfaces: &[(Crack, EndRule)],
-        cuts: &[Cut],
+        cuts: &[BondCut],
         cloud: &PointCloud,
         warnings: &mut Vec<ModelWarning>,
     ) -> Vec<TrackedCrack> {

@@ -1,4 +1,4 @@
-//! Damping layers of a model, and the steps that are stable with them.
+//! Damping layers and Rayleigh damping of a model, and their stable steps.
 
 use pericles::boundary::{
     DampedSteps, DampingLayer, DampingProfile, RayleighDamping, RayleighRates,
@@ -14,10 +14,10 @@ use super::refusal::at_path;
 use super::step::Steps;
 
 impl Assembler<'_> {
-    /// The damping layers with their numbers in the deck.
+    /// Returns the damping layers with their numbers in the deck.
     ///
     /// # Errors
-    /// Layers of a surface.
+    /// The body is a surface.
     pub(super) fn damping_layers(
         &self,
         system: &System,
@@ -36,7 +36,7 @@ impl Assembler<'_> {
                 }
             };
         };
-        // Of the first material, where there are several.
+        // The first of several materials.
         let modulus = constants.longitudinal_modulus(solid.state);
         let speed = (modulus / system.density().at(0)).sqrt();
         let layer = |(k, boundary): (usize, &BoundaryCondition)| {
@@ -56,7 +56,7 @@ impl Assembler<'_> {
         Ok(boundaries.filter_map(layer).collect())
     }
 
-    /// The factors of damping in proportion to mass and stiffness; zero if there is none.
+    /// Returns the factors of mass- and stiffness-proportional damping; zero without damping.
     pub(super) fn rayleigh_rates(&self) -> RayleighRates {
         let damping = self.model.damping;
         damping.map_or_else(RayleighRates::default, |damping| RayleighRates {
@@ -65,7 +65,7 @@ impl Assembler<'_> {
         })
     }
 
-    /// Adds damping in proportion to mass and stiffness.
+    /// Adds mass- and stiffness-proportional damping.
     pub(super) fn add_rayleigh_damping(
         &self,
         system: &mut System,
@@ -115,7 +115,8 @@ impl Assembler<'_> {
     }
 }
 
-/// The strongest damping that points may have, 1/s: in corners that of several layers adds up, and of opposite ones where both reach across the middle.
+/// Returns the largest damping rate of a point, 1/s: rates of layers add up in corners, and of opposite layers where
+/// they overlap.
 pub(super) fn strongest(layers: &[(usize, Face, DampingProfile)], cloud: &PointCloud) -> f64 {
     let along = |axis: usize| {
         let depth_of = |upper: bool| {

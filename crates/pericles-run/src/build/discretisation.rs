@@ -4,28 +4,28 @@ use std::sync::Arc;
 
 use pericles::family::{Crack, EndRule};
 use pericles::space::{PointCloud, PointSet};
-use pericles_deck::{Body, BuildError, Fault, KeyPath, ModelWarning};
+use pericles_deck::{Body, BuildError, Fault, KeyPath, Model, ModelWarning};
 use pericles_manifold::surface::Surface;
 
 use super::mesh_body::MeshBody;
 use super::refusal::at_path;
 
-/// Sets of points by name, the points of each in rising order.
+/// Named sets of points, each in ascending order.
 pub type Sets = Vec<(String, PointSet)>;
 
-/// The points of a model with their sets: plain arrays that a program may look at, change or replace before it goes on to
+/// The points of a model with their sets: plain arrays that a program may inspect, change or replace before
 /// [`assemble`](crate::assemble).
 #[derive(Debug, Clone)]
 pub struct Discretisation {
     /// The points with their volumes.
     pub cloud: Arc<PointCloud>,
-    /// The grids that the points belong to.
+    /// The grids of the points.
     pub grids: Grids,
     /// The surface, if the body is one; its vertices are the points.
     pub surface: Option<Arc<Surface>>,
     /// The mesh, if the points are its elements.
     pub mesh: Option<Arc<MeshBody>>,
-    /// The sets of points by name, "all" first, then those of a mesh.
+    /// The sets of points with their names: "all", those of a mesh, those of the deck.
     pub sets: Sets,
     /// The surfaces of the pre-cracks.
     pub cracks: Vec<(Crack, EndRule)>,
@@ -33,17 +33,23 @@ pub struct Discretisation {
     pub warnings: Vec<ModelWarning>,
 }
 
-/// The grids of a body, of which parts may have smaller cells.
+/// Returns whether the points of a body are the centres of boxes.
+pub(crate) fn is_on_grid(model: &Model, cloud: &PointCloud) -> bool {
+    let shape = model.body.solid().map(|solid| &solid.shape);
+    cloud.cell_sides().is_some() || shape.is_some_and(|shape| shape.is_refined())
+}
+
+/// The grids of a body with refined parts.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Grids {
-    /// Division of each grid's cells: 1 for the whole body's, then those of the refined parts.
+    /// Refinement ratio of each grid: 1 for the whole body, then those of the refined parts.
     pub ratios: Vec<u32>,
     /// The grid of each point, by its number in `ratios`.
     pub of_point: Vec<u8>,
 }
 
 impl Grids {
-    /// One grid for so many points.
+    /// Returns a single grid for `points` points.
     pub fn one(points: usize) -> Self {
         Self {
             ratios: vec![1],
@@ -53,19 +59,20 @@ impl Grids {
 }
 
 impl Discretisation {
-    /// The points of a set.
+    /// Returns the points of a set.
     pub fn set(&self, name: &str) -> Option<&PointSet> {
         let found = self.sets.iter().find(|(known, _)| known == name);
         found.map(|(_, points)| points)
     }
 
-    /// The points of a set, to change them; they must stay in rising order.
+    /// Returns the points of a set for modification; they must stay in ascending order.
     pub fn set_mut(&mut self, name: &str) -> Option<&mut PointSet> {
         let found = self.sets.iter_mut().find(|(known, _)| known == name);
         found.map(|(_, points)| points)
     }
 
-    /// Refuses points, grids and sets that do not belong together, or not to the body. What [`discretise`] makes does; what a program has changed may not.
+    /// Checks that points, grids and sets are consistent with each other and with the body. Results of [`discretise`]
+    /// are; those changed by a program may not be.
     pub(super) fn check(&self, body: &Body) -> Result<(), BuildError> {
         let points = self.cloud.len();
         let refuse =
@@ -78,12 +85,12 @@ impl Discretisation {
         let grids = &self.grids;
         let known = |&grid: &u8| usize::from(grid) < grids.ratios.len();
         if grids.of_point.len() != points || !grids.of_point.iter().all(known) {
-            let reason = format!("the grids are not those of {points} points");
+            let reason = format!("the grids do not match the {points} points");
             return refuse("body.refine".into(), reason);
         }
         if let Some(surface) = self.surface.as_ref().filter(|s| s.len() != points) {
             let reason = format!(
-                "a surface of {} vertices has {points} points",
+                "the surface has {} vertices, but there are {points} points",
                 surface.len()
             );
             return refuse("body".into(), reason);
@@ -92,7 +99,7 @@ impl Discretisation {
             let rising = set.windows(2).all(|pair| pair[0] < pair[1]);
             if !rising || set.last().is_some_and(|&last| last as usize >= points) {
                 let reason = format!(
-                    "the set `{name}` does not hold points 0 to {} in rising order",
+                    "the set `{name}` does not contain points from 0 to {} in ascending order",
                     points.saturating_sub(1)
                 );
                 return refuse(KeyPath::from("sets").key(name), reason);

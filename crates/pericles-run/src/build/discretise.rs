@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use pericles::space::{GradedCloud, PointCloud, PointSet};
 use pericles_deck::{ALL, Body, BuildError, Fault, KeyPath, Members, Model, Remark};
-use pericles_manifold::surface::Surface;
 
 use super::assembler::Assembler;
 use super::discretisation::{Discretisation, Grids, Sets};
@@ -12,7 +11,7 @@ use super::mesh_body::MeshBody;
 use super::refusal::at_path;
 use super::resources::Resources;
 
-/// Makes the points of a model and selects its sets.
+/// Creates the points of a model and selects its sets.
 ///
 /// ```
 /// use pericles_deck::Deck;
@@ -39,7 +38,7 @@ use super::resources::Resources;
 /// let resources = Resources::default();
 /// let mut points = discretise(&deck.model, &resources).unwrap();
 /// assert_eq!(points.cloud.len(), 100);
-/// // The set is chosen by the program from here on.
+/// // The program modifies the set.
 /// points.set_mut("left").unwrap().extend([1, 2, 3]);
 /// let assembly = assemble(&deck.model, points, &resources).unwrap();
 /// assert_eq!(assembly.state.v.iter().sum::<f64>(), 4.0);
@@ -47,7 +46,7 @@ use super::resources::Resources;
 /// ```
 ///
 /// # Errors
-/// Numbers out of their ranges, points that the engine refuses or that do not fit into the memory, files that cannot be read, sets without points.
+/// A value is out of range, points are invalid or exceed the memory limit, a file cannot be read, or a set is empty.
 pub fn discretise(model: &Model, resources: &Resources<'_>) -> Result<Discretisation, BuildError> {
     model.check()?;
     let assembler = Assembler::new(model);
@@ -78,28 +77,6 @@ pub fn discretise(model: &Model, resources: &Resources<'_>) -> Result<Discretisa
     })
 }
 
-/// The points of the body alone, with the surface if it is one: what is needed to draw results again.
-///
-/// # Errors
-/// As [`discretise`], except for sets.
-pub fn body_points(
-    model: &Model,
-    resources: &Resources<'_>,
-) -> Result<(PointCloud, Option<Surface>), BuildError> {
-    model.check()?;
-    let assembler = Assembler::new(model);
-    match &model.body {
-        Body::Surface(body) => {
-            let (surface, cloud) = assembler.surface_points(body, resources)?;
-            Ok((cloud, Some(surface)))
-        }
-        Body::Solid(solid) => {
-            let points = assembler.points(solid, resources, &mut Vec::new())?;
-            Ok((points.cloud.cloud, None))
-        }
-    }
-}
-
 impl Assembler<'_> {
     fn select(&self, cloud: &PointCloud, mesh: Option<&MeshBody>) -> Result<Sets, BuildError> {
         let mut sets = vec![(ALL.to_owned(), (0..cloud.len() as u32).collect())];
@@ -111,7 +88,7 @@ impl Assembler<'_> {
                 let fault = Fault::BadName {
                     name: set.name.clone(),
                     reason: "the mesh has a set of this name",
-                    allowed: "allowed: another name; sets of the mesh are used by their own names",
+                    allowed: "allowed: another name; sets of the mesh are available under their own names",
                 };
                 problems.push(Remark::new(path, fault));
                 continue;

@@ -1,4 +1,4 @@
-//! Closed surfaces and outlines, and holes in them.
+//! Closed surfaces and outlines with holes.
 
 use pericles::space::Region;
 use pericles_mesh::fill::{
@@ -6,7 +6,7 @@ use pericles_mesh::fill::{
     fill_nodes, fill_open, fill_open_nodes, fill_open_partially, fill_partially,
 };
 
-/// What is filled, read and checked.
+/// A boundary to be filled.
 pub(super) enum Enclosure {
     Surface(TriangleSurface),
     Open(TriangleSurface),
@@ -21,7 +21,7 @@ impl Enclosure {
         }
     }
 
-    /// The volume inside, or area of an outline; none of an open surface.
+    /// Returns the enclosed volume, or area of an outline; `None` for an open surface.
     pub(super) fn enclosed(&self) -> Option<f64> {
         match self {
             Self::Surface(surface) => Some(surface.signed_volume().abs()),
@@ -38,7 +38,7 @@ impl Enclosure {
         }
     }
 
-    /// The cells of a lattice, which need not cover it, whose centres are inside.
+    /// Returns the cells of a lattice whose centres are inside; the lattice need not cover the whole interior.
     pub(super) fn fill_nodes(&self, lattice: Lattice) -> Result<Filled, FillError> {
         match self {
             Self::Surface(surface) => fill_nodes(surface, lattice),
@@ -58,7 +58,7 @@ impl Enclosure {
         }
     }
 
-    /// A test whether a place is inside.
+    /// Returns a predicate whether a position is inside.
     pub(super) fn inside(&self) -> Box<dyn Fn([f64; 3]) -> bool + Sync + '_> {
         match self {
             Self::Surface(surface) | Self::Open(surface) => {
@@ -71,7 +71,7 @@ impl Enclosure {
     }
 }
 
-/// The holes of a body within its box.
+/// The holes of a body within its bounding box.
 pub(super) struct Holes<'a> {
     pub(super) regions: &'a [Region],
     pub(super) bounds: [[f64; 3]; 2],
@@ -83,7 +83,7 @@ impl Holes<'_> {
         self.regions.iter().any(|hole| self.is_in(hole, place))
     }
 
-    /// Whether a place of the body lies in a region.
+    /// Returns whether a position is in a region.
     pub(super) fn is_in(&self, region: &Region, place: [f64; 3]) -> bool {
         region.contains(place, &self.bounds, self.tolerance)
     }

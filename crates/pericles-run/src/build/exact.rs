@@ -1,4 +1,4 @@
-//! The exact solution of a model and the points it is compared at.
+//! The exact solution of a model and the points of comparison.
 
 use pericles::space::{PointCloud, PointSet};
 use pericles_deck::{
@@ -10,11 +10,11 @@ use super::assembler::Assembler;
 use super::constants::MaterialConstants;
 use super::refusal::at_path;
 
-/// What a run is compared with.
+/// The exact solution for comparison.
 pub struct ExactReference {
     /// The solution.
     pub solution: Box<dyn ExactSolution>,
-    /// The points that count.
+    /// The points of comparison.
     pub points: PointSet,
 }
 
@@ -29,7 +29,7 @@ impl Assembler<'_> {
             return Ok(None);
         };
         let (Some(solid), Some(constants)) = (self.model.body.solid(), constants) else {
-            let reason = "they are known for bars only";
+            let reason = "exact solutions are available for bars only";
             return Err(at_path("exact", Fault::NoExactSolution { reason }));
         };
         let young = constants.young();
@@ -109,9 +109,9 @@ impl Assembler<'_> {
         Ok(Some(ExactReference { solution, points }))
     }
 
-    /// Refuses a pulse so far from the points, or so narrow for the run, that its sum would take hours or all memory.
+    /// Rejects a pulse so far from the points, or so narrow, that its series would take excessive time or memory.
     fn check_terms(&self, line: &LineSolution, cloud: &PointCloud) -> Result<(), BuildError> {
-        /// Terms for one point.
+        /// Maximum number of terms per point.
         const MOST: f64 = 1e5;
         let distances = cloud.axis(0).iter().map(|x| (x - line.centre).abs());
         let reach = distances.fold(0.0, f64::max);
@@ -123,7 +123,7 @@ impl Assembler<'_> {
         Err(at_path("exact.solution", fault))
     }
 
-    /// Warns of a period so short that the waves of the next one arrive within the run.
+    /// Warns if waves from the neighbouring period arrive during the run.
     fn judge_period(
         &self,
         solid: &Solid,
@@ -132,7 +132,7 @@ impl Assembler<'_> {
         window: Option<f64>,
         warnings: &mut Vec<ModelWarning>,
     ) {
-        /// Share of the amplitude from which it is told.
+        /// Fraction of the amplitude that leads to a warning.
         const NOTABLE: f64 = 1e-6;
         if !solid.shape.is_periodic() {
             return;

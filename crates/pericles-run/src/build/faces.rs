@@ -1,4 +1,4 @@
-//! Faces that tractions and pressures act on.
+//! Faces under tractions and pressures.
 
 use pericles::boundary::LoadDensity;
 use pericles::space::{PointCloud, Region};
@@ -10,11 +10,12 @@ use super::discretisation::Discretisation;
 use super::mesh_body::MeshBody;
 use super::refusal::at_path;
 
-/// The amplitude of a pressure, and the area that it acts on, m².
+/// The amplitude of a pressure, and the loaded area, m².
 pub(super) type PressureLoad = (LoadDensity, f64);
 
 impl Assembler<'_> {
-    /// The area of the faces of a mesh that belong to a set, m²: of a face set, or of that near which the points of a set are.
+    /// Returns the area of the faces of a mesh in a set, m²: of a face set, or of the face set near the points of a
+    /// set.
     pub(super) fn face_area(&self, mesh: Option<&MeshBody>, set: &str) -> Option<f64> {
         let mesh = mesh?;
         let named = self.model.sets.iter().find(|named| named.name == set);
@@ -26,7 +27,7 @@ impl Assembler<'_> {
         mesh.face_set(faces)?.area
     }
 
-    /// A pressure on a face set of a mesh or on a layer, as a force density on the points that have the faces.
+    /// Returns a pressure on a face set of a mesh or on a layer, as a force density on the points with these faces.
     pub(super) fn pressure(
         &self,
         path: &KeyPath,
@@ -56,7 +57,7 @@ impl Assembler<'_> {
         Ok((LoadDensity::PerPoint(densities), area))
     }
 
-    /// The share of each point of a layer in the area of its face, along the outward normal; shares are as volumes are.
+    /// Returns the area vectors of the points of a layer along the outward normal, proportional to their volumes.
     fn layer_vectors(
         &self,
         path: &KeyPath,

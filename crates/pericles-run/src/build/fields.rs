@@ -1,17 +1,18 @@
-//! Loads and motions that are given as expressions.
+//! Loads and prescribed motions given as expressions.
 
 use std::sync::Arc;
 
 use pericles::boundary::{AxisMotion, FieldFunction, LoadDensity, MotionKind, Trajectory};
 use pericles::space::PointCloud;
+use pericles::units::quantity;
 use pericles_deck::{
-    BuildError, Component, Course, Expression, Fault, KeyPath, Prescribe, TimeHistory, VectorField,
+    BuildError, Component, Constraint, Course, Expression, Fault, KeyPath, TimeHistory, VectorField,
 };
 
 use super::assembler::Assembler;
 use super::refusal::at_path;
 
-/// A vector of the deck as a field of the library.
+/// A vector of the deck as a field of the engine.
 #[derive(Debug)]
 struct Field(VectorField);
 
@@ -25,7 +26,7 @@ impl FieldFunction for Field {
 #[derive(Debug)]
 struct Motion {
     course: Course,
-    /// Derivatives by which the expression is ahead of the displacement.
+    /// Order of the time derivative of the displacement that the expression gives.
     ahead: i32,
 }
 
@@ -36,7 +37,7 @@ impl Trajectory for Motion {
 }
 
 impl Assembler<'_> {
-    /// The amplitude of a load, `factor` times a field.
+    /// Returns the amplitude of a load, `factor` times a field.
     pub(super) fn load_density(
         &self,
         path: &KeyPath,
@@ -68,11 +69,11 @@ impl Assembler<'_> {
         })
     }
 
-    /// What is prescribed along each axis.
+    /// Returns the prescribed motion along each axis.
     pub(super) fn axis_motions(
         &self,
         path: &KeyPath,
-        motion: &Prescribe,
+        motion: &Constraint,
         cloud: &PointCloud,
         points: &[u32],
     ) -> Result<[Option<AxisMotion>; 3], BuildError> {
@@ -127,7 +128,7 @@ impl Assembler<'_> {
         Err(at_path(path, course.rough()))
     }
 
-    /// An expression without a finite value at a point.
+    /// Creates the error for an expression that is NaN or infinite at a point.
     pub(super) fn no_value(
         &self,
         path: &KeyPath,
@@ -141,9 +142,9 @@ impl Assembler<'_> {
             Component::Expression(expression) => expression.text().to_owned(),
             Component::Number(number) => number.to_string(),
         };
+        let [x, y, z] = place.map(|x| quantity(x, "m"));
         let reason = format!(
-            "at ({:e}, {:e}, {:e}) m and t = 0 it has no finite value, and every point of the set needs one",
-            place[0], place[1], place[2]
+            "the value at ({x}, {y}, {z}) and t = 0 is NaN or infinite; it must be finite at every point of the set"
         );
         at_path(path, Fault::BadExpression { text, reason })
     }

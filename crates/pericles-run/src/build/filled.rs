@@ -14,7 +14,7 @@ use super::refusal::{at, at_path};
 use super::resources::Resources;
 
 impl Assembler<'_> {
-    /// The points in a closed surface or an outline.
+    /// Creates the points in a closed surface or an outline.
     pub(super) fn filled_points(
         &self,
         solid: &Solid,
@@ -51,7 +51,7 @@ impl Assembler<'_> {
         Ok(graded.cloud)
     }
 
-    /// The points in cells of one size, or at random positions.
+    /// Creates the points in cells of one size, or at random positions.
     fn filled_cells(
         &self,
         shape: &FilledShape,
@@ -96,7 +96,7 @@ impl Assembler<'_> {
             section: shape.section,
             inside: &|x| within(x) && !holes.contain(x),
         };
-        // Without a lattice blue noise asks for none.
+        // Blue noise needs no lattice.
         let empty = Lattice {
             centre: [0.0; 3],
             spacing: [spacing; 3],
@@ -109,7 +109,7 @@ impl Assembler<'_> {
             .map_err(|error| at("body.spacing", error))
     }
 
-    /// Reads what is filled.
+    /// Reads the boundary.
     fn enclosure(
         &self,
         shape: &FilledShape,
@@ -147,7 +147,7 @@ impl Assembler<'_> {
         }
     }
 
-    /// The refusal of a boundary, at the key that gives it.
+    /// Creates the error for a boundary, at its key.
     pub(super) fn no_fill(&self, shape: &FilledShape, error: FillError) -> BuildError {
         let key = match (&error, &shape.boundary) {
             (FillError::Spacing { .. } | FillError::TooMany { .. }, _) => "body.spacing",
@@ -166,17 +166,17 @@ impl Assembler<'_> {
     }
 }
 
-/// Warns of surfaces that were turned inside out, and of cells whose volume is off.
+/// Warns of surfaces with inward normals, and of cells whose total volume differs from the enclosed one.
 fn judge(
     shape: &FilledShape,
     (volume, enclosed): (f64, Option<f64>),
     was_turned: bool,
 ) -> Vec<ModelWarning> {
-    /// Share of the volume.
+    /// Relative error of the volume that leads to a warning.
     const OFF: f64 = 0.02;
     let mut warnings = Vec::new();
     if was_turned {
-        let problem = "all triangles look inwards: the surface is used as if they looked outwards";
+        let problem = "all triangle normals point inwards; the orientation is reversed";
         let problem = problem.to_owned();
         warnings.push(Remark::new("body.file", Caution::Mesh { problem }));
     }
@@ -208,7 +208,7 @@ fn on_lattice(
     PointCloud::on_lattice(dimension, origin, nodes, shape.section)
 }
 
-/// Cells as points with the volumes of their parts, of an outline times the thickness `section`.
+/// Returns cells as points with their partial volumes, for an outline times the thickness `section`.
 fn partial_points(cells: &PartialCells, holes: &Holes<'_>, section: f64) -> ListedPoints {
     let mut listed = ListedPoints::default();
     for (&cell, &part) in cells.cells.iter().zip(&cells.parts) {

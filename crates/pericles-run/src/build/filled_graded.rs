@@ -1,4 +1,4 @@
-//! Cells of several sizes in closed surfaces and outlines.
+//! Refined cells in closed surfaces and outlines.
 
 use pericles::space::{Division, GradedCloud};
 use pericles_deck::{BuildError, FilledShape, Solid};
@@ -9,20 +9,20 @@ use super::enclosure::{Enclosure, Holes};
 use super::refusal::{at, at_path, refined_key};
 use super::resources::Resources;
 
-/// The points of a body with cells of several sizes.
+/// The points of a body with refined parts.
 pub(super) struct GradedCells {
     pub(super) cloud: GradedCloud,
     /// Volume or area of all cells, holes included.
     pub(super) volume: f64,
-    /// Whether all triangles looked inwards.
+    /// Whether all triangle normals point inwards.
     pub(super) was_turned: bool,
 }
 
-/// The box of the large cells that a part divides: a lattice of small ones.
+/// The bounding box of the large cells of a refined part, filled with a lattice of small cells.
 struct Part {
-    /// The first cell and the last one along each axis.
+    /// First and last cell along each axis.
     ends: [[usize; 3]; 2],
-    /// The number of large cells that are divided.
+    /// Number of refined large cells.
     cells: usize,
     ratio: usize,
 }
@@ -34,7 +34,7 @@ impl Part {
         large.divided_box(first, counts, dimension, self.ratio)
     }
 
-    /// The small cells of the box.
+    /// Returns the number of small cells of the box.
     fn small_cells(&self, dimension: usize) -> f64 {
         let [first, last] = self.ends;
         let sides = (0..dimension).map(|c| ((last[c] + 1 - first[c]) * self.ratio) as f64);
@@ -42,12 +42,12 @@ impl Part {
     }
 }
 
-/// The cell of a lattice by its place in the order x, y, z.
+/// Returns the indices of a cell from its position in the order x, y, z.
 fn cell([nx, ny, _]: [usize; 3], place: usize) -> [usize; 3] {
     [place % nx, place / nx % ny, place / (nx * ny)]
 }
 
-/// The box of the cells of each part; none of parts without cells.
+/// Returns the box of each part; `None` for parts without cells.
 fn parts(division: &Division<'_>, large: &Lattice, holes: &Holes<'_>) -> Vec<Option<Part>> {
     let mut parts: Vec<Option<Part>> = division.finer.iter().map(|_| None).collect();
     for place in 0..large.len() {
@@ -71,8 +71,8 @@ fn parts(division: &Division<'_>, large: &Lattice, holes: &Holes<'_>) -> Vec<Opt
 }
 
 impl Assembler<'_> {
-    /// The points in large cells and, in parts, small ones. Which cells belong to the body is decided by their own centres. `filled` is what is filled, its holes and
-    /// its volume or area.
+    /// Creates the points in large cells and, in refined parts, small ones. Cells belong to the body if their centres
+    /// are inside. `filled` is the boundary, its holes and its volume or area.
     pub(super) fn graded_cells(
         &self,
         solid: &Solid,

@@ -1,6 +1,6 @@
-//! Bonds of a body with cells of several sizes or materials of different horizons.
+//! Bonds of bodies with refined parts or materials of different horizons.
 
-use pericles::material::{BondMaterial, PairClasses, StressState};
+use pericles::material::{BondMaterial, MaterialPairs, StressState};
 use pericles::operator::{CompositeBody, Feature, GradedBody, Materials};
 use pericles_deck::{BuildError, Fault};
 use pericles_waves::{AssembledForce, ForceForm};
@@ -23,17 +23,27 @@ impl Assembler<'_> {
             .with(Feature::SeveralHorizons, have_several_horizons(materials));
         form.check(features).map_err(at_material)?;
         GradedBody::check(features).map_err(|error| at("material.surface_correction", error))?;
-        if composite.classes.is_some_and(PairClasses::scatters) {
+        if composite.classes.is_some_and(MaterialPairs::scatters) {
             let (value, allowed) = (
                 "a distribution of strength".into(),
-                "bonds between cells of several sizes or materials of different horizons have critical stretches by their kinds alone; leave it out".into(),
+                "critical stretches of bodies with refined parts or materials of different horizons cannot be scattered; omit it".into(),
             );
             return Err(at_path(
                 "material.scatter",
                 Fault::OutOfRange { value, allowed },
             ));
         }
-        // Transforms have been refused.
+        if composite.softening.is_some() {
+            let (value, allowed) = (
+                "softening".into(),
+                "allowed: no softening; bonds between cells of several sizes or materials of different horizons do not soften".into(),
+            );
+            return Err(at_path(
+                "material.softening",
+                Fault::OutOfRange { value, allowed },
+            ));
+        }
+        // Spectral force kernels have been rejected.
         let form = form.of_bonds().unwrap_or_default();
         let body = &composite.body;
         let graded = GradedBody {
@@ -56,7 +66,7 @@ impl Assembler<'_> {
     }
 }
 
-/// Whether materials have different horizons.
+/// Returns whether materials have different horizons.
 pub(super) fn have_several_horizons(materials: &[BondMaterial]) -> bool {
     materials
         .windows(2)

@@ -1,4 +1,4 @@
-//! Loads of a model, and what they come to.
+//! Loads of a model and their resultants.
 
 use pericles::System;
 use pericles::boundary::Load as BodyLoad;
@@ -14,23 +14,23 @@ use super::discretisation::Discretisation;
 use super::refusal::{at, at_path};
 use super::step::Steps;
 
-/// What a load comes to.
+/// The resultant of a load.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoadReport {
     /// The set.
     pub set: String,
-    /// Points of the set.
+    /// Number of points of the set.
     pub points: usize,
-    /// The area that a traction acts on, m²; none for body forces.
+    /// The loaded area of a traction, m²; `None` for body forces.
     pub area: Option<f64>,
-    /// The resultant when it is largest in the run, N.
+    /// The largest resultant in the run, N.
     pub force: [f64; 3],
-    /// When that is first so, s.
+    /// The time of the largest resultant, s.
     pub at: f64,
 }
 
 impl Assembler<'_> {
-    /// Adds the loads to the system; the area that each traction acts on.
+    /// Adds the loads to the system; returns the loaded areas of tractions.
     pub(super) fn add_loads(
         &self,
         system: &mut System,
@@ -52,7 +52,7 @@ impl Assembler<'_> {
             };
             let (density, area) = match &load.amplitude {
                 LoadAmplitude::BodyForce(density) => (spread(density, 1.0)?, None),
-                // On a surface a traction is the force per area itself.
+                // On a surface a traction is a force per area directly.
                 LoadAmplitude::Traction { traction, .. } if self.model.body.surface().is_some() => {
                     (spread(traction, 1.0)?, Some(volume))
                 }
@@ -100,10 +100,12 @@ impl Assembler<'_> {
                 return Err(refuse("listed points have no faces"));
             }
             Some(SolidShape::Mesh(_)) => {
-                return Err(refuse("the set is no face set of the mesh, nor near one"));
+                return Err(refuse(
+                    "the set is neither a face set of the mesh nor near one",
+                ));
             }
             Some(shape) if shape.is_listed() && cloud.dimension() > 1 => {
-                return Err(refuse("points off a lattice have no faces"));
+                return Err(refuse("points without a lattice have no faces"));
             }
             _ => {}
         }
@@ -119,7 +121,7 @@ impl Assembler<'_> {
         Ok(area::seen_along(cloud, points, axis))
     }
 
-    /// Refuses loads and motions that have no finite value at a step of the run.
+    /// Rejects loads and prescribed motions that are NaN or infinite at a step of the run.
     pub(super) fn refuse_lost_values(
         &self,
         system: &System,
@@ -135,7 +137,7 @@ impl Assembler<'_> {
         }
         for (k, (given, motion)) in self
             .model
-            .prescribe
+            .constraints
             .iter()
             .zip(system.motions())
             .enumerate()
@@ -143,14 +145,14 @@ impl Assembler<'_> {
             let is_finite = |t: f64| motion.is_finite_at(t);
             if let Some(t) = first_lost(steps, &is_finite) {
                 let (what, set) = ("prescribed motion", given.set.clone());
-                let path = KeyPath::from("prescribe").index(k);
+                let path = KeyPath::from("constraint").index(k);
                 return Err(at_path(&path, Fault::LostValue { what, set, t }));
             }
         }
         Ok(())
     }
 
-    /// What the loads of a system come to until `end`; `areas` are those that tractions act on.
+    /// Returns the resultants of the loads of a system until `end`; `areas` are the loaded areas of tractions.
     pub(super) fn load_reports(
         &self,
         system: &System,
@@ -172,7 +174,7 @@ impl Assembler<'_> {
     }
 }
 
-/// The first time of a run at which something is not finite, s, to within rounding; looked for at its steps, or among many of them.
+/// Returns the first time at which a value is not finite, s, to within rounding, sampled at all or many steps.
 fn first_lost(steps: &Steps, is_finite: &dyn Fn(f64) -> bool) -> Option<f64> {
     const MOST: u64 = 2000;
     const HALVINGS: usize = 60;
@@ -197,11 +199,11 @@ fn first_lost(steps: &Steps, is_finite: &dyn Fn(f64) -> bool) -> Option<f64> {
     Some(after)
 }
 
-/// The largest resultant of a load between 0 and `end`, N, among evenly spaced times, with the first of them, s.
+/// Returns the largest resultant of a load between 0 and `end`, N, over evenly spaced times, and its first time, s.
 fn largest(load: &BodyLoad, cloud: &PointCloud, end: f64) -> ([f64; 3], f64) {
-    /// Samples: a divisible number, so that usual ramps and pulses have their ends and peaks among them.
+    /// Number of samples, with many divisors, so that ends and peaks of common ramps and pulses are sampled.
     const MOST: usize = 240;
-    /// Values that one load may cost; fields that change by themselves are evaluated anew at every time.
+    /// Maximum number of evaluations per load; fields that depend on time are evaluated at every sample.
     const BUDGET: usize = 2_000_000;
     let samples = (BUDGET / load.points.len().max(1)).clamp(4, MOST);
     let size = |force: &[f64; 3]| force.iter().map(|f| f * f).sum::<f64>();
@@ -209,7 +211,7 @@ fn largest(load: &BodyLoad, cloud: &PointCloud, end: f64) -> ([f64; 3], f64) {
     for k in 1..=samples {
         let t = end * k as f64 / samples as f64;
         let force = load.resultant(t, cloud);
-        // A rounding more is no later peak.
+        // An increase within rounding is not a later peak.
         if size(&force) > size(&best.0) * (1.0 + 1e-9) {
             best = (force, t);
         }

@@ -1,8 +1,8 @@
-//! Several materials: which point has which, and the bonds between them.
+//! Several materials: assignment to points, and bonds between materials.
 
 use pericles::PointScalar;
 use pericles::material::{
-    BondConstants, BondMaterial, Calibration, Fracture, InterfaceRule, PairClasses,
+    BondConstants, BondMaterial, Calibration, Fracture, InterfaceRule, MaterialPairs,
 };
 use pericles::space::PointCloud;
 use pericles_deck::{
@@ -15,22 +15,22 @@ use super::assembler::Assembler;
 use super::discretisation::Sets;
 use super::refusal::{at, at_path};
 
-/// What a body is made of.
+/// The materials of a body.
 pub(super) struct Composition {
-    pub(super) classes: Option<PairClasses>,
-    /// All materials, the body's own first.
+    pub(super) classes: Option<MaterialPairs>,
+    /// All materials, that of the body first.
     pub(super) materials: Vec<BondMaterial>,
-    /// Bonds between materials that do not follow from both alone.
+    /// Interfaces with their own constants.
     pub(super) interfaces: Vec<Between>,
     pub(super) density: PointScalar,
     /// Constants of the other materials, in the order of the deck.
     pub(super) others: Vec<BondConstants>,
 }
 
-/// The numbers of two materials with what is given of the bonds between them.
+/// The numbers of two materials with the given constants of bonds between them.
 pub(super) type Between = ([u8; 2], pericles::material::MaterialInterface);
 
-/// What is given of the bonds between two materials, with the number of the table that gives it.
+/// The given constants of bonds between two materials, with the number of the table.
 pub(super) struct PairRule<'m> {
     pub(super) pair: [u8; 2],
     pub(super) interface: &'m pericles_deck::MaterialInterface,
@@ -38,7 +38,8 @@ pub(super) struct PairRule<'m> {
 }
 
 impl<'m> Assembler<'m> {
-    /// The materials of a bond-based body: classes of bonds between them, none if there is one material only, the density, and the constants of the others.
+    /// Builds the materials of a bond-based body: classes of bonds (`None` for a single material), density, and
+    /// constants of the other materials.
     pub(super) fn materials(
         &self,
         solid: &Solid,
@@ -70,12 +71,12 @@ impl<'m> Assembler<'m> {
             self.points_of_materials(&solid.material, (cloud, sets), warnings)?;
         let mut interfaces = Vec::new();
         let strengths = self.strengths(solid, cloud)?;
-        // One material, whose strength scatters, is one class.
+        // A single material with scattered strength is one class.
         let of_point = of_point.or_else(|| Some(vec![0; strengths.as_ref()?.len()]));
         let classes = match of_point {
             None => None,
             Some(of_point) => {
-                let classes = PairClasses::new(of_point, &all, InterfaceRule::default());
+                let classes = MaterialPairs::new(of_point, &all, InterfaceRule::default());
                 let mut classes = classes.map_err(|error| at("materials", error))?;
                 for (between, path) in self.interfaces(&solid.material)? {
                     let (pair, interface) = &between;
@@ -108,7 +109,7 @@ impl<'m> Assembler<'m> {
         })
     }
 
-    /// Factors of the critical stretch of all points, if strengths scatter.
+    /// Returns the factors of the critical stretch of all points, if strengths are scattered.
     pub(super) fn strengths(
         &self,
         solid: &Solid,
@@ -120,7 +121,8 @@ impl<'m> Assembler<'m> {
         factors.map_err(|error| at("material.scatter", error))
     }
 
-    /// The interfaces between bond-based materials: for every pair the table that names it, and for what that leaves out the table for all pairs.
+    /// Returns the interfaces between bond-based materials: for every pair its own table, completed by the table for
+    /// all pairs.
     fn interfaces(&self, material: &Material) -> Result<Vec<(Between, KeyPath)>, BuildError> {
         let mut all: Vec<(Between, KeyPath)> = Vec::new();
         for PairRule {
@@ -152,11 +154,11 @@ impl<'m> Assembler<'m> {
         Ok(all)
     }
 
-    /// Pairs of materials with the tables that are about them, tables for all pairs before those for one: what comes later counts.
+    /// Returns pairs of materials with their tables, those for all pairs first: later ones take precedence.
     pub(super) fn pair_rules(&self, material: &Material) -> Vec<PairRule<'m>> {
         let others = self.model.materials.iter().map(|other| other.name.as_str());
         let names: Vec<&str> = std::iter::once(material.name()).chain(others).collect();
-        // The library refuses more materials than a byte counts.
+        // The engine rejects more than 256 materials.
         let count = names.len().min(256);
         let interfaces = self.model.interfaces.iter().enumerate();
         let (general, special): (Vec<_>, Vec<_>) =
@@ -176,7 +178,7 @@ impl<'m> Assembler<'m> {
         found.collect()
     }
 
-    /// The number of every point's material, none if all have the body's own, and the density.
+    /// Returns the material number of every point (`None` if all have the material of the body), and the density.
     pub(super) fn points_of_materials(
         &self,
         material: &Material,
@@ -187,7 +189,7 @@ impl<'m> Assembler<'m> {
         let known = |name: &str| others.iter().position(|other| other.name == name);
         let number = |name: &str| match name == material.name() {
             true => Some(0),
-            // The library refuses more materials than a byte counts.
+            // The engine rejects more than 256 materials.
             false => known(name).map(|k| (k + 1).min(255)),
         };
         let mut of_point = vec![None; cloud.len()];
@@ -240,7 +242,7 @@ impl<'m> Assembler<'m> {
         Ok((Some(of_point), PointScalar::PerPoint(densities)))
     }
 
-    /// Refuses points without an assignment, unless the body's material is theirs.
+    /// Rejects points without an assignment, unless they have the material of the body.
     fn refuse_without_material(
         &self,
         material: &Material,
@@ -263,7 +265,7 @@ impl<'m> Assembler<'m> {
         Err(at_path("assign", fault))
     }
 
-    /// Stiffness of each point over that of its material; empty if it is 1 everywhere.
+    /// Returns the relative stiffness of each point; empty if it is 1 everywhere.
     pub(super) fn stiffness_of(
         &self,
         cloud: &PointCloud,
@@ -285,17 +287,17 @@ impl<'m> Assembler<'m> {
         Ok(stiffness)
     }
 
-    /// The refusal of a material that is not of the kind of the body's.
+    /// Creates the error for a material of another kind than that of the body.
     pub(super) fn other_kind(&self, path: &KeyPath, material: &str) -> BuildError {
         let (value, allowed) = (
             material.to_owned(),
-            "allowed: bond-based or state-based, as the body's material is".into(),
+            "allowed: the same kind as the material of the body, bond-based or state-based".into(),
         );
         at_path(path, Fault::OutOfRange { value, allowed })
     }
 
-    /// The constants of a material's bonds. Forces that take integrals, by a spectrum or at Gauss nodes, have the errors of the integrals, not those of sums over
-    /// a lattice.
+    /// Returns the constants of the bonds of a material. Force kernels with integrals, spectral or with Gauss nodes,
+    /// use constants of the continuum instead of lattice sums.
     pub(super) fn constants_of(
         &self,
         solid: &Solid,
@@ -318,7 +320,7 @@ impl<'m> Assembler<'m> {
         })
     }
 
-    /// Bonds of real materials break long before they are a fifth longer.
+    /// Warns of large critical stretches: bonds of real materials break well below a stretch of 20 %.
     pub(super) fn judge_stretch(
         self,
         stretch: f64,
@@ -332,7 +334,7 @@ impl<'m> Assembler<'m> {
     }
 }
 
-/// The key from which the critical stretch of a material follows.
+/// Returns the key that determines the critical stretch of a material.
 fn judged_key(fracture: &Fracture, path: &KeyPath) -> KeyPath {
     match fracture {
         Fracture::Unbreakable => path.clone(),

@@ -1,21 +1,23 @@
-//! What a model would take in memory, estimated from a few sizes before anything of its size is allocated.
+//! Memory estimate of a model, before large allocations.
 //!
-//! | what | bytes |
+//! | item | bytes |
 //! |---|---|
-//! | a point | [`POINT`] and, for each component, [`COMPONENT`] numbers: place, state, copies for checkpoints and files, what a scheme needs |
-//! | a bond of a grid | a bit |
-//! | a bond of a list | [`LISTED`] while families are found, of which three stay; [`KEPT`] more where the stiffness of every bond is kept |
-//! | a point of a state-based material | [`SOLID`] besides |
-//! | a point of a correspondence material | [`TENSORS`] besides |
-//! | a bond of a correspondence material | [`NUMBER`] besides |
-//! | a bond that breaks by its energy | [`WORKED`] besides |
-//! | a transform | [`TRANSFORM`] for each entry of a matrix of D × D on the doubled box |
-//! | a vertex of a surface | [`VERTEX`] besides, for its triangles and their neighbours |
+//! | a point | [`POINT`] and, per component, [`COMPONENT`] numbers: position, state, copies for checkpoints and files, arrays of the scheme |
+//! | a bond of a grid | one bit |
+//! | a bond of a list | [`LISTED`] during the neighbour search, three afterwards; [`KEPT`] more if the stiffness of every bond is stored |
+//! | a point of a state-based material | [`SOLID`] in addition |
+//! | a point of a correspondence material | [`TENSORS`] in addition |
+//! | a bond of a correspondence material | [`NUMBER`] in addition |
+//! | a bond that breaks by its energy | [`WORKED`] in addition |
+//! | a Fourier transform | [`TRANSFORM`] per entry of a D × D matrix on the doubled box |
+//! | a cell in field files | [`WRITTEN`]: its corners, its share of the nodes, and the search for common nodes |
+//! | a vertex of a surface | [`VERTEX`] in addition, for its triangles and their neighbours |
 //! | a bond of a surface | [`GEODESIC`] |
-//! | a site beyond an absorbing end | [`EXTERIOR`] numbers where initial fields continue there |
-//! | an absorbing end | [`LAG`] numbers for each site of the outer layer and each step, whose number blocks of Fourier transforms round up to a power of two; three times as many with fields beyond it |
+//! | a site beyond an absorbing boundary | [`EXTERIOR`] numbers, if initial fields extend there |
+//! | an absorbing boundary | [`LAG`] numbers per site of the outer layer and step (rounded up to a power of two for Fourier transforms); three times as many with fields beyond it |
 //!
-//! The numbers are peaks measured on blocks, plates, bars, surfaces and ends: the estimate is not below three quarters of what is taken, and at most two and a half times as much.
+//! The constants are measured peaks of blocks, plates, bars, surfaces and absorbing boundaries. The estimate is
+//! between 0.75 and 2.5 times the actual peak.
 
 use pericles::material::BondFailure;
 use pericles::space::{GradedGrid, PointCloud, Shape};
@@ -31,36 +33,39 @@ use super::resources::Resources;
 
 const NUMBER: f64 = 8.0;
 const POINT: f64 = 120.0;
-/// Of a scheme without stages, and of any other.
+/// Numbers per component for schemes without stages, and for other schemes.
 const COMPONENT: [f64; 2] = [10.0, 20.0];
 const LISTED: f64 = 16.0;
 const KEPT: f64 = 4.0;
-/// Rows of displacements, references and dilatations of a state-based point, and its constants.
+/// Bytes of a state-based point: rows of displacements, reference positions and dilatations, and constants.
 const SOLID: f64 = 160.0;
-/// Rows of displacements, references, force states, shape tensors and plastic history of a correspondence point: by the sizes of these arrays.
+/// Bytes of a correspondence point: rows of displacements and reference positions, force states, shape tensors,
+/// plastic history.
 const TENSORS: f64 = 900.0;
 const WORKED: f64 = 24.0;
-/// Of viscous and plastic materials, beside 8 for every viscous term.
+/// Bytes per bond of viscous and plastic materials, in addition to 8 per viscous term.
 const HISTORY: f64 = 20.0;
 const TRANSFORM: f64 = 4.0;
 const VERTEX: f64 = 400.0;
 const GEODESIC: f64 = 84.0;
-/// A cell of the box of a surface that is filled: whether it is inside, and a node of it.
+/// Bytes per cell of the bounding box of a filled surface: inside flag and node.
 const CELL: f64 = 30.0;
+/// Bytes per cell of field files on cells.
+const WRITTEN: f64 = 100.0;
 const LAG: f64 = 22.0;
-/// Numbers for a site of the exterior: its initial fields, and the state and work arrays of their motion.
+/// Numbers per exterior site: initial fields, state and work arrays of their motion.
 const EXTERIOR: f64 = 8.0;
 
 impl Assembly {
-    /// The estimated peak of a run's memory, bytes: points with their state, bonds as they are found, transforms, histories of absorbing ends.
-    /// Files and pictures are not counted.
+    /// Returns the estimated peak memory of a run, bytes: points with their state, neighbour search, transforms,
+    /// histories of absorbing boundaries. Output is not included.
     pub fn memory_estimate(&self, model: &Model) -> u64 {
         Assembler::new(model).memory_estimate(self)
     }
 }
 
 impl Assembler<'_> {
-    /// Refuses a body on a grid that does not fit, from the number of its cells.
+    /// Checks the memory of a body on a grid, from the number of its cells.
     pub(super) fn check_grid(
         &self,
         solid: &Solid,
@@ -80,7 +85,7 @@ impl Assembler<'_> {
             }
             _ => match grid.count(resources.memory as f64 / each) {
                 Ok(cells) => cells,
-                // A grid that cannot be is refused where its points are made.
+                // Invalid grids are reported when their points are created.
                 Err(_) => return Ok(()),
             },
         };
@@ -92,7 +97,7 @@ impl Assembler<'_> {
         )
     }
 
-    /// Refuses listed points whose bonds do not fit.
+    /// Checks the memory of the bonds of listed points.
     pub(super) fn check_listed(
         &self,
         solid: &Solid,
@@ -106,7 +111,7 @@ impl Assembler<'_> {
         self.refuse_if_more(HORIZON, points, needed, resources)
     }
 
-    /// Refuses so many points in a closed surface or an outline, found among so many cells, that do not fit.
+    /// Checks the memory of points in a closed surface or an outline, from the numbers of points and cells.
     pub(super) fn check_filled(
         &self,
         solid: &Solid,
@@ -121,7 +126,7 @@ impl Assembler<'_> {
         self.refuse_if_more("body.spacing", points, needed, resources)
     }
 
-    /// Refuses a surface whose vertices alone do not fit.
+    /// Checks the memory of the vertices of a surface.
     pub(super) fn check_vertices(
         &self,
         vertices: f64,
@@ -131,7 +136,7 @@ impl Assembler<'_> {
         self.refuse_if_more("body.shape", vertices, needed, resources)
     }
 
-    /// Refuses a surface whose bonds do not fit; `area` is that of all its points, m².
+    /// Checks the memory of the bonds of a surface; `area` is its total area, m².
     pub(super) fn check_surface(
         &self,
         points: usize,
@@ -145,7 +150,8 @@ impl Assembler<'_> {
         self.refuse_if_more("material.horizon", points, needed, resources)
     }
 
-    /// Refuses an absorbing end whose histories do not fit with those of the ends before; `sites` of all of them for so many steps.
+    /// Checks the memory of the histories of absorbing boundaries with `sites` sites in total over the steps of the
+    /// run.
     pub(super) fn check_history(
         &self,
         path: &KeyPath,
@@ -166,7 +172,7 @@ impl Assembler<'_> {
         Err(at_path(path, fault))
     }
 
-    /// Refuses `sites` of the exterior, at all ends together, whose fields do not fit.
+    /// Checks the memory of the exterior fields with `sites` sites in total.
     pub(super) fn check_exterior(
         &self,
         path: &KeyPath,
@@ -194,15 +200,15 @@ impl Assembler<'_> {
         Err(at_path(path, fault))
     }
 
-    /// Points within the horizon of a point inside.
+    /// Returns the number of neighbours of an interior point.
     fn neighbours(&self, solid: &Solid, dimension: usize, spacing: Option<f64>) -> f64 {
         let material = &solid.material;
         let horizon = self.largest_horizon(solid);
         let spacing = match (solid.shape.rectangular(), spacing) {
-            // The side of the square or cube of the same volume.
+            // Side of the square or cube of the same volume.
             (Some(sides), _) => sides.iter().product::<f64>().powf(1.0 / dimension as f64),
             (None, Some(spacing)) => spacing,
-            // Of a mesh that is not read yet: the usual three spacings in a horizon.
+            // For a mesh that is not yet read: the common horizon of three spacings.
             (None, None) => horizon / 3.0,
         };
         let ratio = material.volume_correction().reach(horizon, spacing) / spacing;
@@ -231,6 +237,7 @@ impl Assembler<'_> {
             ForceForm::Convolution | ForceForm::Spectral => transform,
             ForceForm::Grid | ForceForm::FloatGrid => self.bytes_on_stencil(solid, neighbours),
             _ if solid.shape.is_refined() || solid.shape.is_listed() => listed * neighbours,
+            _ if solid.material.softening.is_some() => listed * neighbours,
             _ if !self.has_one_stiffness(solid) => self.bytes_on_stencil(solid, neighbours),
             _ if solid.shape.is_periodic() => transform,
             _ => (neighbours / 8.0).max(transform),
@@ -240,10 +247,14 @@ impl Assembler<'_> {
             MaterialModel::Correspondence(_) => TENSORS,
             MaterialModel::Bonds(_) => 0.0,
         };
-        self.bytes_of_state(dimension) + own + bonds
+        let cells = match self.model.output.writes_cells() && !solid.shape.is_listed() {
+            true => WRITTEN,
+            false => 0.0,
+        };
+        self.bytes_of_state(dimension) + own + bonds + cells
     }
 
-    /// Bytes of a point's bonds on a stencil.
+    /// Returns the bytes of the bonds of a point on a stencil.
     fn bytes_on_stencil(&self, solid: &Solid, neighbours: f64) -> f64 {
         let bits = neighbours / 8.0;
         if self.has_one_stiffness(solid) {
@@ -251,10 +262,10 @@ impl Assembler<'_> {
         } else if solid.material.surface_correction != Default::default()
             || self.has_several_horizons(solid)
         {
-            // Corrections, and limits of bonds between two horizons, take the families from a list.
+            // Surface corrections, and limits of bonds between different horizons, need a neighbour list.
             bits + LISTED * neighbours
         } else {
-            // A factor a bond, at most.
+            // At most one factor per bond.
             bits + NUMBER * neighbours
         }
     }
@@ -267,7 +278,7 @@ impl Assembler<'_> {
         let found = match (self.model.body.solid(), assembly.form) {
             (None, _) => VERTEX * points + GEODESIC * bonds,
             (Some(solid), ForceForm::List) => list(solid),
-            // Whether every part of a static body has a support is found on a list of its bonds.
+            // The constraints of static bodies are checked with a neighbour list.
             (Some(solid), _) if self.model.time.scheme.is_static() => list(solid),
             (Some(solid), _) if self.has_several_horizons(solid) => list(solid),
             _ => 0.0,
@@ -277,7 +288,7 @@ impl Assembler<'_> {
         (points * self.bytes_of_state(dimension) + found.max(kept)) as u64 + ends as u64
     }
 
-    /// Bytes of a bond of a list while families are found.
+    /// Returns the bytes per bond of a list during the neighbour search.
     fn bytes_of_listed_bond(&self, solid: &Solid) -> f64 {
         if solid.material.correspondence().is_some() {
             return LISTED + NUMBER;
@@ -287,11 +298,12 @@ impl Assembler<'_> {
             Some(_) => solid.material.surface_correction != Default::default(),
             None => !self.is_on_one_grid(solid),
         };
-        let history = self.history_of_bond(solid);
+        let softens = solid.material.softening.is_some();
+        let history = self.history_of_bond(solid) + if softens { NUMBER } else { 0.0 };
         LISTED + if kept { KEPT } else { 0.0 } + if worked { WORKED } else { 0.0 } + history
     }
 
-    /// Bytes that viscous and plastic materials keep of a bond.
+    /// Returns the bytes per bond of the history of viscous and plastic materials.
     fn history_of_bond(&self, solid: &Solid) -> f64 {
         let others = self.model.materials.iter().map(|other| &other.model);
         let models = std::iter::once(&solid.material.model).chain(others);
@@ -304,7 +316,7 @@ impl Assembler<'_> {
         models.map(of_model).fold(0.0, f64::max)
     }
 
-    /// Whether a stencil can serve all points of a state-based body.
+    /// Returns whether all points of a state-based body can share a stencil.
     fn is_on_solid_stencil(&self, solid: &Solid) -> bool {
         let shape = &solid.shape;
         !shape.is_listed()
@@ -313,35 +325,35 @@ impl Assembler<'_> {
             && self.history_of_bond(solid) == 0.0
     }
 
-    /// Whether all bonds of the same vector have one stiffness.
+    /// Returns whether all bonds with the same vector have the same stiffness.
     fn has_one_stiffness(&self, solid: &Solid) -> bool {
         self.model.assignments.is_empty() && solid.material.surface_correction == Default::default()
     }
 
-    /// The horizons of all materials, the body's first.
+    /// Returns the horizons of all materials, that of the body first.
     fn horizons(self, solid: &Solid) -> impl Iterator<Item = f64> {
         let others = self.model.materials.iter();
         let others = others.map(|other| other.model.horizon());
         std::iter::once(solid.material.horizon()).chain(others)
     }
 
-    /// The largest horizon of all materials.
+    /// Returns the largest horizon of all materials.
     pub(super) fn largest_horizon(self, solid: &Solid) -> f64 {
         self.horizons(solid).fold(0.0, f64::max)
     }
 
-    /// Whether materials have different horizons.
+    /// Returns whether materials have different horizons.
     fn has_several_horizons(self, solid: &Solid) -> bool {
         let own = solid.material.horizon();
         self.horizons(solid).any(|horizon| horizon != own)
     }
 
-    /// Whether one stencil or transform can serve all points.
+    /// Returns whether all points can share a stencil or transform.
     fn is_on_one_grid(&self, solid: &Solid) -> bool {
         self.has_one_stiffness(solid) && !solid.shape.is_refined() && !solid.shape.is_listed()
     }
 
-    /// Whether bonds of a state-based body break by their energy.
+    /// Returns whether bonds of a state-based body break by their energy.
     fn breaks_by_energy(&self, solid: &Solid) -> bool {
         let by_energy = |failure: &BondFailure| matches!(failure, BondFailure::BondEnergy { .. });
         let others = self.model.materials.iter().map(|other| &other.model);

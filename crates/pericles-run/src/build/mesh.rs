@@ -12,7 +12,7 @@ use super::refusal::{at, at_path};
 use super::resources::Resources;
 
 impl Assembler<'_> {
-    /// The points of a mesh, one for each element.
+    /// Creates the points of a mesh, one per element.
     pub(super) fn mesh_points(
         &self,
         solid: &Solid,
@@ -67,7 +67,7 @@ impl Assembler<'_> {
         Ok((cloud, body))
     }
 
-    /// A mesh in a file that a key names.
+    /// Reads the mesh file given by a key.
     pub(super) fn read_mesh(
         &self,
         key: impl Into<KeyPath>,
@@ -81,9 +81,9 @@ impl Assembler<'_> {
         })
     }
 
-    /// Refuses a given spacing that is far from the size of the elements.
+    /// Rejects a given spacing that differs much from the element size.
     fn check_element_size(&self, file: &MeshFile, points: &MeshPoints) -> Result<(), BuildError> {
-        /// Sizes disagree by this factor only if one of them has another unit.
+        /// Larger factors indicate a wrong unit.
         const OFF: f64 = 2.0;
         let found = points.mean_size();
         match file.spacing {

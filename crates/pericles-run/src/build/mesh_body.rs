@@ -1,23 +1,23 @@
-//! A mesh with its points: sets, faces and cells in the numbering of a cloud.
+//! A mesh with its points: sets, faces and cells in the numbering of a point cloud.
 
 use pericles::space::{self, PointCloud};
 use pericles_deck::{ALL, Depth};
 use pericles_io::VtuCells;
-use pericles_io::observers::MeshCells;
+use pericles_io::observers::CellMesh;
 use pericles_mesh::{CellKind, MeshPoints, PointSet, RawMesh, SetKind};
 
-/// A mesh with the points made of it.
+/// A mesh with its points.
 #[derive(Debug, Clone)]
 pub struct MeshBody {
-    /// The mesh, in the file's unit of length.
+    /// The mesh, in the length unit of the file.
     pub mesh: RawMesh,
-    /// Its elements as points, in the file's order.
+    /// The elements as points, in the order of the file.
     pub points: MeshPoints,
-    /// The file's unit of length, m.
+    /// The length unit of the file, m.
     pub unit: f64,
 }
 
-/// The name of a set of a mesh in decks: its own, unless that means all points.
+/// Returns the name of a mesh set in decks: its own, unless it is "all".
 fn name_in_decks(name: &str) -> String {
     match name {
         ALL => format!("{ALL} (mesh)"),
@@ -26,7 +26,7 @@ fn name_in_decks(name: &str) -> String {
 }
 
 impl MeshBody {
-    /// The sets of the mesh in the numbering of a cloud of its points.
+    /// Returns the sets of the mesh in the numbering of a point cloud.
     pub(super) fn sets<'a>(
         &'a self,
         cloud: &'a PointCloud,
@@ -38,7 +38,7 @@ impl MeshBody {
         })
     }
 
-    /// The points of a cloud of the mesh near the faces of a set; none if the mesh has no such face set.
+    /// Returns the points near the faces of a face set; `None` if the mesh has no such set.
     pub(super) fn near_faces(
         &self,
         cloud: &PointCloud,
@@ -53,14 +53,14 @@ impl MeshBody {
         Some(renumbered(&near, &places(cloud)))
     }
 
-    /// The face set of this name in decks.
+    /// Returns the face set with this name in decks.
     pub(super) fn face_set(&self, name: &str) -> Option<&PointSet> {
         let mut sets = self.points.sets.iter();
         sets.find(|set| set.kind == SetKind::Faces && name_in_decks(&set.name) == name)
     }
 
-    /// For each of the points of a face set in a cloud of the mesh the area of its faces times their outward normals, m², and the area of all of them; none if there
-    /// is no such face set.
+    /// Returns for each point of a face set the area of its faces times their outward normals, m², and the total
+    /// area; `None` if the mesh has no such set.
     pub(super) fn face_vectors(
         &self,
         cloud: &PointCloud,
@@ -81,13 +81,13 @@ impl MeshBody {
         Some((vectors?, set.area?))
     }
 
-    /// The names of its face sets.
+    /// Returns the names of the face sets.
     pub(super) fn face_sets(&self) -> impl Iterator<Item = &str> {
         let faces = |set: &&PointSet| set.kind == SetKind::Faces;
         self.points.sets.iter().filter(faces).map(|set| &*set.name)
     }
 
-    /// The name of the group that a number of a block stands for.
+    /// Returns the name of the group of a block number.
     pub(crate) fn block_name(&self, block: u32) -> Option<&str> {
         let mut groups = self.points.sets.iter();
         let mut groups = groups.by_ref().filter(|set| set.kind == SetKind::Elements);
@@ -96,8 +96,8 @@ impl MeshBody {
             .map(|set| &*set.name)
     }
 
-    /// The elements as cells of files of results, in the order of the points.
-    pub(crate) fn cells(&self) -> MeshCells {
+    /// Returns the elements as cells for result files, in the order of the points.
+    pub(crate) fn cells(&self) -> CellMesh {
         let mut cells = VtuCells::default();
         for &cell in &self.points.cells {
             let kind = match self.mesh.cells.kind(cell as usize) {
@@ -114,13 +114,14 @@ impl MeshBody {
         }
         let nodes = &self.mesh.nodes;
         let along = |c: usize| nodes.iter().map(move |x| x[c] * self.unit);
-        MeshCells {
+        CellMesh {
             nodes: (0..3).flat_map(along).collect(),
             cells,
         }
     }
 
-    /// A number for each element: the place of the first of the groups that it is in, counted from 1; 0 in no group, 1 in a mesh without groups.
+    /// Returns the block number of each element: the index of its first group, from 1; 0 without a group, 1 in a mesh
+    /// without groups.
     pub(super) fn blocks(&self) -> Vec<u32> {
         let groups = self.points.sets.iter();
         let groups: Vec<_> = groups.filter(|set| set.kind == SetKind::Elements).collect();
@@ -134,7 +135,7 @@ impl MeshBody {
     }
 }
 
-/// The point of a cloud that each element is.
+/// Returns the point of each element.
 fn places(cloud: &PointCloud) -> Vec<u32> {
     let mut place = vec![0; cloud.len()];
     for i in 0..cloud.len() {

@@ -1,5 +1,5 @@
-//! From a model to what can be run: [`discretise`] makes points and sets, [`assemble`] makes the equation of motion, the scheme and the
-//! time step.
+//! Assembly of models: [`discretise`] creates points and sets, [`assemble`] the equation of motion, the scheme and
+//! the time step.
 
 mod area;
 mod assemble;
@@ -47,8 +47,9 @@ pub use assemble::{assemble, build};
 pub use assembly::Assembly;
 pub use constants::MaterialConstants;
 pub use content::{Interior, KernelQuality, PlaneWaves};
+pub(crate) use discretisation::is_on_grid;
 pub use discretisation::{Discretisation, Grids, Sets};
-pub use discretise::{body_points, discretise};
+pub use discretise::discretise;
 pub use exact::ExactReference;
 pub use loads::LoadReport;
 pub use mesh_body::MeshBody;

@@ -1,4 +1,4 @@
-//! Whether the values of a deck are physically plausible and have an effect.
+//! Warnings about implausible values and values without effect.
 
 use pericles::System;
 use pericles::boundary::MotionKind;
@@ -10,17 +10,17 @@ use super::assembler::Assembler;
 use super::constants::MaterialConstants;
 
 impl Assembler<'_> {
-    /// Warns of densities and moduli that no solid has. Decks in units of their own (ρ = 1, E = 1) are left alone.
+    /// Warns of densities and moduli that no solid has. Decks in dimensionless units (ρ = 1, E = 1) are not checked.
     pub(super) fn judge_solid(
         &self,
         solid: &Solid,
         constants: &MaterialConstants,
     ) -> Vec<ModelWarning> {
-        /// kg/m³. Osmium has 22 600.
+        /// Largest density, kg/m³; osmium has 22 600.
         const DENSEST: f64 = 1e5;
-        /// kg/m³. Aerogels have less than this.
+        /// Smallest density of ordinary solids, kg/m³; aerogels have less.
         const SOLID: f64 = 100.0;
-        /// Pa. The softest gels have 1000.
+        /// Smallest modulus, Pa; the softest gels have 1000.
         const SOFTEST: f64 = 1e3;
         let density = solid.material.density();
         let modulus = constants.young();
@@ -34,7 +34,7 @@ impl Assembler<'_> {
             .collect()
     }
 
-    /// Warns of keys that only breaking bonds give a meaning.
+    /// Warns of keys that have an effect only if bonds break.
     pub(super) fn judge_idle_keys(&self, system: &System) -> Vec<ModelWarning> {
         if system.operator().can_break() {
             return Vec::new();
@@ -42,7 +42,7 @@ impl Assembler<'_> {
         let Model { body, output, .. } = self.model;
         let solid = body.solid();
         let measures_damage = solid.is_some_and(|solid| solid.material.damage.is_some());
-        // What pre-cracks took is damage, however the bonds behave later.
+        // Bonds cut by pre-cracks count as damage even if no bond breaks later.
         let uncracked = self.model.cracks.is_empty();
         let writes_cracks = output
             .cracks
@@ -62,14 +62,14 @@ impl Assembler<'_> {
             .collect()
     }
 
-    /// Warns of a run in which nothing happens.
+    /// Warns of a run without loads, constraints and initial motion.
     pub(super) fn judge_rest(&self, state: &State) -> Option<ModelWarning> {
         let at_rest = state.u.iter().chain(&state.v).all(|x| *x == 0.0);
         let loaded = self.model.loads.iter().any(|load| {
             let mut components = load.amplitude.components().iter();
             components.any(|entry| entry.number() != Some(0.0))
         });
-        let moved = self.model.prescribe.iter().any(|motion| {
+        let moved = self.model.constraints.iter().any(|motion| {
             let fixed = motion
                 .amplitude
                 .iter()

@@ -1,4 +1,4 @@
-//! The points of a body: those of its grid, or those listed in a file.
+//! Points of a body: on a grid, or listed in a file.
 
 use pericles::PericlesError;
 use pericles::family::pairs_within;
@@ -17,7 +17,7 @@ use super::random::{Space, nodes_of};
 use super::refusal::{at, at_path, refined_key};
 use super::resources::Resources;
 
-/// The points of a body, and the mesh whose elements they are, if there is one.
+/// The points of a body, and the mesh if they are its elements.
 pub(super) struct BodyPoints {
     pub(super) cloud: GradedCloud,
     pub(super) mesh: Option<MeshBody>,
@@ -45,7 +45,7 @@ impl Assembler<'_> {
                 })
             }
         }?;
-        /// The distance of atoms in a crystal, m.
+        /// Atomic spacing in crystals, m.
         const ATOMS: f64 = 1e-10;
         let spacing = cloud.cloud.spacing();
         if spacing < ATOMS {
@@ -64,7 +64,7 @@ impl Assembler<'_> {
         resources: &Resources<'_>,
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<PointCloud, BuildError> {
-        /// Volumes and spacing disagree by this factor only if one of them has another unit.
+        /// Larger factors between volumes and spacing indicate a wrong unit.
         const OFF: f64 = 2.0;
         let path = resources.beside(&file.path);
         let listed = (resources.read_points)(&path, file.dimension, resources.memory);
@@ -90,13 +90,13 @@ impl Assembler<'_> {
         Err(at_path("body.spacing", fault))
     }
 
-    /// Warns of coordinates that the body does not use, and of points that are much closer to each other than the others.
+    /// Warns of unused coordinates, and of points that are much closer to each other than the others.
     pub(super) fn judge_listed(
         &self,
         listed: &ListedPoints,
         cloud: &PointCloud,
     ) -> Vec<ModelWarning> {
-        /// Share of the spacing.
+        /// Distance that leads to a warning, relative to the spacing.
         const CLOSE: f64 = 1e-3;
         let mut cautions = Vec::new();
         for c in cloud.dimension()..3 {
@@ -123,7 +123,7 @@ impl Assembler<'_> {
             .collect()
     }
 
-    /// Warns of holes that take nothing from the body.
+    /// Warns of holes that remove no points.
     fn judge_holes(&self, lattice: &Lattice, graded: &GradedGrid) -> Vec<ModelWarning> {
         let grid = &graded.grid;
         let idle = match (&grid.shape, &lattice.rectangular) {
@@ -132,11 +132,11 @@ impl Assembler<'_> {
             }
             _ => graded.idle_holes(),
         };
-        // What is wrong with the grid is reported where its points are made.
+        // Errors of the grid are reported when its points are created.
         let idle = idle.unwrap_or_default().into_iter();
         idle.map(|k| {
             let hole = KeyPath::from("body.hole").index(k);
-            // The bore of a tube or ring follows the holes of the deck.
+            // The bore of a tube or ring is listed after the holes of the deck.
             Remark::new([hole, "body.inner_radius".into()], Caution::IdleHole)
         })
         .collect()
@@ -187,7 +187,7 @@ impl Assembler<'_> {
         points.map_err(|error| self.no_grid(lattice, error))
     }
 
-    /// Random points in the shape of a grid.
+    /// Creates random points in the shape of a grid.
     fn random_points(&self, grid: &Grid, positions: Positions) -> pericles::Result<PointCloud> {
         let dimension = grid.dimension();
         let inside = grid.inside()?;
@@ -207,7 +207,7 @@ impl Assembler<'_> {
         listed.cloud(dimension, grid.section)
     }
 
-    /// The refusal of a grid, at the key that is to blame.
+    /// Creates the error for a grid, at the key that causes it.
     fn no_grid(&self, lattice: &Lattice, error: PericlesError) -> BuildError {
         let place: Keys = match &error {
             PericlesError::NotWholeCells { length, .. } => self.side(lattice, *length),
@@ -218,7 +218,7 @@ impl Assembler<'_> {
         at_path(place, error.into())
     }
 
-    /// The entry that says where the body is.
+    /// Returns the key of the position of the body.
     fn corner(&self, lattice: &Lattice) -> &'static str {
         match lattice.grid.shape {
             Shape::Box { .. } => "body.origin",
@@ -227,7 +227,7 @@ impl Assembler<'_> {
         }
     }
 
-    /// The entries that may give a side of this length.
+    /// Returns the keys that may give a side of this length.
     fn side(&self, lattice: &Lattice, length: f64) -> Keys {
         let size = KeyPath::from("body.size");
         match &lattice.grid.shape {

@@ -5,10 +5,10 @@ use pericles_deck::Positions;
 use pericles_mesh::fill::{FillError, Lattice};
 use pericles_mesh::random::{Inside, blue_noise, jittered, nearest_volumes};
 
-/// A body to be filled with points.
+/// A region to be filled with points.
 pub(super) struct Space<'a> {
     pub(super) dimension: usize,
-    /// A box that holds it, m.
+    /// Bounding box, m.
     pub(super) bounds: [[f64; 3]; 2],
     /// Mean distance of the points, m.
     pub(super) spacing: f64,
@@ -21,7 +21,8 @@ pub(super) struct Space<'a> {
 pub(super) type Nodes = (Lattice, Vec<[usize; 3]>);
 
 impl Space<'_> {
-    /// Random points in the body. Jittered nodes keep the volumes of their cells; points of blue noise have that of the part of the body that is nearest to them.
+    /// Creates random points in the body. Jittered nodes keep the volumes of their cells; points of blue noise have
+    /// the volume of their Voronoi cells.
     pub(super) fn points(
         &self,
         positions: Positions,
@@ -62,7 +63,7 @@ impl Space<'_> {
     }
 }
 
-/// The nodes of a grid whose points are a cloud.
+/// Returns the nodes of a grid for the points of a cloud.
 pub(super) fn nodes_of(grid: &Grid, cloud: &PointCloud) -> Option<Nodes> {
     let lattice = cloud.lattice()?;
     let coordinates = |node: u32| lattice.coordinates(node).map(|c| c as usize);

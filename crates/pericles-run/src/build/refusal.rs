@@ -1,23 +1,23 @@
-//! Refusals of a model, at the keys that are to blame.
+//! Errors of a model, at the keys that cause them.
 
 use pericles::PericlesError;
 use pericles_deck::{BuildError, Fault, KeyPath, Keys, Remark};
 use pericles_waves::linear::NoConvolution;
 
-/// The keys of the horizon, of which a deck gives one.
+/// The keys of the horizon; a deck has one of them.
 pub(super) const HORIZON: [&str; 2] = ["material.horizon", "material.horizon_ratio"];
 
-/// The refusal of a value.
+/// Creates the error for the value of a key.
 pub(super) fn at_path(keys: impl Into<Keys>, fault: Fault) -> BuildError {
     Remark::new(keys, fault).into()
 }
 
-/// What the library refuses, at a value.
+/// Creates the error of the engine for the value of a key.
 pub(super) fn at(keys: impl Into<Keys>, error: PericlesError) -> BuildError {
     at_path(keys, error.into())
 }
 
-/// The key of a part with smaller cells that the library refuses; none of other errors.
+/// Returns the key of an invalid refined part; `None` for other errors.
 pub(super) fn refined_key(error: &PericlesError) -> Option<Keys> {
     match error {
         PericlesError::FinerEmpty { part } | PericlesError::FinerRatio { part, .. } => {
@@ -28,7 +28,7 @@ pub(super) fn refined_key(error: &PericlesError) -> Option<Keys> {
     }
 }
 
-/// What the library refuses of a material.
+/// Creates the error of the engine for a material.
 pub(super) fn at_material(error: PericlesError) -> BuildError {
     match &error {
         PericlesError::BadInfluence { .. } => at("material.influence", error),

@@ -1,4 +1,4 @@
-//! What a model is built with besides its deck.
+//! Resources for building a model: cache, memory limit, readers of files.
 
 use std::path::{Path, PathBuf};
 
@@ -8,12 +8,12 @@ use pericles_deck::Fault;
 use pericles_manifold::surface::Surface;
 use pericles_mesh::RawMesh;
 
-/// Why a file beside a deck gives nothing, in words, with the file and the place in it.
+/// Error of an input file, as a message with the file and the location in it.
 #[derive(Debug, Clone, PartialEq)]
 pub enum FileError {
-    /// It cannot be read, or its content is wrong.
+    /// The file cannot be read, or its content is invalid.
     Wrong(String),
-    /// Its content takes more memory than it may.
+    /// The content exceeds the memory limit.
     TooLarge(String),
 }
 
@@ -24,7 +24,7 @@ impl From<String> for FileError {
 }
 
 impl FileError {
-    /// The fault of the entry that names the file; `wrong` makes that of a wrong file.
+    /// Converts the error to the fault of the key of the file; `wrong` creates the fault of an invalid file.
     pub(super) fn fault(self, wrong: impl FnOnce(String) -> Fault) -> Fault {
         match self {
             Self::Wrong(reason) => wrong(reason),
@@ -33,30 +33,31 @@ impl FileError {
     }
 }
 
-/// Reads a surface from a file; its content may take so many bytes of memory.
+/// Reads a surface from a file, with a memory limit in bytes.
 pub type SurfaceReader<'a> = dyn Fn(&Path, u64) -> Result<Surface, FileError> + Sync + 'a;
 
-/// Reads the points of a body of a dimension from a file; its content may take so many bytes of memory.
+/// Reads the points of a body of a given dimension from a file, with a memory limit in bytes.
 pub type PointsReader<'a> =
     dyn Fn(&Path, usize, u64) -> Result<ListedPoints, FileError> + Sync + 'a;
 
-/// Reads a mesh or a surface of triangles with its sets, in the file's unit of length; its content may take so many bytes of memory.
+/// Reads a mesh or a triangulated surface with its sets, in the length unit of the file, with a memory limit in bytes.
 pub type MeshReader<'a> = dyn Fn(&Path, u64) -> Result<RawMesh, FileError> + Sync + 'a;
 
-/// The corners of polygons.
+/// The vertices of polygons.
 pub type Polygons = Vec<Vec<[f64; 2]>>;
 
-/// Reads the polygons of an outline, in the file's unit of length; its content may take so many bytes of memory.
+/// Reads the polygons of an outline, in the length unit of the file, with a memory limit in bytes.
 pub type OutlineReader<'a> = dyn Fn(&Path, u64) -> Result<Polygons, FileError> + Sync + 'a;
 
-/// Reads a table of numbers from a file: so many rows of columns with these names, row by row; its content may take so many bytes of memory.
+/// Reads a table of numbers from a file, given the number of rows and the column names, row by row, with a memory
+/// limit in bytes.
 pub type TableReader<'a> =
     dyn Fn(&Path, usize, &[&str], u64) -> Result<Vec<f64>, FileError> + Sync + 'a;
 
-/// What a model is built with besides its deck. Decks know no files but themselves: who builds a model hands in what reads others.
+/// Resources for building a model besides its deck. Decks do not read other files: the caller provides the readers.
 #[derive(Clone, Copy)]
 pub struct Resources<'a> {
-    /// Where results that are dear to compute are kept.
+    /// The cache for expensive results.
     pub cache: &'a dyn Cache,
     /// The reader of bodies with `shape = "surface"`.
     pub read_surface: &'a SurfaceReader<'a>,
@@ -68,21 +69,21 @@ pub struct Resources<'a> {
     pub read_outline: &'a OutlineReader<'a>,
     /// The reader of files of `[[initial]]`.
     pub read_table: &'a TableReader<'a>,
-    /// The folder where relative paths of the model start; empty for the present folder.
+    /// The base folder of relative paths of the model; empty for the current folder.
     pub folder: &'a Path,
-    /// Bytes that the model may take: one that is estimated to need more is refused before anything of its size is allocated.
+    /// Memory limit in bytes: models with a larger estimate are rejected before large allocations.
     pub memory: u64,
 }
 
 impl Resources<'_> {
-    /// Where a file is that the model names.
+    /// Returns the path of an input file.
     pub(super) fn beside(&self, path: &Path) -> PathBuf {
         self.folder.join(path)
     }
 }
 
 impl Default for Resources<'_> {
-    /// No cache, no reader of files, and memory without end.
+    /// No cache, no readers, and no memory limit.
     fn default() -> Self {
         Self {
             cache: &NoCache,
@@ -98,5 +99,5 @@ impl Default for Resources<'_> {
 }
 
 fn no_reader(what: &str) -> FileError {
-    FileError::Wrong(format!("nothing that reads {what} was handed in"))
+    FileError::Wrong(format!("no reader for {what} is available"))
 }

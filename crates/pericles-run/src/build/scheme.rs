@@ -108,7 +108,7 @@ impl Assembler<'_> {
             FineRegion::Adaptive(_) if !system.operator().can_break() => {
                 let error = PericlesError::SchemeNotUsable {
                     scheme: "a fine region that follows damage",
-                    reason: "its bonds never break; give `fine` with names of sets, or a fracture energy",
+                    reason: "its bonds do not break; give names of sets in `fine`, or a fracture energy",
                 };
                 Err(at("time.adaptive", error))
             }
@@ -129,7 +129,7 @@ impl Assembler<'_> {
         at_path(&path, error.into())
     }
 
-    /// What is wrong with fine regions, with the names of their sets; other errors are handed back.
+    /// Converts errors of fine regions to faults with the names of their sets; returns other errors.
     fn named_fine_sets(&self, error: PericlesError) -> Result<Fault, PericlesError> {
         let fine = match &self.model.time.scheme {
             Scheme::MultiTimeStep3 { fine, .. }
@@ -188,10 +188,10 @@ impl Assembler<'_> {
         let Some(frequency) = steps.frequency else {
             return;
         };
-        /// Below it the growth is less than 1e-6 a step.
+        /// Below this value the growth is less than 1e-6 per step.
         const QUIET: f64 = 0.5;
         let omega_dt = frequency.estimate * steps.dt;
-        // Equality within round-off is meant to be allowed.
+        // Equality within rounding is allowed.
         if interface.predictor == Predictor::BackwardDifference && omega_dt > QUIET * (1.0 + 1e-9) {
             let caution = Caution::GrowingPredictor {
                 omega_dt,

@@ -1,4 +1,4 @@
-//! Whether a model makes physical sense: warnings about its pre-cracks and conditions.
+//! Warnings about pre-cracks, conditions and stiffness of a model.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use super::constants::MaterialConstants;
 use super::refusal::HORIZON;
 
 impl Assembler<'_> {
-    /// Warns of loads on points that cannot follow them, and of bodies in pieces.
+    /// Warns of loads on constrained points, and of disconnected bodies.
     pub(super) fn judge_conditions(&self, system: &System, warnings: &mut Vec<ModelWarning>) {
         self.judge_held_loads(system, warnings);
         let Some(solid) = self.model.body.solid() else {
@@ -23,19 +23,19 @@ impl Assembler<'_> {
         if solid.shape.is_refined() {
             return;
         }
-        // Supports of static bodies are judged with their loads.
+        // Constraints of static bodies are checked with their loads.
         if !self.model.time.scheme.is_static() {
             self.judge_pieces(solid, system, warnings);
         }
     }
 
-    /// Warns of waves faster than any solid carries them.
+    /// Warns of wave speeds above those of any solid.
     pub(super) fn judge_speed(
         &self,
         solid: &Solid,
         constants: &MaterialConstants,
     ) -> Option<ModelWarning> {
-        /// m/s. Diamond has 18 000.
+        /// Largest wave speed, m/s; diamond has 18 000.
         const FASTEST: f64 = 3e4;
         let modulus = constants.longitudinal_modulus(solid.state);
         let density = solid.material.density();
@@ -44,8 +44,8 @@ impl Assembler<'_> {
         (speed > FASTEST).then(|| Remark::new("material.density", caution))
     }
 
-    /// Warns of constants with which the body does not have the stiffness of its material. Points of a file are not judged: they have no interior to
-    /// compare with.
+    /// Warns of large stiffness errors of the body. Listed points are not checked, because they have no regular
+    /// interior.
     pub(super) fn judge_stiffness(
         &self,
         solid: &Solid,
@@ -53,9 +53,9 @@ impl Assembler<'_> {
         path: &KeyPath,
         warnings: &mut Vec<ModelWarning>,
     ) {
-        /// Usual horizons and functions stay within 6 %.
+        /// Common horizons and influence functions are within 6 %.
         const BULK: f64 = 0.1;
-        /// A horizon of two spacings lacks a third of the shear stiffness.
+        /// With a horizon of two spacings the shear stiffness is one third too small.
         const SHEAR: f64 = 0.5;
         if solid.shape.is_listed() {
             return;
@@ -65,7 +65,7 @@ impl Assembler<'_> {
             let caution = Caution::StiffnessError { error };
             warnings.push(Remark::new(path.key("modulus"), caution));
         }
-        // Compared with the bulk stiffness that the body has.
+        // Relative to the actual bulk stiffness of the body.
         let error = (1.0 + constants.shear_error) / (1.0 + error) - 1.0;
         if error < -SHEAR {
             let caution = Caution::ShearStiffness { error };
@@ -73,13 +73,13 @@ impl Assembler<'_> {
         }
     }
 
-    /// Warns of classes of bonds that carry nothing where bonds can break: they count as damage without ever having resisted.
+    /// Warns of classes of breakable bonds without stiffness: they count as damage but carry no force.
     pub(super) fn judge_classes(
         &self,
         material: &BondMaterial,
         constants: &BondConstants,
     ) -> Option<ModelWarning> {
-        /// Of the largest coefficient; the bound of tuned coefficients is met to round-off.
+        /// Relative to the largest coefficient; the bound of tuned coefficients is satisfied to rounding.
         const NOTHING: f64 = 1e-9;
         let InfluenceFunction::Classes(table) = &material.influence.function else {
             return None;
@@ -93,7 +93,7 @@ impl Assembler<'_> {
             .then(|| Remark::new("material.influence", caution))
     }
 
-    /// The warning about a pre-crack that cuts no bond.
+    /// Returns the warning about a pre-crack that cuts no bond.
     pub(super) fn useless_crack(crack: &Crack, cloud: &PointCloud) -> Caution {
         let dimension = cloud.dimension();
         let half = 0.5 * cloud.spacing();
@@ -113,7 +113,7 @@ impl Assembler<'_> {
     }
 
     fn judge_held_loads(&self, system: &System, warnings: &mut Vec<ModelWarning>) {
-        // The axes along which each point is held, one bit each.
+        // The constrained axes of each point, one bit per axis.
         let mut held = vec![0u8; system.points()];
         for motion in system.motions() {
             let axes = motion.axes().fold(0, |bits, c| bits | 1 << c);
@@ -122,7 +122,7 @@ impl Assembler<'_> {
             }
         }
         for (k, (given, load)) in self.model.loads.iter().zip(system.loads()).enumerate() {
-            // A pressure acts along all axes.
+            // A pressure may act along all axes.
             let components = given.amplitude.components();
             let component = |c: usize| &components[c.min(components.len() - 1)];
             let acts = |c: usize| c < system.dimension() && component(c).number() != Some(0.0);
@@ -134,7 +134,7 @@ impl Assembler<'_> {
                 load.points.iter().filter(|i| resisted(i)).count(),
                 load.points.len(),
             );
-            // Sets share corners: a few points are no mistake.
+            // Sets may share corner points.
             if 2 * held > points {
                 let caution = Caution::LoadOnHeld { held, points };
                 warnings.push(Remark::new(KeyPath::from("load").index(k), caution));
@@ -142,9 +142,10 @@ impl Assembler<'_> {
         }
     }
 
-    /// Warns of bodies that are in pieces before they break. Only what was cut, has holes or is listed can be, and larger bodies are not looked at.
+    /// Warns of bodies that are disconnected at the start. Only bodies with pre-cracks, holes or listed points are
+    /// checked, up to a maximum size.
     fn judge_pieces(&self, solid: &Solid, system: &System, warnings: &mut Vec<ModelWarning>) {
-        /// Finding bonds takes as long as some steps of the run.
+        /// Maximum number of points: the neighbour search takes as long as several steps of the run.
         const MOST: usize = 50_000;
         let cloud = system.cloud();
         let holes = &solid.shape.holes();
@@ -171,10 +172,10 @@ impl Assembler<'_> {
         }
     }
 
-    /// The piece of each point, named by its first point: what bonds join at the start.
+    /// Returns the connected component of each point at the start, identified by its first point.
     pub(super) fn pieces(&self, solid: &Solid, cloud: &Arc<PointCloud>) -> Option<Vec<usize>> {
         let material = &solid.material;
-        // What is wrong with families and cracks has been refused when the operator was made.
+        // Errors of neighbour lists and cracks were reported when the operator was built.
         let horizon = self.largest_horizon(solid);
         let mut bonds = BondList::new(cloud, horizon, material.volume_correction()).ok()?;
         for (surface, ends) in self.cracks {
@@ -184,12 +185,12 @@ impl Assembler<'_> {
     }
 }
 
-/// A point's place, as long as the body has dimensions, m.
+/// Returns the position of a point, with as many components as the body has dimensions, m.
 fn place(cloud: &PointCloud, i: usize) -> Vec<f64> {
     cloud.point(i)[..cloud.dimension()].to_vec()
 }
 
-/// Opposite corners of the box of a crack.
+/// Returns opposite corners of the bounding box of a crack.
 fn extent(crack: &Crack) -> (Point, Point) {
     let plane = |[x, y]: [f64; 2]| [x, y, 0.0];
     let corners: Vec<Point> = match crack {
@@ -217,7 +218,7 @@ fn extent(crack: &Crack) -> (Point, Point) {
     )
 }
 
-/// The piece of each point, named by its first point.
+/// Returns the connected component of each point, identified by its first point.
 fn pieces(bonds: &BondList) -> Vec<usize> {
     let mut piece = vec![usize::MAX; bonds.len()];
     let mut waiting = Vec::new();

@@ -1,4 +1,4 @@
-//! Forces of a body of state-based materials.
+//! Forces of bodies of state-based materials.
 
 use pericles::material::{
     BondFailure, BondLimits, Inelasticity, LinearSolid, LinearSolidConstants, SolidClasses,
@@ -19,7 +19,7 @@ use super::materials::PairRule;
 use super::refusal::{at, at_material, at_path};
 
 impl Assembler<'_> {
-    /// Force and materials of a state-based body.
+    /// Builds force operator and materials of a state-based body.
     pub(super) fn state_based_parts(
         &self,
         solid: &Solid,
@@ -82,14 +82,15 @@ impl Assembler<'_> {
             strains: state_based.strains,
             surface: match material.surface_correction {
                 SurfaceCorrection::Energy => SolidSurface::Energy,
-                // The volume method is refused with the model.
+                SurfaceCorrection::Ghosts => SolidSurface::Ghosts,
+                // The volume method is rejected when the model is read.
                 SurfaceCorrection::None | SurfaceCorrection::Volume => SolidSurface::None,
             },
             cracks: surfaces,
             no_fail: &no_fail,
             damage: material.damage.unwrap_or_default(),
         };
-        // Forms that transform are refused above.
+        // Spectral force kernels are rejected above.
         let form = self
             .heated_form(material.form)?
             .of_bonds()
@@ -121,7 +122,7 @@ impl Assembler<'_> {
         })
     }
 
-    /// What bonds between two materials can bear, where the deck says so.
+    /// Returns the limits of bonds between two materials, if the deck gives them.
     fn limits_between(
         &self,
         solid: &Solid,
@@ -149,7 +150,7 @@ impl Assembler<'_> {
         Ok(found)
     }
 
-    /// Refuses what state-based bodies do not represent, and forms that do not represent them.
+    /// Rejects features that state-based materials do not support, and force kernels that do not support them.
     fn refuse_features(&self, solid: &Solid) -> Result<(), BuildError> {
         let shape = &solid.shape;
         let found = [
@@ -178,7 +179,7 @@ impl Assembler<'_> {
         form.check(Feature::StateBased.into()).map_err(at_material)
     }
 
-    /// Bonds of real materials break long before they are a fifth longer.
+    /// Warns of large critical stretches: bonds of real materials break well below a stretch of 20 %.
     fn judge_limits(
         &self,
         constants: &LinearSolidConstants,
@@ -194,9 +195,9 @@ impl Assembler<'_> {
         self.judge_stretch(constants.limits.stretch, path.key(key), warnings);
     }
 
-    /// Warns of a lattice whose shear stiffness depends on the direction.
+    /// Warns of an anisotropic shear stiffness of the lattice.
     fn judge_isotropy(&self, constants: Option<&MaterialConstants>) -> Option<ModelWarning> {
-        /// The conical function at three spacings stays within 4 %.
+        /// The conical function with three spacings is within 4 %.
         const NOTICED: f64 = 0.06;
         let shear = constants?.state_based()?.lattice_shear?;
         let caution = Caution::ShearAnisotropy {

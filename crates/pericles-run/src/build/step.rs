@@ -3,13 +3,13 @@
 use pericles::PericlesError;
 use pericles::System;
 use pericles::time::{HighestFrequency, Integrator, State, highest_frequency};
-use pericles::units::quantity;
+use pericles::units::{precise, quantity, significant};
 use pericles_deck::{BuildError, Caution, Fault, ModelWarning, Remark, Scheme, TimeStep};
 
 use super::assembler::Assembler;
 use super::refusal::{at, at_path};
 
-/// A number of steps that differs from a whole one by so small a part is that number.
+/// Relative tolerance for an integer number of steps.
 const WHOLE: f64 = 1e-9;
 
 /// The steps of a run.
@@ -18,12 +18,13 @@ pub(super) struct Steps {
     pub(super) count: u64,
     /// The frequency that limits the step.
     pub(super) frequency: Option<HighestFrequency>,
-    /// The body's highest, whatever the scheme.
+    /// The highest frequency of the body, for any scheme.
     pub(super) body_frequency: Option<HighestFrequency>,
 }
 
 impl Assembler<'_> {
-    /// Finds the step, or judges the one that is given; `exterior` is the highest frequency of what lies beyond the body, `damped` the strongest damping of its layers, 1/s.
+    /// Determines the time step, or checks the given one; `exterior` is the highest frequency of the exterior lattices,
+    /// `damped` the largest damping rate of its layers, 1/s.
     pub(super) fn steps(
         &self,
         system: &System,
@@ -56,11 +57,11 @@ impl Assembler<'_> {
                 };
                 let refuse = |error| at("time.dt", error);
                 let frequency = frequency.map_err(refuse)?;
-                // A scheme without a limit has no step of its own: accuracy alone must set it.
+                // An unconditionally stable scheme has no automatic step: accuracy determines it.
                 let limit = limit
                     .ok_or(PericlesError::SchemeNotUsable {
                         scheme: integrator.name(),
-                        reason: "it has no stable step of its own; give dt",
+                        reason: "it is unconditionally stable and has no automatic step; give dt",
                     })
                     .map_err(refuse)?;
                 let undamped = frequency.stable_step(limit, 1.0);
@@ -79,7 +80,7 @@ impl Assembler<'_> {
                 let dt = self.dividing(given, end, count, warnings);
                 if let (Some(limit), Ok(frequency)) = (limit, &frequency) {
                     let stable = frequency.stable_step(limit, 1.0);
-                    // What is refused is what the deck says.
+                    // The error refers to the value in the deck.
                     let judged = if dt <= stable { dt } else { given };
                     self.judge(judged, limit, frequency, integrator.name(), warnings)?;
                     let damped = damped + self.rayleigh_rates().at(limit / stable);
@@ -100,7 +101,7 @@ impl Assembler<'_> {
         }
     }
 
-    /// The given step if a whole number of them ends at `end`, else the next shorter one of which a whole number does.
+    /// Returns the given step if it divides `end`, otherwise the next smaller one that does.
     fn dividing(&self, given: f64, end: f64, count: u64, warnings: &mut Vec<ModelWarning>) -> f64 {
         let ratio = end / given;
         if (ratio - count as f64).abs() <= WHOLE * ratio {
@@ -112,7 +113,8 @@ impl Assembler<'_> {
         used
     }
 
-    /// Refuses a step that turns the fastest wave so often that its angle keeps few digits; a series would have as many terms.
+    /// Rejects a step in which the phase of the fastest wave is so large that it loses accuracy; a series would have
+    /// as many terms.
     fn check_angle(&self, dt: f64, fastest: f64) -> Result<(), BuildError> {
         const MOST: f64 = 1e6;
         let longest = MOST / fastest;
@@ -129,7 +131,7 @@ impl Assembler<'_> {
         Err(at_path("time.dt", fault))
     }
 
-    /// Refuses a given step that is unstable for certain; warns of one that may be.
+    /// Rejects a given step that is certainly unstable; warns of one that may be.
     fn judge(
         &self,
         dt: f64,
@@ -161,37 +163,44 @@ impl Assembler<'_> {
         Ok(())
     }
 
-    /// Refuses a given step that is stable without damping layers only.
+    /// Rejects a given step that is stable only without damping layers.
     fn check_damped(&self, dt: f64, undamped: f64, damping: f64) -> Result<(), BuildError> {
         let stable = damped_step(undamped, damping);
         if dt <= stable || dt > undamped {
             return Ok(());
         }
         let reason = format!(
-            "with damping of up to {damping:.4e} 1/s the step {dt:e} s is unstable, with less than {stable:.4e} s it is stable; make dt smaller or \"auto\", the layers thicker, or what they \
-             reflect larger"
+            "with a damping rate of up to {} 1/s the step {} is unstable; steps below {} are stable. Use a smaller dt or \"auto\", thicker layers, or a larger reflection \
+             coefficient",
+            significant(damping, 4),
+            precise(dt, "s"),
+            precise(stable, "s"),
         );
         Err(at("boundary", PericlesError::BadDampingLayer { reason }))
     }
 
-    /// The number of steps of length `dt` to `end`.
+    /// Returns the number of steps `dt` to `end`.
     fn count(&self, end: f64, dt: f64) -> Result<u64, BuildError> {
-        /// Numbers of steps beyond it are no longer exact in a double.
+        /// Larger numbers of steps are not exact in double precision.
         const MOST: f64 = 9e15;
         let ratio = end / dt;
         if ratio > MOST {
             let fault = Fault::OutOfRange {
-                value: format!("{dt:e} s"),
-                allowed: format!("allowed: at most {MOST:e} steps; this step needs {ratio:e}"),
+                value: precise(dt, "s"),
+                allowed: format!(
+                    "allowed: at most {MOST:e} steps; this step requires {}",
+                    significant(ratio, 3)
+                ),
             };
             return Err(at_path("time.dt", fault));
         }
-        // A whole number up to round-off is that number.
+        // An integer up to rounding.
         Ok((ratio * (1.0 - WHOLE)).ceil().max(1.0) as u64)
     }
 }
 
-/// The largest stable step of velocity Verlet with a damping σ (1/s) of the step before, from the one without, 2/ω: (ω dt)² = 4 − 2 σ dt.
+/// Returns the largest stable step of velocity Verlet with a damping rate σ (1/s) applied to the velocity of the
+/// previous step, from the undamped one, 2/ω: (ω dt)² = 4 − 2 σ dt.
 pub(super) fn damped_step(undamped: f64, damping: f64) -> f64 {
     let damped = 0.25 * damping * undamped;
     undamped / (damped + damped.hypot(1.0))

@@ -8,7 +8,7 @@ use super::discretisation::Sets;
 use super::refusal::at_path;
 
 impl Assembler<'_> {
-    /// The stop conditions; those that can never be met are refused.
+    /// Returns the stop conditions; those that can never be satisfied are rejected.
     pub(super) fn stops(&self, system: &System, sets: &Sets) -> Result<Vec<StopWhen>, BuildError> {
         let mut stops = Vec::new();
         for (k, stop) in self.model.time.stop_when.iter().enumerate() {
@@ -19,19 +19,19 @@ impl Assembler<'_> {
             };
             let condition = match stop.condition {
                 StopRule::ReactionBelow(share) => {
-                    // The motions of a system are those of the deck, in its order.
-                    let of_set = |k: &usize| self.model.prescribe[*k].set == stop.set;
+                    // The prescribed motions of a system are in the order of the deck.
+                    let of_set = |k: &usize| self.model.constraints[*k].set == stop.set;
                     let motions: Vec<usize> =
-                        (0..self.model.prescribe.len()).filter(of_set).collect();
+                        (0..self.model.constraints.len()).filter(of_set).collect();
                     if motions.is_empty() {
                         return never(
-                            "no [[prescribe]] names this set, so that it has no reaction",
+                            "no [[constraint]] refers to this set, so it has no reaction",
                         );
                     }
                     StopCondition::ReactionBelow { share, motions }
                 }
                 StopRule::DamageAbove(_) if !system.operator().can_break() => {
-                    return never("the bonds of this body never break");
+                    return never("the bonds of this body do not break");
                 }
                 StopRule::DamageAbove(damage) => {
                     let points = self.members(sets, &stop.set, &path)?.clone();

@@ -46,7 +46,7 @@ impl Assembler<'_> {
         Ok((surface, cloud))
     }
 
-    /// The surface of a file, checked, its vertices numbered along a space-filling curve.
+    /// Reads and checks a surface; its vertices are numbered along a space-filling curve.
     fn surface_of_file(
         &self,
         path: &Path,
@@ -97,7 +97,7 @@ impl Assembler<'_> {
         .map_err(|error| at("material", error))
     }
 
-    /// Refuses what only bodies with a volume have.
+    /// Rejects loads that require a volume.
     pub(super) fn refuse_body_forces(&self) -> Result<(), BuildError> {
         for (k, load) in self.model.loads.iter().enumerate() {
             let key = match load.amplitude {
@@ -109,9 +109,7 @@ impl Assembler<'_> {
             let fault = Fault::Misplaced {
                 key: key.into(),
                 table: "a [[load]] of a surface".into(),
-                allowed:
-                    "a surface is loaded by a `traction`, which acts on the area of each vertex"
-                        .into(),
+                allowed: "use a `traction`, which acts on the area of each vertex".into(),
             };
             return Err(at_path(KeyPath::from("load").index(k).key(key), fault));
         }

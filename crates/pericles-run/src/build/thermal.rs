@@ -6,6 +6,7 @@ use pericles::material::StressState;
 use pericles::operator::Feature;
 use pericles::parallel::for_each_point;
 use pericles::space::PointCloud;
+use pericles::units::quantity;
 use pericles::{PointScalar, Temperature, ThermalExpansion};
 use pericles_deck::{Body, BuildError, Component, Fault, KeyPath, Solid, Thermal};
 use pericles_waves::{AssembledForce, ForceForm};
@@ -16,7 +17,7 @@ use super::constants::MaterialConstants;
 use super::discretisation::Discretisation;
 use super::refusal::{at, at_material, at_path};
 
-/// A temperature that the deck gives.
+/// A temperature given by the deck.
 #[derive(Debug)]
 struct Prescribed {
     cloud: Arc<PointCloud>,
@@ -40,7 +41,7 @@ impl Temperature for Prescribed {
 }
 
 impl Assembler<'_> {
-    /// The form of bonds with which a heated body is computed, in place of the fastest one.
+    /// Returns the force kernel of a heated body.
     pub(super) fn heated_form(&self, form: ForceForm) -> Result<ForceForm, BuildError> {
         match (&self.model.thermal, form) {
             (None, form) => Ok(form),
@@ -53,7 +54,7 @@ impl Assembler<'_> {
         }
     }
 
-    /// Gives the materials of a body their thermal expansion, if the model has it.
+    /// Adds thermal expansion to the materials of a body, if the model has it.
     pub(super) fn heat(
         &self,
         parts: &mut BodyParts,
@@ -78,7 +79,8 @@ impl Assembler<'_> {
             .map_err(|error| at("thermal", error))
     }
 
-    /// The coefficient of every point. In plane strain the strain across the plane is prevented, which stretches pair forces and state-based materials, whose bonds lie in the plane, by 1 + ν times as much.
+    /// Returns the expansion coefficient of every point. In plane strain the out-of-plane strain is prevented, so
+    /// that the in-plane thermal stretch is larger by the factor 1 + ν for bond-based and state-based materials.
     fn coefficients(
         &self,
         thermal: &Thermal,
@@ -112,7 +114,7 @@ impl Assembler<'_> {
         let all: Vec<f64> = names.iter().zip(constants).map(of_material).collect();
         let sets = &discretisation.sets;
         let place = (&*discretisation.cloud, sets);
-        // What is to be said of assignments has been said.
+        // Assignments have been checked before.
         let (of_point, _) = self.points_of_materials(&solid.material, place, &mut Vec::new())?;
         Ok(match (of_point, &all[..]) {
             (Some(of_point), all) if all.iter().any(|alpha| *alpha != all[0]) => {
@@ -124,7 +126,7 @@ impl Assembler<'_> {
         })
     }
 
-    /// Refuses an expression that is not finite at a point when the run starts.
+    /// Rejects an expression that is not finite at a point at t = 0.
     fn refuse_no_temperature(
         &self,
         thermal: &Thermal,
@@ -138,16 +140,16 @@ impl Assembler<'_> {
             Component::Expression(expression) => expression.text().to_owned(),
             Component::Number(number) => number.to_string(),
         };
-        let [x, y, z] = cloud.point(i);
+        let [x, y, z] = cloud.point(i).map(|x| quantity(x, "m"));
         let reason = format!(
-            "at ({x:e}, {y:e}, {z:e}) m and t = 0 it has no finite value, and every point needs a temperature"
+            "the value at ({x}, {y}, {z}) and t = 0 is NaN or infinite; it must be finite at every point"
         );
         let fault = Fault::BadExpression { text, reason };
         Err(at_path(KeyPath::from("thermal").key("temperature"), fault))
     }
 }
 
-/// The thermal stretch of bonds over α ΔT.
+/// Returns the thermal stretch of bonds relative to α ΔT.
 fn in_plane(constants: &MaterialConstants, state: StressState) -> f64 {
     let nu = match (constants, state) {
         (MaterialConstants::Bonds(_), StressState::PlaneStrain) => state.poisson_ratio(),

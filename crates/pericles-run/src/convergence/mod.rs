@@ -1,12 +1,12 @@
-//! How a number of a deck's runs converges on finer and finer grids, with the observed order.
+//! Convergence studies: a scalar over successively finer grids, with the observed order.
 //!
-//! Two limits are of interest (Bobaru et al., Int. J. Numer. Meth. Engng 77 (2009) 852–877): the horizon δ = m dx to zero at one m, where a
-//! nonlocal body becomes a local one (δ-convergence), and the spacing to zero at one horizon, where the sums become the nonlocal integrals
-//! (m-convergence). The runs are a sweep, in its folder and with all that sweeps can do.
+//! Two limits of the grid are of interest (Bobaru et al., Int. J. Numer. Meth. Engng 77 (2009) 852–877): δ-convergence, where the horizon
+//! δ = m dx tends to zero at fixed m and the nonlocal model approaches the local one, and m-convergence, where the spacing
+//! tends to zero at fixed horizon and the sums approach the nonlocal integrals. A third one is that of the time step on a
+//! fixed grid. The runs form a sweep.
 
 mod family;
 mod order;
-mod scalar;
 
 use std::io::Write;
 use std::path::Path;
@@ -14,23 +14,53 @@ use std::path::Path;
 use pericles_io::{Axis, Curve, LineChart, csv_row, write_atomically};
 
 use self::family::{Family, Point, families};
-use self::scalar::Scalar;
 use crate::error::RunError;
-use crate::sweep::Sweep;
+use crate::scalar::Scalar;
+use crate::sweep::SweepResults;
 use crate::units::{quantity, significant};
 
-/// What a number should converge to, and along which limit.
+/// The scalar, its reference value, and the limit.
 #[derive(Debug, Clone)]
 pub struct Question {
-    /// The number: a column of the tables for its last value, `max:COLUMN`, `min:COLUMN`, or a number of `run.json` such as `audit.elastic_energy`.
+    /// The scalar: a column of the tables (last value), `max:COLUMN`, `min:COLUMN`, or a number of `run.json` such as
+    /// `audit.elastic_energy`.
     pub scalar: String,
-    /// What it should converge to.
+    /// The reference value.
     pub reference: Option<f64>,
-    /// Whether all runs have one horizon (m-convergence); otherwise the horizon goes to zero with the spacing (δ-convergence).
-    pub one_horizon: bool,
+    /// The limit that the runs approach.
+    pub limit: Limit,
 }
 
-/// A number of the runs of a sweep, family by family, from coarse to fine.
+/// The limit of a family of runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Limit {
+    /// Spacing and horizon tend to zero at a fixed ratio m (δ-convergence).
+    Local,
+    /// The spacing tends to zero at a fixed horizon (m-convergence).
+    Nonlocal,
+    /// The time step tends to zero on a fixed grid.
+    Time,
+}
+
+impl Limit {
+    /// Returns the quantity that tends to zero: the spacing, m, or the time step, s.
+    fn step(self, point: &Point) -> f64 {
+        match self {
+            Self::Local | Self::Nonlocal => point.spacing,
+            Self::Time => point.dt,
+        }
+    }
+
+    /// Returns its name and unit.
+    fn axis(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Local | Self::Nonlocal => ("spacing", "m"),
+            Self::Time => ("time step", "s"),
+        }
+    }
+}
+
+/// The scalar of the runs of a sweep, by family, from coarse to fine.
 pub struct Convergence {
     question: Question,
     families: Vec<Family>,
@@ -38,48 +68,54 @@ pub struct Convergence {
 }
 
 impl Convergence {
-    /// Reads the number from the results of a sweep over spacings.
+    /// Reads the scalar from the results of a sweep over spacings.
     ///
     /// # Errors
-    /// A number that runs do not have, tables that are damaged.
-    pub fn of(sweep: &Sweep, question: Question) -> Result<Self, RunError> {
+    /// The runs do not have the scalar, or a table is damaged.
+    pub fn of(sweep: &SweepResults, question: Question) -> Result<Self, RunError> {
         let scalar = Scalar::named(&question.scalar);
         let mut points = Vec::new();
         let mut unit = String::new();
-        for results in sweep.results() {
+        for results in sweep.runs().filter_map(|(_, results)| results) {
             let value;
             (value, unit) = scalar.of(&results)?;
             points.push(Point {
                 spacing: results.number("/model/spacing").unwrap_or(f64::NAN),
                 horizon: results.number("/model/horizon").unwrap_or(f64::NAN),
+                dt: results.number("/model/dt").unwrap_or(f64::NAN),
                 value,
             });
         }
         Ok(Self {
-            families: families(points, question.one_horizon),
+            families: families(points, question.limit),
             question,
             unit,
         })
     }
 
-    /// All runs with the order that is observed there.
+    /// Returns all runs with the observed order.
     fn rows(&self) -> impl Iterator<Item = (&Family, Point, Option<f64>)> {
-        let reference = self.question.reference;
+        let (reference, limit) = (self.question.reference, self.question.limit);
         self.families.iter().flat_map(move |family| {
             let numbered = family.points.iter().enumerate();
-            numbered.map(move |(k, point)| (family, *point, family.order(k, reference)))
+            numbered.map(move |(k, point)| (family, *point, family.order(k, limit, reference)))
         })
     }
 
-    /// Writes a row per run as CSV.
+    /// Writes a CSV table with a row per run.
     ///
     /// # Errors
-    /// A file that cannot be written.
+    /// The file cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), RunError> {
         let Question {
-            scalar, reference, ..
+            scalar,
+            reference,
+            limit,
         } = &self.question;
         let mut header: Vec<String> = ["m", "spacing [m]", "horizon [m]"].map(String::from).into();
+        if *limit == Limit::Time {
+            header.push("dt [s]".into());
+        }
         header.push(scalar.clone());
         if reference.is_some() {
             header.push("distance".into());
@@ -87,7 +123,9 @@ impl Convergence {
         header.push("order".into());
         let mut table = vec![header];
         for (_, point, order) in self.rows() {
-            let mut row = vec![point.ratio(), point.spacing, point.horizon, point.value];
+            let mut row = vec![point.ratio(), point.spacing, point.horizon];
+            row.extend((*limit == Limit::Time).then_some(point.dt));
+            row.push(point.value);
             row.extend(reference.map(|reference| point.value - reference));
             let mut row: Vec<String> = row.iter().map(|number| format!("{number:?}")).collect();
             row.push(order.map_or(String::new(), |order| format!("{order:?}")));
@@ -99,24 +137,28 @@ impl Convergence {
         })?)
     }
 
-    /// The distance from the reference on logarithmic axes, or the number itself without one.
+    /// Returns a chart of the error on logarithmic axes or, without a reference, of the scalar.
     pub fn chart(&self) -> LineChart {
         let Question {
-            scalar, reference, ..
+            scalar,
+            reference,
+            limit,
         } = &self.question;
         let name = scalar.replace('_', " ");
         let unit = self.unit.as_str();
-        let x = Axis::new("spacing", "m");
-        let (x, y) = match reference {
-            Some(_) => (
-                x.logarithmic(),
-                Axis::new(format!("|{name} − reference|"), unit).logarithmic(),
-            ),
-            None => (x, Axis::new(name, unit)),
+        let (step, step_unit) = limit.axis();
+        let x = Axis::new(step, step_unit).logarithmic();
+        let y = match reference {
+            Some(_) => Axis::new(format!("|{name} − reference|"), unit).logarithmic(),
+            None => Axis::new(name, unit),
         };
         let mut chart = LineChart::new(x, y);
         for family in &self.families {
-            let spacings: Vec<f64> = family.points.iter().map(|point| point.spacing).collect();
+            let steps: Vec<f64> = family
+                .points
+                .iter()
+                .map(|point| limit.step(point))
+                .collect();
             let values: Vec<f64> = family
                 .points
                 .iter()
@@ -125,12 +167,12 @@ impl Convergence {
                     None => point.value,
                 })
                 .collect();
-            chart = chart.curve(Curve::line(&family.name, &spacings, &values).with_markers());
+            chart = chart.curve(Curve::line(&family.name, &steps, &values).with_markers());
         }
         chart
     }
 
-    /// A line per family, and one per run below it, for people.
+    /// Returns a line per family, followed by a line per run.
     pub fn lines(&self) -> Vec<String> {
         let mut lines = Vec::new();
         let mut last = "";
@@ -140,13 +182,20 @@ impl Convergence {
                 lines.push(last.to_owned());
             }
             let mut line = format!(
-                "  dx {:<8}  {} {}",
-                quantity(point.spacing, "m"),
+                "  {} {:<8}  {} {}",
+                match self.question.limit {
+                    Limit::Local | Limit::Nonlocal => "dx",
+                    Limit::Time => "dt",
+                },
+                quantity(
+                    self.question.limit.step(&point),
+                    self.question.limit.axis().1
+                ),
                 self.question.scalar,
                 significant(point.value, 8)
             );
             if let Some(reference) = self.question.reference {
-                line += &format!("  off by {}", significant(point.value - reference, 3));
+                line += &format!("  error {}", significant(point.value - reference, 3));
             }
             if let Some(order) = order {
                 line += &format!("  order {order:.2}");

@@ -1,4 +1,4 @@
-//! Curves, polar plots and tables of classes as files.
+//! Files of dispersion curves, polar plots and bond classes.
 
 use std::path::Path;
 
@@ -6,10 +6,10 @@ use pericles_dispersion::tuning::BondClass;
 use pericles_dispersion::{BondLattice, Contour, ContourPoint, PolarSpeeds, verlet_frequency};
 use pericles_io::{Axis, Cell, Column, CsvTable, Curve, IoError, LineChart};
 
-/// Points of a segment.
+/// Number of points per segment.
 pub const STEPS: usize = 200;
 
-/// Branches along a contour with what belongs to them.
+/// Branches along a contour.
 pub struct Curves<'a> {
     /// The path through the wave vectors.
     pub contour: &'a Contour,
@@ -17,12 +17,12 @@ pub struct Curves<'a> {
     pub points: &'a [ContourPoint],
     /// Time step for the time-discrete curve, s.
     pub dt: Option<f64>,
-    /// Speed of the continuum for each branch, m/s; none where a branch changes its nature.
+    /// Wave speed in the continuum for each branch, m/s; `None` if the branch cannot be followed.
     pub targets: &'a [Option<f64>],
 }
 
 impl Curves<'_> {
-    /// Frequency of the continuum, 1/s.
+    /// Returns the frequency of the continuum, 1/s.
     pub fn target(&self, branch: usize, point: &ContourPoint) -> f64 {
         let wave_number = point.k.iter().map(|k| k * k).sum::<f64>().sqrt();
         let speed = self.targets.get(branch).copied().flatten();
@@ -34,7 +34,7 @@ impl Curves<'_> {
         discrete.unwrap_or(f64::NAN)
     }
 
-    /// All numbers. Cells are empty where a wave is unstable or a branch has no counterpart in the continuum.
+    /// Writes a table. Cells are empty where a wave is unstable or a branch has no counterpart in the continuum.
     pub fn write(&self, path: &Path) -> Result<(), IoError> {
         let mut columns = vec![
             Column::integer("segment"),
@@ -74,19 +74,33 @@ impl Curves<'_> {
         table.flush()
     }
 
-    /// The picture: lattice as lines, continuum dashed.
+    /// Writes the chart: lattice as solid lines, continuum dashed.
     pub fn draw(&self, path: &Path, title: &str) -> Result<(), IoError> {
         self.chart(title).write(path)
     }
 
-    /// What is along the axis.
+    /// Returns the label of the abscissa.
     pub fn along(&self) -> String {
         let mut names = vec![self.contour.segments[0].ends[0]];
         names.extend(self.contour.segments.iter().map(|segment| segment.ends[1]));
         format!("arc length along {}", names.join("–"))
     }
 
-    /// Abscissas and time-discrete frequencies of a branch.
+    /// Returns the abscissas of the symmetry points with their names; none for a single segment, whose axis shows numbers.
+    fn symmetry_points(&self) -> Vec<(f64, String)> {
+        if self.contour.segments.len() < 2 {
+            return Vec::new();
+        }
+        let mut place = 0.0;
+        let mut points = vec![(0.0, self.contour.segments[0].ends[0].to_owned())];
+        for segment in &self.contour.segments {
+            place += segment.length();
+            points.push((place, segment.ends[1].to_owned()));
+        }
+        points
+    }
+
+    /// Returns abscissas and time-discrete frequencies of a branch.
     pub fn discrete_branch(&self, branch: usize) -> (Vec<f64>, Vec<f64>) {
         let place = |point: &ContourPoint| {
             let omega = self.discrete(point.branches[branch].omega());
@@ -95,12 +109,12 @@ impl Curves<'_> {
         self.points.iter().map(place).unzip()
     }
 
-    /// The chart, for adding more curves.
+    /// Returns the chart, to which curves can be added.
     pub fn chart(&self, title: &str) -> LineChart {
         let along = self.along();
         let x: Vec<f64> = self.points.iter().map(|point| point.abscissa).collect();
-        let mut chart =
-            LineChart::new(Axis::new(along, "rad/m"), Axis::new("ω", "rad/s")).title(title);
+        let across = Axis::new(along, "rad/m").marks(self.symmetry_points());
+        let mut chart = LineChart::new(across, Axis::new("ω", "rad/s")).title(title);
         for (number, name) in self.contour.branches.iter().enumerate() {
             let curve = |value: &dyn Fn(&ContourPoint) -> f64| -> Vec<f64> {
                 self.points.iter().map(value).collect()
@@ -125,7 +139,7 @@ impl Curves<'_> {
     }
 }
 
-/// Speeds of long waves over the direction, as a table and a chart.
+/// Writes the wave speed in the long-wave limit over the direction, as a table and a chart.
 pub fn write_polar(
     table: &Path,
     picture: &Path,
@@ -145,10 +159,10 @@ pub fn write_polar(
         csv.append(&cells)?;
     }
     csv.flush()?;
-    // The curve of velocity vectors: a circle for an isotropic lattice.
+    // The curve of the velocity vectors is a circle for an isotropic lattice.
     let axis = |name: &str| Axis::new(format!("speed along {name}"), "m/s");
     let mut chart = LineChart::new(axis("x"), axis("y"))
-        .title("speed of long waves by direction")
+        .title("wave speed in the long-wave limit by direction")
         .size(900, 900);
     for (number, name) in names.iter().enumerate() {
         let closed = polar.iter().chain(polar.first());
@@ -163,7 +177,7 @@ pub fn write_polar(
     chart.write(picture)
 }
 
-/// The classes of bonds with one column of coefficients for each table.
+/// Writes the classes of bonds with one column of coefficients per table.
 pub fn write_classes(
     path: &Path,
     classes: &[BondClass],
@@ -184,7 +198,7 @@ pub fn write_classes(
     csv.flush()
 }
 
-/// One bond of each pair ±ξ, for lattices whose axes are not alike.
+/// Writes one bond of each pair ±ξ, for lattices with anisotropic spacing.
 pub fn write_bonds(path: &Path, lattice: &BondLattice) -> Result<(), IoError> {
     let mut columns = ["i", "j", "k"].map(Column::integer).to_vec();
     columns.push(Column::real("length", "m"));

@@ -1,4 +1,4 @@
-//! What a lattice does to waves, as files: curves, polar plots, tables of classes, measured spectra.
+//! Files of the dispersion analysis: curves, polar plots, bond classes, measured spectra.
 
 mod curves;
 mod spectrum;

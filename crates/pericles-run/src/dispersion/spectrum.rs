@@ -1,4 +1,4 @@
-//! Measured spectra as files: the map of power over k and ω, and the peaks on the curves.
+//! Files of measured spectra: power over k and ω, and peaks on the dispersion curves.
 
 use std::path::Path;
 
@@ -7,12 +7,13 @@ use pericles_io::{Axis, Backdrop, Cell, Column, CsvTable, Curve, IoError, LineCh
 
 use super::curves::Curves;
 
-/// Rows of a map: lines are put together to no more than these.
+/// Maximum number of rows of a map; spectral lines are grouped into bands.
 const ROWS: usize = 240;
-/// Power below this share of the largest is shown as this.
+/// Lower limit of the displayed power, relative to the largest.
 const FLOOR: f64 = 1e-8;
 
-/// Writes `spectrum_<branch>.csv`, `spectrum_<branch>.png` for each branch and `peaks.csv`, `peaks.png`; the curves of the analysis are drawn into all pictures.
+/// Writes `spectrum_<branch>.csv`, `spectrum_<branch>.png` for each branch and `peaks.csv`, `peaks.png`. All pictures
+/// show the curves of the analysis.
 pub fn write_spectrum(
     folder: &dyn Fn(&str) -> std::path::PathBuf,
     spectrum: &MeasuredSpectrum,
@@ -22,12 +23,12 @@ pub fn write_spectrum(
     for (branch, name) in curves.contour.branches.iter().enumerate() {
         let map = Map::of(spectrum, branch);
         map.write(&folder(&format!("spectrum_{name}.csv")), spectrum, branch)?;
-        let title = format!("{title}: measured power of branch {name}");
+        let title = format!("{title}: measured power, branch {name}");
         let chart = map.chart(spectrum, branch, curves).title(title);
         chart.write(folder(&format!("spectrum_{name}.png")))?;
     }
     write_peaks(&folder("peaks.csv"), spectrum, curves)?;
-    let mut chart = curves.chart(&format!("{title}: measured peaks on the curves"));
+    let mut chart = curves.chart(&format!("{title}: measured peaks"));
     for (branch, name) in curves.contour.branches.iter().enumerate() {
         let (x, y): (Vec<f64>, Vec<f64>) = spectrum
             .waves
@@ -63,17 +64,17 @@ fn write_peaks(
     table.flush()
 }
 
-/// Power on a grid of waves and bands of lines.
+/// Power over wave vectors and frequency bands.
 struct Map {
-    /// Lines in a band.
+    /// Spectral lines per band.
     lines: usize,
     bands: usize,
-    /// Largest power in each band, wave by wave.
+    /// Largest power in each band, for each wave vector.
     power: Vec<f64>,
 }
 
 impl Map {
-    /// Up to a little above the highest expected frequency.
+    /// Creates the map up to slightly above the highest expected frequency.
     fn of(spectrum: &MeasuredSpectrum, branch: usize) -> Self {
         let branches = || spectrum.waves.iter().map(|wave| &wave.branches[branch]);
         let highest = branches().map(|b| b.expected).fold(0.0, f64::max);
@@ -119,7 +120,8 @@ impl Map {
         table.flush()
     }
 
-    /// Decibels below the largest power of each wave, and the time-discrete curve of the analysis on it.
+    /// Returns a chart of the power in decibels relative to the largest of each wave vector, with the time-discrete
+    /// curve.
     fn chart(&self, spectrum: &MeasuredSpectrum, branch: usize, curves: &Curves<'_>) -> LineChart {
         let abscissa: Vec<f64> = spectrum.waves.iter().map(|wave| wave.abscissa).collect();
         let top = (self.bands * self.lines) as f64 * spectrum.line;
@@ -131,7 +133,7 @@ impl Map {
         }
         let ends = column_ends(&abscissa);
         let map = Backdrop::new(&ends, (0.0, top), self.bands, &values)
-            .label("power below the largest of each wave, dB", "")
+            .label("power relative to the largest of each wave vector, dB", "")
             .range(10.0 * FLOOR.log10(), 0.0);
         let range = (ends[0], ends[ends.len() - 1]);
         let (x, y) = curves.discrete_branch(branch);
@@ -141,17 +143,17 @@ impl Map {
         )
         .backdrop(map)
         .curve(
-            Curve::line("analysis, with the step", &x, &y)
+            Curve::line("analysis (time-discrete)", &x, &y)
                 .dashed()
                 .colour(ANALYSIS),
         )
     }
 }
 
-/// The curve on the map: told from all its colours.
+/// Colour of the curve, distinct from those of the map.
 const ANALYSIS: [u8; 3] = [255, 70, 50];
 
-/// Ends of columns in the middle between their places.
+/// Returns the boundaries between columns, midway between their centres.
 fn column_ends(places: &[f64]) -> Vec<f64> {
     let (Some(first), Some(last)) = (places.first(), places.last()) else {
         return vec![0.0, 1.0];

@@ -1,23 +1,23 @@
-//! What is varied: a key of the deck and its values.
+//! Axes of a sweep: a key of the deck and its values.
 
 use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-/// More values than anybody wants, and few enough to be listed.
+/// Maximum number of values of a key.
 const MOST: usize = 10_000;
 
-/// A key of the deck with the values it is to take: `key=a,b,c`, or `key=start:stop:step` with the stop included.
+/// A key of the deck with its values: `key=a,b,c`, or `key=start:stop:step` including the stop.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Axis {
     /// The key, such as `material.horizon_ratio`.
     pub key: String,
-    /// The values as decks write them.
+    /// The values as written in decks.
     pub values: Vec<String>,
 }
 
 impl Axis {
-    /// The key without its tables.
+    /// Returns the key without its tables.
     pub fn name(&self) -> &str {
         self.key.rsplit('.').next().unwrap_or_default()
     }
@@ -27,21 +27,21 @@ impl FromStr for Axis {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let allowed = "allowed: key=a,b,c or key=start:stop:step, such as material.horizon_ratio=3,4,6 or \"body.spacing=0.5 mm:2 mm:0.5 mm\"";
+        let allowed = "expected key=a,b,c or key=start:stop:step, such as material.horizon_ratio=3,4,6 or \"body.spacing=0.5 mm:2 mm:0.5 mm\"";
         let (key, values) = text
             .split_once('=')
-            .ok_or_else(|| format!("it has no `=`; {allowed}"))?;
+            .ok_or_else(|| format!("missing `=`; {allowed}"))?;
         let values = match range(values) {
             Some(values) => values?,
             None => list(values),
         };
         if key.trim().is_empty() || values.iter().any(String::is_empty) {
-            return Err(format!("a key or value is empty; {allowed}"));
+            return Err(format!("empty key or value; {allowed}"));
         }
         if let Some((k, twice)) =
             (values.iter().enumerate()).find(|(k, v)| values[..*k].contains(v))
         {
-            return Err(format!("value {} is {twice} again", k + 1));
+            return Err(format!("value {} repeats {twice}", k + 1));
         }
         Ok(Self {
             key: key.trim().to_owned(),
@@ -50,7 +50,7 @@ impl FromStr for Axis {
     }
 }
 
-/// Splits at commas outside of brackets and quotation marks.
+/// Splits at commas outside brackets and quotation marks.
 fn list(text: &str) -> Vec<String> {
     let mut values = vec![String::new()];
     let (mut depth, mut quoted) = (0_i32, false);
@@ -72,20 +72,20 @@ fn list(text: &str) -> Vec<String> {
     values.iter().map(|value| value.trim().to_owned()).collect()
 }
 
-/// The values of `start:stop:step`; none if the text is no range.
+/// Returns the values of `start:stop:step`, or `None` if the text is not a range.
 fn range(text: &str) -> Option<Result<Vec<String>, String>> {
     let parts: Vec<_> = text.split(':').map(measure).collect::<Option<_>>()?;
     let [(start, unit), (stop, stop_unit), (step, step_unit)] = parts[..] else {
         return None;
     };
     if [stop_unit, step_unit].map(str::trim) != [unit.trim(); 2] {
-        return Some(Err("start, stop and step need the same unit".into()));
+        return Some(Err("start, stop and step must have the same unit".into()));
     }
-    // A stop that is missed by rounding only is reached.
+    // A stop within rounding is included.
     let count = ((stop - start) / step + 1e-9).floor();
     if !(0.0..MOST as f64).contains(&count) {
         return Some(Err(format!(
-            "the steps from {start} to {stop} do not lead there, or are more than {MOST}"
+            "the range from {start} to {stop} has a step of the wrong sign or zero, or more than {MOST} values"
         )));
     }
     let value = |k: usize| {
@@ -98,7 +98,7 @@ fn range(text: &str) -> Option<Result<Vec<String>, String>> {
     Some(Ok((0..=count as usize).map(value).collect()))
 }
 
-/// A number and what follows it.
+/// Splits a number and its unit.
 fn measure(text: &str) -> Option<(f64, &str)> {
     let text = text.trim();
     let ends = (0..=text.len())
@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn lists_keep_what_belongs_together() {
+    fn lists_are_split_outside_brackets_and_quotes() {
         assert_eq!(values("a.b=3,4, 6"), ["3", "4", "6"]);
         assert_eq!(values("a=[1,2],[3,4]"), ["[1,2]", "[3,4]"]);
         assert_eq!(values("a=\"x,y\",z"), ["\"x,y\"", "z"]);
@@ -137,12 +137,12 @@ mod tests {
             ["0.5 mm", "1 mm", "1.5 mm", "2 mm"]
         );
         assert_eq!(values("a=1:2:0.7"), ["1", "1.7"]);
-        // No range, but a list of one.
+        // Not a range, but a list of one value.
         assert_eq!(values("a=x:y:z"), ["x:y:z"]);
     }
 
     #[test]
-    fn what_makes_no_sense_is_refused() {
+    fn invalid_axes_are_rejected() {
         for wrong in [
             "a",
             "=1",

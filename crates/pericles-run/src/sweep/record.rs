@@ -1,11 +1,11 @@
-//! What a sweep is: a deck, the values of its keys, and the runs that their combinations make.
+//! Record of a sweep: the deck, the values of its keys, and the runs of all combinations.
 
 use serde::{Deserialize, Serialize};
 
 use super::axis::Axis;
 use crate::deck_text::DeckText;
 
-/// What `sweep.json` holds.
+/// The content of `sweep.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Record {
     pub(super) deck: DeckText,
@@ -14,7 +14,7 @@ pub(super) struct Record {
 
 /// One combination of values.
 pub(super) struct Member {
-    /// Its folder's name.
+    /// The name of its folder.
     pub(super) name: String,
     /// One value per axis.
     pub(super) values: Vec<String>,
@@ -23,7 +23,7 @@ pub(super) struct Member {
 }
 
 impl Record {
-    /// All combinations, the last axis running fastest.
+    /// Returns all combinations; the last axis varies fastest.
     pub(super) fn members(&self) -> Vec<Member> {
         let mut combinations = vec![Vec::new()];
         for axis in &self.axes {
@@ -39,7 +39,7 @@ impl Record {
         let mut members: Vec<Member> = Vec::new();
         for values in combinations {
             let mut name = self.name(&values);
-            // Characters that names cannot have may have told two of them apart.
+            // Names may coincide after the replacement of characters that are not allowed in file names.
             if members.iter().any(|member| member.name == name) {
                 name += &format!("-{}", members.len() + 1);
             }
@@ -77,7 +77,7 @@ mod tests {
     use crate::inputs::Inputs;
 
     #[test]
-    fn every_combination_has_a_folder_of_its_own() {
+    fn every_combination_has_its_own_folder() {
         let record = Record {
             deck: DeckText {
                 file: "a.toml".into(),

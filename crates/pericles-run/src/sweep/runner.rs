@@ -1,14 +1,15 @@
-//! How the runs of a sweep are planned, begun and done.
+//! Execution of sweeps.
 
 use std::io::Write;
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::{panic, thread};
 
-use pericles_io::{IoError, OutputFolder, write_atomically};
+use pericles_io::{OutputFolder, write_atomically};
 
 use super::axis::Axis;
 use super::record::{Member, Record};
+use super::results::SweepResults;
 use super::table::Table;
 use crate::assembled::{Assembled, Means};
 use crate::cancel::Cancel;
@@ -16,130 +17,108 @@ use crate::deadline::Deadline;
 use crate::deck_text::DeckText;
 use crate::error::RunError;
 use crate::event::Event;
-use crate::results::Results;
 use crate::run::{Ending, Run};
 use crate::source::SourceRecord;
 
-const RECORD: &str = "sweep.json";
-
-/// Whether a folder is that of a sweep.
-pub fn is_sweep(folder: &Path) -> bool {
-    folder.join(RECORD).is_file()
-}
-
-/// A sweep whose decks can all be read, without a folder yet.
+/// A sweep whose decks are valid, before its folder is created.
 pub struct Plan {
     record: Record,
-    members: Vec<Member>,
 }
 
 impl Plan {
-    /// All combinations of the values of some keys.
+    /// Plans all combinations of the values of the keys.
     ///
     /// # Errors
-    /// Values that the deck refuses: nobody wants half a sweep because of a slip in its last value.
+    /// The deck is invalid for one of the values. All are checked before the first run.
     pub fn new(deck: DeckText, axes: Vec<Axis>) -> Result<Self, RunError> {
         let record = Record { deck, axes };
-        let members = record.members();
-        for member in &members {
+        for member in record.members() {
             member.deck.read()?;
         }
-        Ok(Self { record, members })
+        Ok(Self { record })
     }
 
-    /// Puts it on record in its folder.
+    /// Writes the record to the folder.
     ///
     /// # Errors
-    /// A record that cannot be written.
+    /// The record cannot be written.
     pub fn begin(self, folder: OutputFolder) -> Result<Sweep, RunError> {
-        let Self { record, members } = self;
-        let text = serde_json::to_string_pretty(&record)?;
-        write_atomically(&folder.file(RECORD), |file| writeln!(file, "{text}"))?;
+        let text = serde_json::to_string_pretty(&self.record)?;
+        let file = SweepResults::record_file(folder.path());
+        write_atomically(&file, |file| writeln!(file, "{text}"))?;
         Ok(Sweep {
-            record,
-            members,
+            sweep: SweepResults::of(self.record, folder.path()),
             folder,
         })
     }
 }
 
-/// A sweep in its folder.
+/// A sweep with its locked folder.
 pub struct Sweep {
-    record: Record,
-    members: Vec<Member>,
+    sweep: SweepResults,
     folder: OutputFolder,
 }
 
-/// How the runs of a sweep are done.
+/// Settings of a sweep.
 #[derive(Debug, Clone)]
 pub struct Settings {
-    /// Threads of one run.
+    /// Threads per run.
     pub threads: usize,
-    /// What the models may be made with; the memory is that of all runs together.
+    /// Cache and memory limit; the limit is for all runs together.
     pub means: Means,
-    /// When all runs must have stopped.
+    /// Deadline of all runs.
     pub deadline: Option<Deadline>,
 }
 
-/// News of a sweep; those of runs come from several threads.
+/// An event of a sweep; events of runs come from several threads.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum SweepEvent<'a> {
     /// The runs begin.
     Begins {
-        /// How many there are.
+        /// Number of runs.
         runs: usize,
-        /// How many share the machine.
+        /// Number of concurrent runs.
         at_once: usize,
         /// The folder of the sweep.
         folder: &'a Path,
     },
-    /// Something about the cache, from one of the runs.
+    /// A note about the cache from one of the runs.
     CacheNote(&'a str),
-    /// A run has come to rest or failed.
+    /// A run has ended.
     Ended {
         /// The name of its folder.
         run: &'a str,
-        /// How.
+        /// The outcome.
         how: &'a Result<Ending, RunError>,
     },
 }
 
-/// How a sweep came to rest.
+/// The outcome of a sweep.
 pub struct SweepEnd {
-    /// The table of the runs, which `summary.csv` holds.
+    /// The table of the runs, as in `summary.csv`.
     pub table: Table,
-    /// How the first run in trouble ended; finished if all runs did.
+    /// The outcome of the first unfinished run; finished if all runs have finished.
     pub worst: Result<Ending, RunError>,
 }
 
 type TellSweep<'a> = &'a (dyn Fn(SweepEvent<'_>) + Sync);
 
 impl Sweep {
-    /// The sweep of a folder. Runs that have finished stay, others go on from their checkpoint or begin.
+    /// Opens the sweep in a folder. Finished runs are kept, others continue from their checkpoint or start.
     ///
     /// # Errors
-    /// A folder that is none of a sweep.
+    /// The folder does not contain a sweep.
     pub fn open(path: &Path) -> Result<Self, RunError> {
         let folder = OutputFolder::open(path)?;
-        let path = folder.file(RECORD);
-        let text =
-            std::fs::read_to_string(&path).map_err(|error| IoError::reading(&path, error))?;
-        let record: Record = serde_json::from_str(&text).map_err(|error| RunError::Damaged {
-            path,
-            reason: error.to_string(),
-        })?;
-        Ok(Self {
-            members: record.members(),
-            record,
-            folder,
-        })
+        let sweep = SweepResults::open(path)?;
+        Ok(Self { sweep, folder })
     }
 
-    /// Runs what has not finished.
+    /// Runs all unfinished runs.
     ///
     /// # Errors
-    /// A table that cannot be written. A run that fails is reported and does not stop the others.
+    /// The table cannot be written. Failed runs are reported and do not stop the others.
     pub fn drive(
         &self,
         settings: &Settings,
@@ -147,20 +126,20 @@ impl Sweep {
         tell: TellSweep<'_>,
     ) -> Result<SweepEnd, RunError> {
         let cores = thread::available_parallelism().map_or(1, usize::from);
-        let at_once = (cores / settings.threads).clamp(1, self.members.len().max(1));
+        let at_once = (cores / settings.threads).clamp(1, self.sweep.members.len().max(1));
         let means = Means {
             caching: settings.means.caching.clone(),
             memory: settings.means.memory / at_once as u64,
         };
         tell(SweepEvent::Begins {
-            runs: self.members.len(),
+            runs: self.sweep.members.len(),
             at_once,
             folder: self.folder.path(),
         });
         let next = AtomicUsize::new(0);
         let worker = || {
             let mut worst = Ok(Ending::Finished);
-            while let Some(member) = self.members.get(next.fetch_add(1, Ordering::Relaxed)) {
+            while let Some(member) = self.sweep.members.get(next.fetch_add(1, Ordering::Relaxed)) {
                 if cancel.is_cancelled() {
                     return Ok(Ending::Cancelled);
                 }
@@ -170,7 +149,7 @@ impl Sweep {
                     run: &member.name,
                     how: &how,
                 });
-                // The first trouble decides.
+                // The first unfinished run determines the outcome.
                 if is_fine(&worst) {
                     worst = how;
                 }
@@ -184,7 +163,8 @@ impl Sweep {
                 .map(|end| end.unwrap_or_else(|panic| panic::resume_unwind(panic)))
                 .collect()
         });
-        let table = Table::write(&self.record.axes, &self.members, &self.folder)?;
+        let table = self.sweep.table();
+        table.write()?;
         let trouble = ends.into_iter().find(|end| !is_fine(end));
         Ok(SweepEnd {
             table,
@@ -192,18 +172,14 @@ impl Sweep {
         })
     }
 
-    /// Its folder.
+    /// Returns the folder.
     pub fn folder(&self) -> &OutputFolder {
         &self.folder
     }
 
-    /// The results of all runs that left some.
-    pub fn results(&self) -> impl Iterator<Item = Results> {
-        let folders = self
-            .members
-            .iter()
-            .map(|member| self.folder.file(&member.name));
-        folders.filter_map(|folder| Results::open(&folder).ok())
+    /// Returns the deck, the values and the present results.
+    pub fn found(&self) -> &SweepResults {
+        &self.sweep
     }
 }
 
@@ -211,7 +187,7 @@ fn is_fine(end: &Result<Ending, RunError>) -> bool {
     matches!(end, Ok(Ending::Finished))
 }
 
-/// Runs a member as far as it goes, on threads of its own.
+/// Runs a member of the sweep on its own threads.
 fn run_member(
     member: &Member,
     path: &Path,
@@ -224,7 +200,7 @@ fn run_member(
         .num_threads(settings.threads)
         .build()?;
     let deadline = settings.deadline.clone();
-    // Of what one run among several says only this is passed on.
+    // Of the events of a single run, only these are passed on.
     let mut tell = |event: Event<'_>| {
         if let Event::CacheNote(note) = event {
             tell(SweepEvent::CacheNote(note));
@@ -237,7 +213,7 @@ fn run_member(
                 None => return Ok(Ending::Finished),
             }
         } else {
-            // A run that died before its first checkpoint begins again.
+            // A run that was killed before its first checkpoint starts again.
             let folder = OutputFolder::create(path, path.exists())?;
             let source = SourceRecord::Deck(member.deck.clone()).read()?;
             let assembled = Assembled::of(&source, means, &mut tell)?;

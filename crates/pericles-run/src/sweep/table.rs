@@ -3,15 +3,14 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use pericles_io::{OutputFolder, csv_row, read_csv, write_atomically};
+use pericles_io::{csv_row, read_csv, write_atomically};
 
-use super::axis::Axis;
-use super::record::Member;
+use super::results::SweepResults;
 use crate::error::RunError;
 use crate::results::Results;
 use crate::units::significant;
 
-/// The columns of every run, with their place in `run.json`.
+/// Columns of all runs with their JSON pointers in `run.json`.
 const NUMBERS: [(&str, &str); 10] = [
     ("points", "/model/points"),
     ("dt [s]", "/model/dt"),
@@ -29,30 +28,27 @@ const NUMBERS: [(&str, &str); 10] = [
 pub struct Table {
     /// The header, then a row per run.
     rows: Vec<Vec<String>>,
-    /// Columns before the numbers: the name of a run, its values, its status.
+    /// Number of columns before the numbers: name, values and status of a run.
     words: usize,
     path: PathBuf,
 }
 
+impl SweepResults {
+    /// Collects values, status and results of the runs.
+    pub fn table(&self) -> Table {
+        Table::of(self)
+    }
+}
+
 impl Table {
-    /// Collects the values, and how the runs ended, and writes them to `summary.csv`.
-    ///
-    /// # Errors
-    /// A table that cannot be written.
-    pub(super) fn write(
-        axes: &[Axis],
-        members: &[Member],
-        folder: &OutputFolder,
-    ) -> Result<Self, RunError> {
-        let found: Vec<Option<Results>> = members
-            .iter()
-            .map(|member| Results::open(&folder.file(&member.name)).ok())
-            .collect();
+    fn of(sweep: &SweepResults) -> Self {
+        let (axes, members) = (&sweep.record.axes, &sweep.members);
+        let found: Vec<Option<Results>> = sweep.runs().map(|(_, results)| results).collect();
         let probes: Vec<Vec<(String, f64)>> = found
             .iter()
             .map(|results| last_readings(results.as_ref()))
             .collect();
-        // Runs of one deck have the same probes; one that failed early has none.
+        // All runs have the same probes; runs that failed early have no values.
         let longest = probes.iter().max_by_key(|readings| readings.len());
         let readings: Vec<&str> = longest
             .into_iter()
@@ -85,24 +81,35 @@ impl Table {
             }));
             rows.push(row);
         }
-        let path = folder.file("summary.csv");
-        write_atomically(&path, |file| {
-            rows.iter()
-                .try_for_each(|row| file.write_all(csv_row(row).as_bytes()))
-        })?;
-        Ok(Self {
+        Self {
             rows,
             words: axes.len() + 2,
-            path,
-        })
+            path: sweep.folder().join("summary.csv"),
+        }
     }
 
-    /// The file that holds it, `summary.csv`.
+    /// Writes `summary.csv`.
+    ///
+    /// # Errors
+    /// The table cannot be written.
+    pub(super) fn write(&self) -> Result<(), RunError> {
+        Ok(write_atomically(&self.path, |file| {
+            let mut rows = self.rows.iter();
+            rows.try_for_each(|row| file.write_all(csv_row(row).as_bytes()))
+        })?)
+    }
+
+    /// Returns the header, then a row per run.
+    pub fn rows(&self) -> &[Vec<String>] {
+        &self.rows
+    }
+
+    /// Returns the path of `summary.csv`.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// The names and status of the runs, and the numbers that are there, in columns for people.
+    /// Returns names, status and main results of the runs as aligned columns.
     pub fn lines(&self) -> Vec<String> {
         let (rows, words) = (&self.rows, self.words);
         let Some(header) = rows.first() else {
@@ -142,7 +149,7 @@ impl Table {
     }
 }
 
-/// What the probes read in the last row of their table.
+/// Returns the probe values in the last row of their table.
 fn last_readings(results: Option<&Results>) -> Vec<(String, f64)> {
     let table = results.map(|results| read_csv(results.folder().join("probes.csv")));
     let Some(Ok(table)) = table else {

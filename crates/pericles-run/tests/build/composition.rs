@@ -1,13 +1,15 @@
-//! What works together: every scheme with every operator, boundary, kernel and with breaking. `book/src/composition.md` is the table.
+//! Combinations of every scheme with every force kernel, boundary, influence function and with breaking bonds; the
+//! table is `book/src/composition.md`.
 //!
-//! A cell that works is run, compared with another route (a fine run of an adaptive scheme on the list of bonds, or a static state), repeated on two, three and seven
-//! threads, and stopped and resumed, to the same bits. A cell that does not is refused with its reason.
+//! A compatible combination is run, compared with another method (a fine run of an adaptive scheme with a neighbour
+//! list, or a static state), repeated with two, three and seven threads, and stopped and resumed, with bitwise
+//! identical results. An incompatible one is rejected with a reason.
 
 use pericles::observe::Energies;
-use pericles::{Archive, Control, Saved, Simulation};
+use pericles::{Archive, Checkpointed, Control, Simulation};
 use pericles_deck::{Deck, DeckError};
 
-/// A plate of a few blocks of points under a load, thrown at one place; free, so that its momentum is that of the load.
+/// A small free plate under a load with an initial velocity at one place; its momentum is the impulse of the load.
 const PLATE: &str = r#"body = { shape = "plate", size = [40, 30], spacing = 1, plane = "stress", periodic = PERIODIC }
 material = { model = "linear", density = 1, youngs_modulus = 1, horizon_ratio = 3, bonds = "OPERATOR" }
 initial = [{ velocity = [{ expression = "0.01*exp(-((x-17)^2+(y-14)^2)/40)" }, 0.001] }]
@@ -15,7 +17,7 @@ load = [{ set = "all", body_force = [0, 1e-3] }]
 time = { end = 4, SCHEME }
 "#;
 
-/// The same as a closed surface.
+/// The same load on a closed surface.
 const SURFACE: &str = r#"body = { shape = "icosphere", level = 3, radius = 10 }
 material = { density = 1, alpha = 0.25, p = 2, horizon = 3.2 }
 initial = [{ velocity = [{ expression = "0.01*exp(-((x-8)^2+(y-4)^2)/40)" }, 0.001, 0] }]
@@ -23,7 +25,7 @@ load = [{ set = "all", traction = [0, 1e-3, 0] }]
 time = { end = 4, SCHEME }
 "#;
 
-/// The plate of a state-based material.
+/// The plate with a state-based material.
 const STATE_BASED: &str = r#"body = { shape = "plate", size = [40, 30], spacing = 1, plane = "stress" }
 material = { model = "state-based", strains = "small", density = 1, youngs_modulus = 1, poisson_ratio = 0.2, horizon_ratio = 3 }
 initial = [{ velocity = [{ expression = "0.01*exp(-((x-17)^2+(y-14)^2)/40)" }, 0.001] }]
@@ -31,18 +33,18 @@ load = [{ set = "all", body_force = [0, 1e-3] }]
 time = { end = 4, SCHEME }
 "#;
 
-/// A notched plate that is pulled until it tears.
+/// A notched plate in tension that fractures.
 const TORN: &str = r#"body = { shape = "plate", size = [30, 20], spacing = 1, plane = "stress" }
 material = { model = "LAW", density = 1, youngs_modulus = 1, horizon_ratio = 3, critical_stretch = 0.004, bonds = "OPERATOR" }
 crack = [{ segment = [[0, 10], [12, 10]] }]
 sets.top = { layer = { side = "+y", cells = 1 } }
 sets.bottom = { layer = { side = "-y", cells = 1 } }
-prescribe = [{ set = "top", velocity = ["free", 0.004] }, { set = "bottom", velocity = ["free", -0.004] }]
+constraint = [{ set = "top", velocity = ["free", 0.004] }, { set = "bottom", velocity = ["free", -0.004] }]
 initial = [{ velocity = [0, { expression = "8e-3*(y/20-0.5)" }] }]
 time = { end = 10, SCHEME }
 "#;
 
-/// An operator: its word in decks, and the body it is tried on.
+/// A force kernel: its word in decks, and the body of its tests.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Operator {
     List,
@@ -92,7 +94,7 @@ impl Operator {
             .replace("SCHEME", scheme)
     }
 
-    /// The scheme and operator that a result is compared with.
+    /// The scheme and force kernel of the reference.
     fn reference(self) -> String {
         let scheme = "scheme = \"dormand-prince\", tolerance = 1e-10, dt = 0.5";
         match self {
@@ -102,7 +104,7 @@ impl Operator {
     }
 }
 
-/// A scheme: what a deck says of it, how far it may be from the reference relative to the largest displacement, and its momentum from the impulse.
+/// A scheme: its keys, the tolerance relative to the largest displacement, and the tolerance of the momentum.
 pub struct Scheme {
     pub time: &'static str,
     error: f64,
@@ -117,7 +119,8 @@ const fn scheme(time: &'static str, error: f64) -> Scheme {
     }
 }
 
-/// Both sides of an interface take the force between them at stages of their own: momentum is kept to the order of the scheme.
+/// Both sides of a multirate interface evaluate the force at their own stages: momentum is conserved to the order of
+/// the scheme.
 const fn two_steps(time: &'static str, error: f64) -> Scheme {
     Scheme {
         time,
@@ -126,7 +129,7 @@ const fn two_steps(time: &'static str, error: f64) -> Scheme {
     }
 }
 
-/// Steps of 0.05 are a twentieth of the stable one; second order leaves some 1e-4 of it.
+/// Steps of 0.05 are a twentieth of the stable one; errors of second order are about 1e-4.
 pub const ONE_STEP: [Scheme; 11] = [
     scheme("scheme = \"velocity-verlet\", dt = 0.05", 1e-3),
     scheme("scheme = \"rk3\", dt = 0.1", 1e-4),
@@ -152,11 +155,11 @@ pub const ONE_STEP: [Scheme; 11] = [
 
 pub const TWO_STEPS: [Scheme; 3] = [
     two_steps(
-        "scheme = \"rk3-mts\", ratio = 2, fine = [\"part\"], dt = 0.1",
+        "scheme = \"multirate-rk3\", ratio = 2, fine = [\"part\"], dt = 0.1",
         1e-4,
     ),
     two_steps(
-        "scheme = \"rk4-mts\", ratio = 2, fine = [\"part\"], dt = 0.1",
+        "scheme = \"multirate-rk4\", ratio = 2, fine = [\"part\"], dt = 0.1",
         1e-5,
     ),
     scheme(
@@ -165,7 +168,7 @@ pub const TWO_STEPS: [Scheme; 3] = [
     ),
 ];
 
-/// The part that takes the smaller of two steps.
+/// The fine part of multirate schemes.
 pub const PART: &str = "sets.part = { where = \"x < 7\" }\n";
 
 fn built(text: &str) -> Result<Simulation, DeckError> {
@@ -176,7 +179,7 @@ fn simulation(text: &str) -> Simulation {
     built(text).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
-/// Runs so many steps, or all that are left.
+/// Runs a number of steps, or all remaining ones.
 fn advance(run: &mut Simulation, steps: Option<u64>) {
     let last = steps.map(|steps| run.state().step + steps);
     run.run(|run| match last {
@@ -192,7 +195,7 @@ fn stored(run: &Simulation) -> Archive {
     archive
 }
 
-/// What a finished run leaves.
+/// Results of a finished run.
 pub struct Ended {
     pub archive: Archive,
     pub energies: Energies,
@@ -200,9 +203,9 @@ pub struct Ended {
     momentum: [f64; 3],
     impulse: [f64; 3],
     pub broken: u64,
-    /// What the energy account is off by, over the work done.
+    /// Error of the energy balance, relative to the work done.
     pub off: f64,
-    /// The largest force on a point that is not held.
+    /// Largest force on an unconstrained point.
     force: f64,
     steps: u64,
 }
@@ -228,7 +231,7 @@ impl Ended {
     }
 }
 
-/// The finished run of a deck, having seen that other numbers of threads and a stop in its middle lead to the same bits.
+/// Runs a deck, and checks that other numbers of threads and a stop give bitwise identical results.
 pub fn run_every_way(text: &str) -> Ended {
     let on = |threads: usize, work: &(dyn Fn() -> Ended + Sync)| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
@@ -269,7 +272,7 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
     largest(a.iter().zip(b).map(|(a, b)| a - b))
 }
 
-/// Runs the schemes on an operator and compares them with the reference.
+/// Runs the schemes with a force kernel and compares them with the reference.
 fn compare(operator: Operator, schemes: &[Scheme]) {
     let mut reference = simulation(&operator.reference());
     advance(&mut reference, None);
@@ -284,7 +287,7 @@ fn compare(operator: Operator, schemes: &[Scheme]) {
             operator.word(),
             scheme.time
         );
-        // The momentum of a free body is the impulse of its load.
+        // The momentum of a free body equals the impulse of its load.
         let start = simulation(&(operator.deck(scheme.time) + PART));
         let before = start.system().momentum(&start.state().v);
         for c in 0..3 {
@@ -296,19 +299,19 @@ fn compare(operator: Operator, schemes: &[Scheme]) {
 }
 
 #[test]
-fn every_scheme_steps_a_list() {
+fn every_scheme_works_with_a_neighbour_list() {
     compare(List, &ONE_STEP);
     compare(List, &TWO_STEPS);
 }
 
 #[test]
-fn every_scheme_steps_a_grid() {
+fn every_scheme_works_with_a_stencil() {
     compare(Grid, &ONE_STEP);
     compare(Grid, &TWO_STEPS);
 }
 
 #[test]
-fn schemes_that_bear_rounding_step_a_grid_in_single_precision() {
+fn schemes_that_tolerate_rounding_work_with_single_precision() {
     let explicit = [
         "scheme = \"velocity-verlet\", dt = 0.05",
         "scheme = \"rk3\", dt = 0.1",
@@ -316,7 +319,7 @@ fn schemes_that_bear_rounding_step_a_grid_in_single_precision() {
         "scheme = \"dormand-prince\", tolerance = 1e-5, dt = 0.4",
         "scheme = \"trigonometric\", dt = 0.5",
     ];
-    // Forces have six digits; their errors do not cancel as those of doubles do.
+    // Forces have six digits; their errors do not cancel.
     let rounded = explicit.map(|time| Scheme {
         time,
         error: 1e-3,
@@ -334,36 +337,32 @@ fn schemes_that_bear_rounding_step_a_grid_in_single_precision() {
         "needs forces in double precision",
     );
     refusal(
-        &FloatGrid.deck("scheme = \"relaxation\""),
+        &FloatGrid.deck("scheme = \"adaptive-dynamic-relaxation\""),
         "needs forces in double precision",
     );
 }
 
 #[test]
-fn every_scheme_steps_a_surface() {
+fn every_scheme_works_with_a_surface() {
     compare(Surface, &ONE_STEP);
     compare(Surface, &TWO_STEPS);
 }
 
 #[test]
-fn every_scheme_but_respa_steps_a_state_based_body() {
+fn every_scheme_except_respa_works_with_a_state_based_body() {
     compare(StateBased, &ONE_STEP);
     compare(StateBased, &TWO_STEPS[..2]);
-    refused(
-        StateBased,
-        &TWO_STEPS[2..],
-        "takes the force apart by bonds",
-    );
+    refused(StateBased, &TWO_STEPS[2..], "splits the force by bonds");
 }
 
 #[test]
-fn every_scheme_of_one_step_steps_a_convolution() {
+fn every_single_rate_scheme_works_with_a_convolution() {
     compare(Convolution, &ONE_STEP);
     refused(Convolution, &TWO_STEPS, "parts of the body");
 }
 
 #[test]
-fn every_scheme_of_one_step_steps_plane_waves() {
+fn every_single_rate_scheme_works_with_plane_waves() {
     compare(Spectral, &ONE_STEP);
     refused(Spectral, &TWO_STEPS, "parts of the body");
 }
@@ -377,16 +376,16 @@ fn refused(operator: Operator, schemes: &[Scheme], reason: &str) {
 fn refusal(text: &str, reason: &str) {
     match built(text) {
         Err(error) => assert!(error.to_string().contains(reason), "{error}"),
-        Ok(_) => panic!("it is not refused: {reason}\n{text}"),
+        Ok(_) => panic!("not rejected: {reason}\n{text}"),
     }
 }
 
-/// Static states of a plate that is pulled, whatever keeps its bonds.
+/// Static states of a plate in tension, with all force kernels.
 #[test]
-fn every_operator_comes_to_rest() {
+fn every_force_kernel_reaches_a_static_state() {
     let at_rest = |operator: Operator| {
-        let text = operator.deck("scheme = \"relaxation\", tolerance = 1e-8");
-        let held = "sets.left = { layer = { side = \"-x\", cells = 3 } }\nprescribe = [{ set = \"left\", displacement = [0, 0] }]\n";
+        let text = operator.deck("scheme = \"adaptive-dynamic-relaxation\", tolerance = 1e-8");
+        let held = "sets.left = { layer = { side = \"-x\", cells = 3 } }\nconstraint = [{ set = \"left\", displacement = [0, 0] }]\n";
         run_every_way(&(text + held)).u
     };
     let list = at_rest(List);
@@ -398,8 +397,8 @@ fn every_operator_comes_to_rest() {
 }
 
 #[test]
-fn plane_waves_and_surfaces_come_to_rest() {
-    // Held at some points; the forces that are left are small beside the load.
+fn plane_waves_and_surfaces_reach_a_static_state() {
+    // Constrained at some points; the residual is small relative to the load.
     let bodies = [
         (
             Spectral,
@@ -413,22 +412,24 @@ fn plane_waves_and_surfaces_come_to_rest() {
         ),
     ];
     for (operator, set, zero) in bodies {
-        let text = operator.deck("scheme = \"relaxation\", tolerance = 1e-8");
+        let text = operator.deck("scheme = \"adaptive-dynamic-relaxation\", tolerance = 1e-8");
         let run = run_every_way(
-            &(text + set + &format!("prescribe = [{{ set = \"held\", displacement = {zero} }}]\n")),
+            &(text
+                + set
+                + &format!("constraint = [{{ set = \"held\", displacement = {zero} }}]\n")),
         );
         assert!(run.force < 1e-6 * 1e-3, "{:e}", run.force);
     }
 }
 
-/// Schemes that follow breaking.
+/// Schemes compatible with breaking bonds.
 const BREAKING: [&str; 13] = [
     "scheme = \"velocity-verlet\", dt = 0.2",
     "scheme = \"rk3\", dt = 0.2",
     "scheme = \"rk4\", dt = 0.2",
     "scheme = \"dormand-prince\", tolerance = 1e-6, dt = 0.4",
-    "scheme = \"rk4-mts\", ratio = 2, adaptive = { every = 4 }, dt = 0.2",
-    "scheme = \"rk3-mts\", ratio = 2, adaptive = { every = 4 }, dt = 0.2",
+    "scheme = \"multirate-rk4\", ratio = 2, adaptive = { every = 4 }, dt = 0.2",
+    "scheme = \"multirate-rk3\", ratio = 2, adaptive = { every = 4 }, dt = 0.2",
     "scheme = \"respa\", ratio = 2, adaptive = { every = 4 }, dt = 0.2",
     "scheme = \"newmark\", tolerance = 1e-10, dt = 0.2",
     "scheme = \"newmark\", tolerance = 1e-10, solver = \"newton-krylov\", dt = 0.2",
@@ -439,7 +440,7 @@ const BREAKING: [&str; 13] = [
 ];
 
 #[test]
-fn bonds_break_under_every_scheme_that_follows_breaking() {
+fn bonds_break_with_every_compatible_scheme() {
     for time in BREAKING {
         let torn = |operator: Operator| {
             let text = TORN.replace("LAW", "bond-stretch");
@@ -456,7 +457,7 @@ fn bonds_break_under_every_scheme_that_follows_breaking() {
 }
 
 #[test]
-fn what_cannot_break_is_refused_with_its_reason() {
+fn breaking_with_incompatible_kernels_is_rejected_with_a_reason() {
     let torn = |operator: Operator, time: &str| {
         let text = TORN.replace("LAW", "linear").replace("SCHEME", time);
         text.replace("OPERATOR", operator.word())
@@ -470,7 +471,7 @@ fn what_cannot_break_is_refused_with_its_reason() {
     refusal(&periodic(whole(Spectral)), "the same bonds at every point");
 }
 
-/// Influence functions, as decks name them.
+/// Influence functions, by their words in decks.
 const INFLUENCES: [&str; 9] = [
     "{ function = \"constant\" }",
     "{ function = \"conical\" }",
@@ -484,7 +485,7 @@ const INFLUENCES: [&str; 9] = [
 ];
 
 #[test]
-fn every_kernel_is_the_same_on_every_operator() {
+fn every_influence_function_gives_the_same_result_with_every_force_kernel() {
     for influence in INFLUENCES {
         let force = |operator: Operator| {
             let text = operator.deck("scheme = \"velocity-verlet\", dt = 0.05");
@@ -510,14 +511,14 @@ fn every_kernel_is_the_same_on_every_operator() {
 }
 
 #[test]
-fn kernels_with_negative_values_do_not_break() {
+fn influence_functions_with_negative_values_do_not_allow_breaking() {
     let text = TORN.replace("LAW", "linear").replace("OPERATOR", "list");
     let text = text.replace("SCHEME", "scheme = \"velocity-verlet\", dt = 0.2");
-    let signed = "horizon_ratio = 3, influence = { function = \"classes\", table = [[[1, 0], 1], [[1, 1], 1], [[2, 0], -0.1], [[2, 1], 1], [[2, 2], 1], [[3, 0], 1]] }, volume_correction = \"none\"";
+    let signed = "horizon_ratio = 3, influence = { function = \"lattice-classes\", table = [[[1, 0], 1], [[1, 1], 1], [[2, 0], -0.1], [[2, 1], 1], [[2, 2], 1], [[3, 0], 1]] }, volume_correction = \"none\"";
     refusal(&text.replace("horizon_ratio = 3", signed), "negative");
 }
 
-/// A bar that goes on for ever at both ends.
+/// An infinite bar.
 const ENDLESS: &str = r#"body = { shape = "bar", length = 40, spacing = 1 }
 material = { model = "linear", density = 1, youngs_modulus = 1, horizon_ratio = 3, bonds = "OPERATOR" }
 initial = [{ displacement = [{ expression = "0.01*exp(-((x-17)/2)^2)" }] }]
@@ -526,9 +527,9 @@ time = { end = 60, dt = 0.5, SCHEME }
 "#;
 
 #[test]
-fn exact_ends_are_those_of_a_long_bar_on_every_operator() {
+fn absorbing_boundaries_reproduce_a_long_bar_with_every_force_kernel() {
     let verlet = |text: &str| text.replace("SCHEME", "scheme = \"velocity-verlet\"");
-    // Nothing comes back from 60 m away in time.
+    // Reflections from 60 m away do not return in time.
     let long = ENDLESS.replace("length = 40", "length = 160, origin = -60");
     let long: String = long
         .lines()
@@ -546,7 +547,7 @@ fn exact_ends_are_those_of_a_long_bar_on_every_operator() {
 }
 
 #[test]
-fn exact_ends_of_other_schemes_are_refused() {
+fn absorbing_boundaries_with_incompatible_schemes_are_rejected() {
     for time in [
         "scheme = \"rk4\"",
         "scheme = \"respa\", ratio = 2, fine = [\"all\"]",

@@ -1,11 +1,11 @@
-//! Initial fields, loads and motions.
+//! Initial fields, loads and prescribed motions.
 
 use pericles::time::State;
 
 use super::{PLATE, build, refusal};
 
 #[test]
-fn conditions() {
+fn conditions_of_a_deck_are_built() {
     let model = build(PLATE);
     let loads = model.system.loads();
     let resultant = |k: usize, t: f64| {
@@ -22,9 +22,9 @@ fn conditions() {
     };
     // The top face: 20 mm × 2 mm.
     close(resultant(0, 0.0), [0.0, 480.0]);
-    // A layer takes its face whatever the direction of the load; half way up the ramp.
+    // A layer has the area of its face for any direction of the load; midway on the ramp.
     close(resultant(1, 0.5e-6), [100.0, -240.0]);
-    // No layer: the side of the set normal to the load, 3 mm × 2 mm.
+    // Not a layer: the projection of the set along the load, 3 mm × 2 mm.
     close(resultant(2, 0.0), [6.0, 0.0]);
     close(resultant(3, 0.0), [7e3 * 12.0 * 2e-9, 0.0]);
 
@@ -69,11 +69,11 @@ right = { layer = { side = "+x", cells = 3 } }
 [[initial]]
 displacement = { expression = "1e-3*exp(-(x/0.2)^2)" }
 velocity = { expression = "-x^2" }
-[[prescribe]]
+[[constraint]]
 set = "left"
 velocity = { expression = "x*cos(3*t)" }
 until = 0.5
-[[prescribe]]
+[[constraint]]
 set = "right"
 displacement = { expression = "1e-2*x*t^2" }
 [[load]]
@@ -87,7 +87,7 @@ dt = 1e-3
 "#;
 
 #[test]
-fn expressions_become_fields_of_place_and_time() {
+fn expressions_depend_on_position_and_time() {
     let model = build(EXPRESSIONS);
     for i in 0..10 {
         let x = 0.05 + 0.1 * i as f64;
@@ -100,7 +100,7 @@ fn expressions_become_fields_of_place_and_time() {
     assert!((resultant(0.8) - exact(0.8)).abs() < 1e-12);
     assert_eq!(resultant(0.2), 0.0);
 
-    // The motion is exact at the end of every step, and the left end is free once it is released.
+    // The motion is exact at the end of every step, and the left end is free after its release.
     let (dt, mut held, mut simulation) = (model.dt, 0, model.simulation());
     simulation
         .run(|simulation| {
@@ -122,11 +122,11 @@ fn expressions_become_fields_of_place_and_time() {
 }
 
 #[test]
-fn expressions_that_cannot_move_a_body_are_refused() {
+fn invalid_expressions_of_motions_are_rejected() {
     let cases = [
         ("x*cos(3*t)", "x*floor(t)", "has no derivative in time"),
-        ("1e-3*exp(-(x/0.2)^2)", "sqrt(0.5-x)", "has no finite value"),
-        ("x*sin(t)", "1/(t*x)", "has no finite value"),
+        ("1e-3*exp(-(x/0.2)^2)", "sqrt(0.5-x)", "is NaN or infinite"),
+        ("x*sin(t)", "1/(t*x)", "is NaN or infinite"),
     ];
     for (right, wrong, says) in cases {
         let error = refusal(&EXPRESSIONS.replace(right, wrong)).to_string();
@@ -169,7 +169,7 @@ dt = "0.1 us"
 "#;
 
 #[test]
-fn the_area_and_the_force_of_loads_are_known_and_doubtful_ones_are_said() {
+fn areas_and_resultants_of_loads_are_reported_with_doubtful_ones() {
     let loaded = |set: &str, traction: &str| {
         let text = FACES
             .replace("set = \"face\"", &format!("set = \"{set}\""))
@@ -185,7 +185,7 @@ fn the_area_and_the_force_of_loads_are_known_and_doubtful_ones_are_said() {
     assert_eq!((face.force[0], face.points), (0.0, 120));
     close(face.at, 2e-6);
     assert!(warnings.is_empty(), "{warnings:?}");
-    // The same cells as a box: its shear acts on the side that the load's own axis sees.
+    // The same cells as a box: a shear load acts on the projection along the load.
     let (side, warnings) = loaded("box", "[0, \"1 MPa\"]");
     close(side.force[1], 6.0);
     assert_eq!(warnings.len(), 1, "{warnings:?}");
@@ -194,20 +194,20 @@ fn the_area_and_the_force_of_loads_are_known_and_doubtful_ones_are_said() {
         "6 mm²",
         "80 mm²",
         "normal to x",
-        "give `area`",
+        "set `area`",
     ] {
         assert!(warnings[0].contains(part), "{warnings:?}");
     }
-    // Tension of the box is right.
+    // The area for tension is correct.
     let (_, warnings) = loaded("box", "[\"1 MPa\", 0]");
     assert!(warnings.is_empty(), "{warnings:?}");
     let (union, warnings) = loaded("both", "[\"1 MPa\", 0]");
     close(union.force[0], 80.0);
     assert!(
-        warnings.len() == 1 && warnings[0].contains("not one layer on one face"),
+        warnings.len() == 1 && warnings[0].contains("not a single layer on one face"),
         "{warnings:?}"
     );
-    // Who gives the area knows it.
+    // A given area leads to no warning.
     let text = FACES.replace("set = \"face\"", "set = \"both\"\narea = \"160 mm2\"");
     let model = build(&text);
     close(model.loads[0].force[1], 160.0);
@@ -215,7 +215,7 @@ fn the_area_and_the_force_of_loads_are_known_and_doubtful_ones_are_said() {
 }
 
 #[test]
-fn a_load_that_ceases_to_have_a_value_is_named() {
+fn a_load_that_becomes_infinite_is_reported_with_its_time() {
     for (replace, by, what) in [
         (
             "kind = \"ramp\", duration = \"2 us\"",
@@ -229,18 +229,18 @@ fn a_load_that_ceases_to_have_a_value_is_named() {
         ),
         (
             "[time]",
-            "[[prescribe]]\nset = \"both\"\nvelocity = [{ expression = \"ln(2e-6-t)\" }, \"free\"]\n[time]",
+            "[[constraint]]\nset = \"both\"\nvelocity = [{ expression = \"ln(2e-6-t)\" }, \"free\"]\n[time]",
             "the prescribed motion on `both`",
         ),
     ] {
         let message = refusal(&FACES.replace(replace, by)).to_string();
         assert!(message.contains(what), "{message}");
         assert!(
-            message.contains("no finite value at t = 2.0000e-6 s"),
+            message.contains("no finite value at t = 2.00 µs"),
             "{message}"
         );
     }
-    // Not where it does not act any more.
+    // Not at times when it no longer acts.
     let over = FACES.replace(
         "kind = \"ramp\", duration = \"2 us\" }",
         "kind = \"expression\", expression = \"sqrt(2e-6-t)\" }\nuntil = \"2 us\"",
@@ -249,15 +249,17 @@ fn a_load_that_ceases_to_have_a_value_is_named() {
 }
 
 #[test]
-fn a_load_of_zero_is_not_said_to_be_held() {
+fn a_zero_load_on_constrained_points_leads_to_no_warning() {
     let text = FACES.replace(
         "[time]",
-        "[[prescribe]]\nset = \"face\"\ndisplacement = [0, 0]\n[time]",
+        "[[constraint]]\nset = \"face\"\ndisplacement = [0, 0]\n[time]",
     );
     let held = |traction: &str| {
         let model = build(&text.replace("[0, \"1 MPa\"]", traction));
         let lines = model.warnings.iter().map(|warning| warning.line());
-        lines.filter(|line| line.contains("held along it")).count()
+        lines
+            .filter(|line| line.contains("constrained along it"))
+            .count()
     };
     assert_eq!(held("[0, \"1 MPa\"]"), 1);
     assert_eq!(held("[0, 0]"), 0);

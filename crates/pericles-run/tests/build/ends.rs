@@ -1,10 +1,10 @@
-//! Boundaries through which waves leave.
+//! Absorbing boundaries and damping layers.
 
 use pericles_deck::Deck;
 
 use super::{build, refusal};
 
-/// A bar that goes on for ever at both ends.
+/// An infinite bar.
 const BAR: &str = r#"
 [body]
 shape = "bar"
@@ -32,13 +32,13 @@ end = "100 us"
 "#;
 
 #[test]
-fn waves_leave_through_absorbing_ends() {
+fn absorbing_boundaries_transmit_waves() {
     let model = build(BAR);
     assert_eq!(model.system.boundaries().count(), 2);
     let mut run = model.simulation();
     run.run(|_| pericles::Control::Continue).unwrap();
     let energies = run.snapshot().energies();
-    // The shortest waves of a jump hardly travel; what left is booked.
+    // The shortest waves of a jump are very slow; the energy that left is in the balance.
     assert!(energies.work < -0.8 * energies.initial, "{energies:?}");
     assert!(
         energies.balance().abs() < 1e-12 * energies.initial,
@@ -47,13 +47,13 @@ fn waves_leave_through_absorbing_ends() {
 }
 
 #[test]
-fn waves_leave_in_implicit_steps_beyond_the_explicit_limit() {
+fn absorbing_boundaries_work_with_implicit_steps_above_the_explicit_limit() {
     for scheme in ["implicit-midpoint", "trapezoidal", "discrete-gradient"] {
         let time = format!("[time]\nscheme = \"{scheme}\"\ndt = \"1 us\"");
         let mut run = build(&BAR.replace("[time]", &time)).simulation();
         run.run(|_| pericles::Control::Continue).unwrap();
         let energies = run.snapshot().energies();
-        // Long steps slow down the short waves of a jump, many of which are still under way.
+        // Long steps slow down the short waves of a jump, many of which are still in the body.
         assert!(energies.work < -0.5 * energies.initial, "{energies:?}");
         assert!(
             energies.balance().abs() < 1e-11 * energies.initial,
@@ -63,7 +63,7 @@ fn waves_leave_in_implicit_steps_beyond_the_explicit_limit() {
 }
 
 #[test]
-fn histories_by_exponentials_keep_their_tolerance() {
+fn exponential_histories_satisfy_their_tolerance() {
     let displacement = |text: &str| {
         let mut run = build(text).simulation();
         run.run(|_| pericles::Control::Continue).unwrap();
@@ -80,14 +80,14 @@ fn histories_by_exponentials_keep_their_tolerance() {
 }
 
 #[test]
-fn a_comparison_of_exponentials_needs_exponentials() {
+fn verify_requires_exponential_histories() {
     let verified = |more: &str| {
         let side = format!("side = \"+x\"\nverify = true{more}");
         Deck::parse(&BAR.replace("side = \"+x\"", &side), "bar.toml", &[])
     };
     let message = verified("").unwrap_err().to_string();
     assert!(
-        message.contains("without one the history is exact"),
+        message.contains("without it the history is exact"),
         "{message}"
     );
     assert!(verified("\ntolerance = 1e-6").is_ok());
@@ -95,38 +95,38 @@ fn a_comparison_of_exponentials_needs_exponentials() {
 }
 
 #[test]
-fn ends_that_cannot_be_continued_are_refused() {
+fn invalid_absorbing_boundaries_are_rejected() {
     let cases: [(&str, &str, (usize, usize), &str); 9] = [
         (
             "[time]",
             "[time]\nscheme = \"trigonometric\"\ndt = \"1 us\"",
             (24, 10),
-            "past any layer of ghosts",
+            "beyond any layer of ghosts",
         ),
         (
             "side = \"+x\"\n[time]",
             "side = \"+x\"\nexterior_data = \"9 mm\"\n[time]\nscheme = \"implicit-midpoint\"\ndt = \"1 us\"",
             (20, 1),
-            "exterior_data needs scheme = \"velocity-verlet\"",
+            "exterior_extent needs scheme = \"velocity-verlet\"",
         ),
         (
             "side = \"+x\"",
             "side = \"-x\"",
             (20, 1),
-            "two absorbing ends at -x",
+            "two absorbing boundaries at -x",
         ),
         (
             "[time]",
             "[time]\nscheme = \"rk4\"",
             (24, 10),
-            "made for velocity-verlet, implicit-midpoint, trapezoidal or discrete-gradient, not for rk4",
+            "needs velocity-verlet, implicit-midpoint, trapezoidal or discrete-gradient, not rk4",
         ),
         ("[time]", "[time]\ndt = \"1 us\"", (24, 6), "is unstable"),
         (
             "set = \"middle\"\n",
             "",
             (16, 1),
-            "the initial field reaches the absorbing end -x: point 2 has 1.000e0",
+            "the initial field reaches the absorbing boundary at -x: its value at point 2 is 1.00",
         ),
         (
             "[[initial]]",
@@ -160,8 +160,8 @@ fn ends_that_cannot_be_continued_are_refused() {
 }
 
 #[test]
-fn fields_go_on_beyond_an_end() {
-    // A bell at the end of the short bar, in the middle of the long one.
+fn initial_fields_may_extend_beyond_a_boundary() {
+    // A pulse at the end of the short bar, in the middle of the long one.
     let bell = BAR.replace(
         "set = \"middle\"\nvelocity = \"1 m/s\"",
         "displacement = { expression = \"1e-6*exp(-((x-0.095)/0.01)^2)\" }",
@@ -178,15 +178,15 @@ fn fields_go_on_beyond_an_end() {
     let pairs = long.iter().zip(&short);
     let error = pairs.fold(0.0, |a: f64, (u, v)| a.max((u - v).abs()));
     assert!(error < 1e-12 * 1e-6 * 10.0, "{error:e}");
-    // Without, the field is refused; with too little, too.
+    // Without or with too small an exterior extent, the field is rejected.
     let message = refusal(&bell).to_string();
-    assert!(message.contains("exterior_data"), "{message}");
+    assert!(message.contains("exterior_extent"), "{message}");
     let message = refusal(&bell.replace("side = \"+x\"", &data.replace("70", "20"))).to_string();
     assert!(message.contains("does not decay within"), "{message}");
 }
 
 #[test]
-fn a_small_field_at_an_end_is_a_warning_with_its_size() {
+fn a_small_initial_field_at_a_boundary_leads_to_a_warning() {
     // exp(−(x − 0.05)²/w²) at the outer layer, x = 97.5 mm: 1.6e-10 for w = 10 mm, 4.8e-6 for w = 13.6 mm.
     let with_width = |width: &str| {
         let field = format!("displacement = {{ expression = \"exp(-((x-0.05)/{width})^2)\" }}");
@@ -198,22 +198,25 @@ fn a_small_field_at_an_end_is_a_warning_with_its_size() {
         let model = build(text);
         model.warnings.iter().map(|w| w.line()).collect()
     };
-    assert!(!says(&with_width("0.009")).contains("absorbing end"));
+    assert!(!says(&with_width("0.009")).contains("absorbing boundary"));
     let warned = says(&with_width("0.0105"));
     assert!(
-        warned.contains("the initial field at the absorbing end -x is"),
+        warned.contains("the initial field at the absorbing boundary -x is"),
         "{warned}"
     );
     assert!(
-        warned.contains("of its largest value; it counts as zero beyond"),
+        warned.contains("of its maximum, but zero is assumed beyond it"),
         "{warned}"
     );
     let refused = refusal(&with_width("0.0136")).to_string();
-    assert!(refused.contains("allowed: 1e-6 of it"), "{refused}");
+    assert!(
+        refused.contains("allowed: 1e-6 of the largest value"),
+        "{refused}"
+    );
 }
 
 #[test]
-fn a_field_beyond_the_end_is_judged_beside_that_of_the_body() {
+fn exterior_fields_are_compared_with_the_field_of_the_body() {
     // 1e-20 of the body's field everywhere in the exterior is negligible, though it does not decay.
     let text = BAR.replace(
         "set = \"middle\"\nvelocity = \"1 m/s\"",
@@ -224,14 +227,14 @@ fn a_field_beyond_the_end_is_judged_beside_that_of_the_body() {
 }
 
 #[test]
-fn too_much_exterior_is_refused_before_it_is_allocated() {
+fn the_memory_of_the_exterior_is_checked_before_allocation() {
     let text = BAR.replace("side = \"+x\"", "side = \"+x\"\nexterior_data = 1e15");
     let message = refusal(&text).to_string();
     assert!(message.contains("of memory"), "{message}");
 }
 
 #[test]
-fn a_tolerance_that_no_fit_meets_takes_the_exact_history() {
+fn an_unreachable_tolerance_falls_back_to_the_exact_history() {
     let keys = "side = \"+x\"\nhistory = \"exponentials\"\ntolerance = 2e-14\nverify = true";
     let model = build(&BAR.replace("side = \"+x\"", keys));
     let (_, report) = model.ends[1];
@@ -245,7 +248,7 @@ fn a_tolerance_that_no_fit_meets_takes_the_exact_history() {
 }
 
 #[test]
-fn histories_say_how_they_are_made() {
+fn the_type_of_the_history_is_reported() {
     let ends = |keys: &str| {
         build(&BAR.replace("side = \"+x\"", &format!("side = \"+x\"\n{keys}")))
             .assembly
@@ -258,7 +261,7 @@ fn histories_say_how_they_are_made() {
     assert!(report.distance.unwrap() < 1e-8, "{report:?}");
     let warned = build(&BAR.replace("side = \"+x\"", "side = \"+x\"\nmethod = \"historical\""));
     let says = warned.warnings.iter().map(|w| w.line()).collect::<String>();
-    assert!(says.contains("their errors grow with time"), "{says}");
+    assert!(says.contains("which grows with time"), "{says}");
 }
 
 #[test]
@@ -277,7 +280,8 @@ fn damping_layers_absorb() {
     );
     let message = refusal(&text.replace("40 mm", "100 mm")).to_string();
     assert!(message.contains("less than the body"), "{message}");
-    // Under other schemes that have a velocity to damp, at ω dt of about 0.3. Runge–Kutta schemes take a share (ω dt)⁶/72 of the shortest waves' energy in each step.
+    // Also with other schemes that damp velocities, at ω dt of about 0.3. Runge–Kutta schemes dissipate a fraction (ω
+    // dt)⁶/72 of the energy of the shortest waves per step.
     let layers = text.replace(
         "kind = \"absorbing\"\nside = \"-x\"",
         "kind = \"damping-layer\"\nside = \"-x\"\nthickness = \"40 mm\"",
@@ -305,13 +309,13 @@ fn damping_layers_absorb() {
 }
 
 #[test]
-fn automatic_steps_know_of_damping_also_in_corners() {
+fn automatic_steps_account_for_damping_also_in_corners() {
     let layer = |side: &str| {
         format!(
             "[[boundary]]\nkind = \"damping-layer\"\nside = \"{side}\"\nthickness = \"3 mm\"\nreflection = 1e-8\n"
         )
     };
-    // A jump excites all waves there are.
+    // A jump excites all waves.
     let plate = |layers: &str, time: &str| {
         format!(
             "[body]\nshape = \"plate\"\nsize = [\"20 mm\", \"20 mm\"]\nspacing = \"1 mm\"\nplane = \"strain\"\n\
@@ -332,17 +336,17 @@ fn automatic_steps_know_of_damping_also_in_corners() {
         energies.kinetic + energies.elastic < 0.5 * energies.initial,
         "{energies:?}"
     );
-    // A given step that is stable without damping only is refused.
+    // A given step that is stable only without damping is rejected.
     let between = format!("dt = {:e}", 1.02 * stable);
     let message = refusal(&plate(&corner, &between)).to_string();
-    assert!(message.contains("make dt smaller"), "{message}");
+    assert!(message.contains("Use a smaller dt"), "{message}");
 }
 
 #[test]
-fn classes_without_stiffness_at_the_horizon_are_warned_of() {
+fn classes_without_stiffness_at_the_horizon_lead_to_a_warning() {
     let with = |third: f64| {
         let table = format!(
-            "[material]\ninfluence = {{ function = \"classes\", table = [[[1], 1.0], [[2], 0.5], [[3], {third}]] }}"
+            "[material]\ninfluence = {{ function = \"lattice-classes\", table = [[[1], 1.0], [[2], 0.5], [[3], {third}]] }}"
         );
         let model = build(&BAR.replace("[material]", &table));
         let lines: Vec<String> = model.warnings.iter().map(|w| w.line()).collect();
@@ -350,8 +354,5 @@ fn classes_without_stiffness_at_the_horizon_are_warned_of() {
     };
     assert_eq!(with(0.25), "");
     let said = with(0.0);
-    assert!(
-        said.contains("bonds over more than 2 of 3 spacings"),
-        "{said}"
-    );
+    assert!(said.contains("bonds longer than 2 of 3 spacings"), "{said}");
 }

@@ -1,4 +1,4 @@
-//! Extreme numbers under every key: a deck with one of them runs or is refused; nothing panics or takes long.
+//! Extreme numbers for every key: each deck runs or is rejected; none panics or takes long.
 
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -13,7 +13,7 @@ use super::common::Build;
 use pericles_deck::{Deck, Scheme, specimens};
 use pericles_run::Resources;
 
-/// Numbers at which conversions, sums and products leave their range, or places coincide after rounding.
+/// Numbers at which conversions, sums and products overflow, or positions coincide after rounding.
 const EXTREMES: [&str; 6] = [
     "0",
     "1e-300",
@@ -23,7 +23,7 @@ const EXTREMES: [&str; 6] = [
     "1e300",
 ];
 
-/// Decks of every kind of body, scheme and boundary, small enough to be built thousands of times.
+/// Small decks of all kinds of bodies, schemes and boundaries.
 const SMALL: [&str; 11] = [
     include_str!("../../../../fuzz/seeds/model/discrete-gradient.toml"),
     include_str!("../../../../fuzz/seeds/model/dormand-prince.toml"),
@@ -38,12 +38,12 @@ const SMALL: [&str; 11] = [
     include_str!("../../../../fuzz/seeds/model/trigonometric.toml"),
 ];
 
-/// Bytes that a body may take.
+/// Memory limit, bytes.
 const MEMORY: u64 = 1 << 22;
-/// Time for one deck, by the clock, on a machine that does other things as well.
+/// Wall-clock time limit per deck, on a shared machine.
 const LONGEST: Duration = Duration::from_secs(5);
 
-/// The keys of a record whose values are numbers, or lists of nothing but numbers.
+/// Returns the keys of a record whose values are numbers or lists of numbers.
 fn numeric_keys(record: &Json, key: &str, found: &mut Vec<(String, usize)>) {
     let below = |name: &str| match key {
         "" => name.to_owned(),
@@ -68,7 +68,7 @@ fn numeric_keys(record: &Json, key: &str, found: &mut Vec<(String, usize)>) {
     }
 }
 
-/// The value of an override: the extreme number alone, or as the last entry of a list.
+/// Returns the value of an override: the extreme number, or a list with it as the last entry.
 fn value(extreme: &str, length: usize) -> String {
     match length {
         0 => extreme.into(),
@@ -76,7 +76,7 @@ fn value(extreme: &str, length: usize) -> String {
     }
 }
 
-/// A deck with an extreme number in it.
+/// A deck with an extreme number.
 struct Case {
     text: &'static str,
     changes: Vec<String>,
@@ -85,7 +85,7 @@ struct Case {
 impl Case {
     fn all() -> Vec<Self> {
         let small = SMALL.iter().map(|&text| (text, Vec::new()));
-        // Often enough to meet several kinds of bodies.
+        // Often enough to cover several kinds of bodies.
         const MOST: u32 = 3;
         let mut uses: BTreeMap<String, u32> = BTreeMap::new();
         let mut cases = Vec::new();
@@ -94,7 +94,7 @@ impl Case {
             let mut keys = Vec::new();
             numeric_keys(deck.to_json(), "", &mut keys);
             for (key, length) in keys {
-                // Windows on a tube whose cells are as thin as this take minutes.
+                // Exact geodesics on a tube with such thin cells take minutes.
                 if key == "body.minor_radius" {
                     continue;
                 }
@@ -113,7 +113,7 @@ impl Case {
         cases
     }
 
-    /// Reads, builds and begins the deck; refusals are answers.
+    /// Reads, assembles and starts the deck; errors are valid outcomes.
     fn attempt(&self) {
         let Ok(deck) = Deck::parse(self.text, "extreme.toml", &self.changes) else {
             return;
@@ -126,7 +126,7 @@ impl Case {
             return;
         };
         let _ = deck.judge_waves(&model);
-        // A billion iterations or sub-steps take their time: that is what such a deck asks for.
+        // A billion iterations or substeps take long, as requested by such a deck.
         let adaptive = matches!(deck.model.time.scheme, Scheme::DormandPrince { .. });
         if adaptive || model.integrator.inner_iterations().is_some() {
             return;
@@ -150,7 +150,7 @@ impl std::fmt::Display for Case {
     }
 }
 
-/// Attempts the cases from one on; says of each whether it was answered.
+/// Attempts the cases from a given one; reports whether each had an outcome.
 fn attempt_from(cases: &Arc<Vec<Case>>, first: usize) -> Receiver<bool> {
     let (sender, receiver) = channel();
     let cases = Arc::clone(cases);
@@ -166,7 +166,7 @@ fn attempt_from(cases: &Arc<Vec<Case>>, first: usize) -> Receiver<bool> {
 }
 
 #[test]
-fn extreme_numbers_under_every_key_are_answered() {
+fn extreme_numbers_run_or_are_rejected() {
     let cases = Arc::new(Case::all());
 
     assert!(cases.len() > 2000, "{}", cases.len());

@@ -1,4 +1,4 @@
-//! Viscous and plastic state-based materials from decks to states.
+//! Viscoelastic and elastoplastic state-based materials in decks.
 
 use pericles::observe::Field;
 use pericles::{Control, Simulation};
@@ -6,16 +6,16 @@ use pericles_deck::Deck;
 
 use super::{build, refusal};
 
-/// A plate that is stretched and held; OTHER is replaced.
+/// A plate stretched to a constant displacement; OTHER is a placeholder.
 const HELD: &str = r#"
 body = { shape = "plate", size = [46, 12], origin = [-23, -6], spacing = 1, plane = "stress" }
 material = { model = "state-based", strains = "small", density = 1, youngs_modulus = 10, poisson_ratio = 0.35, horizon_ratio = 3, OTHER }
 sets = { left = { where = "x < -20" }, right = { where = "x > 20" } }
-prescribe = [{ set = "left", displacement = [-0.02, "free"] }, { set = "right", displacement = [0.02, "free"] }]
-time = { scheme = "relaxation", tolerance = 1e-8, end = 4, load_steps = 16 }
+constraint = [{ set = "left", displacement = [-0.02, "free"] }, { set = "right", displacement = [0.02, "free"] }]
+time = { scheme = "adaptive-dynamic-relaxation", tolerance = 1e-8, end = 4, load_steps = 16 }
 "#;
 
-/// The force of the right grip after every load step.
+/// Returns the reaction of the right set after every load step.
 fn reactions(other: &str) -> Vec<f64> {
     let force = |now: &Simulation| -> f64 {
         let n = now.system().points();
@@ -34,14 +34,15 @@ fn reactions(other: &str) -> Vec<f64> {
         Control::Continue
     })
     .unwrap();
-    // The run is not asked whether to go on after its last step.
+    // The callback is not called after the last step.
     forces.push(force(&run));
     forces
 }
 
-/// In plane stress 4/E = 1/κ + 1/G with the modulus κ of the dilatation within the plane, which stays elastic. With one viscous term E relaxes as one exponential with the time τ (κ + G₀)/(κ + G₁).
+/// In plane stress 4/E = 1/κ + 1/G with the elastic in-plane bulk modulus κ. With one viscous term E relaxes
+/// exponentially with the time constant τ (κ + G₀)/(κ + G₁).
 #[test]
-fn a_bar_that_is_held_relaxes_as_its_youngs_modulus_does() {
+fn stress_relaxation_follows_youngs_modulus() {
     let (share, tau, dt) = (0.5, 1.0, 0.25);
     let forces = reactions("viscosity = [{ share = 0.5, time = 1 }]");
     let elastic = reactions("surface_correction = \"none\"");
@@ -51,19 +52,20 @@ fn a_bar_that_is_held_relaxes_as_its_youngs_modulus_does() {
     let relaxed = (1.0 - share) * shear;
     let young = |shear: f64| 4.0 * kappa * shear / (kappa + shear);
     let time = tau * (kappa + shear) / (kappa + relaxed);
-    // The displacement grows within the first load step.
+    // The displacement is applied within the first load step.
     let growing = (f64::exp(dt / time) - 1.0) * time / dt;
     for (k, force) in forces.iter().enumerate() {
         let t = dt * (k + 1) as f64;
         let now = young(relaxed) + (young(shear) - young(relaxed)) * (-t / time).exp() * growing;
         let error = force / last / (now / young(shear)) - 1.0;
-        // Grips and surfaces act more strongly on the relaxed body, whose Poisson's ratio is 0.61: 2.0 % at the end, for load steps of a quarter of the length as well. Bound chosen after the first run.
+        // Effects of ends and surfaces are larger for the relaxed body, whose Poisson's ratio is 0.61: 2.0 % at the
+        // end, also with load steps of a quarter of the length. Bound chosen after the first run.
         assert!(error.abs() < 0.025, "{t}: {error}");
     }
     assert!((forces[15] / last) < 0.65);
 }
 
-/// A plate that is sheared beyond its yield stress.
+/// A plate in shear beyond its yield stress.
 const SHEARED: &str = r#"
 body = { shape = "plate", size = [16, 14], origin = [0, 0], spacing = 1, plane = "strain" }
 material = { model = "state-based", density = 1, youngs_modulus = 10, poisson_ratio = 0.3, horizon_ratio = 3, yield_stress = 0.2, hardening = 1 }
@@ -73,7 +75,7 @@ output = { fields = { names = ["Equivalent_Stress", "Plastic_Strain", "Yield_Fla
 "#;
 
 #[test]
-fn plastic_strain_and_yield_flag_are_fields_of_decks_with_a_yield_stress() {
+fn plastic_strain_and_yield_flag_require_a_yield_stress() {
     let mut run = build(SHEARED).simulation();
     run.run(|_| Control::Continue).unwrap();
     let snapshot = run.snapshot();
@@ -98,22 +100,22 @@ fn plastic_strain_and_yield_flag_are_fields_of_decks_with_a_yield_stress() {
 }
 
 #[test]
-fn what_viscous_and_plastic_bodies_do_not_represent_is_refused() {
+fn unsupported_features_of_inelastic_materials_are_rejected() {
     for (from, to, words) in [
         (
             "horizon_ratio = 3",
             "horizon_ratio = 3, bonds = \"grid\"",
-            "keep numbers for every bond of a list",
+            "store the history of each bond of a neighbour list",
         ),
         (
             "horizon_ratio = 3",
             "horizon_ratio = 3, surface_correction = \"energy\"",
-            "no corrected surfaces",
+            "the surface correction of viscous and plastic materials is not supported",
         ),
         (
             "horizon_ratio = 3",
             "horizon_ratio = 3, fracture_energy = 1, failure = \"bond-energy\"",
-            "break by their stretch",
+            "break by stretch only",
         ),
         (
             "yield_stress = 0.2, hardening = 1",

@@ -28,7 +28,7 @@ end = 2
 dt = 0.05
 "#;
 
-/// The model of a deck whose initial state is read from a file of these rows.
+/// Returns the model of a deck with an initial state of these rows.
 fn with_rows(text: &str, rows: &[f64]) -> Built {
     let deck = Deck::parse(text, "decks/sphere.toml", &[]).unwrap();
     assert_eq!(deck.model.files(), [Path::new("state.txt")]);
@@ -44,7 +44,7 @@ fn with_rows(text: &str, rows: &[f64]) -> Built {
     model.unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Displacement and velocity of each point after so many steps, in the user's order.
+/// Returns displacement and velocity of each point after a number of steps, in the user's order.
 fn rows_after(model: Built, steps: u64) -> Vec<f64> {
     let cloud = model.cloud.clone();
     let mut run = model.simulation();
@@ -67,12 +67,12 @@ fn rows_after(model: Built, steps: u64) -> Vec<f64> {
 }
 
 #[test]
-fn a_run_from_the_state_of_another_continues_it() {
+fn a_run_with_the_state_of_another_continues_it() {
     let text =
         |initial: &str| SPHERE.replace("velocity = [0, { expression = \"z\" }, 0.1]", initial);
     let model = || super::build(SPHERE);
     let cloud = model().assembly.cloud;
-    // The vertices of a surface are renumbered: the order of the rows matters.
+    // The vertices of a surface are renumbered; the rows are in the order of the file.
     assert!((0..cloud.len()).any(|i| cloud.user_number(i) != i));
     let middle = rows_after(model(), 10);
     let whole = rows_after(model(), 20);
@@ -84,7 +84,7 @@ fn a_run_from_the_state_of_another_continues_it() {
 }
 
 #[test]
-fn only_the_points_of_the_set_take_their_rows() {
+fn only_points_of_the_set_are_initialised() {
     let initial = "velocity = [0, 0, 7]\n[[initial]]\nset = \"cap\"\nfile = \"state.txt\"";
     let text = SPHERE.replace("velocity = [0, { expression = \"z\" }, 0.1]", initial);
     let rows: Vec<f64> = (0..6 * 162).map(|k| 1e-6 * f64::from(k)).collect();
@@ -105,7 +105,7 @@ fn only_the_points_of_the_set_take_their_rows() {
 }
 
 #[test]
-fn a_file_that_gives_no_state_is_refused_at_its_entry() {
+fn an_invalid_state_file_is_reported_at_its_key() {
     let text = SPHERE.replace(
         "velocity = [0, { expression = \"z\" }, 0.1]",
         "file = \"state.txt\"",
@@ -127,14 +127,17 @@ fn a_file_that_gives_no_state_is_refused_at_its_entry() {
         says.starts_with("sphere.toml:14:8: state.txt:7: 5 numbers"),
         "{says}"
     );
-    assert!(says.contains("a line for each of the 162 points"), "{says}");
+    assert!(
+        says.contains("one line for each of the 162 points"),
+        "{says}"
+    );
     assert!(!wrong.is_too_large());
     let large = message(FileError::TooLarge("state.txt needs about 4 TB".into()));
     assert!(large.is_too_large(), "{large}");
 }
 
 #[test]
-fn an_exterior_has_no_values_in_a_file() {
+fn state_files_do_not_support_an_exterior() {
     let text = r#"
 [body]
 shape = "bar"
@@ -150,7 +153,7 @@ file = "state.txt"
 [[boundary]]
 kind = "absorbing"
 side = "+x"
-exterior_data = "70 mm"
+exterior_extent = "70 mm"
 [time]
 end = "10 us"
 "#;
@@ -164,8 +167,8 @@ end = "10 us"
         Err(error) => error.to_string(),
     };
     assert!(
-        says.starts_with("bar.toml:12:8:") && says.contains("exterior_data"),
+        says.starts_with("bar.toml:12:8:") && says.contains("exterior_extent"),
         "{says}"
     );
-    assert!(refusal(text).to_string().contains("handed in"));
+    assert!(refusal(text).to_string().contains("no reader for"));
 }

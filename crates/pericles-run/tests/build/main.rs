@@ -1,4 +1,4 @@
-//! From decks to what can be run.
+//! Assembly of decks.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -10,6 +10,7 @@ mod composition;
 mod conditions;
 mod ends;
 mod extremes;
+mod fields;
 mod inelastic;
 mod initial;
 mod material;
@@ -45,12 +46,12 @@ fn build(text: &str) -> Built {
 
 fn refusal(text: &str) -> DeckError {
     match parse(text).build() {
-        Ok(_) => panic!("this deck is wrong:\n{text}"),
+        Ok(_) => panic!("an error is expected:\n{text}"),
         Err(error) => error,
     }
 }
 
-/// A plate of 20 × 8 cells with a notch, pulled apart.
+/// A notched plate of 20 × 8 cells in tension.
 const PLATE: &str = r#"
 [body]
 shape = "plate"
@@ -78,10 +79,10 @@ velocity = ["1 m/s", 0]
 set = "left"
 displacement = [0, "0.1 um"]
 velocity = [0, "2 m/s"]
-[[prescribe]]
+[[constraint]]
 set = "left"
 velocity = ["3 m/s", "free"]
-[[prescribe]]
+[[constraint]]
 set = "left"
 displacement = ["free", 0]
 [[load]]
@@ -107,7 +108,7 @@ set = "top"
 end = "2 us"
 "#;
 
-/// The plate with another `[time]` and a middle set.
+/// Returns the plate with another `[time]` and a set in the middle.
 fn plate_with_time(time: &str) -> String {
     let sets = "middle = { box = { min = [\"6 mm\", \"open\"], max = [\"14 mm\", \"open\"] } }\n\
                 thin = { box = { min = [\"9 mm\", \"open\"], max = [\"11 mm\", \"open\"] } }\n";
@@ -116,13 +117,13 @@ fn plate_with_time(time: &str) -> String {
         .replace("end = \"2 us\"", &format!("end = \"2 us\"\n{time}"))
 }
 
-/// A pulse on a ring of Gaussian bonds, all of it compared with the solution.
+/// Returns a pulse on a periodic bar with a Gaussian kernel, compared with the exact solution.
 fn ring() -> String {
     WAVE.replace("bonds = \"spectral\"\n", "")
         .replace("window = 3\n", "start = true\n")
 }
 
-/// A bar of 20 cells, held at its left end and pulled at its right one, in two materials.
+/// A bar of 20 cells of two materials, fixed at its left end and pulled at its right end.
 const STATIC: &str = r#"
 [body]
 shape = "bar"
@@ -150,13 +151,13 @@ critical_stretch = 0.005
 left = { where = "x < 0.003" }
 middle = { where = "0.009 < x < 0.011" }
 right = { layer = { side = "+x", cells = 3 } }
-[[prescribe]]
+[[constraint]]
 set = "left"
 displacement = [0]
 [[load]]
 set = "right"
 traction = ["1 MPa"]
 [time]
-scheme = "relaxation"
+scheme = "adaptive-dynamic-relaxation"
 load_steps = 4
 "#;

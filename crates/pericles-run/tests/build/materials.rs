@@ -26,7 +26,8 @@ fn run(text: &str) -> Simulation {
     run
 }
 
-/// A notched plate of three materials and a stiffened corner that tears. FORMER and PRESENT are replaced by one of the tables below.
+/// A notched plate of three materials and a stiffened corner that fractures. FORMER and PRESENT are placeholders for
+/// the tables below.
 const PLATE: &str = r#"
 [body]
 shape = "plate"
@@ -79,7 +80,7 @@ stiffness = 1.7
 rule = "weaker"
 pair = [{ between = ["glass", "steel"], critical_stretch = 5e-4 }]"#;
 
-/// The same without the part of a block, which would cover the plate, in the present form.
+/// The same without the part of a block, which would cover the plate, in the current form.
 const PRESENT: &str = r#"[materials.steel]
 density = "7850 kg/m3"
 youngs_modulus = "210 GPa"
@@ -116,7 +117,7 @@ fn present() -> String {
 }
 
 #[test]
-fn a_deck_of_a_former_release_runs_as_its_present_form() {
+fn a_deck_of_a_former_release_runs_like_its_current_form() {
     let (former, present) = (former(), present());
     assert_eq!(model(&former), model(&present));
     assert!(parse(&present).warnings().is_empty());
@@ -126,7 +127,7 @@ fn a_deck_of_a_former_release_runs_as_its_present_form() {
 }
 
 #[test]
-fn the_warning_about_former_tables_is_a_text_that_takes_their_place() {
+fn the_warning_about_former_tables_contains_their_replacement() {
     for (tables, without) in [
         (FORMER.to_owned(), PLATE.replace("PRESENT", "")),
         (
@@ -142,7 +143,7 @@ fn the_warning_about_former_tables_is_a_text_that_takes_their_place() {
         };
         let line = warning.line();
         assert!(line.starts_with("deck.toml:14:"), "{line}");
-        assert!(line.contains("a former form"), "{line}");
+        assert!(line.contains("deprecated"), "{line}");
         let (_, text) = line.split_once("\n\n").unwrap();
         let pasted = without.replace("FORMER", "") + text;
         let again = parse(&pasted);
@@ -151,9 +152,9 @@ fn the_warning_about_former_tables_is_a_text_that_takes_their_place() {
     }
 }
 
-/// Tables that an override changes or adds are rewritten as well.
+/// Tables changed or added by an override are converted as well.
 #[test]
-fn overrides_reach_former_tables() {
+fn overrides_apply_to_former_tables() {
     let overrides = [
         "material.part.0.rho=8000".to_owned(),
         "material.interface.rule=arithmetic".to_owned(),
@@ -161,12 +162,12 @@ fn overrides_reach_former_tables() {
     let deck = Deck::parse(&former(), "deck.toml", &overrides).unwrap();
     assert_eq!(deck.model.materials[0].model.density(), 8000.0);
     let json = deck.to_json();
-    // The override stands behind the pair.
+    // The override comes after the pair.
     assert_eq!(json["interface"][1]["rule"], "arithmetic");
     assert_eq!(json["materials"]["steel"]["density"], 8000.0);
 }
 
-/// A bar that is pulled at its right end, in three materials by overlapping sets.
+/// A bar of three materials on overlapping sets, pulled at its right end.
 const LAMINATE: &str = r#"
 [body]
 shape = "bar"
@@ -196,14 +197,14 @@ left = { layer = { side = "-x", cells = 3 } }
 end = { layer = { side = "+x", cells = 3 } }
 centre = { where = "40 < x < 80" }
 right = { where = "x > 60" }
-[[prescribe]]
+[[constraint]]
 set = "left"
 displacement = 0
 [[load]]
 set = "end"
 traction = 0.01
 [time]
-scheme = "relaxation"
+scheme = "adaptive-dynamic-relaxation"
 tolerance = 1e-10
 "#;
 
@@ -216,8 +217,8 @@ fn laminate(model: &str) -> String {
     }
 }
 
-/// Layers in a row bear one stress: their strains are σ/E each, and the length of all grows by the sum. Within a horizon of an interface the strain is that of neither material; the bound of the sum,
-/// 0.5 %, is chosen for that.
+/// Layers in series have the same stress and strains σ/E; elongations add up. Within a horizon of an interface the
+/// strain is that of neither material; therefore the bound of the sum is 0.5 %.
 #[test]
 fn a_laminate_has_the_stiffness_of_its_layers_in_series() {
     for model in ["linear", "state-based"] {
@@ -230,16 +231,16 @@ fn a_laminate_has_the_stiffness_of_its_layers_in_series() {
             let error = strain(from, to) * young / 0.01 - 1.0;
             assert!(error.abs() < 1e-6, "{model}, E = {young}: {error:e}");
         }
-        // Cells have their points in their middles: 27.5 of the first layer, 40 of the second, 28.5 of the third.
+        // Points are at cell centres: 27.5 cells of the first layer, 40 of the second, 28.5 of the third.
         let sum = 0.01 * (27.5 / 10.0 + 40.0 / 20.0 + 28.5 / 40.0);
         let error = (u[108] - u[12]) / sum - 1.0;
         assert!(error.abs() < 5e-3, "{model}: {error:e}");
     }
 }
 
-/// Horizons of 3, 2 and 4 spacings: the same strains, since the constants of each material belong to its own horizon.
+/// Horizons of 3, 2 and 4 spacings: the same strains, because the constants of a material depend on its horizon.
 #[test]
-fn a_laminate_of_different_horizons_has_the_same_stiffness() {
+fn the_stiffness_of_a_laminate_does_not_depend_on_the_horizons() {
     let of = |text: &str, young: usize, ratio: usize| {
         let young = format!("youngs_modulus = {young}\n");
         assert!(text.contains(&young), "{text}");
@@ -250,7 +251,7 @@ fn a_laminate_of_different_horizons_has_the_same_stiffness() {
     assert_eq!(assembly.form, ForceForm::Grid);
     let run = run(&text);
     let u = &run.state().u;
-    // Boundary layers are as wide as the horizon.
+    // Boundary layers have the width of the horizon.
     for (from, to, young) in [(12, 30, 10.0), (48, 72, 20.0), (94, 102, 40.0)] {
         let strain = (u[to] - u[from]) / (to - from) as f64;
         let error = strain * young / 0.01 - 1.0;
@@ -281,13 +282,13 @@ fn later_assignments_replace_earlier_ones() {
     let density = |text: &str, i: usize| build(text).system.density().at(i);
     let text = laminate("linear");
     assert_eq!(density(&text, 70), 2.0);
-    // The other way round the larger set takes the right half of the smaller one.
+    // In reverse order the larger set replaces the right half of the smaller one.
     let tables = "[[assign]]\nset = \"centre\"\nmaterial = \"middle\"\n";
     let swapped = text.replace(tables, "");
     let swapped = swapped.replacen("[[assign]]", &format!("{tables}[[assign]]"), 1);
     let swapped = swapped.replace("[\"centre\", \"right\"]", "\"right\"");
     assert_eq!([density(&swapped, 50), density(&swapped, 70)], [2.0, 3.0]);
-    // The body's own material can be assigned too.
+    // The material of the body can also be assigned.
     let back = text.replace(
         "[sets]",
         "[[assign]]\nset = \"centre\"\nmaterial = \"soft\"\n[sets]",
@@ -304,9 +305,9 @@ fn later_assignments_replace_earlier_ones() {
     assert_eq!(density(&back, 118), 1.0);
 }
 
-/// What all bonds share may stand in [material] alone, or be repeated; a deck may have named materials only.
+/// Common keys of all bonds may be given in [material] only, or repeated; a deck may have only named materials.
 #[test]
-fn materials_without_a_material_of_all_other_points() {
+fn decks_may_have_only_named_materials() {
     let text = laminate("linear");
     let all_named = text
         .replace(
@@ -324,10 +325,10 @@ fn materials_without_a_material_of_all_other_points() {
         model.body.solid_mut().unwrap().material.name = None;
     }
     assert_eq!(own, named);
-    // Without [material] the first table says what all bonds share.
+    // Without [material] the first table has the common keys.
     let first = text.replace("[material]\nname = \"soft\"\n", "[materials.soft]\n");
     let message = refusal(&first).to_string();
-    let words = "40 of 120 points have no material, such as that at (0.5) m";
+    let words = "40 of 120 points have no material, such as the one at (0.5) m";
     assert!(message.contains(words), "{message}");
     let assigned = first.replacen(
         "[[assign]]",
@@ -342,7 +343,7 @@ fn materials_without_a_material_of_all_other_points() {
 }
 
 #[test]
-fn materials_that_are_not_used_are_warned_of() {
+fn unused_materials_lead_to_warnings() {
     let more = laminate("linear").replace(
         "[sets]",
         "[materials.spare]\ndensity = 1\nyoungs_modulus = 1\n[sets]",
@@ -356,7 +357,7 @@ fn materials_that_are_not_used_are_warned_of() {
 }
 
 #[test]
-fn models_with_materials_survive_json() {
+fn models_with_materials_round_trip_through_json() {
     let state_based = laminate("state-based")
         + "[[interface]]\nbetween = [\"soft\", \"hard\"]\nfracture_energy = 1\nfailure = \"bond-energy\"\n";
     let modulus = laminate("linear") + "[[interface]]\nyoungs_modulus = 3\nfracture_energy = 1\n";
@@ -368,9 +369,9 @@ fn models_with_materials_survive_json() {
     }
 }
 
-/// A model that a program made is judged as a deck is.
+/// Models built by a program are checked like decks.
 #[test]
-fn wrong_models_are_refused_at_their_keys() {
+fn errors_of_models_are_reported_at_their_keys() {
     let lines = |change: &dyn Fn(&mut Model)| {
         let mut model = model(&laminate("state-based"));
         change(&mut model);
@@ -387,7 +388,7 @@ fn wrong_models_are_refused_at_their_keys() {
     assert!(message.contains("materials.middle.horizon"), "{message}");
 }
 
-/// Two halves of a bar fly apart at an interface with a fracture energy of its own; the materials never break.
+/// Two halves of a bar separate at an interface with its own fracture energy; the materials do not break.
 const GLUED: &str = r#"
 [body]
 shape = "bar"
@@ -419,10 +420,12 @@ end = 16
 dt = 0.002
 "#;
 
-/// The bonds that cross the interface all break, no others do, and they dissipate the fracture energy of its area. Bonds break at the end of the step in which they exceed the critical stretch, 1.1e-3 or more. The
-/// gap opens by 8e-3 per unit of time at most, so that a bond of one cell is stretched by 1.6e-5 in a step: 3 % of the energy at the critical stretch.
+/// Exactly the bonds across the interface break, and they dissipate its fracture energy times its area. Bonds break
+/// at the end of the step in which they exceed the critical stretch, 1.1e-3 or more. The gap opens by at most 8e-3
+/// per unit of time, so that a bond of one cell is stretched by 1.6e-5 per step: 3 % of the energy at the critical
+/// stretch.
 #[test]
-fn an_interface_tears_at_its_own_fracture_energy() {
+fn an_interface_dissipates_its_own_fracture_energy() {
     for (model, other) in [
         ("linear", ""),
         ("bond-stretch", "rule = \"arithmetic\""),
@@ -431,13 +434,14 @@ fn an_interface_tears_at_its_own_fracture_energy() {
         ("state-based", "failure = \"bond-energy\""),
     ] {
         let text = GLUED.replace("MODEL", model).replace("OTHER", other);
-        // The default of state-based materials, 1 − r/δ, is zero for the bonds of three spacings, which bear no energy and never break by it.
+        // The default of state-based materials, 1 − r/δ, is zero for bonds of three spacings, which store no energy
+        // and do not break.
         let text = text.replace(
             "horizon_ratio = 3",
             "horizon_ratio = 3\ninfluence = { function = \"constant\" }",
         );
         let run = run_every_way(&text);
-        // Three cells on each side see 3 + 2 + 1 bonds.
+        // Three cells on each side have 3 + 2 + 1 bonds across.
         assert_eq!(run.broken, 6, "{model} {other}");
         let expected = 2.0 * 2e-5;
         let energies = run.energies;
@@ -448,7 +452,7 @@ fn an_interface_tears_at_its_own_fracture_energy() {
     }
 }
 
-/// Between cells of two sizes an interface dissipates its fracture energy on either grid.
+/// An interface through a refined grid dissipates its fracture energy on both grids.
 #[test]
 fn an_interface_through_two_grids_dissipates_its_fracture_energy() {
     let text = r#"
@@ -462,7 +466,7 @@ initial = [{ velocity = [0, { expression = "6e-3*(y-6)/6" }] }]
 time = { end = 12, dt = 0.002 }
 "#;
     let run = run_every_way(text);
-    // The free ends of the interface lack bonds of a horizon's length, and a lattice's planes differ by some per cent.
+    // Bonds are missing at the free ends of the interface, and lattice planes differ by several per cent.
     let error = run.energies.dissipated / (20.0 * 2e-5) - 1.0;
     assert!(error.abs() < 0.15, "{error:e}");
 }

@@ -1,4 +1,4 @@
-//! Bodies and histories that do not fit are refused before anything of their size is allocated.
+//! The memory of bodies and histories is checked before allocation.
 
 use std::path::Path;
 
@@ -7,12 +7,12 @@ use pericles::space::ListedPoints;
 use pericles_deck::{Deck, DeckError};
 use pericles_run::Resources;
 
-/// A deck with some of it replaced, built in so many bytes.
+/// Builds a deck with a replacement and a memory limit.
 fn built(text: &str, [old, new]: [&str; 2], memory: u64) -> Result<(), DeckError> {
     assert!(text.contains(old), "{old}");
     let deck = Deck::parse(&text.replace(old, new), "a.toml", &[])?;
     let read_points = |_: &Path, _: usize, _: u64| {
-        // A line of points.
+        // A row of points.
         let places = (0..20_000).map(|k| [f64::from(k), 0.0, 0.0]);
         let mut points = ListedPoints::default();
         points.positions.extend(places);
@@ -55,7 +55,7 @@ dt = 0.01
 "#;
 
 #[test]
-fn a_body_is_refused_by_the_number_of_its_cells() {
+fn a_body_is_rejected_by_its_number_of_cells() {
     assert!(built(BLOCK, ["0.1", "0.1"], 10_000_000).is_ok());
     let fine = ["spacing = 0.1", "spacing = 0.001"];
     refusal(BLOCK, fine, 8_000_000_000, "a.toml:4:11: ", "1.0e9 points");
@@ -64,9 +64,9 @@ fn a_body_is_refused_by_the_number_of_its_cells() {
         fine,
         8_000_000_000,
         "a.toml:4:11: ",
-        "TB of memory; 8.0 GB may be taken; a larger spacing",
+        "TB of memory; the limit is 8.0 GB; use a larger spacing",
     );
-    // A ball of the same cells has about half as many, a thin tube fewer still.
+    // A sphere in the same box has about half as many cells, a thin tube even fewer.
     let whole = 4_000_000;
     refusal(
         BLOCK,
@@ -80,7 +80,7 @@ fn a_body_is_refused_by_the_number_of_its_cells() {
         "spacing = 0.05\nhole = [{ box = { min = [0, 0, 0.1] } }]",
     ];
     assert!(built(BLOCK, hole, whole).is_ok());
-    // Parts with smaller cells count as such.
+    // Cells of refined parts are counted.
     let finer = [
         "spacing = 0.1",
         "spacing = 0.1\nrefine = [{ all = true, ratio = 16 }]",
@@ -92,14 +92,14 @@ fn a_body_is_refused_by_the_number_of_its_cells() {
         "a.toml:4",
         "4 096 000 points",
     );
-    // More than can be numbered is no matter of memory.
+    // Exceeding the largest number of points is not a memory error.
     let numberless = built(BLOCK, ["spacing = 0.1", "spacing = 1e-4"], u64::MAX).unwrap_err();
     assert!(!numberless.is_too_large(), "{numberless}");
     assert!(numberless.to_string().contains("at most"), "{numberless}");
 }
 
 #[test]
-fn listed_points_are_refused_by_their_bonds() {
+fn listed_points_are_rejected_by_their_number_of_bonds() {
     let text = r#"[body]
 shape = "points"
 file = "line.txt"
@@ -119,7 +119,7 @@ dt = 0.01
 }
 
 #[test]
-fn a_surface_is_refused_by_its_vertices_and_by_its_bonds() {
+fn a_surface_is_rejected_by_its_numbers_of_vertices_and_bonds() {
     let text = r#"[body]
 shape = "icosphere"
 level = 2
@@ -134,7 +134,7 @@ end = 1
 dt = 0.01
 "#;
     assert!(built(text, ["level = 2", "level = 2"], 3_000_000).is_ok());
-    // It is not made to know how far apart its vertices are either: this would take seconds, and more memory than allowed.
+    // The surface is not created to find its vertex spacing, which would take seconds and exceed the memory limit.
     let began = std::time::Instant::now();
     refusal(
         text,
@@ -149,12 +149,12 @@ dt = 0.01
         ["level = 2", "level = 5"],
         60_000_000,
         "a.toml:9:11: ",
-        "shorter horizon",
+        "smaller horizon",
     );
 }
 
 #[test]
-fn a_history_is_refused_by_its_steps() {
+fn a_history_is_rejected_by_its_number_of_steps() {
     let text = r#"[body]
 shape = "bar"
 length = 10
@@ -175,7 +175,7 @@ dt = 0.1
     assert!(built(text, ["end = 100", "end = 100"], 1_000_000).is_ok());
     let long = ["end = 100", "end = 1e9"];
     refusal(text, long, 8_000_000_000, "a.toml:10", "1.0e10 steps");
-    // Exponentials forget: their memory does not grow with the steps.
+    // The memory of exponential histories does not grow with the steps.
     let same = ["end = 100", "end = 100"];
     refusal(text, same, 100_000, "a.toml:10", "1 000 steps");
     let forgetful = text.replace("\"blocked\"", "\"exponentials\"\ntolerance = 1e-4");
@@ -183,7 +183,7 @@ dt = 0.1
 }
 
 #[test]
-fn a_fit_of_more_steps_than_can_be_told_apart_is_refused() {
+fn a_fit_with_too_many_steps_is_rejected() {
     let text = r#"[body]
 shape = "bar"
 length = 10
@@ -205,7 +205,10 @@ dt = 0.1
     let error = built(text, ["1e9", "1e9"], u64::MAX).unwrap_err();
     let message = error.to_string();
     assert!(message.starts_with("a.toml:10:"), "{message}");
-    assert!(message.contains("at most 1e9 steps, not 9.99"), "{message}");
-    // As many steps as can be counted.
+    assert!(
+        message.contains("at most 1e9 steps, but the run has 9.99"),
+        "{message}"
+    );
+    // The largest number of steps.
     assert!(built(text, ["1e9", "8e14"], u64::MAX).is_err());
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use pericles::operator::On;
+use pericles::operator::PointSubset;
 use pericles::space::PointCloud;
 use pericles_deck::{Deck, DeckError};
 use pericles_mesh::{CellKind, Cells, FaceSet, NamedList, RawMesh};
@@ -10,7 +10,8 @@ use pericles_run::{FileError, Resources};
 
 use crate::common::{Build, Built};
 
-/// A box of nx × ny × nz cubes of 1 mm, in mm, each cut into six tetrahedra if asked for, with the groups "left half" and "right half" and the faces at both ends along x.
+/// Returns a box of nx × ny × nz cubes of 1 mm, in mm, optionally cut into six tetrahedra each, with the groups "left
+/// half" and "right half" and the faces at both ends along x.
 fn block(counts: [usize; 3], tetrahedra: bool) -> RawMesh {
     let [nx, ny, nz] = counts;
     let node = |i: usize, j: usize, k: usize| ((k * (ny + 1) + j) * (nx + 1) + i) as u32;
@@ -39,7 +40,7 @@ fn block(counts: [usize; 3], tetrahedra: bool) -> RawMesh {
                 ];
                 let begin = mesh.cells.len() as u32;
                 if tetrahedra {
-                    // All around the diagonal from corner 0 to corner 6.
+                    // All share the diagonal from corner 0 to corner 6.
                     for [a, b] in [[1, 2], [2, 3], [3, 7], [7, 4], [4, 5], [5, 1]] {
                         let corners = [c[0], c[a], c[b], c[6]];
                         mesh.cells.push(CellKind::Tetrahedron, &corners);
@@ -90,7 +91,7 @@ fn block(counts: [usize; 3], tetrahedra: bool) -> RawMesh {
     mesh
 }
 
-/// The surface of a cube of 8 mm, in mm, as triangles.
+/// Returns the triangulated surface of a cube of 8 mm, in mm.
 pub(super) fn cube() -> RawMesh {
     let mut mesh = RawMesh::default();
     for k in 0..8 {
@@ -128,7 +129,7 @@ pub(super) fn built(text: &str, mesh: &RawMesh) -> Built {
 
 pub(super) fn refused(text: &str, mesh: &RawMesh) -> String {
     match built_of(text, |_| Ok(mesh.clone())) {
-        Ok(_) => panic!("this deck is wrong:\n{text}"),
+        Ok(_) => panic!("an error is expected:\n{text}"),
         Err(error) => error.to_string(),
     }
 }
@@ -159,7 +160,7 @@ end = "1 us"
 "#;
 
 #[test]
-fn elements_are_points_and_sets_of_the_mesh_are_sets() {
+fn elements_become_points_and_mesh_sets_become_sets() {
     let mesh = block([8, 3, 2], false);
     let body = built(MESH, &mesh);
     let close = |a: f64, b: f64| assert!((a - b).abs() <= 1e-12 * b.abs(), "{a} {b}");
@@ -182,7 +183,7 @@ fn elements_are_points_and_sets_of_the_mesh_are_sets() {
             ("far", 6)
         ]
     );
-    // User numbers are those of the elements.
+    // User numbers are the element numbers.
     for i in 0..48 {
         let [x, y, z] = body
             .cloud
@@ -191,7 +192,7 @@ fn elements_are_points_and_sets_of_the_mesh_are_sets() {
         assert_eq!(body.cloud.user_number(i), (z * 3 + y) * 8 + x);
         assert_eq!(body.cloud.block(i), if x < 4 { 1 } else { 2 });
     }
-    // Areas are known, and a pressure acts against the outward normal: all as forces.
+    // Areas are known, and a pressure acts against the outward normal; compared as forces.
     for (report, force) in body.loads.iter().zip([6.0, -6.0, 12.0]) {
         close(report.area.unwrap(), 6e-6);
         close(report.force[0], force);
@@ -227,7 +228,7 @@ pub(super) fn compare_forces(ours: &Built, theirs: &Built) {
         let u: Vec<f64> = (0..dimension).flat_map(along).collect();
         let mut force = vec![0.0; dimension * n];
         let operator = body.system.operator();
-        operator.add_force(0.0, &u, On::All, &mut force);
+        operator.add_force(0.0, &u, PointSubset::All, &mut force);
         force
     };
     let (a, b) = (forces(ours), forces(theirs));
@@ -259,14 +260,14 @@ fn pressures_on_tetrahedra_have_the_resultant_of_their_faces() {
 }
 
 #[test]
-fn a_part_takes_the_group_of_a_mesh() {
+fn a_material_can_be_assigned_to_a_mesh_group() {
     let part = "[[material.part]]\nname = \"soft\"\nset = \"right half\"\ndensity = 1200\nyoungs_modulus = \"3 GPa\"\n[sets]";
     let body = built(&MESH.replacen("[sets]", part, 1), &block([8, 3, 2], false));
     assert_eq!(body.other_materials.len(), 1);
 }
 
 #[test]
-fn wrong_meshes_are_refused_where_the_deck_names_them() {
+fn invalid_meshes_are_reported_at_their_key() {
     let mesh = block([8, 3, 2], false);
     let with = |from: &str, to: &str| {
         assert!(MESH.contains(from), "{from}");
@@ -326,8 +327,8 @@ fn wrong_meshes_are_refused_where_the_deck_names_them() {
         &mesh,
         &[
             "deck.toml:6:13",
-            "elements of dimension 3",
-            "allowed: dimension = 3",
+            "the mesh have dimension 3",
+            "set dimension = 3",
         ],
     );
     says(
@@ -336,7 +337,7 @@ fn wrong_meshes_are_refused_where_the_deck_names_them() {
         &mesh,
         &[
             "deck.toml:6:11",
-            "mean size of the elements is 1.00 mm",
+            "mean element size is 1.00 mm",
             "correct `unit`",
         ],
     );
@@ -346,13 +347,13 @@ fn wrong_meshes_are_refused_where_the_deck_names_them() {
         &[
             "deck.toml:15:",
             "`far` has no face",
-            "face set of a mesh or a `layer`",
+            "face set of a mesh, or a `layer`",
         ],
     );
     says(
         &with("set = \"left\"\ntraction", "set = \"far\"\ntraction"),
         &mesh,
-        &["cannot be told", "no face set of the mesh"],
+        &["is unknown", "neither a face set of the mesh"],
     );
     let folded = {
         let mut mesh = mesh.clone();
@@ -376,7 +377,7 @@ fn wrong_meshes_are_refused_where_the_deck_names_them() {
         &flat,
         &[
             "deck.toml:4:8",
-            "48 element(s) have no volume, the first of them element 1",
+            "48 element(s) have zero volume, the first is element 1",
         ],
     );
     says(
@@ -395,7 +396,7 @@ fn wrong_meshes_are_refused_where_the_deck_names_them() {
 }
 
 #[test]
-fn unusual_meshes_are_warned_about() {
+fn unusual_meshes_lead_to_warnings() {
     let warnings = |text: &str, mesh: &RawMesh| {
         let body = built(text, mesh);
         let lines: Vec<String> = body.warnings.iter().map(|warning| warning.line()).collect();
@@ -404,17 +405,17 @@ fn unusual_meshes_are_warned_about() {
     let mesh = block([8, 3, 2], false);
     assert_eq!(warnings(MESH, &mesh), "");
     let coarse = warnings(&MESH.replace("\"3 mm\"", "\"1.5 mm\""), &mesh);
-    // All elements are equal: the first is named twice.
+    // All elements are equal: the first one is smallest and largest.
     for part in [
         "deck.toml:4:8",
-        "fewer than 2 cells in a horizon of 0.0015 m",
-        "sizes from 0.001 m at (5e-4, 5e-4, 5e-4) to 0.001 m at (",
+        "the horizon of 0.0015 m spans fewer than 2 elements",
+        "sizes range from 0.001 m at (5e-4, 5e-4, 5e-4) to 0.001 m at (",
         "refine the mesh",
     ] {
         assert!(coarse.contains(part), "{part}: {coarse}");
     }
     let graded = {
-        // The last layer of elements a tenth as thick along all axes: 0.1 mm beside 1 mm.
+        // The last layer of elements is a tenth as thick along all axes: 0.1 mm next to 1 mm.
         let mut mesh = mesh.clone();
         let first = mesh.nodes.len() as u32;
         for k in 0..8 {
@@ -427,8 +428,8 @@ fn unusual_meshes_are_warned_about() {
     };
     for part in [
         "deck.toml:4:8",
-        "sizes from 1e-4 m at (0.02005, 0.02005, 0.02005) to 0.001 m at (",
-        "differ more than 8 : 1",
+        "sizes range from 1e-4 m at (0.02005, 0.02005, 0.02005) to 0.001 m at (",
+        "a ratio above 8 : 1",
     ] {
         assert!(graded.contains(part), "{part}: {graded}");
     }
@@ -438,7 +439,7 @@ fn unusual_meshes_are_warned_about() {
         .replace("2.1 mm", "2.1 um")
         .replace("0.007", "0.000007");
     let tiny = warnings(&metres, &mesh);
-    assert!(tiny.contains("is the unit of the file right?"), "{tiny}");
+    assert!(tiny.contains("check the unit of the file"), "{tiny}");
     // 8 m, in kilometres: fine in metres, doubtful beyond 100 m.
     let huge = MESH
         .replace("unit = \"mm\"", "unit = \"km\"")
@@ -447,7 +448,7 @@ fn unusual_meshes_are_warned_about() {
         .replace("0.007", "7000");
     let huge = warnings(&huge, &mesh);
     assert!(
-        huge.contains("the largest side of the mesh is 8000 m: is the unit of the file right?"),
+        huge.contains("the largest side of the mesh is 8000 m; check the unit of the file"),
         "{huge}"
     );
 }
@@ -467,7 +468,7 @@ end = "1 us"
 "#;
 
 #[test]
-fn a_filled_cube_is_the_block_on_the_same_lattice() {
+fn a_filled_cube_equals_the_block_on_the_same_lattice() {
     let ours = built(SOLID, &cube());
     let block = SOLID.replace(
         "shape = \"solid\"\nfile = \"cube.stl\"\nunit = \"mm\"",
@@ -477,7 +478,7 @@ fn a_filled_cube_is_the_block_on_the_same_lattice() {
     assert_eq!(ours.form, theirs.form);
     assert!(ours.cloud.lattice().is_some());
     compare_forces(&ours, &theirs);
-    // Partial cells of a cube that the lattice divides are whole; so is what an open surface is taken to hold.
+    // Partial cells of a cube that the lattice divides are whole, also with an open surface.
     let partial = built(
         &SOLID.replace("unit =", "cells = \"partial\"\nunit ="),
         &cube(),
@@ -493,16 +494,16 @@ fn a_filled_cube_is_the_block_on_the_same_lattice() {
 }
 
 #[test]
-fn holes_are_left_out_of_a_filled_surface() {
+fn holes_are_removed_from_a_filled_surface() {
     let hole =
         "hole = [{ cylinder = { centre = [\"4 mm\", \"4 mm\", 0], radius = \"2 mm\" } }]\nunit =";
     let body = built(&SOLID.replace("unit =", hole), &cube());
-    // 12 cells of a layer have their centres within 2 mm of the axis.
+    // 12 cells per layer have their centres within 2 mm of the axis.
     assert_eq!(body.cloud.len(), 512 - 8 * 12);
 }
 
 #[test]
-fn open_surfaces_are_refused_with_what_to_do() {
+fn open_surfaces_are_rejected_with_advice() {
     let mut open = cube();
     open.cells = Cells::default();
     for (kind, corners) in cube().cells.iter().skip(2) {
@@ -522,13 +523,13 @@ fn open_surfaces_are_refused_with_what_to_do() {
     assert!(
         lines
             .iter()
-            .any(|line| line.contains("of what the boundary encloses")),
+            .any(|line| line.contains("of the volume that the boundary encloses")),
         "{lines:?}"
     );
 }
 
 #[test]
-fn polygons_surround_plane_bodies() {
+fn outlines_are_filled() {
     let outline = SOLID.replace(
         "shape = \"solid\"\nfile = \"cube.stl\"\nunit = \"mm\"",
         "shape = \"outline\"\nplane = \"stress\"\nthickness = \"2 mm\"\npolygons = [[[0, 0], [\"8 mm\", 0], [\"8 mm\", \"4 mm\"], [0, \"4 mm\"]], [[\"2 mm\", \"1 mm\"], [\"4 mm\", \"1 mm\"], [\"4 mm\", \"3 mm\"], [\"2 mm\", \"3 mm\"]]]",
@@ -540,7 +541,7 @@ fn polygons_surround_plane_bodies() {
         "shape = \"plate\"\nplane = \"stress\"\nthickness = \"2 mm\"\nsize = [\"8 mm\", \"4 mm\"]\nhole = [{ box = { min = [\"2 mm\", \"1 mm\"], max = [\"4 mm\", \"3 mm\"] } }]",
     );
     compare_forces(&ours, &super::build(&plate));
-    // Partial cells with the volume of their part: 8.5 mm in 9 cells of 1 mm, of which the outer ones are three quarters.
+    // Partial volumes: 8.5 mm in 9 cells of 1 mm, of which the outer ones are three quarters.
     let partial = outline
         .replace("\"8 mm\"", "\"8.5 mm\"")
         .replace("plane =", "cells = \"partial\"\nplane =");
@@ -570,7 +571,7 @@ fn polygons_surround_plane_bodies() {
 }
 
 #[test]
-fn random_positions_fill_any_shape_and_follow_their_seed() {
+fn random_positions_fill_any_shape_and_depend_on_the_seed() {
     let disc = |positions: &str| {
         let text = SOLID.replace(
             "shape = \"solid\"\nfile = \"cube.stl\"\nunit = \"mm\"",
@@ -596,7 +597,7 @@ fn random_positions_fill_any_shape_and_follow_their_seed() {
         assert_eq!(places(&first), places(&again));
         let other = disc(&format!("positions = \"{kind}\"\nseed = 8"));
         assert_ne!(places(&first), places(&other));
-        // Also in a surface.
+        // Also in a filled surface.
         let solid = SOLID.replace("unit =", &format!("positions = \"{kind}\"\nunit ="));
         let solid = built(&solid, &cube());
         let volume: f64 = solid.cloud.volumes().iter().sum();
@@ -606,7 +607,7 @@ fn random_positions_fill_any_shape_and_follow_their_seed() {
 }
 
 #[test]
-fn a_surface_of_triangles_cuts_as_its_plane_does() {
+fn a_triangulated_crack_cuts_the_same_bonds_as_its_plane() {
     let cracked = |crack: &str| {
         let text = SOLID.replace("[time]", &format!("[[crack]]\n{crack}\n[time]"));
         built_of(&text, |path| {
@@ -664,43 +665,45 @@ fn blocks_of_result_files_are_groups_or_materials() {
 }
 
 #[test]
-fn loads_that_no_support_balances_are_reported_with_their_size() {
+fn unbalanced_loads_are_reported_with_their_magnitude() {
     let warnings = |text: &str, mesh: &RawMesh| {
         let body = built(text, mesh);
         let lines: Vec<String> = body.warnings.iter().map(|warning| warning.line()).collect();
         lines.join("\n")
     };
-    // 8 × 3 × 2 mm of bricks, 1 MPa at both ends: in balance, but loose.
+    // 8 × 3 × 2 mm of bricks, 1 MPa at both ends: in equilibrium, but unconstrained.
     let pulled = MESH
         .split("[[load]]\nset = \"grip\"")
         .next()
         .unwrap()
         .to_owned();
-    let at_rest = pulled.clone() + "[time]\nscheme = \"relaxation\"\nload_steps = 2\n";
+    let at_rest =
+        pulled.clone() + "[time]\nscheme = \"adaptive-dynamic-relaxation\"\nload_steps = 2\n";
     let bricks = block([8, 3, 2], false);
     let loose = warnings(&at_rest, &bricks);
     assert!(
-        loose.contains("48 of 48 points") && loose.contains("joined to no support"),
+        loose.contains("48 of 48 points") && loose.contains("not connected to a support"),
         "{loose}"
     );
-    // Tetrahedra: the centroids of those that own a face are a quarter of an edge apart along y and along z between the ends, 6 N · 0.25 mm about each axis.
+    // Tetrahedra: the centroids of those with a loaded face differ between the ends by a quarter of an edge along y
+    // and z, so the moment is 6 N · 0.25 mm about each axis.
     let tetrahedra = block([8, 3, 2], true);
     let turned = warnings(&at_rest, &tetrahedra);
     assert!(
         turned.contains("the loads on 288 of 288 points")
             && turned.contains("have a net moment of 2.12 mN m that")
             && !turned.contains("a net force")
-            && !turned.contains("joined to no support"),
+            && !turned.contains("not connected to a support"),
         "{turned}"
     );
-    // One pull only: 1 MPa on 3 × 2 mm², through the middle.
+    // A single load: 1 MPa on 3 × 2 mm², through the centre.
     let force = "a net force of 6.00 N that no support takes";
     let one = at_rest.replace("traction = [\"-1 MPa\", 0, 0]", "traction = [0, 0, 0]");
     let moved = warnings(&one, &bricks);
     assert!(moved.contains(force), "{moved}");
-    // A support across the pull does not take it; one along it does.
+    // A constraint normal to the load does not balance it; one along it does.
     let held = |velocity: &str| {
-        let held = format!("[[prescribe]]\nset = \"left half\"\nvelocity = [{velocity}]\n[time]");
+        let held = format!("[[constraint]]\nset = \"left half\"\nvelocity = [{velocity}]\n[time]");
         warnings(&one.replace("[time]", &held), &bricks)
     };
     assert!(held("\"free\", 0, 0").contains(force));

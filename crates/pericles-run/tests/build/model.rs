@@ -1,4 +1,4 @@
-//! Models as data: written as JSON and read again, assembled without a deck, and with points and sets of a program's own.
+//! Models as data: JSON round trip, assembly without a deck, points and sets changed by a program.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -14,14 +14,14 @@ use pericles_run::{Grids, Resources, assemble, discretise};
 use super::decks::{SURFACE, WAVE};
 use super::{PLATE, STATIC, parse};
 
-/// The model after it was written as JSON and read again; its numbers are in their ranges.
+/// Returns the model after a JSON round trip; checks its ranges.
 fn reread(model: &Model) -> Model {
     model.check().unwrap_or_else(|error| panic!("{error}"));
     let json = serde_json::to_string(model).unwrap_or_else(|error| panic!("{error}"));
     serde_json::from_str(&json).unwrap_or_else(|error| panic!("{error}\n{json}"))
 }
 
-/// All decks below a folder.
+/// Returns all decks below a folder.
 fn decks(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
@@ -35,7 +35,7 @@ fn decks(folder: &Path, found: &mut Vec<PathBuf>) {
 }
 
 #[test]
-fn every_example_survives_json() {
+fn every_example_round_trips_through_json() {
     let mut found = Vec::new();
     let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
     decks(&examples, &mut found);
@@ -47,7 +47,7 @@ fn every_example_survives_json() {
 }
 
 #[test]
-fn every_specimen_survives_json() {
+fn every_specimen_round_trips_through_json() {
     for (text, changes) in specimens() {
         let deck = Deck::parse(text, "specimen.toml", &changes);
         let deck = deck.unwrap_or_else(|error| panic!("{error}"));
@@ -56,7 +56,7 @@ fn every_specimen_survives_json() {
 }
 
 #[test]
-fn unknown_fields_and_words_are_refused() {
+fn unknown_fields_and_words_are_rejected() {
     let json = serde_json::to_string(&parse(PLATE).model).unwrap();
     for (replace, by, says) in [
         ("\"sets\"", "\"stets\"", "stets"),
@@ -70,7 +70,7 @@ fn unknown_fields_and_words_are_refused() {
     }
 }
 
-/// Displacements and velocities after some steps, to the last bit.
+/// Returns the bits of displacements and velocities after some steps.
 fn after(mut run: Simulation, steps: u64) -> Vec<u64> {
     let mut left = steps;
     let stop = |_: &_| {
@@ -91,14 +91,14 @@ fn after(mut run: Simulation, steps: u64) -> Vec<u64> {
         .collect()
 }
 
-/// The run of a model.
+/// Returns the simulation of a model.
 fn run_of(model: &Model, resources: &Resources<'_>) -> Simulation {
     let points = discretise(model, resources).unwrap_or_else(|error| panic!("{error}"));
     let assembly = assemble(model, points, resources).unwrap_or_else(|error| panic!("{error}"));
     assembly.simulation().unwrap()
 }
 
-/// A bar in a file.
+/// Returns a bar of listed points.
 fn listed() -> ListedPoints {
     ListedPoints {
         positions: (0..20).map(|k| [0.1 * f64::from(k), 0.0, 0.0]).collect(),
@@ -124,7 +124,7 @@ end = 1
 "#;
 
 #[test]
-fn a_model_read_from_json_runs_like_its_deck() {
+fn a_model_from_json_runs_like_its_deck() {
     let read_points = |path: &Path, _: usize, _: u64| {
         assert_eq!(path, Path::new("decks/bar.txt"));
         Ok(listed())
@@ -170,25 +170,25 @@ end = 1
 "#;
 
 #[test]
-fn a_program_chooses_sets_and_points() {
+fn a_program_may_change_sets_and_points() {
     let model = parse(BAR).model;
     let resources = Resources::default();
     let points = discretise(&model, &resources).unwrap();
     assert_eq!(points.set("left").unwrap(), &[0]);
-    // Another set.
+    // A modified set.
     let mut chosen = points.clone();
     *chosen.set_mut("left").unwrap() = vec![3, 4];
     let assembly = assemble(&model, chosen, &resources).unwrap();
     let moving: Vec<usize> = (0..20).filter(|&i| assembly.state.v[i] != 0.0).collect();
     assert_eq!(moving, [3, 4]);
-    // Other points, which have no cells.
+    // Other points without cells.
     let mut placed = points.clone();
     placed.cloud = Arc::new(listed().cloud(1, 1.0).unwrap());
     placed.grids = Grids::one(20);
     let assembly = assemble(&model, placed, &resources).unwrap();
     assert!((0..20).any(|i| assembly.cloud.point(i)[0] == 0.0));
     after(assembly.simulation().unwrap(), 3);
-    // What does not belong together is refused.
+    // Inconsistent points and sets are rejected.
     let mut wrong = points.clone();
     wrong.set_mut("left").unwrap().push(20);
     let message = assemble(&model, wrong, &resources)
@@ -206,7 +206,7 @@ fn a_program_chooses_sets_and_points() {
 }
 
 #[test]
-fn a_model_without_a_deck_names_keys() {
+fn errors_of_a_model_without_a_deck_name_keys() {
     let mut model = parse(BAR).model;
     model.initial[0].set = "right".into();
     let resources = Resources::default();
@@ -231,7 +231,7 @@ fn a_model_without_a_deck_names_keys() {
 }
 
 #[test]
-fn numbers_out_of_range_are_refused_all_at_once() {
+fn all_numbers_out_of_range_are_reported_at_once() {
     let resources = Resources::default();
     let mut model = parse(PLATE).model;
     model.time.end = f64::NAN;

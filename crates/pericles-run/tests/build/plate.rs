@@ -1,4 +1,4 @@
-//! A plate as a whole: points, bonds, sets, a run, what is refused.
+//! A plate: points, bonds, sets, a run, errors.
 
 use pericles_waves::ForceForm;
 
@@ -6,7 +6,7 @@ use super::common::Build;
 use super::{PLATE, STATIC, build, parse, refusal};
 
 #[test]
-fn points_bonds_and_sets() {
+fn points_bonds_and_sets_of_a_plate_are_exact() {
     let model = build(PLATE);
     assert_eq!(model.cloud.len(), 160);
     let volume: f64 = model.cloud.volumes().iter().sum();
@@ -26,7 +26,7 @@ fn points_bonds_and_sets() {
             ("corner", 12)
         ]
     );
-    // m = 3 without correction: offsets in the closed disc of radius 3, counted in both directions.
+    // m = 3 without volume correction: offsets in the closed disc of radius 3, in both directions.
     let pairs = |columns: i64, rows: i64| -> i64 {
         let mut sum = 0;
         for x in -3..=3i64 {
@@ -39,12 +39,12 @@ fn points_bonds_and_sets() {
         sum
     };
     let all = pairs(20, 8) as u64;
-    // `directed_bonds` are those left after pre-cutting.
+    // `directed_bonds` excludes bonds cut by pre-cracks.
     assert_eq!(
         model.system.operator().directed_bonds(),
         all - 2 * model.precut_bonds
     );
-    // Bonds across the notch's height whose crossing lies at x ≤ 10 mm, by brute force.
+    // Bonds that cross the notch plane at x ≤ 10 mm, by brute force.
     let mut cut = 0;
     for i in 0..160usize {
         for j in 0..i {
@@ -68,14 +68,15 @@ fn points_bonds_and_sets() {
     let text = PLATE.replace("no_fail", "fracture_calibration = \"continuum\"\nno_fail");
     let continuum = build(&text).constants().clone();
     assert!((continuum.critical_stretch / s0 - 1.0).abs() < 1e-12);
-    // By default the mean over the planes (10) and (11) costs what was asked for: 20.779 and 21.224 in place of 20.25 for the continuum.
+    // By default the mean over the planes (10) and (11) has the given fracture energy: 20.779 and 21.224 instead of
+    // 20.25 for the continuum.
     let lattice = s0 * (20.25f64 / (0.5 * (20.779 + 21.224))).sqrt();
     assert!((model.constants().critical_stretch / lattice - 1.0).abs() < 2e-5);
     assert!((model.constants().fracture_energy / 135.0 - 1.0).abs() < 1e-12);
 }
 
 #[test]
-fn the_run_can_be_made_and_moves() {
+fn the_run_is_created_and_moves() {
     let mut run = build(PLATE).simulation();
     run.run(|_| pericles::Control::Continue).unwrap();
     assert!((run.state().t / 2e-6 - 1.0).abs() < 1e-12);
@@ -83,7 +84,7 @@ fn the_run_can_be_made_and_moves() {
 }
 
 #[test]
-fn what_the_library_refuses_is_located() {
+fn errors_of_the_engine_have_locations() {
     for (replace, by, line, marked, words) in [
         (
             "\"8 mm\"]",
@@ -138,15 +139,15 @@ fn what_the_library_refuses_is_located() {
             "displacement = [\"free\", 0]",
             "displacement = [0, 0]",
             31,
-            "[[prescribe]]",
-            "prescribed by [[prescribe]] number 1 already",
+            "[[constraint]]",
+            "already prescribed by [[constraint]] number 1",
         ),
         (
             "traction = [\"1 MPa\", 0]",
             "traction = [\"1 MPa\", 1]",
             43,
             "[\"1 MPa\", 1]",
-            "give `area`",
+            "set `area`",
         ),
         (
             "volume_correction = \"none\"",
@@ -176,7 +177,7 @@ fn what_the_library_refuses_is_located() {
 }
 
 #[test]
-fn models_of_changed_decks() {
+fn overrides_change_the_model() {
     let mut deck = parse(PLATE);
     deck.model.cracks.clear();
     let solid = deck.model.body.solid_mut().unwrap();
@@ -186,7 +187,7 @@ fn models_of_changed_decks() {
     assert_eq!(model.precut_bonds, 0);
     deck.model.sets.pop();
     let Err(error) = deck.build() else {
-        panic!("the set `corner` is gone")
+        panic!("the set `corner` is missing")
     };
     assert!(
         error.to_string().contains("unknown set `corner`"),
@@ -195,7 +196,7 @@ fn models_of_changed_decks() {
 }
 
 #[test]
-fn parts_have_their_own_density_and_strength() {
+fn sets_have_their_own_density_and_strength() {
     let model = build(STATIC);
     assert_eq!(
         (model.steps, model.dt, model.form),
@@ -216,7 +217,7 @@ fn parts_have_their_own_density_and_strength() {
         .collect();
     assert_eq!(lines.len(), 1, "{lines:?}");
     assert!(
-        lines[0].contains("deck.toml:12:20: bonds break beyond a stretch of 30 %"),
+        lines[0].contains("deck.toml:12:20: the critical stretch is 30 %"),
         "{lines:?}"
     );
 }

@@ -1,4 +1,4 @@
-//! Values that are implausible or have no effect are warned of; messages of schemes and outputs name what the deck says.
+//! Warnings about implausible values and values without effect; messages of schemes and outputs.
 
 use super::common::Build;
 use pericles_deck::Deck;
@@ -56,7 +56,7 @@ fn refusal(text: &str) -> String {
 }
 
 #[test]
-fn implausible_and_idle_values_are_warned_of() {
+fn implausible_values_and_values_without_effect_lead_to_warnings() {
     assert_eq!(warnings(BAR), [""; 0]);
     for (replace, by, says) in [
         (
@@ -97,7 +97,7 @@ fn implausible_and_idle_values_are_warned_of() {
         (
             "spacing = 1\n",
             "spacing = 1\nhole = [{ ball = { centre = 50, radius = 1 } }]\n",
-            "deck.toml:6:9: this hole contains no cell centre",
+            "deck.toml:6:9: this hole has no effect: it contains no cell centre",
         ),
     ] {
         assert_eq!(BAR.matches(replace).count(), 1, "{replace}");
@@ -118,7 +118,7 @@ fn implausible_and_idle_values_are_warned_of() {
 }
 
 #[test]
-fn holes_that_take_something_are_not_warned_of() {
+fn holes_that_remove_points_lead_to_no_warning() {
     let hole = |ball: &str| {
         PLATE.replace(
             "spacing = 0.02\n",
@@ -152,10 +152,10 @@ fn holes_that_take_something_are_not_warned_of() {
 }
 
 #[test]
-fn a_thin_fine_set_is_named() {
+fn a_thin_fine_set_is_reported_by_name() {
     let deck = PLATE.replace(
         "end = 1",
-        "end = 1\nscheme = \"rk4-mts\"\nratio = 4\nfine = \"tip\"",
+        "end = 1\nscheme = \"multirate-rk4\"\nratio = 4\nfine = \"tip\"",
     );
     let message = refusal(&deck);
     assert!(
@@ -166,11 +166,11 @@ fn a_thin_fine_set_is_named() {
 }
 
 #[test]
-fn stress_goes_with_two_time_steps() {
+fn stress_output_works_with_multirate_schemes() {
     let deck = PLATE
         .replace("0.45", "0.3")
-        .replace("end = 1", "end = 1\nscheme = \"rk4-mts\"\nratio = 4\nfine = \"tip\"\n[output]\nfields = { names = [\"Stress\"] }");
-    // It is built at all.
+        .replace("end = 1", "end = 1\nscheme = \"multirate-rk4\"\nratio = 4\nfine = \"tip\"\n[output]\nfields = { names = [\"Stress\"] }");
+    // The deck is built.
     warnings(&deck);
     let periodic = BAR
         .replace("spacing = 1\n", "spacing = 1\nperiodic = true\n")
@@ -183,7 +183,7 @@ fn stress_goes_with_two_time_steps() {
 }
 
 #[test]
-fn the_trigonometric_scheme_names_what_a_surface_lacks() {
+fn the_trigonometric_scheme_reports_its_requirements_for_surfaces() {
     let deck = r#"
 [body]
 shape = "icosphere"
@@ -204,7 +204,7 @@ scheme = "trigonometric"
     let message = refusal(deck);
     assert!(
         message.contains(
-            "trigonometric cannot step this body: its forces have no linear part at rest"
+            "trigonometric is not available for this body: its forces have no linear part at rest"
         ),
         "{message}"
     );
@@ -212,7 +212,7 @@ scheme = "trigonometric"
 }
 
 #[test]
-fn far_bodies_and_odd_sides_are_refused_with_what_fits() {
+fn far_bodies_and_invalid_sides_are_rejected_with_allowed_values() {
     let far = BAR.replace(
         "spacing = 1\n",
         "spacing = 1\norigin = -9223372036854775808\n",
@@ -226,11 +226,11 @@ fn far_bodies_and_odd_sides_are_refused_with_what_fits() {
         assert!(message.starts_with("deck.toml:6:10: the body reaches 9.22e18 m from the origin, where double precision resolves"), "{message}");
     }
     let message = refusal(&PLATE.replace("spacing = 0.02", "spacing = 0.018"));
-    assert!(message.contains("the nearest sides that are: 990 mm and 1.008 m; with these sides spacings of 17.85714 mm and 18.51852 mm fit"), "{message}");
+    assert!(message.contains("the nearest sides that fit: 990 mm and 1.008 m; spacings that divide all sides: 17.85714 mm and 18.51852 mm"), "{message}");
 }
 
 #[test]
-fn periodic_bars_have_no_absorbing_ends() {
+fn absorbing_boundaries_of_periodic_bars_are_rejected() {
     let deck = BAR
         .replace("spacing = 1\n", "spacing = 1\nperiodic = true\n")
         .replace("density", "model = \"linear\"\ndensity")
@@ -241,6 +241,6 @@ fn periodic_bars_have_no_absorbing_ends() {
     let message = refusal(&deck);
     assert_eq!(
         message,
-        "deck.toml:17:1: absorbing end: a periodic bar has no end that could absorb waves; leave out `periodic` or the absorbing boundary"
+        "deck.toml:17:1: absorbing boundary: a periodic bar has no ends; remove `periodic` or the absorbing boundary"
     );
 }

@@ -1,4 +1,4 @@
-//! Points of all kinds, and the forms of their bonds.
+//! Points of all kinds, and their force kernels.
 
 use pericles_deck::{Deck, DeckError};
 use pericles_waves::ForceForm;
@@ -7,7 +7,7 @@ use super::common::{Build, Built};
 use super::{build, parse, plate_with_time, refusal, ring};
 
 #[test]
-fn every_dimension_and_law() {
+fn every_dimension_and_pair_law_is_built() {
     let rest = "[material]\ndensity=1\nE=1\nm=2\nmodel='LAW'\n[time]\nend=1\n";
     for body in [
         "shape='bar'\nlength=1\narea=0.1",
@@ -24,16 +24,16 @@ fn every_dimension_and_law() {
             model.system.operator().add_force(
                 0.0,
                 &vec![0.01; n],
-                pericles::operator::On::All,
+                pericles::operator::PointSubset::All,
                 &mut force,
             );
-            // A translation exerts no force.
+            // A translation causes no force.
             assert!(force.iter().all(|f| f.abs() < 1e-9), "{body} {law}");
         }
     }
 }
 
-/// The plate with a part of smaller cells.
+/// The plate with a refined part.
 fn refined(text: &str, radius: &str) -> String {
     let part = format!(
         "[[body.refine]]\nball = {{ centre = [\"10 mm\", \"5 mm\"], radius = \"{radius}\" }}\nratio = 2\n[material]"
@@ -42,7 +42,7 @@ fn refined(text: &str, radius: &str) -> String {
 }
 
 #[test]
-fn parts_with_smaller_cells() {
+fn refined_parts_have_their_own_spacing_and_constants() {
     let text =
         plate_with_time("").replace("fracture_energy = \"135 J/m2\"", "critical_stretch = 0.002");
     let (plain, fine) = (build(&text), build(&refined(&text, "3 mm")));
@@ -52,15 +52,19 @@ fn parts_with_smaller_cells() {
     // Half the horizon: twice the frequency, half the step.
     let ratio = plain.stable_step().unwrap() / fine.stable_step().unwrap();
     assert!((1.6..2.6).contains(&ratio), "{ratio}");
-    // Every law, and a fracture energy of which each grid has a critical stretch.
+    // Every pair law, and a fracture energy with a critical stretch per grid.
     let energy = build(&refined(&plate_with_time(""), "3 mm"));
     assert!(energy.system.operator().can_break());
     build(&refined(&text, "3 mm").replace("[material]", "[material]\nmodel = \"green-strain\""));
     for (text, words, marked) in [
-        (refined(&text, "1 um"), "divides none", "[[body.refine]]"),
+        (
+            refined(&text, "1 um"),
+            "contains no cell centre",
+            "[[body.refine]]",
+        ),
         (
             refined(&text, "3 mm").replace("[material]", "[material]\nbonds = \"grid\""),
-            "there is no one lattice",
+            "cells of several sizes",
             "\"grid\"",
         ),
         (
@@ -78,7 +82,7 @@ fn parts_with_smaller_cells() {
 }
 
 #[test]
-fn forms_of_linear_bodies() {
+fn force_kernels_of_linear_bodies_are_chosen_by_cost() {
     let with = |change: &[(&str, &str)]| {
         let mut text = ring();
         for (from, to) in change {
@@ -93,14 +97,14 @@ fn forms_of_linear_bodies() {
         form(&[("density", "bonds = \"spectral\"\ndensity")]),
         "spectral"
     );
-    // Seventy neighbours on either side: by transforms.
+    // Seventy neighbours on either side: convolution.
     assert_eq!(form(&[("periodic = true", "")]), "convolution");
     let list = [
         ("periodic = true", ""),
         ("density", "bonds = \"list\"\ndensity"),
     ];
     assert_eq!(form(&list), "list");
-    // Schemes with two steps take the force apart by points.
+    // Multirate schemes evaluate forces of parts of the body.
     let two = [
         ("periodic = true", ""),
         ("dt = 0.5\n", "dt = 0.5\nratio = 2\nfine = \"all\"\n"),
@@ -115,7 +119,7 @@ fn forms_of_linear_bodies() {
 }
 
 #[test]
-fn surfaces_come_from_files_handed_in() {
+fn surfaces_are_read_with_the_given_reader() {
     use pericles_manifold::surface::Surface;
     use pericles_run::{FileError, Resources};
     let text = r#"
@@ -150,7 +154,7 @@ end = "1 ms"
         asked.lock().unwrap()[0],
         std::path::Path::new("decks/parts/ball.stl")
     );
-    // A triangle is left out: the surface is open.
+    // A triangle is missing: the surface is open.
     let open = || {
         let sphere = Surface::icosphere(2, 1.0).unwrap();
         Surface::new(
@@ -165,13 +169,14 @@ end = "1 ms"
     };
     let error = message(built(open));
     assert!(
-        error.starts_with("decks/ball.toml:4:8:") && error.contains("ball.stl gives no surface"),
+        error.starts_with("decks/ball.toml:4:8:")
+            && error.contains("ball.stl is not a valid surface"),
         "{error}"
     );
     let error = message(built(|| Err(FileError::Wrong("line 3: no number".into()))));
     assert!(error.contains("line 3: no number"), "{error}");
-    // Nobody hands in a reader.
-    assert!(message(deck.build()).contains("handed in"));
+    // Without a reader.
+    assert!(message(deck.build()).contains("no reader for"));
     let cells = text.replace(
         "[material]",
         "[sets]\ncap = { layer = { side = \"+z\", cells = 1 } }\n[material]",
@@ -179,11 +184,11 @@ end = "1 ms"
     let error = Deck::parse(&cells, "ball.toml", &[])
         .unwrap_err()
         .to_string();
-    assert!(error.contains("no cells of one size"), "{error}");
+    assert!(error.contains("no uniform spacing"), "{error}");
 }
 
 #[test]
-fn cells_of_two_lengths_carry_uniform_strain() {
+fn anisotropic_spacing_reproduces_uniform_strain() {
     let text = r#"
 [body]
 shape = "plate"
@@ -218,7 +223,7 @@ end = "1 us"
         inner.count() > 4 && rest < 1e-11 * largest,
         "{rest:e} {largest:e}"
     );
-    // The dispersion tool sees the same bonds.
+    // The dispersion analysis has the same bonds.
     let deck = parse(text);
     let spacing = model.interior(&deck.model).unwrap().lattice.spacing();
     assert_eq!(spacing, [1e-3, 0.75e-3, 0.0]);
@@ -232,11 +237,11 @@ end = "1 us"
     assert!(message.contains("square and cubic cells"), "{message}");
 }
 
-/// A plate of 12 × 6 cells of 1 mm as a list of points in no order, with its right third as block 2.
+/// Returns a plate of 12 × 6 cells of 1 mm as unordered listed points, with its right third as block 2.
 fn listed_plate(volume: f64) -> pericles::space::ListedPoints {
     let mut listed = pericles::space::ListedPoints::default();
     for k in 0..72 {
-        // 5 and 72 have no common divisor: every cell once.
+        // 5 and 72 are coprime: every cell occurs once.
         let cell = 5 * k % 72;
         let (column, row) = (cell % 12, cell / 12);
         let place = [column, row].map(|c| (f64::from(c) + 0.5) * 1e-3);
@@ -272,8 +277,8 @@ end = "1 us"
 "#;
 
 #[test]
-fn listed_points_are_the_body_of_the_grid() {
-    use pericles::operator::On;
+fn listed_points_of_a_grid_equal_the_grid() {
+    use pericles::operator::PointSubset;
     use pericles_run::Resources;
     let built = |text: &str, volume: f64| {
         let deck = Deck::parse(text, "decks/plate.toml", &[]).unwrap();
@@ -297,7 +302,7 @@ fn listed_points_are_the_body_of_the_grid() {
         sizes,
         [("all", 72), ("right", 24), ("corner", 6), ("edge", 6)]
     );
-    // The same plate as a grid: equal forces, to round-off.
+    // The same plate on a grid: equal forces to rounding.
     let grid = LISTED
         .replace(
             "\"points\"\nfile = \"plate.txt\"\ndimension = 2",
@@ -318,7 +323,7 @@ fn listed_points_are_the_body_of_the_grid() {
         model
             .system
             .operator()
-            .add_force(0.0, &u, On::All, &mut force);
+            .add_force(0.0, &u, PointSubset::All, &mut force);
         force
     };
     let (ours, theirs) = (forces(&listed), forces(&grid));
@@ -331,7 +336,7 @@ fn listed_points_are_the_body_of_the_grid() {
             assert!(difference.abs() < 1e-11 * scale, "{i}: {difference}");
         }
     }
-    // Volumes in mm³, a set without points, a traction without area.
+    // Volumes in mm³, an empty set, a traction without area.
     let refused =
         |text: &str, volume: f64| built(text, volume).map(|_| ()).unwrap_err().to_string();
     let error = refused(LISTED, 2.0);
@@ -350,5 +355,5 @@ fn listed_points_are_the_body_of_the_grid() {
     );
     let error = refused(&LISTED.replace("area = \"12 mm2\"", ""), cell);
     assert!(error.contains("listed points have no faces"), "{error}");
-    assert!(refusal(LISTED).to_string().contains("handed in"));
+    assert!(refusal(LISTED).to_string().contains("no reader for"));
 }

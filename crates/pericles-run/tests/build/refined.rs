@@ -1,4 +1,4 @@
-//! Filled surfaces and outlines with smaller cells in parts.
+//! Filled surfaces and outlines with refined parts.
 
 use std::f64::consts::TAU;
 
@@ -8,17 +8,17 @@ use super::mesh::{SOLID, built, compare_forces, cube, refused};
 
 const SURFACE: &str = "shape = \"solid\"\nfile = \"cube.stl\"\nunit = \"mm\"";
 
-/// A deck of the filled cube with other keys of the body.
+/// Returns a deck of the filled cube with other keys of the body.
 fn deck(body: &str) -> String {
     SOLID.replace(SURFACE, body)
 }
 
-/// Its left half in cells of half the size.
+/// The left half refined by a factor of 2.
 const HALF: &str =
     "refine = [{ box = { min = [0, 0, 0], max = [\"4 mm\", \"8 mm\", \"8 mm\"] }, ratio = 2 }]";
 
 #[test]
-fn a_refined_cube_from_a_surface_is_the_refined_block() {
+fn a_refined_filled_cube_equals_the_refined_block() {
     let ours = built(&deck(&format!("{SURFACE}\n{HALF}")), &cube());
     assert_eq!(ours.cloud.len(), 256 + 8 * 256);
     let volume: f64 = ours.cloud.volumes().iter().sum();
@@ -26,27 +26,27 @@ fn a_refined_cube_from_a_surface_is_the_refined_block() {
     let size = "shape = \"block\"\nsize = [\"8 mm\", \"8 mm\", \"8 mm\"]";
     let theirs = super::build(&deck(&format!("{size}\n{HALF}")));
     compare_forces(&ours, &theirs);
-    // A surface that may have gaps has the same cells.
+    // An open surface has the same cells.
     let open = built(&deck(&format!("{SURFACE}\nopen = true\n{HALF}")), &cube());
     assert_eq!(open.cloud.len(), ours.cloud.len());
 }
 
 #[test]
-fn a_refined_outline_is_the_refined_plate() {
+fn a_refined_outline_equals_the_refined_plate() {
     const PLANE: &str = "plane = \"stress\"\nthickness = \"2 mm\"";
-    // About the hole, with a part in a part.
+    // Around the hole, with a nested part.
     let refine = "refine = [{ box = { min = [\"1 mm\", 0], max = [\"6 mm\", \"4 mm\"] }, ratio = 2 }, { box = { min = [\"4 mm\", \"1 mm\"], max = [\"5 mm\", \"3 mm\"] }, ratio = 3 }]";
     let polygons = "polygons = [[[0, 0], [\"8 mm\", 0], [\"8 mm\", \"4 mm\"], [0, \"4 mm\"]], [[\"2 mm\", \"1 mm\"], [\"4 mm\", \"1 mm\"], [\"4 mm\", \"3 mm\"], [\"2 mm\", \"3 mm\"]]]";
     let outline = format!("shape = \"outline\"\n{PLANE}\n{polygons}\n{refine}");
     let ours = super::build(&deck(&outline));
-    // 20 large cells are divided, of which 4 are in the hole and 2 have ratio 3; 12 are not.
+    // 20 large cells are refined, of which 4 are in the hole and 2 have ratio 3; 12 are not refined.
     assert_eq!(ours.cloud.len(), 12 + 4 * 14 + 9 * 2);
     let plate = format!(
         "shape = \"plate\"\n{PLANE}\nsize = [\"8 mm\", \"4 mm\"]\nhole = [{{ box = {{ min = [\"2 mm\", \"1 mm\"], max = [\"4 mm\", \"3 mm\"] }} }}]\n{refine}"
     );
     let theirs = super::build(&deck(&plate));
     compare_forces(&ours, &theirs);
-    // A hole in place of the inner polygon.
+    // A hole instead of the inner polygon.
     let only = polygons.split(", [[\"2 mm\"").next().unwrap().to_owned() + "]";
     let hole = plate.split("hole = ").nth(1).unwrap();
     let outline = format!("shape = \"outline\"\n{PLANE}\n{only}\nhole = {hole}");
@@ -54,7 +54,7 @@ fn a_refined_outline_is_the_refined_plate() {
 }
 
 #[test]
-fn small_cells_follow_a_curved_outline_more_closely() {
+fn refined_cells_approximate_a_curved_outline_better() {
     const CORNERS: usize = 64;
     let corner = |k: usize| {
         let angle = TAU * k as f64 / CORNERS as f64;
@@ -76,7 +76,7 @@ fn small_cells_follow_a_curved_outline_more_closely() {
     };
     let (coarse, fine) = (error(""), error("refine = [{ all = true, ratio = 8 }]"));
     assert!(fine < 0.3 * coarse && fine < 5e-3, "{fine} {coarse}");
-    // The cell about (4 mm, 2 mm) has its centre outside, but small cells inside.
+    // The centre of the cell at (4 mm, 2 mm) is outside, but some of its small cells are inside.
     let small = [3.5625e-3, 1.5625e-3, 0.0];
     let refined = body("refine = [{ all = true, ratio = 8 }]");
     let found = refined.cloud.point(refined.cloud.nearest(small));
@@ -87,7 +87,7 @@ fn small_cells_follow_a_curved_outline_more_closely() {
 }
 
 #[test]
-fn parts_that_cannot_be_refined_are_refused_at_their_key() {
+fn invalid_refined_parts_are_reported_at_their_key() {
     let away = "refine = [{ ball = { centre = [\"90 mm\", 0, 0], radius = \"1 mm\" }, ratio = 2 }]";
     let error = refused(&deck(&format!("{SURFACE}\n{away}")), &cube());
     assert!(
@@ -97,11 +97,14 @@ fn parts_that_cannot_be_refined_are_refused_at_their_key() {
     for (body, parts) in [
         (
             "cells = \"partial\"\nrefine = [{ all = true, ratio = 2 }]",
-            ["deck.toml:7:", "only whole cells can be divided"],
+            ["deck.toml:7:", "refinement requires whole cells"],
         ),
         (
             "positions = \"jittered\"\nrefine = [{ all = true, ratio = 2 }]",
-            ["deck.toml:7:", "random positions have no cells to divide"],
+            [
+                "deck.toml:7:",
+                "refinement requires positions = \"lattice\"",
+            ],
         ),
         (
             "refine = [{ all = true, ratio = 40 }]",

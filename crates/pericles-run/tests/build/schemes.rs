@@ -1,4 +1,4 @@
-//! Schemes in time and their steps.
+//! Time integration schemes and their steps.
 
 use super::{PLATE, build, plate_with_time, refusal};
 
@@ -8,7 +8,7 @@ fn automatic_steps_are_stable_and_end_on_time() {
     let stable = model.stable_step().unwrap();
     assert!((model.dt * model.steps as f64 / 2e-6 - 1.0).abs() < 1e-12);
     assert!(model.dt <= 0.95 * stable * (1.0 + 1e-8));
-    // One step fewer would not do.
+    // One step fewer would exceed the stable step.
     assert!(2e-6 / (model.steps - 1) as f64 > 0.95 * stable);
     let fixed = build(&PLATE.replace("end = \"2 us\"", "end = \"2 us\"\ndt = \"30 ns\""));
     // 67 steps of 30 ns would end at 2.01 µs.
@@ -18,7 +18,7 @@ fn automatic_steps_are_stable_and_end_on_time() {
 }
 
 #[test]
-fn a_body_without_stiffness_needs_a_given_step() {
+fn a_body_without_stiffness_requires_a_given_step() {
     let lone = "[body]\nshape='bar'\nlength=2\nspacing=1\n[[crack]]\nsection=1\n\
                 [material]\ndensity=1\nE=1\nm=1\n[time]\nend=1\n";
     let error = refusal(lone);
@@ -29,7 +29,7 @@ fn a_body_without_stiffness_needs_a_given_step() {
 }
 
 #[test]
-fn schemes() {
+fn every_scheme_is_built_and_runs() {
     for (time, name, order) in [
         ("scheme = \"rk3\"", "rk3", 3),
         ("scheme = \"rk4\"", "rk4", 4),
@@ -39,13 +39,13 @@ fn schemes() {
             5,
         ),
         (
-            "scheme = \"rk3-mts\"\nratio = 4\nfine = \"middle\"",
-            "rk3-mts",
+            "scheme = \"multirate-rk3\"\nratio = 4\nfine = \"middle\"",
+            "multirate-rk3",
             3,
         ),
         (
-            "scheme = \"rk4-mts\"\nratio = 4\nadaptive = {}",
-            "rk4-mts",
+            "scheme = \"multirate-rk4\"\nratio = 4\nadaptive = {}",
+            "multirate-rk4",
             4,
         ),
         (
@@ -62,7 +62,7 @@ fn schemes() {
         assert!(model.warnings.is_empty(), "{name}");
         let two = model.integrator.refinement();
         assert_eq!(two.is_some(), time.contains("ratio"));
-        // They run.
+        // The schemes run.
         let mut simulation = model.simulation();
         simulation.run(|_| pericles::Control::Continue).unwrap();
     }
@@ -73,10 +73,10 @@ fn schemes() {
 }
 
 #[test]
-fn the_highest_frequency_is_that_of_the_body_whatever_the_scheme() {
+fn the_highest_frequency_does_not_depend_on_the_scheme() {
     let verlet = build(&plate_with_time(""));
     assert_eq!(verlet.frequency, verlet.body_frequency);
-    for scheme in ["rk4-mts", "respa"] {
+    for scheme in ["multirate-rk4", "respa"] {
         let time = format!("scheme = \"{scheme}\"\nratio = 4\nfine = \"middle\"");
         let two = build(&plate_with_time(&time));
         assert_eq!(two.body_frequency, verlet.body_frequency, "{scheme}");
@@ -86,7 +86,7 @@ fn the_highest_frequency_is_that_of_the_body_whatever_the_scheme() {
 }
 
 #[test]
-fn a_step_between_the_bounds_of_the_stable_one_is_warned_of_and_one_above_is_refused() {
+fn steps_between_the_bounds_lead_to_a_warning_and_steps_above_are_rejected() {
     let frequency = build(PLATE).frequency.unwrap();
     let [stable, unstable] = [
         frequency.stable_step(2.0, 1.0),
@@ -106,7 +106,7 @@ fn a_step_between_the_bounds_of_the_stable_one_is_warned_of_and_one_above_is_ref
 }
 
 #[test]
-fn schemes_that_do_not_fit_are_refused() {
+fn incompatible_schemes_are_rejected() {
     for (time, line, words) in [
         ("scheme = \"dormand-prince\"", 55, "give dt"),
         (
@@ -120,9 +120,9 @@ fn schemes_that_do_not_fit_are_refused() {
             "at least as thick as its longest bond",
         ),
         (
-            "scheme = \"rk4-mts\"\nratio = 4\nfine = \"middle\"\ndt = \"1 us\"",
+            "scheme = \"multirate-rk4\"\nratio = 4\nfine = \"middle\"\ndt = \"1 us\"",
             60,
-            "rk4-mts needs dt",
+            "multirate-rk4 needs dt",
         ),
     ] {
         let error = refusal(&plate_with_time(time));
@@ -133,11 +133,14 @@ fn schemes_that_do_not_fit_are_refused() {
     let unbreakable = plate_with_time("scheme = \"respa\"\nratio = 4\nadaptive = {}")
         .replace("fracture_energy = \"135 J/m2\"\n", "");
     let error = refusal(&unbreakable);
-    assert!(error.to_string().contains("never break"), "{error}");
+    assert!(
+        error.to_string().contains("its bonds do not break"),
+        "{error}"
+    );
 }
 
 #[test]
-fn a_stiff_inclusion_leaves_the_coarse_step_as_it_is() {
+fn a_stiff_inclusion_does_not_reduce_the_coarse_step() {
     let inclusion = |text: &str| {
         text.replace(
             "[sets]",
@@ -150,7 +153,7 @@ fn a_stiff_inclusion_leaves_the_coarse_step_as_it_is() {
     let plain = limit(&plate_with_time(""));
     let stiff = limit(&inclusion(&plate_with_time("")));
     let two = limit(&inclusion(&plate_with_time(mts)));
-    // Bonds within the core are 16 times stiffer, those that leave it 8.5 times.
+    // Bonds within the core are 16 times stiffer, those across its boundary 8.5 times.
     assert!(
         stiff < 0.4 * plain && stiff > 0.25 * plain,
         "{stiff} {plain}"
@@ -160,7 +163,7 @@ fn a_stiff_inclusion_leaves_the_coarse_step_as_it_is() {
 
 #[test]
 fn a_given_step_ends_on_time() {
-    // 20 steps of 0.1 s but for rounding, and a bit more than two of 0.9 s.
+    // 20 steps of 0.1 s up to rounding, and slightly more than two of 0.9 s.
     let with = |end: &str, dt: &str| {
         build(&format!(
             r#"
@@ -190,6 +193,9 @@ time = {{ end = {end}, dt = {dt} }}
         };
         let line = warning.line();
         assert!(line.contains("all steps are shortened to"), "{line}");
-        assert!(line.contains(&format!("{steps} of which end")), "{line}");
+        assert!(
+            line.contains(&format!("so that {steps} steps end exactly")),
+            "{line}"
+        );
     }
 }

@@ -1,4 +1,4 @@
-//! Examples whose solutions are known, without their files.
+//! Examples with known solutions, without output.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use super::common::Build;
 use pericles::{Control, Simulation};
 use pericles_deck::Deck;
 
-/// An example ready to run, and the point of each probe by name.
+/// Returns an assembled example and the point of each probe by name.
 fn example(name: &str, overrides: &[&str]) -> (Simulation, impl Fn(&str) -> usize + use<>) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../../examples")
@@ -23,7 +23,7 @@ fn example(name: &str, overrides: &[&str]) -> (Simulation, impl Fn(&str) -> usiz
 }
 
 #[test]
-fn a_bar_in_tension_obeys_hooke() {
+fn a_bar_in_tension_follows_hookes_law() {
     for correction in ["none", "volume", "energy"] {
         let change = format!("material.surface_correction={correction}");
         let (mut run, point) = example("statics/bar.toml", &[&change]);
@@ -46,7 +46,7 @@ fn a_bar_in_tension_obeys_hooke() {
 }
 
 #[test]
-fn an_interface_splits_a_pulse_as_impedances_say() {
+fn reflection_at_an_interface_follows_from_the_impedances() {
     let impedance = |young: f64, density: f64| (young * density).sqrt();
     let (first, second) = (impedance(210e9, 7850.0), impedance(70e9, 2700.0));
     for rule in ["harmonic", "arithmetic", "weaker"] {
@@ -56,7 +56,7 @@ fn an_interface_splits_a_pulse_as_impedances_say() {
         let (mut sent, mut reflected, mut transmitted) = (0.0f64, 0.0f64, 0.0f64);
         run.run(|run| {
             let state = run.state();
-            // The pulse has left the first probe by then, and its reflection is on the way.
+            // At this time the pulse has passed the first probe, and its reflection has not yet returned.
             if state.t < 35e-6 {
                 sent = sent.max(state.u[before]);
             } else {
@@ -83,7 +83,8 @@ fn an_interface_splits_a_pulse_as_impedances_say() {
     }
 }
 
-/// Strain beside a hole over that far away, half a cell from its edge: what the plate of the example gives, and Kirsch's solution at the same places.
+/// Returns the strain at a hole, half a cell from its edge, relative to the far field: for the plate of the example,
+/// and Kirsch's solution at the same positions.
 fn beside_the_hole(spacing: f64) -> (f64, f64) {
     let half = 0.5 * spacing;
     let overrides = [
@@ -100,10 +101,11 @@ fn beside_the_hole(spacing: f64) -> (f64, f64) {
     (strain / (10e6 / 72e9), kirsch(0.01 + half, 3.0 * half))
 }
 
-/// (u_y(x, y) − u_y(x, −y))/2y over the strain far away, for a hole of radius 10 mm in an infinite plate in plane stress with ν = 1/3 under tension along y.
+/// Returns (u_y(x, y) − u_y(x, −y))/2y relative to the far-field strain, for a hole of radius 10 mm in an infinite
+/// plate in plane stress with ν = 1/3 under tension along y.
 fn kirsch(x: f64, y: f64) -> f64 {
     let (a, r) = (0.01, x.hypot(y));
-    // The angle from the load.
+    // Angle from the direction of the load.
     let angle = (-x).atan2(y);
     let nu = 1.0 / 3.0;
     let kappa = (3.0 - nu) / (1.0 + nu);
@@ -116,14 +118,14 @@ fn kirsch(x: f64, y: f64) -> f64 {
 }
 
 #[test]
-fn the_exact_solution_has_three_at_the_edge() {
+fn the_exact_stress_concentration_at_the_edge_is_three() {
     assert!((kirsch(0.01, 1e-7) - 3.0).abs() < 1e-5);
 }
 
 /// Minutes without optimisation: `cargo test --release -p pericles-deck --test solutions -- --ignored --nocapture`.
 #[test]
 #[ignore = "minutes"]
-fn strain_beside_a_hole_is_three_times_that_far_away() {
+fn strain_at_a_hole_is_three_times_the_far_field() {
     for spacing in [2e-3, 1e-3, 0.5e-3] {
         let (found, exact) = beside_the_hole(spacing);
         println!(
@@ -135,7 +137,7 @@ fn strain_beside_a_hole_is_three_times_that_far_away() {
     assert!((found / exact - 1.0).abs() < 0.05, "{found} {exact}");
 }
 
-/// Least squares: the coefficients of 1, r² and r⁴ that come nearest to the values, by the normal equations.
+/// Returns the least-squares coefficients of 1, r² and r⁴, by the normal equations.
 fn even_polynomial(samples: &[(f64, f64)]) -> [f64; 3] {
     let powers = |r: f64| [1.0, r * r, r.powi(4)];
     let mut rows = [[0.0; 4]; 3];
@@ -161,8 +163,9 @@ fn even_polynomial(samples: &[(f64, f64)]) -> [f64; 3] {
     rows.map(|row| row[3])
 }
 
-/// The stress concentration beside the hole: the strain along the ligament from two horizons to 25 mm off the edge, in the form of Kirsch's solution c₀ + c₂ (a/x)² + c₄ (a/x)⁴, continued to
-/// the edge and divided by c₀.
+/// Returns the stress concentration at the hole: the strain along the ligament from two horizons to 25 mm from the
+/// edge is fitted by the form of Kirsch's solution c₀ + c₂ (a/x)² + c₄ (a/x)⁴, extrapolated to the edge and divided
+/// by c₀.
 fn concentration(spacing: f64, ratio: u32) -> f64 {
     let radius = 0.01;
     let half = 0.5 * spacing;
@@ -189,7 +192,7 @@ fn concentration(spacing: f64, ratio: u32) -> f64 {
 }
 
 #[test]
-fn even_polynomials_are_found_again() {
+fn the_fit_recovers_even_polynomials() {
     let samples: Vec<(f64, f64)> = (1..9)
         .map(|k| 0.1 * f64::from(k))
         .map(|r| (r, 1.0 + 0.5 * r * r - 2.0 * r.powi(4)))
@@ -200,7 +203,7 @@ fn even_polynomials_are_found_again() {
     }
 }
 
-/// Minutes, as above.
+/// Takes minutes, as above.
 #[test]
 #[ignore = "minutes"]
 fn the_stress_concentration_converges_to_three() {
@@ -218,10 +221,10 @@ fn the_stress_concentration_converges_to_three() {
         println!("m = {ratio}, horizon {horizon} mm: {found:.3}");
         found
     });
-    // Howland's for a plate ten times as wide as its hole.
+    // Howland's solution for a plate ten times as wide as its hole.
     let exact = 3.03;
     assert!((found[2] / exact - 1.0).abs() < 0.05, "{found:?}");
-    // In m at a horizon of 6 mm it has converged, and to a horizon of zero it goes in a straight line.
+    // Converged in m at a horizon of 6 mm; linear in the horizon as it tends to zero.
     assert!((found[5] / found[0] - 1.0).abs() < 0.02, "{found:?}");
     for [coarse, fine] in [[found[1], found[2]], [found[3], found[4]]] {
         let limit = 2.0 * fine - coarse;

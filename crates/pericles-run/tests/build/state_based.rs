@@ -1,4 +1,5 @@
-//! State-based materials from decks to states: stiffness and contraction, fields, fracture with its energy balance, schemes, resumption, periodic bodies, refusals.
+//! State-based materials in decks: stiffness and contraction, fields, fracture with energy balance, schemes, resume,
+//! periodic bodies, unsupported features.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +12,7 @@ use super::common::Build;
 use super::composition::run_every_way;
 use super::{build, parse, refusal};
 
-/// A plate with a given displacement; STATE, NU and OTHER are replaced.
+/// A plate with a given displacement; STATE, NU and OTHER are placeholders.
 const STRAINED: &str = r#"
 body = { shape = "plate", size = [16, 14], origin = [0, 0], spacing = 1, plane = "STATE" }
 material = { model = "state-based", strains = "small", density = 1, youngs_modulus = 10, poisson_ratio = NU, horizon_ratio = 3, influence = { function = "isotropic" }OTHER }
@@ -25,7 +26,7 @@ fn strained(state: &str, nu: f64, other: &str) -> String {
     text.replace("NU", &nu.to_string())
 }
 
-/// The point of a body nearest to a place.
+/// Returns the point of a body nearest to a position.
 fn nearest(run: &Simulation, place: [f64; 2]) -> usize {
     let cloud = run.system().cloud();
     let distance = |i: usize| {
@@ -37,9 +38,10 @@ fn nearest(run: &Simulation, place: [f64; 2]) -> usize {
         .unwrap()
 }
 
-/// Hooke's law inside a plate with the isotropic influence function: no error of the lattice is left. The virial stress has the deformed bonds, so that the strains are small.
+/// Hooke's law inside a plate with the isotropic influence function, which has no lattice error. The virial stress
+/// uses the deformed bonds, so the strains are small.
 #[test]
-fn stress_in_the_interior_is_that_of_hookes_law() {
+fn interior_stress_follows_hookes_law() {
     let [xx, yy, xy]: [f64; 3] = [1e-9, -2e-9, 4e-10];
     for nu in [0.2f64, 0.45] {
         let (young, shear) = (10.0, 10.0 / (2.0 * (1.0 + nu)));
@@ -70,7 +72,7 @@ fn stress_in_the_interior_is_that_of_hookes_law() {
     }
 }
 
-/// Inside the body, where families are complete.
+/// In the interior, where neighbourhoods are complete.
 #[test]
 fn dilatation_of_a_uniform_strain_is_its_trace() {
     let run = build(&strained("strain", 0.3, "")).simulation();
@@ -81,38 +83,39 @@ fn dilatation_of_a_uniform_strain_is_its_trace() {
     }
 }
 
-/// A bar of state-based material between its ends has the strain σ/E: a bar has no lattice error.
+/// A bar of state-based material has the strain σ/E away from its ends: bars have no lattice error.
 #[test]
 fn a_bar_in_tension_has_youngs_modulus() {
     let text = r#"
 body = { shape = "bar", length = 60, spacing = 1 }
 material = { model = "state-based", strains = "small", density = 1, youngs_modulus = 10, horizon_ratio = 3 }
 sets = { left = { layer = { side = "-x", cells = 3 } }, right = { layer = { side = "+x", cells = 3 } } }
-prescribe = [{ set = "left", displacement = 0 }]
+constraint = [{ set = "left", displacement = 0 }]
 load = [{ set = "right", traction = 0.01 }]
-time = { scheme = "relaxation", tolerance = 1e-10 }
+time = { scheme = "adaptive-dynamic-relaxation", tolerance = 1e-10 }
 "#;
     let mut run = build(text).simulation();
     run.run(|_| Control::Continue).unwrap();
     let u = &run.state().u;
     let strain = (u[40] - u[20]) / 20.0;
-    // Seen: to the tolerance of the relaxation.
+    // Observed: to the tolerance of adaptive dynamic relaxation.
     assert!((strain / 1e-3 - 1.0).abs() < 1e-6, "{strain}");
 }
 
-/// A free plate pulled at its ends: strain along and across in its middle half.
+/// A free plate in tension: axial and transverse strain in its middle half.
 ///
-/// The interior has no error of the lattice; the free surfaces of a plate of 20 rows are left. With the energy correction Young's modulus is off by at most 2 % there (1.6 % at ν = 0.2, 0.9 % at 0.4 on a
-/// plate of 40 × 20 cells), and the contraction by some per cent: the bounds are twice that.
+/// The interior has no lattice error; errors come from the free surfaces of a plate of 20 rows. With the energy
+/// correction the error of Young's modulus is at most 2 % (1.6 % at ν = 0.2, 0.9 % at 0.4 on a plate of 40 × 20
+/// cells), and that of the contraction several per cent: the bounds are twice these values.
 #[test]
-fn a_plate_in_tension_contracts_by_poissons_ratio() {
+fn a_plate_in_tension_has_the_given_poissons_ratio() {
     for nu in [0.2f64, 0.45] {
         let text = r#"
 body = { shape = "plate", size = [40, 20], origin = [-20, -10], spacing = 1, plane = "stress" }
 material = { model = "state-based", strains = "small", density = 1, youngs_modulus = 10, poisson_ratio = NU, horizon_ratio = 3, influence = { function = "isotropic" }, surface_correction = "energy" }
 sets = { left = { layer = { side = "-x", cells = 3 } }, right = { layer = { side = "+x", cells = 3 } } }
 load = [{ set = "right", traction = [0.01, 0] }, { set = "left", traction = [-0.01, 0] }]
-time = { scheme = "relaxation", tolerance = 1e-7 }
+time = { scheme = "adaptive-dynamic-relaxation", tolerance = 1e-7 }
 "#;
         let mut run = build(&text.replace("NU", &nu.to_string())).simulation();
         run.run(|_| Control::Continue).unwrap();
@@ -127,20 +130,21 @@ time = { scheme = "relaxation", tolerance = 1e-7 }
     }
 }
 
-/// A notched plate that is pulled until it tears; FAILURE is replaced.
+/// A notched plate in tension that fractures; FAILURE is a placeholder.
 const TORN: &str = r#"body = { shape = "plate", size = [30, 20], spacing = 1, plane = "stress" }
 material = { model = "state-based", strains = "small", density = 1, youngs_modulus = 1, poisson_ratio = 0.2, horizon_ratio = 3, FAILURE }
 crack = [{ segment = [[0, 10], [12, 10]] }]
 sets.top = { layer = { side = "+y", cells = 1 } }
 sets.bottom = { layer = { side = "-y", cells = 1 } }
-prescribe = [{ set = "top", velocity = ["free", 0.004] }, { set = "bottom", velocity = ["free", -0.004] }]
+constraint = [{ set = "top", velocity = ["free", 0.004] }, { set = "bottom", velocity = ["free", -0.004] }]
 initial = [{ velocity = [0, { expression = "8e-3*(y/20-0.5)" }] }]
 time = { end = 10, dt = 0.2 }
 "#;
 
-/// The same bits on any number of threads and after a stop; with strains linear in the displacement the balance of energy is exact to rounding, whichever bonds break.
+/// Results are bitwise identical for any number of threads and after a stop. With strains linear in the displacement
+/// the energy balance is exact to rounding, also with breaking bonds.
 #[test]
-fn a_notched_plate_tears_and_keeps_its_energy_balance() {
+fn a_fracturing_plate_conserves_energy() {
     for failure in [
         "critical_stretch = 0.004",
         "critical_stretch = 0.004, bonds = \"list\"",
@@ -153,9 +157,9 @@ fn a_notched_plate_tears_and_keeps_its_energy_balance() {
     }
 }
 
-/// Waves that have not reached the faces know nothing of them: the periodic plate moves as the middle of a larger free one does.
+/// Before waves reach the faces, a periodic plate moves like the middle of a larger free one.
 #[test]
-fn a_periodic_plate_is_the_interior_of_a_large_one() {
+fn a_periodic_plate_moves_like_the_interior_of_a_large_one() {
     let text = r#"
 body = { shape = "plate", size = [SIZE, SIZE], origin = [-HALF, -HALF], spacing = 1, plane = "strain", periodic = PERIODIC }
 material = { model = "state-based", density = 1, youngs_modulus = 1, poisson_ratio = 0.4, horizon_ratio = 3 }
@@ -179,15 +183,15 @@ time = { end = 2, dt = 0.2 }
     let (periodic, large) = (moved(20, true), moved(28, false));
     for (place, u) in &periodic {
         for (a, b) in u.iter().zip(&large[place]) {
-            // The displacement started with 1e-2, at the faces with less than 1e-30; waves run three cells.
+            // The initial displacement is 1e-2, at the faces below 1e-30; waves travel three cells.
             assert!((a - b).abs() < 1e-11, "{place:?}: {a} {b}");
         }
     }
 }
 
-/// Two materials: each point has the constants of its own, and bonds between them the limit of their pair.
+/// Two materials: points have the constants of their material, interface bonds the limit of the pair.
 #[test]
-fn materials_and_their_interfaces() {
+fn materials_and_interfaces_have_their_own_constants() {
     let text = strained("strain", 0.3, ", name = \"steel\", critical_stretch = 0.1");
     let text = text
         + r#"
@@ -214,7 +218,7 @@ sets.part = { where = "x > 8" }
 }
 
 #[test]
-fn facts_have_the_elastic_constants_and_the_isotropy_of_the_lattice() {
+fn facts_contain_elastic_constants_and_anisotropy_of_the_lattice() {
     let text = strained(
         "strain",
         0.3,
@@ -229,7 +233,7 @@ fn facts_have_the_elastic_constants_and_the_isotropy_of_the_lattice() {
     for error in [facts.shear_error, facts.diagonal_shear_error] {
         assert!(error.unwrap().abs() < 1e-13);
     }
-    // Table of the weighted sums over the lattice at three spacings: constant function, no volume correction.
+    // Weighted sums over the lattice with three spacings: constant function, no volume correction.
     let constant = text.replace("isotropic", "constant");
     let built = build(&constant);
     let shear = match built.assembly.constants.as_ref().unwrap() {
@@ -240,7 +244,7 @@ fn facts_have_the_elastic_constants_and_the_isotropy_of_the_lattice() {
 }
 
 #[test]
-fn models_of_state_based_bodies_survive_json() {
+fn state_based_models_round_trip_through_json() {
     for part in [
         "",
         ", fracture_energy = 1e-4, failure = \"bond-energy\", volume_correction = \"none\"",
@@ -254,7 +258,7 @@ fn models_of_state_based_bodies_survive_json() {
 }
 
 #[test]
-fn what_state_based_bodies_do_not_represent_is_refused_with_its_reason() {
+fn unsupported_features_of_state_based_materials_are_rejected_with_a_reason() {
     let text = strained("stress", 0.3, "");
     let refuse = |text: &str, reason: &str| {
         let error = refusal(text).to_string();
@@ -262,18 +266,18 @@ fn what_state_based_bodies_do_not_represent_is_refused_with_its_reason() {
     };
     let influence = "{ function = \"isotropic\" }";
     for (form, other, reason) in [
-        ("grid-f32", "", "in double precision, on a stencil"),
-        ("convolution", "", "in double precision, on a stencil"),
-        ("spectral", "", "in double precision, on a stencil"),
+        ("grid-f32", "", "a stencil in double precision"),
+        ("convolution", "", "a stencil in double precision"),
+        ("spectral", "", "a stencil in double precision"),
         (
             "grid",
             ", surface_correction = \"energy\"",
-            "corrected surfaces of state-based materials are kept as a list",
+            "the surface correction of state-based materials needs a neighbour list",
         ),
         (
             "grid",
             ", volume_correction = \"none\", failure = \"bond-energy\", fracture_energy = 1e-3",
-            "the work of every bond is kept as a list",
+            "the work of each bond is stored with a neighbour list only",
         ),
     ] {
         let bonds = format!("{influence}, bonds = \"{form}\"{other}");
@@ -293,7 +297,7 @@ fn what_state_based_bodies_do_not_represent_is_refused_with_its_reason() {
         &bond_based,
         "only state-based and correspondence materials (model = \"state-based\" or \"correspondence\") have a dilatation",
     );
-    // At six spacings the isotropic function of a plate is negative near the horizon.
+    // With six spacings the isotropic function of a plate is negative near the horizon.
     let signed = strained(
         "stress",
         0.3,
@@ -305,7 +309,7 @@ fn what_state_based_bodies_do_not_represent_is_refused_with_its_reason() {
     );
 }
 
-/// A deck that says nothing of the influence function has the conical one; other defaults are those of bond-based materials.
+/// The default influence function is conical; other defaults are those of bond-based materials.
 #[test]
 fn the_default_influence_function_is_conical() {
     let text = strained("stress", 0.3, "");

@@ -1,22 +1,22 @@
-//! Thermal expansion and scattering strength from decks to states.
+//! Thermal expansion and scattered strength in decks.
 
 use pericles::Control;
 use pericles::observe::Field;
 
 use super::{build, parse, refusal};
 
-/// A plate in plane strain that may expand; MODEL is replaced.
+/// A free plate in plane strain; MODEL is a placeholder.
 const PLATE: &str = r#"
 body = { shape = "plate", size = [8, 4], spacing = 1, plane = "strain" }
 material = { density = 1, youngs_modulus = 10, horizon_ratio = 3, MODEL }
 sets = { left = { where = "x < 1" }, low = { where = "y < 1" } }
-prescribe = [{ set = "left", displacement = [0, "free"] }, { set = "low", displacement = ["free", 0] }]
+constraint = [{ set = "left", displacement = [0, "free"] }, { set = "low", displacement = ["free", 0] }]
 thermal = { expansion = 1e-5, temperature = 303, reference = 293 }
-time = { scheme = "relaxation", tolerance = 1e-7, load_steps = 1 }
+time = { scheme = "adaptive-dynamic-relaxation", tolerance = 1e-7, load_steps = 1 }
 output = { fields = { names = ["Temperature"] } }
 "#;
 
-/// The strain across is prevented: (1 + ν) α ΔT within the plane, for every model.
+/// The out-of-plane strain is prevented: the in-plane strain is (1 + ν) α ΔT for every model.
 #[test]
 fn plates_in_plane_strain_expand_freely_within_the_plane() {
     for (model, nu) in [
@@ -36,7 +36,7 @@ fn plates_in_plane_strain_expand_freely_within_the_plane() {
             for c in 0..2 {
                 let expected = stretch * (place[c] - 0.5);
                 let error = (run.state().u[c * n + i] - expected).abs();
-                // Finite strains differ by the order of the strain.
+                // Finite-strain effects are of the order of the strain.
                 assert!(
                     error < 1e-3 * stretch * 8.0,
                     "{model}, {place:?}: {error:e}"
@@ -52,13 +52,13 @@ fn plates_in_plane_strain_expand_freely_within_the_plane() {
         );
         let energies = snapshot.energies();
         let size = energies.work.abs().max(energies.initial);
-        // What the prevented strain across the plane stores, ½ E (α ΔT)², is part of the energy of correspondence materials alone.
+        // The energy of the prevented out-of-plane strain, ½ E (α ΔT)², is included for correspondence materials only.
         let across = match model.contains("correspondence") {
             true => 0.5 * 10.0 * 1e-8 * 32.0,
             false => 0.0,
         };
         let error = (energies.elastic - across).abs();
-        // Finite strains differ by the order of the strain, 1e-4; chosen after seeing 2e-5.
+        // Finite-strain effects are of the order of the strain, 1e-4; bound chosen after observing 2e-5.
         assert!(error < 1e-4 * size, "{model}: {energies:?}");
         assert!(
             energies.balance().abs() < 1e-3 * size,
@@ -68,7 +68,7 @@ fn plates_in_plane_strain_expand_freely_within_the_plane() {
 }
 
 #[test]
-fn materials_have_coefficients_of_their_own() {
+fn materials_have_their_own_expansion_coefficients() {
     let deck = r#"
 body = { shape = "bar", length = 8, spacing = 1 }
 materials = { default = { model = "linear", density = 1, youngs_modulus = 1, horizon_ratio = 3 }, hot = { density = 1, youngs_modulus = 1 } }
@@ -94,7 +94,7 @@ time = { end = 1, dt = 0.1 }
 }
 
 #[test]
-fn forms_and_bodies_without_thermal_expansion_are_refused() {
+fn thermal_expansion_is_rejected_where_it_is_not_supported() {
     let heated = PLATE.replace("MODEL", "bonds = \"grid\"");
     assert!(refusal(&heated).to_string().contains("thermal expansion"));
     let spectral = PLATE.replace("MODEL", "model = \"linear\", bonds = \"convolution\"");
@@ -103,7 +103,11 @@ fn forms_and_bodies_without_thermal_expansion_are_refused() {
         "MODEL",
         "model = \"state-based\", poisson_ratio = 0.3, surface_correction = \"energy\"",
     );
-    assert!(refusal(&corrected).to_string().contains("corrected"));
+    assert!(
+        refusal(&corrected)
+            .to_string()
+            .contains("does not include thermal strain")
+    );
     let cold = PLATE.replace("MODEL", "").replace(
         "thermal = { expansion = 1e-5, temperature = 303, reference = 293 }\n",
         "",
@@ -116,14 +120,14 @@ fn forms_and_bodies_without_thermal_expansion_are_refused() {
     assert!(refusal(&undefined).to_string().contains("sqrt"));
 }
 
-/// Equal seeds, equal cracks; other seeds, others.
+/// Equal random seeds give equal cracks, different seeds different ones.
 #[test]
-fn strengths_scatter_by_their_seed() {
+fn scattered_strengths_depend_on_the_random_seed() {
     let deck = r#"
 body = { shape = "plate", size = [24, 8], spacing = 1, plane = "stress" }
 material = { MODELdensity = 1, youngs_modulus = 1, horizon_ratio = 3, critical_stretch = 0.02, scatter = { shape = 6, seed = SEED } }
 sets = { left = { where = "x < 3" }, right = { where = "x > 21" } }
-prescribe = [{ set = "left", velocity = [-0.02, 0] }, { set = "right", velocity = [0.02, 0] }]
+constraint = [{ set = "left", velocity = [-0.02, 0] }, { set = "right", velocity = [0.02, 0] }]
 time = { end = 15 }
 "#;
     for model in [

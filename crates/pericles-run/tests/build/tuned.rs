@@ -1,4 +1,4 @@
-//! Influence functions made against dispersion, from decks.
+//! Tuned influence functions in decks.
 
 use super::common::Build;
 use super::decks::solid;
@@ -59,9 +59,9 @@ fn tuned_kernels_are_compared_with_a_constant_one() {
     assert!((25.0..45.0).contains(&constant.spacings), "{constant:?}");
     assert!(tuned.worst < 0.04 && constant.worst > 0.3);
     assert!(warned.is_empty(), "{warned:?}");
-    // Coefficients per class have no continuum without a grid.
+    // Coefficients per class have no continuum limit.
     assert_eq!(good.model, None);
-    // Equal weights at a horizon of five spacings do worse than no tuning.
+    // Equal weights with a horizon of five spacings are worse than no tuning.
     let text = PLATE
         .replace(
             "INFLUENCE",
@@ -75,14 +75,16 @@ fn tuned_kernels_are_compared_with_a_constant_one() {
     };
     let line = warning.line();
     assert!(
-        line.starts_with("deck.toml:12:13: the tuned influence function carries waves worse"),
+        line.starts_with(
+            "deck.toml:12:13: the tuned influence function has more numerical dispersion"
+        ),
         "{line}"
     );
     assert!(line.contains("decay = 1 (the default)"), "{line}");
 }
 
 #[test]
-fn unstable_coefficients_need_allow_unstable() {
+fn unstable_coefficients_require_allow_unstable() {
     let lines = r#"influence = { function = "tuned", method = "subdomain-collocation", decay = "none", lower_bound = "none" }"#;
     let refused = deck(lines).unwrap_err();
     assert!(
@@ -126,7 +128,7 @@ fn kernels_that_would_be_unstable_are_bounded() {
     let refused = tuned(r#"influence = { function = "tuned", lower_bound = "none" }"#);
     let message = refused.unwrap_err().to_string();
     assert!(message.contains("unstable"), "{message}");
-    // On a plate no bound is needed.
+    // For a plate no bound is needed.
     let plate = self::deck(r#"influence = { function = "tuned" }"#).unwrap();
     assert_eq!(
         solid(&plate)
@@ -141,9 +143,9 @@ fn kernels_that_would_be_unstable_are_bounded() {
 }
 
 #[test]
-fn classes_that_carry_nothing_are_warned_of_where_bonds_break() {
+fn breakable_classes_without_stiffness_lead_to_a_warning() {
     let cautions = |lines: &str| {
-        // With an initial velocity: a plate at rest would get the warning that nothing acts on it.
+        // With an initial velocity, to avoid the warning about a body at rest.
         let text = PLATE.replace("INFLUENCE", lines) + "[[initial]]\nvelocity = [1, 0]\n";
         let deck = Deck::parse(&text, "deck.toml", &[]).unwrap();
         let warnings = deck.build().unwrap().warnings;
@@ -153,7 +155,7 @@ fn classes_that_carry_nothing_are_warned_of_where_bonds_break() {
     let zero = r#"influence = { function = "tuned", lower_bound = 0 }"#;
     let found = cautions(&format!("{zero}\n{breaks}"));
     assert!(
-        found[0].contains("4 of 6 classes of bonds have the coefficient 0"),
+        found[0].contains("4 of 6 bond classes have the coefficient 0"),
         "{found:?}"
     );
     assert!(found[0].contains("lower_bound such as 0.5"), "{found:?}");
@@ -163,7 +165,7 @@ fn classes_that_carry_nothing_are_warned_of_where_bonds_break() {
 }
 
 #[test]
-fn weights_of_bars_are_refused() {
+fn weights_of_bars_are_rejected() {
     let bar = PLATE
         .replace("\"plate\"", "\"bar\"")
         .replace("size = [\"12 mm\", \"12 mm\"]", "length = \"12 mm\"")
@@ -173,15 +175,18 @@ fn weights_of_bars_are_refused() {
         let refused = Deck::parse(&bar.replace("INFLUENCE", &lines), "deck.toml", &[]).unwrap_err();
         let message = refused.to_string();
         assert!(
-            message.contains(&format!("`{key}` has no place in [material.influence]")),
+            message.contains(&format!("`{key}` is not allowed in [material.influence]")),
             "{message}"
         );
-        assert!(message.contains("a bar has one kind of waves"), "{message}");
+        assert!(
+            message.contains("weights have no effect on a bar"),
+            "{message}"
+        );
     }
 }
 
 #[test]
-fn tuned_for_the_deck_s_own_grid() {
+fn coefficients_are_tuned_for_the_grid_of_the_deck() {
     let signed = deck(r#"influence = { function = "tuned", decay = "none" }"#).unwrap();
     for (value, expected) in values(&signed)
         .iter()
@@ -199,7 +204,7 @@ fn tuned_for_the_deck_s_own_grid() {
     );
     assert!((values(&absolute.unwrap())[0] - 20.83).abs() < 0.05);
 
-    // With breaking only a positive table will do.
+    // Breaking bonds require positive coefficients.
     let breaks = "fracture_energy = 135\nfracture_calibration = \"continuum\"";
     let refused = deck(&format!("influence = {{ function = \"tuned\" }}\n{breaks}")).unwrap();
     let message = refused.build().err().unwrap().to_string();
@@ -215,12 +220,12 @@ fn tuned_for_the_deck_s_own_grid() {
 }
 
 #[test]
-fn values_by_class() {
-    let table = "influence = { function = \"classes\", table = [[[1, 0], 3.76360], [[1, 1], 2.98631], [[2, 0], 0.5], [[2, 1], 0.5], [[2, 2], 0.5], [[3, 0], 0.5]] }";
+fn values_by_class_are_read() {
+    let table = "influence = { function = \"lattice-classes\", table = [[[1, 0], 3.76360], [[1, 1], 2.98631], [[2, 0], 0.5], [[2, 1], 0.5], [[2, 2], 0.5], [[3, 0], 0.5]] }";
     let given = deck(table).unwrap();
     assert_eq!(values(&given)[..3], [3.76360, 2.98631, 0.5]);
     assert!(given.build().unwrap().constants().stiffness_error.abs() < 1e-12);
-    // Half a spacing more reach needs two classes more.
+    // Half a spacing more of reach adds two classes.
     let text = PLATE
         .replace("INFLUENCE", table)
         .replace("\"none\"", "\"extended\"");
@@ -234,7 +239,7 @@ fn values_by_class() {
 }
 
 #[test]
-fn cosines_as_printed() {
+fn cosine_coefficients_match_the_published_ones() {
     let lines = r#"influence = { function = "cosines", wavenumber = 1.1, coefficients = [2.3, 2.0, -0.39, -0.48, 0.28, 0.14, -0.15, -0.02, 0.05] }
         modulus = "unmodified""#;
     let influence = solid(&deck(lines).unwrap())
@@ -248,7 +253,7 @@ fn cosines_as_printed() {
 }
 
 #[test]
-fn wrong_ones_say_what_is_allowed() {
+fn invalid_tuning_is_rejected_with_allowed_values() {
     for (lines, words) in [
         (
             r#"influence = { function = "tuned", method = "collocation" }"#,
@@ -256,7 +261,7 @@ fn wrong_ones_say_what_is_allowed() {
         ),
         (
             r#"influence = { function = "tuned", lower_bound = 2 }"#,
-            "largest possible bound",
+            "largest feasible bound",
         ),
         (
             r#"influence = { function = "tuned", method = "subdomain-collocation", decay = "none", lower_bound = "none" }"#,
@@ -283,15 +288,15 @@ fn wrong_ones_say_what_is_allowed() {
             "not a number",
         ),
         (
-            r#"influence = { function = "classes", table = [[[1, 0, 0], 1]] }"#,
+            r#"influence = { function = "lattice-classes", table = [[[1, 0, 0], 1]] }"#,
             "axis",
         ),
         (
-            r#"influence = { function = "classes", table = [[[0.5, 0], 1]] }"#,
+            r#"influence = { function = "lattice-classes", table = [[[0.5, 0], 1]] }"#,
             "whole number",
         ),
         (
-            r#"influence = { function = "classes", table = [[[1, 0], 1], [[0, 1], 1]] }"#,
+            r#"influence = { function = "lattice-classes", table = [[[1, 0], 1], [[0, 1], 1]] }"#,
             "twice",
         ),
         (

@@ -1,4 +1,4 @@
-//! Decks assembled, with their warnings in their texts.
+//! Assembly of decks with located warnings.
 #![allow(dead_code)] // each test uses its part
 
 use std::ops::Deref;
@@ -8,7 +8,7 @@ use pericles::material::BondConstants;
 use pericles_deck::{Deck, DeckError, Warning};
 use pericles_run::{Assembly, Resources, build};
 
-/// The assembly of a deck.
+/// An assembled deck.
 pub struct Built {
     pub assembly: Assembly,
     pub warnings: Vec<Warning>,
@@ -23,18 +23,18 @@ impl Deref for Built {
 }
 
 impl Built {
-    /// The constants of the bonds.
+    /// Returns the constants of the bonds.
     pub fn constants(&self) -> &BondConstants {
         self.assembly.constants.as_ref().unwrap().bonds().unwrap()
     }
 
-    /// The run; observers are still to be added.
+    /// Returns the simulation without observers.
     pub fn simulation(self) -> Simulation {
         self.assembly.simulation().unwrap()
     }
 }
 
-/// What tests ask of a deck.
+/// Assembly of a deck in tests.
 pub trait Build {
     /// Assembles the deck without cache and files.
     fn build(&self) -> Result<Built, DeckError> {
@@ -44,7 +44,7 @@ pub trait Build {
     /// Assembles the deck.
     fn build_with(&self, resources: Resources<'_>) -> Result<Built, DeckError>;
 
-    /// Warnings about its waves.
+    /// Returns the warnings about its waves.
     fn judge_waves(&self, assembly: &Assembly) -> Vec<Warning>;
 }
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use pericles::family::{BondList, Crack, Cut, EndRule, VolumeCorrection};
+use pericles::family::{BondCut, BondList, Crack, EndRule, VolumeCorrection};
 use pericles::operator::{
     AssembledBonds, BondForm, DamageMeasure, Feature, Features, Limit, TwoPassForce,
 };
@@ -13,59 +13,59 @@ use super::classes::CorrespondenceClasses;
 use super::force::CorrespondenceForce;
 use super::material::CorrespondenceConstants;
 
-/// A body of correspondence materials: all that its operator is made of.
+/// A body of correspondence materials: the input of its force operator.
 #[derive(Debug, Clone)]
 pub struct CorrespondenceBody<'a> {
     /// The points.
     pub cloud: &'a Arc<PointCloud>,
-    /// The constants of the body's material, whose horizon and influence function are those of the body.
+    /// Constants of the material, whose horizon and influence function are those of the body.
     pub constants: &'a CorrespondenceConstants,
-    /// The materials of the points and of the bonds between them, if there are several.
+    /// Materials of points and bonds, if there are several.
     pub classes: Option<&'a CorrespondenceClasses>,
     /// Partial volumes at the horizon.
     pub volume_correction: VolumeCorrection,
-    /// Pre-cracks, cut before shape tensors are computed.
+    /// Pre-cracks, which are cut before shape tensors are computed.
     pub cracks: &'a [(Crack, EndRule)],
     /// Points whose bonds never break.
     pub no_fail: &'a [u32],
-    /// How damage weighs bonds.
+    /// Weights of bonds in the damage.
     pub damage: DamageMeasure,
 }
 
-/// What correspondence bodies do not represent.
+/// Features that correspondence bodies do not support.
 const LIMITS: &[Limit] = &[
     Limit::new(
         Feature::Inclusions,
-        "inclusions scale the stiffness of bonds, which correspondence materials do not have; assign a material with elastic constants of its own",
+        "inclusions scale the stiffness of bonds, which correspondence materials do not have; assign a material with its own elastic constants",
     ),
     Limit::new(
         Feature::SurfaceCorrection,
-        "the shape tensor of a correspondence material accounts for missing bonds already: a uniform deformation has the right stress at surfaces too",
+        "the shape tensor of a correspondence material already accounts for missing bonds, so that the stress of a uniform deformation is exact at surfaces",
     ),
     Limit::new(
         Feature::SeveralSpacings,
-        "correspondence materials need cells of one size; leave `body.refine` out or use a bond-based model",
+        "correspondence materials require cells of one size; remove `body.refine` or use a bond-based model",
     ),
     Limit::new(
         Feature::GaussNodes,
-        "Gauss nodes belong to linear bond-based bars; leave `quadrature` out",
+        "Gauss nodes require a linear bond-based bar; remove `quadrature`",
     ),
     Limit::new(
         Feature::BondEnergy,
-        "bonds of correspondence materials break by their stretch; leave `failure` out or give \"stretch\"",
+        "bonds of correspondence materials break by their stretch; remove `failure` or set it to \"stretch\"",
     ),
 ];
 
-/// What stencils do not represent.
+/// Features that stencils do not support.
 const ON_GRID: &[Limit] = &[Limit::CORRESPONDENCE];
 
 impl<'a> CorrespondenceBody<'a> {
-    /// Why a body with these features cannot be of correspondence materials; none if it can.
+    /// Returns the reason why correspondence materials do not support these features; `None` if they do.
     pub fn refusal(features: Features) -> Option<&'static str> {
         Limit::refusal(LIMITS, features)
     }
 
-    /// What a form of such bodies does not represent; the fastest form is the list.
+    /// Returns the features that a form of such bodies does not support; the fastest form is the list.
     pub fn limits(form: BondForm) -> &'static [Limit] {
         match form {
             BondForm::Fastest | BondForm::List => &[],
@@ -73,7 +73,7 @@ impl<'a> CorrespondenceBody<'a> {
         }
     }
 
-    /// A body of one material without pre-cracks, all of whose bonds may break.
+    /// Creates a body of one material without pre-cracks and without unbreakable bonds.
     pub fn new(
         cloud: &'a Arc<PointCloud>,
         constants: &'a CorrespondenceConstants,
@@ -90,10 +90,11 @@ impl<'a> CorrespondenceBody<'a> {
         }
     }
 
-    /// The operator.
+    /// Creates the force operator.
     ///
     /// # Errors
-    /// A form other than the list, a horizon that reaches no neighbour, an unusable crack, materials of another number of points, points whose bonds do not span the space.
+    /// A form other than the list, a horizon without neighbours, an invalid crack, materials for another
+    /// number of points, points whose bonds do not span the space.
     pub fn operator(&self, form: BondForm) -> Result<AssembledBonds> {
         let features = Features::from(Feature::Correspondence);
         Limit::check(Self::limits(form), form.name(), features)?;
@@ -113,14 +114,14 @@ impl<'a> CorrespondenceBody<'a> {
         })
     }
 
-    /// The force in two passes, and what each pre-crack removed.
+    /// Creates the two-pass force; returns it with the bonds removed by each pre-crack.
     ///
     /// # Errors
     /// Those of [`CorrespondenceBody::operator`].
     ///
     /// # Panics
-    /// If the body has another dimension than D.
-    pub fn list<const D: usize>(&self) -> Result<(CorrespondenceForce<D>, Vec<Cut>)> {
+    /// If the dimension of the body is not D.
+    pub fn list<const D: usize>(&self) -> Result<(CorrespondenceForce<D>, Vec<BondCut>)> {
         let classes = match self.classes {
             Some(classes) => classes.clone(),
             None => CorrespondenceClasses::uniform(self.constants),
@@ -129,7 +130,7 @@ impl<'a> CorrespondenceBody<'a> {
             return Err(PericlesError::OutOfRange {
                 quantity: "the number of points of the body",
                 value: self.cloud.len() as f64,
-                allowed: "as many points as have a material",
+                allowed: "the number of points with a material",
             });
         }
         let horizon = self.constants.solid.horizon;

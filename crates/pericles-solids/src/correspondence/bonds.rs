@@ -1,4 +1,4 @@
-//! The bonds of a correspondence body as the loops see them.
+//! Bonds of a correspondence body in the layout of the loops.
 
 use pericles::domain::Field;
 use pericles::family::BondList;
@@ -14,20 +14,20 @@ use super::tensor::Matrix;
 /// A bond of a point.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Bond<const D: usize> {
-    /// Its place in the list.
+    /// Entry of the bond in the list.
     pub entry: usize,
-    /// The site of its other end.
+    /// Site of the other end point.
     pub site: usize,
     /// ξ, m.
     pub xi: [f64; D],
-    /// ω = w b V of the other end, m³ for a dimensionless w.
+    /// ω = w b V of the other end point, m³ for a dimensionless w.
     pub weight: f64,
 }
 
 /// A bond list with positions and weights.
 pub(super) struct Bonds {
     pub list: BondList,
-    /// Positions in units of `unit`: numbers of cells on a lattice, so that equal bonds have equal vectors.
+    /// Positions in units of `unit`; on a lattice integer coordinates, so that equal bonds have bitwise equal vectors.
     reference: Vec<Row>,
     unit: [f64; 3],
     /// ω by entry.
@@ -63,14 +63,14 @@ impl Bonds {
         }
     }
 
-    /// ξ between two sites, m.
+    /// Returns ξ between two sites, m.
     #[inline(always)]
     pub fn vector<const D: usize>(&self, a: usize, b: usize) -> [f64; D] {
         let (from, to) = (&self.reference[a], &self.reference[b]);
         std::array::from_fn(|c| (to[c] - from[c]) * self.unit[c])
     }
 
-    /// Calls `visit` for the bonds of a point that `intact` names, the bytes of the point's groups.
+    /// Calls `visit` for each bond of a point whose bit is set in `intact`, the bytes of its groups.
     #[inline(always)]
     pub fn for_each<const D: usize>(
         &self,
@@ -98,13 +98,13 @@ impl Bonds {
         }
     }
 
-    /// Memory, bytes.
+    /// Returns the memory, bytes.
     pub fn bytes(&self) -> usize {
         self.list.bytes() + size_of_val(&self.weight[..]) + size_of_val(&self.reference[..])
     }
 }
 
-/// What a bond reads of one of its ends.
+/// Values of an end point that the force of a bond depends on.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SiteState<const D: usize> {
     /// P K⁻¹ − Z (F − I)
@@ -122,7 +122,7 @@ impl<const D: usize> Default for SiteState<D> {
 }
 
 impl<const D: usize> SiteState<D> {
-    /// Adds ω [(push of both ends) ξ + (control of both ends) η] of a bond to a sum.
+    /// Adds ω [(sum of both pushes) ξ + (sum of both controls) η] of a bond.
     #[inline(always)]
     pub fn add_force(&self, there: &Self, bond: &Bond<D>, eta: &[f64; D], out: &mut [f64; D]) {
         let (near, far) = (self.control.apply(eta), there.control.apply(eta));
@@ -136,21 +136,21 @@ impl<const D: usize> SiteState<D> {
     }
 }
 
-/// Where the values of a point are among those that the pass over points leaves.
+/// Layout of the values per point of the pass over points.
 pub(super) struct Values;
 
 impl Values {
-    /// D² numbers of the push, the dilatation, and one or D (D + 1)/2 numbers of the control.
+    /// Returns the number of values: D² of the push, the dilatation, and 1 or D (D + 1)/2 of the control.
     pub fn count<const D: usize>(tensor: bool) -> usize {
         D * D + 1 + if tensor { D * (D + 1) / 2 } else { 1 }
     }
 
-    /// The number of the dilatation.
+    /// Returns the slot of the dilatation.
     pub const fn dilatation<const D: usize>() -> usize {
         D * D
     }
 
-    /// One of the values of a point.
+    /// Returns the value of a point in a slot.
     pub fn slot<const D: usize>(state: &SiteState<D>, dilatation: f64, slot: usize) -> f64 {
         if slot < D * D {
             return state.push[slot / D][slot % D];
@@ -165,7 +165,7 @@ impl Values {
         }
     }
 
-    /// The values of a point or ghost.
+    /// Reads the values of a point or ghost.
     pub fn read<const D: usize>(values: Field<'_>, count: usize, point: usize) -> SiteState<D> {
         let at = |slot: usize| values.entry(count, slot, point);
         let mut push = [[0.0; D]; D];
@@ -186,7 +186,7 @@ impl Values {
     }
 }
 
-/// Row and column of the components of a symmetric tensor, the diagonal first.
+/// Returns row and column of the components of a symmetric tensor, the diagonal first.
 fn places<const D: usize>() -> impl Iterator<Item = (usize, usize)> {
     let diagonal = (0..D).map(|a| (a, a));
     diagonal.chain((0..D).flat_map(|a| (a + 1..D).map(move |b| (a, b))))

@@ -1,7 +1,8 @@
-//! Breaking of bonds, plastic flow, and the energy that both dissipate.
+//! Bond failure, plastic flow and their dissipated energy.
 //!
-//! The energy of a point is a function of all of its bonds. A point that loses bonds loses the difference of its energy with them and without them, with the shape tensor of each; the work of its forces in the part of
-//! the step in which they no longer act is taken off ([`StepEnd::dissipated_energy`]).
+//! The energy of a point is a function of all its bonds. A point that loses bonds dissipates the difference
+//! of its energies before and after, each with its own shape tensor, less the work of its forces in the part
+//! of the step in which they no longer act ([`StepEnd::dissipated_energy`]).
 
 use std::collections::BTreeMap;
 
@@ -10,7 +11,7 @@ use pericles::domain::{Field, Letter};
 use pericles::lanes::{LANES, Row};
 use pericles::material::{BondStretch, PairForce};
 use pericles::operator::rows::Rows;
-use pericles::operator::{Breakable, CoarseBreak, On};
+use pericles::operator::{Breakable, CoarseBreak, PointSubset};
 use pericles::parallel::{BLOCK, for_each_chunk};
 use pericles::sum::BinnedSum;
 use rayon::prelude::*;
@@ -20,21 +21,25 @@ use super::heat::Heat;
 use super::plasticity::History;
 use super::tensor::{combination, unit};
 
-/// A point before it lost bonds in this step.
+/// State of a point before it lost bonds in this step.
 struct Before<const D: usize> {
     intact: Vec<u8>,
     shape: PointShape<D>,
 }
 
-/// Entries of points.
-type Entries = Vec<(usize, usize)>;
+/// Pairs of a point and a list entry.
+pub(super) type Entries = Vec<(usize, usize)>;
 
 impl<const D: usize> CorrespondenceForce<D> {
-    /// Breaks bonds of the points named by `on` that are stretched beyond their critical stretch, and all bonds of points whose other bonds do not span the space; books the energy.
-    pub(super) fn break_bonds(&mut self, step: &StepEnd<'_>, u: Field<'_>, on: &On<'_>) {
+    /// Breaks the bonds of the points `on` that exceed their critical stretch or strength, and all bonds of
+    /// points whose remaining bonds do not span the space. Adds the dissipated energy.
+    pub(super) fn break_bonds(&mut self, step: &StepEnd<'_>, u: Field<'_>, on: &PointSubset<'_>) {
         let domain = self.cloud.domain().clone();
         let heat = self.heat_at(step.t);
         let mut found = self.over_stretched(&self.packed(u), on, &heat);
+        if self.limits.has_strength() {
+            found.extend(self.over_stressed(&self.packed(u), on, &heat, 1.0));
+        }
         if domain.all(found.is_empty()) {
             return;
         }
@@ -66,8 +71,8 @@ impl<const D: usize> CorrespondenceForce<D> {
         self.book(step, &rows, before, &heat);
     }
 
-    /// Entries of the points named by `on` whose bond is stretched beyond its critical stretch.
-    fn over_stretched(&self, rows: &[Row], on: &On<'_>, heat: &Heat) -> Entries {
+    /// Returns the entries of the points `on` whose bonds exceed their critical stretch.
+    fn over_stretched(&self, rows: &[Row], on: &PointSubset<'_>, heat: &Heat) -> Entries {
         let n = self.cloud.len();
         let threshold = BondStretch::threshold(self.weakest);
         let sites = self.bonds.list.sites();
@@ -101,12 +106,12 @@ impl<const D: usize> CorrespondenceForce<D> {
         blocks.concat()
     }
 
-    fn may_break(&self, entry: usize) -> bool {
+    pub(super) fn may_break(&self, entry: usize) -> bool {
         let bits = self.breakable.as_ref();
         bits.is_none_or(|bits| bits[entry / LANES] >> (entry % LANES) & 1 == 1)
     }
 
-    /// The entries at the other ends of bonds, those that are still there and are not among the bonds themselves.
+    /// Returns the reverse entries of bonds that are intact and not in `found`.
     fn other_ends(&self, found: &Entries) -> Entries {
         let sites = self.bonds.list.sites();
         let letters = found.iter().map(|&(i, entry)| {
@@ -133,7 +138,7 @@ impl<const D: usize> CorrespondenceForce<D> {
         letters.iter().filter_map(back).collect()
     }
 
-    /// Notes all bonds of a point that are left and may break, whose number and directions do not determine a deformation gradient.
+    /// Adds all remaining breakable bonds of a point whose bonds do not determine a deformation gradient.
     fn drop_point(&mut self, i: usize, found: &mut Entries) {
         let before = found.len();
         self.bonds.for_each::<D>(i, self.bits(i), |bond| {
@@ -146,7 +151,7 @@ impl<const D: usize> CorrespondenceForce<D> {
         }
     }
 
-    /// Books what points dissipate that lost bonds.
+    /// Adds the energy dissipated by points that lost bonds.
     fn book(
         &mut self,
         step: &StepEnd<'_>,
@@ -186,7 +191,9 @@ impl<const D: usize> CorrespondenceForce<D> {
         }
     }
 
-    /// W of a point with a shape (J/m³), and its rate Σ_j b V_j T_ij·(v_j − v_i) (W/m³) with the velocities given by sites; zero without velocities.
+    /// Returns the energy W of a point with a shape (J/m³), including the plastic work of the step so that
+    /// its gradient is the stress, and its rate Σ_j b V_j T_ij·(v_j − v_i) (W/m³) from the velocities of
+    /// sites; without velocities the rate is zero.
     fn energy_and_power(
         &self,
         i: usize,
@@ -194,7 +201,11 @@ impl<const D: usize> CorrespondenceForce<D> {
         [rows, velocities]: [&[Row]; 2],
         heat: &Heat,
     ) -> [f64; 2] {
-        let energy = self.energy_of(i, shape, rows, heat);
+        let gradient = self.gradient(i, &shape.inverse, &self.etas(i, rows));
+        let f = combination(1.0, &unit::<D>(), 1.0, &gradient);
+        let solid = self.classes.solid(i).expanded(heat.factor(i));
+        let (_, plastic_work) = solid.advanced(&f, &self.history_of(i));
+        let energy = self.energy_of(i, shape, rows, heat) + plastic_work;
         if velocities.is_empty() {
             return [energy, 0.0];
         }
@@ -213,8 +224,8 @@ impl<const D: usize> CorrespondenceForce<D> {
         [energy, power]
     }
 
-    /// Plastic flow of the points named by `on` in the step that ends at `u`, and its work.
-    pub(super) fn advance_history(&mut self, t: f64, u: Field<'_>, on: &On<'_>) {
+    /// Advances the plastic flow of the points `on` to the end of the step at `u`, and adds its work.
+    pub(super) fn advance_history(&mut self, t: f64, u: Field<'_>, on: &PointSubset<'_>) {
         let (n, heat) = (self.cloud.len(), self.heat_at(t));
         let mut history = std::mem::take(&mut self.history);
         let rows = self.packed(u);
@@ -250,7 +261,7 @@ impl<const D: usize> CorrespondenceForce<D> {
 
 impl<const D: usize> Breakable for CorrespondenceForce<D> {
     fn can_break(&self) -> bool {
-        self.weakest.is_finite()
+        self.weakest.is_finite() || self.limits.has_strength()
     }
 
     fn broken_bonds(&self) -> u64 {
@@ -261,7 +272,7 @@ impl<const D: usize> Breakable for CorrespondenceForce<D> {
         CorrespondenceForce::dropped_points(self)
     }
 
-    /// By breaking and by plastic flow.
+    /// Returns the energy dissipated by bond failure and by plastic flow.
     fn dissipated(&self) -> f64 {
         let all = self.dissipated.merged(self.plastic_work);
         self.cloud.domain().total(all)
@@ -271,7 +282,8 @@ impl<const D: usize> Breakable for CorrespondenceForce<D> {
         self.dissipated.add(energy);
     }
 
-    /// None: the energy that a bond stores at its critical stretch depends on the other bonds of its ends.
+    /// Returns no breaks, because the energy of a bond at its critical stretch depends on the other bonds of
+    /// its end points.
     fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {
         Vec::new()
     }
@@ -314,6 +326,11 @@ impl<const D: usize> Breakable for CorrespondenceForce<D> {
         let ghosts = self.cloud.domain().ghosts(u);
         let rows = self.packed(Field::new(u, &ghosts));
         let (heat, sites) = (self.latest_heat(), self.bonds.list.sites());
+        if self.limits.has_strength() {
+            for (i, _) in self.over_stressed(&rows, &PointSubset::All, &heat, fraction) {
+                marks[i] = true;
+            }
+        }
         for_each_chunk(marks, &|first, marks| {
             for (i, mark) in (first..).zip(marks) {
                 let here = self.bonds.list.site(i);

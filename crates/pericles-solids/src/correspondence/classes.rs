@@ -8,22 +8,24 @@ use super::control::Stabilisation;
 use super::material::CorrespondenceConstants;
 use super::solid::Solid;
 
-/// The material of every point, and the critical stretch of the bonds between each pair of materials: that of the weaker one, unless [`CorrespondenceClasses::set_limits`] says otherwise.
+/// Material of every point, and critical stretch of bonds for every pair of materials: that of the weaker
+/// one, unless [`CorrespondenceClasses::set_limits`] sets another one.
 ///
-/// The force state of a point has the constants of the point's own material. Horizon, influence function and stabilisation are those of the body.
+/// The force state of a point has the constants of its own material. All materials share horizon, influence
+/// function and stabilisation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CorrespondenceClasses {
-    /// Empty if there is one material.
+    /// Empty for a single material.
     of_point: Vec<u8>,
     materials: Vec<CorrespondenceConstants>,
-    /// Critical stretches by pairs of materials.
+    /// Critical stretches by pair of materials.
     stretch: Vec<f64>,
-    /// Factors of the critical stretch by points; empty if they are as given.
+    /// Factor of the critical stretch of each point; empty if strengths do not scatter.
     strengths: Vec<f64>,
 }
 
 impl CorrespondenceClasses {
-    /// One material everywhere.
+    /// Creates the classes of a body of one material.
     pub fn uniform(constants: &CorrespondenceConstants) -> Self {
         Self {
             of_point: Vec::new(),
@@ -33,17 +35,17 @@ impl CorrespondenceClasses {
         }
     }
 
-    /// Several materials; `of_point` gives the number of each point's material.
+    /// Creates the classes of several materials; `of_point` gives the material number of each point.
     ///
     /// # Errors
-    /// A number without a material; materials of different horizons, influence functions or stabilisations.
+    /// A material number out of range; materials with different horizons, influence functions or stabilisations.
     pub fn new(of_point: Vec<u8>, materials: &[CorrespondenceConstants]) -> Result<Self> {
         let largest = of_point.iter().copied().max().map_or(0, usize::from);
         if largest >= materials.len() {
             return Err(PericlesError::OutOfRange {
-                quantity: "the number of a point's material",
+                quantity: "the material number of a point",
                 value: largest as f64,
-                allowed: "numbers of the materials given, counted from 0",
+                allowed: "0 to the number of materials less 1",
             });
         }
         let same = |pair: &[CorrespondenceConstants]| {
@@ -54,7 +56,7 @@ impl CorrespondenceClasses {
         };
         if !materials.windows(2).all(same) {
             return Err(PericlesError::BadInfluence {
-                reason: "the correspondence materials of a body must have one horizon, one influence function and one stabilisation".into(),
+                reason: "the correspondence materials of a body must have the same horizon, influence function and stabilisation".into(),
             });
         }
         let limit = |material: &CorrespondenceConstants| material.solid.limits.stretch;
@@ -69,7 +71,9 @@ impl CorrespondenceClasses {
         })
     }
 
-    /// The same with a factor of the critical stretch for every point, such as [`StrengthScatter::factors`](pericles::material::StrengthScatter::factors): a bond has the mean of its ends.
+    /// Sets a factor of the critical stretch for every point, for example
+    /// [`StrengthScatter::factors`](pericles::material::StrengthScatter::factors). A bond has the mean factor
+    /// of its end points.
     pub fn with_strengths(self, factors: Vec<f64>) -> Self {
         Self {
             strengths: factors,
@@ -77,58 +81,62 @@ impl CorrespondenceClasses {
         }
     }
 
-    /// Gives bonds between two materials a critical stretch of their own.
+    /// Sets the critical stretch of bonds between two materials.
     ///
     /// # Panics
-    /// If a material is not one of those given.
+    /// If a material number is out of range.
     pub fn set_limits(&mut self, [a, b]: [u8; 2], limits: BondLimits) {
         let (count, a, b) = (self.materials.len(), usize::from(a), usize::from(b));
-        assert!(a < count && b < count, "a pair of materials given");
+        assert!(
+            a < count && b < count,
+            "material numbers of the pair are in range"
+        );
         self.stretch[a * count + b] = limits.stretch;
         self.stretch[b * count + a] = limits.stretch;
     }
 
-    /// Whether there is a material for each of so many points.
+    /// Returns whether materials and strengths cover this number of points.
     pub fn covers(&self, points: usize) -> bool {
         let has = |count: usize| count == 0 || count == points;
         has(self.of_point.len()) && has(self.strengths.len())
     }
 
-    /// The constants of a point's material.
+    /// Returns the constants of the material of a point.
     pub fn constants(&self, i: usize) -> &CorrespondenceConstants {
         &self.materials[number(&self.of_point, i)]
     }
 
-    /// The solid of a point.
+    /// Returns the solid of a point.
     pub(super) fn solid(&self, i: usize) -> &Solid {
         &self.constants(i).point
     }
 
-    /// The stabilisation of the body.
+    /// Returns the stabilisation of the body.
     pub fn stabilisation(&self) -> Stabilisation {
         self.materials[0].stabilisation
     }
 
-    /// The lowest critical stretch.
+    /// Returns the lowest critical stretch.
     pub(super) fn weakest(&self) -> f64 {
         let weakest = self.strengths.iter().copied().reduce(f64::min);
         let stretch = self.stretch.iter().copied().fold(f64::INFINITY, f64::min);
         weakest.unwrap_or(1.0) * stretch
     }
 
-    /// Whether any material yields.
+    /// Returns whether any material yields.
     pub fn yields(&self) -> bool {
         let mut solids = self.materials.iter();
         solids.any(|material| material.point.plasticity.is_some())
     }
 
-    /// Critical stretches by the sites that bonds lead to.
+    /// Returns the limits of bonds by sites.
     pub(super) fn on_sites(&self, sites: &Sites) -> SiteLimits {
         SiteLimits {
             of_site: sites.spread_numbers(&self.of_point),
             count: self.materials.len(),
             stretch: self.stretch.clone(),
             strengths: sites.spread(&self.strengths).into_owned(),
+            tensile: self.materials.iter().map(|own| own.strength).collect(),
         }
     }
 }
@@ -137,22 +145,40 @@ fn number(numbers: &[u8], k: usize) -> usize {
     numbers.get(k).map_or(0, |&material| usize::from(material))
 }
 
-/// The critical stretch of the bond between two sites.
+/// Failure limits of bonds between sites.
 #[derive(Debug, Clone)]
 pub(super) struct SiteLimits {
     of_site: Vec<u8>,
     count: usize,
     stretch: Vec<f64>,
     strengths: Vec<f64>,
+    /// Tensile strengths by material, Pa.
+    tensile: Vec<f64>,
 }
 
 impl SiteLimits {
-    pub fn stretch(&self, a: usize, b: usize) -> f64 {
-        let pair = number(&self.of_site, a) * self.count + number(&self.of_site, b);
-        let strength = match &self.strengths[..] {
+    /// Returns whether bonds of any material break by their stress.
+    pub fn has_strength(&self) -> bool {
+        self.tensile.iter().any(|strength| strength.is_finite())
+    }
+
+    /// Returns the tensile strength of the bond between two sites, that of the weaker end point, Pa; infinite
+    /// if it does not break by its stress.
+    pub fn strength(&self, a: usize, b: usize) -> f64 {
+        let [own, other] = [a, b].map(|site| self.tensile[number(&self.of_site, site)]);
+        self.factor(a, b) * own.min(other)
+    }
+
+    /// Returns the factor of both limits.
+    fn factor(&self, a: usize, b: usize) -> f64 {
+        match &self.strengths[..] {
             [] => 1.0,
             strengths => 0.5 * (strengths[a] + strengths[b]),
-        };
-        strength * self.stretch[pair]
+        }
+    }
+
+    pub fn stretch(&self, a: usize, b: usize) -> f64 {
+        let pair = number(&self.of_site, a) * self.count + number(&self.of_site, b);
+        self.factor(a, b) * self.stretch[pair]
     }
 }

@@ -3,17 +3,22 @@
 use super::solid::Solid;
 use super::tensor::{Matrix, apply, combination, product, trace};
 
-/// The penalty on what the deformation gradient does not represent: with z = Y − F ξ of each bond, the energy density ½ Σ w z·Z z is added, and w Z z to the force state.
+/// Penalty on deformations that the deformation gradient does not represent. With z = Y − F ξ of each bond,
+/// it adds ½ Σ w z·Z z to the energy density and w Z z to the force state.
 ///
-/// Without it deformations exist that change no deformation gradient: the checkerboard costs no energy, and short waves travel too slowly.
+/// Without it, zero-energy modes exist: a checkerboard deformation has no energy, and short waves are too slow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Stabilisation {
-    /// Z = tr(C : K⁻¹)/D I with the elasticity tensor C: equal to [`Stabilisation::Wan`] within a lattice, and objective everywhere.
+    /// Z = tr(C : K⁻¹)/D I with the elasticity tensor C: equal to [`Stabilisation::Wan`] in the interior of a
+    /// lattice, and objective everywhere.
     #[default]
     Isotropic,
-    /// Z = C : K⁻¹ (Wan, Chen, Chu & Liu, Acta Mech. Sin. 35, 2019): not isotropic near surfaces and at irregular points, where it violates the balance of angular momentum at large rotations.
+    /// Z = C : K⁻¹ (Wan, Chen, Chu & Liu, Acta Mech. Sin. 35, 2019). Not isotropic near surfaces and at
+    /// irregular points, where it violates the balance of angular momentum at large rotations.
     Wan,
-    /// Z = (c/δ) (V_δ/Σ w b V) I with the volume V_δ within the horizon δ of an interior point and the constant c of bond-based bonds of the same modulus of dilatation (Silling, Comput. Methods Appl. Mech. Eng. 322, 2017, with unit factor): stiffens waves of a few horizons.
+    /// Z = (c/δ) (V_δ/Σ w b V) I with the volume V_δ within the horizon δ of an interior point and the bond
+    /// constant c of a bond-based material with the same dilatation modulus (Silling, Comput. Methods Appl.
+    /// Mech. Eng. 322, 2017, with unit factor). Waves with lengths of a few horizons are too fast.
     Silling,
     /// Z = 0.
     None,
@@ -29,7 +34,7 @@ pub enum Control<const D: usize> {
 }
 
 impl Stabilisation {
-    /// Z for the inverse shape tensor of a point; `spring` is c/δ V_δ/Σ w b V.
+    /// Returns Z for the inverse shape tensor of a point; `spring` is c/δ V_δ/Σ w b V.
     pub(super) fn control<const D: usize>(
         self,
         solid: &Solid,
@@ -44,14 +49,15 @@ impl Stabilisation {
         }
     }
 
-    /// Whether Z is a tensor.
+    /// Returns whether Z is a tensor.
     pub(super) fn is_tensor(self) -> bool {
         self == Self::Wan
     }
 }
 
-/// c V_δ/δ of bonds f = c s of a constant influence function with the modulus of dilatation κ (Pa), N/m⁴. The constant c is 2 κ/(A δ²) in a bar, 12 κ/(π h δ³) in the plane and 18 κ/(π δ⁴) in space; the volume V_δ within
-/// the horizon is 2 A δ, π h δ² and 4 π δ³/3, so that the section A or thickness h drops out.
+/// Returns c V_δ/δ of bonds f = c s with constant influence function and dilatation modulus κ (Pa), N/m⁴. The
+/// constant c is 2 κ/(A δ²) in a bar, 12 κ/(π h δ³) in the plane and 18 κ/(π δ⁴) in space; the volume V_δ
+/// within the horizon is 2 A δ, π h δ² and 4 π δ³/3, so that the section A and the thickness h cancel.
 pub(super) fn spring_of_horizon(dimension: usize, kappa: f64, horizon: f64) -> f64 {
     let factor = match dimension {
         1 => 4.0,
@@ -62,10 +68,10 @@ pub(super) fn spring_of_horizon(dimension: usize, kappa: f64, horizon: f64) -> f
 }
 
 impl<const D: usize> Control<D> {
-    /// Nothing.
+    /// No control, Z = 0.
     pub const NONE: Self = Self::Scalar(0.0);
 
-    /// Z x.
+    /// Returns Z x.
     #[inline(always)]
     pub fn apply(&self, x: &[f64; D]) -> [f64; D] {
         match self {
@@ -74,7 +80,7 @@ impl<const D: usize> Control<D> {
         }
     }
 
-    /// Z A.
+    /// Returns Z A.
     pub fn times(&self, a: &Matrix<D>) -> Matrix<D> {
         match self {
             Self::Scalar(z) => combination(*z, a, 0.0, a),
@@ -82,12 +88,12 @@ impl<const D: usize> Control<D> {
         }
     }
 
-    /// Z : A of a symmetric tensor A.
+    /// Returns Z : A for a symmetric tensor A.
     pub fn contraction(&self, a: &Matrix<D>) -> f64 {
         trace(&self.times(a))
     }
 
-    /// The largest eigenvalue of Z, or a bound of it.
+    /// Returns the largest eigenvalue of Z.
     pub fn largest(&self) -> f64 {
         match self {
             Self::Scalar(z) => *z,

@@ -7,20 +7,21 @@ use pericles::units::quantity;
 /// A point whose bonds do not determine a deformation gradient.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error(
-    "the shape tensor of point {point} at ({}, {}, {}) is singular: its {bonds} bonds do not span the space (condition number {condition:.1e}; at least {} bonds and a condition number of at most 1e6 are needed); \
-     choose a larger horizon, or move the crack or the boundary that separates the point from its neighbours",
+    "the shape tensor of point {point} at ({}, {}, {}) is singular: its bonds do not span the space (number of bonds \
+     {bonds}, condition number {condition:.1e}); allowed: at least {} bonds and a condition number of at most 1e6; use \
+     a larger horizon, or move the crack or boundary that separates the point from its neighbours",
     quantity(position[0], "m"), quantity(position[1], "m"), quantity(position[2], "m"), dimension + 1
 )]
 pub struct SingularShape {
-    /// The point, in the user's numbering.
+    /// Number of the point in output files.
     pub point: usize,
-    /// Where it is, m.
+    /// Position, m.
     pub position: [f64; 3],
-    /// Its bonds.
+    /// Number of bonds.
     pub bonds: usize,
-    /// The ratio of the principal values of its shape tensor.
+    /// Condition number of the shape tensor: ratio of its largest and smallest principal value.
     pub condition: f64,
-    /// The body's dimension.
+    /// Dimension of the body.
     pub dimension: usize,
 }
 

@@ -7,7 +7,7 @@ use pericles::lanes::{LANES, Row};
 use pericles::operator::pool::{Lent, Pool};
 use pericles::operator::records::pack_sites;
 use pericles::operator::rows::Rows;
-use pericles::operator::{DamageMeasure, On};
+use pericles::operator::{DamageMeasure, PointSubset};
 use pericles::parallel::{BLOCK, components_mut, for_each_block, for_each_chunk};
 use pericles::space::PointCloud;
 use pericles::sum::BinnedSum;
@@ -23,13 +23,15 @@ use super::plasticity::History;
 use super::shape::Shape;
 use super::tensor::{Matrix, combination, product, unit};
 
-/// The force density of correspondence materials, N/m³, in two passes over a bond list.
+/// Force density of correspondence materials, N/m³, in two passes over a bond list.
 ///
-/// With the weight ω = w b V_j of influence function, partial volume and volume: K_i = Σ ω ξ ⊗ ξ, F_i = I + (Σ ω η ⊗ ξ) K_i⁻¹, P_i = ∂ψ/∂F, z = ξ + η − F_i ξ, the force state is T_ij = w (P_i K_i⁻¹ ξ + Z_i z) and
-/// f_i = Σ_j b V_j (T_ij − T_ji), the gradient of Σ W V with W_i = ψ(F_i) + ½ Σ ω z·Z_i z. The pass over points leaves P K⁻¹ − Z (F − I) and Z.
+/// With the weight ω = w b V_j (influence function, partial volume, volume): K_i = Σ ω ξ ⊗ ξ, F_i = I + (Σ ω
+/// η ⊗ ξ) K_i⁻¹, P_i = ∂ψ/∂F, z = ξ + η − F_i ξ. The force state is T_ij = w (P_i K_i⁻¹ ξ + Z_i z), and f_i =
+/// Σ_j b V_j (T_ij − T_ji) is the gradient of the energy Σ W V with W_i = ψ(F_i) + ½ Σ ω z·Z_i z. The pass
+/// over points computes P K⁻¹ − Z (F − I) and Z.
 ///
-/// When a bond of a point breaks, its K, K⁻¹ and Z are computed from the bonds that are left. Where these are fewer than D + 1, or the principal values of K differ by more than a factor of 10⁶, the point loses all of
-/// its bonds.
+/// When a bond of a point breaks, K, K⁻¹ and Z are recomputed from the remaining bonds. If fewer than D + 1
+/// remain, or the condition number of K exceeds 10⁶, the point loses all its bonds.
 ///
 /// Memory: 11 bytes per directed bond.
 pub struct CorrespondenceForce<const D: usize> {
@@ -38,25 +40,25 @@ pub struct CorrespondenceForce<const D: usize> {
     pub(super) classes: CorrespondenceClasses,
     pub(super) limits: SiteLimits,
     pub(super) weakest: f64,
-    /// Bits of the bonds that may break; all of them if none.
+    /// Bits of breakable bonds; `None` if all bonds are breakable.
     pub(super) breakable: Option<Vec<u8>>,
     pub(super) damage: DamageMeasure,
     /// c/δ V_δ/Σ w b V of each point, N/m⁷.
     spring: Vec<f64>,
-    /// Bonds that are left, one byte a group.
+    /// Intact bonds, one byte per group.
     pub(super) intact: Vec<u8>,
     /// K⁻¹ and Z of every point.
     pub(super) shapes: Vec<PointShape<D>>,
-    /// What points remember of their plastic flow, [`History::KEPT`] numbers each; empty of materials that do not yield.
+    /// Plastic history, [`History::KEPT`] numbers per point; empty for materials that do not yield.
     pub(super) history: Vec<f64>,
-    /// Energy dissipated by breaking and by plastic flow, J.
+    /// Energy dissipated by bond failure, J.
     pub(super) dissipated: BinnedSum,
     pub(super) plastic_work: BinnedSum,
-    /// Directed bonds broken.
+    /// Number of broken directed bonds.
     pub(super) broken: u64,
-    /// Points whose bonds that were left did not span the space.
+    /// Number of points whose remaining bonds did not span the space.
     pub(super) dropped: u64,
-    /// The first point whose volume was not positive at the end of the last step, and its dilatation.
+    /// First point whose volume was not positive at the end of the last step, and its dilatation.
     pub(super) inverted: Option<(usize, f64)>,
     /// Thermal expansion, if the body is heated.
     pub(super) expansion: Option<ThermalExpansion>,
@@ -66,7 +68,7 @@ pub struct CorrespondenceForce<const D: usize> {
 }
 
 saved! {
-    impl<const D: usize> Saved for CorrespondenceForce<D> {
+    impl<const D: usize> Checkpointed for CorrespondenceForce<D> {
         intact: array("operator/intact"),
         history: array("operator/plastic-history"),
         broken, dropped: array("operator/broken"),
@@ -82,14 +84,14 @@ saved! {
     }
 }
 
-/// K⁻¹ and Z of a point; zero where its bonds do not span the space.
+/// K⁻¹ and Z of a point; zero if its bonds do not span the space.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PointShape<const D: usize> {
     pub inverse: Matrix<D>,
     pub control: Control<D>,
 }
 
-/// What the pass over points finds.
+/// Result of the pass over points.
 #[derive(Debug, Clone, Copy)]
 struct PointValues<const D: usize> {
     state: SiteState<D>,
@@ -106,13 +108,13 @@ impl<const D: usize> Default for PointValues<D> {
 }
 
 impl<const D: usize> CorrespondenceForce<D> {
-    /// The force of materials on the bonds of a body. Bonds of the points `no_fail` never break.
+    /// Creates the force of materials on the bonds of a body. Bonds of the points `no_fail` never break.
     ///
     /// # Errors
-    /// [`SingularShape`]: a point with bonds that do not span the space.
+    /// [`SingularShape`]: a point whose bonds do not span the space.
     ///
     /// # Panics
-    /// If the cloud has another dimension than D.
+    /// If the dimension of the cloud is not D.
     pub fn new(
         cloud: Arc<PointCloud>,
         list: pericles::family::BondList,
@@ -120,7 +122,11 @@ impl<const D: usize> CorrespondenceForce<D> {
         no_fail: &[u32],
         damage: DamageMeasure,
     ) -> Result<Self> {
-        assert_eq!(cloud.dimension(), D, "a force of the cloud's dimension");
+        assert_eq!(
+            cloud.dimension(),
+            D,
+            "the dimension of the force is that of the cloud"
+        );
         let constants = classes.constants(0);
         let bonds = Bonds::new(list, &constants.solid.influence, constants.solid.horizon);
         let n = cloud.len();
@@ -164,7 +170,7 @@ impl<const D: usize> CorrespondenceForce<D> {
         Ok(force)
     }
 
-    /// c/δ V_δ/Σ w b V over the bonds of a point that exist at the start.
+    /// Returns c/δ V_δ/Σ w b V over the initial bonds of a point.
     fn spring_of(&self, i: usize) -> f64 {
         let mut weight = 0.0;
         self.bonds.for_each::<D>(i, self.bits(i), |bond| {
@@ -176,28 +182,28 @@ impl<const D: usize> CorrespondenceForce<D> {
         }
     }
 
-    /// The bytes of a point's bonds that are left.
+    /// Returns the bytes of the intact bonds of a point.
     #[inline(always)]
     pub(super) fn bits(&self, i: usize) -> &[u8] {
         &self.intact[self.bonds.list.groups(i)]
     }
 
-    /// Whether an entry's bond is still there.
+    /// Returns whether the bond of an entry is intact.
     pub fn is_intact(&self, entry: usize) -> bool {
         self.intact[entry / LANES] >> (entry % LANES) & 1 == 1
     }
 
-    /// Points that lost all of their bonds because those that were left did not span the space.
+    /// Returns the number of points that lost all bonds because the remaining ones did not span the space.
     pub fn dropped_points(&self) -> u64 {
         self.cloud.domain().count(self.dropped)
     }
 
-    /// Plastic work since the start, J.
+    /// Returns the plastic work since the start, J.
     pub fn plastic_work(&self) -> f64 {
         self.cloud.domain().total(self.plastic_work)
     }
 
-    /// The accumulated plastic strain of a point; zero of materials that do not yield.
+    /// Returns the accumulated plastic strain of a point; zero for materials that do not yield.
     pub fn plastic_strain(&self, i: usize) -> f64 {
         self.history_of(i).accumulated
     }
@@ -209,7 +215,7 @@ impl<const D: usize> CorrespondenceForce<D> {
         }
     }
 
-    /// K of the bonds of a point that are left.
+    /// Returns K of the intact bonds of a point.
     pub(super) fn shape(&self, i: usize) -> Shape<D> {
         let mut shape = Shape::default();
         self.bonds.for_each::<D>(i, self.bits(i), |bond| {
@@ -218,7 +224,7 @@ impl<const D: usize> CorrespondenceForce<D> {
         shape
     }
 
-    /// K⁻¹ and Z of the bonds of a point that are left.
+    /// Returns K⁻¹ and Z of the intact bonds of a point.
     pub(super) fn shape_of(&self, i: usize) -> PointShape<D> {
         let Some(inverse) = self.shape(i).inverse() else {
             return PointShape {
@@ -235,14 +241,14 @@ impl<const D: usize> CorrespondenceForce<D> {
         self.shapes = (0..self.cloud.len()).map(|i| self.shape_of(i)).collect();
     }
 
-    /// Rows of displacements by sites.
+    /// Returns rows of displacements by site.
     pub(super) fn packed(&self, u: Field<'_>) -> Lent<'_, Vec<Row>> {
         let mut rows = self.displaced.take();
         pack_sites::<D>(u, self.bonds.list.sites(), &mut rows);
         rows
     }
 
-    /// The states of all sites.
+    /// Returns the states of all sites.
     pub(super) fn states(&self, values: Field<'_>) -> Lent<'_, Vec<SiteState<D>>> {
         let mut states = self.sites.take();
         let count = self.value_count();
@@ -250,19 +256,19 @@ impl<const D: usize> CorrespondenceForce<D> {
         states
     }
 
-    /// How many values the pass over points leaves.
+    /// Returns the number of values per point.
     pub(super) fn value_count(&self) -> usize {
         Values::count::<D>(self.classes.stabilisation().is_tensor())
     }
 
-    /// η of a bond of a site.
+    /// Returns η of a bond of a site.
     #[inline(always)]
     pub(super) fn eta(rows: &[Row], here: usize, bond: &Bond<D>) -> [f64; D] {
         let (from, to) = (&rows[here], &rows[bond.site]);
         std::array::from_fn(|c| to[c] - from[c])
     }
 
-    /// η of the bonds of a point, from rows of displacements.
+    /// Returns a function that gives η of the bonds of a point from rows of displacements.
     pub(super) fn etas<'a>(
         &'a self,
         i: usize,
@@ -272,7 +278,7 @@ impl<const D: usize> CorrespondenceForce<D> {
         move |bond| Self::eta(rows, here, bond)
     }
 
-    /// H = F − I of a point with the inverse shape tensor given, from η of its bonds.
+    /// Returns H = F − I of a point from its inverse shape tensor and η of its bonds.
     pub(super) fn gradient(
         &self,
         i: usize,
@@ -291,7 +297,7 @@ impl<const D: usize> CorrespondenceForce<D> {
         product(&moment, inverse)
     }
 
-    /// The values of a point.
+    /// Returns the values of a point.
     fn values_of(&self, i: usize, rows: &[Row], heat: &Heat) -> PointValues<D> {
         let etas = self.etas(i, rows);
         let (state, gradient) = self.state_of(i, &self.shapes[i], &etas, heat);
@@ -302,7 +308,7 @@ impl<const D: usize> CorrespondenceForce<D> {
         }
     }
 
-    /// What the bonds of a point with a shape read of it, and H.
+    /// Returns the state of a point with a shape, which its bonds read, and H.
     pub(super) fn state_of(
         &self,
         i: usize,
@@ -322,7 +328,7 @@ impl<const D: usize> CorrespondenceForce<D> {
         (state, gradient)
     }
 
-    /// W of a point with a shape, J/m³.
+    /// Returns W of a point with a shape, J/m³.
     pub(super) fn energy_of(
         &self,
         i: usize,
@@ -345,10 +351,10 @@ impl<const D: usize> CorrespondenceForce<D> {
         solid.stress(&f, &self.history_of(i)).energy + 0.5 * penalty
     }
 
-    /// Sets the values of the points named by `on` to those that `of` computes.
+    /// Sets the values of the points `on` to the results of `of`.
     pub(super) fn set_values(
         &self,
-        on: &On<'_>,
+        on: &PointSubset<'_>,
         out: &mut [f64],
         of: &(dyn Fn(usize) -> (SiteState<D>, f64) + Sync),
     ) {
@@ -375,8 +381,8 @@ impl<const D: usize> CorrespondenceForce<D> {
             });
     }
 
-    /// Sets the values of the points named by `on`.
-    pub(super) fn all_values(&self, t: f64, u: Field<'_>, on: &On<'_>, out: &mut [f64]) {
+    /// Sets the values of the points `on`.
+    pub(super) fn all_values(&self, t: f64, u: Field<'_>, on: &PointSubset<'_>, out: &mut [f64]) {
         let (rows, heat) = (self.packed(u), self.heat_at(t));
         self.set_values(on, out, &|i| {
             let values = self.values_of(i, &rows, &heat);
@@ -384,15 +390,15 @@ impl<const D: usize> CorrespondenceForce<D> {
         });
     }
 
-    /// Adds Σ ω [(push of both ends) ξ + (control of both ends) η] for the points named by `on`.
+    /// Adds Σ ω [(sum of both pushes) ξ + (sum of both controls) η] for the points `on`.
     pub(super) fn add_bonds(
         &self,
-        on: &On<'_>,
+        on: &PointSubset<'_>,
         out: &mut [f64],
         of_bond: &(impl Fn(usize, &Bond<D>, &mut [f64; D]) + Sync),
     ) {
         let n = self.cloud.len();
-        // A vector of nothing takes no memory.
+        // A vector of `()` takes no memory.
         let mut nothing = vec![(); n.div_ceil(BLOCK)];
         let out = components_mut::<D>(out, n);
         for_each_block(out, &mut nothing, &|first, mut out, ()| {
@@ -414,7 +420,7 @@ impl<const D: usize> CorrespondenceForce<D> {
     }
 }
 
-/// One bit for each entry whose bond may break: those between points other than `no_fail`; none if all may.
+/// Returns one bit per entry, set for bonds between points other than `no_fail`; `None` if all bonds are breakable.
 fn breakable(list: &pericles::family::BondList, no_fail: &[u32]) -> Option<Vec<u8>> {
     let sites = list.sites();
     if sites.cloud().domain().all(no_fail.is_empty()) {

@@ -1,20 +1,22 @@
-//! Thermal expansion of correspondence materials: the stress-free state of a point is stretched by 1 + τ ([`Solid::expanded`](super::Solid::expanded)).
+//! Thermal expansion of correspondence materials: the stress-free state of a point is stretched by the factor
+//! 1 + τ ([`Solid::expanded`](super::Solid::expanded)).
 
 use std::sync::Arc;
 
 use pericles::space::Sites;
 
-/// Thermal stretches τ of own points and ghosts at a time; none of a body that is not heated.
+/// Thermal stretches τ of own points and ghosts at a time; `None` for a body without thermal expansion.
 pub(super) struct Heat(pub Option<Arc<Vec<f64>>>);
 
 impl Heat {
-    /// 1 + τ of a point.
+    /// Returns 1 + τ of a point.
     #[inline(always)]
     pub fn factor(&self, i: usize) -> f64 {
         self.0.as_ref().map_or(1.0, |stretches| 1.0 + stretches[i])
     }
 
-    /// (1 + τ) ξ and η − τ ξ of a bond between two sites with the mean τ of its ends: the bond as its critical stretch sees it.
+    /// Returns (1 + τ) ξ and η − τ ξ of a bond between two sites with the mean τ of its end points. The
+    /// critical stretch refers to these vectors.
     #[inline(always)]
     pub fn expanded<const D: usize>(
         &self,

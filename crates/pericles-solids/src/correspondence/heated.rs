@@ -1,4 +1,4 @@
-//! [`Expandable`] for correspondence materials.
+//! Thermal expansion of correspondence forces ([`Expandable`]).
 
 use pericles::{Expandable, Result, ThermalExpansion};
 
@@ -11,7 +11,7 @@ impl<const D: usize> CorrespondenceForce<D> {
         Heat(expansion.map(|expansion| expansion.stretches(t)))
     }
 
-    /// At the time that forces were computed for last.
+    /// Returns the thermal stretches at the time of the last force evaluation.
     pub(super) fn latest_heat(&self) -> Heat {
         Heat(self.expansion.as_ref().map(ThermalExpansion::latest))
     }

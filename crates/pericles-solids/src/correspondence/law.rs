@@ -4,17 +4,20 @@ use super::tensor::{
     Matrix, combination, contraction, determinant, inverse, product, trace, transpose, unit,
 };
 
-/// An isotropic hyperelastic law ψ(F) with the deformation gradient F, J = det F, and the first Piola–Kirchhoff stress P = ∂ψ/∂F. All agree with linear elasticity at small strain.
+/// Isotropic hyperelastic law ψ(F) with the deformation gradient F, J = det F, and the first Piola–Kirchhoff
+/// stress P = ∂ψ/∂F. All laws agree with linear elasticity at small strain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ElasticLaw {
-    /// St Venant–Kirchhoff: S = λ tr(E) I + 2 G E with E = ½ (FᵀF − I), P = F S. For small strains and any rotation: it softens in compression and does not resist J → 0.
+    /// St Venant–Kirchhoff: S = λ tr(E) I + 2 G E with E = ½ (FᵀF − I), P = F S. For small strains and any
+    /// rotation; the law softens in compression and does not resist J → 0.
     #[default]
     StVenantKirchhoff,
     /// Neo-Hookean: ψ = ½ G (tr FᵀF − 3) − G ln J + ½ λ (ln J)².
     NeoHooke,
-    /// Neo-Hookean with volume and shape apart: ψ = ½ G (J^(−2/3) tr FᵀF − 3) + (K/8) (J² + J⁻² − 2).
+    /// Neo-Hookean with volumetric–isochoric split: ψ = ½ G (J^(−2/3) tr FᵀF − 3) + (K/8) (J² + J⁻² − 2).
     NeoHookeSplit,
-    /// Hencky: ψ = ½ K (tr ε)² + G |dev ε|² with the logarithmic strain ε = ½ ln FFᵀ. The elastic law of materials that yield ([`Plasticity`](super::Plasticity)).
+    /// Hencky: ψ = ½ K (tr ε)² + G |dev ε|² with the logarithmic strain ε = ½ ln FFᵀ. Elastic law of
+    /// materials with [`Plasticity`](super::Plasticity).
     Hencky,
 }
 
@@ -30,7 +33,7 @@ pub struct Moduli {
 }
 
 impl Moduli {
-    /// Of the bulk modulus K and the shear modulus G, Pa.
+    /// Returns the moduli for the bulk modulus K and the shear modulus G, Pa.
     pub fn new(bulk: f64, shear: f64) -> Self {
         Self {
             lame: bulk - 2.0 / 3.0 * shear,
@@ -40,7 +43,8 @@ impl Moduli {
     }
 }
 
-/// ψ (J/m³) and P (Pa) of a law that is not [`ElasticLaw::Hencky`], which goes by principal strains. Not numbers at J ≤ 0.
+/// Returns ψ (J/m³) and P (Pa) of a law other than [`ElasticLaw::Hencky`], which is computed from principal
+/// strains. NaN for J ≤ 0.
 pub(super) fn stress(law: ElasticLaw, moduli: &Moduli, f: &Matrix<3>) -> (f64, Matrix<3>) {
     let Moduli { lame, shear, bulk } = *moduli;
     let j = determinant(f);
@@ -52,7 +56,7 @@ pub(super) fn stress(law: ElasticLaw, moduli: &Moduli, f: &Matrix<3>) -> (f64, M
         let second = second_stress(moduli, &strain);
         return (0.5 * contraction(&second, &strain), product(f, &second));
     }
-    // Differences that vanish with the strain are taken of H = F − I, so that energies of small strains keep their digits.
+    // Computed from H = F − I to avoid cancellation at small strains.
     let h = combination(1.0, f, -1.0, &unit());
     let growth = volume_change(&h);
     let log = growth.ln_1p();
@@ -63,7 +67,7 @@ pub(super) fn stress(law: ElasticLaw, moduli: &Moduli, f: &Matrix<3>) -> (f64, M
         let less = (-2.0 / 3.0 * log).exp_m1();
         let scale = 1.0 + less;
         let invariant = 2.0 * stretch + 3.0;
-        // J − 1/J, of which J² + J⁻² − 2 is the square.
+        // J − 1/J, whose square is J² + J⁻² − 2.
         let swelling = growth * (2.0 + growth) / j;
         let energy =
             0.5 * shear * (less * invariant + 2.0 * stretch) + 0.125 * bulk * swelling * swelling;
@@ -75,14 +79,14 @@ pub(super) fn stress(law: ElasticLaw, moduli: &Moduli, f: &Matrix<3>) -> (f64, M
     (energy, combination(shear, f, lame * log - shear, &inverse))
 }
 
-/// J − 1 for F = I + H: the sum of the invariants of H.
+/// Returns J − 1 for F = I + H, the sum of the invariants of H.
 fn volume_change(h: &Matrix<3>) -> f64 {
     let trace = trace(h);
     let second = 0.5 * (trace * trace - contraction(h, &transpose(h)));
     trace + second + determinant(h)
 }
 
-/// The change of P in a direction dF.
+/// Returns the derivative of P in a direction dF.
 pub(super) fn stress_change(
     law: ElasticLaw,
     moduli: &Moduli,
@@ -120,7 +124,7 @@ pub(super) fn stress_change(
     combination(shear, df, 1.0, &second)
 }
 
-/// E = ½ (FᵀF − I) = ½ (H + Hᵀ + HᵀH) with H = F − I, which loses no digits at small strain.
+/// Returns E = ½ (FᵀF − I) = ½ (H + Hᵀ + HᵀH) with H = F − I, which avoids cancellation at small strain.
 fn green_strain(f: &Matrix<3>) -> Matrix<3> {
     let h = combination(1.0, f, -1.0, &unit());
     let square = product(&transpose(&h), &h);
@@ -128,7 +132,7 @@ fn green_strain(f: &Matrix<3>) -> Matrix<3> {
     combination(0.5, &sum, 0.5, &square)
 }
 
-/// λ tr(E) I + 2 G E.
+/// Returns λ tr(E) I + 2 G E.
 fn second_stress(moduli: &Moduli, strain: &Matrix<3>) -> Matrix<3> {
     let pressure = moduli.lame * trace(strain);
     combination(pressure, &unit(), 2.0 * moduli.shear, strain)

@@ -1,4 +1,4 @@
-//! The correspondence material as a user describes it, and its constants on a body.
+//! Correspondence material and its constants on a body.
 
 use pericles::family::VolumeCorrection;
 use pericles::material::{
@@ -14,45 +14,55 @@ use super::plasticity::Plasticity;
 use super::solid::Solid;
 use super::tensor::{Matrix, combination, contraction, in_body, product, symmetric};
 
-/// A correspondence material (Silling, Epton, Weckner, Xu & Askari, J. Elasticity 88, 2007): the force state of a point follows from the stress of its deformation gradient.
+/// A correspondence material (Silling, Epton, Weckner, Xu & Askari, J. Elasticity 88, 2007): the force state
+/// of a point follows from the stress at its deformation gradient.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CorrespondenceMaterial {
-    /// Density, elastic constants, horizon, influence function, partial volumes and failure, as of a linear peridynamic solid. Bonds break by their stretch.
+    /// Density, elastic constants, horizon, influence function, partial volumes and failure criterion, as for
+    /// a linear peridynamic solid. Bonds break by their stretch.
     pub solid: LinearSolid,
-    /// The elastic law; of a material that yields it is [`ElasticLaw::Hencky`] whatever is given.
+    /// Elastic law; materials with plasticity always use [`ElasticLaw::Hencky`].
     pub law: ElasticLaw,
     /// Control of zero-energy modes.
     pub stabilisation: Stabilisation,
-    /// When the material yields, if it does.
+    /// Plasticity; `None` for elastic materials.
     pub plasticity: Option<Plasticity>,
+    /// Tensile strength, Pa, if bonds break by their stress: a bond breaks when the mean Cauchy stress of its
+    /// end points exceeds the strength in the direction of the bond.
+    pub strength: Option<f64>,
 }
 
-/// The constants of a correspondence material on a given body.
+/// Constants of a correspondence material on a given body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CorrespondenceConstants {
-    /// Elastic constants, horizon, influence function, limits of bonds and fracture energy. The kernel constants A and B are not used, and the lattice's shear is exact: none is reported.
+    /// Elastic constants, horizon, influence function, limits of bonds and fracture energy. The constants A
+    /// and B are not used; the lattice shear is `None` because it is exact.
     pub solid: LinearSolidConstants,
-    /// Stress and moduli.
+    /// Stress–strain law.
     pub point: Solid,
     /// Control of zero-energy modes.
     pub stabilisation: Stabilisation,
+    /// Tensile strength, Pa; infinite if bonds do not break by their stress.
+    pub strength: f64,
 }
 
 impl CorrespondenceMaterial {
-    /// A material that does not yield.
+    /// Creates a material without plasticity.
     pub fn new(solid: LinearSolid, law: ElasticLaw, stabilisation: Stabilisation) -> Self {
         Self {
             solid,
             law,
             stabilisation,
             plasticity: None,
+            strength: None,
         }
     }
 
-    /// The constants for bonds of `cloud`.
+    /// Returns the constants for bonds of `cloud`.
     ///
     /// # Errors
-    /// Those of [`LinearSolid::constants`]; a failure criterion other than the closing stretch; plastic constants out of range.
+    /// Those of [`LinearSolid::constants`]; a failure criterion other than the closing stretch; plastic
+    /// constants out of range.
     pub fn constants(
         &self,
         cloud: &PointCloud,
@@ -60,6 +70,9 @@ impl CorrespondenceMaterial {
     ) -> Result<CorrespondenceConstants> {
         if let Some(plasticity) = &self.plasticity {
             plasticity.check()?;
+        }
+        if let Some(strength) = self.strength {
+            positive("the tensile strength", strength)?;
         }
         let unbroken = LinearSolid {
             failure: BondFailure::Unbreakable,
@@ -78,13 +91,15 @@ impl CorrespondenceMaterial {
                 plasticity: self.plasticity,
             },
             stabilisation: self.stabilisation,
+            strength: self.strength.unwrap_or(f64::INFINITY),
             solid,
         };
         self.set_limits(&mut constants, cloud)?;
         Ok(constants)
     }
 
-    /// What bonds between this material and another one can bear, for a failure criterion of the interface: half of the energy of a unit area of crack belongs to the points on each side.
+    /// Returns the limits of bonds between this material and another one, for a failure criterion of the
+    /// interface. Each side contributes half of the fracture energy.
     ///
     /// # Errors
     /// Those of [`CorrespondenceMaterial::constants`].
@@ -95,7 +110,7 @@ impl CorrespondenceMaterial {
         cloud: &PointCloud,
         state: StressState,
     ) -> Result<BondLimits> {
-        // 1/s₀² is the energy of a crack at unit stretch over the fracture energy.
+        // 1/s₀² is the crack energy at unit stretch over the fracture energy.
         let limit = |material: &Self| -> Result<f64> {
             let solid = LinearSolid {
                 failure,
@@ -115,7 +130,8 @@ impl CorrespondenceMaterial {
         })
     }
 
-    /// The critical stretch: s₀² is the fracture energy over the energy of a unit area of crack at unit stretch, counted in the closing deformation, where only the bonds that cross the crack are stretched.
+    /// Sets the critical stretch: s₀² is the fracture energy over the crack energy per area at unit stretch
+    /// in the closing deformation, in which only bonds across the crack are stretched.
     fn set_limits(
         &self,
         constants: &mut CorrespondenceConstants,
@@ -174,16 +190,17 @@ impl CorrespondenceMaterial {
 fn no_such_failure(what: &str) -> PericlesError {
     PericlesError::ElasticConstants {
         reason: format!(
-            "bonds of correspondence materials break by their stretch, calibrated in the closing deformation, not by {what}"
+            "bonds of correspondence materials break by their stretch with the \"closing\" stretch definition; {what} is not supported"
         ),
     }
 }
 
-/// Cells in a horizon of the lattice whose sums stand for the integrals of the continuum; they are within 1 % (plane) and 2 % (space) of them.
+/// Cells per horizon of the lattice whose sums approximate the integrals of the continuum, to 1 % in the
+/// plane and 2 % in space.
 const FINE: [f64; 3] = [200.0, 24.0, 10.0];
 
 impl CorrespondenceConstants {
-    /// Planes of the body's lattice, or of a fine one, with the energy of a unit area of crack at unit stretch.
+    /// Returns planes of the lattice of the body, or of a fine lattice, with the crack energy per area at unit stretch.
     fn crack_planes(&self, solid: &LinearSolid, cloud: &PointCloud, fine: bool) -> Vec<CrackPlane> {
         let (dimension, horizon) = (cloud.dimension(), self.solid.horizon);
         let (sides, correction) = match cloud.cell_sides() {
@@ -202,8 +219,9 @@ impl CorrespondenceConstants {
         CrackPlane::by_layers(&sides, (horizon, correction), &weight, &energy)
     }
 
-    /// The energy density (J/m³) of a point whose bonds across a crack are stretched by one, η = ξ, and whose other bonds are not: with the moment M of the former and the shape tensor K, the displacement gradient is
-    /// H = M K⁻¹, and Σ w z ⊗ z = M − M K⁻¹ M.
+    /// Returns the energy density (J/m³) of a point whose bonds across a crack have unit stretch, η = ξ, and
+    /// whose other bonds are unstretched: with the moment M of the former and the shape tensor K, the
+    /// displacement gradient is H = M K⁻¹, and Σ w z ⊗ z = M − M K⁻¹ M.
     fn closing_energy<const D: usize>(&self, layer: &LayerMoments) -> f64 {
         let whole: Matrix<D> = in_body(&layer.whole);
         let crossing: Matrix<D> = in_body(&layer.crossing);
@@ -213,12 +231,12 @@ impl CorrespondenceConstants {
         let stress = self.point.linear_stress(&strain);
         let left = combination(1.0, &crossing, -1.0, &product(&gradient, &crossing));
         let spring = self.spring() / layer.weight;
-        // Moments are in units of the volume of a cell, of which neither penalty depends.
+        // Moments are in units of the cell volume; the penalty does not depend on it.
         let control = self.stabilisation.control(&self.point, &inverse, spring);
         0.5 * contraction(&stress, &strain) + 0.5 * control.contraction(&symmetric(&left))
     }
 
-    /// An upper bound of the stiffness C : H : H/|H|², Pa.
+    /// Returns an upper bound of the stiffness C : H : H/|H|², Pa.
     pub(super) fn stiffest(&self) -> f64 {
         let dimension = self.point.state.dimension() as f64;
         let bulk = dimension * self.point.dilatation_modulus();
@@ -228,7 +246,7 @@ impl CorrespondenceConstants {
         }
     }
 
-    /// c V_δ/δ, N/m⁴.
+    /// Returns c V_δ/δ, N/m⁴.
     pub(super) fn spring(&self) -> f64 {
         let dimension = self.point.state.dimension();
         spring_of_horizon(

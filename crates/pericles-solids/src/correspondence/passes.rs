@@ -1,8 +1,10 @@
-//! The two passes of correspondence materials.
+//! Passes over points and bonds of correspondence materials.
 
 use pericles::domain::Field;
 use pericles::lanes::Row;
-use pericles::operator::{AtPoints, BondView, Breakable, Inversion, On, PlasticView, TwoPass};
+use pericles::operator::{
+    AtPoints, BondView, Breakable, Inversion, PlasticView, PointSubset, TwoPass,
+};
 use pericles::parallel::for_each_chunk;
 use pericles::{Expandable, StepEnd, ThermalExpansion};
 
@@ -16,15 +18,15 @@ impl<const D: usize> TwoPass for CorrespondenceForce<D> {
         self.value_count()
     }
 
-    fn values_into(&self, t: f64, u: Field<'_>, on: &On<'_>, values: &mut [f64]) {
+    fn values_into(&self, t: f64, u: Field<'_>, on: &PointSubset<'_>, values: &mut [f64]) {
         self.all_values(t, u, on, values);
     }
 
-    /// Of the push; the control does not change, and no one asks for the change of the dilatation.
+    /// Computes the change of the push. The control is constant, and the change of the dilatation is not used.
     fn value_changes_into(&self, t: f64, u: Field<'_>, direction: Field<'_>, changes: &mut [f64]) {
         let heat = self.heat_at(t);
         let (rows, moved) = (self.packed(u), self.packed(direction));
-        self.set_values(&On::All, changes, &|i| {
+        self.set_values(&PointSubset::All, changes, &|i| {
             let shape = &self.shapes[i];
             let gradient = self.gradient(i, &shape.inverse, &self.etas(i, &rows));
             let change = self.gradient(i, &shape.inverse, &self.etas(i, &moved));
@@ -41,7 +43,7 @@ impl<const D: usize> TwoPass for CorrespondenceForce<D> {
         });
     }
 
-    fn add_bond_force(&self, _t: f64, at: AtPoints<'_>, on: &On<'_>, out: &mut [f64]) {
+    fn add_bond_force(&self, _t: f64, at: AtPoints<'_>, on: &PointSubset<'_>, out: &mut [f64]) {
         let (rows, states) = (self.packed(at.u), self.states(at.values));
         self.add_bonds(on, out, &|here, bond, sum| {
             let eta = Self::eta(&rows, here, bond);
@@ -55,7 +57,7 @@ impl<const D: usize> TwoPass for CorrespondenceForce<D> {
         for (change, state) in changes.iter_mut().zip(states.iter()) {
             change.control = state.control;
         }
-        self.add_bonds(&On::All, out, &|here, bond, sum| {
+        self.add_bonds(&PointSubset::All, out, &|here, bond, sum| {
             let eta = Self::eta(&rows, here, bond);
             changes[here].add_force(&changes[bond.site], bond, &eta, sum);
         });
@@ -70,8 +72,9 @@ impl<const D: usize> TwoPass for CorrespondenceForce<D> {
         });
     }
 
-    /// The body at rest is softer than springs ω (k_i + k_j) V_i to which Gershgorin's discs apply: with the least principal value of K, H : H ≤ Σ ω |F ξ − ξ|²/K_min, so that
-    /// W ≤ ½ k Σ ω |η|² with the larger of the stiffest modulus over K_min and the largest principal value of Z.
+    /// Bounds the undeformed body by springs ω (k_i + k_j) V_i, to which Gershgorin's theorem applies: with
+    /// the smallest principal value of K, H : H ≤ Σ ω |F ξ − ξ|²/K_min, so that W ≤ ½ k Σ ω |η|² where k is
+    /// the larger of the stiffest modulus over K_min and the largest principal value of Z.
     fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {
         let spring = |i: usize| {
             let shape = &self.shapes[i];
@@ -99,22 +102,22 @@ impl<const D: usize> TwoPass for CorrespondenceForce<D> {
         self.bonds.for_each::<D>(i, self.bits_at_start(i), |bond| {
             points.extend(sites.own_point(bond.site).filter(|&j| j != i));
         });
-        // By images a point may be a neighbour more than once.
+        // With periodic images a point may be a neighbour more than once.
         points.sort_unstable();
         points.dedup();
         points.into_iter().for_each(visit);
     }
 
-    /// Bonds break first; plastic flow follows with the bonds that are left.
+    /// Breaks bonds first; plastic flow is computed with the remaining bonds.
     fn end_values_into(
         &mut self,
         step: &StepEnd<'_>,
         u: Field<'_>,
-        on: &On<'_>,
-        needed: &On<'_>,
+        on: &PointSubset<'_>,
+        needed: &PointSubset<'_>,
         values: &mut [f64],
     ) {
-        if self.weakest.is_finite() {
+        if self.can_break() {
             self.break_bonds(step, u, on);
         }
         if !self.history.is_empty() {
@@ -166,7 +169,8 @@ impl<const D: usize> TwoPass for CorrespondenceForce<D> {
         (!self.history.is_empty()).then_some(self)
     }
 
-    /// None in a body divided among processes: the force of a bond needs the families of both of its ends.
+    /// Returns `None` for a body divided among processes, because the force of a bond requires the families
+    /// of both end points.
     fn bonds(&self) -> Option<&dyn BondView> {
         (!self.cloud.domain().is_divided()).then_some(self)
     }

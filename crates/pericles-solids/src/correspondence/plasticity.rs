@@ -1,8 +1,10 @@
-//! J2 plasticity at finite strain in the logarithmic frame, and the elastic law that belongs to it.
+//! J2 plasticity at finite strain with logarithmic strains, and its elastic law.
 //!
-//! The deformation gradient is F = Fₑ Fₚ. The history is Cₚ⁻¹ = (FₚᵀFₚ)⁻¹ and the accumulated plastic strain α. With the trial state bₑ = F Cₚ⁻¹ Fᵀ = Σ b_a n_a ⊗ n_a and the logarithmic strains ε_a = ½ ln b_a, the
-//! Kirchhoff stress is τ = K tr(ε) I + 2 G dev ε, and the return mapping in principal axes is that of small strain (Simo, Comput. Methods Appl. Mech. Eng. 99, 1992): isotropic, volume-preserving, exact for every
-//! rotation.
+//! The deformation gradient is F = Fₑ Fₚ. The history variables are Cₚ⁻¹ = (FₚᵀFₚ)⁻¹ and the accumulated
+//! plastic strain α. With the trial state bₑ = F Cₚ⁻¹ Fᵀ = Σ b_a n_a ⊗ n_a and the logarithmic strains ε_a =
+//! ½ ln b_a, the Kirchhoff stress is τ = K tr(ε) I + 2 G dev ε. The return mapping in principal axes is that
+//! of small strain (Simo, Comput. Methods Appl. Mech. Eng. 99, 1992): isotropic, volume-preserving and exact
+//! for any rotation.
 
 use super::law::Moduli;
 use super::tensor::{
@@ -12,7 +14,8 @@ use super::tensor::{
 
 use pericles::{PericlesError, Result, positive};
 
-/// Yielding at the von Mises stress σ_y + H α of the Kirchhoff stress, with the accumulated plastic strain α: linear isotropic hardening.
+/// Von Mises plasticity with linear isotropic hardening: yield at the Kirchhoff stress σ_y + H α, with the
+/// accumulated plastic strain α.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Plasticity {
     /// σ_y, Pa.
@@ -21,19 +24,19 @@ pub struct Plasticity {
     pub hardening: f64,
 }
 
-/// What a point remembers of its plastic flow.
+/// Plastic history of a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct History {
     /// Cₚ⁻¹: xx, yy, zz, xy, yz, xz.
     pub plastic: [f64; 6],
     /// Accumulated plastic strain α = ∫ √(2/3) |dₚ| dt.
     pub accumulated: f64,
-    /// The stretch across the plane or the bar at the end of the last step, from which that of the next one is sought.
+    /// Transverse stretch of the plane or the bar at the end of the last step, the initial guess of the next step.
     pub across: f64,
 }
 
 impl Default for History {
-    /// No plastic flow yet.
+    /// Returns the history before any plastic flow.
     fn default() -> Self {
         Self {
             plastic: [1.0, 1.0, 1.0, 0.0, 0.0, 0.0],
@@ -47,7 +50,7 @@ impl Default for History {
 const PLACES: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)];
 
 impl History {
-    /// Numbers that are kept.
+    /// Numbers stored per point.
     pub(super) const KEPT: usize = 8;
 
     pub(super) fn of(kept: &[f64]) -> Self {
@@ -75,7 +78,7 @@ impl History {
 }
 
 impl Plasticity {
-    /// Checks the constants.
+    /// Returns an error if a constant is out of range.
     ///
     /// # Errors
     /// A yield stress that is not positive; a hardening modulus below zero.
@@ -87,17 +90,17 @@ impl Plasticity {
         Err(PericlesError::OutOfRange {
             quantity: "the hardening modulus",
             value: self.hardening,
-            allowed: "zero or a positive number: softening needs a length that the model does not have",
+            allowed: "0 or a positive number; softening plasticity is not supported because the model has no length scale for it",
         })
     }
 
-    /// ∫ (σ_y + H α) dα from α by an increment: the plastic work per volume, J/m³.
+    /// Returns the plastic work per volume ∫ (σ_y + H α) dα over an increment of α, J/m³.
     fn work(&self, accumulated: f64, increment: f64) -> f64 {
         increment * (self.yield_stress + self.hardening * (accumulated + 0.5 * increment))
     }
 }
 
-/// The stress of a state in principal axes of the trial state.
+/// Result of the return mapping in principal axes of the trial state.
 pub(super) struct Returned {
     /// b_a of the trial state.
     squares: [f64; 3],
@@ -109,13 +112,13 @@ pub(super) struct Returned {
     elastic: [f64; 3],
     /// ∂τ_a/∂ε_b of the trial strains, Pa.
     moduli: Matrix<3>,
-    /// 2 G times the part of the trial deviator that is left, Pa.
+    /// 2 G times the remaining fraction of the trial deviator, Pa.
     secant: f64,
     /// Increment of α.
     pub increment: f64,
 }
 
-/// The return mapping from the trial state of F; without `plasticity` the trial state itself.
+/// Computes the return mapping from the trial state of F; without `plasticity` returns the trial state.
 pub(super) fn returned(
     moduli: &Moduli,
     plasticity: Option<&Plasticity>,
@@ -166,25 +169,26 @@ pub(super) fn returned(
 }
 
 impl Returned {
-    /// The elastic energy density, J/m³.
+    /// Returns the elastic energy density, J/m³.
     pub fn energy(&self, moduli: &Moduli) -> f64 {
         let sum: f64 = self.elastic.iter().sum();
         let deviator = self.elastic.map(|e| (e - sum / 3.0).powi(2));
         0.5 * moduli.bulk * sum * sum + moduli.shear * deviator.iter().sum::<f64>()
     }
 
-    /// τ, Pa.
+    /// Returns τ, Pa.
     pub fn kirchhoff(&self) -> Matrix<3> {
         self.in_space(self.tau)
     }
 
-    /// P = τ F⁻ᵀ, Pa.
+    /// Returns P = τ F⁻ᵀ, Pa.
     pub fn first_stress(&self, f: &Matrix<3>) -> Matrix<3> {
         let back = inverse(f, determinant(f));
         product(&self.kirchhoff(), &transpose(&back))
     }
 
-    /// dP = dτ F⁻ᵀ − τ F⁻ᵀ dFᵀ F⁻ᵀ for a change dF, with dτ of the trial state's change dbₑ = dF F⁻¹ bₑ + (…)ᵀ: in principal axes dτ_aa = Σ_b ∂τ_a/∂ε_b db_bb/(2 b_b) and
+    /// Returns dP = dτ F⁻ᵀ − τ F⁻ᵀ dFᵀ F⁻ᵀ for a change dF. The change of the trial state is
+    /// dbₑ = dF F⁻¹ bₑ + (…)ᵀ, and in principal axes dτ_aa = Σ_b ∂τ_a/∂ε_b db_bb/(2 b_b) and
     /// dτ_ab = (τ_a − τ_b)/(b_a − b_b) db_ab.
     pub fn stress_change(&self, f: &Matrix<3>, df: &Matrix<3>) -> Matrix<3> {
         let back = inverse(f, determinant(f));
@@ -205,7 +209,7 @@ impl Returned {
         product(&whole, &transpose(&back))
     }
 
-    /// (τ_a − τ_b)/(b_a − b_b): τ_a − τ_b is the secant times ε_a − ε_b = ½ ln(b_a/b_b).
+    /// Returns (τ_a − τ_b)/(b_a − b_b), where τ_a − τ_b is the secant times ε_a − ε_b = ½ ln(b_a/b_b).
     fn quotient(&self, a: usize, b: usize) -> f64 {
         let excess = self.squares[a] / self.squares[b] - 1.0;
         let slope = if excess == 0.0 {
@@ -216,7 +220,7 @@ impl Returned {
         0.5 * self.secant * slope / self.squares[b]
     }
 
-    /// The history after the step, with the plastic work per volume, J/m³.
+    /// Returns the history after the step and the plastic work per volume, J/m³.
     pub fn advanced(
         &self,
         plasticity: &Plasticity,

@@ -2,14 +2,14 @@
 
 use super::tensor::{Matrix, determinant, in_body, in_space, inverse, principal_axes, trace};
 
-/// The largest ratio of the principal values of a shape tensor that is inverted: beyond it the bonds that are left do not span the space.
+/// Largest condition number of a shape tensor; beyond it, the bonds of a point are considered not to span the space.
 pub const LARGEST_CONDITION: f64 = 1e6;
 
-/// A shape tensor that is being summed up.
+/// Accumulated shape tensor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Shape<const D: usize> {
     pub tensor: Matrix<D>,
-    /// Bonds that are left.
+    /// Number of bonds.
     pub bonds: usize,
 }
 
@@ -23,7 +23,7 @@ impl<const D: usize> Default for Shape<D> {
 }
 
 impl<const D: usize> Shape<D> {
-    /// Adds a bond of the weight ω = w b V.
+    /// Adds a bond with the weight ω = w b V.
     #[inline(always)]
     pub fn add(&mut self, weight: f64, xi: &[f64; D]) {
         for a in 0..D {
@@ -34,7 +34,7 @@ impl<const D: usize> Shape<D> {
         self.bonds += 1;
     }
 
-    /// The ratio of its largest principal value to the smallest.
+    /// Returns the condition number, the ratio of the largest and the smallest principal value.
     pub fn condition(&self) -> f64 {
         let (values, _) = principal_axes(&self.tensor);
         let largest = values.into_iter().fold(0.0, f64::max);
@@ -45,20 +45,21 @@ impl<const D: usize> Shape<D> {
         }
     }
 
-    /// Whether a deformation gradient follows from the bonds: there are more than the body has dimensions, and their directions differ enough.
+    /// Returns whether the bonds determine a deformation gradient: more than D bonds with sufficiently
+    /// different directions.
     pub fn is_regular(&self) -> bool {
         self.bonds > D && self.condition() <= LARGEST_CONDITION
     }
 
-    /// K⁻¹; none where no deformation gradient follows from the bonds.
+    /// Returns K⁻¹; `None` if the bonds do not determine a deformation gradient.
     pub fn inverse(&self) -> Option<Matrix<D>> {
         self.is_regular().then(|| inverse_of(&self.tensor))
     }
 }
 
-/// The inverse of a positive definite tensor.
+/// Returns the inverse of a positive definite tensor.
 pub(super) fn inverse_of<const D: usize>(tensor: &Matrix<D>) -> Matrix<D> {
-    // Axes that the body does not have get the mean, so that the determinant has the scale of the tensor.
+    // The entries of missing axes are the mean, so that the determinant has the scale of the tensor.
     let full = in_space(tensor, trace(tensor) / D as f64);
     in_body(&inverse(&full, determinant(&full)))
 }

@@ -1,4 +1,4 @@
-//! A solid in the dimensions of a body: its stress with what follows across a plane or a bar.
+//! Stress of a solid in the dimension of a body, with the transverse stretch in the plane and in a bar.
 
 use pericles::material::StressState;
 
@@ -6,34 +6,36 @@ use super::law::{ElasticLaw, Moduli, stress, stress_change};
 use super::plasticity::{History, Plasticity, returned};
 use super::tensor::{Matrix, combination, determinant, diagonal, in_body, in_space, trace, unit};
 
-/// A solid under a state of stress: in plane strain F₃₃ = 1; in plane stress F₃₃ is such that P₃₃ = 0, in a bar F₂₂ = F₃₃ such that P₂₂ = P₃₃ = 0.
+/// A solid under a state of stress: F₃₃ = 1 in plane strain; P₃₃ = 0 in plane stress; P₂₂ = P₃₃ = 0 with
+/// F₂₂ = F₃₃ in a bar.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Solid {
     /// The state of stress.
     pub state: StressState,
-    /// The elastic law; [`ElasticLaw::Hencky`] if the solid yields.
+    /// Elastic law; [`ElasticLaw::Hencky`] for solids with plasticity.
     pub law: ElasticLaw,
     /// Elastic moduli.
     pub moduli: Moduli,
-    /// When the solid yields, if it does.
+    /// Plasticity; `None` for elastic solids.
     pub plasticity: Option<Plasticity>,
 }
 
-/// The state of a point of a solid with a deformation gradient.
+/// State of a point of a solid at a deformation gradient.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointState<const D: usize> {
     /// Elastic energy density ψ, J/m³.
     pub energy: f64,
-    /// First Piola–Kirchhoff stress P in the body's own dimensions, Pa.
+    /// First Piola–Kirchhoff stress P in the dimension of the body, Pa.
     pub stress: Matrix<D>,
-    /// The stretch across a plane or a bar; one in space.
+    /// Transverse stretch of a plane or a bar; 1 in space.
     pub across: f64,
 }
 
-/// Iterations for the stretch across; quadratic convergence needs a handful.
+/// Largest number of Newton iterations for the transverse stretch; a few suffice.
 const ITERATIONS: usize = 60;
 
-/// A solid whose stress-free state is stretched by a factor λ in all directions: F = λ F_e, ψ = ψ(F_e) and P = P(F_e)/λ. Plane strain keeps F₃₃ = 1, so that F_e,₃₃ = 1/λ.
+/// A solid whose stress-free state is stretched by a factor λ in all directions: F = λ F_e, ψ = ψ(F_e) and
+/// P = P(F_e)/λ. In plane strain F₃₃ = 1 and F_e,₃₃ = 1/λ.
 #[derive(Debug, Clone, Copy)]
 pub struct Expanded<'a> {
     solid: &'a Solid,
@@ -41,7 +43,7 @@ pub struct Expanded<'a> {
 }
 
 impl Expanded<'_> {
-    /// As [`Solid::stress`].
+    /// Returns energy density and stress; see [`Solid::stress`].
     pub fn stress<const D: usize>(&self, f: &Matrix<D>, history: &History) -> PointState<D> {
         let full = self.elastic_part(f, history);
         let (energy, stress) = self.solid.stress_in_space(&full, history);
@@ -52,7 +54,7 @@ impl Expanded<'_> {
         }
     }
 
-    /// As [`Solid::stress_change`].
+    /// Returns the derivative of P; see [`Solid::stress_change`].
     pub fn stress_change<const D: usize>(
         &self,
         f: &Matrix<D>,
@@ -65,13 +67,13 @@ impl Expanded<'_> {
         self.over_factor(&change)
     }
 
-    /// As [`Solid::advanced`].
+    /// Returns the history after a step and the plastic work; see [`Solid::advanced`].
     pub fn advanced<const D: usize>(&self, f: &Matrix<D>, history: &History) -> (History, f64) {
         let full = self.elastic_part(f, history);
         self.solid.advanced_at(&full, history)
     }
 
-    /// F_e in space.
+    /// Returns F_e in space.
     fn elastic_part<const D: usize>(&self, f: &Matrix<D>, history: &History) -> Matrix<3> {
         let across = 1.0 / self.factor;
         self.solid.embedded(&self.over_factor(f), across, history)
@@ -83,7 +85,7 @@ impl Expanded<'_> {
 }
 
 impl Solid {
-    /// The solid with a stress-free state that is stretched by a positive factor, by thermal expansion.
+    /// Returns the solid with a stress-free state stretched by a positive factor, for thermal expansion.
     pub fn expanded(&self, factor: f64) -> Expanded<'_> {
         Expanded {
             solid: self,
@@ -91,12 +93,12 @@ impl Solid {
         }
     }
 
-    /// Energy density and stress; not numbers where det F ≤ 0.
+    /// Returns energy density and stress; NaN for det F ≤ 0.
     pub fn stress<const D: usize>(&self, f: &Matrix<D>, history: &History) -> PointState<D> {
         self.expanded(1.0).stress(f, history)
     }
 
-    /// The change of P in a direction dF at F, with what changes across.
+    /// Returns the derivative of P at F in a direction dF, including the change of the transverse stretch.
     pub fn stress_change<const D: usize>(
         &self,
         f: &Matrix<D>,
@@ -121,7 +123,8 @@ impl Solid {
         in_body(&combination(1.0, &direct, stretch, &slope))
     }
 
-    /// The history after a step that ends at F, and the plastic work per volume within it, J/m³; as before of solids that do not yield.
+    /// Returns the history after a step that ends at F and the plastic work per volume of the step, J/m³. The
+    /// history of elastic solids does not change.
     pub fn advanced<const D: usize>(&self, f: &Matrix<D>, history: &History) -> (History, f64) {
         self.expanded(1.0).advanced(f, history)
     }
@@ -134,13 +137,13 @@ impl Solid {
         state.advanced(plasticity, full, history)
     }
 
-    /// The tensor of linear elasticity on a symmetric tensor in the body's own dimensions, λ̂ tr(ε) I + 2 G ε, Pa.
+    /// Returns the stress of linear elasticity in the dimension of the body, λ̂ tr(ε) I + 2 G ε, Pa.
     pub fn linear_stress<const D: usize>(&self, strain: &Matrix<D>) -> Matrix<D> {
         let pressure = self.plane_lame() * trace(strain);
         combination(pressure, &unit(), 2.0 * self.moduli.shear, strain)
     }
 
-    /// λ̂, Pa: λ, in plane stress 2 λ G/(λ + 2 G), in a bar E − 2 G.
+    /// Returns λ̂, Pa: λ, in plane stress 2 λ G/(λ + 2 G), in a bar E − 2 G.
     pub fn plane_lame(&self) -> f64 {
         let Moduli { lame, shear, .. } = self.moduli;
         match self.state {
@@ -150,12 +153,12 @@ impl Solid {
         }
     }
 
-    /// The modulus of dilatation κ = λ̂ + 2 G/D, Pa.
+    /// Returns the dilatation modulus κ = λ̂ + 2 G/D, Pa.
     pub fn dilatation_modulus(&self) -> f64 {
         self.plane_lame() + 2.0 * self.moduli.shear / self.state.dimension() as f64
     }
 
-    /// What changes where the stretch across grows; none where it does not change.
+    /// Returns the derivative of F with respect to the transverse stretch; `None` if the stretch is constant.
     fn across(&self) -> Option<Matrix<3>> {
         match self.state {
             StressState::PlaneStress => Some(diagonal([0.0, 0.0, 1.0])),
@@ -164,12 +167,12 @@ impl Solid {
         }
     }
 
-    /// F in space, with the stretch across that plane strain keeps.
+    /// Returns F in space; `kept` is the transverse stretch in plane strain.
     fn embedded<const D: usize>(&self, f: &Matrix<D>, kept: f64, history: &History) -> Matrix<3> {
         let Some(direction) = self.across() else {
             return in_space(f, kept);
         };
-        // An inverted plane has no stretch across.
+        // The transverse stretch of an inverted plane is undefined.
         if determinant(&in_space(f, 1.0)) <= 0.0 {
             return in_space(f, f64::NAN);
         }
@@ -179,7 +182,7 @@ impl Solid {
             let (_, stress) = self.stress_in_space(&full, history);
             let slope = self.change_in_space(&full, &direction, history);
             let step = -stress[2][2] / slope[2][2];
-            // Never to zero or beyond, nor far at once where the law is concave.
+            // Steps are limited so that the stretch remains positive and concave laws do not overshoot.
             let step = step.clamp(-0.5 * across, across);
             across += step;
             if step.abs() <= 4.0 * f64::EPSILON * across || !step.is_finite() {
@@ -189,7 +192,7 @@ impl Solid {
         in_space(f, across)
     }
 
-    /// The stretch of linear elasticity; of a solid that yields, that of the last step.
+    /// Returns the transverse stretch of linear elasticity; with plasticity, that of the last step.
     fn first_guess<const D: usize>(&self, f: &Matrix<D>, history: &History) -> f64 {
         if self.plasticity.is_some() {
             return history.across;

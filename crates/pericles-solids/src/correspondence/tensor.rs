@@ -1,14 +1,14 @@
-//! Tensors of three dimensions, and their principal axes.
+//! Small matrices and their principal axes.
 
 /// A square matrix by rows.
 pub type Matrix<const D: usize> = [[f64; D]; D];
 
-/// The unit matrix.
+/// Returns the unit matrix.
 pub fn unit<const D: usize>() -> Matrix<D> {
     diagonal([1.0; D])
 }
 
-/// A diagonal matrix.
+/// Returns a diagonal matrix.
 pub fn diagonal<const D: usize>(entries: [f64; D]) -> Matrix<D> {
     let mut matrix = [[0.0; D]; D];
     for (a, entry) in entries.into_iter().enumerate() {
@@ -17,48 +17,48 @@ pub fn diagonal<const D: usize>(entries: [f64; D]) -> Matrix<D> {
     matrix
 }
 
-/// A B.
+/// Returns A B.
 pub fn product<const D: usize>(a: &Matrix<D>, b: &Matrix<D>) -> Matrix<D> {
     matrix(|i, j| (0..D).map(|k| a[i][k] * b[k][j]).sum())
 }
 
-/// A x.
+/// Returns A x.
 pub fn apply<const D: usize>(a: &Matrix<D>, x: &[f64; D]) -> [f64; D] {
     std::array::from_fn(|i| (0..D).map(|k| a[i][k] * x[k]).sum())
 }
 
-/// A with rows and columns exchanged.
+/// Returns Aᵀ.
 pub fn transpose<const D: usize>(a: &Matrix<D>) -> Matrix<D> {
     matrix(|i, j| a[j][i])
 }
 
-/// s A + t B.
+/// Returns s A + t B.
 pub fn combination<const D: usize>(s: f64, a: &Matrix<D>, t: f64, b: &Matrix<D>) -> Matrix<D> {
     matrix(|i, j| s * a[i][j] + t * b[i][j])
 }
 
-/// ½ (A + Aᵀ).
+/// Returns ½ (A + Aᵀ).
 pub fn symmetric<const D: usize>(a: &Matrix<D>) -> Matrix<D> {
     matrix(|i, j| 0.5 * (a[i][j] + a[j][i]))
 }
 
-/// Σ A_ii.
+/// Returns Σ A_ii.
 pub fn trace<const D: usize>(a: &Matrix<D>) -> f64 {
     (0..D).map(|i| a[i][i]).sum()
 }
 
-/// A : B = Σ A_ij B_ij.
+/// Returns A : B = Σ A_ij B_ij.
 pub fn contraction<const D: usize>(a: &Matrix<D>, b: &Matrix<D>) -> f64 {
     let rows = a.iter().flatten().zip(b.iter().flatten());
     rows.map(|(x, y)| x * y).sum()
 }
 
-/// A matrix by a formula for its entries.
+/// Returns a matrix from a function of row and column.
 pub fn matrix<const D: usize>(entry: impl Fn(usize, usize) -> f64) -> Matrix<D> {
     std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)))
 }
 
-/// The matrix in space that has `a` in its first rows and columns, and `rest` on the diagonal behind.
+/// Returns the 3 × 3 matrix with `a` in the first rows and columns and `rest` on the remaining diagonal.
 pub fn in_space<const D: usize>(a: &Matrix<D>, rest: f64) -> Matrix<3> {
     matrix(|i, j| match i < D && j < D {
         true => a[i][j],
@@ -67,18 +67,18 @@ pub fn in_space<const D: usize>(a: &Matrix<D>, rest: f64) -> Matrix<3> {
     })
 }
 
-/// The first rows and columns.
+/// Returns the first D rows and columns.
 pub fn in_body<const D: usize>(a: &Matrix<3>) -> Matrix<D> {
     matrix(|i, j| a[i][j])
 }
 
-/// The determinant of a matrix in space.
+/// Returns the determinant.
 pub fn determinant(a: &Matrix<3>) -> f64 {
     let minor = |j: usize, k: usize| a[1][j] * a[2][k] - a[1][k] * a[2][j];
     a[0][0] * minor(1, 2) - a[0][1] * minor(0, 2) + a[0][2] * minor(0, 1)
 }
 
-/// The inverse of a matrix in space with the determinant given.
+/// Returns the inverse of a matrix with this determinant.
 pub fn inverse(a: &Matrix<3>, determinant: f64) -> Matrix<3> {
     let of = |i: usize, j: usize| {
         let ([p, q], [r, s]) = (others(j), others(i));
@@ -87,14 +87,14 @@ pub fn inverse(a: &Matrix<3>, determinant: f64) -> Matrix<3> {
     matrix(|i, j| of(i, j) / determinant)
 }
 
-/// The two numbers that follow on i in a circle.
+/// Returns the next two indices after i, cyclically.
 fn others(i: usize) -> [usize; 2] {
     [(i + 1) % 3, (i + 2) % 3]
 }
 
-/// The eigenvalues of a symmetric matrix with their unit vectors as columns, by Jacobi rotations.
+/// Returns the eigenvalues of a symmetric matrix, and unit eigenvectors as columns, by Jacobi rotations.
 pub fn principal_axes<const D: usize>(a: &Matrix<D>) -> ([f64; D], Matrix<D>) {
-    /// Four are enough in three dimensions; each squares what is left beside the diagonal.
+    /// Four suffice in three dimensions; convergence of the off-diagonal entries is quadratic.
     const SWEEPS: usize = 30;
     let (mut a, mut axes) = (symmetric(a), unit::<D>());
     for _ in 0..SWEEPS {
@@ -113,7 +113,7 @@ pub fn principal_axes<const D: usize>(a: &Matrix<D>) -> ([f64; D], Matrix<D>) {
     (std::array::from_fn(|i| a[i][i]), axes)
 }
 
-/// The rotation after which the entry p q of a symmetric matrix is zero.
+/// Applies the rotation that annihilates the entry p q of a symmetric matrix.
 fn rotate<const D: usize>(a: &mut Matrix<D>, axes: &mut Matrix<D>, [p, q]: [usize; 2]) {
     if a[p][q] == 0.0 {
         return;
@@ -149,12 +149,12 @@ mod tests {
         let difference = combination(1.0, &back, -1.0, &A);
         assert!(contraction(&difference, &difference).sqrt() < 1e-14);
         assert!((values.iter().product::<f64>() / determinant(&A) - 1.0).abs() < 1e-14);
-        // Equal eigenvalues have no preferred axes.
+        // Equal eigenvalues leave the axes unchanged.
         assert_eq!(principal_axes(&unit::<3>()), ([1.0; 3], unit()));
     }
 
     #[test]
-    fn the_inverse_times_the_matrix_is_the_unit_matrix() {
+    fn inverse_times_matrix_is_the_unit_matrix() {
         let full = [[1.1, 0.05, -0.02], [0.3, 0.95, 0.04], [0.01, -0.6, 1.02]];
         let one = product(&inverse(&full, determinant(&full)), &full);
         let difference = combination(1.0, &one, -1.0, &unit());

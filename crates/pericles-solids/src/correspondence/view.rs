@@ -1,4 +1,4 @@
-//! Single bonds of correspondence bodies, for fields.
+//! Views of bonds and plastic strain of correspondence bodies, for output.
 
 use pericles::domain::Field;
 use pericles::operator::{BondAt, BondView, PlasticView};
@@ -15,7 +15,7 @@ impl<const D: usize> PlasticView for CorrespondenceForce<D> {
     }
 }
 
-/// The deformation gradients of a point and its neighbours are computed for each call.
+/// Each call computes the deformation gradients of a point and its neighbours.
 impl<const D: usize> BondView for CorrespondenceForce<D> {
     fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt)) {
         let (heat, sites) = (self.latest_heat(), self.bonds.list.sites());

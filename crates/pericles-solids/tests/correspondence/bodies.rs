@@ -1,17 +1,17 @@
-//! Bodies that several tests share.
+//! Bodies shared by several tests.
 
 use std::sync::Arc;
 
 use pericles::family::VolumeCorrection;
 use pericles::kernel::InfluenceFunction;
 use pericles::material::{BondFailure, GivenConstants, LinearSolid, StateInfluence, StressState};
-use pericles::operator::{BondForm, Force, On};
+use pericles::operator::{BondForm, Force, PointSubset};
 use pericles::space::{Grid, PointCloud, Shape};
 use pericles_solids::correspondence::{
     CorrespondenceBody, CorrespondenceMaterial, ElasticLaw, Stabilisation,
 };
 
-/// A material with E = 10 Pa that does not break.
+/// An unbreakable material with E = 10 Pa.
 pub fn material(
     poisson_ratio: f64,
     horizon: f64,
@@ -33,7 +33,7 @@ pub fn material(
     CorrespondenceMaterial::new(solid, law, stabilisation)
 }
 
-/// The force of a material on a body.
+/// Force operator of a material on a body.
 pub fn operator(
     cloud: &Arc<PointCloud>,
     material: &CorrespondenceMaterial,
@@ -45,7 +45,7 @@ pub fn operator(
     body.operator(BondForm::Fastest).unwrap().operator
 }
 
-/// A lattice of cells of size one.
+/// A lattice with unit cells.
 pub fn lattice(sides: &[f64]) -> Arc<PointCloud> {
     let grid = Grid {
         shape: Shape::Box {
@@ -59,7 +59,8 @@ pub fn lattice(sides: &[f64]) -> Arc<PointCloud> {
     Arc::new(grid.points().unwrap())
 }
 
-/// Cells of size one that are moved from their places, with different volumes: x = k + 1/2 + 0.1 sin(1.7 n + 0.3 c), V = 1 + 0.1 sin n for the n-th cell in the order of C arrays.
+/// Displaced unit cells with different volumes: x = k + 1/2 + 0.1 sin(1.7 n + 0.3 c), V = 1 + 0.1 sin n for
+/// the n-th cell in row-major order.
 pub fn jittered(sides: &[usize]) -> Arc<PointCloud> {
     let (dimension, n) = (sides.len(), sides.iter().product::<usize>());
     let mut positions = vec![0.0; dimension * n];
@@ -96,7 +97,7 @@ pub fn affine(cloud: &PointCloud, h: &[[f64; 3]; 3]) -> Vec<f64> {
     (0..cloud.dimension() * n).map(of).collect()
 }
 
-/// Numbers without a pattern, at most one in size.
+/// Pseudorandom numbers of magnitude at most 1.
 pub fn noise(entries: usize, seed: f64) -> Vec<f64> {
     (0..entries)
         .map(|k| ((k as f64 + seed) * 12.9898).sin() * ((k as f64) * 0.37 + seed).cos())
@@ -106,11 +107,11 @@ pub fn noise(entries: usize, seed: f64) -> Vec<f64> {
 /// Force densities at u.
 pub fn force(operator: &dyn Force, u: &[f64]) -> Vec<f64> {
     let mut out = vec![0.0; u.len()];
-    operator.add_force(0.0, u, On::All, &mut out);
+    operator.add_force(0.0, u, PointSubset::All, &mut out);
     out
 }
 
-/// The largest number in size.
+/// Largest magnitude.
 pub fn largest(numbers: &[f64]) -> f64 {
     numbers.iter().fold(0.0, |most, x| most.max(x.abs()))
 }

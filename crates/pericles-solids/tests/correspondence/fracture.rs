@@ -1,4 +1,4 @@
-//! Bonds that break: calibration, energy balance, points that lose all bonds, resumed runs, threads.
+//! Bond failure: calibration, energy balance, points that lose all bonds, resumed runs, threads.
 
 use std::sync::Arc;
 
@@ -6,7 +6,7 @@ use pericles::family::{Crack, EndRule, VolumeCorrection};
 use pericles::material::{
     BondFailure, CrackPlane, FractureCalibration, StressState, StretchDefinition,
 };
-use pericles::operator::{BondForm, Force, On};
+use pericles::operator::{BondForm, Force, PointSubset};
 use pericles::round_trip::check_resume;
 use pericles::space::PointCloud;
 use pericles::time::{State, VelocityVerlet, highest_frequency};
@@ -34,7 +34,7 @@ fn breaking(calibration: FractureCalibration) -> CorrespondenceMaterial {
     material
 }
 
-/// With lattice calibration the mean over planes is the fracture energy; the integrals of the continuum are within some percent of it.
+/// With lattice calibration the mean over planes is the fracture energy; continuum integrals differ by a few per cent.
 #[test]
 fn critical_stretches_follow_from_the_fracture_energy() {
     for (sides, state) in [
@@ -53,23 +53,25 @@ fn critical_stretches_follow_from_the_fracture_energy() {
     }
 }
 
-/// A half of a body is moved away from the other so that every bond across is stretched by the critical stretch: what breaks takes the calibrated energy of the plane.
+/// Stretches every bond across a plane by the critical stretch: the dissipated energy is the calibrated
+/// energy of the plane.
 #[test]
-fn closing_cracks_take_the_calibrated_energy() {
+fn dissipated_energy_of_a_closing_deformation_is_the_calibrated_energy() {
     let cloud = lattice(&[9.0, 16.0]);
     let constants = breaking(FractureCalibration::Lattice)
         .constants(&cloud, StressState::PlaneStrain)
         .unwrap();
     let plane = constants.solid.crack_planes[0].clone();
     assert_eq!(plane.to_string(), "(10)");
-    // The energy of points in the middle of the width, whose bonds lead to no side of the body; bonds stretch by the same share, which no displacement gives. Instead the energy is that of the stretched bonds in
-    // the deformation y → y (1 + s) on one side for points on the other, one layer at a time.
+    // No displacement stretches all bonds across by the same amount. Instead, the energy of points in the
+    // middle of the width, far from the sides, is summed layer by layer: points beyond the plane have the
+    // deformation y → y (1 + s) relative to the point.
     let (n, s) = (cloud.len(), 1e-6 * constants.solid.limits.stretch);
     let body = CorrespondenceBody::new(&cloud, &constants, VolumeCorrection::None);
     let operator = body.operator(BondForm::List).unwrap().operator;
     let mut energy = 0.0;
     for layer in 0..3 {
-        // The point, and what lies beyond the plane at y = 8 moved as its own bonds want.
+        // The points beyond the plane at y = 8 are displaced relative to this point.
         let (x, y) = (4.5, 7.5 - f64::from(layer));
         let i = (0..n).find(|&i| cloud.point(i)[..2] == [x, y]).unwrap();
         let mut u = vec![0.0; 2 * n];
@@ -113,7 +115,7 @@ fn plate() -> (Arc<PointCloud>, Box<dyn Force>) {
     (cloud, operator)
 }
 
-/// The plate torn apart: upper and lower part move away from each other.
+/// The plate in tension: initial velocities of the upper and lower half are opposite.
 fn torn(part: f64) -> Simulation {
     let (cloud, operator) = plate();
     let system = System::new(cloud.clone(), operator, PointScalar::Uniform(1.0)).unwrap();
@@ -133,7 +135,7 @@ fn torn(part: f64) -> Simulation {
 
 /// The bounds were chosen after seeing the result.
 #[test]
-fn energy_and_momentum_are_accounted_for_while_bonds_break() {
+fn energy_balance_and_momentum_conservation_hold_while_bonds_break() {
     let mut run = torn(1.0);
     let started = run.system().momentum(&run.state().v);
     run.run(|_| Control::Continue).unwrap();
@@ -153,12 +155,12 @@ fn energy_and_momentum_are_accounted_for_while_bonds_break() {
 }
 
 #[test]
-fn a_resumed_run_goes_on_bit_for_bit() {
+fn resumed_run_is_bitwise_identical() {
     check_resume(|| torn(1.0), [5, 30]).unwrap();
 }
 
 #[test]
-fn results_do_not_depend_on_threads() {
+fn results_do_not_depend_on_the_number_of_threads() {
     let end = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
@@ -179,9 +181,10 @@ fn results_do_not_depend_on_threads() {
     assert_eq!(end(1), end(3));
 }
 
-/// A point that is pulled off its body loses its last bonds together: those left when fewer than three remain break too, and the energy of body and dissipation stays.
+/// A point that is pulled off its body loses all bonds when fewer than three remain; the sum of elastic and
+/// dissipated energy is conserved.
 #[test]
-fn a_point_with_too_few_bonds_loses_all_of_them() {
+fn points_with_too_few_bonds_lose_all_bonds() {
     let cloud = lattice(&[8.0, 8.0]);
     let material = breaking(FractureCalibration::Lattice);
     let constants = material
@@ -192,7 +195,7 @@ fn a_point_with_too_few_bonds_loses_all_of_them() {
     assert_eq!(force.dropped_points(), 0);
     let n = cloud.len();
     let corner = (0..n).find(|&i| cloud.point(i)[..2] == [0.5, 0.5]).unwrap();
-    // Along −x: bonds along y stretch last.
+    // Along −x, so that bonds along y stretch last.
     let mut u = vec![0.0; 2 * n];
     u[corner] = -0.3;
     let mut values = vec![0.0; n * pericles::operator::TwoPass::values_per_point(&force)];
@@ -202,15 +205,15 @@ fn a_point_with_too_few_bonds_loses_all_of_them() {
         &mut force,
         &step,
         field,
-        &On::All,
-        &On::All,
+        &PointSubset::All,
+        &PointSubset::All,
         &mut values,
     );
     let mut damage = vec![0.0; n];
     pericles::operator::Breakable::damage_into(&force, &mut damage);
     let broken = pericles::operator::Breakable::broken_bonds(&force);
     assert!(broken > 0);
-    // Whatever is left, it spans the plane or is nothing.
+    // The remaining bonds span the plane, or none remain.
     let left = (0..n).all(|i| damage[i] == 0.0 || damage[i] <= 1.0);
     assert!(left && values.iter().all(|value| value.is_finite()));
     assert_eq!(damage[corner] == 1.0, force.dropped_points() > 0);
@@ -218,7 +221,7 @@ fn a_point_with_too_few_bonds_loses_all_of_them() {
 
 /// The end of a bar whose horizon is one spacing has a single bond.
 #[test]
-fn points_whose_bonds_do_not_span_the_space_are_refused() {
+fn points_whose_bonds_do_not_span_the_space_are_errors() {
     let cloud = lattice(&[6.0]);
     let mut material = material(0.0, 1.0, ElasticLaw::NeoHooke, Stabilisation::Isotropic);
     material.solid.elastic.poisson_ratio = None;
@@ -226,14 +229,14 @@ fn points_whose_bonds_do_not_span_the_space_are_refused() {
     let body = CorrespondenceBody::new(&cloud, &constants, VolumeCorrection::None);
     let error = body.operator(BondForm::List).err().unwrap().to_string();
     assert!(
-        error.contains("shape tensor of point 0") && error.contains("1 bonds"),
+        error.contains("shape tensor of point 0") && error.contains("number of bonds 1"),
         "{error}"
     );
 }
 
-/// A bar that is turned inside out stops the run, with the point.
+/// An inverted bar stops the run with an error that contains the point.
 #[test]
-fn an_inverted_point_stops_the_run() {
+fn inverted_point_stops_the_run() {
     let cloud = lattice(&[8.0, 8.0]);
     let material = material(
         0.3,

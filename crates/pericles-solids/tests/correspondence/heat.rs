@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::bodies::{affine, force, jittered, largest, material, noise, operator, wave};
 use pericles::material::StressState;
-use pericles::operator::{Force, On};
+use pericles::operator::{Force, PointSubset};
 use pericles::space::PointCloud;
 use pericles::{PointScalar, Temperature, ThermalExpansion};
 use pericles_solids::correspondence::{ElasticLaw, History, Stabilisation};
@@ -57,7 +57,7 @@ fn heated(
 }
 
 #[test]
-fn free_expansion_is_without_force_and_energy() {
+fn free_thermal_expansion_has_no_force_and_no_energy() {
     let stretch = 0.05;
     for (sides, state) in [
         (&[4, 4, 4][..], StressState::Spatial),
@@ -79,9 +79,10 @@ fn free_expansion_is_without_force_and_energy() {
     }
 }
 
-/// Prevented expansion of linear elasticity: −E τ/(1 − 2ν) in space and plane strain, −E τ/(1 − ν) in plane stress, −E τ in a bar; finite strains differ by the order of τ.
+/// Stress of constrained expansion in linear elasticity: −E τ/(1 − 2ν) in space and plane strain, −E τ/(1 −
+/// ν) in plane stress, −E τ in a bar; finite-strain laws differ by O(τ).
 #[test]
-fn prevented_expansion_has_the_stress_of_linear_elasticity() {
+fn constrained_thermal_expansion_has_the_stress_of_linear_elasticity() {
     let (young, nu, stretch) = (10.0, 0.3, 1e-7);
     for law in LAWS {
         let expected = [
@@ -116,7 +117,7 @@ fn prevented_expansion_has_the_stress_of_linear_elasticity() {
 }
 
 #[test]
-fn the_force_is_the_gradient_of_the_energy_and_the_tangent_its_derivative() {
+fn heated_forces_are_energy_gradients_and_tangents_are_their_derivatives() {
     for (sides, state) in [
         (&[4, 4, 4][..], StressState::Spatial),
         (&[7, 7], StressState::PlaneStrain),
@@ -148,7 +149,7 @@ fn the_force_is_the_gradient_of_the_energy_and_the_tangent_its_derivative() {
             let mut tangent = vec![0.0; u.len()];
             operator.tangent_into(0.0, &u, &d, &mut tangent);
             let mut up = vec![0.0; u.len()];
-            operator.add_force(0.0, &moved(h), On::All, &mut up);
+            operator.add_force(0.0, &moved(h), PointSubset::All, &mut up);
             let down = force(&*operator, &moved(-h));
             let most = largest(&tangent);
             for k in 0..u.len() {

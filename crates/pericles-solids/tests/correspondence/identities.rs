@@ -1,7 +1,8 @@
-//! Identities that hold on any points: patch test, rigid motion, gradient, tangent, momentum, torque, frame indifference.
+//! Identities on arbitrary points: patch test, rigid motion, gradient, tangent, momentum, angular momentum,
+//! objectivity.
 
 use pericles::material::StressState;
-use pericles::operator::On;
+use pericles::operator::PointSubset;
 use pericles_solids::correspondence::{ElasticLaw, Stabilisation};
 
 use crate::bodies::{affine, force, jittered, largest, lattice, material, noise, operator, wave};
@@ -20,7 +21,7 @@ const BODIES: [(&[usize], StressState, f64); 4] = [
     (&[12], StressState::Uniaxial, 3.2),
 ];
 
-/// ν of a bar is not used.
+/// ν by state of stress; a bar does not use it.
 fn ratio(state: StressState) -> f64 {
     match state {
         StressState::Uniaxial => 0.0,
@@ -28,9 +29,10 @@ fn ratio(state: StressState) -> f64 {
     }
 }
 
-/// A uniform deformation has the stress of the classical law at every point, so that no force acts on points whose family is complete.
+/// The stress of a uniform deformation is that of the classical law at every point, so that no force acts on
+/// points with complete families.
 #[test]
-fn a_uniform_deformation_passes_the_patch_test() {
+fn uniform_deformations_pass_the_patch_test() {
     let cloud = lattice(&[10.0, 10.0, 10.0]);
     let n = cloud.len();
     let h = [[0.05, 0.02, -0.01], [0.01, -0.03, 0.02], [0.0, 0.02, 0.04]];
@@ -55,7 +57,7 @@ fn a_uniform_deformation_passes_the_patch_test() {
     }
 }
 
-/// R x − x for a rotation by 0.7 about (1, 2, 2)/3, in the plane about its normal; none of a bar.
+/// R − I for a rotation by 0.7 about (1, 2, 2)/3, in the plane about its normal; zero for a bar.
 fn turned(dimension: usize) -> [[f64; 3]; 3] {
     let (angle, axis) = match dimension {
         1 => return [[0.0; 3]; 3],
@@ -78,7 +80,7 @@ fn turned(dimension: usize) -> [[f64; 3]; 3] {
 }
 
 #[test]
-fn rigid_motion_exerts_no_force() {
+fn rigid_motion_causes_no_force() {
     for (sides, state, horizon) in BODIES {
         for stabilisation in ALL {
             let cloud = jittered(sides);
@@ -98,9 +100,9 @@ fn rigid_motion_exerts_no_force() {
     }
 }
 
-/// f_i V_i = −∂E/∂u_i by central differences; the tangent likewise, and V times it is symmetric.
+/// f_i V_i = −∂E/∂u_i by central differences, and likewise the tangent, which times V is symmetric.
 #[test]
-fn forces_are_the_gradient_of_the_energy_and_tangents_that_of_forces() {
+fn forces_are_energy_gradients_and_tangents_are_force_derivatives() {
     for (sides, state, horizon) in BODIES {
         for (stabilisation, law) in ALL.into_iter().zip([
             ElasticLaw::StVenantKirchhoff,
@@ -147,7 +149,8 @@ fn forces_are_the_gradient_of_the_energy_and_tangents_that_of_forces() {
     }
 }
 
-/// Σ V f = 0 always; Σ V y × f = 0 where the control of zero-energy modes is a multiple of the unit tensor. Wan's tensor violates the latter at irregular points.
+/// Σ V f = 0 for all controls; Σ V y × f = 0 if the control of zero-energy modes is isotropic. The tensor of
+/// Wan et al. violates the latter at irregular points.
 #[test]
 fn momentum_and_angular_momentum_are_conserved() {
     let (sides, state, horizon) = SPATIAL;
@@ -179,9 +182,9 @@ fn momentum_and_angular_momentum_are_conserved() {
     }
 }
 
-/// A rotation after a deformation turns the forces and leaves the energy, with every control but Wan's.
+/// A superposed rotation turns the forces and conserves the energy with every control except that of Wan et al.
 #[test]
-fn forces_turn_with_the_body() {
+fn forces_are_objective() {
     for (sides, state, horizon) in [SPATIAL, BODIES[2]] {
         let (dimension, turn) = (sides.len(), turned(sides.len()));
         for stabilisation in [
@@ -218,9 +221,9 @@ fn forces_turn_with_the_body() {
     }
 }
 
-/// The checkerboard costs no energy without control, and energy with each of them.
+/// A checkerboard deformation has no energy without control and positive energy with every control.
 #[test]
-fn control_resists_the_checkerboard() {
+fn control_of_zero_energy_modes_resists_the_checkerboard() {
     let cloud = lattice(&[9.0, 9.0]);
     let n = cloud.len();
     let mut direction = vec![0.0; 2 * n];
@@ -245,9 +248,9 @@ fn control_resists_the_checkerboard() {
     }
 }
 
-/// A part of the points gets the forces that it gets in an evaluation of all.
+/// Forces on a subset of points equal those of an evaluation of all points.
 #[test]
-fn parts_of_a_body_are_evaluated_alike() {
+fn forces_on_a_subset_equal_those_of_a_full_evaluation() {
     let cloud = jittered(&[9, 9]);
     let material = material(0.3, 2.7, ElasticLaw::NeoHooke, Stabilisation::Wan);
     let operator = operator(&cloud, &material, StressState::PlaneStress);
@@ -255,7 +258,7 @@ fn parts_of_a_body_are_evaluated_alike() {
     let all = force(&*operator, &u);
     let wanted: Vec<u32> = (0..81).filter(|i| i % 3 == 0).collect();
     let mut part = vec![0.0; u.len()];
-    operator.add_force(0.0, &u, On::Set(&wanted), &mut part);
+    operator.add_force(0.0, &u, PointSubset::Set(&wanted), &mut part);
     for (k, found) in part.iter().enumerate() {
         let expected = if k % 81 % 3 == 0 { all[k] } else { 0.0 };
         assert_eq!(found.to_bits(), expected.to_bits());

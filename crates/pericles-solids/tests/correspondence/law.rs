@@ -18,13 +18,13 @@ fn solid(law: ElasticLaw, state: StressState) -> Solid {
 fn close(found: f64, expected: f64, tolerance: f64) {
     assert!(
         (found / expected - 1.0).abs() < tolerance,
-        "{found} instead of {expected}"
+        "found {found}, expected {expected}"
     );
 }
 
-/// The first values have eight and ten digits only.
+/// The first reference values have eight and ten digits only.
 #[test]
-fn energies_and_stresses_are_those_of_an_independent_code() {
+fn energies_and_stresses_match_an_independent_code() {
     let rest = History::default();
     for (law, energy, stress, tolerance) in [
         (ElasticLaw::StVenantKirchhoff, 0.1088216595, 1.8389979, 1e-8),
@@ -64,7 +64,7 @@ fn energies_and_stresses_are_those_of_an_independent_code() {
     }
 }
 
-/// All laws, and one that has yielded and yields on.
+/// All laws, and a plastic solid that continues to yield.
 fn solids(state: StressState) -> Vec<(Solid, History)> {
     let laws = [
         ElasticLaw::StVenantKirchhoff,
@@ -108,7 +108,7 @@ fn derivatives_agree<const D: usize>(state: StressState, f: [[f64; D]; D]) {
         let [plus, minus] = [h, -h].map(|by| solid.stress(&moved(by), &history));
         let here = solid.stress(&f, &history);
         let change = solid.stress_change(&f, &direction, &history);
-        // A body that yields stores less than the work.
+        // A yielding body stores less than the work.
         if solid.plasticity.is_none() {
             let power: f64 = (0..D * D)
                 .map(|k| here.stress[k / D][k % D] * direction[k / D][k % D])
@@ -132,9 +132,9 @@ fn derivatives_agree<const D: usize>(state: StressState, f: [[f64; D]; D]) {
     }
 }
 
-/// Central differences with the step 1e-5 have errors of some 1e-9 here.
+/// Errors of central differences with the step 1e-5 are about 1e-9.
 #[test]
-fn stresses_and_tangents_are_derivatives() {
+fn stresses_are_energy_derivatives_and_tangents_are_stress_derivatives() {
     derivatives_agree(StressState::Spatial, F);
     derivatives_agree(StressState::PlaneStrain, PLANE);
     derivatives_agree(StressState::PlaneStress, PLANE);
@@ -142,7 +142,7 @@ fn stresses_and_tangents_are_derivatives() {
 }
 
 #[test]
-fn laws_are_linear_elasticity_at_small_strain() {
+fn all_laws_reduce_to_linear_elasticity_at_small_strain() {
     let rest = History::default();
     let strain = [[1.0, 0.3], [0.3, -0.5]];
     for state in [StressState::PlaneStrain, StressState::PlaneStress] {
@@ -157,9 +157,9 @@ fn laws_are_linear_elasticity_at_small_strain() {
     }
 }
 
-/// Energies are differences of large terms in some laws, and must keep their digits.
+/// The energies of some laws are differences of large terms, which must not cancel.
 #[test]
-fn energies_of_small_strains_are_those_of_linear_elasticity() {
+fn energies_at_small_strain_equal_those_of_linear_elasticity() {
     let rest = History::default();
     let strain = [[1e-6, 3e-7], [3e-7, -5e-7]];
     for (solid, _) in solids(StressState::PlaneStrain) {
@@ -172,7 +172,7 @@ fn energies_of_small_strains_are_those_of_linear_elasticity() {
             [strain[1][0], 1.0 + strain[1][1]],
         ];
         let found = solid.stress(&f, &rest).energy;
-        // The laws differ from each other by terms of third order.
+        // The laws differ by terms of third order.
         assert!(
             (found / energy - 1.0).abs() < 1e-5,
             "{solid:?}: {found} {energy}"
@@ -184,7 +184,7 @@ fn energies_of_small_strains_are_those_of_linear_elasticity() {
 }
 
 #[test]
-fn inverted_points_have_no_stress() {
+fn stress_of_inverted_points_is_nan() {
     let inverted = [[-0.2, 0.0], [0.0, 1.0]];
     for state in [StressState::PlaneStrain, StressState::PlaneStress] {
         for (solid, history) in solids(state) {

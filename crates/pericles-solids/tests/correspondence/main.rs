@@ -1,4 +1,4 @@
-//! Correspondence materials: reference values, identities, breaking and plastic flow.
+//! Correspondence materials: reference values, identities, bond failure and plastic flow.
 
 mod bodies;
 mod fracture;
@@ -7,3 +7,4 @@ mod identities;
 mod law;
 mod plastic;
 mod reference;
+mod stress;

@@ -1,7 +1,7 @@
 //! J2 plasticity: closed forms of homogeneous paths, dissipation, and resumed runs.
 
 use pericles::material::StressState;
-use pericles::operator::On;
+use pericles::operator::PointSubset;
 use pericles::round_trip::check_resume;
 use pericles::time::{State, VelocityVerlet, highest_frequency};
 use pericles::{Control, PointScalar, Simulation, StepEnd, System};
@@ -27,7 +27,7 @@ fn solid(state: StressState) -> Solid {
     }
 }
 
-/// Stress of one-dimensional plasticity with the elastic modulus `stiffness`, the yield stress and the hardening modulus, step by step along a path of strains; and the accumulated plastic strain.
+/// One-dimensional plasticity with linear hardening along a path of strains: stress and accumulated plastic strain.
 struct Path {
     stiffness: f64,
     yield_stress: f64,
@@ -37,7 +37,7 @@ struct Path {
 }
 
 impl Path {
-    /// The exact stress at the end of a step in which the strain changes monotonically.
+    /// Returns the exact stress at the end of a step with monotonic strain.
     fn stress(&mut self, strain: f64) -> f64 {
         let trial = self.stiffness * (strain - self.plastic);
         let excess = trial.abs() - (self.yield_stress + self.hardening * self.accumulated);
@@ -50,16 +50,16 @@ impl Path {
     }
 }
 
-/// Up to 6 % and back through zero to −4 %.
+/// Strains up to 6 %, then down to −4 %.
 fn strains() -> Vec<f64> {
     let up = (0..=20).map(|k| 0.003 * f64::from(k));
     up.chain((0..=25).map(|k| 0.06 - 0.004 * f64::from(k)))
         .collect()
 }
 
-/// The Kirchhoff stress P λ of a bar under the logarithmic strain ln λ: loading, unloading and reverse loading.
+/// Kirchhoff stress P λ of a bar under the logarithmic strain ln λ: loading, unloading and reverse loading.
 #[test]
-fn a_bar_yields_as_in_the_closed_form() {
+fn uniaxial_plasticity_of_a_bar_matches_the_closed_form() {
     let solid = solid(StressState::Uniaxial);
     let mut path = Path {
         stiffness: 10.0,
@@ -79,16 +79,16 @@ fn a_bar_yields_as_in_the_closed_form() {
         );
         history = solid.advanced(&f, &history).0;
         assert!((history.accumulated - path.accumulated).abs() < 1e-10);
-        // The same state without a step has the same stress.
+        // The stress at the end of the step is the same from the new history.
         let again = solid.stress(&f, &history).stress[0][0] * f[0][0];
         assert!((again - expected).abs() < 1e-10 * YIELD);
     }
     assert!(path.accumulated > 0.05);
 }
 
-/// Pure shear F = diag(e^γ, e^−γ, 1): the principal Kirchhoff stresses are ±τ, the yield stress in shear is σ_y/√3, and α = 2 γ_p/√3.
+/// Pure shear F = diag(e^γ, e^−γ, 1): principal Kirchhoff stresses ±τ, yield stress in shear σ_y/√3, α = 2 γ_p/√3.
 #[test]
-fn a_block_yields_in_shear_as_in_the_closed_form() {
+fn plasticity_in_pure_shear_matches_the_closed_form() {
     let solid = solid(StressState::Spatial);
     let mut path = Path {
         stiffness: 2.0 * solid.moduli.shear,
@@ -119,9 +119,10 @@ fn a_block_yields_in_shear_as_in_the_closed_form() {
     }
 }
 
-/// Plastic flow keeps the volume: det Cₚ⁻¹ = 1; a uniform dilatation never yields; a rotation after yielding turns the stress.
+/// Plastic flow is isochoric, det Cₚ⁻¹ = 1; a uniform dilatation does not yield; a rotation after yielding
+/// turns the stress.
 #[test]
-fn plastic_flow_keeps_the_volume() {
+fn plastic_flow_is_isochoric_and_objective() {
     let solid = solid(StressState::Spatial);
     let f = [[1.08, 0.05, 0.0], [0.0, 0.97, -0.04], [0.02, 0.0, 0.99]];
     let (history, work) = solid.advanced(&f, &History::default());
@@ -146,9 +147,9 @@ fn yielding(stabilisation: Stabilisation) -> CorrespondenceMaterial {
     }
 }
 
-/// A body under a uniform deformation stores and dissipates what the closed form of a bar does.
+/// The stored and dissipated energies of a body under uniform deformation are those of the closed form of a bar.
 #[test]
-fn a_body_dissipates_the_plastic_work_of_the_closed_form() {
+fn plastic_work_of_a_body_matches_the_closed_form() {
     let cloud = lattice(&[6.0]);
     let mut material = yielding(Stabilisation::Isotropic);
     material.solid.elastic.poisson_ratio = None;
@@ -164,7 +165,7 @@ fn a_body_dissipates_the_plastic_work_of_the_closed_form() {
         let stretch = strain.exp() - 1.0;
         let u: Vec<f64> = (0..6).map(|i| stretch * cloud.point(i)[0]).collect();
         let mut out = vec![0.0; 6];
-        operator.end_step(&StepEnd::sub_step(0.0, 1.0, &u), On::All, &mut out);
+        operator.end_step(&StepEnd::sub_step(0.0, 1.0, &u), PointSubset::All, &mut out);
         let stress = path.stress(strain);
         let stored = 6.0 * 0.5 * stress * stress / 10.0;
         assert!((operator.energy(0.0, &u) - stored).abs() < 1e-10);
@@ -174,7 +175,7 @@ fn a_body_dissipates_the_plastic_work_of_the_closed_form() {
     }
 }
 
-/// A plate that is thrown apart and yields.
+/// A plate with initial velocities that cause yielding in tension.
 fn thrown(part: f64) -> Simulation {
     let cloud = lattice(&[10.0, 8.0]);
     let operator = operator(
@@ -197,9 +198,11 @@ fn thrown(part: f64) -> Simulation {
     Simulation::new(system, Box::new(VelocityVerlet), start, part * dt, steps).unwrap()
 }
 
-/// Kinetic, elastic and dissipated energy keep their sum to second order in the step: a quarter of the step has a sixteenth of the error, 3.2e-3 and 2.1e-4 of the energy; the bounds were chosen after seeing the result.
+/// The sum of kinetic, elastic and dissipated energy is conserved to second order in the time step: errors of
+/// 3.2e-3 and, with a quarter of the step, 2.1e-4 of the energy. The bounds were chosen after seeing the
+/// result.
 #[test]
-fn the_energy_balance_of_plastic_flow_is_of_second_order() {
+fn energy_balance_of_plastic_flow_converges_with_second_order() {
     let error = |part: f64| {
         let mut run = thrown(part);
         run.run(|_| Control::Continue).unwrap();
@@ -219,6 +222,6 @@ fn the_energy_balance_of_plastic_flow_is_of_second_order() {
 }
 
 #[test]
-fn a_resumed_run_goes_on_bit_for_bit() {
+fn resumed_run_with_plastic_flow_is_bitwise_identical() {
     check_resume(|| thrown(1.0), [3, 9]).unwrap();
 }

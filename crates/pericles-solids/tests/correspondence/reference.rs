@@ -1,4 +1,4 @@
-//! Force densities and energies of an independent code, and plane waves of an infinite lattice.
+//! Comparison with force densities and energies of an independent code and with plane waves of an infinite lattice.
 
 use std::f64::consts::PI;
 
@@ -62,7 +62,7 @@ const REFERENCES: [Reference; 4] = [
 ];
 
 #[test]
-fn forces_and_energies_are_those_of_an_independent_code() {
+fn forces_and_energies_match_an_independent_code() {
     for reference in &REFERENCES {
         let cloud = jittered(reference.sides);
         let material = material(
@@ -75,7 +75,7 @@ fn forces_and_energies_are_those_of_an_independent_code() {
         let u = wave(&cloud, 0.06);
         let found = force(&*operator, &u);
         let n = cloud.len();
-        // Points of a cloud without a lattice keep their order.
+        // The points of a cloud without a lattice are not reordered.
         for (c, expected) in reference.force.iter().enumerate() {
             let found = found[c * n + reference.point];
             assert!((found / expected - 1.0).abs() < 1e-10, "{found} {expected}");
@@ -85,12 +85,13 @@ fn forces_and_energies_are_those_of_an_independent_code() {
     }
 }
 
-/// Q/(k² (λ + 2 G)) of longitudinal plane waves along an axis of a square lattice in plane strain, N = 3, ν = 1/4, constant influence function; −Q is the force density on a point in the wave, which no surface
-/// reaches.
+/// Q/(k² (λ + 2 G)) of longitudinal plane waves along an axis of a square lattice in plane strain, N = 3, ν =
+/// 1/4, constant influence function; −Q is the force density on an interior point of the wave.
 ///
-/// The table takes the family of 28 neighbours for the volume within the horizon in Silling's control, the reference values above take π δ²: Q is linear in the control.
+/// In Silling's control, the table uses the volume of 28 neighbours for the volume within the horizon,
+/// whereas the reference values above use π δ²; Q is linear in the control.
 #[test]
-fn plane_waves_have_the_dispersion_of_the_stabilisation() {
+fn dispersion_of_plane_waves_matches_each_stabilisation() {
     const NONE: [f64; 5] = [0.9838, 0.659, 0.163, 0.0032, 0.0];
     const WAN: [f64; 5] = [0.99997, 0.9849, 0.8374, 0.3007, 0.0954];
     const SILLING: [f64; 5] = [1.0097, 1.181, 1.244, 0.480, 0.153];
@@ -121,7 +122,7 @@ fn plane_waves_have_the_dispersion_of_the_stabilisation() {
                 _ => 0.0,
             };
             let expected = expected[number] + more * (expected[number] - NONE[number]);
-            // The fewest digits of the table.
+            // The precision of the table.
             let error = (found - expected).abs();
             assert!(error < 6e-4, "{stabilisation:?}, {k}: {found} {expected}");
         }

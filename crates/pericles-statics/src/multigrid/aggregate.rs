@@ -4,13 +4,13 @@ use crate::sparse::SparseMatrix;
 
 use super::nodes::Nodes;
 
-/// Couplings below this part of the geometric mean of the diagonal blocks do not join nodes.
+/// Couplings below this fraction of the geometric mean of the diagonal blocks are weak.
 const WEAK: f64 = 0.02;
 
-/// A node that belongs to no aggregate.
+/// Marks a node without an aggregate.
 pub const ALONE: u32 = u32::MAX;
 
-/// The strong neighbours of every node.
+/// Strong neighbours of every node.
 struct Graph {
     start: Vec<usize>,
     neighbour: Vec<u32>,
@@ -70,10 +70,11 @@ impl Graph {
     }
 }
 
-/// The aggregate of every node, and how many there are. Nodes without a strong neighbour are [`ALONE`].
+/// Returns the aggregate of every node and the number of aggregates. Nodes without strong neighbours are [`ALONE`].
 ///
-/// In the order of their numbers, nodes whose neighbours are all free take these as an aggregate; then those left over join the neighbouring aggregate to which they are coupled most strongly, and what
-/// is still left forms aggregates of its own.
+/// First, in the order of their numbers, each node whose neighbours all have no aggregate forms an aggregate
+/// with them. Then remaining nodes join the neighbouring aggregate with the strongest coupling. The rest
+/// forms further aggregates.
 pub fn aggregates(matrix: &SparseMatrix, nodes: &Nodes) -> (Vec<u32>, usize) {
     let graph = Graph::new(matrix, nodes);
     let count = nodes.len();

@@ -1,8 +1,9 @@
-//! Cholesky's factor of a small dense matrix.
+//! Cholesky factorisation of small dense matrices.
 
 use crate::sparse::SparseMatrix;
 
-/// A = L Lᵀ of a symmetric positive semidefinite matrix. Directions that nothing resists get a stiffness of the size of the diagonal, so that a factor always exists.
+/// Factorisation A = L Lᵀ of a symmetric positive semidefinite matrix. Singular directions get a stiffness of
+/// the size of the diagonal, so that a factor always exists.
 #[derive(Debug, Clone)]
 pub struct DenseCholesky {
     n: usize,
@@ -10,11 +11,11 @@ pub struct DenseCholesky {
     lower: Vec<f64>,
 }
 
-/// Pivots below this part of the diagonal are those of a singular matrix.
+/// Pivots below this fraction of the diagonal are singular.
 const SINGULAR: f64 = 1e-12;
 
 impl DenseCholesky {
-    /// The factor.
+    /// Computes the factor of a sparse matrix.
     pub fn new(matrix: &SparseMatrix) -> Self {
         let n = matrix.rows();
         let mut dense = vec![0.0; n * n];
@@ -26,7 +27,7 @@ impl DenseCholesky {
         Self::of_dense(n, dense)
     }
 
-    /// Of a dense matrix, row by row, of which the lower half counts.
+    /// Computes the factor of a dense matrix, row by row, whose lower triangle is used.
     pub fn of_dense(n: usize, mut lower: Vec<f64>) -> Self {
         for i in 0..n {
             let (above, row) = lower.split_at_mut(i * n);
@@ -40,7 +41,7 @@ impl DenseCholesky {
             row[i] = if pivot > SINGULAR * diagonal.abs() {
                 pivot.sqrt()
             } else if diagonal > 0.0 {
-                // A direction that nothing resists.
+                // A singular direction.
                 diagonal.sqrt()
             } else {
                 1.0
@@ -49,7 +50,7 @@ impl DenseCholesky {
         Self { n, lower }
     }
 
-    /// `out` = A⁻¹ x.
+    /// Computes `out` = A⁻¹ x.
     pub fn solve_into(&self, x: &[f64], out: &mut [f64]) {
         let n = self.n;
         for i in 0..n {
@@ -74,7 +75,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_factor_solves_what_it_is_the_factor_of() {
+    fn solutions_satisfy_the_linear_system() {
         let n = 12;
         let matrix = SparseMatrix::from_rows(n, n, &|i, add| {
             for k in 0..n {

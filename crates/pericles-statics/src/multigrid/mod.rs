@@ -1,12 +1,17 @@
-//! Smoothed-aggregation multigrid: an approximate inverse of a sparse symmetric positive definite matrix at a cost proportional to its size.
+//! Smoothed-aggregation multigrid: an approximate inverse of a sparse symmetric positive definite matrix at a
+//! cost proportional to its size.
 //!
-//! Neighbouring points are grouped to aggregates. On each aggregate the displacements that hardly any energy resists, the rigid-body motions, are represented exactly; one step of
-//! damped Jacobi iteration smooths them to the prolongation P, and PᵀAP is the matrix of the next level, until it is small enough for a dense factor. One application is a W-cycle with Chebyshev smoothing, which
-//! is symmetric and positive definite, so that it can precondition conjugate gradients.
+//! Neighbouring points are grouped into aggregates. Rigid-body motions, the displacements of low energy, are
+//! represented exactly on each aggregate. One step of damped Jacobi iteration smooths them to the
+//! prolongation P, and PᵀAP is the matrix of the next level, until it is small enough for a dense
+//! factorisation. One application is a W-cycle with Chebyshev smoothing, which is symmetric and positive
+//! definite and thus a valid preconditioner for conjugate gradients.
 //!
-//! Aggregates follow from the order of the points alone and every sum has a fixed order, so that results do not depend on the number of threads.
+//! Aggregates depend only on the order of the points and every sum has a fixed order, so that results do not
+//! depend on the number of threads.
 //!
-//! References: Vaněk, Mandel & Brezina, Computing 56, 179 (1996); Adams, Brezina, Hu & Tuminaro, J. Comput. Phys. 188, 593 (2003) for polynomial smoothing.
+//! References: Vaněk, Mandel & Brezina, Computing 56, 179 (1996); Adams, Brezina, Hu & Tuminaro, J. Comput.
+//! Phys. 188, 593 (2003) for polynomial smoothing.
 
 mod aggregate;
 mod dense;
@@ -22,9 +27,9 @@ use nodes::Nodes;
 use smoother::Smoother;
 use tentative::Tentative;
 
-/// Unknowns that are left to a dense factor.
+/// Largest number of unknowns for a dense factorisation.
 const COARSEST: usize = 300;
-/// A level with more than this share of the unknowns of the level above is not worth having.
+/// Largest accepted ratio of unknowns of a level to those of the finer level.
 const LEAST_REDUCTION: f64 = 0.8;
 
 #[derive(Debug, Clone)]
@@ -43,21 +48,21 @@ struct Level {
 #[derive(Debug, Clone)]
 enum Coarsest {
     Dense(DenseCholesky),
-    /// Nothing is left, or what is left cannot be coarsened: it is smoothed.
+    /// An empty matrix, or one that cannot be coarsened further; it is smoothed.
     Smoothed(SparseMatrix, Smoother),
 }
 
-/// A hierarchy of levels.
+/// Multigrid hierarchy.
 #[derive(Debug, Clone)]
 pub struct Multigrid {
     levels: Vec<Level>,
     coarsest: Coarsest,
-    /// Of the coarsest level: solution, right-hand side, residual, direction.
+    /// Work vectors of the coarsest level: solution, right-hand side, residual, direction.
     work: [Vec<f64>; 4],
 }
 
 impl Multigrid {
-    /// Of a symmetric positive definite matrix with a positive diagonal.
+    /// Creates the hierarchy of a symmetric positive definite matrix with a positive diagonal.
     pub fn new(matrix: SparseMatrix, kernel: NearKernel) -> Self {
         let mut levels = Vec::new();
         let mut present = matrix;
@@ -101,7 +106,7 @@ impl Multigrid {
         }
     }
 
-    /// `out` = an approximation of A⁻¹ x.
+    /// Computes `out`, an approximation of A⁻¹ x.
     pub fn apply_into(&mut self, x: &[f64], out: &mut [f64]) {
         match self.levels.first_mut() {
             Some(finest) => finest.right.copy_from_slice(x),
@@ -114,7 +119,8 @@ impl Multigrid {
         });
     }
 
-    /// Two cycles from a coarse level on: its `solution` from its `right`, which changes. With one cycle the number of iterations would grow slowly with the number of levels.
+    /// Applies two cycles from a coarse level, which compute its `solution` and change its `right`. With one
+    /// cycle the number of iterations would grow slowly with the number of levels.
     fn correct(&mut self, number: usize) {
         self.cycle(number);
         let Some(level) = self.levels.get_mut(number) else {
@@ -129,7 +135,7 @@ impl Multigrid {
         add_multiple(&mut level.solution, 1.0, &level.first);
     }
 
-    /// One cycle from a level on: its `solution` from its `right`.
+    /// Applies one cycle from a level, which computes its `solution` from its `right`.
     fn cycle(&mut self, number: usize) {
         let Some(level) = self.levels.get_mut(number) else {
             let [solution, right, residual, direction] = &mut self.work;
@@ -180,7 +186,7 @@ impl Multigrid {
         );
     }
 
-    /// Unknowns and stored entries of each level, from the finest on.
+    /// Returns the unknowns and stored entries of each level, starting with the finest.
     pub fn sizes(&self) -> Vec<[usize; 2]> {
         let levels = self.levels.iter();
         let mut sizes: Vec<[usize; 2]> = levels
@@ -194,7 +200,7 @@ impl Multigrid {
         sizes
     }
 
-    /// Memory, bytes.
+    /// Returns the memory, bytes.
     pub fn bytes(&self) -> usize {
         let of_level = |level: &Level| {
             let matrices = [&level.matrix, &level.prolongation, &level.restriction];

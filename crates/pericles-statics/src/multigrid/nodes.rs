@@ -1,17 +1,18 @@
-//! The nodes of a level.
+//! Nodes of a multigrid level.
 
-/// What the levels below the finest are made of.
+/// Near-kernel vectors, from which coarse levels are built.
 #[derive(Debug, Clone)]
 pub struct NearKernel {
-    /// First unknown of each node; one entry more than nodes. A node is a point, its unknowns the free displacement components.
+    /// First unknown of each node, followed by the number of unknowns. A node is a point with its free
+    /// displacement components.
     pub nodes: Vec<usize>,
-    /// How many vectors.
+    /// Number of vectors.
     pub count: usize,
     /// The vectors, unknown by unknown: entry `unknown * count + k`.
     pub vectors: Vec<f64>,
 }
 
-/// The nodes of a level, and the vectors that its coarse level must represent.
+/// Nodes of a level, and the vectors that its coarse level must represent.
 #[derive(Debug, Clone)]
 pub struct Nodes {
     pub start: Vec<usize>,
@@ -30,17 +31,17 @@ impl From<NearKernel> for Nodes {
 }
 
 impl Nodes {
-    /// Number of nodes.
+    /// Returns the number of nodes.
     pub fn len(&self) -> usize {
         self.start.len() - 1
     }
 
-    /// The unknowns of a node.
+    /// Returns the unknowns of a node.
     pub fn unknowns(&self, node: usize) -> std::ops::Range<usize> {
         self.start[node]..self.start[node + 1]
     }
 
-    /// The node of each unknown.
+    /// Returns the node of each unknown.
     pub fn of_unknowns(&self) -> Vec<u32> {
         let nodes = 0..self.len();
         nodes

@@ -5,24 +5,24 @@ use crate::eigen::symmetric_eigen;
 use crate::sparse::SparseMatrix;
 use pericles::domain::Domain;
 
-/// Products with the matrix in one smoothing.
+/// Number of products with the matrix in one smoothing.
 const DEGREE: usize = 3;
-/// The eigenvalues that are smoothed reach from the largest down to this part of it.
+/// Lowest smoothed eigenvalue as a fraction of the largest.
 const LOWEST: f64 = 1.0 / 20.0;
-/// Iterations of the estimate of the largest eigenvalue, and its margin.
+/// Iterations of the estimate of the largest eigenvalue.
 const ITERATIONS: usize = 12;
 const MARGIN: f64 = 1.02;
 
-/// A polynomial in D⁻¹A that is small on the upper part of its spectrum.
+/// Polynomial in D⁻¹A that is small on the upper part of its spectrum.
 #[derive(Debug, Clone)]
 pub struct Smoother {
     inverse: Vec<f64>,
-    /// An estimate of the largest eigenvalue of D⁻¹A, with a margin.
+    /// Estimate of the largest eigenvalue of D⁻¹A, with a margin.
     largest: f64,
 }
 
 impl Smoother {
-    /// Of a matrix with a positive diagonal.
+    /// Creates the smoother of a matrix with a positive diagonal.
     pub fn new(matrix: &SparseMatrix) -> Self {
         let n = matrix.rows();
         let diagonal = pericles::parallel::for_each_point(n, &|i| matrix.diagonal(i));
@@ -37,14 +37,16 @@ impl Smoother {
         Self { inverse, largest }
     }
 
-    /// An upper estimate of the largest eigenvalue of D⁻¹A: the largest Ritz value of a few steps of Lanczos iteration plus the norm of its residual (Zhou & Li, SIAM J. Matrix Anal. Appl. 32, 2011). An estimate from
-    /// below would let the polynomial grow on the eigenvalues beyond it, and the preconditioner would not be definite.
+    /// Returns an upper estimate of the largest eigenvalue of D⁻¹A: the largest Ritz value of a few Lanczos
+    /// steps plus the norm of its residual (Zhou & Li, SIAM J. Matrix Anal. Appl. 32, 2011). With a lower
+    /// estimate the polynomial would grow on larger eigenvalues, and the preconditioner would not be positive
+    /// definite.
     fn estimate(matrix: &SparseMatrix, diagonal: &[f64], inverse: &[f64]) -> f64 {
         let n = matrix.rows();
         let domain = Domain::alone(n);
         let norm = |x: &[f64]| domain.sum(n, |i| diagonal[i] * x[i] * x[i]).sqrt();
         let steps = ITERATIONS.min(n);
-        // Entries that follow no pattern.
+        // Pseudorandom entries.
         let noise = |i: usize| {
             let x = (12.9898 * i as f64 + 78.233).sin() * 43_758.545_3;
             x - x.floor() - 0.5
@@ -56,7 +58,7 @@ impl Smoother {
         let mut made = 0;
         let first = beta;
         for k in 0..steps {
-            // Rounding is all that is left where the vectors span an invariant space.
+            // If the vectors span an invariant space, the remainder is round-off.
             const NOTHING: f64 = 1e-10;
             if beta
                 <= if k == 0 {
@@ -93,7 +95,7 @@ impl Smoother {
         values[made - 1] + beta * vectors[made * made - 1].abs()
     }
 
-    /// (I − ω D⁻¹A) T with ω = 4/3 over the largest eigenvalue: the smoothed prolongation.
+    /// Returns the smoothed prolongation (I − ω D⁻¹A) T with ω = 4/3 over the largest eigenvalue.
     pub fn smoothed(&self, matrix: &SparseMatrix, tentative: &SparseMatrix) -> SparseMatrix {
         let omega = 4.0 / 3.0 / self.largest;
         SparseMatrix::from_rows(matrix.rows(), tentative.columns(), &|i, add| {
@@ -109,7 +111,7 @@ impl Smoother {
         })
     }
 
-    /// Improves `x` towards the solution of A x = `right`; `from_zero` says that `x` is zero.
+    /// Applies one smoothing to `x` for A x = `right`; `from_zero` indicates that `x` is zero.
     pub fn smooth(
         &self,
         matrix: &SparseMatrix,

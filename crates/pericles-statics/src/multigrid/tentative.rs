@@ -1,28 +1,29 @@
-//! The tentative prolongation: rigid-body motions of aggregates.
+//! Tentative prolongation: rigid-body motions of aggregates.
 
 use super::aggregate::{ALONE, aggregates};
 use super::nodes::Nodes;
 use crate::sparse::SparseMatrix;
 
-/// What is left of a vector after the parts along others, below which it depends on them.
+/// Relative size of an orthogonalised vector below which it is linearly dependent.
 const DEPENDENT: f64 = 1e-7;
 
-/// The tentative prolongation and the nodes of the coarse level: one for each aggregate.
+/// Tentative prolongation and the nodes of the coarse level, one for each aggregate.
 pub struct Tentative {
     pub matrix: SparseMatrix,
     pub coarse: Nodes,
 }
 
-/// An orthonormal basis of the vectors on one aggregate, and the coefficients of the vectors in it.
+/// Orthonormal basis of the vectors on an aggregate, and the coefficients of the vectors.
 struct Basis {
     /// Basis vectors, one after the other.
     vectors: Vec<Vec<f64>>,
-    /// Row by row: coefficients of the given vectors along each basis vector.
+    /// Coefficients of the given vectors along each basis vector, row by row.
     coefficients: Vec<Vec<f64>>,
 }
 
 impl Basis {
-    /// By Gram and Schmidt, twice for accuracy. Vectors that depend on those before them add nothing to the basis.
+    /// Computes the basis by the Gram–Schmidt method, applied twice for accuracy. Linearly dependent vectors
+    /// are skipped.
     fn new(unknowns: &[usize], nodes: &Nodes) -> Self {
         let given = nodes.count;
         let mut basis = Self {
@@ -77,7 +78,7 @@ impl Tentative {
             count: nodes.count,
             vectors: Vec::new(),
         };
-        // Aggregate and place in it of each unknown.
+        // Aggregate of each unknown, and its index within the aggregate.
         let mut place = vec![None; matrix.rows()];
         for (aggregate, (basis, unknowns)) in bases.iter().zip(&members).enumerate() {
             let first = coarse.start[aggregate];

@@ -1,4 +1,4 @@
-//! Which neighbours of a point the surrogate keeps.
+//! Neighbours of points in the surrogate.
 
 use pericles::System;
 use pericles::domain::Field;
@@ -6,12 +6,12 @@ use pericles::family::pairs_within;
 use pericles::parallel::for_each_point;
 use pericles::space::PointCloud;
 
-/// A bond as one of its ends sees it.
+/// A bond from one of its end points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Bond {
-    /// The other end.
+    /// The other end point.
     pub neighbour: u32,
-    /// Reference vector to it, m.
+    /// Reference vector to the other end point, m.
     pub xi: [f64; 3],
 }
 
@@ -22,17 +22,17 @@ impl Bond {
     }
 }
 
-/// The neighbours of every point, symmetric: a bond is kept if either of its ends wants it.
+/// Neighbours of every point, symmetric: a bond is kept if either of its end points selects it.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Neighbours {
     start: Vec<usize>,
     bonds: Vec<Bond>,
-    /// Length of the period along each axis, m; none where the body is not periodic.
+    /// Length of the period along each axis, m; `None` if the body is not periodic.
     pub period: [Option<f64>; 3],
 }
 
 impl Neighbours {
-    /// Of a body with the bonds that are intact now.
+    /// Selects neighbours from the intact bonds of a body.
     pub fn of(system: &System) -> Self {
         let cloud = system.cloud();
         let n = system.points();
@@ -43,8 +43,9 @@ impl Neighbours {
                 for_each_point(n, &|i| {
                     let mut all = Vec::new();
                     view.for_each_bond(Field::new(&rest, &[]), i, &mut |bond| {
-                        // Ghosts belong to other processes, whose surrogates are their own.
-                        if bond.neighbour < n && bond.neighbour != i {
+                        // Ghosts belong to other processes, which have their own surrogates.
+                        let in_body = bond.neighbour < n && !bond.to_ghost;
+                        if in_body && bond.neighbour != i {
                             all.push(Bond {
                                 neighbour: bond.neighbour as u32,
                                 xi: bond.xi,
@@ -55,7 +56,7 @@ impl Neighbours {
                 })
             }
             None => {
-                /// Spacings within which neighbours are looked for where the force does not show its bonds.
+                /// Search radius in spacings for forces without a view of their bonds.
                 const REACH: f64 = 2.5;
                 let (start, neighbours) = pairs_within(cloud, REACH * cloud.spacing());
                 for_each_point(n, &|i| {
@@ -89,7 +90,7 @@ impl Neighbours {
         let mut start = vec![0];
         let mut all = Vec::new();
         for bonds in &mut of_point {
-            // By the other end, and for several images of it by the vector.
+            // By the other end point, and several periodic images of it by the vector.
             bonds.sort_by(|a, b| {
                 let by_vector = || a.xi.partial_cmp(&b.xi).unwrap_or(std::cmp::Ordering::Equal);
                 a.neighbour.cmp(&b.neighbour).then_with(by_vector)
@@ -123,19 +124,20 @@ impl Neighbours {
         }
     }
 
-    /// The bonds of a point.
+    /// Returns the bonds of a point.
     pub fn of_point(&self, i: usize) -> &[Bond] {
         &self.bonds[self.start[i]..self.start[i + 1]]
     }
 }
 
-/// Whether two bonds to one point are the same but for rounding.
+/// Returns whether two bonds to the same point are equal to round-off.
 fn is_same(a: &Bond, b: &Bond) -> bool {
     let apart: f64 = (0..3).map(|c| (a.xi[c] - b.xi[c]).powi(2)).sum();
     apart < 1e-6 * a.length_squared()
 }
 
-/// The bonds of a point that it wants: those to the adjacent cells of a lattice without the corners of space, of other clouds the nearest ones; in any case enough to hold it.
+/// Selects the bonds of a point: on a lattice those to adjacent cells, in space without corners; for other
+/// clouds the nearest ones; in any case enough to make the stiffness regular.
 fn chosen(cloud: &PointCloud, mut all: Vec<Bond>) -> Vec<Bond> {
     let d = cloud.dimension();
     all.sort_by(|a, b| {
@@ -148,7 +150,7 @@ fn chosen(cloud: &PointCloud, mut all: Vec<Bond>) -> Vec<Bond> {
     let wanted = match cloud.cell_sides() {
         Some(sides) => {
             let cells = |bond: &Bond| (0..d).map(|c| (bond.xi[c] / sides[c]).powi(2)).sum::<f64>();
-            // By distance in cells, so that those within reach come first.
+            // By distance in cells, so that bonds within reach come first.
             all.sort_by(|a, b| cells(a).total_cmp(&cells(b)));
             all.partition_point(|bond| cells(bond) <= reach)
         }

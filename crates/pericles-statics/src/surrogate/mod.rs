@@ -1,8 +1,12 @@
-//! The nearest-neighbour surrogate: springs between neighbouring points that resist deformation as the body does, with a sparse matrix where the body's own has hundreds of entries a row.
+//! Nearest-neighbour surrogate: springs between neighbouring points that approximate the stiffness of the
+//! body by a sparse matrix; the matrix of the body has hundreds of entries per row.
 //!
-//! A spring of stiffness k_ij = V_i V_j w (c_i + c_j) joins neighbouring points whose bond is intact. The influence w makes the springs of a lattice isotropic: 1/r² with the eight neighbours of the plane, 1 with
-//! the eighteen of space. c_i gives a point the energy that the body's own forces give it, summed over all unit displacement gradients, so that materials, surfaces and damage need no
-//! rule of their own. Springs have Poisson's ratio 1/4 (1/3 in plane stress); with another one the surrogate is a less accurate preconditioner, whose quality still does not depend on the size of the body.
+//! A spring of stiffness k_ij = V_i V_j w (c_i + c_j) connects neighbouring points whose bond is intact. The
+//! influence w makes the springs of a lattice isotropic: 1/r² with eight neighbours in the plane, 1 with
+//! eighteen neighbours in space. The constant c_i is such that the energy of a point, summed over all unit
+//! displacement gradients, equals that of the forces of the body; materials, surfaces and damage therefore
+//! need no special treatment. The springs have Poisson's ratio 1/4 (1/3 in plane stress). For other values
+//! the surrogate is a less accurate preconditioner, but its quality does not depend on the size of the body.
 
 mod bonds;
 mod probe;
@@ -19,11 +23,11 @@ use crate::multigrid::{Multigrid, NearKernel};
 use crate::sparse::SparseMatrix;
 use crate::unknowns::Unknowns;
 
-/// The surrogate of a body.
+/// Surrogate of a body.
 #[derive(Debug, Clone)]
 pub struct Surrogate {
     neighbours: Neighbours,
-    /// c of each point.
+    /// Constant c of each point.
     coefficients: Vec<f64>,
     resistance: Resistance,
     volumes: Vec<f64>,
@@ -31,7 +35,7 @@ pub struct Surrogate {
 }
 
 impl Surrogate {
-    /// Of a body with the bonds that are intact now.
+    /// Creates the surrogate from the intact bonds of a body.
     pub fn new(system: &System) -> Self {
         let cloud = system.cloud();
         let neighbours = Neighbours::of(system);
@@ -72,22 +76,22 @@ impl Surrogate {
         }
     }
 
-    /// What bonds resist.
+    /// Returns the deformations that bonds resist.
     pub fn resistance(&self) -> Resistance {
         self.resistance
     }
 
-    /// Along which axes the body is periodic.
+    /// Returns whether the body is periodic along an axis.
     pub fn is_periodic(&self, axis: usize) -> bool {
         self.neighbours.period[axis].is_some()
     }
 
-    /// Whether a point has no neighbours.
+    /// Returns whether a point has no neighbours.
     pub fn is_isolated(&self, i: usize) -> bool {
         self.neighbours.of_point(i).is_empty()
     }
 
-    /// About which axes an infinitesimal rotation of the whole body deforms nothing.
+    /// Returns for each axis whether an infinitesimal rotation of the whole body about it has no energy.
     pub fn rotations(&self, dimension: usize) -> [bool; 3] {
         let stretches = self.resistance == Resistance::Stretch;
         std::array::from_fn(|axis| {
@@ -101,7 +105,7 @@ impl Surrogate {
         })
     }
 
-    /// Calls `visit` with the ends of every pair of neighbours, twice for each.
+    /// Calls `visit` with the points of every pair of neighbours, in both orders.
     pub fn for_each_pair(&self, visit: &mut dyn FnMut(usize, usize)) {
         for i in 0..self.volumes.len() {
             for bond in self.neighbours.of_point(i) {
@@ -116,7 +120,7 @@ impl Surrogate {
         self.volumes[i] * self.volumes[j] * w * (self.coefficients[i] + self.coefficients[j])
     }
 
-    /// The stiffness matrix (N/m) of the unknowns, with the others held.
+    /// Returns the stiffness matrix (N/m) of the unknowns, with all other components constrained.
     pub fn matrix(&self, unknowns: &Unknowns) -> SparseMatrix {
         let d = unknowns.dimension();
         let stiffest = self.reference_stiffness(d);
@@ -131,7 +135,7 @@ impl Surrogate {
                         Resistance::Stretch => bond.xi[c] * bond.xi[axis] / square,
                         Resistance::Difference => f64::from(u8::from(c == axis)),
                     };
-                    /// What an angle that rounding leaves of a right one makes.
+                    /// Round-off of the cosine of a right angle.
                     const NOTHING: f64 = 1e-12;
                     if part.abs() < NOTHING {
                         continue;
@@ -147,7 +151,7 @@ impl Surrogate {
                     }
                 }
             }
-            /// Below this part of the mean stiffness nothing resists the component.
+            /// Fraction of the mean stiffness below which a component has no stiffness.
             const LOOSE: f64 = 1e-9;
             if own < LOOSE * stiffest {
                 add(row, stiffest);
@@ -155,7 +159,7 @@ impl Surrogate {
         })
     }
 
-    /// The mean stiffness of a point's springs together, N/m.
+    /// Returns the mean of the total spring stiffness of a point, N/m.
     fn reference_stiffness(&self, d: usize) -> f64 {
         let n = self.volumes.len();
         let of_point = |i: usize| -> f64 {
@@ -166,7 +170,8 @@ impl Surrogate {
         if total > 0.0 { total / n as f64 } else { 1.0 }
     }
 
-    /// Displacements that the surrogate hardly resists: translations and, unless the body is periodic or resists rotations, infinitesimal rotations.
+    /// Returns the displacements of low energy: translations and, unless the body is periodic or resists
+    /// rotations, infinitesimal rotations.
     pub fn near_kernel(&self, unknowns: &Unknowns) -> NearKernel {
         let d = unknowns.dimension();
         let modes = RigidModes::new(d, self.rotations(d), &self.positions);
@@ -183,13 +188,13 @@ impl Surrogate {
         }
     }
 
-    /// The multigrid preconditioner of the unknowns.
+    /// Returns the multigrid preconditioner of the unknowns.
     pub fn preconditioner(&self, unknowns: &Unknowns) -> Multigrid {
         Multigrid::new(self.matrix(unknowns), self.near_kernel(unknowns))
     }
 }
 
-/// The influence that makes the springs of a lattice isotropic, of a squared length.
+/// Returns the influence that makes the springs of a lattice isotropic, for a squared length.
 fn weight(dimension: usize, square: f64) -> f64 {
     match dimension {
         2 => 1.0 / square,

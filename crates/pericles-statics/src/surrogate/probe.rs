@@ -1,24 +1,26 @@
-//! How stiff a body is at each of its points, from the energies of small displacements.
+//! Stiffness of a body at each point from the energies of small displacements.
 
 use pericles::System;
 
 use super::bonds::Neighbours;
 
-/// What a neighbouring point resists.
+/// Deformation that bonds resist.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Resistance {
-    /// Changes of the distance: bonds of solids.
+    /// Changes of distance: bonds of solids.
     Stretch,
-    /// Any difference of displacements: bonds of surfaces.
+    /// All relative displacements: bonds of surfaces.
     Difference,
 }
 
-/// Displacement gradients with which the body is probed.
+/// Size of the applied displacement gradients.
 const STRAIN: f64 = 1e-4;
 
-/// Σ W over all unit displacement gradients e_i ⊗ e_j, J/m³, for each point, and what bonds resist.
+/// Returns Σ W over all unit displacement gradients e_i ⊗ e_j, J/m³, for each point, and the deformations
+/// that bonds resist.
 ///
-/// Along an axis on which the body is periodic the linear field is replaced by a sine and a cosine of one period, whose energies add up to that of a uniform gradient.
+/// Along periodic axes the linear field is replaced by a sine and a cosine of one period, whose energies add
+/// up to that of a uniform gradient.
 pub(super) fn energies(system: &System, neighbours: &Neighbours) -> (Vec<f64>, Resistance) {
     let (n, d) = (system.points(), system.dimension());
     let cloud = system.cloud();
@@ -58,7 +60,7 @@ pub(super) fn energies(system: &System, neighbours: &Neighbours) -> (Vec<f64>, R
     (traces, resistance)
 }
 
-/// Whether an infinitesimal rotation in the plane of x and y stores energy of the first order.
+/// Returns whether an infinitesimal rotation in the x–y plane has energy of leading order.
 fn resists_rotation(system: &System, traces: &[f64]) -> bool {
     let (n, cloud) = (system.points(), system.cloud());
     let mut u = vec![0.0; system.dimension() * n];
@@ -69,7 +71,7 @@ fn resists_rotation(system: &System, traces: &[f64]) -> bool {
     let mut energies = vec![0.0; n];
     system.operator().add_energy_density(0.0, &u, &mut energies);
     let sum = |energies: &[f64]| system.domain().sum(n, |i| energies[i] * cloud.volumes()[i]);
-    /// A rotation by a small angle stretches objective bonds in second order only.
+    /// Small rotations stretch objective bonds in second order only.
     const PART: f64 = 0.01;
     sum(&energies) > PART * sum(traces)
 }

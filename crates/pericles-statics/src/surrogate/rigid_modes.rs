@@ -1,6 +1,6 @@
 //! Rigid-body motions of a set of points.
 
-/// Rigid-body motions about the middle of some points, of unit size: translations, then rotations.
+/// Rigid-body motions of points about their centre, of unit size: translations, then rotations.
 #[derive(Debug, Clone)]
 pub struct RigidModes<'a> {
     dimension: usize,
@@ -12,7 +12,7 @@ pub struct RigidModes<'a> {
 }
 
 impl<'a> RigidModes<'a> {
-    /// Of points at these positions (m, component-major), with rotations about some of the axes.
+    /// Creates the motions of points at these positions (m, component-major), with rotations about the selected axes.
     pub fn new(dimension: usize, rotations: [bool; 3], positions: &'a [f64]) -> Self {
         let n = positions.len() / dimension;
         let mut middle = [0.0; 3];
@@ -32,12 +32,12 @@ impl<'a> RigidModes<'a> {
         }
     }
 
-    /// How many.
+    /// Returns the number of motions.
     pub fn count(&self) -> usize {
         self.dimension + self.axes.len()
     }
 
-    /// In words.
+    /// Returns the name of a motion.
     pub fn name(&self, mode: usize) -> &'static str {
         const TRANSLATIONS: [&str; 3] = [
             "translation along x",
@@ -51,7 +51,7 @@ impl<'a> RigidModes<'a> {
         }
     }
 
-    /// Component c of a mode at a point.
+    /// Returns component c of a mode at a point.
     pub fn value(&self, mode: usize, point: usize, c: usize) -> f64 {
         let Some(rotation) = mode.checked_sub(self.dimension) else {
             return f64::from(u8::from(mode == c));

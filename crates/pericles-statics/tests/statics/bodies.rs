@@ -1,4 +1,4 @@
-//! The bodies of the tests.
+//! Bodies shared by several tests.
 
 use std::sync::Arc;
 
@@ -12,7 +12,8 @@ use pericles::material::{
 use pericles::operator::{BondForm, LinearSolidBody};
 use pericles::prelude::*;
 
-/// A state-based body of Young's modulus 1 with a conical influence function, partial volumes and a horizon of three spacings.
+/// A state-based body of Young's modulus 1 with a conical influence function, partial volumes and a horizon
+/// of three spacings.
 pub struct Solid {
     pub cloud: Arc<PointCloud>,
     pub poisson_ratio: f64,
@@ -68,13 +69,14 @@ pub fn plate_with_hole(cells: usize) -> Arc<PointCloud> {
     Arc::new(grid.points().unwrap())
 }
 
-/// The points that meet a condition on their coordinates.
+/// Points whose coordinates satisfy a condition.
 pub fn points(cloud: &PointCloud, inside: impl Fn(Point) -> bool) -> PointSet {
     let all = 0..cloud.len() as u32;
     all.filter(|&i| inside(cloud.point(i as usize))).collect()
 }
 
-/// Pulls the first and last row of points along y with a total force of 1, and pins three components against rigid-body motion.
+/// Loads the first and last row of points along y with a total force of 1 and constrains three components
+/// against rigid-body motion.
 pub fn pull_rows(system: &mut System) {
     let cloud = system.cloud().clone();
     let dx = cloud.spacing();
@@ -97,7 +99,7 @@ pub fn pull_rows(system: &mut System) {
     }
 }
 
-/// A linear plate with a hole, in plane stress, pulled along y.
+/// A linear plate with a hole in plane stress, in tension along y.
 pub fn pulled_plate(cells: usize, poisson_ratio: f64, cracks: Vec<Crack>) -> System {
     let solid = Solid {
         cloud: plate_with_hole(cells),
@@ -111,7 +113,7 @@ pub fn pulled_plate(cells: usize, poisson_ratio: f64, cracks: Vec<Crack>) -> Sys
     system
 }
 
-/// A linear bar in space, 2 × 1 × 1, of 2n · n · n cells, clamped at one end and sheared at the other.
+/// A linear bar in space, 2 × 1 × 1, of 2n · n · n cells, fixed at one end and sheared at the other.
 pub fn sheared_bar(n: usize, poisson_ratio: f64, cracks: Vec<Crack>) -> System {
     let dx = 1.0 / n as f64;
     let cloud = Arc::new(Grid::block([2.0, 1.0, 1.0], dx).points().unwrap());
@@ -132,8 +134,9 @@ pub fn sheared_bar(n: usize, poisson_ratio: f64, cracks: Vec<Crack>) -> System {
     system
 }
 
-/// A linear bond-based plate 1 × 1 in plane strain without a hole, whose first three rows are fixed while the last three are moved.
-pub fn gripped_plate(cells: usize) -> System {
+/// A linear bond-based plate 1 × 1 in plane strain without a hole, whose first three rows are fixed while the
+/// last three are moved.
+pub fn constrained_plate(cells: usize) -> System {
     let dx = 1.0 / cells as f64;
     let cloud = Arc::new(Grid::plate([1.0, 1.0], dx, 1.0).points().unwrap());
     let mut material = BondMaterial::new(ElasticModulus::Young(1.0), 1.0, 3.0 * dx);

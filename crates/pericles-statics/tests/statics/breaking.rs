@@ -1,4 +1,4 @@
-//! Which bonds break at static states, and at which load.
+//! Bond failure at static states: selected bonds and loads.
 
 use std::sync::Arc;
 
@@ -9,10 +9,10 @@ use pericles_statics::{BreakingRule, StaticOptions, StaticScheme};
 
 use crate::bodies::points;
 
-/// Displacement of a grip at t = 1.
+/// Prescribed displacement of each end at t = 1.
 const OPENING: f64 = 0.012;
 
-/// A linear plate between grips with an edge notch, which they open by `opening` at t = 1.
+/// A linear plate with an edge notch and prescribed displacements `opening` of both ends at t = 1.
 fn plate(opening: f64, law: PairLaw) -> System {
     let cells = 16;
     let dx = 1.0 / f64::from(cells);
@@ -58,7 +58,7 @@ fn notched_plate(breaking: BreakingRule) -> Simulation {
 }
 
 #[test]
-fn worst_first_breaks_fewer_bonds_than_all_at_once_and_accounts_for_their_energy() {
+fn worst_first_breaks_fewer_bonds_than_all_and_closes_the_energy_balance() {
     let broken = |rule| {
         let mut run = notched_plate(rule);
         run.run_to_end().unwrap();
@@ -77,7 +77,7 @@ const EVENTS: BreakingRule = BreakingRule::Event {
     ties: 1e-3,
 };
 
-/// Displacement of a grip and the force on it.
+/// Displacement of a constrained end and the force on it.
 fn curve_point(run: &Simulation) -> [f64; 2] {
     let system = run.system();
     let (grip, n) = (&system.motions()[0], system.points());
@@ -86,7 +86,7 @@ fn curve_point(run: &Simulation) -> [f64; 2] {
 }
 
 #[test]
-fn from_event_to_event_stiffness_falls_the_body_snaps_back_and_energy_is_accounted_for() {
+fn event_by_event_stiffness_decreases_the_body_snaps_back_and_the_energy_balance_closes() {
     let mut run = run_of(plate(OPENING, PairLaw::Linear), EVENTS, 60);
     let (mut curve, mut broken) = (Vec::new(), vec![0]);
     let mut worst: f64 = 0.0;
@@ -110,7 +110,7 @@ fn from_event_to_event_stiffness_falls_the_body_snaps_back_and_energy_is_account
 }
 
 #[test]
-fn the_first_event_is_where_the_first_bond_breaks_under_a_growing_load() {
+fn first_event_is_the_load_at_which_the_first_bond_breaks() {
     let mut events = run_of(plate(OPENING, PairLaw::Linear), EVENTS, 1);
     events.run_to_end().unwrap();
     let [first, _] = curve_point(&events);
@@ -124,13 +124,13 @@ fn the_first_event_is_where_the_first_bond_breaks_under_a_growing_load() {
 }
 
 #[test]
-fn events_go_on_bit_for_bit_after_a_resume() {
+fn resumed_event_by_event_run_is_bitwise_identical() {
     let run = || run_of(plate(OPENING, PairLaw::Linear), EVENTS, 4);
     round_trip::check_resume(run, [1, 2]).unwrap();
 }
 
 #[test]
-fn bodies_that_cannot_be_followed_from_event_to_event_are_refused() {
+fn systems_without_support_for_event_by_event_analysis_are_errors() {
     let refused = |system: &System| {
         let options = StaticOptions {
             breaking: EVENTS,

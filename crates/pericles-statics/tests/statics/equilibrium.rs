@@ -1,4 +1,4 @@
-//! Static states: reference values, balances, refusals, resuming.
+//! Static states: reference values, energy balance, errors, resumed runs.
 
 use std::sync::Arc;
 
@@ -20,8 +20,9 @@ fn run(system: System, options: StaticOptions, steps: u64) -> Simulation {
     run
 }
 
-/// The plate with a hole between grips that stretch it by 5 %: rows within 3.01 spacings of both ends with u = (0, 0.05 y).
-fn stretched_plate(cells: usize) -> System {
+/// The plate with a hole, stretched by 5 %: rows within 3.01 spacings of both ends have the prescribed
+/// displacement u = (0, 0.05 y).
+pub fn stretched_plate(cells: usize) -> System {
     let solid = Solid {
         cloud: plate_with_hole(cells),
         poisson_ratio: 1.0 / 3.0,
@@ -58,7 +59,7 @@ fn stretched_plate(cells: usize) -> System {
 }
 
 #[test]
-fn a_stretch_of_five_percent_has_the_reaction_and_energy_of_the_reference() {
+fn reaction_and_energy_at_five_percent_stretch_match_the_reference() {
     // Computed independently (dense Newton, NumPy): E = 1, ν = 1/3, a = 0.1, N = 3.
     for (cells, reaction, energy) in [
         (40, 0.04878958291, 0.001208053384102),
@@ -76,21 +77,21 @@ fn a_stretch_of_five_percent_has_the_reaction_and_energy_of_the_reference() {
         println!("{cells}: {found} {stored} {inner:?}");
         assert!((found / reaction - 1.0).abs() < 1e-6, "{found}");
         assert!((stored / energy - 1.0).abs() < 1e-6, "{stored}");
-        // The work of the grips is integrated over static states in between.
+        // The work of the constraints is integrated over intermediate static states.
         let balance = run.snapshot().energies().balance();
         assert!(balance.abs() < 1e-6 * stored, "{}", balance / stored);
     }
 }
 
 #[test]
-fn a_linear_body_loaded_in_one_step_closes_its_balance_to_the_tolerance() {
+fn energy_balance_of_a_linear_body_closes_to_the_tolerance_in_one_step() {
     let run = run(pulled_plate(40, 0.25, vec![]), StaticOptions::default(), 1);
     let energies = run.snapshot().energies();
     assert!(energies.elastic > 0.0);
     assert!(energies.balance().abs() < 1e-6 * energies.work);
 }
 
-/// A bar of bonds, fixed at its left end and pulled at the other one.
+/// A bond-based bar with a force at the right end, fixed at the left end if `fixed`.
 fn bar(fixed: bool) -> System {
     let dx = 0.01;
     let bar = Arc::new(Grid::bar(1.0, dx, 1.0).points().unwrap());
@@ -111,7 +112,7 @@ fn bar(fixed: bool) -> System {
 }
 
 #[test]
-fn a_bar_under_one_constant_load_step_closes_its_balance() {
+fn energy_balance_of_a_bar_under_constant_load_closes_in_one_step() {
     let run = run(bar(true), StaticOptions::default(), 1);
     let energies = run.snapshot().energies();
     assert!(energies.elastic > 0.0);
@@ -124,7 +125,7 @@ fn a_bar_under_one_constant_load_step_closes_its_balance() {
 }
 
 #[test]
-fn an_unconstrained_body_is_refused_with_the_motions_that_are_free() {
+fn errors_of_unconstrained_bodies_contain_the_free_motions() {
     let refused = |system: &System| match StaticScheme::new(StaticOptions::default(), system) {
         Err(PericlesError::Extension(error)) => match *error.downcast::<StaticsError>().unwrap() {
             StaticsError::Unconstrained { motions, .. } => motions,
@@ -155,7 +156,7 @@ fn an_unconstrained_body_is_refused_with_the_motions_that_are_free() {
 }
 
 #[test]
-fn a_free_body_under_balanced_loads_is_stretched_as_a_held_one() {
+fn free_body_under_balanced_loads_deforms_like_a_constrained_body() {
     let options = StaticOptions {
         fix_rigid_modes: true,
         tolerance: 1e-9,
@@ -170,7 +171,7 @@ fn a_free_body_under_balanced_loads_is_stretched_as_a_held_one() {
 }
 
 #[test]
-fn loads_that_move_a_free_body_are_refused() {
+fn unbalanced_loads_on_a_free_body_are_errors() {
     let mut system = bar(false);
     let all = (0..system.points() as u32).collect();
     let load = Load::new(all, [1e-3, 0.0, 0.0], TimeFunction::Constant);
@@ -186,8 +187,8 @@ fn loads_that_move_a_free_body_are_refused() {
     assert!(error.contains("not in balance"), "{error}");
 }
 
-/// A bar of bonds that break, pulled apart in four load steps.
-fn torn_bar() -> Simulation {
+/// A bond-based bar that breaks, in tension in four load steps.
+pub fn torn_bar() -> Simulation {
     let dx = 0.02;
     let bar = Arc::new(Grid::bar(1.0, dx, 1.0).points().unwrap());
     let fracture = 2e-6;
@@ -214,12 +215,12 @@ fn torn_bar() -> Simulation {
 }
 
 #[test]
-fn a_run_resumed_between_load_steps_goes_on_bit_for_bit() {
+fn run_resumed_between_load_steps_is_bitwise_identical() {
     round_trip::check_resume(torn_bar, [1, 2]).unwrap();
 }
 
 #[test]
-fn the_energy_of_a_bar_that_is_torn_apart_is_accounted_for() {
+fn energy_balance_of_a_breaking_bar_closes() {
     let mut run = torn_bar();
     run.run_to_end().unwrap();
     let energies = run.snapshot().energies();

@@ -1,7 +1,8 @@
-//! Static equilibrium: iteration counts, closed forms, reference values, balances.
+//! Static equilibrium: iteration counts, closed forms, reference values, energy balance.
 
 mod bodies;
 mod breaking;
 mod equilibrium;
 mod modes;
+mod progress;
 mod solver;

@@ -1,4 +1,4 @@
-//! Natural modes against closed forms and dense eigenvalues.
+//! Natural modes compared with closed forms and dense eigenvalues.
 
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -29,7 +29,7 @@ fn modes(system: &System, count: usize) -> NaturalModes {
     found
 }
 
-/// A bar of length 1 whose bonds reach `m` cells.
+/// A bar of length 1 with a horizon of `m` cells.
 fn bar(cells: usize, m: f64, periodic: bool) -> System {
     let dx = 1.0 / cells as f64;
     let mut points = Grid::bar(1.0, dx, 1.0).points().unwrap();
@@ -42,7 +42,7 @@ fn bar(cells: usize, m: f64, periodic: bool) -> System {
     Body::new(points, material).build().unwrap()
 }
 
-/// Row of the stiffness over the mass: −∂f/∂u_j/ρ for the force at point i.
+/// Row of the stiffness over the density: −∂f_i/∂u_j/ρ for the force at point i.
 fn row(system: &System, i: usize) -> Vec<f64> {
     let n = system.points();
     let (u, mut direction, mut column) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
@@ -54,7 +54,7 @@ fn row(system: &System, i: usize) -> Vec<f64> {
 }
 
 #[test]
-fn a_free_bar_of_nearest_neighbours_has_the_frequencies_of_the_chain() {
+fn frequencies_of_a_free_bar_of_nearest_neighbours_match_the_spring_chain() {
     let cells = 60;
     let system = bar(cells, 1.0, false);
     // ω_k = 2 √(c/m) sin(kπ/2N) with the stiffness c of a spring and the mass m of a point.
@@ -72,7 +72,7 @@ fn a_free_bar_of_nearest_neighbours_has_the_frequencies_of_the_chain() {
 }
 
 #[test]
-fn every_frequency_of_a_periodic_bar_is_double() {
+fn frequencies_of_a_periodic_bar_are_double_and_match_plane_waves() {
     let cells = 48;
     for m in [1.0, 3.0] {
         let system = bar(cells, m, true);
@@ -82,7 +82,7 @@ fn every_frequency_of_a_periodic_bar_is_double() {
         let groups = found.groups();
         assert_eq!(groups.len(), 3);
         for (q, group) in groups.iter().enumerate() {
-            // ω(k)² by the plane wave of wavenumber k.
+            // ω(k)² of the plane wave of wavenumber k.
             let k = TAU * (q + 1) as f64 / cells as f64;
             let square: f64 = (0..cells).map(|j| row[j] * (k * j as f64).cos()).sum();
             let exact = square.sqrt() / TAU;
@@ -96,7 +96,7 @@ fn every_frequency_of_a_periodic_bar_is_double() {
 }
 
 #[test]
-fn a_free_plate_has_the_frequencies_of_the_dense_matrix() {
+fn frequencies_of_a_free_plate_match_the_dense_matrix() {
     let cloud = Arc::new(Grid::plate([1.0, 1.0], 1.0 / 7.0, 1.0).points().unwrap());
     let solid = Solid {
         cloud,
@@ -108,7 +108,7 @@ fn a_free_plate_has_the_frequencies_of_the_dense_matrix() {
     check_against_dense(&solid.system(), 3, 8);
 }
 
-/// A free body's frequencies against those of its dense stiffness matrix; volumes and density are equal.
+/// Compares the frequencies of a free body with those of its dense stiffness matrix; volumes and density are uniform.
 fn check_against_dense(system: &System, rigid: usize, count: usize) {
     let n = system.dimension() * system.points();
     let scale = 1.0 / system.density().at(0);
@@ -138,12 +138,12 @@ fn check_against_dense(system: &System, rigid: usize, count: usize) {
 }
 
 #[test]
-fn a_free_bar_of_three_neighbours_has_the_frequencies_of_the_dense_matrix() {
+fn frequencies_of_a_free_bar_of_three_neighbours_match_the_dense_matrix() {
     check_against_dense(&bar(60, 3.0, false), 1, 6);
 }
 
 #[test]
-fn a_free_cube_has_the_frequencies_of_the_dense_matrix() {
+fn frequencies_of_a_free_cube_match_the_dense_matrix() {
     let cloud = Arc::new(Grid::block([1.0; 3], 0.25).points().unwrap());
     let solid = Solid {
         cloud,
@@ -156,8 +156,9 @@ fn a_free_cube_has_the_frequencies_of_the_dense_matrix() {
 }
 
 #[test]
-fn the_modes_of_a_sphere_are_the_spherical_harmonics_of_each_component() {
-    // With p = 2 every component of the displacement vibrates by itself: spherical harmonics of degree l are (2 l + 1)-fold, three times.
+fn modes_of_a_sphere_are_spherical_harmonics_of_each_component() {
+    // With p = 2 the displacement components vibrate independently: three times 2 l + 1 spherical harmonics
+    // of degree l.
     let surface = Surface::icosphere(2, 1.0).unwrap();
     let areas = surface.vertex_areas(AreaRule::Barycentric);
     let cloud = Arc::new(surface.points(areas).unwrap());
@@ -169,7 +170,7 @@ fn the_modes_of_a_sphere_are_the_spherical_harmonics_of_each_component() {
         p: 2.0,
         horizon: 0.8,
         bond: SurfaceBond::Displacement,
-        self_cell: false,
+        self_interaction: false,
         critical_stretch: f64::INFINITY,
     };
     let body = SurfaceBody {
@@ -183,12 +184,12 @@ fn the_modes_of_a_sphere_are_the_spherical_harmonics_of_each_component() {
     let force = body.operator().unwrap();
     let system = System::new(cloud.clone(), force, PointScalar::Uniform(1.0)).unwrap();
     let found = modes(&system, 24);
-    // Rotations change displacements, which these bonds resist.
+    // These bonds resist all relative displacements, including rotations.
     assert_eq!(found.rigid_modes, 3);
     let groups = found.groups();
     let multiplicities: Vec<usize> = groups.iter().map(|group| group.multiplicity).collect();
     assert_eq!(multiplicities, [9, 15]);
-    // The dense eigenvalues of one component, symmetric in the square roots of the areas.
+    // Dense eigenvalues of one component, symmetrised by the square roots of the areas.
     let (n, areas) = (cloud.len(), cloud.volumes());
     let (mut direction, mut column) = (vec![0.0; 3 * n], vec![0.0; 3 * n]);
     let mut dense = vec![0.0; n * n];

@@ -1,11 +1,11 @@
-//! The number of products with the tangent does not grow with the body.
+//! Number of products with the tangent, which does not grow with the body.
 
 use pericles::prelude::*;
 use pericles_statics::{Effort, Equilibrium, StaticOptions, Target};
 
-use crate::bodies::{gripped_plate, pulled_plate, sheared_bar};
+use crate::bodies::{constrained_plate, pulled_plate, sheared_bar};
 
-/// What the static state of a linear body at a tolerance of 1e-6 takes.
+/// Effort of the static state of a linear body at a tolerance of 1e-6.
 fn effort(system: &System) -> Effort {
     let entries = system.dimension() * system.points();
     let mut free = vec![1.0; entries];
@@ -14,7 +14,7 @@ fn effort(system: &System) -> Effort {
     system.load_density_into(0.0, &mut load);
     let mut solver = Equilibrium::new(StaticOptions::default(), system, free);
     let (mut u, mut supports) = (vec![0.0; entries], vec![0.0; entries]);
-    system.place_on(0.0, &On::All, &mut supports);
+    system.place_on(0.0, &PointSubset::All, &mut supports);
     let target = Target {
         t: 0.0,
         load: &load,
@@ -32,21 +32,21 @@ fn effort(system: &System) -> Effort {
 }
 
 #[test]
-fn a_plate_with_a_hole_takes_at_most_twenty_products_at_every_size() {
+fn plate_with_a_hole_needs_at_most_twenty_products_at_every_size() {
     for cells in [40, 80] {
         assert!(effort(&pulled_plate(cells, 1.0 / 3.0, vec![])).products <= 20);
     }
 }
 
 #[test]
-fn a_poisson_ratio_of_0_4_takes_at_most_thirty_products_at_every_size() {
+fn poisson_ratio_of_0_4_needs_at_most_thirty_products_at_every_size() {
     for cells in [40, 80] {
         assert!(effort(&pulled_plate(cells, 0.4, vec![])).products <= 30);
     }
 }
 
 #[test]
-fn a_half_cracked_plate_takes_at_most_twenty_products() {
+fn half_cracked_plate_needs_at_most_twenty_products() {
     let crack = || Crack::Segment {
         from: [-0.5, 0.2],
         to: [0.0, 0.2],
@@ -57,14 +57,14 @@ fn a_half_cracked_plate_takes_at_most_twenty_products() {
 }
 
 #[test]
-fn a_bar_in_space_takes_at_most_twenty_products_at_every_size() {
+fn bar_in_space_needs_at_most_twenty_products_at_every_size() {
     for n in [8, 12] {
         assert!(effort(&sheared_bar(n, 0.25, vec![])).products <= 20);
     }
 }
 
 #[test]
-fn a_bar_with_a_half_through_crack_takes_at_most_twenty_products() {
+fn bar_with_a_half_through_crack_needs_at_most_twenty_products() {
     let crack = Crack::Polygon {
         corners: vec![
             [1.0, -1.0, 0.5],
@@ -77,14 +77,14 @@ fn a_bar_with_a_half_through_crack_takes_at_most_twenty_products() {
 }
 
 #[test]
-fn a_plate_between_grips_takes_at_most_thirty_products() {
-    // Ten at most to a residual of 0.1 when the grips have moved, the rest to 1e-6.
+fn plate_with_prescribed_displacements_needs_at_most_thirty_products() {
+    // At most ten to a residual of 0.1 after the motion of the constraints, the rest to 1e-6.
     for cells in [20, 40, 80] {
-        assert!(effort(&gripped_plate(cells)).products <= 30);
+        assert!(effort(&constrained_plate(cells)).products <= 30);
     }
 }
 
-/// Prints the products of large bodies.
+/// Prints the number of products for large bodies.
 #[test]
 #[ignore = "takes minutes"]
 fn products_of_large_bodies() {

@@ -1,4 +1,5 @@
-//! The paper's bar: x = −10 … 10 with 201 nodes, E = ρ = 1, Gaussian micromodulus with δ = 0.25 cut after 7 nodes.
+//! The bar of the paper: x = −10 … 10 with 201 nodes, E = ρ = 1, Gaussian micromodulus with δ = 0.25 truncated
+//! after 7 nodes.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -6,10 +7,10 @@ use std::sync::Arc;
 use pericles::boundary::{MotionKind, PrescribedMotion, TimeCourse, TimeFunction};
 use pericles::family::{BondList, VolumeCorrection};
 use pericles::material::LinearBond;
-use pericles::operator::{BondForce, Breaking, DamageMeasure, On};
+use pericles::operator::{BondForce, Breaking, DamageMeasure, PointSubset};
 use pericles::time::{State, VelocityVerlet};
 use pericles::{
-    Archive, Control, Outcome, PericlesError, PointScalar, Saved, Simulation, System, Values,
+    Archive, Checkpointed, Control, Outcome, PericlesError, PointScalar, Simulation, System, Values,
 };
 use pericles_run::RunError;
 use pericles_waves::absorbing::history::BlockedHistory;
@@ -21,19 +22,19 @@ use pericles_waves::absorbing::{
 use crate::common::cells;
 
 pub(super) const SPACING: f64 = 0.1;
-/// Nodes from the middle to an end.
+/// Number of nodes from the middle to an end.
 pub(super) const HALF: usize = 100;
 const REACH: usize = 7;
-/// Half the width of the soft part; nodes on its border are hard.
+/// Half the width of the soft part; nodes on its boundary are hard.
 const SOFT: f64 = 4.0;
 const WAVELET: Ricker = Ricker {
     frequency: 0.2,
     delay: 5.0,
 };
-/// When the node is released, s. The text says 5; the printed errors belong to 10.
+/// Release time of the node, s. The text says 5; the printed errors correspond to 10.
 const RELEASE: f64 = 10.0;
 
-/// (1 − 2q) exp(−q), q = π² f² (t − delay)².
+/// Ricker wavelet (1 − 2q) exp(−q), q = π² f² (t − delay)².
 #[derive(Debug)]
 struct Ricker {
     frequency: f64,
@@ -41,7 +42,7 @@ struct Ricker {
 }
 
 impl Ricker {
-    /// π² f², the time from the peak, q and exp(−q).
+    /// Returns π² f², the time from the peak, q and exp(−q).
     fn parts(&self, t: f64) -> [f64; 4] {
         let c = (PI * self.frequency).powi(2);
         let tau = t - self.delay;
@@ -75,13 +76,13 @@ impl TimeCourse for Ricker {
     }
 }
 
-/// C(ξ) = 4E/(δ³ √π) exp(−ξ²/δ²).
+/// Micromodulus C(ξ) = 4E/(δ³ √π) exp(−ξ²/δ²).
 pub(super) fn micromodulus(xi: f64) -> f64 {
     const DELTA: f64 = 0.25;
     4.0 / (DELTA.powi(3) * PI.sqrt()) * (-(xi / DELTA).powi(2)).exp()
 }
 
-/// The lattice of the hard material.
+/// Lattice of the hard material.
 pub(super) fn stencil() -> Result<LatticeStencil, RunError> {
     let weights: Vec<f64> = (1..=REACH)
         .map(|k| micromodulus(k as f64 * SPACING) * SPACING)
@@ -89,35 +90,35 @@ pub(super) fn stencil() -> Result<LatticeStencil, RunError> {
     Ok(LatticeStencil::new(&weights).map_err(PericlesError::from)?)
 }
 
-/// What moves the bar.
+/// Excitation of the bar.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Source {
-    /// u = exp(−x²) at the start.
+    /// Initial displacement u = exp(−x²).
     Bell,
-    /// Ricker's wavelet prescribed at x = 0, released when it is over.
+    /// Ricker wavelet prescribed at x = 0, released when it is over.
     Wavelet,
-    /// Nothing.
+    /// No excitation.
     Rest,
 }
 
-/// A bar of the paper.
+/// Bar of the paper.
 #[derive(Clone, Copy)]
 pub(super) struct Bar {
     pub(super) source: Source,
     /// Stiffness of bonds with an end in the soft part.
     pub(super) beta: f64,
-    /// The absorbing ends; the others are free.
+    /// Sides with absorbing boundaries; the others are free.
     pub(super) sides: &'static [Side],
-    /// Nodes beyond the paper's on each side, for comparison with large bodies.
+    /// Additional nodes on each side, for comparison with large bodies.
     pub(super) margin: usize,
 }
 
-/// The kernels of an end.
+/// Kernels of a boundary.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Kind {
-    /// The paper's: semi-discrete, trapezoidal rule.
+    /// Kernels of the paper: semi-discrete, trapezoidal rule.
     SemiDiscrete,
-    /// Exact for the scheme.
+    /// Kernels exact for the scheme.
     Discrete,
 }
 
@@ -131,7 +132,7 @@ pub(super) fn kernels(kind: Kind, dt: f64, steps: usize) -> Result<GhostKernels,
     })
 }
 
-/// Absorbing at the left, free at the right, moved in the middle.
+/// Absorbing on the left, free on the right, excited in the middle.
 pub(super) const SEISMIC_BAR: Bar = Bar {
     source: Source::Wavelet,
     beta: 1.0,
@@ -140,7 +141,7 @@ pub(super) const SEISMIC_BAR: Bar = Bar {
 };
 
 impl Bar {
-    /// With both ends absorbing.
+    /// Bar with absorbing boundaries at both ends.
     pub(super) const fn infinite(beta: f64) -> Self {
         Self {
             source: Source::Bell,
@@ -150,7 +151,7 @@ impl Bar {
         }
     }
 
-    /// The equation of motion without absorbing ends, and the start.
+    /// Equation of motion without absorbing boundaries, and the initial state.
     pub(super) fn system(&self) -> Result<(System, State), RunError> {
         let half = HALF + self.margin;
         let origin = [-(half as f64 + 0.5) * SPACING, 0.0, 0.0];
@@ -202,7 +203,7 @@ impl Bar {
         Ok((system, state))
     }
 
-    /// A run of the given number of steps with absorbing ends.
+    /// Creates a run of the given number of steps with absorbing boundaries.
     pub(super) fn simulation(
         &self,
         kernels: &GhostKernels,
@@ -228,7 +229,7 @@ impl Bar {
         )?)
     }
 
-    /// Runs and shows every state but the first.
+    /// Runs and calls the observer with every state but the first.
     pub(super) fn follow(
         &self,
         kernels: &GhostKernels,
@@ -250,7 +251,7 @@ impl Bar {
                 }
             });
             let outcome = outcome.map_err(|error| RunError::of_run(error, String::new))?;
-            // The last state of a run is not asked about.
+            // The observer is not called for the last state of a run.
             if outcome == Outcome::Finished {
                 visit(simulation.state());
             }
@@ -264,7 +265,8 @@ impl Bar {
         Ok(())
     }
 
-    /// The run that goes on with the node free: with the displacement and velocity prescribed last, and the acceleration of a free node.
+    /// Continues the run with the node free: with the displacement and velocity prescribed last, and the
+    /// acceleration of a free node.
     fn released(
         &self,
         held: &Simulation,
@@ -279,7 +281,7 @@ impl Bar {
         let State { t, u, a, .. } = held.state();
         let node = HALF + self.margin;
         let mut free = a.clone();
-        let here = On::Range(node..node + 1);
+        let here = PointSubset::Range(node..node + 1);
         rest.system()?.0.free_acceleration(*t, u, &here, &mut free);
         let mut archive = Archive::default();
         held.save(&mut archive);
@@ -289,7 +291,7 @@ impl Bar {
         Ok(simulation)
     }
 
-    /// The states at the given times, ascending, in steps dt.
+    /// States at the given ascending times with time step dt.
     pub(super) fn states(
         &self,
         kind: Kind,
@@ -309,9 +311,10 @@ impl Bar {
         Ok(states)
     }
 
-    /// The solution in continuous time at the given times: Richardson's extrapolation of two runs with exact ends, whose errors are the scheme's alone.
+    /// Solution in continuous time at the given times, by Richardson extrapolation of two runs with exact
+    /// boundaries, whose errors are those of the scheme only.
     pub(super) fn reference(&self, times: &[f64]) -> Result<Vec<State>, RunError> {
-        /// Errors of fourth order remain: some 1e-12.
+        /// The remaining error is of fourth order: some 1e-12.
         const DT: f64 = 0.002;
         let coarse = self.states(Kind::Discrete, DT, times)?;
         let mut fine = self.states(Kind::Discrete, 0.5 * DT, times)?;

@@ -1,4 +1,4 @@
-//! What absorbing ends cost: time and memory against the number of steps, beside simply enlarging the body.
+//! Time and memory of absorbing boundaries by number of steps, compared with a larger body.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -24,29 +24,29 @@ use crate::row::Row;
 
 type Micromodulus = fn(f64) -> f64;
 
-/// A homogeneous bar −10 … 10 with a bell in the middle, E = ρ = 1.
+/// Homogeneous bar −10 … 10 with a bell-shaped pulse in the middle, E = ρ = 1.
 struct Bar {
     name: String,
     reach: usize,
     spacing: f64,
-    /// C(ξ).
+    /// Micromodulus C(ξ).
     micromodulus: Micromodulus,
     dt: f64,
-    /// Asked of the exponentials.
+    /// Tolerance of the exponentials.
     tolerance: f64,
-    /// Nodes that fields need to decay beyond the light cone.
+    /// Number of nodes over which fields decay beyond the light cone.
     margin: usize,
 }
 
-/// 3E/δ³, δ = 1.
+/// Constant micromodulus 3E/δ³, δ = 1.
 fn constant(_: f64) -> f64 {
     3.0
 }
 
-/// Direct sums of more steps take long, and minutes beyond.
+/// Largest number of steps for direct sums; more would take minutes.
 const MOST_DIRECT: usize = 2048;
 const MOST_DIRECT_LONG: usize = 8192;
-/// Steps of the test for growth.
+/// Number of steps of the test for growth.
 const ENDLESS: usize = 1_000_000;
 
 impl Bar {
@@ -70,7 +70,7 @@ impl Bar {
         Ok(LatticeStencil::new(&weights).map_err(PericlesError::from)?)
     }
 
-    /// With this many nodes more on each side.
+    /// Body with this many additional nodes on each side.
     fn body(&self, margin: usize) -> Result<(System, State), RunError> {
         let half = (10.0 / self.spacing).round() as usize + margin;
         let nodes = 2 * half + 1;
@@ -100,7 +100,7 @@ impl Bar {
         Ok((system, state))
     }
 
-    /// Displacements at the end of a run, and its seconds; without histories the ends are free.
+    /// Returns the displacements at the end of a run, and its time in seconds; without histories the ends are free.
     fn run(
         &self,
         steps: usize,
@@ -146,20 +146,20 @@ impl Bar {
     }
 }
 
-/// A run with two absorbing ends.
+/// Run with two absorbing boundaries.
 struct Measured {
     u: Vec<f64>,
     seconds: f64,
     bytes: usize,
 }
 
-/// The ways to the same displacements, one after the other.
+/// Compares the methods that give the same displacements.
 pub(super) fn compared(place: &Case<'_>) -> Result<Found, RunError> {
     let (case, steps, full) = (Bar::of(place)?, place.count("steps")?, place.context.full);
     let stencil = case.stencil()?;
     let label = |what: &str| format!("{}, N = {steps}: {what}", case.name);
     let time = |what: &str, seconds: f64| Row::new(label(what), "s", Some(seconds));
-    // What comes back from the ends of the larger body has travelled to them and back.
+    // Reflections from the ends of the larger body have travelled to them and back.
     let cone = 0.5 * stencil.fastest() * case.dt * steps as f64;
     let (large, seconds_large) = case.run(steps, cone as usize + case.margin, Vec::new())?;
     let extra = (large.len() - case.run(0, 0, Vec::new())?.0.len()) / 2;
@@ -175,14 +175,14 @@ pub(super) fn compared(place: &Case<'_>) -> Result<Found, RunError> {
     let kernels = GhostKernels::shift(contour_kernels(&stencil, step, steps));
     let seconds_kernels = began.elapsed().as_secs_f64();
     let blocked = case.with_ends(steps, || BlockedHistory::new(kernels.clone()))?;
-    let mega = |bytes: usize| format!("{:.2} MB for both ends", 1e-6 * bytes as f64);
+    let mega = |bytes: usize| format!("{:.2} MB for both boundaries", 1e-6 * bytes as f64);
     rows.push(time("kernels", seconds_kernels));
     rows.push(time("by blocks, kernels cached", blocked.seconds).note(mega(blocked.bytes)));
     let all = seconds_kernels + blocked.seconds;
-    rows.push(
-        time("by blocks, with kernels", all)
-            .note(format!("{:.2} of the larger body", all / seconds_large)),
-    );
+    rows.push(time("by blocks, with kernels", all).note(format!(
+        "{:.2} of the time of the larger body",
+        all / seconds_large
+    )));
     let error = apart(&blocked.u);
     rows.push(Row::new(label("by blocks, error"), "", Some(error)).within(0.0, 1e-12));
     let most = if full { MOST_DIRECT_LONG } else { MOST_DIRECT };
@@ -211,7 +211,7 @@ pub(super) fn compared(place: &Case<'_>) -> Result<Found, RunError> {
             )));
             let all = seconds_fit + made.seconds;
             rows.push(time("by exponentials, with the fit", all).note(format!(
-                "{:.2} of the larger body; {}",
+                "{:.2} of the time of the larger body; {}",
                 all / seconds_large,
                 mega(made.bytes)
             )));
@@ -220,7 +220,9 @@ pub(super) fn compared(place: &Case<'_>) -> Result<Found, RunError> {
             rows.push(row.within(0.0, case.tolerance));
         }
         Err(AbsorbingError::Fit { residual, fits, .. }) => {
-            let note = format!("refused after {fits} fits: best residual {residual:.1e}");
+            let note = format!(
+                "no fit within the tolerance after {fits} attempts: best residual {residual:.1e}"
+            );
             rows.push(time("fit of exponentials", seconds_fit).note(note));
         }
         Err(error) => return Err(PericlesError::from(error).into()),
@@ -230,7 +232,7 @@ pub(super) fn compared(place: &Case<'_>) -> Result<Found, RunError> {
     Ok(rows.into())
 }
 
-/// A million steps near the stability limit: nothing may grow.
+/// Runs a million steps close to the stability limit, in which nothing may grow.
 pub(super) fn million_steps(case: &Case<'_>) -> Result<Found, RunError> {
     let bar = Bar::of(case)?;
     let stencil = bar.stencil()?;

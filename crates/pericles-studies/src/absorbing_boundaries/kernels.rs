@@ -1,4 +1,4 @@
-//! Table 1: the kernels of the Euler–Bernoulli lattice against their closed forms.
+//! Table 1: kernels of the Euler–Bernoulli lattice compared with their closed forms.
 
 use std::f64::consts::PI;
 
@@ -10,17 +10,17 @@ use pericles_waves::absorbing::{
 
 use crate::data::{Case, Found};
 
-/// J_n(2t)/t, n = 1 and 2.
+/// J_n(2t)/t for n = 1 and 2.
 fn bessel(t: f64) -> [f64; 2] {
     if t < 1e-8 {
-        // J_1(2t)/t → 1, J_2(2t)/t → t/2.
+        // Limits: J_1(2t)/t → 1, J_2(2t)/t → t/2.
         return [1.0, 0.5 * t];
     }
     [1, 2].map(|n| libm::jn(n, 2.0 * t) / t)
 }
 
-/// f_0^1, f_0^2, f_{−1}^1, f_{−1}^2 at a time, with φ_n = (−i)^n n J_n(2t)/t exp(2it): 2 Re φ_1, −φ_1 * φ̄_1, 2 Re φ_2 + φ_1 * φ̄_1, −2 Re φ_2 * φ̄_1. Convolutions by
-/// Gauss' rule on panels shorter than an oscillation.
+/// f_0^1, f_0^2, f_{−1}^1, f_{−1}^2 at a time, with φ_n = (−i)^n n J_n(2t)/t exp(2it): 2 Re φ_1, −φ_1 * φ̄_1, 2 Re
+/// φ_2 + φ_1 * φ̄_1, −2 Re φ_2 * φ̄_1. Convolutions by Gauss quadrature on panels shorter than an oscillation.
 fn closed_forms(t: f64) -> [f64; 4] {
     const PANEL: f64 = 0.25;
     const NODES: [[f64; 2]; 4] = [
@@ -52,18 +52,19 @@ fn closed_forms(t: f64) -> [f64; 4] {
     ]
 }
 
-/// The largest error of the four kernels at a step.
+/// Largest error of the four kernels at a step.
 fn error(kernels: &GhostKernels, dt: f64, step: usize, exact: &[f64; 4]) -> f64 {
     let pairs = kernels.series().iter().zip(exact);
     let apart = pairs.map(|(series, exact)| (series[step] / dt - exact).abs());
     apart.fold(0.0, f64::max)
 }
 
-/// The kernels at step 3π/`parts`, with the paper's Runge–Kutta way to the Green functions, to the longest time, and with exact Green functions to times below 100π.
+/// Kernels for step 3π/`parts`: with the paper's Runge–Kutta method for the Green functions up to the longest time,
+/// and with exact Green functions up to times below 100π.
 fn of_step(case: &Case<'_>, parts: f64) -> Result<[GhostKernels; 2], RunError> {
     let stencil = LatticeStencil::new(&[4.0, -1.0]).map_err(PericlesError::from)?;
     let dt = 3.0 * PI / parts;
-    // Half a million steps at the most.
+    // At most half a million steps.
     let end = if case.context.full { 3000.0 } else { 300.0 };
     let closed = green_functions_closed(&stencil, dt, number(end, parts));
     // The ring grows with time, and so does its cost.
@@ -71,15 +72,15 @@ fn of_step(case: &Case<'_>, parts: f64) -> Result<[GhostKernels; 2], RunError> {
     Ok([closed, green].map(|green| trapezoidal_kernels(&stencil, dt, &green)))
 }
 
-/// The longest time below 100π, in units of π.
+/// Longest time below 100π, in units of π.
 const SHORT: f64 = 18.0;
 
-/// The number of the step at a time in units of π.
+/// Index of the step at a time in units of π.
 fn number(time: f64, parts: f64) -> usize {
     (time / 3.0 * parts).round() as usize
 }
 
-/// The largest error of the kernels at `time` π, and that with exact Green functions, for short times.
+/// Largest error of the kernels at `time` π and, for short times, of those with exact Green functions.
 pub(super) fn kernels(case: &Case<'_>) -> Result<Found, RunError> {
     let (time, parts) = (case.number("time")?, case.number("parts")?);
     let kernels = case.once(format!("kernels {parts}"), || of_step(case, parts))?;

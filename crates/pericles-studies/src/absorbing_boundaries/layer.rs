@@ -1,8 +1,10 @@
-//! What damping layers reflect, against angle and wavelength.
+//! Reflection of damping layers by angle and wavelength.
 //!
-//! A plane wave of a plate repeats along y but for a phase, u(x, y) = u(x) exp(i k_y y), so that a chain of nodes along x stands for the plate: bonds to the rows above and below carry the
-//! phase. With u_y = i w the chain's equations for (u_x, w) are real. A longitudinal packet that runs one way only, as a sum of the chain's own waves, meets the layer and the held edge behind
-//! it; the energy that is left when it has come back, over that of the packet, is the square of the reflection, waves of the other kind included.
+//! A plane wave of a plate repeats along y up to a phase, u(x, y) = u(x) exp(i k_y y), so a chain of nodes along x
+//! represents the plate: bonds to the rows above and below contain the phase. With u_y = i w the equations for
+//! (u_x, w) are real. A longitudinal packet that travels in one direction only, composed of the chain's own waves,
+//! reaches the layer and the fixed edge behind it. The energy that remains when it has returned, divided by that of
+//! the packet, is the square of the reflection coefficient, including converted waves.
 
 use std::f64::consts::{PI, TAU};
 
@@ -11,15 +13,16 @@ use pericles_run::RunError;
 
 use crate::data::{Case, Found};
 
-/// Bonds reach three spacings; lengths are in spacings, times in those of a longitudinal wave over one.
+/// Bonds extend over three spacings; lengths are in spacings, times in units of spacing over longitudinal wave
+/// speed.
 const REACH: isize = 3;
 const DT: f64 = 0.5;
 /// Depth of the layer.
 const THICKNESS: f64 = 60.0;
-/// Of the amplitude, asked for head on.
+/// Design reflection of the amplitude at normal incidence.
 const ASKED: f64 = 1e-3;
 
-/// A symmetric 2 × 2 matrix: xx, xy, yy.
+/// Symmetric 2 × 2 matrix: xx, xy, yy.
 type Tensor = [f64; 3];
 
 struct Bond {
@@ -27,7 +30,7 @@ struct Bond {
     tensor: Tensor,
 }
 
-/// The bonds of a plate's node, k ξ⊗ξ/|ξ|³, scaled to longitudinal speed one.
+/// Bonds of a node of the plate, k ξ⊗ξ/|ξ|³, scaled to unit longitudinal speed.
 fn bonds() -> Vec<Bond> {
     let mut bonds = Vec::new();
     for p in -REACH..=REACH {
@@ -51,7 +54,7 @@ fn bonds() -> Vec<Bond> {
     bonds
 }
 
-/// Frequency and polarisation of the fast wave with these wave numbers.
+/// Frequency and polarisation of the fast wave with these wavenumbers.
 fn longitudinal(bonds: &[Bond], [kx, ky]: [f64; 2]) -> (f64, [f64; 2]) {
     let mut d = [0.0; 3];
     for Bond { offset, tensor } in bonds {
@@ -66,23 +69,23 @@ fn longitudinal(bonds: &[Bond], [kx, ky]: [f64; 2]) -> (f64, [f64; 2]) {
     (omega, [angle.cos(), angle.sin()])
 }
 
-/// The nodes along x of a plate with waves exp(i k_y y); beyond both ends it is held.
+/// Nodes along x of a plate with waves exp(i k_y y); fixed beyond both ends.
 struct Chain {
-    /// For p = −3 … 3: Σ_q k cos(k_y q) of xx and yy, Σ_q k sin(k_y q) of xy.
+    /// For p = −3 … 3: Σ_q k cos(k_y q) for xx and yy, Σ_q k sin(k_y q) for xy.
     coupling: Vec<Tensor>,
     /// Σ k over all bonds; xy vanishes.
     own: Tensor,
     damping: Vec<f64>,
     /// (u_x, w) of each node.
     u: Vec<[f64; 2]>,
-    /// dt v, of the middle of the last step.
+    /// dt v at the middle of the last step.
     increment: Vec<[f64; 2]>,
 }
 
 impl Chain {
-    /// With a packet of waves around (k_x, k_y) that runs towards the layer at the right end.
+    /// Creates a packet of waves around (k_x, k_y) that travels towards the layer at the right end.
     fn new(bonds: &[Bond], [kx, ky]: [f64; 2]) -> Self {
-        // The packet's width, so that 8 % of its wave number are in it.
+        // Width of the packet; its relative spectral width is about 8 %.
         let width = 1.5 * TAU / kx;
         let centre = 4.0 * width;
         let nodes = (2.0 * centre + THICKNESS) as usize;
@@ -113,7 +116,7 @@ impl Chain {
             let k = n as f64 * spacing;
             let amplitude = (-0.5 * ((k - kx) / spread).powi(2)).exp();
             let (omega, direction) = longitudinal(bonds, [k, ky]);
-            // The scheme's own frequency.
+            // Numerical frequency of the scheme.
             let turn = 2.0 * (0.5 * omega * DT).asin();
             for i in 0..nodes {
                 let phase = k * (i as f64 - centre);
@@ -142,7 +145,7 @@ impl Chain {
         a
     }
 
-    /// A step of velocity Verlet with the damping of the step before.
+    /// Performs a step of velocity Verlet with the damping of the previous step.
     fn step(&mut self) {
         let accelerations: Vec<[f64; 2]> =
             (0..self.u.len()).map(|i| self.acceleration(i)).collect();
@@ -155,7 +158,7 @@ impl Chain {
         }
     }
 
-    /// What the scheme conserves without damping: ½ |d/dt|² − ½ u·A u', with u' the displacement before.
+    /// Energy that the scheme conserves without damping: ½ |d/dt|² − ½ u·A u', with u' the previous displacement.
     fn energy(&self) -> f64 {
         let node = |i: usize| -> f64 {
             let a = self.acceleration(i);
@@ -170,13 +173,13 @@ impl Chain {
     }
 }
 
-/// The share of the amplitude that comes back from a wave of this length at this angle.
+/// Fraction of the amplitude reflected for a wave of this length at this angle.
 fn reflection(bonds: &[Bond], length: f64, degrees: f64) -> f64 {
     let (sine, cosine) = degrees.to_radians().sin_cos();
     let wave = [cosine, sine].map(|part| part * TAU / length);
     let mut chain = Chain::new(bonds, wave);
     let before = chain.energy();
-    // To the edge and back to where it came from, at the speed of long waves.
+    // To the edge and back to the start, at the speed of long waves.
     let way = 2.0 * (chain.u.len() as f64 - 6.0 * TAU / wave[0]);
     let steps = (way / (cosine * DT)) as usize;
     for _ in 0..steps {
@@ -185,7 +188,7 @@ fn reflection(bonds: &[Bond], length: f64, degrees: f64) -> f64 {
     (chain.energy() / before).max(0.0).sqrt()
 }
 
-/// The same for a layer so many wavelengths deep, computed once in a study.
+/// Reflection of a layer of the case's depth in wavelengths, computed once per study.
 fn of_depth(case: &Case<'_>, degrees: f64) -> Result<f64, RunError> {
     let length = THICKNESS / case.number("depth")?;
     let share = || Ok(reflection(&bonds(), length, degrees));
@@ -193,12 +196,12 @@ fn of_depth(case: &Case<'_>, degrees: f64) -> Result<f64, RunError> {
         .map(|share| *share)
 }
 
-/// The share at an angle, degrees from the normal.
+/// Reflected fraction at an angle, degrees from the normal.
 pub(super) fn reflected(case: &Case<'_>) -> Result<Found, RunError> {
     Ok(of_depth(case, case.number("angle")?)?.into())
 }
 
-/// The shares at some angles.
+/// Reflected fractions at several angles.
 pub(super) fn of_angles(case: &Case<'_>) -> Result<Found, RunError> {
     let angles = case.numbers("angles")?;
     let shares = angles.iter().map(|&degrees| of_depth(case, degrees));

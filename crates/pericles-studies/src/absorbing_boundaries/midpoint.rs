@@ -1,4 +1,4 @@
-//! Exact ends within implicit steps, against a larger body with the same step.
+//! Exact absorbing boundaries of implicit schemes, compared with a larger body with the same time step.
 
 use pericles::time::{Implicit, ImplicitRule};
 use pericles::{PericlesError, Simulation};
@@ -12,7 +12,8 @@ use super::bar::Bar;
 use crate::common::{difference, finish};
 use crate::data::{Case, Found};
 
-/// The bar with a soft middle; `margin` nodes more on each side where there are no ends.
+/// Bar with a soft middle; `margin` is the number of additional nodes on each side, in place of absorbing
+/// boundaries.
 fn run(dt: f64, steps: u64, margin: Option<usize>) -> Result<Simulation, RunError> {
     let bar = Bar {
         margin: margin.unwrap_or(0),
@@ -38,10 +39,10 @@ fn run(dt: f64, steps: u64, margin: Option<usize>) -> Result<Simulation, RunErro
     Ok(simulation)
 }
 
-/// The largest error of displacement and velocity of `steps` steps `dt`, and the unbalanced share of the energy.
+/// Largest error of displacement and velocity after `steps` steps `dt`, and the relative energy imbalance.
 pub(super) fn midpoint(case: &Case<'_>) -> Result<Found, RunError> {
     let (dt, steps) = (case.number("dt")?, case.count("steps")? as u64);
-    // Ten nodes per unit of time and back; an implicit step reaches everywhere, decaying as exp(−2 n/(10 dt)).
+    // Ten nodes per unit of time and back; an implicit step has unlimited range and decays as exp(−2 n/(10 dt)).
     let margin = (5.0 * dt * steps as f64 + 200.0 * dt.max(1.0)) as usize + 100;
     let (small, large) = (run(dt, steps, None)?, run(dt, steps, Some(margin))?);
     let (a, b) = (small.state(), large.state());

@@ -1,8 +1,9 @@
-//! Exact absorbing ends of bars and beams.
+//! Exact absorbing boundaries of bars and beams.
 //!
-//! Ji, Pang, Zhang, Yang, Perdikaris, *Exact artificial boundary conditions of 1D semi-discretized peridynamics*. The paper's errors are those of its semi-discrete
-//! ends together with velocity Verlet's, against the solution in continuous time; they are computed again with the paper's ends, and those of ends that are
-//! exact for the scheme stand beside them. Numbers marked as recomputed come from a separate code.
+//! Ji, Pang, Zhang, Yang, Perdikaris, *Exact artificial boundary conditions of 1D semi-discretized peridynamics*.
+//! The errors in the paper are those of its semi-discrete boundaries together with velocity Verlet, relative to the
+//! solution in continuous time; they are reproduced with the boundaries of the paper and listed beside those of
+//! boundaries exact for the scheme. Values marked as recomputed come from a separate code.
 
 mod bar;
 mod cost;
@@ -14,7 +15,7 @@ mod tables;
 
 use crate::study::{Topic, data};
 
-/// The topic's studies.
+/// Studies of this topic.
 pub(super) const TOPIC: Topic = Topic {
     studies: &[
         data!("absorbing-boundaries/table-1"),

@@ -1,4 +1,4 @@
-//! A strip that is periodic across and goes on for ever along: exact ends by Fourier modes.
+//! A strip that is periodic across and infinite along its length: absorbing boundaries by Fourier modes.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -18,23 +18,23 @@ use crate::common::{cells, watch};
 use crate::context::Context;
 use crate::data::{Case, Found};
 
-/// Rows across; lengths are in spacings.
+/// Number of rows; lengths are in spacings.
 const ROWS: usize = 32;
-/// Columns from the middle to an end.
+/// Number of columns from the middle to an end.
 const HALF: usize = 40;
 const HORIZON: f64 = 3.01;
 const DT: f64 = 0.4;
 const STEPS: usize = 400;
-/// Columns that fields need to decay beyond the light cone.
+/// Number of columns over which fields decay beyond the light cone.
 const MARGIN: usize = 60;
 
-/// A plate with some columns more on each side, and a bell beside its middle that is pushed upwards.
+/// Plate with additional columns on each side, and a bell-shaped pulse beside its middle that moves upwards.
 fn strip(margin: usize) -> Result<(System, State), RunError> {
     let half = HALF + margin;
     let origin = [-(half as f64) - 0.5, 0.0, 0.0];
     let size = vec![(2 * half + 1) as f64, ROWS as f64];
     let cloud = Arc::new(cells(origin, size, 1.0)?);
-    // Bonds k ξ⊗ξ/|ξ|³ with k such that long waves along x have about speed one.
+    // Bonds k ξ⊗ξ/|ξ|³ with k such that long waves along x have about unit speed.
     let force = ConvolutionForce::<2>::with_stiffness(
         Arc::clone(&cloud),
         HORIZON,
@@ -58,7 +58,7 @@ fn strip(margin: usize) -> Result<(System, State), RunError> {
     Ok((system, state))
 }
 
-/// States after every so many steps, and the seconds of the run.
+/// States at regular intervals of steps, and the time of the run in seconds.
 fn run(
     (system, state): (System, State),
     every: usize,
@@ -75,12 +75,12 @@ fn run(
     };
     note(&simulation);
     watch(&mut simulation, &mut note)?;
-    // The last state of a run is not asked about.
+    // The observer is not called for the last state of a run.
     note(&simulation);
     Ok((states, began.elapsed().as_secs_f64()))
 }
 
-/// The strip with exact ends against a larger one: errors, energy, seconds.
+/// Compares the strip with exact boundaries with a larger one: errors, energy, seconds.
 pub(super) fn strip_ends(case: &Case<'_>) -> Result<Found, RunError> {
     const EVERY: usize = 10;
     let (mut system, state) = strip(0)?;
@@ -130,7 +130,7 @@ pub(super) fn strip_ends(case: &Case<'_>) -> Result<Found, RunError> {
     .curve("energy", &t, &shares))
 }
 
-/// Where the entries of the small body are in the large one.
+/// Indices of the small body's entries in the large one.
 fn inner_entries(large: &System, small: &PointCloud) -> Vec<usize> {
     let cloud = large.cloud();
     let place = |cloud: &PointCloud, i: usize| {
@@ -165,7 +165,7 @@ fn draw(
             .colours(ColourMap::Diverging)
             .range(-0.3, 0.3)
             .title(format!(
-                "a strip without ends, periodic across, at t = {}",
+                "computed part of an infinite strip, periodic across, at t = {}",
                 state.t
             ))
             .write(path)?;

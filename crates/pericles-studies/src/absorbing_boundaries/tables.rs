@@ -1,4 +1,4 @@
-//! Tables 2 to 6: errors of the truncated bar against the solution in continuous time.
+//! Tables 2 to 6: errors of the truncated bar relative to the solution in continuous time.
 
 use pericles::time::State;
 use pericles_run::RunError;
@@ -7,15 +7,16 @@ use super::bar::{Bar, HALF, Kind, SEISMIC_BAR, SPACING, kernels};
 use crate::common::{difference, largest};
 use crate::data::{Case, Found};
 
-/// The step of the figures.
+/// Time step of the figures.
 const DT: f64 = 0.005;
 
-/// The bar of the case: homogeneous or with a soft middle of stiffness `beta`, and with absorbing ends, or moved by a wavelet.
+/// Bar of the case: homogeneous or with a soft middle of stiffness `beta` and absorbing boundaries, or excited by a
+/// wavelet.
 fn bar_of(case: &Case<'_>) -> Bar {
     case.optional("beta").map_or(SEISMIC_BAR, Bar::infinite)
 }
 
-/// The largest errors over all nodes at the `times` in steps dt with ends of a kind.
+/// Largest errors over all nodes at the `times` with time step dt and a kind of boundary.
 fn errors(case: &Case<'_>, kind: Kind, dt: f64) -> Result<Vec<f64>, RunError> {
     let (bar, times) = (bar_of(case), case.numbers("times")?);
     let velocity = case.flag("velocity");
@@ -29,7 +30,7 @@ fn errors(case: &Case<'_>, kind: Kind, dt: f64) -> Result<Vec<f64>, RunError> {
     Ok(errors.collect())
 }
 
-/// The error at the time of this `number`, with the paper's ends and with those that are exact for the scheme.
+/// Error at the time with this `number`, with the boundaries of the paper and with those exact for the scheme.
 pub(super) fn error(case: &Case<'_>) -> Result<Found, RunError> {
     let (number, dt) = (case.count("number")?, case.number("dt")?);
     let of = |kind| errors(case, kind, dt).map(|errors| errors.get(number).copied());
@@ -37,7 +38,8 @@ pub(super) fn error(case: &Case<'_>) -> Result<Found, RunError> {
     Ok(paper.value("exact", of(Kind::Discrete)?))
 }
 
-/// The order of the error from the step `coarse` to the step `fine`. Of the two finest steps: the wavelet's late errors have a part of higher order at the coarsest, in print as well.
+/// Order of the error from step `coarse` to step `fine`. For the wavelet only the two finest steps are used: its
+/// late errors have a part of higher order at the coarsest, also in the printed values.
 pub(super) fn order(case: &Case<'_>) -> Result<Found, RunError> {
     let [coarse, fine] = [case.number("coarse")?, case.number("fine")?];
     let number = case.count("number")?;
@@ -53,7 +55,7 @@ struct History {
     u: Vec<f64>,
 }
 
-/// The histories of nodes up to a time, with exact ends.
+/// Time histories of nodes, with exact boundaries.
 fn histories<const N: usize>(
     bar: &Bar,
     nodes: [usize; N],
@@ -74,7 +76,7 @@ fn histories<const N: usize>(
     Ok(histories)
 }
 
-/// Two humps that leave, for the figure only.
+/// Pulse that leaves in two halves; for the figure only.
 pub(super) fn fields(case: &Case<'_>) -> Result<Found, RunError> {
     if case.context.figures.is_none() {
         return Ok(Found::default());
@@ -90,7 +92,8 @@ pub(super) fn fields(case: &Case<'_>) -> Result<Found, RunError> {
     Ok(times.iter().zip(&states).fold(Found::default(), draw))
 }
 
-/// Waves between interfaces leave the slower, the softer the middle is: whether what is left grows.
+/// The softer the middle, the more slowly waves between interfaces leave: checks that the remaining amplitude grows
+/// in this order.
 pub(super) fn interfaces(_: &Case<'_>) -> Result<Found, RunError> {
     let mut found = Found::default();
     let mut left = Vec::new();
@@ -109,11 +112,11 @@ pub(super) fn interfaces(_: &Case<'_>) -> Result<Found, RunError> {
         .value("tenth", left[2]))
 }
 
-/// The free end moves twice as far as the wavelet: the peaks at both ends.
+/// Peaks at both ends; the free end moves twice as far as the wavelet.
 pub(super) fn wavelet(_: &Case<'_>) -> Result<Found, RunError> {
     let [left, right] = histories(&SEISMIC_BAR, [0, 2 * HALF], 40.0)?;
     let found = Found::from([("absorbing", largest(&left.u)), ("free", largest(&right.u))]);
-    let names = ["absorbing end", "free end"].map(|name| Some(name.to_owned()));
+    let names = ["absorbing boundary", "free end"].map(|name| Some(name.to_owned()));
     let ends = names.into_iter().zip([&left, &right]);
     Ok(ends.fold(found, |found, (name, end)| {
         found.labelled("wavelet", name, &end.t, &end.u)

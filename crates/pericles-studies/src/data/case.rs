@@ -1,4 +1,4 @@
-//! Functions that the data name: their arguments and results.
+//! Functions called by the study data: their arguments and results.
 
 use std::any::Any;
 use std::cell::RefCell;
@@ -12,16 +12,16 @@ use super::template;
 use crate::context::Context;
 use crate::row::Row;
 
-/// A function and the name by which data call it.
+/// A function and the name by which the data call it.
 pub(crate) type Measure = (&'static str, fn(&Case<'_>) -> Result<Found, RunError>);
 
-/// What the functions of a study computed for each other, by name.
+/// Intermediate results shared by the functions of a study, by name.
 pub(super) type Shared = RefCell<BTreeMap<String, Rc<dyn Any>>>;
 
-/// One place of the axes: the arguments of a function.
+/// Arguments of a function at one place of the axes.
 pub(crate) struct Case<'a> {
     arguments: &'a Table,
-    /// What the study is run with.
+    /// Options of the study run.
     pub(crate) context: &'a Context<'a>,
     shared: &'a Shared,
     asked: RefCell<BTreeSet<String>>,
@@ -37,7 +37,7 @@ impl<'a> Case<'a> {
         }
     }
 
-    /// The arguments that the function has asked for.
+    /// Arguments that the function has requested.
     pub(super) fn into_asked(self) -> BTreeSet<String> {
         self.asked.into_inner()
     }
@@ -48,27 +48,27 @@ impl<'a> Case<'a> {
     }
 
     fn lacks(&self, kind: &'static str, name: &str) -> RunError {
-        let place = "the study's data give it in `with` or `axes`";
+        let place = "set it in `with` or `axes` of the study's data";
         RunError::unknown(kind, name, self.arguments.keys(), place)
     }
 
-    /// Whether this is given.
+    /// Returns true if the argument is given.
     pub(crate) fn has(&self, name: &str) -> bool {
         self.get(name).is_some()
     }
 
-    /// A number, if it is given.
+    /// Optional number.
     pub(crate) fn optional(&self, name: &str) -> Option<f64> {
         self.get(name).and_then(number)
     }
 
-    /// A number.
+    /// Number.
     pub(crate) fn number(&self, name: &str) -> Result<f64, RunError> {
         self.optional(name)
             .ok_or_else(|| self.lacks("number", name))
     }
 
-    /// A natural number.
+    /// Natural number.
     pub(crate) fn count(&self, name: &str) -> Result<usize, RunError> {
         let count = self.number(name)?;
         if count >= 0.0 && count.fract() == 0.0 {
@@ -77,12 +77,12 @@ impl<'a> Case<'a> {
         Err(self.lacks("natural number", name))
     }
 
-    /// Whether this is given and true.
+    /// Returns true if the argument is given and true.
     pub(crate) fn flag(&self, name: &str) -> bool {
         self.get(name).and_then(Value::as_bool).unwrap_or(false)
     }
 
-    /// A list of numbers, or a single one.
+    /// List of numbers, or a single number.
     pub(crate) fn numbers(&self, name: &str) -> Result<Vec<f64>, RunError> {
         let numbers = match self.get(name) {
             Some(Value::Array(all)) => all.iter().map(number).collect(),
@@ -99,20 +99,20 @@ impl<'a> Case<'a> {
         template::expand(text, &known).map_err(|name| self.lacks("argument", &name))
     }
 
-    /// A text in which names of arguments are replaced.
+    /// Text, with names of arguments replaced.
     pub(crate) fn text(&self, name: &str) -> Result<String, RunError> {
         let text = self.get(name).and_then(Value::as_str);
         self.expanded(text.ok_or_else(|| self.lacks("text", name))?)
     }
 
-    /// A list of texts in which names of arguments are replaced; empty if it is not given.
+    /// List of texts, with names of arguments replaced; empty if not given.
     pub(crate) fn texts(&self, name: &str) -> Result<Vec<String>, RunError> {
         let all = self.get(name).and_then(Value::as_array);
         let texts = all.into_iter().flatten().filter_map(Value::as_str);
         texts.map(|text| self.expanded(text)).collect()
     }
 
-    /// What a text stands for.
+    /// Value that a text selects.
     pub(crate) fn one_of<T: Clone>(
         &self,
         name: &'static str,
@@ -121,7 +121,7 @@ impl<'a> Case<'a> {
         named(name, &self.text(name)?, all)
     }
 
-    /// What is computed once in a study; `key` says with which arguments.
+    /// Computes a value once per study; `key` identifies its arguments.
     pub(crate) fn once<T: 'static>(
         &self,
         key: String,
@@ -138,7 +138,7 @@ impl<'a> Case<'a> {
     }
 }
 
-/// What a word of the data stands for.
+/// Returns the value that a word of the data selects.
 pub(crate) fn named<T: Clone>(
     kind: &'static str,
     word: &str,
@@ -156,7 +156,7 @@ pub(super) fn number(value: &Value) -> Option<f64> {
     value.as_float().or(value.as_integer().map(|n| n as f64))
 }
 
-/// A curve of the figures.
+/// Curve of a figure.
 #[derive(Debug)]
 pub(super) struct Drawn {
     pub(super) name: &'static str,
@@ -165,38 +165,38 @@ pub(super) struct Drawn {
     pub(super) y: Vec<f64>,
 }
 
-/// What a function found.
+/// Results of a function.
 #[derive(Debug, Default)]
 pub(crate) struct Found {
-    /// Numbers by name; none where what they measure did not happen.
+    /// Numbers by name; `None` if the measured event did not happen.
     values: BTreeMap<String, Option<f64>>,
     /// Texts by name, for labels and notes.
     texts: BTreeMap<String, String>,
     /// Curves.
     pub(super) curves: Vec<Drawn>,
-    /// Whole rows, where their number is known to the function only.
+    /// Complete rows, if only the function knows their number.
     pub(super) rows: Vec<Row>,
 }
 
 impl Found {
-    /// With a number.
+    /// Adds a number.
     pub(crate) fn value(mut self, name: impl Into<String>, value: impl Into<Option<f64>>) -> Self {
         self.values.insert(name.into(), value.into());
         self
     }
 
-    /// With a text.
+    /// Adds a text.
     pub(crate) fn text(mut self, name: &str, text: impl Into<String>) -> Self {
         self.texts.insert(name.into(), text.into());
         self
     }
 
-    /// With a curve, whose label the data give.
+    /// Adds a curve whose label is given by the data.
     pub(crate) fn curve(self, name: &'static str, x: &[f64], y: &[f64]) -> Self {
         self.labelled(name, None, x, y)
     }
 
-    /// With a curve that may have a label of its own.
+    /// Adds a curve that may have its own label.
     pub(crate) fn labelled(
         mut self,
         name: &'static str,
@@ -209,12 +209,12 @@ impl Found {
         self
     }
 
-    /// A number of this name, if there is one.
+    /// Returns the number with this name, if any.
     pub(super) fn number(&self, name: &str) -> Option<Option<f64>> {
         self.values.get(name).copied()
     }
 
-    /// A number or text of this name.
+    /// Returns the number or text with this name.
     pub(super) fn shown(&self, name: &str) -> Option<Value> {
         let number = self.values.get(name).copied().flatten().map(Value::Float);
         number.or_else(|| self.texts.get(name).cloned().map(Value::String))
@@ -230,7 +230,7 @@ impl From<Vec<Row>> for Found {
     }
 }
 
-/// The number called `value`.
+/// The number named `value`.
 impl From<f64> for Found {
     fn from(value: f64) -> Self {
         Self::default().value("value", value)

@@ -1,4 +1,4 @@
-//! From the data of a study to its rows and figures.
+//! Expands the data of a study into rows and figures.
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -17,7 +17,7 @@ use crate::row::Row;
 /// Computes the rows of a study and draws its figures.
 ///
 /// # Errors
-/// Names that the data use and nothing has, figures that cannot be written, and what can go wrong with a run.
+/// Unknown names in the data, figures that cannot be written, and errors of runs.
 pub(crate) fn rows(
     data: &StudyData,
     measures: &'static [Measure],
@@ -43,7 +43,7 @@ pub(crate) fn rows(
     Ok(expansion.rows)
 }
 
-/// A result, with the arguments that its function asked for.
+/// Result with the arguments that its function requested.
 struct Known {
     measure: String,
     asked: BTreeMap<String, Option<Value>>,
@@ -60,7 +60,7 @@ struct Expansion<'a> {
     rows: Vec<Row>,
 }
 
-/// A place of axes: its number on each, and the arguments there.
+/// Place of axes: its index on each, and the arguments there.
 #[derive(Debug, Default, Clone)]
 struct Place {
     index: Vec<usize>,
@@ -68,7 +68,7 @@ struct Place {
 }
 
 impl Place {
-    /// The places of an axis inside this one.
+    /// Places of an axis within this one.
     fn along(&self, axis: &BTreeMap<String, Vec<Value>>, full: bool) -> Vec<Self> {
         let count = axis.values().map(Vec::len).min().unwrap_or(0);
         let place = |k: usize| {
@@ -84,7 +84,7 @@ impl Place {
         (0..count).filter_map(place).collect()
     }
 
-    /// The entry of a list of lists here; a list of one entry holds for all places of its axis.
+    /// Entry of a list of lists at this place; a list of one entry holds for all places of its axis.
     fn entry<'a>(&self, cells: Option<&'a Value>) -> Option<&'a Value> {
         let enter = |cells: &'a Value, k: &usize| match cells {
             Value::Array(list) if list.len() == 1 => list.first(),
@@ -150,7 +150,7 @@ impl Expansion<'_> {
         Ok(())
     }
 
-    /// The result of a function, which runs once for the same arguments.
+    /// Returns the result of a function, which runs once for the same arguments.
     fn found(&mut self, name: &str, arguments: &Table) -> Result<Rc<Found>, RunError> {
         let same = |known: &&Known| {
             let mut asked = known.asked.iter();
@@ -231,10 +231,10 @@ impl Figure {
 }
 
 fn unknown(kind: &'static str, name: &str) -> RunError {
-    RunError::unknown(kind, name, [""; 0], "the study's data name it")
+    RunError::unknown(kind, name, [""; 0], "it is named in the study's data")
 }
 
-/// An argument, in whose text names are replaced, or a result.
+/// Argument, with names in its text replaced, or result.
 fn shown(name: &str, place: &Place, found: &Found) -> Option<Value> {
     match place.arguments.get(name) {
         None => found.shown(name),
@@ -246,13 +246,13 @@ fn shown(name: &str, place: &Place, found: &Found) -> Option<Value> {
     }
 }
 
-/// A template with the arguments and the results of a place.
+/// Expands a template with the arguments and results of a place.
 fn expanded(text: &str, place: &Place, found: &Found) -> Result<String, RunError> {
     template::expand(text, &|name| shown(name, place, found))
         .map_err(|name| unknown("argument or result", &name))
 }
 
-/// The number that a cell holds, or names; none for NaN.
+/// Number that a cell contains or names; `None` for NaN.
 fn number_of(cell: Option<&Value>, place: &Place, found: &Found) -> Result<Option<f64>, RunError> {
     let Some(cell) = cell else {
         return Ok(None);
@@ -309,7 +309,7 @@ absolute = 30
 "#;
 
     #[test]
-    fn rows_of_axes() {
+    fn rows_are_expanded_along_axes() {
         let found = rows_of(AXES, false).unwrap();
         let labels: Vec<&str> = found.iter().map(|row| &row.case[..]).collect();
         assert_eq!(labels[0], "a = 1, b = 4: 14.0");
@@ -317,7 +317,7 @@ absolute = 30
         assert_eq!(labels[4], "a = 3, b = 4: 34.0");
         assert_eq!(labels.len(), 8);
         assert_eq!(rows_of(AXES, true).unwrap().len(), 12);
-        // A list of one entry holds for all places, and NaN is no number.
+        // A list of one entry holds for all places, and NaN means no number.
         let expected: Vec<Option<f64>> = found.iter().map(|row| row.expected).collect();
         let numbers = [14.0, 14.0, 14.0, 15.0, 34.0, 34.0].map(Some);
         assert_eq!(expected[..6], numbers);
@@ -333,7 +333,7 @@ absolute = 30
     }
 
     #[test]
-    fn names_that_nothing_has_are_refused() {
+    fn unknown_names_are_errors() {
         let refused = |text: &str, part: &str| {
             let error = rows_of(text, false).unwrap_err().to_string();
             assert!(error.contains(part), "{error}");

@@ -1,4 +1,4 @@
-//! The format of the data.
+//! Format of the study data.
 
 use std::collections::BTreeMap;
 
@@ -9,117 +9,120 @@ use toml::{Table, Value};
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct StudyData {
-    /// The paper, short.
+    /// Short reference of the paper.
     pub(crate) paper: String,
-    /// What the study shows.
+    /// Subject of the study.
     pub(crate) title: String,
-    /// The charts of what the measures return as curves.
+    /// Charts of the curves returned by the measures.
     #[serde(default)]
     pub(super) figure: Vec<Figure>,
-    /// The rows, in the order of the table.
+    /// Rows in the order of the table.
     pub(super) row: Vec<Rows>,
 }
 
-/// A row, or rows that have something in common: one for each place of the axes and each row inside, which takes over what it does not set itself.
+/// Row, or rows with common settings: one for each place of the axes and each inner row, which inherits what it
+/// does not set itself.
 ///
-/// Texts are templates: `{name}` is replaced by the argument or the result of this name, `{name:.2}` by a number with two digits behind the point and `{name:.2e}` by the same with an exponent.
-/// Numbers and notes are lists of lists where they differ along the axes, the outermost axis first; a list of one entry holds for all places of its axis, and there are none beyond a list's end. A number that is
-/// a text is that of an argument or of a result.
+/// Texts are templates: `{name}` is replaced by the argument or result of this name, `{name:.2}` by a number with
+/// two decimals and `{name:.2e}` by one in exponential form. Numbers and notes that vary along the axes are lists
+/// of lists, the outermost axis first; a list of one entry holds for all places of its axis, and beyond the end of
+/// a list there is none. A number given as text is that of an argument or a result.
 #[derive(Debug, Default, Clone, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(super) struct Rows {
-    /// Whether the rows belong to the long study only, or to the short one only.
+    /// Selects the long or the short form of the study.
     pub(super) when: When,
-    /// The function that computes them.
+    /// Function that computes the rows.
     pub(super) measure: Option<String>,
-    /// Its arguments.
+    /// Arguments of the function.
     pub(super) with: Table,
-    /// Arguments that vary. The columns of an axis, which are as long as each other, vary together; a column `when` says where the place is taken.
+    /// Varying arguments. The columns of an axis have equal length and vary together; a column `when` selects the
+    /// form of the study.
     pub(super) axes: Vec<BTreeMap<String, Vec<Value>>>,
-    /// What the row is; without a label the rows are those that the function returns, if any.
+    /// Label of the row; without a label the rows are those returned by the function, if any.
     pub(super) label: Option<String>,
-    /// The result it shows; `value` if none is named.
+    /// Result shown; default `value`.
     pub(super) value: Option<String>,
     /// SI unit.
     pub(super) unit: Option<String>,
-    /// The number in the paper.
+    /// Value printed in the paper.
     pub(super) printed: Option<Value>,
-    /// The number to judge by, or `"printed"`. NaN: none.
+    /// Value to judge by, or `"printed"`. NaN: none.
     pub(super) expected: Option<Value>,
-    /// The allowed difference over |expected|.
+    /// Allowed difference relative to |expected|.
     pub(super) relative: Option<Value>,
-    /// The allowed difference in the row's unit.
+    /// Allowed difference in the unit of the row.
     pub(super) absolute: Option<Value>,
-    /// What a reader should know.
+    /// Remark for the reader.
     pub(super) note: Option<Value>,
-    /// The curves of the result that are drawn in the figures of their names; not taken over by rows inside.
+    /// Curves of the result drawn in the figures with these names; not inherited by inner rows.
     pub(super) draw: Vec<String>,
-    /// Rows inside.
+    /// Inner rows.
     pub(super) row: Vec<Rows>,
 }
 
-/// Which form of the study a row belongs to.
+/// Form of the study to which a row belongs.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum When {
-    /// Both.
+    /// Both forms.
     #[default]
     Always,
-    /// With `--full`.
+    /// Only with `--full`.
     Full,
-    /// Without `--full`.
+    /// Only without `--full`.
     Short,
 }
 
-/// A chart.
+/// Chart.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Figure {
     /// Name of the curves.
     pub(super) curves: String,
-    /// Name of the file, a template: one chart for each file.
+    /// File name, a template: one chart per file.
     pub(super) file: String,
-    /// Its title, a template; that of the first curves counts.
+    /// Title, a template; that of the first curves is used.
     #[serde(default)]
     pub(super) title: String,
     /// Quantity and unit along x.
     pub(super) x: [String; 2],
     /// Quantity and unit along y.
     pub(super) y: [String; 2],
-    /// Whether y is logarithmic.
+    /// Logarithmic y axis.
     #[serde(default)]
     pub(super) logarithmic: bool,
-    /// Whether the key stands beside the chart.
+    /// Place the key beside the chart.
     #[serde(default)]
     pub(super) key_beside: bool,
-    /// Label of a curve that has none of its own, a template.
+    /// Label of curves without one, a template.
     #[serde(default)]
     pub(super) label: String,
-    /// How the curves are drawn.
+    /// Style of the curves.
     #[serde(default)]
     pub(super) style: Style,
 }
 
-/// How curves are drawn.
+/// Style of curves.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Style {
-    /// As lines.
+    /// Lines.
     #[default]
     Line,
-    /// As dashed lines.
+    /// Dashed lines.
     Dashed,
-    /// As lines with a mark at each point.
+    /// Lines with a marker at each point.
     Markers,
-    /// As points.
+    /// Points.
     Points,
 }
 
 impl StudyData {
-    /// Reads a file.
+    /// Parses a file.
     ///
     /// # Errors
-    /// What does not follow the format.
+    /// Violations of the format.
     pub(crate) fn read(text: &str) -> Result<Self, toml::de::Error> {
         toml::from_str(text)
     }
@@ -136,11 +139,11 @@ impl When {
 }
 
 impl Rows {
-    /// These rows with what those around them set and they do not.
+    /// Returns these rows with unset values inherited from the enclosing ones.
     pub(super) fn within(&self, around: &Self) -> Self {
         let or = |own: &Option<Value>, other: &Option<Value>| own.clone().or(other.clone());
         let or_text = |own: &Option<String>, other: &Option<String>| own.clone().or(other.clone());
-        // One kind of tolerance takes the place of the other.
+        // One kind of tolerance replaces the other.
         let judged = self.relative.is_some() || self.absolute.is_some();
         let tolerance = if judged { self } else { around };
         Self {
@@ -160,7 +163,8 @@ impl Rows {
 
 #[cfg(test)]
 impl StudyData {
-    /// Names of functions and figures that do not exist, and labels of rows with a number to judge by or a tolerance only.
+    /// Returns names of functions and figures that do not exist, and labels of rows with an expected value but no
+    /// tolerance.
     pub(crate) fn unknown_names(&self, measures: &[super::Measure]) -> Vec<String> {
         let mut unknown = Vec::new();
         let mut open: Vec<Rows> = self.row.clone();

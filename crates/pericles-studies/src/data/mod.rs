@@ -1,6 +1,7 @@
-//! Studies as data: what is computed with which arguments, and the numbers it is compared with.
+//! Studies as data: computations, their arguments, and the values they are compared with.
 //!
-//! A study is a file in the folder `data` (format: [`StudyData`]); what it computes is done by functions that it names ([`Measure`]).
+//! A study is a file in the folder `data` (format: [`StudyData`]); its computations are functions that it names
+//! ([`Measure`]).
 
 mod case;
 mod expansion;

@@ -1,8 +1,8 @@
-//! Texts with names in braces.
+//! Templates with names in braces.
 
 use toml::{Table, Value};
 
-/// An argument; the names in a text are replaced by the arguments that they name.
+/// Returns an argument, with names in its text replaced by the arguments that they refer to.
 pub(super) fn argument(arguments: &Table, name: &str) -> Option<Value> {
     let value = arguments.get(name)?;
     let Value::String(text) = value else {
@@ -12,10 +12,10 @@ pub(super) fn argument(arguments: &Table, name: &str) -> Option<Value> {
     inner.ok().map(Value::String)
 }
 
-/// Replaces the names in braces; what else stands in braces stays as it is.
+/// Replaces the names in braces; other braces are left unchanged.
 ///
 /// # Errors
-/// The first name that `known` does not know.
+/// The first name for which `known` returns nothing.
 pub(super) fn expand(text: &str, known: &dyn Fn(&str) -> Option<Value>) -> Result<String, String> {
     let mut out = String::new();
     let mut rest = text;
@@ -37,7 +37,7 @@ pub(super) fn expand(text: &str, known: &dyn Fn(&str) -> Option<Value>) -> Resul
     Ok(out + rest)
 }
 
-/// A value as text; numbers with `.2` and the like in as many digits.
+/// Formats a value; `.2` and the like give the number of digits.
 pub(super) fn shown(value: &Value, format: &str) -> String {
     let number = match value {
         Value::String(text) => return text.clone(),
@@ -69,7 +69,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_are_replaced_and_other_braces_kept() {
+    fn names_are_replaced_and_other_braces_left_unchanged() {
         let known = |name: &str| match name {
             "alpha" => Some(Value::Float(1e-4)),
             "n" => Some(Value::Integer(3)),

@@ -1,4 +1,5 @@
-//! Critical stretches of two glasses with the original and the tuned influence functions, and what a crack costs on the lattice.
+//! Critical stretches of two glasses with the original and the tuned influence functions, and crack energies on the
+//! lattice.
 
 use pericles::family::VolumeCorrection;
 use pericles::kernel::{ActsOn, Influence, InfluenceFunction};
@@ -17,7 +18,8 @@ use crate::data::{Case, Found};
 /// Spacing, m; the horizon is 0.75 mm.
 const DX: f64 = 0.25e-3;
 
-/// The argument `influence`: α = 1, the printed cosines, the positive table, or the polygon through it.
+/// Influence function of the argument `influence`: α = 1, the printed cosines, the positive table, or its linear
+/// interpolation.
 fn influence(case: &Case<'_>) -> Result<Influence, RunError> {
     let model = model(StressState::PlaneStrain, 3.0)?;
     let table = tuned(&model, Method::LeastSquares, Some(0.5))?;
@@ -38,7 +40,8 @@ fn influence(case: &Case<'_>) -> Result<Influence, RunError> {
     })
 }
 
-/// The critical stretch of a glass with Young's modulus `young` and fracture energy `energy`, and that over the `printed` one.
+/// Critical stretch of a glass with Young's modulus `young` and fracture energy `energy`, and its ratio to the
+/// `printed` one.
 pub(super) fn critical_stretch(case: &Case<'_>) -> Result<Found, RunError> {
     let calibrations = [
         ("unmodified", Calibration::Unmodified),
@@ -75,7 +78,7 @@ pub(super) fn crack_energy(case: &Case<'_>) -> Result<Found, RunError> {
         ("diagonal", [half, half, 0.0]),
     ];
     let influence = influence(case)?;
-    // c = s₀ = D = 1; the table belongs to the spacing it was made for.
+    // c = s₀ = D = 1; the table belongs to the spacing for which it was made.
     let lattice = BondLattice::new(&[1.0, 1.0], 3.0 + 1e-9, |_, xi, _| {
         influence.alpha_of(xi.map(|x| x * DX), 3.0 * DX)
     })?;

@@ -12,7 +12,7 @@ use pericles_run::dispersion::{Curves, STEPS, write_classes};
 use super::models::{NamedTables, model, targets};
 use crate::context::Context;
 
-/// Draws and writes the curves of a table, if figures are wanted: `<name>.png`, `<name>.csv`.
+/// Writes the curves of a table, if figures are requested: `<name>.png`, `<name>.csv`.
 pub(super) fn write_curves(
     context: &Context<'_>,
     model: &ScalingModel,
@@ -36,7 +36,7 @@ pub(super) fn write_curves(
     Ok(curves.draw(&picture, title)?)
 }
 
-/// Draws one branch of several tables of a model over each other, if figures are wanted: `<name>-<branch>.png`.
+/// Draws one branch of several tables of a model in one chart, if figures are requested: `<name>-<branch>.png`.
 fn write_comparison(
     context: &Context<'_>,
     model: &ScalingModel,
@@ -44,7 +44,7 @@ fn write_comparison(
     title: &str,
     tables: &[(&str, &[f64])],
 ) -> Result<(), RunError> {
-    /// Height of a chart over that of the continuum's curve.
+    /// Height of a chart relative to that of the continuum's curve.
     const ROOM: f64 = 1.6;
     let targets = targets(model.state());
     for (branch, branch_name) in model.contour().branches.iter().enumerate() {
@@ -69,7 +69,7 @@ fn write_comparison(
             let omega: Vec<f64> = points.iter().map(|p| p.branches[branch].omega()).collect();
             let drawn = chart.take().unwrap_or_else(|| {
                 let target: Vec<f64> = points.iter().map(|p| curves.target(branch, p)).collect();
-                // Room above the curves for the key.
+                // Space for the key above the curves.
                 let top = target.iter().copied().fold(0.0, f64::max);
                 let y = Axis::new("ω", "").range(0.0, ROOM * top);
                 LineChart::new(Axis::new(curves.along(), ""), y)
@@ -90,7 +90,8 @@ pub(super) fn figures(context: &Context<'_>, name: &str) -> (Option<PathBuf>, Op
     (file("png"), file("csv"))
 }
 
-/// Writes the coefficients of tables by N, and draws those of each group over each other: the ending of its file's name, how the tables' names begin, and whether they are bounded.
+/// Writes the coefficients of tables by N, and draws those of each group in one chart. A group is given by its file
+/// name ending, the prefix of the names of its tables, and whether they are bounded.
 pub(super) fn write_methods(
     context: &Context<'_>,
     (state, body): (StressState, &str),

@@ -1,4 +1,4 @@
-//! The influence function printed as a sum of cosines, and what it keeps of the table it stands for.
+//! Influence function printed as a sum of cosines, compared with the table that it represents.
 
 use std::f64::consts::PI;
 
@@ -23,7 +23,7 @@ fn on_stretch(function: InfluenceFunction) -> Influence {
     }
 }
 
-/// The model, the table that the function stands for, the printed function and its values at the classes.
+/// The model, the table that the function represents, the printed function and its values at the classes.
 fn printed() -> Result<(ScalingModel, TunedTable, Influence, Vec<f64>), RunError> {
     let model = model(StressState::PlaneStrain, N)?;
     let table = tuned(&model, Method::LeastSquares, Some(0.5))?;
@@ -33,12 +33,12 @@ fn printed() -> Result<(ScalingModel, TunedTable, Influence, Vec<f64>), RunError
     Ok((model, table, printed, alpha))
 }
 
-/// So many places up to the horizon.
+/// Equally many places up to the horizon.
 fn places(count: u32) -> impl Iterator<Item = f64> {
     (1..=count).map(move |k| N * f64::from(k) / f64::from(count))
 }
 
-/// The printed function at the class of this `number`, and the table's coefficient.
+/// Value of the printed function at the class with this `number`, and the coefficient of the table.
 pub(super) fn at_class(case: &Case<'_>) -> Result<Found, RunError> {
     let number = case.count("number")?;
     let (_, table, _, alpha) = printed()?;
@@ -46,7 +46,7 @@ pub(super) fn at_class(case: &Case<'_>) -> Result<Found, RunError> {
     Ok(value.value("table", table.alpha.get(number).copied()))
 }
 
-/// What the printed function does to the modulus and to waves.
+/// Effect of the printed function on the modulus and on waves.
 pub(super) fn printed_function(case: &Case<'_>) -> Result<Found, RunError> {
     let (model, _, printed, alpha) = printed()?;
     let values = places(3000).map(|r| printed.alpha(r, N));
@@ -69,7 +69,7 @@ pub(super) fn printed_function(case: &Case<'_>) -> Result<Found, RunError> {
     ))
 }
 
-/// Cosines fitted to the polygon through the table: the root mean square of their difference.
+/// Root mean square difference between fitted cosines and the linear interpolation of the table.
 pub(super) fn fitted_cosines(_: &Case<'_>) -> Result<Found, RunError> {
     let (model, table, printed, _) = printed()?;
     let InfluenceFunction::Classes(classes) = &table.influence(2, 1.0)?.function else {
@@ -93,7 +93,7 @@ pub(super) fn fitted_cosines(_: &Case<'_>) -> Result<Found, RunError> {
         )
         .labelled(
             "function",
-            Some("polygon through the table".into()),
+            Some("linear interpolation of the table".into()),
             &r,
             &through,
         )

@@ -1,4 +1,4 @@
-//! What tables of coefficients do to the waves of lattices.
+//! Wave properties of lattices with tables of coefficients.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -13,7 +13,7 @@ use super::models::{NamedTables, constraint_residual, method_of, model_of, targe
 use crate::data::{Case, Found};
 use crate::row::Row;
 
-/// Long waves in a direction over those of the continuum: pressure, then shear.
+/// Long-wave speeds in a direction relative to the continuum: pressure, then shear.
 fn long_waves(lattice: &BondLattice, state: StressState, direction: [f64; 3]) -> Vec<f64> {
     let exact = targets(state).into_iter().flatten();
     let speeds = long_wave_speeds(lattice, direction);
@@ -24,7 +24,7 @@ fn long_waves(lattice: &BondLattice, state: StressState, direction: [f64; 3]) ->
         .collect()
 }
 
-/// Those at 0° and 45° with their names.
+/// Adds the long-wave speeds at 0° and 45° with their names.
 pub(super) fn with_long_waves(found: Found, lattice: &BondLattice, state: StressState) -> Found {
     let directions = [("0°", [1.0, 0.0, 0.0]), ("45°", [1.0, 1.0, 0.0])];
     directions
@@ -38,7 +38,8 @@ pub(super) fn with_long_waves(found: Found, lattice: &BondLattice, state: Stress
         })
 }
 
-/// α = 1: errors, and long waves: ω²/k² along an axis, which is 1 + 1/N in bars, and speeds over those of the continuum.
+/// α = 1: errors and long waves: ω²/k² along an axis, which is 1 + 1/N in bars, and speeds relative to the
+/// continuum.
 pub(super) fn original(case: &Case<'_>) -> Result<Found, RunError> {
     let model = model_of(case)?;
     let ones = vec![1.0; model.classes().len()];
@@ -60,7 +61,8 @@ pub(super) fn original(case: &Case<'_>) -> Result<Found, RunError> {
         .value("error over N = 3", error.ratio))
 }
 
-/// A table tuned by a choice of method, combination and bound: rows of its coefficients, what it does to waves, and how well its conditions are met.
+/// Table tuned by a choice of method, combination and bound: rows of its coefficients, its wave properties, and the
+/// residuals of its constraints.
 pub(super) fn of_choice(case: &Case<'_>) -> Result<Found, RunError> {
     let (model, method) = (model_of(case)?, method_of(case)?);
     let combinations = Combination::ALL.map(|combination| (combination.name(), combination));
@@ -73,7 +75,7 @@ pub(super) fn of_choice(case: &Case<'_>) -> Result<Found, RunError> {
     })?;
     let (n, name) = (case.number("n")?, case.text("name")?);
     let lattice = model.lattice(&table.alpha);
-    // How far long waves are from the speeds of the continuum along directions that no constraint names.
+    // Deviation of the long-wave speeds from the continuum along directions that no constraint includes.
     let anisotropy = [[1.0, 1.0, 1.0], [3.0, 1.0, 2.0]]
         .into_iter()
         .flat_map(|direction| long_waves(&lattice, model.state(), direction))
@@ -109,14 +111,14 @@ pub(super) fn of_choice(case: &Case<'_>) -> Result<Found, RunError> {
         .text("verdict", verdict(&table)))
 }
 
-/// The tables found for the case's N.
+/// Tables computed for the N of the case.
 fn tables(case: &Case<'_>) -> Result<Rc<RefCell<NamedTables>>, RunError> {
     case.once(format!("tables {}", case.number("n")?), || {
         Ok(Default::default())
     })
 }
 
-/// Writes the coefficients of all tables found for an N.
+/// Writes the coefficients of all tables computed for an N.
 pub(super) fn write_coefficients(case: &Case<'_>) -> Result<Found, RunError> {
     let file = format!("coefficients-{}", case.number("n")?);
     write_tables(

@@ -1,8 +1,10 @@
-//! Dispersion: coefficients tuned against it, spectra measured in the time domain, influence functions and critical stretches that go with them.
+//! Dispersion: tuned coefficients, spectra measured in the time domain, and the corresponding influence functions
+//! and critical stretches.
 //!
-//! Alebrahim, Packo, Zaccariotto, Galvanetto, Improved wave dispersion properties in 1D and 2D bond-based peridynamic media, Computational Particle
-//! Mechanics (2022). The paper's tables of coefficients are not in print; the expected numbers were computed by separate codes and are kept in
-//! `validation/dispersion-and-fracture/`. Units of the spacing and of √(E/ρ) unless a row says otherwise; full node volumes.
+//! Alebrahim, Packo, Zaccariotto, Galvanetto, Improved wave dispersion properties in 1D and 2D bond-based
+//! peridynamic media, Computational Particle Mechanics (2022). The paper's tables of coefficients are not
+//! published; the expected values were computed by separate codes and are in `validation/dispersion-and-fracture/`.
+//! Units of the spacing and of √(E/ρ) unless a row says otherwise; full node volumes.
 
 mod critical_stretch;
 mod figures;
@@ -17,7 +19,7 @@ mod two_dimensional;
 
 use crate::study::{Topic, data};
 
-/// The studies of this topic.
+/// Studies of this topic.
 pub(super) const TOPIC: Topic = Topic {
     studies: &[
         data!("dispersion/one-dimensional"),

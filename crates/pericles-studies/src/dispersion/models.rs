@@ -15,7 +15,7 @@ pub(super) fn model(state: StressState, n: f64) -> Result<ScalingModel, RunError
     Ok(ScalingModel::new(state, n, VolumeCorrection::None)?)
 }
 
-/// The model of the arguments `state` and `n`.
+/// Model of the arguments `state` and `n`.
 pub(super) fn model_of(case: &Case<'_>) -> Result<ScalingModel, RunError> {
     let states = [
         ("bar", StressState::Uniaxial),
@@ -37,12 +37,12 @@ pub(super) fn tuned(
     })?)
 }
 
-/// The argument `method`.
+/// Method of the argument `method`.
 pub(super) fn method_of(case: &Case<'_>) -> Result<Method, RunError> {
     case.one_of("method", &Method::ALL.map(|method| (method.name(), method)))
 }
 
-/// Speed of the continuum for each branch.
+/// Continuum speed for each branch.
 pub(super) fn targets(state: StressState) -> Vec<Option<f64>> {
     let speeds = continuum_speeds(state);
     let mut targets = vec![Some(speeds.shear); state.dimension()];
@@ -50,7 +50,7 @@ pub(super) fn targets(state: StressState) -> Vec<Option<f64>> {
     targets
 }
 
-/// What a waves' stability says in a note.
+/// Stability of a table, for a note.
 pub(super) fn verdict(table: &TunedTable) -> &'static str {
     match table.assessment.stability.is_stable() {
         true => "stable",
@@ -58,7 +58,7 @@ pub(super) fn verdict(table: &TunedTable) -> &'static str {
     }
 }
 
-/// By how much the largest of the constraints is missed, 0 but for rounding.
+/// Largest constraint residual, zero up to round-off.
 pub(super) fn constraint_residual(table: &TunedTable) -> f64 {
     largest(&table.assessment.constraints)
 }

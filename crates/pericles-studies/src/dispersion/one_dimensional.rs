@@ -1,4 +1,4 @@
-//! Coefficients of bars, by all methods.
+//! Coefficients of bars by all methods.
 
 use pericles::material::StressState;
 use pericles_run::RunError;
@@ -10,9 +10,9 @@ use crate::data::{Case, Found};
 use crate::row::Row;
 
 const TABLE: &str =
-    include_str!("../../../../validation/dispersion-and-fracture/one-dimensional.csv");
+    include_str!("../../decks/validation/dispersion-and-fracture/one-dimensional.csv");
 
-/// The rows of the table.
+/// Rows of the table.
 pub(super) fn published_bars(case: &Case<'_>) -> Result<Found, RunError> {
     let context = case.context;
     let mut rows = Vec::new();
@@ -27,12 +27,12 @@ pub(super) fn published_bars(case: &Case<'_>) -> Result<Found, RunError> {
         for (i, expected) in numbers(&cells, 4).into_iter().enumerate() {
             let case = what(format!("α{}", i + 1));
             let row = Row::new(case, "", table.alpha.get(i).copied()).within_share(expected, 1e-4);
-            // What the paper's text gives: 3.72 and −0.86.
+            // Values printed in the text of the paper: 3.72 and −0.86.
             rows.push(match (n == 2.0 && name == "galerkin", i) {
                 (true, 0) => row.printed(3.72),
                 (true, _) => row.printed(-0.86),
                 _ if n == 2.0 && name == "galerkin-literal" => row.note(
-                    "the printed weights; the printed coefficients are those of \"galerkin\"",
+                    "with the printed weights; the printed coefficients are those of \"galerkin\"",
                 ),
                 _ => row,
             });
@@ -44,7 +44,7 @@ pub(super) fn published_bars(case: &Case<'_>) -> Result<Found, RunError> {
             rows.push(
                 error
                     .within(expected, 1e-5)
-                    .note("over that of α = 1 with N = 3"),
+                    .note("relative to α = 1 with N = 3"),
             );
             rows.push(omega.within(highest, 1e-4));
         }
@@ -53,7 +53,7 @@ pub(super) fn published_bars(case: &Case<'_>) -> Result<Found, RunError> {
         if n == 10.0 {
             rows.push(
                 Row::new(what("condition number".into()), "", Some(table.condition))
-                    .note("round-off of the coefficients is about 1e-16 times this"),
+                    .note("round-off of the coefficients is about 1e-16 times this number"),
             );
         }
         let file = format!("curve-{n}-{name}");

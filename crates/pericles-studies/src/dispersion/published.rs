@@ -1,28 +1,28 @@
-//! Tables of published numbers, and the words in them.
+//! Tables of published values, and the words in them.
 
 use pericles_dispersion::tuning::{Combination, Method};
 use pericles_run::RunError;
 
 use crate::data::named;
 
-/// The rows of a table of published numbers: cells by column, comments and header left out.
+/// Rows of a table of published values: cells by column, without comments and header.
 pub(super) fn published(text: &'static str) -> impl Iterator<Item = Vec<&'static str>> {
     let lines = text.lines().filter(|line| !line.starts_with('#'));
     lines.skip(1).map(|line| line.split(',').collect())
 }
 
-/// A number of such a table; none where it is empty.
+/// Number in such a table; `None` if the cell is empty.
 pub(super) fn number(row: &[&str], column: usize) -> Option<f64> {
     row.get(column)?.parse().ok()
 }
 
-/// The numbers of one cell.
+/// Numbers in one cell.
 pub(super) fn numbers(row: &[&str], column: usize) -> Vec<f64> {
     let cell = row.get(column).copied().unwrap_or_default();
     cell.split(' ').filter_map(|x| x.parse().ok()).collect()
 }
 
-/// Half a unit of the last digit given, and a little.
+/// Half a unit of the last given digit, plus a margin.
 pub(super) fn rounding(row: &[&str], column: usize) -> f64 {
     let cell = row.get(column).copied().unwrap_or_default();
     let places = cell.split_once('.').map_or(0, |(_, digits)| digits.len());
@@ -44,7 +44,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn misspelt_words_of_the_data_are_refused() {
+    fn misspelt_words_in_the_data_are_errors() {
         assert_eq!(method("galerkin").unwrap(), Method::Galerkin);
         let refused = method("galerkyn").unwrap_err().to_string();
         assert_eq!(refused, "there is no method of tuning \"galerkyn\"");

@@ -1,7 +1,7 @@
-//! A ring-shaped pulse that crosses fifty wavelengths, against the exact solution of the continuum.
+//! Ring-shaped pulse that travels fifty wavelengths, compared with the exact solution of the continuum.
 //!
-//! The box is periodic, and so is the exact solution: every wave vector of the starting field swings with V_p |k|. Waves of the pulse are around eight spacings
-//! long.
+//! The box is periodic, and so is the exact solution: every wave vector of the initial field oscillates with V_p
+//! |k|. The wavelengths of the pulse are about eight spacings.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -20,15 +20,15 @@ use crate::data::{Case, Found};
 
 /// Points along an axis.
 const NODES: usize = 64;
-/// Wavelength in the middle of the pulse's spectrum, spacings.
+/// Wavelength at the centre of the pulse's spectrum, spacings.
 const WAVELENGTH: f64 = 8.0;
-/// Width of the spectrum over its middle.
+/// Relative width of the spectrum.
 const WIDTH: f64 = 0.2;
 const WAVELENGTHS: f64 = 50.0;
-/// Small, so that what is seen is the error of the lattice; over the speed of pressure waves.
+/// Time step in units of spacing over pressure wave speed; small, so that the error is that of the lattice.
 const DT: f64 = 0.05;
 
-/// The error of a table over the pulse, if it is stable, and that over the error of α = 1.
+/// Error of a table for the pulse, if it is stable, and its ratio to the error of α = 1.
 pub(super) fn pulse(case: &Case<'_>) -> Result<Found, RunError> {
     let model = model(StressState::PlaneStrain, 3.0)?;
     let error = |tuning: Option<Tuning>| -> Result<Option<f64>, RunError> {
@@ -62,7 +62,7 @@ pub(super) fn pulse(case: &Case<'_>) -> Result<Found, RunError> {
     Ok(result.text("verdict", verdict))
 }
 
-/// The root mean square error of the displacement over that of the displacement.
+/// Root mean square error of the displacement relative to the displacement.
 fn cross(lattice: &BondLattice) -> Result<f64, RunError> {
     let speed = continuum_speeds(StressState::PlaneStrain).pressure;
     let end = WAVELENGTHS * WAVELENGTH / speed;
@@ -87,7 +87,8 @@ fn cross(lattice: &BondLattice) -> Result<f64, RunError> {
     Ok((miss / square(&mut exact.iter().copied())).sqrt())
 }
 
-/// u(t) = Σ_k i k/|k| φ(|k|) cos(V_p |k| t) exp(i k·x), φ a bell around 2π over the wavelength; component-major.
+/// u(t) = Σ_k i k/|k| φ(|k|) cos(V_p |k| t) exp(i k·x), with φ a bell function around 2π over the wavelength;
+/// component-major.
 fn continuum(t: f64, speed: f64) -> Vec<f64> {
     let middle = TAU / WAVELENGTH;
     let wave = |m: usize| {
@@ -96,7 +97,7 @@ fn continuum(t: f64, speed: f64) -> Vec<f64> {
         } else {
             m as f64
         };
-        // The border of the zone has no opposite.
+        // The zone border has no opposite wave vector.
         if 2 * m == NODES {
             0.0
         } else {

@@ -1,4 +1,4 @@
-//! Spectra measured in time-domain runs, against the time-discrete curve of the analysis.
+//! Spectra measured in time-domain runs, compared with the time-discrete curve of the analysis.
 
 use pericles_dispersion::spectrum::{SpectrumRun, measure};
 use pericles_dispersion::trace;
@@ -8,7 +8,7 @@ use pericles_run::dispersion::{Curves, STEPS, write_spectrum};
 use super::models::{method_of, model_of, targets, tuned};
 use crate::data::{Case, Found};
 
-/// The worst peak off the curve of α = 1, or of the tuned table, in lines and as a frequency.
+/// Largest deviation of a peak from the curve of α = 1 or of the tuned table, in lines and as a frequency.
 pub(super) fn spectrum(case: &Case<'_>) -> Result<Found, RunError> {
     let run = SpectrumRun {
         nodes: case.count("nodes")?,

@@ -1,4 +1,4 @@
-//! Coefficients of plates, signed and bounded, and what they do to waves over the whole zone.
+//! Signed and bounded coefficients of plates, and their wave properties over the whole zone.
 
 use pericles::material::StressState;
 use pericles_dispersion::polar_speeds;
@@ -14,9 +14,9 @@ use crate::data::{Case, Found};
 use crate::row::Row;
 
 const TABLE: &str =
-    include_str!("../../../../validation/dispersion-and-fracture/two-dimensional.csv");
+    include_str!("../../decks/validation/dispersion-and-fracture/two-dimensional.csv");
 
-/// The rows of the table.
+/// Rows of the table.
 pub(super) fn published_plates(case: &Case<'_>) -> Result<Found, RunError> {
     let mut rows = Vec::new();
     let mut tables: Vec<(f64, NamedTables)> = Vec::new();
@@ -43,7 +43,7 @@ pub(super) fn published_plates(case: &Case<'_>) -> Result<Found, RunError> {
                 "",
                 table.alpha.get(class).copied(),
             );
-            // Numbers with few digits are known to half a unit of the last.
+            // Values with few digits are accurate to half a unit of the last one.
             let allowed =
                 (tolerance * expected.abs()).max(if tolerance < 5e-3 { 6e-5 } else { 6e-3 });
             let row = row.within(expected, allowed);
@@ -51,7 +51,8 @@ pub(super) fn published_plates(case: &Case<'_>) -> Result<Found, RunError> {
                 row
             } else {
                 row.note(format!(
-                    "an earlier independent code stopped at {}, where the nearly flat functional is 1e-4 larger",
+                    "an earlier independent code stopped at {}, where the nearly flat functional is larger by a \
+                    relative 1e-4",
                     numbers(&cells, 9).get(class).copied().unwrap_or(f64::NAN)
                 ))
             });
@@ -62,7 +63,7 @@ pub(super) fn published_plates(case: &Case<'_>) -> Result<Found, RunError> {
             rows.push(
                 Row::new(what("error".into()), "", Some(found.error.ratio))
                     .within(error, 1.1e-3)
-                    .note("∮|R_p|+|R_s| over that of α = 1"),
+                    .note("∮|R_p|+|R_s| relative to α = 1"),
             );
             rows.push(
                 Row::new(
@@ -127,14 +128,15 @@ pub(super) fn polar(case: &Case<'_>) -> Result<Found, RunError> {
     Ok(Found::default())
 }
 
-/// Both plane states have the same coefficients: their largest difference.
+/// Largest difference between the coefficients of both plane states, which should be equal.
 pub(super) fn plane_states(_: &Case<'_>) -> Result<Found, RunError> {
     let of = |state| tuned(&model(state, 3.0)?, Method::LeastSquares, None);
     let (strain, stress) = (of(StressState::PlaneStrain)?, of(StressState::PlaneStress)?);
     Ok(difference(&strain.alpha, &stress.alpha).into())
 }
 
-/// Another Poisson's ratio has no coefficients: with ν = 0.3 the pair A = V_p², B = V_s² is met along an axis only, for at 45° pressure waves run at (A + 3B)/2.
+/// No coefficients exist for another Poisson's ratio: for ν = 0.3 the pair A = V_p², B = V_s² holds along an axis
+/// only, because the speed of pressure waves at 45° is that of (A + 3B)/2.
 pub(super) fn other_ratio(_: &Case<'_>) -> Result<Found, RunError> {
     let (a, b): (f64, f64) = ((1.0 - 0.3) / (1.3 * 0.4), 1.0 / 2.6);
     Ok([("0°", a), ("45°", 0.5 * (a + 3.0 * b))].into())

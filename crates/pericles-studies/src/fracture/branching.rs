@@ -1,4 +1,4 @@
-//! A notched plate pulled from both sides: the crack runs and branches.
+//! Notched plate under tension from two sides: the crack propagates and branches.
 
 use pericles::material::ElasticWaves;
 use pericles::space::PointCloud;
@@ -11,16 +11,16 @@ use crate::decks::deck;
 
 /// Length of the plate, m.
 const LENGTH: f64 = 0.1;
-/// Where the notch ends, m.
+/// End of the notch, m.
 const NOTCH: f64 = 0.05;
 /// Distance of two arms that counts as branching, m.
 const APART: f64 = 3e-3;
-/// Where the run of the crack ends, m.
+/// Position at which the crack propagation ends, m.
 const ARRIVAL: f64 = 98e-3;
-/// Window of speeds, s.
+/// Time window of speeds, s.
 const WINDOW: f64 = 5e-6;
 
-/// A run of the deck: the crack's way through the plate, symmetry and energy.
+/// Runs the deck and measures the path of the crack, symmetry and energy.
 pub(super) fn branching(case: &Case<'_>) -> Result<Found, RunError> {
     let symmetry = |cloud: &_| {
         let columns = (LENGTH / PointCloud::spacing(cloud)).round() as usize;
@@ -42,7 +42,7 @@ pub(super) fn branching(case: &Case<'_>) -> Result<Found, RunError> {
         solid.map(|(solid, young)| ElasticWaves::of(young, solid.material.density(), solid.state));
     let transverse = waves.and_then(|waves| waves.transverse);
     let rayleigh = transverse.map_or(f64::NAN, |transverse| transverse.rayleigh);
-    // The round-off of one half grows without bound once arms run; before branching it must not.
+    // Round-off asymmetry grows without bound once the arms propagate; before branching it must not.
     let before = |look: &&Look| branching.is_none_or(|(t, _)| look.t < t);
     let worst = |of: fn(&Look) -> f64| looks.iter().filter(before).map(of).reduce(f64::max);
     let arms = looks.last().map(|look| arms(&recorded, look, 90e-3) as f64);
@@ -62,7 +62,7 @@ pub(super) fn branching(case: &Case<'_>) -> Result<Found, RunError> {
         ))
 }
 
-/// The largest x of the crack; that of the notch's end before it grows.
+/// Largest x of the crack; before it grows that of the end of the notch.
 fn foremost(recorded: &Recorded, look: &Look) -> f64 {
     look.crack
         .iter()
@@ -70,7 +70,7 @@ fn foremost(recorded: &Recorded, look: &Look) -> f64 {
         .fold(NOTCH, f64::max)
 }
 
-/// The foremost x at which two neighbouring arms are far enough apart.
+/// Largest x at which two neighbouring arms are far enough apart.
 fn branched(recorded: &Recorded, look: &Look) -> Option<f64> {
     let spacing = recorded.facts.spacing;
     let first = (NOTCH / spacing).round() as usize;
@@ -85,7 +85,7 @@ fn branched(recorded: &Recorded, look: &Look) -> Option<f64> {
     Some((k as f64 + 0.5) * spacing)
 }
 
-/// The number of arms at x (m).
+/// Number of arms at x (m).
 fn arms(recorded: &Recorded, look: &Look, x: f64) -> usize {
     let spacing = recorded.facts.spacing;
     let mut heights: Vec<f64> = look

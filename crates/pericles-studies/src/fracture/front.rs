@@ -1,6 +1,7 @@
-//! What can be measured at the front of a crack: arms, their distance and direction, speeds.
+//! Measures at a crack front: arms, their distance and direction, speeds.
 
-/// Splits ascending numbers into groups wherever two neighbours lie more than `gap` apart; returns the first and last of each group.
+/// Splits ascending numbers into groups wherever two neighbours are more than `gap` apart; returns the first and
+/// last of each group.
 pub(super) fn groups(ascending: &[f64], gap: f64) -> Vec<(f64, f64)> {
     let mut groups: Vec<(f64, f64)> = Vec::new();
     for &x in ascending {
@@ -12,7 +13,7 @@ pub(super) fn groups(ascending: &[f64], gap: f64) -> Vec<(f64, f64)> {
     groups
 }
 
-/// The largest distance between two neighbouring numbers, which are put in order; zero for fewer than two.
+/// Largest distance between two neighbouring numbers, which are sorted; zero for fewer than two.
 pub(super) fn widest_gap(numbers: &mut [f64]) -> f64 {
     numbers.sort_by(f64::total_cmp);
     numbers
@@ -21,8 +22,9 @@ pub(super) fn widest_gap(numbers: &mut [f64]) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// The directions (degrees, 0 … 360) in which the points of a crack leave a circle around the origin: points at most `width` inside the circle are grouped
-/// by direction, with more than `gap` (a length along the circle) between groups, and each group gives the direction of its outermost point.
+/// Directions (degrees, 0 … 360) in which the points of a crack leave a circle around the origin. Points at most
+/// `width` inside the circle are grouped by direction, with more than `gap` (a length along the circle) between
+/// groups; each group gives the direction of its outermost point.
 pub(super) fn arms(points: &[[f64; 2]], radius: f64, width: f64, gap: f64) -> Vec<f64> {
     let mut rim: Vec<(f64, f64)> = points
         .iter()
@@ -31,13 +33,13 @@ pub(super) fn arms(points: &[[f64; 2]], radius: f64, width: f64, gap: f64) -> Ve
         .collect();
     rim.sort_by(|a, b| a.0.total_cmp(&b.0));
     let gap = (gap / radius).to_degrees();
-    // Cut the circle open inside a gap, so that no group lies across 360°.
+    // Cuts the circle within a gap, so that no group extends across 360°.
     let turns = |k: usize| {
         let before = rim[(k + rim.len() - 1) % rim.len()].0;
         (rim[k].0 - before).rem_euclid(360.0)
     };
     let Some(cut) = (0..rim.len()).find(|&k| rim.len() == 1 || turns(k) > gap) else {
-        // Nothing there, or a full circle without a gap.
+        // No points, or a full circle without a gap.
         return Vec::new();
     };
     rim.rotate_left(cut);
@@ -59,7 +61,7 @@ pub(super) fn arms(points: &[[f64; 2]], radius: f64, width: f64, gap: f64) -> Ve
     arms
 }
 
-/// The slope of the least-squares line through points (t, x); none for fewer than two times.
+/// Slope of the least-squares line through points (t, x); `None` for fewer than two times.
 pub(super) fn slope(points: &[(f64, f64)]) -> Option<f64> {
     let n = points.len() as f64;
     let mean = |pick: fn(&(f64, f64)) -> f64| points.iter().map(pick).sum::<f64>() / n;
@@ -69,7 +71,7 @@ pub(super) fn slope(points: &[(f64, f64)]) -> Option<f64> {
     (spread > 0.0).then(|| common / spread)
 }
 
-/// The slope in a window of this length around each point that has it; `(middle of the window, slope)`.
+/// Slope in a window of this length around each point; `(middle of the window, slope)`.
 pub(super) fn slopes(points: &[(f64, f64)], window: f64) -> Vec<(f64, f64)> {
     let tolerance = 1e-6 * window;
     let mut slopes = Vec::new();
@@ -92,7 +94,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn groups_and_gaps() {
+    fn sorted_numbers_are_grouped_by_gaps() {
         assert_eq!(
             groups(&[1.0, 1.5, 2.0, 4.0, 4.5, 9.0], 0.6),
             [(1.0, 2.0), (4.0, 4.5), (9.0, 9.0)]
@@ -102,7 +104,7 @@ mod tests {
         assert_eq!(widest_gap(&mut [5.0]), 0.0);
     }
 
-    /// Points along rays from the origin, with the stray points a crack has beside it.
+    /// Points along rays from the origin, with stray points as they occur beside a crack.
     fn star(degrees: &[f64], reach: f64) -> Vec<[f64; 2]> {
         let mut points = Vec::new();
         for angle in degrees {
@@ -117,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn arms_of_a_star() {
+    fn arms_of_a_star_are_found_at_their_angles() {
         let angles = [20.0, 70.0, 200.0, 250.0];
         let found = arms(&star(&angles, 12.0), 10.0, 0.25, 1.0);
         assert_eq!(found.len(), 4);
@@ -129,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn an_arm_across_the_axis_is_one_arm() {
+    fn arm_across_zero_degrees_is_one_arm() {
         let found = arms(&star(&[-0.1, 180.0], 12.0), 10.0, 0.25, 1.0);
         assert_eq!(found.len(), 2, "{found:?}");
         assert_eq!(arms(&[[10.0, 0.0]], 10.0, 0.25, 1.0), [0.0]);

@@ -1,4 +1,4 @@
-//! An inclined crack in a square plate pulled on all sides: each tip forks.
+//! Inclined crack in a square plate under biaxial tension: each tip branches.
 
 use pericles_run::RunError;
 
@@ -6,18 +6,18 @@ use super::front::{arms, slopes};
 use super::record::{Look, Recorded, Symmetry, record};
 use crate::data::{Case, Found};
 
-/// Middle of the plate, m.
+/// Centre of the plate, m.
 const MIDDLE: f64 = 25e-3;
-/// Half the length of the pre-crack, m.
+/// Half length of the pre-crack, m.
 const HALF: f64 = 5e-3;
-/// Window of speeds, s.
+/// Time window of speeds, s.
 const WINDOW: f64 = 4e-6;
 
-/// A run of the deck: the arms of the crack, symmetry and energy.
+/// Runs the deck and measures the arms of the crack, symmetry and energy.
 pub(super) fn inclined(case: &Case<'_>) -> Result<Found, RunError> {
     let recorded = record(case, Symmetry::half_turn)?;
     let looks = recorded.looks.iter();
-    // The farthest point from the middle.
+    // Point farthest from the centre.
     let front = looks.clone().map(|look| (look.t, reach(&recorded, look)));
     let front: Vec<(f64, f64)> = front.collect();
     let speeds = slopes(&front, WINDOW);
@@ -45,12 +45,12 @@ pub(super) fn inclined(case: &Case<'_>) -> Result<Found, RunError> {
     Ok(found)
 }
 
-/// A point seen from the middle of the plate.
+/// Position of a point relative to the centre of the plate.
 fn from_middle(recorded: &Recorded, point: u32) -> [f64; 2] {
     recorded.place(point).map(|x| x - MIDDLE)
 }
 
-/// The distance of the farthest point of the crack from the middle; that of the pre-crack's end before it grows.
+/// Distance of the farthest point of the crack from the centre; before it grows that of the end of the pre-crack.
 fn reach(recorded: &Recorded, look: &Look) -> f64 {
     look.crack
         .iter()
@@ -68,11 +68,12 @@ fn arms_at(recorded: &Recorded, look: &Look, radius: f64) -> Vec<f64> {
         .map(|&point| from_middle(recorded, point))
         .collect();
     let spacing = recorded.facts.spacing;
-    // A ring one diagonal wide holds at least one point of each arm; arms apart have at least three points without damage between them.
+    // A ring one cell diagonal wide contains at least one point of each arm; separate arms have at least three
+    // undamaged points between them.
     arms(&points, radius, 1.5 * spacing, 4.0 * spacing)
 }
 
-/// How far beyond the pre-crack's ends there are four arms at the end of the run.
+/// Distance beyond the ends of the pre-crack at which four arms exist at the end of the run.
 fn parted(recorded: &Recorded) -> Option<f64> {
     let last = recorded.looks.last()?;
     let spacing = recorded.facts.spacing;

@@ -1,4 +1,4 @@
-//! Runs a deck and keeps what the studies measure at every look.
+//! Runs a deck and records the crack at regular intervals.
 
 use std::mem;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -14,20 +14,20 @@ use pericles_run::{Event, Facts, Resources, RunError, build};
 use crate::data::{Case, Found};
 use crate::decks::deck;
 
-/// Time between two looks at the crack, s.
+/// Time between two records of the crack, s.
 const LOOK: f64 = 0.5e-6;
 
-/// Damage beyond which a point belongs to the crack.
+/// Damage above which a point belongs to the crack.
 const THRESHOLD: f64 = 0.35;
 
-/// A symmetry of a body: each point's partner, and the signs of the displacement's components there.
+/// Symmetry of a body: the partner of each point, and the signs of the displacement components there.
 pub(super) struct Symmetry {
     partner: Vec<u32>,
     sign: [f64; 2],
 }
 
 impl Symmetry {
-    /// Reflection of a full rectangular grid in its horizontal midline.
+    /// Reflection of a full rectangular grid about its horizontal midline.
     pub(super) fn up_down(cloud: &PointCloud, columns: usize) -> Self {
         let n = cloud.len();
         let partner = |i: usize| (n - columns * (i / columns + 1) + i % columns) as u32;
@@ -37,7 +37,7 @@ impl Symmetry {
         }
     }
 
-    /// Half a turn of a full rectangular grid about its middle.
+    /// Rotation of a full rectangular grid by 180° about its centre.
     pub(super) fn half_turn(cloud: &PointCloud) -> Self {
         let n = cloud.len();
         Self {
@@ -46,7 +46,8 @@ impl Symmetry {
         }
     }
 
-    /// The largest difference of damage between partners, and that of displacement relative to the largest displacement.
+    /// Largest difference of damage between partners, and that of displacement relative to the largest
+    /// displacement.
     fn defect(&self, damage: &[f64], u: &[f64]) -> (f64, f64) {
         let n = damage.len();
         let (mut of_damage, mut of_u, mut largest) = (0f64, 0f64, 0f64);
@@ -62,12 +63,12 @@ impl Symmetry {
     }
 }
 
-/// One look at the crack.
+/// Record of the crack at one time.
 pub(super) struct Look {
     pub(super) t: f64,
     /// Points of the crack.
     pub(super) crack: PointSet,
-    /// Distance of its farthest point from the pre-crack, m.
+    /// Distance of the farthest point of the crack from the pre-crack, m.
     pub(super) advance: f64,
     pub(super) energies: Energies,
     pub(super) broken_bonds: u64,
@@ -76,7 +77,7 @@ pub(super) struct Look {
     pub(super) displacement_defect: f64,
 }
 
-/// A finished run.
+/// Finished run.
 pub(super) struct Recorded {
     pub(super) looks: Vec<Look>,
     pub(super) simulation: Simulation,
@@ -84,21 +85,21 @@ pub(super) struct Recorded {
 }
 
 impl Recorded {
-    /// The place of a point, m.
+    /// Position of a point, m.
     pub(super) fn place(&self, point: u32) -> [f64; 2] {
         let [x, y, _] = self.simulation.system().cloud().point(point as usize);
         [x, y]
     }
 
-    /// What both studies show: the critical stretch, the first time at which the crack has grown by more than two spacings, the worst of the energy balance, what broke, and the curves of the front and its
-    /// speed.
+    /// Results of both studies: the critical stretch, the first time at which the crack has grown by more than two
+    /// spacings, the largest energy imbalance, broken bonds, and the curves of the front and its speed.
     pub(super) fn found(&self, front: &[(f64, f64)], speeds: &[(f64, f64)]) -> Found {
         let grown = 2.0 * self.facts.spacing;
         let start = self.looks.iter().find(|look| look.advance > grown);
         let worst = |over: fn(&Look) -> f64| {
             self.looks
                 .iter()
-                // Rows before 1 µs, and those without the energy it is compared with, say nothing.
+                // Records before 1 µs, and those without reference energy, are not meaningful.
                 .filter(|look| look.t > 1e-6 && over(look) > 0.0)
                 .map(|look| look.energies.balance().abs() / over(look))
                 .reduce(f64::max)
@@ -124,7 +125,8 @@ impl Recorded {
     }
 }
 
-/// Runs the deck of the case, which has one pre-crack, and draws the damage at the end with the title `picture`, if one is given.
+/// Runs the deck of the case, which has one pre-crack, and draws the damage at the end with the title `picture`, if
+/// given.
 pub(super) fn record(
     case: &Case<'_>,
     symmetry: impl FnOnce(&PointCloud) -> Symmetry,
@@ -152,7 +154,7 @@ pub(super) fn record(
             });
             Control::Continue
         })
-        .map_err(|error| RunError::of_run(error, || "the study stopped there".into()))?;
+        .map_err(|error| RunError::of_run(error, || "the study was stopped".into()))?;
     (context.tell)(Event::LoopEnds);
     if let (true, Some(path)) = (case.has("picture"), context.figure("damage.png")) {
         let picture = PictureOf {
@@ -199,7 +201,7 @@ impl Observer for Recorder {
 
 // Studies are not resumed.
 pericles::saved! {
-    impl Saved for Recorder {
+    impl Checkpointed for Recorder {
         tracker, symmetry: fixed,
         looks: scratch,
     }

@@ -1,4 +1,4 @@
-//! Runs of the presets, and what is seen of them.
+//! Runs of the presets, and quantities recorded at every step.
 
 use std::rc::Rc;
 
@@ -12,26 +12,26 @@ use crate::common::largest;
 use crate::data::{Case, Found};
 use crate::decks::deck;
 
-/// What is seen of a run at every step.
+/// Quantities recorded at every step of a run.
 #[derive(Default)]
 struct Course {
     t: Vec<f64>,
-    /// S/S₀ − 1.
+    /// Relative change of area S/S₀ − 1.
     stretch: Vec<f64>,
     kinetic: Vec<f64>,
     elastic: Vec<f64>,
-    /// Inner iterations of the step, none before the first.
+    /// Inner iterations of the step; none before the first.
     iterations: Vec<f64>,
-    /// Localisation at the steps `readings`.
+    /// Measures at the steps `readings`.
     readings: Vec<SurfaceReading>,
-    /// Points under load.
+    /// Number of loaded points.
     loaded: usize,
-    /// The largest displacement at the end.
+    /// Largest displacement at the end.
     displacement: f64,
 }
 
 impl Course {
-    /// The deck of the case with changes.
+    /// Deck of the case with overrides.
     fn of(case: &Case<'_>, changes: &[String]) -> Result<Rc<Self>, RunError> {
         let readings = match case.flag("readings") {
             true => &READINGS[..],
@@ -78,7 +78,7 @@ impl Course {
                 }
             })
             .map_err(RunError::Simulation)?;
-        // The loop does not ask after the last step.
+        // The observer is not called after the last step.
         course.see(&simulation, measure.as_ref());
         let loads = simulation.system().loads().iter();
         course.loaded = loads.map(|load| load.points.len()).sum();
@@ -99,13 +99,13 @@ impl Course {
         }
     }
 
-    /// At the step nearest to a time.
+    /// Value at the step nearest to a time.
     fn at(&self, t: f64, values: &[f64]) -> f64 {
         let after = self.t.partition_point(|&x| x < t - 1e-9);
         values[after.min(values.len() - 1)]
     }
 
-    /// (max E − min E)/E(0)
+    /// Energy spread (max E − min E)/E(0).
     fn energy_spread(&self) -> f64 {
         let total = |k: usize| self.kinetic[k] + self.elastic[k];
         let (mut low, mut high) = (total(0), total(0));
@@ -121,10 +121,11 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// The steps at which localisation is read where `readings` is set.
+/// Steps at which localisation is measured if `readings` is set.
 const READINGS: [u64; 3] = [150, 300, 700];
 
-/// What is seen of a run: of its whole, of its second half, from the time `from` on, at the time `at`, and at the `reading` of this number.
+/// Results of a run: over its whole length, over its second half, from time `from` on, at time `at`, and at the
+/// `reading` with this number.
 pub(super) fn run(case: &Case<'_>) -> Result<Found, RunError> {
     let course = Course::of(case, &[])?;
     let most = |values: &[f64], least: f64| values.iter().copied().fold(least, f64::max);
@@ -170,7 +171,7 @@ pub(super) fn run(case: &Case<'_>) -> Result<Found, RunError> {
     Ok(found)
 }
 
-/// The spread of the energy over that with half the step `dt`.
+/// Ratio of the energy spread to that with half the step `dt`.
 pub(super) fn half_step(case: &Case<'_>) -> Result<Found, RunError> {
     let dt = case.number("dt")?;
     let spread = |dt: f64| -> Result<f64, RunError> {
@@ -180,7 +181,7 @@ pub(super) fn half_step(case: &Case<'_>) -> Result<Found, RunError> {
     Ok([("spread", coarse), ("ratio", coarse / spread(0.5 * dt)?)].into())
 }
 
-/// The displacement over that with the changes `weaker`.
+/// Ratio of the displacement to that with the overrides `weaker`.
 pub(super) fn linearity(case: &Case<'_>) -> Result<Found, RunError> {
     let weaker = Course::of(case, &case.texts("weaker")?)?;
     Ok((Course::of(case, &[])?.displacement / weaker.displacement).into())

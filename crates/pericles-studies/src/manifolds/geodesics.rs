@@ -1,4 +1,4 @@
-//! Distances on icospheres of the unit sphere, against arcs of great circles: which methods converge.
+//! Distances on icospheres of the unit sphere compared with great-circle arcs: convergence of the methods.
 
 use pericles::PericlesError;
 use pericles_manifold::geodesic::{GeodesicErrors, GeodesicMethod, GeodesicPairs, geodesic_pairs};
@@ -7,10 +7,10 @@ use pericles_run::RunError;
 
 use crate::data::{Case, Found};
 
-/// The paper's horizon.
+/// Horizon of the paper.
 const DELTA: f64 = 0.5;
 
-/// The methods of the study.
+/// Methods of the study.
 const METHODS: [(&str, GeodesicMethod); 6] = [
     ("edge", GeodesicMethod::Edge),
     ("edge-diagonals", GeodesicMethod::EdgeDiagonals),
@@ -20,7 +20,7 @@ const METHODS: [(&str, GeodesicMethod); 6] = [
     ("exact", GeodesicMethod::Exact),
 ];
 
-/// The paper's mesh, and its bonds by each notion of distance.
+/// Mesh of the paper, and its bonds for each definition of distance.
 pub(super) fn mesh(_: &Case<'_>) -> Result<Found, RunError> {
     let sphere = Surface::icosphere(3, 1.0).map_err(PericlesError::from)?;
     let checked = sphere.checked(SurfaceChecks::default());
@@ -48,7 +48,7 @@ pub(super) fn mesh(_: &Case<'_>) -> Result<Found, RunError> {
     .value("largest area", extreme(f64::max)))
 }
 
-/// The pairs nearer than the horizon on the unit sphere itself.
+/// Pairs closer than the horizon on the exact unit sphere.
 fn arcs(sphere: &Surface) -> GeodesicPairs {
     let mut pairs = GeodesicPairs {
         start: vec![0],
@@ -57,7 +57,7 @@ fn arcs(sphere: &Surface) -> GeodesicPairs {
     };
     for i in 0..sphere.len() {
         for j in 0..sphere.len() {
-            // No chord is longer than 2 but by rounding.
+            // No chord exceeds 2 except by round-off.
             let arc = 2.0 * (0.5 * sphere.chord(i, j)).min(1.0).asin();
             if i != j && arc < DELTA {
                 pairs.neighbour.push(j as u32);
@@ -69,7 +69,7 @@ fn arcs(sphere: &Surface) -> GeodesicPairs {
     pairs
 }
 
-/// An icosphere, and the arcs between its vertices.
+/// Icosphere, and the arcs between its vertices.
 fn sphere(level: u32) -> Result<(Surface, GeodesicPairs), RunError> {
     let sphere = Surface::icosphere(level, 1.0)
         .map_err(PericlesError::from)?
@@ -78,7 +78,8 @@ fn sphere(level: u32) -> Result<(Surface, GeodesicPairs), RunError> {
     Ok((sphere, arcs))
 }
 
-/// Vertices, median edge, and the errors of a method on an icosphere: mean, root mean square, largest, pairs lost.
+/// Number of vertices, median edge, and the errors of a method on an icosphere: mean, root mean square, largest,
+/// pairs lost.
 fn errors(case: &Case<'_>, level: u32) -> Result<([f64; 2], [f64; 4]), RunError> {
     let method = case.one_of("method", &METHODS)?;
     let known = case.once(format!("{method} {level}"), || {
@@ -92,7 +93,7 @@ fn errors(case: &Case<'_>, level: u32) -> Result<([f64; 2], [f64; 4]), RunError>
     Ok(*known)
 }
 
-/// Errors in percent of one method on one icosphere.
+/// Errors of one method on one icosphere, in percent.
 pub(super) fn distances(case: &Case<'_>) -> Result<Found, RunError> {
     let ([vertices, _], [mean, rms, largest, lost]) = errors(case, case.count("level")? as u32)?;
     Ok([
@@ -105,7 +106,7 @@ pub(super) fn distances(case: &Case<'_>) -> Result<Found, RunError> {
     .into())
 }
 
-/// The error of a method over the icospheres of some levels, as a curve.
+/// Error of a method over the icospheres of several levels, as a curve.
 pub(super) fn of_levels(case: &Case<'_>) -> Result<Found, RunError> {
     let (mut edge, mut rms) = (Vec::new(), Vec::new());
     for level in case.numbers("levels")? {

@@ -1,4 +1,4 @@
-//! The slowest vibration of a linear surface.
+//! Lowest natural mode of a linear surface.
 
 use std::collections::HashMap;
 use std::f64::consts::TAU;
@@ -13,7 +13,7 @@ use pericles_run::{Assembly, Resources, RunError, build};
 use crate::data::{Case, Found};
 use crate::decks::deck;
 
-/// Distances do not depend on α: they are found once for each mesh.
+/// Distances do not depend on α: they are computed once per mesh.
 #[derive(Default)]
 struct Kept(Mutex<HashMap<String, Archive>>);
 
@@ -42,21 +42,21 @@ fn assembly(case: &Case<'_>) -> Result<Assembly, RunError> {
     Ok(build(&deck(case, &[])?, &resources)?)
 }
 
-/// The lowest eigenvalue over that of the `continuum`, if one is given, and the period that belongs to it.
+/// Ratio of the lowest eigenvalue to that of the `continuum`, if given, and the corresponding period.
 pub(super) fn breathing(case: &Case<'_>) -> Result<Found, RunError> {
     let eigenvalue = lowest_eigenvalue(&assembly(case)?.system)?;
     let over = eigenvalue / case.optional("continuum").unwrap_or(1.0);
     Ok([("eigenvalue", over), ("period", TAU / eigenvalue.sqrt())].into())
 }
 
-/// The estimate of the highest frequency.
+/// Estimate of the highest frequency.
 pub(super) fn highest(case: &Case<'_>) -> Result<Found, RunError> {
     let assembly = assembly(case)?;
     let omega = highest_frequency(&assembly.system, &assembly.state.u)?;
     Ok(omega.estimate.into())
 }
 
-/// ∫ u·(−K u)/∫ |u|² of u = x, over that of the `continuum`.
+/// Rayleigh quotient ∫ u·(−K u)/∫ |u|² of u = x, relative to that of the `continuum`.
 pub(super) fn quotient(case: &Case<'_>) -> Result<Found, RunError> {
     let system = assembly(case)?.system;
     let n = system.points();
@@ -69,15 +69,15 @@ pub(super) fn quotient(case: &Case<'_>) -> Result<Found, RunError> {
     Ok((-inner(&force) / inner(&u) / case.number("continuum")?).into())
 }
 
-/// The lowest eigenvalue ω² of −K/ρ for p = 2 on one component of the displacement that is orthogonal to translations: inverse iteration from the
-/// coordinate x. On a sphere it is that of u = x, y, z: the body breathes.
+/// Lowest eigenvalue ω² of −K/ρ for p = 2 on one displacement component orthogonal to translations, by inverse
+/// iteration from the coordinate x. On a sphere it belongs to u = x, y, z, the breathing mode.
 fn lowest_eigenvalue(system: &System) -> Result<f64, RunError> {
     let n = system.points();
     let areas = system.cloud().volumes();
     let mass: Vec<f64> = (0..n).map(|i| system.density().at(i) * areas[i]).collect();
     let total: f64 = mass.iter().sum();
     let operator = system.operator();
-    // Translations are lifted above the spectrum.
+    // Translations are shifted above the spectrum.
     let lift = operator
         .frequency_bound(&|i| system.density().at(i))
         .powi(2);
@@ -115,5 +115,5 @@ fn lowest_eigenvalue(system: &System) -> Result<f64, RunError> {
     Ok(value)
 }
 
-/// Inverse iterations.
+/// Largest number of inverse iterations.
 const MOST: usize = 40;

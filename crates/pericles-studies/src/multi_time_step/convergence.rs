@@ -1,4 +1,4 @@
-//! Errors and orders of the schemes on bodies that do not fail.
+//! Errors and orders of the schemes on bodies without failure.
 
 use std::rc::Rc;
 
@@ -8,17 +8,18 @@ use super::problem::{End, Method, Problem, relative};
 use crate::common::{difference, largest};
 use crate::data::{Case, Found};
 
-/// The largest displacement along x by the reference.
+/// Largest displacement along x of the reference.
 pub(super) fn largest_displacement(case: &Case<'_>) -> Result<Found, RunError> {
     Ok(largest(reference(case)?.x()).into())
 }
 
-/// RK4 with `reference` steps.
+/// Reference: RK4 with `reference` steps.
 fn reference(case: &Case<'_>) -> Result<Rc<End>, RunError> {
     Problem::of(case)?.end(Method::Uniform(4), case.count("reference")? as u64, &[])
 }
 
-/// The error of the scheme `name` at the end in so many steps, with the changes `choice`: the largest |u_x − reference| over the points, or with `relative` the relative distance of all displacements.
+/// Error of the scheme `name` at the end with a number of steps and the overrides `choice`: the largest |u_x −
+/// reference| over the points, or with `relative` the relative error of all displacements.
 fn error_in(case: &Case<'_>, name: &'static str, steps: u64) -> Result<f64, RunError> {
     let choice = case.texts("choice")?;
     let end = Problem::of(case)?.end(Method::of(case, name)?, steps, &choice)?;
@@ -29,7 +30,7 @@ fn error_in(case: &Case<'_>, name: &'static str, steps: u64) -> Result<f64, RunE
     })
 }
 
-/// The error of a method, and that over the error of the method `beside`.
+/// Error of a method, and its ratio to the error of the method `beside`.
 pub(super) fn error(case: &Case<'_>) -> Result<Found, RunError> {
     let steps = case.count("steps")? as u64;
     let error = error_in(case, "method", steps)?;
@@ -40,7 +41,7 @@ pub(super) fn error(case: &Case<'_>) -> Result<Found, RunError> {
     }
 }
 
-/// The order of a method from half of the `steps` to all of them.
+/// Order of a method from half of the `steps` to all of them.
 pub(super) fn order(case: &Case<'_>) -> Result<Found, RunError> {
     let steps = case.count("steps")? as u64;
     let [coarse, fine] = [steps / 2, steps].map(|steps| error_in(case, "method", steps));
@@ -51,7 +52,7 @@ pub(super) fn order(case: &Case<'_>) -> Result<Found, RunError> {
     .into())
 }
 
-/// How fast the zoned scheme with M = 1 comes to the plain one of the same order.
+/// Order in which the multirate scheme with M = 1 converges to the single-rate one of the same order.
 pub(super) fn equal_steps(case: &Case<'_>) -> Result<Found, RunError> {
     let problem = Problem::of(case)?;
     let order = case.count("order")? as u32;
@@ -63,8 +64,8 @@ pub(super) fn equal_steps(case: &Case<'_>) -> Result<Found, RunError> {
     Ok((difference(128)? / difference(256)?).log2().into())
 }
 
-/// Relative distances of a set's displacements to those by velocity Verlet with a quarter of the fine step: of r-RESPA, RK4 with two steps and velocity Verlet with the
-/// fine step.
+/// Relative errors of a set's displacements with velocity Verlet at a quarter of the fine step as reference: of
+/// r-RESPA, multirate RK4, and velocity Verlet with the fine step.
 pub(super) fn errors_of_set(case: &Case<'_>) -> Result<Found, RunError> {
     let problem = Problem::of(case)?;
     let ratio = case.count("ratio")? as u32;

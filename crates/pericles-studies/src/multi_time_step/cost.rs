@@ -1,14 +1,16 @@
-//! What two time steps cost: evaluations and time of the clock, against the fine step everywhere.
+//! Cost of multirate schemes: evaluations and wall time compared with the fine step everywhere.
 //!
-//! Schemes take turns on the same body; a time is the least of the rounds. S = M/(1 + (M − 1) φ) is the model of Runge–Kutta with two steps against the same method with the
-//! fine step everywhere. Velocity Verlet with the fine step everywhere is the harder measure: it needs M evaluations where RK4 with two steps needs 4 (1 + (M − 1) φ).
+//! Schemes run in alternation on the same body; a time is the minimum over the rounds. S = M/(1 + (M − 1) φ) is the
+//! model of multirate Runge–Kutta compared with the same method with the fine step everywhere. Velocity Verlet with
+//! the fine step everywhere is the more demanding reference: it needs M evaluations where multirate RK4 needs 4
+//! (1 + (M − 1) φ).
 
 use std::cell::RefCell;
 use std::f64::consts::{PI, TAU};
 use std::rc::Rc;
 use std::time::Instant;
 
-use pericles::operator::On;
+use pericles::operator::PointSubset;
 use pericles::space::{PointCloud, PointSet};
 use pericles::time::{Integrator, MultiTimeStep, Respa};
 use pericles_run::RunError;
@@ -21,7 +23,7 @@ use crate::data::{Case, Found};
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Outline {
     Box,
-    /// A star of seven rays: r < R (1 + 0.35 sin 7φ).
+    /// Star with seven rays: r < R (1 + 0.35 sin 7φ).
     Ragged,
 }
 
@@ -30,7 +32,7 @@ impl Outline {
         case.one_of("outline", &[("box", Self::Box), ("ragged", Self::Ragged)])
     }
 
-    /// About this fraction of the points, in the middle of the body.
+    /// Selects about this fraction of the points, in the middle of the body.
     fn points(self, cloud: &PointCloud, fraction: f64) -> PointSet {
         const SWING: f64 = 0.35;
         let [low, high] = cloud.bounds();
@@ -54,7 +56,7 @@ impl Outline {
     }
 }
 
-/// Does something with the body of the case on so many threads.
+/// Runs a function on the body of the case with a number of threads.
 fn on_threads<T: Send>(
     case: &Case<'_>,
     count: usize,
@@ -68,7 +70,7 @@ fn on_threads<T: Send>(
     threads.install(|| work(bench))
 }
 
-/// Counted evaluations of a scheme with the step ratio `ratio` over the model's, which must be one.
+/// Ratio of the counted evaluations of a scheme with step ratio `ratio` to those of the model, which must be one.
 pub(super) fn evaluations(case: &Case<'_>) -> Result<Found, RunError> {
     const STEPS: u32 = 3;
     let method = Method::of(case, "method")?;
@@ -103,12 +105,13 @@ pub(super) fn evaluations(case: &Case<'_>) -> Result<Found, RunError> {
     })
 }
 
-/// The force itself on a part of the body, for those who look for the reason of a lost share: time per point over that of the whole body.
+/// Cost of the force on a part of the body, to explain a lost speed-up: time per point relative to that of the
+/// whole body.
 pub(super) fn force_on_part(case: &Case<'_>) -> Result<Found, RunError> {
     on_threads(case, 1, |bench| {
         let fine = Outline::Ragged.points(bench.system.cloud(), 0.1);
         let mut out = vec![0.0; bench.state.u.len()];
-        let mut seconds = |on: On<'_>| {
+        let mut seconds = |on: PointSubset<'_>| {
             let times = (0..9).map(|_| {
                 let began = Instant::now();
                 let (t, u) = (bench.state.t, &bench.state.u);
@@ -117,13 +120,13 @@ pub(super) fn force_on_part(case: &Case<'_>) -> Result<Found, RunError> {
             });
             times.fold(f64::INFINITY, f64::min)
         };
-        let part = seconds(On::Set(&fine)) / fine.len() as f64;
-        let whole = seconds(On::All) / bench.points() as f64;
+        let part = seconds(PointSubset::Set(&fine)) / fine.len() as f64;
+        let whole = seconds(PointSubset::All) / bench.points() as f64;
         Ok((part / whole).into())
     })
 }
 
-/// The fraction of fine points, and the times of schemes that took turns with a fine region of about this fraction.
+/// Fraction of fine points, and the times of schemes run in alternation with a fine region of about this fraction.
 fn timed(case: &Case<'_>, fraction: f64) -> Result<Rc<(f64, Turns)>, RunError> {
     let (outline, ratio) = (Outline::of(case)?, case.count("ratio")? as u32);
     let threads = case.count("threads")?;
@@ -140,7 +143,7 @@ fn model_of(ratio: f64, share: f64) -> f64 {
     ratio / (1.0 + (ratio - 1.0) * share)
 }
 
-/// The speed-up of a scheme with two steps.
+/// Speed-up of a multirate scheme.
 pub(super) fn speed_up(case: &Case<'_>) -> Result<Found, RunError> {
     let timed = timed(case, case.number("fraction")?)?;
     let model = model_of(case.number("ratio")?, timed.0);
@@ -149,12 +152,12 @@ pub(super) fn speed_up(case: &Case<'_>) -> Result<Found, RunError> {
         .ratios()
         .value("share", timed.0)
         .value("model", model);
-    // More than the model is no fault.
+    // Exceeding the model is not an error.
     let reached = (timed.1.speed_up() / model).min(1.0);
     Ok(found.value("over model", reached))
 }
 
-/// The speed-ups over the fraction of fine points.
+/// Speed-ups by the fraction of fine points.
 pub(super) fn of_fractions(case: &Case<'_>) -> Result<Found, RunError> {
     let fractions = case.numbers("fractions")?;
     let times = fractions.iter().map(|&fraction| timed(case, fraction));
@@ -163,7 +166,7 @@ pub(super) fn of_fractions(case: &Case<'_>) -> Result<Found, RunError> {
     Ok(Found::default().curve("speed-up", &fractions, &speed_ups))
 }
 
-/// The model's curve.
+/// Curve of the model.
 pub(super) fn model(case: &Case<'_>) -> Result<Found, RunError> {
     let ratio = case.number("ratio")?;
     let x: Vec<f64> = (0..=50).map(|k| 0.005 * f64::from(k)).collect();
@@ -171,7 +174,8 @@ pub(super) fn model(case: &Case<'_>) -> Result<Found, RunError> {
     Ok(Found::default().curve("model", &x, &y))
 }
 
-/// The speed-ups where the fine region is a set of the deck: the fraction of its points, the times at the deck's own step where `step` is set, and by how much a body with small cells everywhere is larger.
+/// Speed-ups with a set of the deck as fine region: the fraction of its points, the times at the deck's own step if
+/// `step` is set, and the size ratio of a body with small cells everywhere.
 pub(super) fn of_set(case: &Case<'_>) -> Result<Found, RunError> {
     let (ratio, set) = (case.count("ratio")? as u32, case.text("points")?);
     let [rounds, steps] = [case.count("rounds")? as u32, case.count("steps")? as u32];

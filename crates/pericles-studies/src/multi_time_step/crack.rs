@@ -1,7 +1,8 @@
-//! A crack that runs: two time steps against the fine step everywhere.
+//! Propagating crack: multirate schemes compared with the fine step everywhere.
 //!
-//! Before bonds break the orders are those of the method. Afterwards nobody can expect the same bonds: the check for breaking is of first order in the step, and halving the step of
-//! one and the same scheme changes as much as the second step does. What must agree is how far the crack went and how much it broke.
+//! Before bonds break the orders are those of the method. Afterwards the same bonds cannot be expected: breaking is
+//! detected to first order in the step, and halving the step of one scheme changes as much as the second step does.
+//! The crack length and the number of broken bonds must agree.
 
 use std::rc::Rc;
 
@@ -11,11 +12,11 @@ use pericles_run::RunError;
 use super::problem::{Method, Problem, relative};
 use crate::data::{Case, Found};
 
-/// Coarse steps to the end of the deck.
+/// Number of coarse steps to the end of the deck.
 const STEPS: f64 = 128.0;
 const END: f64 = 15e-6;
 
-/// The plate at a time, in steps of the length of the deck's over `ratio`.
+/// State of the plate at a time, with the deck's time step divided by `ratio`.
 fn at(
     case: &Case<'_>,
     method: Method,
@@ -30,7 +31,8 @@ fn at(
     case.once(format!("{method:?} {steps} {changes:?}"), run)
 }
 
-/// Until the first bonds have broken the runs are the same: the difference of broken bonds, and the relative distance of displacements.
+/// Until the first bonds break the runs agree: the difference of broken bonds, and the relative error of
+/// displacements.
 pub(super) fn before_failure(case: &Case<'_>) -> Result<Found, RunError> {
     let (end, ratio) = (case.number("end")?, case.count("ratio")? as u32);
     let fine = at(case, Method::Uniform(4), end, ratio, &[])?;
@@ -46,7 +48,7 @@ fn broken(run: &Simulation) -> u64 {
     run.system().operator().broken_bonds()
 }
 
-/// The largest x of points with damage above 0.3, m.
+/// Largest x of points with damage above 0.3, m.
 fn tip(run: &Simulation) -> f64 {
     let cloud = run.system().cloud();
     let mut damage = vec![0.0; cloud.len()];
@@ -57,14 +59,14 @@ fn tip(run: &Simulation) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// A method with one step at the end, after several hundred bonds have broken.
+/// Single-rate method at the end, after several hundred bonds have broken.
 pub(super) fn fine_step(case: &Case<'_>) -> Result<Found, RunError> {
     let ratio = case.count("ratio")? as u32;
     let run = at(case, Method::of(case, "method")?, END, ratio, &[])?;
     Ok([("bonds", broken(&run) as f64), ("tip", tip(&run))].into())
 }
 
-/// A method with two steps at the end, against RK4 with the fine step everywhere.
+/// Multirate method at the end, compared with RK4 with the fine step everywhere.
 pub(super) fn failure(case: &Case<'_>) -> Result<Found, RunError> {
     let ratio = case.count("ratio")? as u32;
     let fine = at(case, Method::Uniform(4), END, ratio, &[])?;

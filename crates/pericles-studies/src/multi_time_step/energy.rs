@@ -1,4 +1,4 @@
-//! Energy and momentum of a free plate: what each scheme keeps.
+//! Conservation of energy and momentum of a free plate by each scheme.
 
 use pericles::Simulation;
 use pericles_run::RunError;
@@ -7,8 +7,10 @@ use super::problem::{Method, Problem};
 use crate::common::watch;
 use crate::data::{Case, Found};
 
-/// What a run of so many `steps` does at ω dt = `omega`, or at half the deck's step: the largest relative change of kinetic + elastic energy, looked at `every` so many steps, that in the second half over
-/// that in the first, the relative change at the end, |change of momentum| over Σ |m v| and over |momentum|, and evaluations per point and step.
+/// Results of a run of `steps` steps at ω dt = `omega`, or at half the deck's step: the largest relative change of
+/// kinetic + elastic energy, sampled every `every` steps; the ratio of that in the second half to that in the
+/// first; the relative change at the end; |change of momentum| over Σ |m v| and over |momentum|; and evaluations
+/// per point and step.
 pub(super) fn kept(case: &Case<'_>) -> Result<Found, RunError> {
     let (steps, every) = (case.count("steps")? as u64, case.count("every")? as u64);
     let problem = Problem::of(case)?;

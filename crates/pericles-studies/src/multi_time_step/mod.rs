@@ -1,8 +1,9 @@
-//! Two time steps in one body: orders, stability, failure, conservation and cost.
+//! Multirate schemes: orders, stability, failure, conservation and cost.
 //!
-//! Liu, Sun, Tian, Don, Ju, A high-order multi-time-step scheme for bond-based peridynamics, arXiv 2401.04966 (2024). The paper's formulas of the interface and most of its
-//! parameters are not in print; the bodies are as the text describes them, and the expected numbers were computed by an independent code
-//! (`validation/multi-time-step/`). `structured` and `hermite` are the predictor and the interpolant of [`pericles::time`] unless a row says otherwise.
+//! Liu, Sun, Tian, Don, Ju, A high-order multi-time-step scheme for bond-based peridynamics, arXiv 2401.04966
+//! (2024). The paper does not print its interface formulas and most of its parameters; the bodies follow its text,
+//! and the expected values were computed by an independent code (`validation/multi-time-step/`). `structured` and
+//! `hermite` are the predictor and the interpolant of [`pericles::time`] unless a row says otherwise.
 
 mod convergence;
 mod cost;
@@ -15,7 +16,7 @@ mod two_grid;
 
 use crate::study::{Topic, data};
 
-/// The studies of this topic.
+/// Studies of this topic.
 pub(super) const TOPIC: Topic = Topic {
     studies: &[
         data!("multi-time-step/plate"),

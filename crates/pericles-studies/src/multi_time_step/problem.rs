@@ -1,4 +1,4 @@
-//! The problems of the studies, and the schemes they are solved by.
+//! Problems of the studies, and the schemes that solve them.
 
 use std::f64::consts::PI;
 use std::rc::Rc;
@@ -11,21 +11,21 @@ use crate::common::finish;
 use crate::data::Case;
 use crate::decks::deck;
 
-/// A scheme with one or two time steps.
+/// Single-rate or multirate scheme.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Method {
-    /// Runge–Kutta of this order with one step.
+    /// Single-rate Runge–Kutta of this order.
     Uniform(u32),
     /// Velocity Verlet.
     Verlet,
-    /// Runge–Kutta of this order with the fine step this many times smaller.
+    /// Runge–Kutta of this order with the fine step smaller by this factor.
     Two(u32, u32),
-    /// r-RESPA with the fine step this many times smaller.
+    /// r-RESPA with the fine step smaller by this factor.
     Respa(u32),
 }
 
 impl Method {
-    /// The argument `name`, such as `RK4 with two steps, M = 8`.
+    /// Scheme of the argument `name`, such as `RK4 with two steps, M = 8`.
     pub(super) fn of(case: &Case<'_>, name: &'static str) -> Result<Self, RunError> {
         const RATIOS: [u32; 5] = [1, 2, 3, 4, 8];
         let mut all = vec![("velocity Verlet".to_owned(), Self::Verlet)];
@@ -47,10 +47,10 @@ impl Method {
         case.one_of(name, &all)
     }
 
-    /// What it changes in a deck with two time steps.
+    /// Overrides of a multirate deck.
     fn changes(self) -> Vec<String> {
         match self {
-            // The deck's own scheme gives way to one made from the model.
+            // The scheme of the deck is replaced by one created from the model.
             Self::Uniform(_) | Self::Verlet => Vec::new(),
             Self::Two(order, ratio) => vec![
                 format!("time.scheme=rk{order}-mts"),
@@ -63,16 +63,16 @@ impl Method {
 
 pub(super) fn tableau(order: u32) -> Result<Tableau, RunError> {
     Ok(match order {
-        // Heun's method: the paper's parameter is lost.
+        // Heun's method; the parameter of the paper is not printed.
         3 => Tableau::rk3(0.75)?,
         _ => Tableau::rk4(),
     })
 }
 
-/// How a case changes the initial state of its deck.
+/// Modification of the initial state of a case's deck.
 type Start = fn(&mut Assembly);
 
-/// The deck of a case, with what decks cannot say: the argument `start`.
+/// Deck of a case, with modifications that decks do not support: the argument `start`.
 #[derive(Clone, Copy)]
 pub(super) struct Problem<'a> {
     case: &'a Case<'a>,
@@ -117,7 +117,7 @@ impl<'a> Problem<'a> {
         Ok(assembly)
     }
 
-    /// The end of the problem in so many steps.
+    /// Runs the problem to its end in a number of steps.
     pub(super) fn run(
         &self,
         method: Method,
@@ -132,7 +132,7 @@ impl<'a> Problem<'a> {
         Ok(simulation)
     }
 
-    /// The displacement at the end, computed once in a study.
+    /// Displacement at the end, computed once per study.
     pub(super) fn end(
         &self,
         method: Method,
@@ -150,28 +150,28 @@ impl<'a> Problem<'a> {
     }
 }
 
-/// The end of a run.
+/// End of a run.
 pub(super) struct End {
     points: usize,
-    /// The displacement.
+    /// Displacement.
     pub(super) u: Vec<f64>,
 }
 
 impl End {
-    /// u_x.
+    /// Displacement u_x.
     pub(super) fn x(&self) -> &[f64] {
         &self.u[..self.points]
     }
 }
 
-/// All modes, whatever the order of points.
+/// Excites all modes, independently of the order of points.
 fn shake(assembly: &mut Assembly, mean: f64, swing: f64) {
     for (k, v) in assembly.state.v.iter_mut().enumerate() {
         *v = mean + swing * ((k * k) as f64).sin();
     }
 }
 
-/// The grain of the inclusion breathes.
+/// Excites the radial oscillation of the grain of the inclusion.
 fn breathe(assembly: &mut Assembly) {
     const CENTRE: [f64; 2] = [0.06, 0.05];
     const RADIUS: f64 = 8e-3;
@@ -189,7 +189,7 @@ fn breathe(assembly: &mut Assembly) {
     }
 }
 
-/// |a − b| over |b|, in the Euclidean norm.
+/// |a − b| over |b| in the Euclidean norm.
 pub(super) fn relative(a: &[f64], b: &[f64]) -> f64 {
     let square = |x: &mut dyn Iterator<Item = f64>| -> f64 { x.map(|x| x * x).sum() };
     let difference = square(&mut a.iter().zip(b).map(|(a, b)| a - b));

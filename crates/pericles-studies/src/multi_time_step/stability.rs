@@ -1,6 +1,7 @@
-//! How large the coarse step may be, and how fast the paper's predictor lets short waves grow.
+//! Stability limits of the coarse step, and growth of short waves with the paper's predictor.
 //!
-//! A small clamped plate is shaken in all its modes and stepped on; growth is that of the square root of its energy per coarse step. The rates depend on the plate and on where it is fine.
+//! All modes of a small clamped plate are excited; growth is that of the square root of its energy per coarse step.
+//! The rates depend on the plate and on the position of its fine region.
 
 use pericles::Interrupt;
 use pericles_run::{Assembly, RunError};
@@ -8,7 +9,7 @@ use pericles_run::{Assembly, RunError};
 use super::problem::{Method, Problem};
 use crate::data::{Case, Found};
 
-/// Growth per step between two step numbers, for ω dt of what limits the coarse step.
+/// Growth per step between two step numbers, for ω dt of the part that limits the coarse step.
 fn growth_between(
     case: &Case<'_>,
     choice: &[String],
@@ -45,9 +46,9 @@ fn growth_between(
     Ok(0.5 * (energies[1] / energies[0]).ln() / (to - from) as f64)
 }
 
-/// The largest ω dt between 0.8 and 1 times `most` without growth, to three thousandths.
+/// Largest ω dt between 0.8 and 1 times `most` without growth, to three thousandths.
 pub(super) fn limit(case: &Case<'_>) -> Result<Found, RunError> {
-    /// Above what the bounded swings of the energy make.
+    /// Threshold above the bounded oscillations of the energy.
     const GROWS: f64 = 2e-4;
     let most = case.number("most")?;
     let (mut low, mut high) = (0.8 * most, most);
@@ -62,17 +63,18 @@ pub(super) fn limit(case: &Case<'_>) -> Result<Found, RunError> {
     Ok(low.into())
 }
 
-/// Growth at ω dt = 1 over many steps, 0 for decay.
+/// Growth at ω dt = 1 over many steps; 0 for decay.
 pub(super) fn growth(case: &Case<'_>) -> Result<Found, RunError> {
     Ok(growth_between(case, &[], 1.0, [500, 20_000])?
         .max(0.0)
         .into())
 }
 
-/// Growth at ω dt = `omega` with the changes `choice`, in decades from the rate of the independent code, and without them, up to the stability `limit`.
+/// Growth at ω dt = `omega` with the overrides `choice`, as decades from the rate of the independent code, and
+/// without them, up to the stability `limit`.
 pub(super) fn rates(case: &Case<'_>) -> Result<Found, RunError> {
     let (omega_dt, rate) = (case.number("omega")?, case.number("rate")?);
-    // Slow growth shows late, after the other modes have been damped.
+    // Slow growth becomes visible late, after the other modes have been damped.
     let span = if rate < 1e-4 || case.context.full {
         [100_000, 200_000]
     } else {

@@ -1,4 +1,4 @@
-//! Schemes that take turns on one body, timed.
+//! Timing of schemes run in alternation on one body.
 
 use std::time::Instant;
 
@@ -14,7 +14,7 @@ use pericles_run::RunError;
 use super::problem::{Method, Problem, tableau};
 use crate::data::Found;
 
-/// A body with its state, on which schemes take turns.
+/// Body with its state, on which schemes are timed.
 pub(super) struct Bench {
     pub(super) system: System,
     pub(super) state: State,
@@ -22,7 +22,7 @@ pub(super) struct Bench {
 }
 
 impl Bench {
-    /// The body of a problem; the coarse step is ω dt = 1.
+    /// Creates the body of a problem; the coarse step is ω dt = 1.
     pub(super) fn new(problem: Problem<'_>) -> Result<Self, RunError> {
         let Assembly {
             mut system,
@@ -40,12 +40,12 @@ impl Bench {
         })
     }
 
-    /// Points of the body.
+    /// Number of points of the body.
     pub(super) fn points(&self) -> u64 {
         self.system.points() as u64
     }
 
-    /// Two steps with the defaults.
+    /// Default multirate options.
     pub(super) fn options(&self, ratio: u32, fine: &PointSet) -> MultiTimeStepOptions {
         MultiTimeStepOptions {
             ratio,
@@ -55,7 +55,7 @@ impl Bench {
         }
     }
 
-    /// Seconds for `steps` steps of a length.
+    /// Time of `steps` steps of a given length, s.
     fn time(
         &mut self,
         integrator: &mut dyn Integrator,
@@ -75,7 +75,7 @@ impl Bench {
         Ok(began.elapsed().as_secs_f64())
     }
 
-    /// Points evaluated by `steps` steps after the starting steps.
+    /// Number of point evaluations of `steps` steps after the starting steps.
     pub(super) fn evaluations(
         &mut self,
         integrator: &mut dyn Integrator,
@@ -88,25 +88,25 @@ impl Bench {
     }
 }
 
-/// Seconds per coarse step of schemes that took turns.
+/// Seconds per coarse step of schemes run in alternation.
 pub(super) struct Turns {
-    /// RK4 with two steps.
+    /// Multirate RK4.
     pub(super) two: f64,
     /// RK4 with the fine step everywhere.
     pub(super) uniform: f64,
     /// Velocity Verlet with the fine step everywhere.
     pub(super) verlet: f64,
-    /// r-RESPA with two steps.
+    /// r-RESPA.
     pub(super) respa: f64,
 }
 
 impl Turns {
-    /// RK4 with two steps against the fine step everywhere.
+    /// Speed-up of multirate RK4 compared with the fine step everywhere.
     pub(super) fn speed_up(&self) -> f64 {
         self.uniform / self.two
     }
 
-    /// Times over each other.
+    /// Ratios of the times.
     pub(super) fn ratios(&self) -> Found {
         [
             ("speed-up", self.speed_up()),
@@ -116,7 +116,7 @@ impl Turns {
         .into()
     }
 
-    /// So many rounds of so many coarse steps each.
+    /// Times the schemes in several rounds of several coarse steps each.
     pub(super) fn take(
         bench: &mut Bench,
         ratio: u32,
@@ -130,7 +130,7 @@ impl Turns {
         let mut uniform = RungeKutta::new(&rk4, &bench.system);
         let mut respa = Respa::new(ratio, regions, &bench.system)?;
         let (dt, h) = (bench.dt, bench.dt / f64::from(ratio));
-        // Cold caches, starting steps, and r-RESPA's own parts of the acceleration.
+        // Warm-up: cold caches, starting steps, and the separate accelerations of r-RESPA.
         bench.time(&mut two, dt, 2)?;
         let mut times: [Vec<f64>; 4] = Default::default();
         for _ in 0..rounds {
@@ -147,7 +147,7 @@ impl Turns {
                 times.push(seconds / f64::from(steps));
             }
         }
-        // The least of the rounds: what else the machine does only adds to a time.
+        // The minimum over the rounds: other load on the machine only adds to a time.
         let [two, uniform, verlet, respa] =
             times.map(|times| times.into_iter().fold(f64::INFINITY, f64::min));
         Ok(Self {

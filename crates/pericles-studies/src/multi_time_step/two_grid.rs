@@ -1,6 +1,6 @@
-//! A body with smaller cells, and a smaller horizon, in its middle: what the interface does to a uniform strain.
+//! Body with smaller cells and a smaller horizon in its middle: effect of the interface on a uniform strain.
 
-use pericles::operator::On;
+use pericles::operator::PointSubset;
 use pericles::solve::{SolveLimits, Work, conjugate_gradient};
 use pericles::time::highest_frequency;
 use pericles_deck::Deck;
@@ -13,7 +13,7 @@ use crate::decks::deck;
 
 const STRAIN: f64 = 1e-4;
 
-/// Whether a point lies further from the edges of its grid's part, and of the body, than a horizon of the large cells.
+/// Marks points farther from the interface, and from the edges of the body, than a horizon of the large cells.
 struct Places {
     interface: Vec<bool>,
     surface: Vec<bool>,
@@ -23,7 +23,7 @@ impl Places {
     fn of(assembly: &Assembly, deck: &Deck) -> Self {
         let (cloud, horizon) = (&assembly.cloud, deck.model.body.horizon());
         let [low, high] = cloud.bounds();
-        // The part with smaller cells is a box in the middle: its border is found from the cells themselves.
+        // The part with smaller cells is a box in the middle; its boundary is derived from the cells.
         let small = |i: usize| cloud.cell_size(i) < 0.9 * cloud.spacing();
         let span = |c: usize| {
             (0..cloud.len()).filter(|&i| small(i)).fold(
@@ -53,7 +53,8 @@ impl Places {
     }
 }
 
-/// A uniform strain: the force it leaves over E e/δ, inside the grids, at their interface and at the body's surface, and the error of the displacement that is in balance with the border held to it.
+/// Uniform strain: the remaining force over E e/δ inside the grids, at their interface and at the body's surface,
+/// and the error of the equilibrium displacement with the boundary prescribed.
 pub(super) fn patch_test(case: &Case<'_>) -> Result<Found, RunError> {
     let assembly = Problem::of(case)?.assembly(Method::Verlet, &[])?;
     let deck = deck(case, &[])?;
@@ -66,8 +67,8 @@ pub(super) fn patch_test(case: &Case<'_>) -> Result<Found, RunError> {
     }
     let mut force = vec![0.0; 2 * n];
     let operator = system.operator();
-    operator.add_force(0.0, &strained, On::All, &mut force);
-    // The force density over E e/δ, what a free surface would be pulled with.
+    operator.add_force(0.0, &strained, PointSubset::All, &mut force);
+    // Force density over E e/δ, the scale of the force at a free surface.
     let young = assembly.constants.as_ref().map_or(f64::NAN, |c| c.young());
     let scale = young * STRAIN / deck.model.body.horizon();
     let largest = |of: &dyn Fn(usize) -> bool| {
@@ -91,16 +92,16 @@ pub(super) fn patch_test(case: &Case<'_>) -> Result<Found, RunError> {
     .into())
 }
 
-/// max |u − u_strained| over e L, where K u = 0 with the points near the border held at the uniform strain.
+/// max |u − u_strained| over e L, where K u = 0 with the points near the boundary prescribed at the uniform strain.
 fn balanced_error(assembly: &Assembly, strained: &[f64], places: &Places) -> Result<f64, RunError> {
     let system = &assembly.system;
     let n = system.points();
     let volumes = system.cloud().volumes();
     let held = |entry: usize| places.surface[entry % n];
-    // −V f is symmetric and positive: both ends of a bond take the volumes' product.
+    // −V f is symmetric and positive: both ends of a bond use the product of the volumes.
     let stiffness = |u: &[f64], out: &mut [f64]| {
         out.fill(0.0);
-        system.operator().add_force(0.0, u, On::All, out);
+        system.operator().add_force(0.0, u, PointSubset::All, out);
         for (entry, x) in out.iter_mut().enumerate() {
             *x *= if held(entry) {
                 0.0
@@ -129,7 +130,7 @@ fn balanced_error(assembly: &Assembly, strained: &[f64], places: &Places) -> Res
     Ok(largest(&correction) / (STRAIN * (high[0] - low[0])))
 }
 
-/// How much shorter the stable step of the small cells is.
+/// Ratio of the stable steps of large and small cells.
 pub(super) fn frequencies(case: &Case<'_>) -> Result<Found, RunError> {
     let assembly = Problem::of(case)?.assembly(Method::of(case, "method")?, &[])?;
     let whole = highest_frequency(&assembly.system, &assembly.state.u)?.estimate;

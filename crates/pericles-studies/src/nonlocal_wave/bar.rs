@@ -1,4 +1,4 @@
-//! Table 5: the bar of bonds in stretch.
+//! Table 5: bar with the bond-stretch law.
 
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
@@ -25,7 +25,8 @@ const MODE: BarMode = BarMode {
     speed: 1.0,
 };
 
-/// The largest error over all nodes and steps, from a uniform strain or, with `smooth`, from the bar's first mode; the wall is the middle of a bar that moves oddly about it.
+/// Largest error over all nodes and steps, from a uniform strain or, with `smooth`, from the first mode of the bar;
+/// the wall is the middle of a bar whose motion is odd about it.
 pub(super) fn error(case: &Case<'_>) -> Result<Found, RunError> {
     let (method, h, ratio) = (Method::of(case)?, case.number("h")?, case.number("ratio")?);
     let smooth = case.flag("smooth");
@@ -33,7 +34,7 @@ pub(super) fn error(case: &Case<'_>) -> Result<Found, RunError> {
     let material = BondMaterial {
         horizon: ratio * h,
         influence: Influence::default(),
-        // Half a cell at the horizon itself.
+        // Half a cell at the horizon.
         volume_correction: VolumeCorrection::Linear,
         ..UNIT.material()
     };

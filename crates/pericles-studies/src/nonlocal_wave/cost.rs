@@ -1,4 +1,4 @@
-//! What one exact step costs.
+//! Cost of one exact step.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -17,7 +17,7 @@ use crate::data::{Case, Found};
 
 const T: f64 = 30.0;
 
-/// The state after one step, and the seconds that making the scheme and stepping took.
+/// State after one step, and the time for creating the scheme and stepping, s.
 fn step(system: &mut System, functions: FunctionMethod) -> Result<(State, f64), RunError> {
     let began = Instant::now();
     let options = TrigonometricOptions {
@@ -30,7 +30,7 @@ fn step(system: &mut System, functions: FunctionMethod) -> Result<(State, f64), 
     Ok((state, began.elapsed().as_secs_f64()))
 }
 
-/// A Chebyshev series against eigenvectors on n points: their difference, and the seconds they take.
+/// Chebyshev series compared with eigenvectors on n points: their difference, and their times in seconds.
 pub(super) fn cost(case: &Case<'_>) -> Result<Found, RunError> {
     let n = case.number("n")?;
     let h = 20.0 / (n - 1.0);
@@ -47,7 +47,7 @@ pub(super) fn cost(case: &Case<'_>) -> Result<Found, RunError> {
     .into())
 }
 
-/// A million points on a period: any time for a few transforms.
+/// A million points in a period: any time for a few transforms.
 pub(super) fn million_points(_: &Case<'_>) -> Result<Found, RunError> {
     let n = 1_000_000;
     let h = 1e-4;

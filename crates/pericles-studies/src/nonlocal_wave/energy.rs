@@ -1,4 +1,4 @@
-//! Figures 1 and 2: what the schemes do to the pulse on the line and to its energy.
+//! Figures 1 and 2: effect of the schemes on the pulse on the line and on its energy.
 
 use pericles::System;
 use pericles::boundary::{Load, TimeFunction};
@@ -11,7 +11,7 @@ use super::line::{Method, UNIT, integrator, march, nodes, pulse, system};
 use crate::common::difference;
 use crate::data::{Case, Found};
 
-/// Figure 1: the asymmetry of the pulse by MSV on the piece of line, until waves have met its ends.
+/// Figure 1: asymmetry of the pulse with MSV on the finite domain, until waves reach its ends.
 pub(super) fn pulse_on_line(_: &Case<'_>) -> Result<Found, RunError> {
     const H: f64 = 0.1;
     let cloud = nodes(Method::Msv, H)?;
@@ -33,8 +33,9 @@ pub(super) fn pulse_on_line(_: &Case<'_>) -> Result<Found, RunError> {
     Ok(shown.into_iter().fold(asymmetry.into(), draw))
 }
 
-/// The paper's E_n = ½ V·V + ½ U·AU less that at the start, where it is farthest from zero; by how much the energy that the scheme itself conserves drifts; the energy at the start, and its closed
-/// form for the line, (E U² L²/l²) √π [√2/L − 1/√(L²/2 + l²/4)].
+/// Largest deviation of the paper's E_n = ½ V·V + ½ U·AU from its initial value; the drift of the energy that the
+/// scheme conserves; the initial energy, and its closed form for the line, (E U² L²/l²) √π [√2/L − 1/√(L²/2 +
+/// l²/4)].
 pub(super) fn energy(case: &Case<'_>) -> Result<Found, RunError> {
     let (method, h) = (Method::of(case)?, case.number("h")?);
     let cloud = nodes(method, h)?;
@@ -45,7 +46,7 @@ pub(super) fn energy(case: &Case<'_>) -> Result<Found, RunError> {
     let physical = |system: &System, state: &State| {
         system.kinetic_energy(&state.v) + system.operator().energy(state.t, &state.u)
     };
-    // For ρ = 1 the paper's sum lacks the volume of a node only.
+    // For ρ = 1 the paper's sum differs by the node volume only.
     let volume = cloud.volumes()[0];
     let before = physical(&system, &state);
     let correction = |scheme: &dyn Integrator, system: &System, state: &State| {
@@ -79,7 +80,8 @@ pub(super) fn energy(case: &Case<'_>) -> Result<Found, RunError> {
     .curve("energy", &t, &paper))
 }
 
-/// Under a load that comes and goes: whether e(t) ≤ e(0) exp(νt) + 1/(2νρ) ∫ exp(ν(t−s)) ‖b‖² ds is broken, and the largest energy over this bound.
+/// Under a load of finite duration: whether e(t) ≤ e(0) exp(νt) + 1/(2νρ) ∫ exp(ν(t−s)) ‖b‖² ds is violated, and
+/// the largest ratio of energy to this bound.
 pub(super) fn inequality(case: &Case<'_>) -> Result<Found, RunError> {
     const END: f64 = 8.0;
     let (method, dt, h) = (Method::of(case)?, case.number("dt")?, 0.1);

@@ -1,4 +1,4 @@
-//! A pulse on a piece of the line, by the paper's methods.
+//! Pulse on a finite part of the line by the methods of the paper.
 
 use std::sync::Arc;
 
@@ -19,7 +19,7 @@ use pericles_waves::{Trigonometric, TrigonometricOptions};
 use crate::common::{cells, difference};
 use crate::data::{Case, Found};
 
-/// The medium: ρ = 1, C(ξ) = 4E/(l³√π) exp(−(ξ/l)²).
+/// Medium: ρ = 1, C(ξ) = 4E/(l³√π) exp(−(ξ/l)²).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Medium {
     pub(super) young: f64,
@@ -40,7 +40,7 @@ impl Medium {
                 value: ElasticModulus::Young(self.young),
                 calibration: Calibration::Continuum,
             },
-            // Beyond, the Gaussian is below 1e-21 of its height.
+            // The Gaussian is below 1e-21 of its maximum beyond.
             horizon: 7.0 * self.length,
             influence: Influence {
                 function: InfluenceFunction::Gaussian {
@@ -55,7 +55,7 @@ impl Medium {
     }
 }
 
-/// Space and time scheme, by the paper's names.
+/// Space and time discretisation, with the names of the paper.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Method {
     /// Midpoint nodes, Störmer–Verlet.
@@ -68,7 +68,7 @@ pub(super) enum Method {
     Gt(Option<f64>),
 }
 
-/// The methods by name, with the exponents that the paper's numbers were made with, and without.
+/// Methods by name, with the exponents used for the paper's values, and without regularisation.
 const METHODS: [(&str, Method); 6] = [
     ("MSV", Method::Msv),
     ("MT", Method::Mt(None)),
@@ -79,13 +79,13 @@ const METHODS: [(&str, Method); 6] = [
 ];
 
 impl Method {
-    /// The argument `method`.
+    /// Method of the argument `method`.
     pub(super) fn of(case: &Case<'_>) -> Result<Self, RunError> {
         case.one_of("method", &METHODS)
     }
 }
 
-/// The exact solution of the unit medium.
+/// Exact solution of the unit medium.
 pub(super) const LINE: LineSolution = LineSolution {
     young: 1.0,
     density: 1.0,
@@ -95,7 +95,7 @@ pub(super) const LINE: LineSolution = LineSolution {
     centre: 0.0,
 };
 
-/// The local string.
+/// Exact solution of the local string.
 const STRING: TravellingPulse = TravellingPulse {
     speed: 1.0,
     width: 1.0,
@@ -103,10 +103,10 @@ const STRING: TravellingPulse = TravellingPulse {
     centre: 0.0,
 };
 
-/// Half the length of the piece of the line.
+/// Half length of the finite domain.
 const HALF: f64 = 10.0;
 
-/// The nodes of a method at spacing h: −10, −10 + h … 10, or two in each cell of [−10, 10].
+/// Nodes of a method at spacing h: −10, −10 + h … 10, or two in each cell of [−10, 10].
 pub(super) fn nodes(method: Method, h: f64) -> Result<Arc<PointCloud>, RunError> {
     let count = (2.0 * HALF / h).round();
     let cloud = match method {
@@ -116,17 +116,17 @@ pub(super) fn nodes(method: Method, h: f64) -> Result<Arc<PointCloud>, RunError>
     Ok(Arc::new(cloud))
 }
 
-/// The middles of cells of a bar.
+/// Cell centres of a bar.
 pub(super) fn cells_of(origin: f64, length: f64, h: f64) -> Result<PointCloud, RunError> {
     cells([origin, 0.0, 0.0], vec![length], h)
 }
 
-/// A body with free ends.
+/// Body with free ends.
 pub(super) fn system(cloud: &Arc<PointCloud>, material: &BondMaterial) -> Result<System, RunError> {
     system_as(cloud, material, ForceForm::Convolution)
 }
 
-/// A body whose bonds are kept in this form.
+/// Body whose bonds are stored in this form.
 pub(super) fn system_as(
     cloud: &Arc<PointCloud>,
     material: &BondMaterial,
@@ -160,7 +160,7 @@ pub(super) fn integrator(
     })
 }
 
-/// u = exp(−x²), at rest.
+/// Initial state u = exp(−x²), at rest.
 pub(super) fn pulse(cloud: &PointCloud) -> State {
     let mut state = State::at_rest(cloud.len());
     for (u, x) in state.u.iter_mut().zip(cloud.axis(0)) {
@@ -169,7 +169,7 @@ pub(super) fn pulse(cloud: &PointCloud) -> State {
     state
 }
 
-/// Steps a body, blow-up or not, and shows every state but the first.
+/// Steps a body, also if it becomes unstable, and calls the observer with every state but the first.
 pub(super) fn march(
     system: &mut System,
     integrator: &mut dyn Integrator,
@@ -186,7 +186,7 @@ pub(super) fn march(
     Ok(())
 }
 
-/// A solution at the nodes of a method for every step.
+/// Solution at the nodes of a method for every step.
 struct Reference {
     cloud: Arc<PointCloud>,
     dt: f64,
@@ -207,13 +207,13 @@ impl Reference {
         }
     }
 
-    /// The largest difference of two solutions.
+    /// Largest difference of two solutions.
     fn distance(&self, other: &Self) -> f64 {
         let pairs = self.fields.iter().zip(&other.fields);
         pairs.map(|(a, b)| difference(a, b)).fold(0.0, f64::max)
     }
 
-    /// The largest error of a method.
+    /// Largest error of a method.
     fn error(&self, medium: Medium, method: Method, h: f64) -> Result<f64, RunError> {
         let mut system = system(&self.cloud, &medium.material())?;
         let mut integrator = integrator(method, h, &system)?;
@@ -238,7 +238,8 @@ impl Reference {
     }
 }
 
-/// The largest error of a method at spacing h over all nodes and steps; the step is h unless `dt` is given, the solution that of the medium unless `string` is set.
+/// Largest error of a method at spacing h over all nodes and steps. The time step is h unless `dt` is given; the
+/// reference is the medium unless `string` is set.
 fn error_at(case: &Case<'_>, h: f64) -> Result<f64, RunError> {
     let (method, end) = (Method::of(case)?, case.number("end")?);
     let dt = case.optional("dt").unwrap_or(h);
@@ -263,13 +264,13 @@ fn error_at(case: &Case<'_>, h: f64) -> Result<f64, RunError> {
         .map(|error| *error)
 }
 
-/// Tables 1 to 3: the largest error.
+/// Tables 1 to 3: largest error.
 pub(super) fn error(case: &Case<'_>) -> Result<Found, RunError> {
     let error = error_at(case, case.number("h")?)?;
     Ok([("value", error), ("log10", error.log10())].into())
 }
 
-/// The order of the error from 2h to h.
+/// Order of the error from 2h to h.
 pub(super) fn order(case: &Case<'_>) -> Result<Found, RunError> {
     let h = case.number("h")?;
     Ok((error_at(case, 2.0 * h)? / error_at(case, h)?)
@@ -277,7 +278,8 @@ pub(super) fn order(case: &Case<'_>) -> Result<Found, RunError> {
         .into())
 }
 
-/// Table 3: the distance of the exact solutions of the line and the string, looked for on a fine grid, and its order from twice the length.
+/// Table 3: difference of the exact solutions of the line and the string, evaluated on a fine grid, and its order
+/// from twice the length.
 pub(super) fn local_limit(case: &Case<'_>) -> Result<Found, RunError> {
     let [dt, end] = [case.number("dt")?, case.number("end")?];
     let gap = |length: f64| {

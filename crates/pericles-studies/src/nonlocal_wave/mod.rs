@@ -1,10 +1,13 @@
-//! The nonlocal wave equation on the line: quadrature in space, trigonometric, Störmer–Verlet and implicit schemes in time, and the spectral method.
+//! Nonlocal wave equation on the line: quadrature in space, trigonometric, Störmer–Verlet and implicit schemes in
+//! time, and the spectral method.
 //!
-//! Coclite, Fanizzi, Lopez, Maddalena, Pellegrino, Numerical methods for the nonlocal wave equation of the peridynamics, Applied Numerical Mathematics 155
-//! (2020) 119–139. Where the paper's numbers are misprinted, depend on its regularisation or cannot be identified, the numbers that are judged were
-//! recomputed by an independent dense code; rows say so.
+//! Coclite, Fanizzi, Lopez, Maddalena, Pellegrino, Numerical methods for the nonlocal wave equation of the
+//! peridynamics, Applied Numerical Mathematics 155 (2020) 119–139. Where the paper's values are misprinted, depend
+//! on its regularisation or cannot be identified, rows are judged by values recomputed by an independent dense
+//! code; the rows say so.
 //!
-//! Units: E = ρ = 1 and lengths in those of the start unless a row says otherwise. Errors are the largest over all nodes and steps.
+//! Units: E = ρ = 1 and lengths in those of the initial pulse unless a row says otherwise. Errors are the largest
+//! over all nodes and steps.
 
 mod bar;
 mod cost;
@@ -15,7 +18,7 @@ mod spectral;
 
 use crate::study::{Topic, data};
 
-/// The studies of this topic.
+/// Studies of this topic.
 pub(super) const TOPIC: Topic = Topic {
     studies: &[
         data!("nonlocal-wave/table-1"),

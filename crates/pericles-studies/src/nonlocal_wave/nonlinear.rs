@@ -1,10 +1,10 @@
-//! Section 7: nonlinear forces, their treatments, and the schemes on them.
+//! Section 7: nonlinear forces, their approximations, and time integration with them.
 
 use std::rc::Rc;
 use std::sync::Arc;
 
 use pericles::System;
-use pericles::material::{BondMaterial, CubicLaw, PairLaw, Treatment};
+use pericles::material::{Approximation, BondMaterial, CubicLaw, PairLaw};
 use pericles::operator::Linearisation;
 use pericles::space::PointCloud;
 use pericles::time::{Implicit, ImplicitRule, Integrator, State, VelocityVerlet};
@@ -18,7 +18,7 @@ use crate::data::{Case, Found};
 
 const END: f64 = 3.0;
 const H: f64 = 0.1;
-/// Height of the pulse over its width: bonds of an L stretch by some tenths of it.
+/// Height of the pulse relative to its width: bonds of length L stretch by some tenths of it.
 const HEIGHT: f64 = 0.1;
 
 fn material(law: PairLaw) -> BondMaterial {
@@ -39,7 +39,7 @@ fn start(cloud: &PointCloud, height: f64) -> State {
     state
 }
 
-/// The displacement at the end of a motion in `steps` steps of a scheme.
+/// Displacement at the end of a motion in `steps` steps of a scheme.
 fn moved(
     mut body: System,
     scheme: &mut dyn Integrator,
@@ -52,23 +52,27 @@ fn moved(
     Ok(state.u)
 }
 
-/// What an approximation of the force does to a pulse: the miss of the displacement, its order in the height, and the miss at half the height over that of `taylor-2`.
+/// Error of an approximate force for a pulse: the displacement error, its order in the height, and the ratio to the
+/// error of `taylor-2` at half the height.
 pub(super) fn treatment(case: &Case<'_>) -> Result<Found, RunError> {
     let laws = [
         (
             "green-strain",
             (PairLaw::GreenStrain, CubicLaw::GreenStrain),
         ),
-        ("literal57", (PairLaw::Literal57, CubicLaw::Literal57)),
+        (
+            "literal57",
+            (PairLaw::CubicSoftening, CubicLaw::CubicSoftening),
+        ),
     ];
     let (exact, cubic) = case.one_of("law", &laws)?;
-    let second = PairLaw::Treated(cubic, Treatment::SecondOrder);
+    let second = PairLaw::Approximated(cubic, Approximation::SecondOrder);
     let treatments = [
         ("taylor-1", PairLaw::Linear),
         ("taylor-2", second),
         (
             "trapezoidal",
-            PairLaw::Treated(cubic, Treatment::Trapezoidal),
+            PairLaw::Approximated(cubic, Approximation::Trapezoidal),
         ),
     ];
     let treated = case.one_of("treatment", &treatments)?;
@@ -90,7 +94,7 @@ pub(super) fn treatment(case: &Case<'_>) -> Result<Found, RunError> {
     .curve("treated", cloud.axis(0), &run(treated, HEIGHT)?))
 }
 
-/// The order of a scheme in the step on the true nonlinear force, and its error.
+/// Order of a scheme in the time step with the full nonlinear force, and its error.
 pub(super) fn scheme(case: &Case<'_>) -> Result<Found, RunError> {
     type Make = fn(&System) -> Result<Box<dyn Integrator>, RunError>;
     let schemes: [(&str, Make); 4] = [
@@ -130,7 +134,7 @@ pub(super) fn scheme(case: &Case<'_>) -> Result<Found, RunError> {
     .into())
 }
 
-/// The pseudo-spectral force, dealiased, against the sum over bonds, over the height.
+/// Dealiased pseudo-spectral force compared with the sum over bonds, relative to the height.
 pub(super) fn series(_: &Case<'_>) -> Result<Found, RunError> {
     let cloud = Arc::new(cells_of(-18.0, 36.0, 0.125)?);
     let ring = Arc::new(PointCloud::clone(&cloud).with_periodic_faces()?);
@@ -141,7 +145,7 @@ pub(super) fn series(_: &Case<'_>) -> Result<Found, RunError> {
     Ok((difference(&run(sums)?, &run(waves)?) / HEIGHT).into())
 }
 
-/// How far the force is from its linearisation at the start.
+/// Relative difference of the force from its linearisation at the start.
 pub(super) fn linearisation(_: &Case<'_>) -> Result<Found, RunError> {
     let body = body(PairLaw::GreenStrain)?;
     let rest = vec![0.0; body.points()];

@@ -1,4 +1,4 @@
-//! Table 4 and figures 3 and 4: the spectral method on a period.
+//! Table 4 and figures 3 and 4: spectral method on a periodic domain.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -18,7 +18,7 @@ use crate::data::{Case, Found};
 
 const T: f64 = 3.5;
 
-/// A period 2πM with n points, one of them at −πM.
+/// Period 2πM with n points, one of them at −πM.
 fn ring(half_periods: f64, n: usize) -> Result<Arc<PointCloud>, RunError> {
     let period = 2.0 * PI * half_periods;
     let h = period / n as f64;
@@ -26,7 +26,7 @@ fn ring(half_periods: f64, n: usize) -> Result<Arc<PointCloud>, RunError> {
     Ok(Arc::new(cells.with_periodic_faces()?))
 }
 
-/// The pulse at time t, in one step.
+/// Pulse at time t, computed in one step.
 fn displacement(cloud: &Arc<PointCloud>, t: f64) -> Result<State, RunError> {
     let material = UNIT.material();
     let constants = material.constants(cloud, StressState::Uniaxial)?;
@@ -39,7 +39,8 @@ fn displacement(cloud: &Arc<PointCloud>, t: f64) -> Result<State, RunError> {
     Ok(state)
 }
 
-/// Errors on [−π, π], or with `everywhere` on the whole period of so many `half_periods`: the largest over the largest computed displacement, and Σe²/Σu².
+/// Errors on [−π, π], or with `everywhere` on the whole period of 2π · `half_periods`: the largest relative to the
+/// largest computed displacement, and Σe²/Σu².
 pub(super) fn error(case: &Case<'_>) -> Result<Found, RunError> {
     let window = if case.flag("everywhere") {
         f64::INFINITY
@@ -65,7 +66,7 @@ pub(super) fn error(case: &Case<'_>) -> Result<Found, RunError> {
     .curve("error", &x, &shown))
 }
 
-/// Figure 3: the largest error on [−π, π] at six times.
+/// Figure 3: largest error on [−π, π] at six times.
 pub(super) fn period(_: &Case<'_>) -> Result<Found, RunError> {
     let cloud = ring(2.5, 320)?;
     let x = cloud.axis(0).to_vec();

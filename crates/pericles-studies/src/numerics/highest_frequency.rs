@@ -1,4 +1,5 @@
-//! The highest frequency of bodies: estimate and bound against all eigenvalues of the dense matrix, and the bound of large bodies by plane waves.
+//! Highest frequency of bodies: estimate and bound compared with dense eigenvalues, and the plane-wave bound of
+//! large bodies.
 
 use nalgebra::DMatrix;
 use pericles::System;
@@ -7,7 +8,8 @@ use pericles_run::{Resources, RunError, build};
 use crate::data::{Case, Found};
 use crate::decks::deck;
 
-/// Estimate and bound of the highest frequency over the truth, or, for a body too `large` for a dense matrix, the bound over the estimate; products with the matrix.
+/// Ratios of the estimate and the bound of the highest frequency to the exact value or, for a body too `large` for
+/// a dense matrix, of the bound to the estimate; and products with the matrix.
 pub(super) fn highest_frequency(case: &Case<'_>) -> Result<Found, RunError> {
     let assembly = build(&deck(case, &[])?, &Resources::default())?;
     let found = assembly.body_frequency;
@@ -22,7 +24,7 @@ pub(super) fn highest_frequency(case: &Case<'_>) -> Result<Found, RunError> {
         .value("bound", found.map(|found| found.bound / truth)))
 }
 
-/// The largest eigenvalue of M^-1/2 K M^-1/2, its columns computed one by one.
+/// Largest eigenvalue of M^-1/2 K M^-1/2, with its columns computed one by one.
 fn largest_eigenvalue(system: &System, u: &[f64]) -> f64 {
     let roots: Vec<f64> = system.masses().iter().map(|mass| mass.sqrt()).collect();
     let n = roots.len();

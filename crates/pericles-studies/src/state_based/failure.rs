@@ -1,4 +1,4 @@
-//! What it costs to tear a linear peridynamic solid: halves pulled apart, and cracks along the planes of its lattice.
+//! Fracture energy of linear peridynamic solids: rigid separation of halves, and cracks along lattice planes.
 
 use pericles::family::VolumeCorrection;
 use pericles::material::{
@@ -13,10 +13,10 @@ use super::{influence_of, solid, state_of};
 use crate::data::{Case, Found};
 use crate::row::Row;
 
-/// The fracture energy asked for, J/m².
+/// Requested fracture energy, J/m².
 const G0: f64 = 1e-3;
 
-/// The argument `criterion`: a definition of the critical stretch, or the bond energy.
+/// Failure of the argument `criterion`: a definition of the critical stretch, or the bond energy.
 fn failure_of(case: &Case<'_>, calibration: FractureCalibration) -> Result<BondFailure, RunError> {
     let stretch = |definition| BondFailure::Stretch {
         fracture_energy: G0,
@@ -36,7 +36,7 @@ fn failure_of(case: &Case<'_>, calibration: FractureCalibration) -> Result<BondF
     case.one_of("criterion", &criteria)
 }
 
-/// Energy spent over G₀ by pulling halves apart, with w = 1 and whole volumes.
+/// Work of separation of two halves over G₀, with w = 1 and full volumes.
 pub(super) fn separation(case: &Case<'_>) -> Result<Found, RunError> {
     let failure = failure_of(case, FractureCalibration::Continuum)?;
     let spent = energy_spent(
@@ -48,7 +48,8 @@ pub(super) fn separation(case: &Case<'_>) -> Result<Found, RunError> {
     Ok(Found::default().value("value", spent.map(|spent| spent / G0)))
 }
 
-/// Rows of limits calibrated on the lattice: the mean over the planes is the energy asked for, and that of each plane the sum over the layers of points beside it.
+/// Rows of limits calibrated on the lattice: the mean over the planes is the requested energy, and that of each
+/// plane equals the sum over the layers of points beside it.
 pub(super) fn planes(case: &Case<'_>) -> Result<Found, RunError> {
     let (state, name) = (state_of(case)?, case.text("name")?);
     let failure = failure_of(case, FractureCalibration::Lattice)?;
@@ -65,7 +66,7 @@ pub(super) fn planes(case: &Case<'_>) -> Result<Found, RunError> {
     let rows = match material.constants_on(&sides, 1.0, state) {
         Ok(constants) => of_planes(&name, &material, &constants, state),
         // Weights that are negative near the horizon.
-        Err(refused) => vec![Row::new(name, "", None).note(format!("refused: {refused}"))],
+        Err(refused) => vec![Row::new(name, "", None).note(format!("not available: {refused}"))],
     };
     Ok(rows.into())
 }
@@ -81,7 +82,7 @@ fn of_planes(
     let mut rows = vec![
         Row::new(format!("mean over planes over G₀: {case}"), "", Some(mean)).within(1.0, 1e-10),
     ];
-    // (10) and (11), or (100), (110) and (111).
+    // Planes (10) and (11), or (100), (110) and (111).
     for (plane, order) in planes.iter().zip(1..) {
         let found = plane.energy() / G0;
         let expected = of_layers(material, constants, state.dimension(), order) / G0;
@@ -94,11 +95,12 @@ fn of_planes(
     rows
 }
 
-/// Energy per area of a crack between two layers of points, the normal of which has `order` ones and otherwise zeros, where only the bonds across it are stretched by the critical stretch, or store the
-/// critical energy.
+/// Energy per area of a crack between two layers of points whose normal has `order` ones and otherwise zeros. Only
+/// the bonds across it are stretched by the critical stretch, or store the critical energy.
 ///
-/// A point k + 1/2 layers from the plane has the share p_k = (1/m) Σ ω r² of bonds that cross it. Per area the points of a layer take the distance h of layers. So G = s₀² h Σ_k (B p_k + A D p_k²) of both sides,
-/// or w_c h Σ_k Σ b V over the bonds that cross.
+/// A point k + 1/2 layers from the plane has the fraction p_k = (1/m) Σ ω r² of bonds that cross it. Per area the
+/// points of a layer represent the distance h of layers. Hence G = s₀² h Σ_k (B p_k + A D p_k²) of both sides, or
+/// w_c h Σ_k Σ b V over the bonds that cross.
 fn of_layers(
     material: &LinearSolid,
     constants: &LinearSolidConstants,

@@ -1,4 +1,5 @@
-//! What a lattice makes of a linear peridynamic solid: shear stiffness by direction, the influence function that makes it isotropic, the stable step.
+//! Linear peridynamic solids on a lattice: shear stiffness by direction, the influence function that makes it
+//! isotropic, the stable step.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -14,7 +15,7 @@ use super::stencil::{Bond, bonds, weighted_volume};
 use super::{cells, correction_of, function_of, horizon, influence_of, solid, state_of};
 use crate::data::{Case, Found};
 
-/// G of a shear along the axes and along the diagonals over G, at δ = (m + 0.015) Δx.
+/// Shear modulus along the axes and along the diagonals over G, at δ = (m + 0.015) Δx.
 pub(super) fn shear(case: &Case<'_>) -> Result<Found, RunError> {
     let influence = Influence {
         function: function_of(case)?,
@@ -28,14 +29,14 @@ pub(super) fn shear(case: &Case<'_>) -> Result<Found, RunError> {
         .value("diagonals", found.map(|shear| shear.diagonals)))
 }
 
-/// c of w = 1 − c r/δ at δ = m Δx, and what is left of the anisotropy.
+/// Coefficient c of w = 1 − c r/δ at δ = m Δx, and the remaining anisotropy.
 pub(super) fn isotropic(case: &Case<'_>) -> Result<Found, RunError> {
     let sides = vec![1.0; case.count("dimension")?];
     let (horizon, correction) = (horizon(case.count("m")?), correction_of(case)?);
     let found = IsotropicInfluence::of_lattice(&sides, horizon, correction)?;
     let shear = LatticeShear::of(&sides, &found.influence(), horizon, correction);
     let sign = match found.is_signed() {
-        true => "negative near the horizon: refused where bonds break",
+        true => "negative near the horizon: not available with breaking bonds",
         false => "",
     };
     Ok(Found::from([("coefficient", found.coefficient())])
@@ -43,7 +44,8 @@ pub(super) fn isotropic(case: &Case<'_>) -> Result<Found, RunError> {
         .text("sign", sign))
 }
 
-/// A plane wave on the infinite lattice, ρ ω² û = Q(k) û: the largest eigenvalue of Q, for a wave vector k in 1/Δx, by the bonds of a node.
+/// Largest eigenvalue of Q for a plane wave on the infinite lattice, ρ ω² û = Q(k) û, with wave vector k in 1/Δx,
+/// from the bonds of a node.
 fn stiffness_of_wave(bonds: &[Bond], constants: &LinearSolidConstants, k: &[f64]) -> f64 {
     let (d, m) = (k.len(), weighted_volume(bonds));
     let mut matrix = nalgebra::DMatrix::zeros(d, d);
@@ -60,7 +62,7 @@ fn stiffness_of_wave(bonds: &[Bond], constants: &LinearSolidConstants, k: &[f64]
     matrix.symmetric_eigenvalues().max()
 }
 
-/// 2/ω_max times the speed of pressure waves over the spacing; the fastest wave runs along an axis.
+/// 2/ω_max times the speed of pressure waves over the spacing; the fastest wave travels along an axis.
 pub(super) fn stable_step(case: &Case<'_>) -> Result<Found, RunError> {
     let (state, correction) = (state_of(case)?, correction_of(case)?);
     let material = solid(
@@ -87,7 +89,7 @@ pub(super) fn stable_step(case: &Case<'_>) -> Result<Found, RunError> {
     Ok((2.0 * (pressure / fastest).sqrt()).into())
 }
 
-/// The highest frequency of a periodic body by the force operator, and that of the plane waves that the body has.
+/// Highest frequency of a periodic body by the force operator, and that of the plane waves of the body.
 pub(super) fn periodic_body(case: &Case<'_>) -> Result<Found, RunError> {
     let (state, correction) = (state_of(case)?, correction_of(case)?);
     let counts = case.numbers("counts")?;

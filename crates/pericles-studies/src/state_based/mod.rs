@@ -1,4 +1,4 @@
-//! Studies of linear peridynamic solids, against tables computed by an independent implementation in another language.
+//! Linear peridynamic solids compared with tables of an independent implementation in another language.
 
 mod failure;
 mod lattice;
@@ -16,7 +16,7 @@ use crate::common;
 use crate::data::Case;
 use crate::study::{Topic, data};
 
-/// The studies of this topic.
+/// Studies of this topic.
 pub(super) const TOPIC: Topic = Topic {
     studies: &[
         data!("state-based/lattice"),
@@ -34,7 +34,8 @@ pub(super) const TOPIC: Topic = Topic {
     ],
 };
 
-/// A solid with E = 10 Pa and ρ = 1 kg/m³ on cells of 1 m, with a horizon of so many spacings and a millionth more, that does not break.
+/// Unbreakable solid with E = 10 Pa and ρ = 1 kg/m³ on cells of 1 m, with a horizon of a whole number of spacings
+/// plus one millionth.
 fn solid(
     poisson_ratio: f64,
     spacings: usize,
@@ -55,18 +56,18 @@ fn solid(
     }
 }
 
-/// A horizon of so many spacings of 1 m, longer by a millionth so that rounding loses no bond.
+/// Horizon of a whole number of spacings of 1 m, increased by one millionth so that round-off loses no bond.
 fn horizon(spacings: usize) -> f64 {
     spacings as f64 * (1.0 + 1e-6)
 }
 
-/// A box of cells of 1 m.
+/// Box of cells of 1 m.
 fn cells(counts: &[usize]) -> Result<PointCloud, RunError> {
     let size = counts.iter().map(|&count| count as f64).collect();
     common::cells([0.0; 3], size, 1.0)
 }
 
-/// The argument `state`.
+/// Stress state of the argument `state`.
 fn state_of(case: &Case<'_>) -> Result<StressState, RunError> {
     let states = [
         ("3D", StressState::Spatial),
@@ -76,7 +77,7 @@ fn state_of(case: &Case<'_>) -> Result<StressState, RunError> {
     case.one_of("state", &states)
 }
 
-/// The argument `function`; the length of a Gaussian is half the horizon of so many spacings.
+/// Influence function of the argument `function`; the length of a Gaussian is half the horizon.
 fn function_of(case: &Case<'_>) -> Result<InfluenceFunction, RunError> {
     let gaussian = InfluenceFunction::Gaussian {
         length: 0.5 * case.number("m")?,
@@ -91,7 +92,7 @@ fn function_of(case: &Case<'_>) -> Result<InfluenceFunction, RunError> {
     case.one_of("function", &functions)
 }
 
-/// The argument `function`, which may be `isotropic`.
+/// Influence function of the argument `function`, which may be `isotropic`.
 fn influence_of(case: &Case<'_>) -> Result<StateInfluence, RunError> {
     match &case.text("function")?[..] {
         "isotropic" => Ok(StateInfluence::Isotropic),
@@ -99,7 +100,7 @@ fn influence_of(case: &Case<'_>) -> Result<StateInfluence, RunError> {
     }
 }
 
-/// The argument `volumes`.
+/// Volume correction of the argument `volumes`.
 fn correction_of(case: &Case<'_>) -> Result<VolumeCorrection, RunError> {
     let corrections = [
         ("whole volumes", VolumeCorrection::None),

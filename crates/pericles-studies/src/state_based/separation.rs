@@ -1,4 +1,4 @@
-//! Two halves of a lattice that are pulled apart rigidly: the energy that this spends, measured by the force between them.
+//! Rigid separation of two halves of a lattice: the work, measured by the force between them.
 
 use std::sync::Arc;
 
@@ -8,13 +8,14 @@ use pericles::kernel::InfluenceFunction;
 use pericles::material::{
     BondFailure, LinearSolid, LinearSolidConstants, StateInfluence, Strains, StressState,
 };
-use pericles::operator::{BondForm, Force, LinearSolidBody, On};
+use pericles::operator::{BondForm, Force, LinearSolidBody, PointSubset};
 use pericles::space::PointCloud;
 use pericles_run::RunError;
 
 use super::{cells, solid};
 
-/// Energy per area, J/m², in a body of solids with a constant influence function and whole volumes; none if the halves are still joined at the largest opening.
+/// Work per area, J/m², in a body of a solid with a constant influence function and full volumes; `None` if the
+/// halves are still connected at the largest opening.
 pub(super) fn energy_spent(
     state: StressState,
     spacings: usize,
@@ -22,7 +23,7 @@ pub(super) fn energy_spent(
     failure: BondFailure,
 ) -> Result<Option<f64>, RunError> {
     let (dimension, layers) = (state.dimension(), 2 * spacings);
-    // A column whose neighbours have whole families of points that have whole families.
+    // A column whose neighbours have full families of points that have full families.
     let width = 4 * spacings + 1;
     let mut counts = vec![width; dimension];
     counts[0] = 2 * layers;
@@ -45,7 +46,7 @@ pub(super) fn energy_spent(
     for ends in openings.windows(2) {
         let decided = halves.apart(ends[0].decided);
         let step = StepEnd::sub_step(0.0, 0.0, &decided);
-        operator.end_step(&step, On::All, &mut force);
+        operator.end_step(&step, PointSubset::All, &mut force);
         let pulls = [ends[0].at, ends[1].at].map(|at| halves.pull(&*operator, at));
         let mean = 0.5 * (pulls[0] + pulls[1]);
         if mean.abs() < 1e-12 {
@@ -56,11 +57,11 @@ pub(super) fn energy_spent(
     Ok(None)
 }
 
-/// A body of two halves.
+/// Body of two halves.
 struct Halves {
-    /// The points that move.
+    /// Points that move.
     moved: Vec<usize>,
-    /// Those of them in the column of unit section through the middle.
+    /// Moving points in the column of unit cross-section through the middle.
     column: Vec<usize>,
     entries: usize,
 }
@@ -81,29 +82,30 @@ impl Halves {
         }
     }
 
-    /// The displacement with a gap of this width, m.
+    /// Displacement with a gap of this width, m.
     fn apart(&self, opening: f64) -> Vec<f64> {
         let mut u = vec![0.0; self.entries];
         self.moved.iter().for_each(|&i| u[i] = opening);
         u
     }
 
-    /// The force per area that closes the gap, N/m².
+    /// Force per area that closes the gap, N/m².
     fn pull(&self, operator: &dyn Force, opening: f64) -> f64 {
         let mut force = vec![0.0; self.entries];
-        operator.add_force(0.0, &self.apart(opening), On::All, &mut force);
+        operator.add_force(0.0, &self.apart(opening), PointSubset::All, &mut force);
         -self.column.iter().map(|&i| force[i]).sum::<f64>()
     }
 }
 
-/// A width of the gap, and the one at which breaking is decided there, m.
+/// Width of the gap, and the width at which breaking is evaluated there, m.
 struct Opening {
     at: f64,
     decided: f64,
 }
 
-/// By stretch: the openings at which bonds break, s₀ r²/ξ_x for small strains, and just above each; the force is linear in between. By bond energy: openings that grow by 3 %, where bonds that break within a
-/// step break at its start or its end, half of them each.
+/// By stretch: the openings at which bonds break, s₀ r²/ξ_x for small strains, and just above each; the force is
+/// linear in between. By bond energy: openings that grow by 3 %, where half of the bonds that break within a step
+/// break at its start and half at its end.
 fn openings(constants: &LinearSolidConstants, dimension: usize, spacings: i32) -> Vec<Opening> {
     if constants.limits.stretch.is_infinite() {
         let first = 0.2 * (constants.fracture_energy / constants.deviatoric).sqrt();

@@ -1,9 +1,9 @@
-//! The bonds of a lattice's node, for sums that are written out from their definition.
+//! Bonds of a lattice node, for sums evaluated from their definition.
 
 use pericles::family::VolumeCorrection;
 use pericles::kernel::Influence;
 
-/// A bond of a node: its vector in spacings of 1 m, its length, b and ω = w b.
+/// Bond of a node: its vector in spacings of 1 m, its length, volume b and ω = w b.
 pub(super) struct Bond {
     pub xi: [i32; 3],
     pub length: f64,
@@ -11,7 +11,7 @@ pub(super) struct Bond {
     pub weight: f64,
 }
 
-/// All bonds of a node in so many dimensions.
+/// All bonds of a node in a given dimension.
 pub(super) fn bonds(
     dimension: usize,
     influence: &Influence,
@@ -43,7 +43,7 @@ pub(super) fn bonds(
     bonds
 }
 
-/// m = Σ ω r².
+/// Weighted volume m = Σ ω r².
 pub(super) fn weighted_volume(bonds: &[Bond]) -> f64 {
     let terms = bonds.iter();
     terms

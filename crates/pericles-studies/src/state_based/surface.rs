@@ -1,16 +1,17 @@
-//! How much stiffer or softer a bar is because its surface points lack bonds.
+//! Stiffness error of a bar due to the missing bonds of its surface points.
 
 use std::sync::Arc;
 
 use pericles::material::{LinearSolid, SolidSurface, Strains, StressState};
-use pericles::operator::{BondForm, Force, LinearSolidBody, On};
+use pericles::operator::{BondForm, Force, LinearSolidBody, PointSubset};
 use pericles::solve::{SolveLimits, Work, conjugate_gradient};
 use pericles_run::RunError;
 
 use super::{cells, correction_of, influence_of, solid};
 use crate::data::{Case, Found};
 
-/// Young's modulus over that of the material of a bar `count` cells long: bare, with corrected surfaces, and inside the lattice.
+/// Ratio of the Young's modulus of a bar `count` cells long to that of the material: without and with surface
+/// correction, with ghost layers, and inside the lattice.
 pub(super) fn bar(case: &Case<'_>) -> Result<Found, RunError> {
     let (count, correction) = (case.count("count")?, correction_of(case)?);
     let material = solid(
@@ -25,6 +26,7 @@ pub(super) fn bar(case: &Case<'_>) -> Result<Found, RunError> {
             "corrected",
             measured(count, &material, SolidSurface::Energy)?,
         ),
+        ("ghosts", measured(count, &material, SolidSurface::Ghosts)?),
         ("inside", interior(&material)?),
     ]
     .into())
@@ -32,7 +34,8 @@ pub(super) fn bar(case: &Case<'_>) -> Result<Found, RunError> {
 
 const STATE: StressState = StressState::PlaneStress;
 
-/// Young's modulus over that of the material of a plate twice as long as wide under plane stress, pulled at its end rows, by the strain of its middle half.
+/// Ratio of the Young's modulus of a plate twice as long as wide under plane stress, pulled at its end rows, to
+/// that of the material, from the strain of its middle half.
 fn measured(count: usize, material: &LinearSolid, surface: SolidSurface) -> Result<f64, RunError> {
     let length = count as f64;
     let cloud = Arc::new(cells(&[count, count / 2])?);
@@ -62,7 +65,7 @@ fn measured(count: usize, material: &LinearSolid, surface: SolidSurface) -> Resu
     Ok(1.0 / strain / constants.elastic.young())
 }
 
-/// The same of the interior of the lattice: 4/E = 1/κ + 1/G of the diagonals.
+/// The same ratio for the interior of the lattice: 4/E = 1/κ + 1/G of the diagonals.
 fn interior(material: &LinearSolid) -> Result<f64, RunError> {
     let constants = material.constants_on(&[1.0; 2], 1.0, STATE)?;
     let elastic = constants.elastic;
@@ -71,11 +74,11 @@ fn interior(material: &LinearSolid) -> Result<f64, RunError> {
     Ok(4.0 / (1.0 / kappa + 1.0 / shear) / elastic.young())
 }
 
-/// The displacement at which the forces balance the load; rigid motions stay zero, for the load has none.
+/// Displacement in equilibrium with the load; rigid motions stay zero, because the load has none.
 fn equilibrium(operator: &dyn Force, load: &[f64]) -> Result<Vec<f64>, RunError> {
     let mut apply = |u: &[f64], out: &mut [f64]| {
         out.fill(0.0);
-        operator.add_force(0.0, u, On::All, out);
+        operator.add_force(0.0, u, PointSubset::All, out);
         out.iter_mut().for_each(|force| *force = -*force);
     };
     let limits = SolveLimits {

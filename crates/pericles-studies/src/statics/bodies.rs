@@ -1,4 +1,4 @@
-//! The bodies of the studies of solvers.
+//! Bodies of the solver studies.
 
 use std::sync::Arc;
 
@@ -15,7 +15,8 @@ use pericles_run::RunError;
 
 use crate::data::Case;
 
-/// The body that a case names: `body` is "plate" or "bar", `cells` its cells along a side, `nu` Poisson's ratio, `cracked` whether a crack reaches to its middle.
+/// Body of a case: `body` is "plate" or "bar", `cells` the number of cells along a side, `nu` Poisson's ratio,
+/// `cracked` whether a crack extends to the middle.
 pub(super) fn body(case: &Case<'_>) -> Result<System, RunError> {
     let (cells, nu) = (case.count("cells")?, case.number("nu")?);
     let build = case.one_of("body", &[("plate", plate as Build), ("bar", bar)])?;
@@ -24,7 +25,8 @@ pub(super) fn body(case: &Case<'_>) -> Result<System, RunError> {
 
 type Build = fn(usize, f64, bool) -> Result<System, RunError>;
 
-/// A plate 1 × 1 in plane stress with a hole of radius 0.1: its first and last rows of points are pulled along y by a total force of 1, and three components are held against rigid-body motion.
+/// Plate 1 × 1 in plane stress with a hole of radius 0.1: its first and last rows of points are pulled along y by a
+/// total force of 1, and three components are fixed against rigid-body motion.
 fn plate(cells: usize, nu: f64, cracked: bool) -> Result<System, RunError> {
     let cloud = plate_with_hole(cells)?;
     let dx = cloud.spacing();
@@ -56,7 +58,7 @@ fn plate(cells: usize, nu: f64, cracked: bool) -> Result<System, RunError> {
     Ok(system)
 }
 
-/// A plate 1 × 1 about the origin with a hole of radius 0.1.
+/// Plate 1 × 1 about the origin with a hole of radius 0.1.
 fn plate_with_hole(cells: usize) -> Result<Arc<PointCloud>, RunError> {
     let grid = Grid {
         shape: Shape::Box {
@@ -73,7 +75,8 @@ fn plate_with_hole(cells: usize) -> Result<Arc<PointCloud>, RunError> {
     Ok(Arc::new(grid.points()?))
 }
 
-/// The plate with a hole for finite strains, ν = 1/3, between grips that stretch it by 5 %: rows within 3.01 spacings of both ends are displaced by (0, 0.05 y). The second grip is the upper one.
+/// Plate with a hole for finite strains, ν = 1/3, stretched by 5 %: rows within 3.01 spacings of both ends have the
+/// prescribed displacement (0, 0.05 y). The second constraint is the upper one.
 pub(super) fn stretched(cells: usize) -> Result<System, RunError> {
     let cloud = plate_with_hole(cells)?;
     let laws = (StressState::PlaneStress, Strains::Finite);
@@ -99,7 +102,8 @@ pub(super) fn stretched(cells: usize) -> Result<System, RunError> {
     Ok(system)
 }
 
-/// A bar 2 × 1 × 1 of twice as many cells along its length, clamped at one end and sheared at the other; its crack is half through.
+/// Bar 2 × 1 × 1 with twice as many cells along its length, clamped at one end and sheared at the other; its crack
+/// extends through half of it.
 fn bar(cells: usize, nu: f64, cracked: bool) -> Result<System, RunError> {
     let dx = 1.0 / cells as f64;
     let cloud = Arc::new(Grid::block([2.0, 1.0, 1.0], dx).points()?);
@@ -120,7 +124,8 @@ fn bar(cells: usize, nu: f64, cracked: bool) -> Result<System, RunError> {
     Ok(system)
 }
 
-/// A linear peridynamic solid with E = ρ = 1, a horizon of three spacings, conical influence function and partial volumes.
+/// Linear peridynamic solid with E = ρ = 1, a horizon of three spacings, conical influence function and partial
+/// volumes.
 fn solid(
     cloud: &Arc<PointCloud>,
     nu: f64,
@@ -157,7 +162,7 @@ fn solid(
     )?)
 }
 
-/// The points that meet a condition on their coordinates.
+/// Points that satisfy a condition on their coordinates.
 pub(super) fn points(cloud: &PointCloud, inside: impl Fn(Point) -> bool) -> PointSet {
     let all = 0..cloud.len() as u32;
     all.filter(|&i| inside(cloud.point(i as usize))).collect()

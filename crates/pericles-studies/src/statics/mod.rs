@@ -1,18 +1,24 @@
-//! Studies of static states, against tables computed by an independent implementation in another language.
+//! Studies of static solvers, compared with tables of an independent implementation in another language.
 
 mod bodies;
+mod kirsch;
 mod notched;
 mod solver;
 
 use crate::study::{Topic, data};
 
-/// The studies of this topic.
+/// Studies of this topic.
 pub(super) const TOPIC: Topic = Topic {
-    studies: &[data!("statics/solver"), data!("statics/notched-plate")],
+    studies: &[
+        data!("statics/solver"),
+        data!("statics/notched-plate"),
+        data!("statics/kirsch"),
+    ],
     measures: &[
         ("products", solver::products),
         ("newton", solver::newton),
         ("times", solver::times),
         ("path", notched::path),
+        ("hole", kirsch::hole),
     ],
 };

@@ -1,4 +1,4 @@
-//! A notched plate pulled apart in static states: peak load, broken bonds, energy of the crack.
+//! Quasi-static fracture of a notched plate: peak load, broken bonds, crack energy.
 
 use std::sync::Arc;
 
@@ -21,27 +21,28 @@ use crate::data::{Case, Found};
 
 /// Fracture energy G₀, J/m².
 const FRACTURE_ENERGY: f64 = 1e-4;
-/// Displacement of each grip at the end, m.
+/// Prescribed displacement of each end at the last load step, m.
 const OPENING: f64 = 0.012;
-/// Load steps to the end, of 2e-4 m each.
+/// Number of load steps, of 2e-4 m each.
 const STEPS: u64 = 60;
-/// The run ends when the force has fallen to this part of its peak …
+/// The run ends when the force has fallen to this fraction of its peak …
 const SEVERED: f64 = 0.02;
-/// … or, from event to event, after so many of them …
+/// … or, in event-to-event runs, after this number of events …
 const EVENTS: u64 = 400;
-/// … or when the tip of the crack is here, m.
+/// … or when the crack tip is here, m.
 const LAST_TIP: f64 = 0.42;
-/// The crack between these places (m) counts for its energy: away from notch and edge.
+/// Range of the crack (m) used for its energy: away from notch and edge.
 const COUNTED: [f64; 2] = [-0.1, 0.3];
 
-/// A static state as the curve shows it.
+/// Static state as a point of the curve.
 struct Event {
     displacement: f64,
     force: f64,
     tip: f64,
 }
 
-/// Peak force, the displacement at which it is reached, broken bonds, products and, from event to event, the energy of the crack over G₀. The argument `rule` says how bonds break.
+/// Peak force, the displacement at which it is reached, broken bonds, products and, for event-to-event runs, the
+/// crack energy over G₀. The argument `rule` selects how bonds break.
 pub(super) fn path(case: &Case<'_>) -> Result<Found, RunError> {
     let single = BreakingRule::Event {
         reference: 1.0,
@@ -81,8 +82,8 @@ pub(super) fn path(case: &Case<'_>) -> Result<Found, RunError> {
         }
     });
     let ended =
-        ended.map_err(|error| RunError::of_run(error, || "the study stopped there".into()))?;
-    // The loop is not asked after the last step.
+        ended.map_err(|error| RunError::of_run(error, || "the study was stopped".into()))?;
+    // The observer is not called after the last step.
     if ended == Outcome::Finished {
         events.push(event(&run));
     }
@@ -106,7 +107,8 @@ pub(super) fn path(case: &Case<'_>) -> Result<Found, RunError> {
     Ok(found.curve("path", &column(0), &column(1)))
 }
 
-/// A bond-based plate (state-based, ν = 1/4) 1 × 1 in plane strain with a notch of 0.3 from its left edge, whose ends are pulled apart by grips of three rows.
+/// Plate 1 × 1 (state-based with ν = 1/4, equivalent to bond-based) in plane strain with a notch of 0.3 from its
+/// left edge, whose ends (three rows each) are pulled apart by prescribed displacements.
 fn plate(cells: usize) -> Result<System, RunError> {
     let grid = Grid {
         shape: Shape::Box {
@@ -173,7 +175,7 @@ fn event(run: &Simulation) -> Event {
     }
 }
 
-/// The rightmost place where the bond across the plane of the notch is broken, m.
+/// Rightmost position at which the bond across the plane of the notch is broken, m.
 fn tip(system: &System) -> f64 {
     let cloud = system.cloud();
     let dx = cloud.spacing();
@@ -195,14 +197,15 @@ fn tip(system: &System) -> f64 {
     last.map_or(f64::NEG_INFINITY, |column| (column as f64 + 0.5) * dx - 0.5)
 }
 
-/// ½ U² Δk of all events whose tip is counted, over the length of crack that they make, J/m²; U is half the opening of the grips, and the stiffness k is that of both.
+/// ½ U² Δk of all events whose tip is in the range, divided by the crack length that they create, J/m²; U is half
+/// the opening, and the stiffness k is that of both ends.
 fn energy(events: &[Event]) -> f64 {
     let counted = |event: &&[Event]| event[0].tip >= COUNTED[0] && event[0].tip <= COUNTED[1];
     let pairs: Vec<&[Event]> = events.windows(2).filter(counted).collect();
     let (Some(first), Some(last)) = (pairs.first(), pairs.last()) else {
         return f64::NAN;
     };
-    // Each grip moves by U against the force R: the elastic energy is R U.
+    // Each end moves by U against the force R: the elastic energy is R U.
     let spent = |pair: &&[Event]| {
         let stiffness = |event: &Event| event.force / event.displacement;
         pair[0].displacement.powi(2) * (stiffness(&pair[0]) - stiffness(&pair[1]))

@@ -1,9 +1,10 @@
-//! What a static state takes: products and seconds, with and without the preconditioner, and by dynamic relaxation.
+//! Cost of a static state: products and seconds, with and without the preconditioner, and by adaptive dynamic
+//! relaxation.
 
 use std::rc::Rc;
 use std::time::Instant;
 
-use pericles::operator::On;
+use pericles::operator::PointSubset;
 use pericles::time::{Relaxation, RelaxationOptions, State};
 use pericles::{Interrupt, Simulation, System};
 use pericles_run::RunError;
@@ -14,7 +15,7 @@ use super::bodies::{body, stretched};
 use crate::common::finish;
 use crate::data::{Case, Found};
 
-/// Residual over loads or reactions at which a state counts as static.
+/// Residual relative to loads or reactions at which a state counts as static.
 const TOLERANCE: f64 = 1e-6;
 
 /// Products and seconds of a static state by multigrid-preconditioned conjugate gradients.
@@ -24,7 +25,7 @@ struct Effort {
     points: f64,
 }
 
-/// Products of the body that the case describes, found once.
+/// Cost for the body of the case, computed once.
 fn effort(case: &Case<'_>) -> Result<Rc<Effort>, RunError> {
     let (name, nu) = (case.text("body")?, case.number("nu")?);
     let (cells, cracked) = (case.count("cells")?, case.flag("cracked"));
@@ -41,8 +42,8 @@ fn effort(case: &Case<'_>) -> Result<Rc<Effort>, RunError> {
     })
 }
 
-/// The static state from rest: what it took, and its displacement.
-fn state_of(system: &System) -> Result<(Took, Vec<f64>), RunError> {
+/// Computes the static state from rest; returns its cost and the displacement.
+pub(super) fn state_of(system: &System) -> Result<(Took, Vec<f64>), RunError> {
     let (free, load) = conditions(system);
     let options = StaticOptions {
         tolerance: TOLERANCE,
@@ -50,7 +51,7 @@ fn state_of(system: &System) -> Result<(Took, Vec<f64>), RunError> {
     };
     let mut u = vec![0.0; load.len()];
     let mut supports = u.clone();
-    system.place_on(0.0, &On::All, &mut supports);
+    system.place_on(0.0, &PointSubset::All, &mut supports);
     let target = Target {
         t: 0.0,
         load: &load,
@@ -62,13 +63,15 @@ fn state_of(system: &System) -> Result<(Took, Vec<f64>), RunError> {
     Ok((took, u))
 }
 
-/// Products, steps of Newton's method, reaction of a grip and energy of the plate that is stretched by 5 %.
+/// Products, Newton iterations, reaction and energy of the plate stretched by 5 %.
 pub(super) fn newton(case: &Case<'_>) -> Result<Found, RunError> {
     let system = stretched(case.count("cells")?)?;
     let (took, u) = state_of(&system)?;
     let (n, volumes) = (system.points(), system.cloud().volumes());
     let mut force = vec![0.0; u.len()];
-    system.operator().add_force(0.0, &u, On::All, &mut force);
+    system
+        .operator()
+        .add_force(0.0, &u, PointSubset::All, &mut force);
     let grip = system.motions()[1].points.iter();
     let reaction: f64 = grip
         .map(|&i| -volumes[i as usize] * force[n + i as usize])
@@ -82,7 +85,7 @@ pub(super) fn newton(case: &Case<'_>) -> Result<Found, RunError> {
     .into())
 }
 
-/// 1 on free entries and 0 on held ones, and the loads (N/m³).
+/// 1 on free entries and 0 on constrained ones, and the loads (N/m³).
 fn conditions(system: &System) -> (Vec<f64>, Vec<f64>) {
     let entries = system.dimension() * system.points();
     let (mut free, mut load) = (vec![1.0; entries], vec![0.0; entries]);
@@ -91,13 +94,14 @@ fn conditions(system: &System) -> (Vec<f64>, Vec<f64>) {
     (free, load)
 }
 
-/// Products to 1e-6.
+/// Products to a residual of 1e-6.
 pub(super) fn products(case: &Case<'_>) -> Result<Found, RunError> {
     let effort = effort(case)?;
     Ok([("value", effort.products), ("points", effort.points)].into())
 }
 
-/// Seconds by the multigrid, its set-up included, by plain conjugate gradients and by adaptive dynamic relaxation, and what each took.
+/// Seconds of multigrid including its set-up, of plain conjugate gradients and of adaptive dynamic relaxation, and
+/// the products of each.
 pub(super) fn times(case: &Case<'_>) -> Result<Found, RunError> {
     let multigrid = effort(case)?;
     let system = body(case)?;
@@ -116,7 +120,7 @@ pub(super) fn times(case: &Case<'_>) -> Result<Found, RunError> {
     .into())
 }
 
-/// The stiffness without a preconditioner.
+/// Stiffness without a preconditioner.
 struct Plain<'a> {
     system: &'a System,
     free: &'a [f64],
@@ -125,7 +129,9 @@ struct Plain<'a> {
 impl LinearProblem for Plain<'_> {
     fn multiply_into(&mut self, x: &[f64], out: &mut [f64]) {
         out.fill(0.0);
-        self.system.operator().add_force(0.0, x, On::All, out);
+        self.system
+            .operator()
+            .add_force(0.0, x, PointSubset::All, out);
         let (n, volumes) = (self.system.points(), self.system.cloud().volumes());
         for (k, out) in out.iter_mut().enumerate() {
             *out *= -volumes[k % n];

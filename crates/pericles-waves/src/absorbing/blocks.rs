@@ -1,8 +1,10 @@
-//! Convolution of series that become known one coefficient after the other.
+//! Online convolution: products of series whose coefficients become known one after the other.
 //!
-//! Time is cut into blocks of [`BLOCK`] steps. Within a block products are summed directly. When q blocks are complete, the last S = BLOCK · 2^ν(q) coefficients
-//! (ν the exponent of two in q) meet the first 2S coefficients of the other factor in one transform of length 2S, which gives their whole share of the next S
-//! results (Fischer & Stockmeyer 1974; Hairer, Lubich & Schlichte 1985 for Volterra equations). N steps cost O(N log² N).
+//! Time is divided into blocks of [`BLOCK`] steps. Within a block products are summed directly. When q blocks are
+//! complete, the last S = BLOCK · 2^ν(q) coefficients (ν the exponent of two in q) are multiplied by the first 2S
+//! coefficients of the other factor in one transform of length 2S, which gives their whole contribution to the next
+//! S results (Fischer & Stockmeyer 1974; Hairer, Lubich & Schlichte 1985 for Volterra equations). N steps cost O(N
+//! log² N).
 
 use std::ops::Range;
 
@@ -11,16 +13,16 @@ use realfft::num_complex::Complex;
 
 use crate::linear::LineTransform;
 
-/// Steps of a block: up to it direct sums are cheaper than transforms.
+/// Steps per block: below this length direct sums are cheaper than transforms.
 pub(super) const BLOCK: usize = 64;
 
-/// Transforms shorter than this are not worth being handed to other threads.
+/// Transforms shorter than this are computed by one thread.
 const PARALLEL: usize = 4096;
 
-/// Half a spectrum of real numbers.
+/// Half spectrum of a real series.
 pub(super) type Spectrum = Vec<Complex<f64>>;
 
-/// The transforms of all block sizes of a run.
+/// Transforms for all block sizes of a run.
 pub(super) struct Levels {
     transforms: Vec<LineTransform>,
 }
@@ -33,7 +35,7 @@ pub(super) struct LineWork {
 }
 
 impl Levels {
-    /// For series of this length.
+    /// Creates the transforms for series of this length.
     pub(super) fn new(length: usize) -> Self {
         let mut transforms = Vec::new();
         let mut size = BLOCK;
@@ -49,18 +51,18 @@ impl Levels {
         self.transforms.len()
     }
 
-    /// Coefficients of a block.
+    /// Number of coefficients in a block.
     pub(super) fn size(&self, level: usize) -> usize {
         BLOCK << level
     }
 
-    /// The level of the block that ends where `known` coefficients are known, if one does.
+    /// Returns the level of the block that ends after `known` coefficients, if one does.
     pub(super) fn due(&self, known: usize) -> Option<usize> {
         let level = (known / BLOCK).trailing_zeros() as usize;
         (known.is_multiple_of(BLOCK) && level < self.count()).then_some(level)
     }
 
-    /// Work arrays for lines of all levels.
+    /// Allocates work arrays for lines of all levels.
     pub(super) fn work(&self, lines: usize) -> Vec<LineWork> {
         let Some(largest) = self.transforms.last() else {
             return Vec::new();
@@ -75,7 +77,7 @@ impl Levels {
         (0..lines).map(|_| make()).collect()
     }
 
-    /// The spectra of a range of each series, zeros behind it; what lies beyond the end of a series is zero.
+    /// Transforms a range of each series, padded by zeros; coefficients beyond the end of a series are zero.
     pub(super) fn transform(
         &self,
         level: usize,
@@ -100,7 +102,8 @@ impl Levels {
         }
     }
 
-    /// The spectra of the first coefficients of each series, of twice a block, scaled so that products need no further factor.
+    /// Transforms the first coefficients of each series, twice a block long, scaled so that products need no
+    /// further factor.
     pub(super) fn heads(&self, level: usize, series: &[Vec<f64>]) -> Vec<Spectrum> {
         let transform = &self.transforms[level];
         let mut work = self.work(series.len());
@@ -115,7 +118,8 @@ impl Levels {
             .collect()
     }
 
-    /// Adds to each result, from coefficient `known` on, the block's share: the product whose spectrum `fill` adds up.
+    /// Adds the contribution of a block to each result from coefficient `known` on; `fill` accumulates the spectrum
+    /// of the product.
     pub(super) fn add_products(
         &self,
         level: usize,

@@ -1,12 +1,12 @@
-//! Kernels kept from run to run.
+//! Cache of kernels.
 
 use super::{GhostKernels, LatticeStencil, LatticeStep, contour_kernels};
 use pericles::cache::{Cache, Key};
 use pericles::sum::max_norm;
 use pericles::{Archive, Values};
 
-/// The kernels of [`contour_kernels`], from the cache if they are there, and checked: a set of arrays that does not satisfy its own equations is computed
-/// again.
+/// Returns the kernels of [`contour_kernels`], from the cache if present. Cached kernels are verified: arrays that
+/// do not satisfy the defining equations are recomputed.
 pub fn cached_kernels(
     stencil: &LatticeStencil,
     step: LatticeStep,
@@ -44,7 +44,8 @@ fn read(arrays: &Archive, reach: usize, steps: usize) -> Option<Vec<Vec<f64>>> {
     series.filter(|series| series.iter().all(|h| h.len() == steps + 1))
 }
 
-/// Whether a_K (h_k − Σ h_m h_{m+k}) = a_k h_K, the ratio of two of the factor's equations, at the last coefficient, which depends on all others.
+/// Returns true if a_K (h_k − Σ h_m h_{m+k}) = a_k h_K at the last coefficient, which depends on all others. The
+/// equation is the ratio of two equations of the factor.
 fn holds(series: &[Vec<f64>], stencil: &LatticeStencil, dt: f64) -> bool {
     let (weights, reach) = (stencil.weights(), stencil.reach());
     let last = series[0].len() - 1;
@@ -61,7 +62,7 @@ fn holds(series: &[Vec<f64>], stencil: &LatticeStencil, dt: f64) -> bool {
             .sum();
         let miss = weights[reach - 1] * (series[k - 1][last] - sum)
             - weights[k - 1] * series[reach - 1][last];
-        // Round-off of kernels whose size is dt² a and below.
+        // Tolerance for round-off of kernels of size dt² a and below.
         miss.abs() <= 1e-9 * largest * dt * dt * largest
     })
 }

@@ -1,4 +1,4 @@
-//! Kernels of a fully discrete exterior by Cauchy's integral.
+//! Kernels of a fully discrete exterior by Cauchy's integral formula.
 
 use std::f64::consts::TAU;
 
@@ -9,21 +9,23 @@ use super::roots::Factor;
 use super::{LatticeStencil, LatticeStep};
 use crate::linear::{LineTransform, smooth_length};
 
-/// Points of the circle that are found one from the other; the last of them is compared with its own roots.
+/// Points of the circle computed by continuation; the last one is compared with its roots.
 const CURVE: usize = 512;
-/// Factors that differ by more, relative to one another, belong to different roots.
+/// Relative difference above which two factors belong to different roots.
 const SAME: f64 = 1e-6;
 
-/// h_1 … h_K with `steps + 1` coefficients each, of any scheme that has a symbol, from the factor on a circle of radius r < 1 at 8 points per coefficient with r^points = 10^−16.5.
+/// Computes h_1 … h_K with `steps + 1` coefficients each, for any scheme with a known symbol, from the factor on a
+/// circle of radius r < 1 with 8 points per coefficient and r^points = 10^−16.5.
 ///
-/// The factor at a point follows from its neighbours by Newton's method: O(K³ N), on all threads. Rounding errors of points are independent of one another, so that they do not add up along
-/// time; the last coefficients magnify them by r^−steps. Runs of a bar (K = 7, dt = 0.01) against a large body: 6e-16 after 32 768 steps with 16 points, 1.2e-13 after 10 000 with 6, where
-/// [`super::factor_kernels`] has 1.8e-12 after 32 768.
+/// The factor at a point follows from its neighbours by Newton's method: O(K³ N), in parallel. Round-off errors of
+/// the points are independent, so they do not accumulate in time; they are amplified by r^−steps in the last
+/// coefficients. Measured difference from a large body for a bar (K = 7, dt = 0.01): 6e-16 after 32 768 steps with
+/// 16 points per coefficient, 1.2e-13 after 10 000 with 6; [`super::factor_kernels`] has 1.8e-12 after 32 768.
 pub fn contour_kernels(stencil: &LatticeStencil, step: LatticeStep, steps: usize) -> Vec<Vec<f64>> {
     let points = smooth_length(8 * (steps + 1));
     let radius = 10f64.powf(-16.5 / points as f64);
     let transform = LineTransform::new(points);
-    // The transform's sign: coefficients of w^j come with exp(+i j φ) when w = r exp(−i φ).
+    // Sign of the transform: coefficients of w^j come with exp(+i j φ) for w = r exp(−i φ).
     let sigma = |p: usize| {
         let w = Complex::from_polar(radius, -TAU * p as f64 / points as f64);
         step.symbol(w)
@@ -53,7 +55,7 @@ pub fn contour_kernels(stencil: &LatticeStencil, step: LatticeStep, steps: usize
         .collect()
 }
 
-/// Fills the samples with the factors at σ(0), σ(1) …
+/// Computes the factors at σ(0), σ(1) … by continuation.
 fn follow(
     stencil: &LatticeStencil,
     samples: &mut [Complex<f64>],
@@ -75,7 +77,7 @@ fn follow(
         .map(|(a, b)| (a - b).norm())
         .fold(0.0, f64::max);
     let size = own.iter().map(|h| h.norm()).fold(0.0, f64::max);
-    // A curve that went over to other roots, which neighbours so close hardly allow.
+    // The continuation switched to other roots, which is unlikely for neighbours this close.
     if apart.is_nan() || apart > SAME * size {
         for (k, sample) in samples.chunks_exact_mut(reach).enumerate() {
             Factor::at(stencil, sigma(k)).kernels_into(sample);

@@ -1,4 +1,4 @@
-//! The end of a bar that lets waves leave, stepped by velocity Verlet.
+//! Absorbing boundary of a bar for velocity Verlet.
 
 use super::history::History;
 use super::{AbsorbingError, FreeWave, OuterLayer};
@@ -6,34 +6,36 @@ use pericles::StepEnd;
 use pericles::StepKind;
 use pericles::boundary::{Boundary, Exchange, Stage};
 
-/// Weight of the initial displacement in the history: velocity Verlet starts with half a kick, the trapezoidal rule with half a weight.
+/// Weight of the initial displacement in the history convolution: velocity Verlet starts with half a kick, the
+/// trapezoidal rule with half a weight.
 const FIRST: f64 = 0.5;
 
-/// An absorbing end: K ghosts beyond the body, whose displacements follow from the history of the body's K outermost points, and the bonds that tie them
-/// to the body.
+/// Absorbing boundary: K ghost points beyond the body and their bonds to it. The ghost displacements follow from
+/// the history of the body's K outermost points.
 ///
-/// At each accepted state the ghosts are taken from the history, which knows the steps before only (the ghosts of a step do not depend on the
-/// body's displacement in it: kernels start with the first lag), their bonds' forces found, and the state is added to the history. The forces are then part of the acceleration; their
-/// work is booked as that of an outer force, so that the energy account closes: what waves carry away is negative work.
+/// At each accepted state the ghost displacements are computed from the history of previous steps (kernels start at
+/// lag one, so the ghosts do not depend on the body's current displacement), the forces of their bonds are
+/// evaluated, and the state is appended to the history. The forces enter the acceleration. Their work is recorded
+/// as external work, so that the energy balance closes: the energy carried away by waves is negative work.
 pub struct AbsorbingEnd {
     layer: OuterLayer,
     history: Box<dyn History>,
     free: Option<FreeWave>,
-    /// Whether the initial displacement has been taken.
+    /// True once the initial displacement has been recorded.
     started: bool,
     own: Vec<f64>,
     ghosts: Vec<f64>,
-    /// Accelerations by the ghosts' bonds.
+    /// Accelerations by bonds to ghosts.
     pull: Vec<f64>,
-    /// Those of the step before.
+    /// Accelerations by bonds to ghosts in the previous step.
     pull_before: Vec<f64>,
 }
 
 impl AbsorbingEnd {
-    /// An end whose history gives the ghosts of the layer.
+    /// Creates the boundary with a history that determines the ghosts of the layer.
     ///
     /// # Errors
-    /// A step that is unstable for the exterior.
+    /// The time step is unstable for the exterior.
     pub fn new(
         layer: OuterLayer,
         history: Box<dyn History>,
@@ -53,7 +55,7 @@ impl AbsorbingEnd {
         })
     }
 
-    /// With initial fields beyond the end.
+    /// Adds initial fields beyond the boundary.
     #[must_use]
     pub fn with_free_wave(mut self, free: FreeWave) -> Self {
         self.free = Some(free);
@@ -70,7 +72,7 @@ impl AbsorbingEnd {
         &*self.history
     }
 
-    /// Takes the ghosts of the present from the history, and the present into it.
+    /// Computes the current ghosts from the history and appends the current state to it.
     fn advance(&mut self) {
         self.history.ghosts_into(&mut self.ghosts);
         if let Some(free) = &mut self.free {
@@ -84,7 +86,7 @@ impl AbsorbingEnd {
         std::mem::swap(&mut self.pull, &mut self.pull_before);
         self.layer
             .pull_into(&self.own, &self.ghosts, &mut self.pull);
-        // The history is that of what the body sends out.
+        // The history contains only the displacement radiated by the body.
         for (k, (own, beyond)) in self.free.iter().flat_map(FreeWave::outer).enumerate() {
             self.own[k] -= own;
             self.ghosts[k] -= beyond;
@@ -128,7 +130,7 @@ impl Boundary for AbsorbingEnd {
 }
 
 pericles::saved! {
-    impl Saved for AbsorbingEnd {
+    impl Checkpointed for AbsorbingEnd {
         pull: array("{}/pull", layer.name()),
         history: under("{}", layer.name()),
         free: under("{}", layer.name()),

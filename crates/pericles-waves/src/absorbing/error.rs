@@ -1,4 +1,6 @@
-//! What an absorbing end refuses.
+//! Errors of absorbing boundaries.
+
+use pericles::units::{precise, quantity, significant};
 
 impl From<AbsorbingError> for pericles::PericlesError {
     fn from(error: AbsorbingError) -> Self {
@@ -6,242 +8,265 @@ impl From<AbsorbingError> for pericles::PericlesError {
     }
 }
 
-/// The refusal of an end among those of the engine.
+/// Wraps an absorbing-boundary error as an error of the engine.
 #[derive(Debug, thiserror::Error)]
-#[error("absorbing end: {0}")]
+#[error("absorbing boundary: {0}")]
 struct NoEnd(#[source] AbsorbingError);
 
-/// Why there can be no absorbing end.
+/// Reason why an absorbing boundary is not possible.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AbsorbingError {
-    /// A stencil without weights.
-    #[error("the stencil has no weights: at least the bond to the next neighbour is needed")]
+    /// The stencil has no weights.
+    #[error("the stencil has no weights: at least the bond to the next neighbour is required")]
     EmptyStencil,
-    /// A weight that is no number.
-    #[error("weight a_{reach} of the stencil is {weight}: it must be finite")]
+    /// A weight is NaN or infinite.
+    #[error("weight a_{reach} of the stencil is {weight}: weights must be finite numbers")]
     WeightNotFinite {
-        /// Which, in spacings.
+        /// Distance of the bond in spacings.
         reach: usize,
-        /// Its value, 1/s².
+        /// Weight, 1/s².
         weight: f64,
     },
-    /// A stencil whose outermost weight vanishes.
+    /// The outermost weight of the stencil is zero.
     #[error(
-        "the outermost weight a_{reach} of the stencil is zero: the lattice reaches less far than it says; leave the weight out (for a conical influence function \
-         with a whole horizon ratio: a ratio a little smaller)"
+        "the outermost weight a_{reach} of the stencil is zero: the last bonds of the lattice have no stiffness; \
+        omit the weight (for a conical influence function with an integer horizon ratio use a slightly smaller \
+        ratio)"
     )]
     OutermostWeightZero {
-        /// Which, in spacings.
+        /// Distance of the bond in spacings.
         reach: usize,
     },
-    /// A stencil with which some waves grow.
+    /// The stencil has unstable waves.
     #[error(
-        "the exterior is not stable: waves of wave number {theta:.4} per spacing have ω² = {square:e} 1/s², it must be positive; signed (tuned) tables need \
-         ω² > 0 for every wave"
+        "the exterior is unstable: waves with wavenumber {theta:.4} per spacing have ω² = {} 1/s², which must be \
+        positive; signed (tuned) tables need ω² > 0 for every wave",
+        significant(*square, 4)
     )]
     UnstableStencil {
-        /// θ.
+        /// Wavenumber θ per spacing.
         theta: f64,
-        /// ω².
+        /// Square frequency ω², 1/s².
         square: f64,
     },
-    /// A step too large for the exterior.
+    /// The time step is unstable for the exterior.
     #[error(
-        "the time step {dt:e} s is unstable for the exterior: its highest frequency is {omega:.6e} 1/s, so dt must be below {limit:.6e} s"
+        "the time step {} is unstable for the exterior, whose highest frequency is {} 1/s; dt must be below {}",
+        quantity(*dt, "s"), significant(*omega, 4), precise(*limit, "s")
     )]
     UnstableStep {
-        /// The step, s.
+        /// Time step, s.
         dt: f64,
         /// Highest angular frequency, 1/s.
         omega: f64,
         /// 2/ω, s.
         limit: f64,
     },
-    /// A body that is not a bar.
+    /// The body is not a bar.
     #[error(
-        "an exact absorbing end needs a bar (1D), this body has dimension {dimension}; kind = \"damping-layer\" absorbs in any dimension, though not exactly"
+        "an exact absorbing boundary needs a bar (1D), but this body has dimension {dimension}; kind = \
+        \"damping-layer\" absorbs waves approximately in any dimension"
     )]
     NotABar {
-        /// Its dimension.
+        /// Dimension of the body.
         dimension: usize,
     },
-    /// A body that is no strip whose exterior could be found by Fourier modes.
+    /// The body is not a strip whose exterior can be represented by Fourier modes.
     #[error(
-        "an absorbing end of a strip needs a homogeneous plate that is periodic along y: {reason}"
+        "an absorbing boundary of a strip needs a homogeneous plate that is periodic along y: {reason}"
     )]
     NotAStrip {
-        /// What it is or has.
+        /// The violated condition.
         reason: &'static str,
     },
-    /// A bar whose faces are joined.
-    #[error(
-        "a periodic bar has no end that could absorb waves; leave out `periodic` or the absorbing boundary"
-    )]
+    /// The bar is periodic.
+    #[error("a periodic bar has no ends; remove `periodic` or the absorbing boundary")]
     Periodic,
-    /// Points that do not follow each other at equal distances.
+    /// The points are not equally spaced.
     #[error(
-        "an exact absorbing end needs a regular grid without holes: point {point} is not one spacing from the next"
+        "an exact absorbing boundary needs a regular grid without holes: point {point} is not one spacing from the next"
     )]
     NotRegular {
-        /// The first point with a gap behind it, in the user's numbering.
+        /// The first point followed by a gap, in the user's numbering.
         point: usize,
     },
-    /// A layer that the horizon reaches across.
+    /// The body is shorter than two horizons at the boundary.
     #[error(
-        "the outer layer at {side} is one horizon deep ({needed} points) and must be followed by as many points: the body needs at least {} points and has {points}",
+        "the outer layer at {side} is one horizon deep ({needed} points) and must be followed by as many points: the body \
+        has {points} points, but needs at least {}",
         2 * needed
     )]
     LayerTooThin {
-        /// The side.
+        /// Side of the bar.
         side: &'static str,
-        /// Points of the body.
+        /// Number of points of the body.
         points: usize,
-        /// Points of the layer.
+        /// Number of points of the layer.
         needed: usize,
     },
-    /// A bond of the outer layer that the exterior does not continue.
+    /// A bond of the outer layer differs from those of the exterior.
     #[error(
-        "the outer layer at {side} is not homogeneous: the bond from point {from} to point {to} has the weight {found:e} 1/s², the layer's bonds of that \
-         length have {expected:e}; move the end outwards, so that the {needed} outermost points are of one linear, undamaged material"
+        "the outer layer at {side} is not homogeneous: the bond from point {from} to point {to} has the weight {} 1/s² \
+        of the layer's other bonds of that length; move the end outwards, so that the {needed} outermost points are of \
+        one linear, undamaged material",
+        instead_of(*found, *expected)
     )]
     LayerBond {
-        /// The side.
+        /// Side of the bar.
         side: &'static str,
-        /// One end, in the user's numbering.
+        /// One end of the bond, in the user's numbering.
         from: usize,
-        /// The other.
+        /// The other end.
         to: usize,
-        /// k/ρ of the bond, 1/s².
+        /// Weight k/ρ of the bond, 1/s².
         found: f64,
-        /// That of the others.
+        /// Weight of the other bonds of that length, 1/s².
         expected: f64,
-        /// Points of the layer.
+        /// Number of points of the layer.
         needed: usize,
     },
-    /// A density that differs within the outer layer.
+    /// The density varies within the outer layer.
     #[error(
-        "the outer layer at {side} is not homogeneous: point {point} has mass {found:e} kg, the outermost {expected:e} kg"
+        "the outer layer at {side} is not homogeneous: point {point} has the mass {} kg of the \
+        outermost point; use one density in the outer layer",
+        instead_of(*found, *expected)
     )]
     LayerMass {
-        /// The side.
+        /// Side of the bar.
         side: &'static str,
         /// The point, in the user's numbering.
         point: usize,
         /// Its mass, kg.
         found: f64,
-        /// The outermost's.
+        /// Mass of the outermost point, kg.
         expected: f64,
     },
-    /// A law that is not linear.
+    /// The pair law is not linear.
     #[error(
-        "the forces in the outer layer at {side} are not linear in the displacement, at point {point}: an exact absorbing end needs a linear exterior"
+        "the forces in the outer layer at {side} are not linear in the displacement, at point {point}: an exact \
+        absorbing boundary needs a linear exterior; use model = \"linear\" there"
     )]
     NotLinear {
-        /// The side.
+        /// Side of the bar.
         side: &'static str,
         /// The point, in the user's numbering.
         point: usize,
     },
-    /// Two ends at one side.
-    #[error("there are two absorbing ends at {side}; one is enough")]
+    /// Two absorbing boundaries on one side.
+    #[error("there are two absorbing boundaries at {side}; remove one of them")]
     Twice {
-        /// The side.
+        /// Side of the bar.
         side: &'static str,
     },
-    /// Bonds that may break in the outer layer.
+    /// Bonds of the outer layer can break.
     #[error(
-        "the outer layer at {side} may break: its {needed} outermost points must be in `no_fail`, or the material unbreakable"
+        "bonds in the outer layer at {side} can break: its {needed} outermost points must be in `no_fail`, or the \
+        material must be unbreakable"
     )]
     LayerBreakable {
-        /// The side.
+        /// Side of the bar.
         side: &'static str,
-        /// Points of the layer.
+        /// Number of points of the layer.
         needed: usize,
     },
-    /// A load or prescribed motion on the outer layer.
+    /// A load or prescribed motion acts on the outer layer.
     #[error(
-        "{what} acts on point {point}, which is in the outer layer at {side}: the {needed} outermost points must be free"
+        "{what} acts on point {point}, which is in the outer layer at {side}: the {needed} outermost points must be \
+        free of loads and constraints"
     )]
     LayerActedOn {
-        /// The side.
+        /// Side of the bar.
         side: &'static str,
-        /// A load, or a prescribed motion.
+        /// "a load" or "a prescribed motion".
         what: &'static str,
         /// The point, in the user's numbering.
         point: usize,
-        /// Points of the layer.
+        /// Number of points of the layer.
         needed: usize,
     },
-    /// An initial field that reaches the end.
+    /// The initial field is not zero at the boundary.
     #[error(
-        "the initial field reaches the absorbing end {side}: point {point} has {found:.3e}, the largest value is {largest:.3e}; allowed: 1e-6 of it, because the exterior starts \
-         from rest. Give `exterior_data`, the depth to which the field continues beyond the end, or move the end outwards"
+        "the initial field reaches the absorbing boundary at {side}: its value at point {point} is {} and its largest value \
+        {}; allowed: 1e-6 of the largest value, because the exterior starts from rest. Give `exterior_extent`, the depth to \
+        which the field continues beyond the boundary, or move the end outwards",
+        significant(*found, 3), significant(*largest, 3)
     )]
     NotAtRest {
-        /// The side.
+        /// Side of the bar.
         side: &'static str,
         /// The point, in the user's numbering.
         point: usize,
-        /// |u| or |v| there.
+        /// |u| or |v| at the point.
         found: f64,
-        /// Its largest in the body.
+        /// Largest |u| or |v| in the body.
         largest: f64,
     },
-    /// Initial data that do not decay within the exterior points given.
+    /// The initial field does not decay within the given exterior sites.
     #[error(
-        "the initial field does not decay within the {sites} exterior points of `exterior_data`: the last ones have {found:.3e}, the largest value of body and exterior is \
-         {largest:.3e}; allowed: 1e-6 of it. Give a larger `exterior_data`, or move the end to where the field is zero"
+        "the initial field does not decay within the {sites} exterior points of `exterior_extent`: its value at the last ones \
+        is {} and the largest value of body and exterior {}; allowed: 1e-6 of the largest value. Give a larger \
+        `exterior_extent`, or move the end to where the field is zero",
+        significant(*found, 3), significant(*largest, 3)
     )]
     ExteriorData {
-        /// Sites with data.
+        /// Number of exterior sites with data.
         sites: usize,
         /// Largest |u| or |v| on the outermost sites.
         found: f64,
-        /// Largest on all.
+        /// Largest |u| or |v| in body and exterior.
         largest: f64,
     },
-    /// What needs an explicit scheme.
-    #[error(
-        "{what} needs scheme = \"velocity-verlet\": its kernels are those of an explicit scheme"
-    )]
+    /// A feature that needs an explicit scheme.
+    #[error("{what} needs scheme = \"velocity-verlet\": it uses kernels of an explicit scheme")]
     VerletOnly {
-        /// What was asked for.
+        /// The requested feature.
         what: &'static str,
     },
-    /// A step that is no step.
-    #[error("the time step is {dt:e} s: it must be positive")]
+    /// The time step is not positive.
+    #[error(
+        "the time step is {}; it must be positive", quantity(*dt, "s")
+    )]
     BadStep {
-        /// The step, s.
+        /// Time step, s.
         dt: f64,
     },
-    /// Sums of exponentials that miss the tolerance.
+    /// No fit of exponentials is within the tolerance.
     #[error(
-        "no sum of exponentials meets the tolerance {tolerance:e}: the best of {fits} fits has the error {residual:.1e}; use a larger tolerance, or history = \"blocked\", \
-         which is exact"
+        "no sum of exponentials meets the tolerance {tolerance:e}: the best of {fits} fits has the error {residual:.1e}; use a \
+        larger tolerance, or history = \"blocked\", which is exact"
     )]
     Fit {
-        /// The tolerance asked for.
+        /// Requested tolerance.
         tolerance: f64,
-        /// The smallest residual.
+        /// Smallest residual of the fits.
         residual: f64,
-        /// Fits tried.
+        /// Number of fits.
         fits: usize,
     },
-    /// More steps than a fit can tell apart.
+    /// The run has too many steps for a fit of exponentials.
     #[error(
-        "a fit of exponentials is good for at most {most:e} steps, not {steps:e}: what it would have to tell apart is below rounding; a larger step or a shorter run"
+        "a fit of exponentials supports at most {most:e} steps, but the run has {steps:e}: beyond that the terms cannot be \
+        distinguished in double precision; use a larger time step or a shorter run"
     )]
     FitTooLong {
         /// Steps of the run.
         steps: f64,
-        /// Steps that are allowed.
+        /// Largest allowed number of steps.
         most: f64,
     },
-    /// A tolerance out of range.
+    /// The tolerance is out of range.
     #[error("the tolerance is {value}; allowed: above 1e-14 and below 1")]
     Tolerance {
-        /// The value.
+        /// Tolerance given.
         value: f64,
     },
+}
+
+/// Formats two different numbers with as many digits as distinguish them, but at least four.
+fn instead_of(found: f64, expected: f64) -> String {
+    let differ = |digits: &usize| significant(found, *digits) != significant(expected, *digits);
+    let digits = (4..17).find(differ).unwrap_or(17);
+    let [found, expected] = [found, expected].map(|value| significant(value, digits));
+    format!("{found} instead of {expected}")
 }

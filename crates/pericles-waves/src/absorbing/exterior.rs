@@ -1,38 +1,41 @@
-//! Initial fields beyond an absorbing end.
+//! Initial fields beyond an absorbing boundary.
 
 use super::history::History;
 use super::layer::NEGLIGIBLE;
 use super::{AbsorbingError, LatticeStencil};
 use pericles::sum::max_norm;
 
-/// The free motion w of the infinite lattice from the initial data beyond an end, zero in the body: the exterior's displacements are w + F * (u − w), for their difference from w starts
-/// from rest there.
+/// Free motion w of the infinite lattice due to the initial data beyond the boundary (zero in the body). The
+/// exterior displacements are w + F * (u − w), because their difference from w starts from rest.
 ///
-/// w is found by velocity Verlet on the sites that have data and the body's K outermost, with an absorbing end at both sides; u and v may be anything there. Ji et al. write the same as the
-/// convolution of the data with the lattice's Green functions g and g', whose cost grows with the data's extent times the number of steps squared.
+/// w is integrated by velocity Verlet on the sites that have data and the body's K outermost points, with an
+/// absorbing boundary at both sides; u and v are arbitrary there. Ji et al. write w as the convolution of the data
+/// with the lattice's Green functions g and g', whose cost is proportional to the number of data sites times the
+/// number of steps squared.
 pub struct FreeWave {
     stencil: LatticeStencil,
     dt: f64,
     /// The body's outer points K … 1, then the exterior from ghost 0 outwards.
     u: Vec<f64>,
-    /// The displacement of the next step, less the present one.
+    /// Displacement of the next step minus that of the current one.
     increment: Vec<f64>,
-    /// K sites before the first, the sites, K behind the last: padded by ghosts.
+    /// Sites padded by K ghosts on both sides.
     padded: Vec<f64>,
-    /// Towards the body.
+    /// History of the boundary towards the body.
     inner: Box<dyn History>,
-    /// Outwards.
+    /// History of the outer boundary.
     outer: Box<dyn History>,
     acceleration: Vec<f64>,
 }
 
 impl FreeWave {
-    /// From displacements and velocities of the exterior's sites, the one next to the body first; beyond the last they are zero. `body` are the largest |u| and |v| of
-    /// the body itself. The last two are new histories of the end's own kernels.
+    /// Creates the free motion from displacements and velocities of the exterior sites, the one next to the body
+    /// first; they are zero beyond the last. `body` contains the largest |u| and |v| of the body itself. The last
+    /// two arguments are new histories with the kernels of the boundary.
     ///
     /// # Errors
-    /// Fields of different lengths count as [`AbsorbingError::ExteriorData`], as do data that do not end within the sites given: the outermost K are above 1e-6 of the
-    /// largest of body and exterior.
+    /// [`AbsorbingError::ExteriorData`] for fields of different lengths and for data that do not decay within the
+    /// given sites: the outermost K values exceed 1e-6 of the largest in body and exterior.
     pub fn new(
         stencil: &LatticeStencil,
         dt: f64,
@@ -77,7 +80,7 @@ impl FreeWave {
         Ok(wave)
     }
 
-    /// Goes on by one step.
+    /// Advances by one step.
     pub(super) fn step(&mut self) {
         for (u, d) in self.u.iter_mut().zip(&self.increment) {
             *u += d;
@@ -89,7 +92,7 @@ impl FreeWave {
         }
     }
 
-    /// The present displacements of the body's outer points 1 … K, and of the ghosts.
+    /// Current displacements of the body's outer points 1 … K and of the ghosts.
     pub(super) fn outer(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         let (own, beyond) = self.u.split_at(self.stencil.reach());
         own.iter()
@@ -98,14 +101,14 @@ impl FreeWave {
             .map(|(own, ghost)| (*own, *ghost))
     }
 
-    /// The accelerations of the present, which goes into the histories with this weight.
+    /// Computes the current accelerations and appends the current state to the histories with this weight.
     fn accelerate(&mut self, weight: f64) {
         let (reach, sites) = (self.stencil.reach(), self.u.len());
         self.padded[reach..reach + sites].copy_from_slice(&self.u);
         let (mut own, mut ghosts) = (vec![0.0; reach], vec![0.0; reach]);
         let ends = [(&mut self.inner, None), (&mut self.outer, Some(sites - 1))];
         for (history, at) in ends {
-            // The site at a distance from this end, within; those beyond are at 1 and farther.
+            // Index of the site at a depth within this end; ghosts beyond the end are indexed by `beyond`.
             let place = |depth: usize| reach + at.map_or(depth, |last| last - depth);
             let beyond = |n: usize| at.map_or(reach - 1 - n, |last| reach + last + 1 + n);
             history.ghosts_into(&mut ghosts);

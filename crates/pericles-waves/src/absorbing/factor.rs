@@ -1,24 +1,27 @@
-//! The exact kernels of the fully discrete scheme, by spectral factorisation of the symbol as a power series.
+//! Exact kernels of the fully discrete scheme by spectral factorisation of the symbol as a power series.
 //!
-//! With w the delay of one step, velocity Verlet on the lattice has the symbol D(z) = σ(w) + 2Σa_k − Σ a_k (z^k + z^{−k}), σ = (1/w − 2 + w)/dt². A solution that
-//! leaves the body obeys u_0 = Σ_m h_m * u_m where c (1 − Σ h_m z^m)(1 − Σ h_m z^{−m}) = D(z), zeros outside the unit circle. Coefficients of z^0 and z^k give,
-//! with G = 1/(dt² w c),
+//! With w the delay of one step, velocity Verlet on the lattice has the symbol D(z) = σ(w) + 2Σa_k − Σ a_k (z^k +
+//! z^{−k}), σ = (1/w − 2 + w)/dt². An outgoing solution obeys u_0 = Σ_m h_m * u_m with c (1 − Σ h_m z^m)(1 − Σ h_m
+//! z^{−m}) = D(z), zeros outside the unit circle. The coefficients of z^0 and z^k give, with G = 1/(dt² w c),
 //!
 //! ```text
 //! G = [1 + Σ h_m²] / [(1 − w)² + 2 s w],   s = dt² Σ a_k
 //! h_k = dt² a_k w G + Σ_m h_m h_{m+k}
 //! ```
 //!
-//! Every h_m starts with w, so the coefficient of w^j on the right needs those before j only: the series are computed one coefficient after the other, the
-//! products by blocks with Fourier transforms (relaxed multiplication, van der Hoeven 2002). No roots, no contour, no aliasing: O(K² N log N + K N log² N). Rounding errors of the
-//! coefficients add up at low frequencies: runs are exact to 1.2e-13 after 8192 steps and 2e-12 after 32 768 (K = 7, dt = 0.01), which [`super::contour_kernels`] avoids. Ji, Pang, Zhang, Yang & Perdikaris march the exterior instead.
+//! Every h_m starts with w, so the coefficient of w^j on the right-hand side depends only on previous ones: the
+//! series are computed one coefficient after the other, with products by blocks of Fourier transforms (relaxed
+//! multiplication, van der Hoeven 2002). No roots, no contour integral, no aliasing: O(K² N log N + K N log² N).
+//! Round-off errors of the coefficients accumulate at low frequencies: runs are exact to 1.2e-13 after 8192 steps
+//! and 2e-12 after 32 768 (K = 7, dt = 0.01); [`super::contour_kernels`] avoids this. Ji, Pang, Zhang, Yang &
+//! Perdikaris integrate the exterior in time instead.
 
 use realfft::num_complex::Complex;
 
 use super::LatticeStencil;
 use super::blocks::{BLOCK, Levels, LineWork, Spectrum, accumulate, add_scaled};
 
-/// h_1 … h_K with `steps + 1` coefficients each, for velocity Verlet with the step dt.
+/// Computes h_1 … h_K with `steps + 1` coefficients each, for velocity Verlet with time step dt.
 pub fn factor_kernels(stencil: &LatticeStencil, dt: f64, steps: usize) -> Vec<Vec<f64>> {
     Factor::new(stencil, dt, steps).run()
 }
@@ -32,7 +35,7 @@ struct Factor {
     pull: f64,
     h: Vec<Vec<f64>>,
     g: Vec<f64>,
-    /// The last difference of g.
+    /// Last difference of g.
     slope: f64,
     /// Coefficients of Σ_m h_m h_{m+k}, k = 0 … K − 1, as far as their factors are known.
     sums: Vec<Vec<f64>>,
@@ -77,16 +80,16 @@ impl Factor {
         self.h
     }
 
-    /// The coefficients of w^j.
+    /// Computes the coefficients of w^j.
     fn advance(&mut self, j: usize) {
         if j > 0 {
             for k in 1..=self.reach {
-                // Σ_m h_m h_{m+k} has no terms for k = K.
+                // Σ_m h_m h_{m+k} is empty for k = K.
                 let product = self.sums.get(k).map_or(0.0, |sum| sum[j]);
                 self.h[k - 1][j] = self.weights[k - 1] * self.g[j - 1] + product;
             }
         }
-        // By increments: 2 g[j − 1] − g[j − 2] would lose digits for small steps.
+        // In increments: 2 g[j − 1] − g[j − 2] would lose digits for small steps.
         let before = if j > 0 { self.g[j - 1] } else { 0.0 };
         let source = if j > 0 { self.sums[0][j] } else { 1.0 };
         self.slope += source - self.pull * before;
@@ -97,7 +100,7 @@ impl Factor {
     fn near(&mut self, j: usize) {
         let first = j - j % BLOCK;
         let end = (first + BLOCK).min(self.length);
-        // The partners are those of the first block: in it, those known before.
+        // The partners are those of the first block; within it, those already known.
         let count = if first == 0 { j.min(end - j) } else { end - j };
         for k in 0..self.reach {
             for m in 0..self.reach - k {
@@ -122,7 +125,7 @@ impl Factor {
         let reach = self.reach;
         let blocks = &self.blocks;
         if from == 0 {
-            // The first block meets itself.
+            // The first block is multiplied by itself.
             let norm = 1.0 / (2 * size) as f64;
             let fill = |k: usize, product: &mut [Complex<f64>]| {
                 for m in 0..reach - k {

@@ -11,48 +11,58 @@ use super::{AbsorbingError, LatticeStencil, LatticeStep};
 
 type C = Complex<f64>;
 
-/// `F_n^m[j]` ≈ Re Σ_p a_{n,p} b_{m,p} λ_p^{j−1}, j ≥ 1, and `F_n^m[0]` as it is.
+/// Kernels `F_n^m[j]` ≈ Re Σ_p a_{n,p} b_{m,p} λ_p^{j−1} for j ≥ 1, with exact `F_n^m[0]`.
 #[derive(Debug, Clone)]
 pub struct ExponentialKernels {
     pub(super) reach: usize,
     pub(super) terms: Vec<Exponential>,
     /// `F_n^m[0]`, m running faster.
     pub(super) present: Vec<f64>,
-    /// Largest error of a kernel's generating function on the samples: of a ghost's displacement by unit displacements of all outer points.
+    /// Largest error of a kernel's generating function at the samples: the error of a ghost displacement due to
+    /// unit displacements of all outer points.
     pub residual: f64,
 }
 
-/// Directions per sample point that are tried: kernels with many branch points need more.
+/// Numbers of directions per sample point to try: kernels with many branch points need more.
 const DIRECTIONS: [usize; 4] = [1, 2, 4, 8];
-/// Singular values kept, as shares of the tolerance: a fit that fails at one order often holds at the next.
+/// Thresholds of the retained singular values, relative to the tolerance: a fit that fails at one order often
+/// succeeds at the next.
 const SHARES: [f64; 2] = [1e-3, 1e-5];
-/// What crosses may leave of the smallest singular value kept.
+/// Largest remainder of the cross approximation, relative to the smallest retained singular value.
 const LEFT: f64 = 0.1;
-/// What crosses leave by rounding, as a share of the largest: below it there are as many of them as rows.
+/// Round-off level of the cross approximation, relative to the largest cross; below it the rank would equal the
+/// number of rows.
 const NOISE: f64 = 4.0 * f64::EPSILON;
-/// More rows and columns than this take minutes.
+/// Limit on rows and columns; larger problems take minutes.
 const MOST_TANGENTS: usize = 6000;
-/// Samples lie as close to each other as a fifth of the reciprocal; the differences of values there have lost half their digits and more.
+/// Largest number of steps. Samples are as close as a fifth of its reciprocal; differences between them lose more
+/// than half of their digits.
 const MOST_STEPS: usize = 1_000_000_000;
-/// A fit of more than this share of its rows is not supported by enough samples.
+/// Largest rank relative to the number of rows that the samples support.
 const SUPPORTED: f64 = 0.36;
 /// Sample points along a half circle without branch points.
 const ALONG: f64 = 60.0;
-/// Distance of samples over that from the nearest branch point.
+/// Distance between samples relative to the distance from the nearest branch point.
 const GRADING: f64 = 0.2;
 
 impl ExponentialKernels {
-    /// A fit for a scheme and its step, good for about `steps` steps, whose generating functions miss the exact ones by at most `tolerance`.
+    /// Fits sums of exponentials for a scheme and its step, valid for about `steps` steps, whose generating
+    /// functions deviate from the exact ones by at most `tolerance`.
     ///
-    /// The functions are sampled on the circle |w| = exp(−2/steps), densely about the branch points exp(±iφ), where φ is the phase of a step (2 asin(ω dt/2) for velocity Verlet) for every stationary ω of the
-    /// band. Across a branch cut one root of the symbol turns into its reciprocal, so that the subspace of decaying solutions changes by one dimension and the matrix F by rank one:
-    /// interpolation along directions (the Loewner framework) finds as many exponentials as the band has branches, each with a residue of rank one. The singular
-    /// values say how many are needed; their `give` is then found again by real least squares. The first fit that holds the tolerance is taken.
+    /// The functions are sampled on the circle |w| = exp(−2/steps), densely near the branch points exp(±iφ), where
+    /// φ is the phase of a step (2 asin(ω dt/2) for velocity Verlet) for every stationary ω of the band. Across a
+    /// branch cut one root of the symbol turns into its reciprocal, so the subspace of decaying solutions changes
+    /// by one dimension and the matrix F by rank one: tangential interpolation (the Loewner framework) finds as
+    /// many exponentials as the band has branches, each with a residue of rank one. The singular values determine
+    /// the number of exponentials; their `give` vectors are then recomputed by real least squares. The first fit
+    /// within the tolerance is returned.
     ///
-    /// Common poles of all K² functions (set-valued AAA) are as many, but the residues of those off the cuts have full rank: for K = 7 five to six times the work.
+    /// Common poles of all K² functions (set-valued AAA) are equally many, but the residues of those off the cuts
+    /// have full rank: for K = 7 five to six times the work.
     ///
     /// # Errors
-    /// [`AbsorbingError::Fit`] if none does; a tolerance out of range; more than 10⁹ steps ([`AbsorbingError::FitTooLong`]).
+    /// [`AbsorbingError::Fit`] if no fit is within the tolerance; a tolerance out of range; more than 10⁹ steps
+    /// ([`AbsorbingError::FitTooLong`]).
     pub fn fit(
         stencil: &LatticeStencil,
         step: LatticeStep,
@@ -114,7 +124,7 @@ impl ExponentialKernels {
         self.terms.len()
     }
 
-    /// `F_n^m[j]` for j = 0 … steps, m running faster: for comparison with exact kernels.
+    /// Evaluates `F_n^m[j]` for j = 0 … steps, m running faster, for comparison with exact kernels.
     pub fn series(&self, steps: usize) -> Vec<Vec<f64>> {
         let start = |first: &f64| {
             let mut series = vec![0.0; steps + 1];
@@ -137,13 +147,14 @@ impl ExponentialKernels {
     }
 }
 
-/// The matrices (F(w) − F(0))/w, whose exponentials are λ^j, on points of the upper half circle.
+/// Samples of (F(w) − F(0))/w, whose exponentials are λ^j, at points of the upper half circle.
 struct Samples {
-    /// F(0)
+    /// F(0).
     present: Vec<C>,
     points: Vec<C>,
     values: Vec<DMatrix<C>>,
-    /// Points halfway between the others with their values, which judge a fit only: a superfluous pole with a tiny residue can hide between samples.
+    /// Points halfway between the samples with their values, used for validation only: a superfluous pole with a
+    /// tiny residue can hide between samples.
     between: Vec<(C, DMatrix<C>)>,
 }
 
@@ -171,7 +182,8 @@ impl Samples {
         }
     }
 
-    /// The largest error on the samples and halfway between them, of the displacement of a ghost by unit displacements of all outer points.
+    /// Largest error at the samples and halfway between them, of a ghost displacement due to unit displacements of
+    /// all outer points.
     fn miss(&self, terms: &[Exponential]) -> f64 {
         let fitted = self.points.par_iter().zip(&self.values);
         let between = self.between.par_iter().map(|(w, value)| (w, value));
@@ -192,12 +204,12 @@ impl Samples {
                 (0..left.nrows()).map(row).fold(0.0, f64::max)
             })
             .collect();
-        // A NaN is kept.
+        // Keeps a NaN.
         let worse = |a: f64, b: f64| if b > a || b.is_nan() { b } else { a };
         errors.into_iter().fold(0.0, worse)
     }
 
-    /// Finds the `give` of all terms again, by least squares on the samples seen along some directions.
+    /// Recomputes the `give` vectors of all terms by least squares on the samples along some directions.
     fn refine(&self, terms: &mut [Exponential]) {
         const DIRECTIONS: usize = 8;
         let reach = self.values[0].nrows();
@@ -242,17 +254,18 @@ impl Samples {
     }
 }
 
-/// The point of the circle between two of its points.
+/// Point of the circle halfway between two of its points.
 fn halfway(a: C, b: C) -> C {
     C::from_polar(a.norm(), 0.5 * (a.arg() + b.arg()))
 }
 
-/// 1/(1 − λ w), the generating function of λ^j, and its conjugate partner, each by half.
+/// 1/(1 − λ w), the generating function of λ^j, and its conjugate partner, each with weight one half.
 fn generating(decay: C, w: C) -> [C; 2] {
     [decay, decay.conj()].map(|decay| (C::new(1.0, 0.0) - decay * w).inv() * 0.5)
 }
 
-/// Columns are scaled to length one; those that add nothing, as the imaginary residue of a real exponential, get zero.
+/// Least squares with columns scaled to length one. Columns that contribute nothing, such as the imaginary residue
+/// of a real exponential, get the coefficient zero.
 fn least_squares(mut matrix: DMatrix<f64>, mut right: DMatrix<f64>) -> DMatrix<f64> {
     let columns = matrix.ncols();
     let norms: Vec<f64> = (0..columns)
@@ -278,9 +291,10 @@ fn least_squares(mut matrix: DMatrix<f64>, mut right: DMatrix<f64>) -> DMatrix<f
     solution
 }
 
-/// Points of the upper half circle, graded towards the branch points: features on the circle are no finer than its distance from the unit circle.
+/// Points of the upper half circle, graded towards the branch points: features on the circle are no finer than its
+/// distance from the unit circle.
 fn sample_points(stencil: &LatticeStencil, step: LatticeStep, steps: usize) -> Vec<C> {
-    // A longer run has no fit: its cost is that of the longest.
+    // Longer runs cannot be fitted; their cost estimate is that of the longest.
     let steps = steps.min(MOST_STEPS);
     let radius = (-2.0 / steps as f64).exp();
     let finest = 1.0 / steps as f64;
@@ -300,7 +314,7 @@ fn sample_points(stencil: &LatticeStencil, step: LatticeStep, steps: usize) -> V
     points
 }
 
-/// Sample points of a fit: what its cost depends on.
+/// Number of sample points of a fit, which determines its cost.
 pub(super) fn sample_count(stencil: &LatticeStencil, step: LatticeStep, steps: usize) -> usize {
     sample_points(stencil, step, steps).len()
 }

@@ -1,4 +1,4 @@
-//! The Green function of the infinite lattice in continuous time.
+//! Green function of the infinite lattice in continuous time.
 
 use std::f64::consts::TAU;
 
@@ -8,19 +8,20 @@ use realfft::num_complex::Complex;
 use super::LatticeStencil;
 use crate::linear::LineTransform;
 
-/// Nodes of the ring beyond the light cone: there the field has decayed below round-off.
+/// Nodes of the ring beyond the light cone; there the field has decayed below round-off.
 const MARGIN: f64 = 400.0;
-/// Times that share a ring.
+/// Number of times that share a ring.
 const CHUNK: usize = 256;
 
-/// g_m(j dt) for m = 0 … sites − 1 and j = 0 … steps: u_m of the infinite lattice that starts at rest but for the unit velocity of site 0.
+/// Computes g_m(j dt) for m = 0 … sites − 1 and j = 0 … steps: the displacement u_m of the infinite lattice at rest
+/// initially except for a unit velocity of site 0.
 ///
 /// ```text
 /// g_m(t) = (1/2π) ∫ cos(mθ) sin(ω(θ) t)/ω(θ) dθ
 /// ```
 ///
-/// by the trapezoidal rule on P points, which is the Green function of a ring of P nodes: exact to round-off as soon as nothing has gone round. One
-/// transform per time, on all threads.
+/// The integral is evaluated by the trapezoidal rule with P points, which is the Green function of a ring of P
+/// nodes: exact to round-off as long as no wave has travelled around the ring. One transform per time, in parallel.
 pub fn green_functions(
     stencil: &LatticeStencil,
     dt: f64,
@@ -43,7 +44,7 @@ pub fn green_functions(
     (0..sites).map(of_site).collect()
 }
 
-/// A ring of lattice nodes.
+/// Ring of lattice nodes.
 struct Ring {
     frequencies: Vec<f64>,
     transform: LineTransform,

@@ -1,17 +1,19 @@
-//! The paper's way to the Green functions: kept to compute its tables again.
+//! Green functions by the closure of the paper; kept to reproduce its tables.
 
 use super::LatticeStencil;
 
-/// g_0 … g_{2K−1} at 0, dt … by the classical Runge–Kutta method on the chain of 2K sites, which is closed with the identity
+/// Computes g_0 … g_{2K−1} at 0, dt … by the classical Runge–Kutta method on the chain of 2K sites, closed by the
+/// identity
 ///
 /// ```text
 /// Σ_{k=1..K} k a_k (g_{m+k} − g_{m−k}) = −(2m/t) g_m'(t)
 /// ```
 ///
-/// solved for the 2K-th to (3K − 1)-th g; its right-hand side is zero at t = 0 (the paper's equations 23–27).
+/// solved for the 2K-th to (3K − 1)-th g; its right-hand side is zero at t = 0 (equations 23–27 of the paper).
 ///
-/// **Historical.** The closure is exact, but errors grow in it: for the Gaussian micromodulus with K = 7 as exp(0.41 t), up to exp(10.9 t) for K = 10. It is quiet for the
-/// Euler–Bernoulli lattice and for constant and conical micromoduli. Use [`super::green_functions`].
+/// **Historical.** The closure is exact but unstable: for the Gaussian micromodulus errors grow as exp(0.41 t) with
+/// K = 7, up to exp(10.9 t) for K = 10. It is stable for the Euler–Bernoulli lattice and for constant and conical
+/// micromoduli. Use [`super::green_functions`].
 pub fn green_functions_closed(stencil: &LatticeStencil, dt: f64, steps: usize) -> Vec<Vec<f64>> {
     let sites = 2 * stencil.reach();
     let mut state = [vec![0.0; sites], vec![0.0; sites]];
@@ -43,7 +45,7 @@ pub fn green_functions_closed(stencil: &LatticeStencil, dt: f64, steps: usize) -
     g
 }
 
-/// g_m'' of the closed chain.
+/// Second derivatives g_m'' of the closed chain.
 fn acceleration(stencil: &LatticeStencil, t: f64, g: &[f64], v: &[f64]) -> Vec<f64> {
     let (reach, a) = (stencil.reach() as isize, stencil.weights());
     let mut all = g.to_vec();

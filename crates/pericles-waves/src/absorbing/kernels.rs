@@ -1,6 +1,6 @@
-//! Which kernel acts on which site's history.
+//! Assignment of kernels to the histories of sites.
 
-/// The kernels of one end: ghost −n, n = 0 … K − 1, is u_{−n} = Σ (kernel * site).
+/// Kernels of one absorbing boundary: ghost −n, n = 0 … K − 1, is u_{−n} = Σ (kernel * site).
 #[derive(Debug, Clone, PartialEq)]
 pub struct GhostKernels {
     form: KernelForm,
@@ -8,17 +8,17 @@ pub struct GhostKernels {
     series: Vec<Vec<f64>>,
 }
 
-/// How ghosts follow from histories.
+/// Relation between ghosts and histories.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum KernelForm {
-    /// u_{−n} = Σ_m h_m * u_{m−n}: K kernels, which act on ghosts as well.
+    /// u_{−n} = Σ_m h_m * u_{m−n}: K kernels, applied to ghosts as well.
     Shift,
     /// u_{−n} = Σ_m F_n^m * u_m: K² kernels.
     Full,
 }
 
 impl GhostKernels {
-    /// From h_1 … h_K, with the coefficient of w^j in place j.
+    /// Creates kernels from h_1 … h_K; entry j is the coefficient of w^j.
     pub fn shift(series: Vec<Vec<f64>>) -> Self {
         Self {
             form: KernelForm::Shift,
@@ -27,7 +27,7 @@ impl GhostKernels {
         }
     }
 
-    /// From F_n^m, n = 0 … K − 1, m = 1 … K, m running faster.
+    /// Creates kernels from F_n^m, n = 0 … K − 1, m = 1 … K, m running faster.
     pub fn full(reach: usize, series: Vec<Vec<f64>>) -> Self {
         debug_assert_eq!(series.len(), reach * reach);
         Self {
@@ -37,7 +37,7 @@ impl GhostKernels {
         }
     }
 
-    /// K.
+    /// Reach K of the lattice.
     pub fn reach(&self) -> usize {
         self.reach
     }
@@ -47,7 +47,7 @@ impl GhostKernels {
         &self.series
     }
 
-    /// Steps that the kernels reach back.
+    /// Number of steps (lags) of the kernels.
     pub fn steps(&self) -> usize {
         self.series.first().map_or(0, |series| series.len() - 1)
     }
@@ -60,7 +60,7 @@ impl GhostKernels {
             .sum()
     }
 
-    /// Sites whose history is kept.
+    /// Number of sites whose history is recorded.
     pub fn inputs(&self) -> usize {
         match self.form {
             KernelForm::Shift => 2 * self.reach - 1,
@@ -68,17 +68,18 @@ impl GhostKernels {
         }
     }
 
-    /// The pairs (site's place among the inputs, kernel) that make ghost −n.
+    /// Pairs (index of the site among the inputs, kernel) that contribute to ghost −n.
     pub fn terms(&self, n: usize) -> impl Iterator<Item = (usize, usize)> + use<> {
         let (form, reach) = (self.form, self.reach);
         (0..reach).map(move |m| match form {
-            // Site m + 1 − n; the first kept is 2 − K.
+            // Site m + 1 − n; the first recorded one is 2 − K.
             KernelForm::Shift => (m + reach - 1 - n, m),
             KernelForm::Full => (m, n * reach + m),
         })
     }
 
-    /// The displacements of the kept sites at one time from those of the body's outer points 1 … K and of the ghosts 0 … −(K − 1).
+    /// Displacements of the recorded sites at one time from those of the body's outer points 1 … K and of the
+    /// ghosts 0 … −(K − 1).
     pub fn gather(&self, own: &[f64], ghosts: &[f64], inputs: &mut [f64]) {
         match self.form {
             KernelForm::Full => inputs.copy_from_slice(own),
@@ -92,11 +93,12 @@ impl GhostKernels {
         }
     }
 
-    /// Adds to the ghosts what they owe to displacements of the same step, those of the body's outer points and of ghosts before them.
+    /// Adds to the ghosts their dependence on displacements of the same step, those of the body's outer points and
+    /// of previous ghosts.
     pub fn settle(&self, own: &[f64], ghosts: &mut [f64]) {
         let site = |place: usize, ghosts: &[f64]| match self.form {
             KernelForm::Full => own[place],
-            // Site place + 2 − K.
+            // Site with index place + 2 − K.
             KernelForm::Shift if place + 1 >= self.reach => own[place + 1 - self.reach],
             KernelForm::Shift => ghosts[self.reach - 2 - place],
         };
@@ -109,8 +111,8 @@ impl GhostKernels {
         }
     }
 
-    /// The K² kernels F_n^m: F_{n+1}^m = F_n^1 * h_m + F_n^{m+1} (n counted away from the body), by products of `steps` coefficients. Slow; for tests and
-    /// reports.
+    /// Returns the K² kernels F_n^m by F_{n+1}^m = F_n^1 * h_m + F_n^{m+1} (n counted away from the body), with
+    /// products of `steps` coefficients. Slow; for tests and reports.
     pub fn expanded(&self) -> Self {
         if self.form == KernelForm::Full {
             return self.clone();

@@ -1,13 +1,13 @@
-//! What the body shows to an absorbing end: its outer layer.
+//! Outer layer of the body at an absorbing boundary.
 
 use super::{AbsorbingError, LatticeStencil};
 use pericles::System;
-use pericles::operator::On;
+use pericles::operator::PointSubset;
 use pericles::space::PointCloud;
 use pericles::sum::max_norm;
 use pericles::time::State;
 
-/// An end of a bar.
+/// End of a bar.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Side {
     /// −x.
@@ -17,7 +17,7 @@ pub enum Side {
 }
 
 impl Side {
-    /// As in decks.
+    /// Name in decks.
     pub fn name(self) -> &'static str {
         match self {
             Self::Left => "-x",
@@ -25,7 +25,7 @@ impl Side {
         }
     }
 
-    /// The point at a distance from the end, of a bar of n points.
+    /// Index of the point at a depth below the end, for a bar of n points.
     fn point(self, n: usize, depth: usize) -> usize {
         match self {
             Self::Left => depth,
@@ -34,33 +34,34 @@ impl Side {
     }
 }
 
-/// The outermost K points of a bar at one side, checked: the exterior continues their bonds.
+/// The outermost K points of a bar on one side, verified: the exterior continues their bonds.
 #[derive(Debug, Clone)]
 pub struct OuterLayer {
-    /// Where.
+    /// Side of the bar.
     pub side: Side,
-    /// The points from the end inwards.
+    /// Points from the end inwards.
     pub points: Vec<usize>,
     /// Mass of a point, ρ V, kg.
     pub mass: f64,
-    /// The lattice that continues the body.
+    /// Lattice that continues the body.
     pub stencil: LatticeStencil,
-    /// The largest initial displacement or velocity in the layer over that of the body. The exterior starts from rest, so the relative error of the end is of
-    /// this size; zero where the field beyond is given.
+    /// Largest initial displacement or velocity in the layer relative to that of the body. The exterior starts from
+    /// rest, so this is the relative error of the boundary; zero if the field beyond is given.
     pub neglected: f64,
 }
 
-/// Bonds whose weights differ by less, relative to the largest, are alike.
+/// Relative difference (to the largest weight) below which bond weights are considered equal.
 const ALIKE: f64 = 1e-11;
-/// The initial field may have this share of its largest value at the end of what is known of it. Beyond it counts as zero: an error of about this share.
+/// Fraction of its largest value that the initial field may have where the known field ends. It is taken as zero
+/// beyond, which causes an error of about this size.
 pub(super) const NEGLIGIBLE: f64 = 1e-6;
 
 impl OuterLayer {
-    /// The outer layer of a body with its initial state and the points, ascending, whose bonds never break. The lattice beyond is read off the body's own
-    /// bonds: those of the outermost point.
+    /// Creates the outer layer of a body from its initial state and the ascending list of points whose bonds never
+    /// break. The lattice beyond is derived from the body's own bonds: those of the outermost point.
     ///
     /// # Errors
-    /// Everything that the exterior cannot continue ([`AbsorbingError`]).
+    /// Every property that the exterior cannot continue ([`AbsorbingError`]).
     pub fn of(
         system: &System,
         side: Side,
@@ -75,10 +76,11 @@ impl OuterLayer {
         Ok(layer)
     }
 
-    /// The same of a body whose initial field may go on beyond the end: [`super::FreeWave`] must then say how.
+    /// As [`OuterLayer::of`], for a body whose initial field extends beyond the end; [`super::FreeWave`] must then
+    /// describe it.
     ///
     /// # Errors
-    /// As above, but for the field.
+    /// As [`OuterLayer::of`], except for the field.
     pub fn with_motion_beyond(
         system: &System,
         side: Side,
@@ -93,7 +95,7 @@ impl OuterLayer {
         let outermost = side.point(n, 0);
         let row = bonds.of(outermost);
         let strongest = max_norm(&row);
-        // A weight that vanishes at the horizon, as the conical function's, may be there as round-off.
+        // A weight that vanishes at the horizon, as for the conical function, may appear as round-off.
         let is_bond = |k: &usize| row[side.point(n, *k)].abs() > ALIKE * strongest;
         let reach = (1..n).rev().find(is_bond);
         let reach = reach.unwrap_or(0);
@@ -120,7 +122,7 @@ impl OuterLayer {
                 });
             }
             let row = bonds.of(i);
-            // Bonds within the layer; those to the body behind it are its own affair.
+            // Bonds within the layer; bonds to the body behind it are not restricted.
             for (q, &j) in points.iter().enumerate().filter(|&(q, _)| q != p) {
                 let expected = weights[p.abs_diff(q) - 1];
                 if (row[j] - expected).abs() > ALIKE * scale {
@@ -148,12 +150,12 @@ impl OuterLayer {
         Ok(layer)
     }
 
-    /// What its end's arrays are called in checkpoints.
+    /// Prefix of the arrays in checkpoints.
     pub(super) fn name(&self) -> String {
         format!("absorbing/{}", self.side.name())
     }
 
-    /// The accelerations of its points, displaced by `own`, by their bonds to the ghosts 0, −1 … beyond.
+    /// Computes the accelerations of the points, displaced by `own`, by their bonds to the ghosts 0, −1 … beyond.
     pub(super) fn pull_into(&self, own: &[f64], ghosts: &[f64], pull: &mut [f64]) {
         for (p, (pull, own)) in pull.iter_mut().zip(own).enumerate() {
             // A point p + 1 spacings from ghost 0 reaches ghosts 0 … K − p − 1.
@@ -162,7 +164,7 @@ impl OuterLayer {
         }
     }
 
-    /// No bond of the layer can break.
+    /// Checks that no bond of the layer can break.
     fn check_lasting(&self, system: &System, no_fail: &[u32]) -> Result<(), AbsorbingError> {
         let held = |i: &usize| no_fail.binary_search(&(*i as u32)).is_ok();
         if system.operator().can_break() && !self.points.iter().all(held) {
@@ -174,19 +176,19 @@ impl OuterLayer {
         Ok(())
     }
 
-    /// The force of a displaced layer is that of its tangent.
+    /// Checks that the force of a displaced layer equals that of its tangent.
     fn check_linear(&self, bonds: &Bonds<'_>) -> Result<(), AbsorbingError> {
         let operator = bonds.system.operator();
         let mut u = bonds.rest.clone();
         let spacing = bonds.system.cloud().spacing();
         for (p, &i) in self.points.iter().enumerate() {
-            // No bond turns over.
+            // Small enough that bonds keep their direction.
             u[i] = spacing * (0.2 - 0.05 * (p % 5) as f64);
         }
         let mut tangent = bonds.rest.clone();
         operator.tangent_into(0.0, &bonds.rest, &u, &mut tangent);
         let mut force = bonds.rest.clone();
-        operator.add_force(0.0, &u, On::All, &mut force);
+        operator.add_force(0.0, &u, PointSubset::All, &mut force);
         let scale = max_norm(&tangent);
         let miss = |&i: &usize| (force[i] - tangent[i]).abs() > 1e-9 * scale;
         match self.points.iter().find(|i| miss(i)) {
@@ -198,7 +200,7 @@ impl OuterLayer {
         }
     }
 
-    /// No load and no prescribed motion in the layer.
+    /// Checks that no load and no prescribed motion act on the layer.
     fn check_free(&self, system: &System) -> Result<(), AbsorbingError> {
         let loads = system.loads().iter().map(|load| ("a load", &load.points));
         let motions = system.motions().iter();
@@ -217,7 +219,7 @@ impl OuterLayer {
         Ok(())
     }
 
-    /// The largest value of a field in the layer over its largest in the body.
+    /// Returns the largest value of a field in the layer relative to its largest value in the body.
     fn share_of(&self, field: &[f64], cloud: &PointCloud) -> Result<f64, AbsorbingError> {
         let largest = max_norm(field);
         let outer = self.points.iter().copied();
@@ -257,7 +259,7 @@ fn check_bar(cloud: &PointCloud) -> Result<(), AbsorbingError> {
     }
 }
 
-/// The bonds of a body's points, read off its tangent at rest.
+/// Bonds of a body's points, derived from its tangent at rest.
 struct Bonds<'a> {
     system: &'a System,
     rest: Vec<f64>,
@@ -269,7 +271,7 @@ impl<'a> Bonds<'a> {
         Self { system, rest }
     }
 
-    /// k/ρ of the bonds from point i to each other point, 1/s².
+    /// Returns k/ρ of the bonds from point i to every other point, 1/s².
     fn of(&self, i: usize) -> Vec<f64> {
         let mut unit = self.rest.clone();
         unit[i] = 1.0;

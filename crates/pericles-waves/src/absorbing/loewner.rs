@@ -1,4 +1,4 @@
-//! Rational interpolation of a matrix-valued function along directions.
+//! Tangential rational interpolation of a matrix-valued function.
 
 use std::f64::consts::SQRT_2;
 
@@ -8,22 +8,24 @@ use super::schur::{complex_schur, triangular_eigenvectors};
 
 type C = Complex<f64>;
 
-/// The interpolation problem of Mayo & Antoulas (2007) for a K × K function G with G(w̄) = conj G(w), known on points of the upper half plane: rows ℓᵀ G(μ) on one half of the points, columns
-/// G(w) r on the other, ℓ and r real, each with its conjugate.
+/// Interpolation problem of Mayo & Antoulas (2007) for a K × K function G with G(w̄) = conj G(w), known at points
+/// of the upper half plane: rows ℓᵀ G(μ) at one half of the points, columns G(w) r at the other, ℓ and r real, each
+/// with its conjugate.
 ///
-/// Of the divided differences L = ℓᵀ [G(μ) − G(w)] r/(μ − w) a cross approximation (Bebendorf 2000) takes one row and one column after the other, so that only those are ever computed; its
-/// singular values, which fall as fast as the error of rational functions can, follow from triangles of the size of its rank. Those above a threshold, L ≈ A Σ B, give the realisation
-/// G(w) ≈ W X (M − w)⁻¹ Y V with Y = Σ^−½ Aᵀ, X = Bᵀ Σ^−½ and
+/// A cross approximation (Bebendorf 2000) of the divided differences L = ℓᵀ [G(μ) − G(w)] r/(μ − w) takes one row
+/// and one column after the other, so that only these are computed. Its singular values, which decrease as fast as
+/// the error of rational approximations, follow from triangular matrices of the size of its rank. Those above a
+/// threshold, L ≈ A Σ B, give the realisation G(w) ≈ W X (M − w)⁻¹ Y V with Y = Σ^−½ Aᵀ, X = Bᵀ Σ^−½ and
 ///
 /// ```text
 /// M = Y [μ L + ℓ W] X = Σ^−½ Aᵀ μ A Σ^½ + (Y ℓ) (W X),
 /// ```
 ///
-/// for μ L + ℓ W are the divided differences of w G. O((K + r) n r + r³) for rank r of n rows.
+/// because μ L + ℓ W are the divided differences of w G. O((K + r) n r + r³) for rank r and n rows.
 pub(super) struct Loewner {
     tangents: Tangents,
     singular: DVector<f64>,
-    /// Aᵀ μ A
+    /// Aᵀ μ A.
     shifted: DMatrix<f64>,
     /// Aᵀ ℓ, Aᵀ V: K columns.
     entering: [DMatrix<f64>; 2],
@@ -31,7 +33,7 @@ pub(super) struct Loewner {
     leaving: DMatrix<f64>,
 }
 
-/// An exponential with a residue of rank one.
+/// Exponential with a residue of rank one.
 #[derive(Debug, Clone)]
 pub(super) struct Exponential {
     pub(super) decay: C,
@@ -41,12 +43,13 @@ pub(super) struct Exponential {
     pub(super) take: Vec<C>,
 }
 
-/// What is done with eigenvalues λ outside the unit circle.
+/// Treatment of eigenvalues λ outside the unit circle.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Growing {
-    /// They are left out: right where they are superfluous, as most are.
+    /// They are dropped, which is correct for superfluous ones, as most are.
     LeftOut,
-    /// They are replaced by 1/λ̄, for their residues to be found again: leaving out one that is needed misses the exterior by its whole residue, some per cent.
+    /// They are replaced by 1/λ̄ and their residues are recomputed. Dropping one that is needed would cause an
+    /// error of its whole residue, some per cent.
     Reflected,
 }
 
@@ -61,33 +64,34 @@ impl Growing {
     }
 }
 
-/// A point with what is known there.
+/// Interpolation point with its data.
 struct Tangent {
     at: C,
     direction: DVector<f64>,
     value: DVector<C>,
 }
 
-/// Of rows, and of columns.
+/// Interpolation data of the rows or of the columns.
 struct Tangents {
     left: Vec<Tangent>,
     right: Vec<Tangent>,
 }
 
-/// A row and a column of what the crosses before leave of L, divided by their common entry.
+/// Row and column of the remainder of L after the previous crosses, divided by their common entry.
 struct Cross {
     entry: f64,
-    /// Down the column.
+    /// Column.
     down: Vec<f64>,
-    /// Along the row.
+    /// Row.
     along: Vec<f64>,
 }
 
-/// Crosses that are small one after the other before the rest is taken to be.
+/// Number of consecutive small crosses after which the remainder is considered small.
 const PATIENCE: usize = 4;
 
 impl Loewner {
-    /// With `directions` random directions at each point, up to crosses below a `share` of the largest.
+    /// Builds the problem with `directions` random directions at each point, up to crosses below a `share` of the
+    /// largest.
     pub(super) fn new(points: &[C], values: &[DMatrix<C>], directions: usize, share: f64) -> Self {
         let reach = values[0].nrows();
         let noise = pericles::noise::noise(2 * points.len() * directions * reach, 1);
@@ -135,20 +139,21 @@ impl Loewner {
         }
     }
 
-    /// Rows and columns, the smaller number.
+    /// Smaller one of the numbers of rows and columns.
     pub(super) fn size(&self) -> usize {
         2 * self.tangents.left.len().min(self.tangents.right.len())
     }
 
-    /// Number of singular values above this share of the first.
+    /// Number of singular values above this fraction of the first.
     pub(super) fn rank(&self, share: f64) -> usize {
         let least = share * self.singular.get(0).copied().unwrap_or_default();
         self.singular.iter().take_while(|s| **s > least).count()
     }
 
-    /// The exponentials of the realisation of this order: eigenvalues 1/λ of M with Im λ ≥ 0, right and left eigenvectors. None where they are not found.
+    /// Exponentials of the realisation of this order: eigenvalues 1/λ of M with Im λ ≥ 0, with right and left
+    /// eigenvectors. Empty if they cannot be computed.
     ///
-    /// Rounding puts some eigenvalues that belong near the unit circle on its wrong side.
+    /// Round-off moves some eigenvalues close to the unit circle to its wrong side.
     pub(super) fn exponentials(&self, order: usize, growing: Growing) -> Vec<Exponential> {
         let root = |k: usize| self.singular[k].sqrt();
         let scaled = |matrix: &DMatrix<f64>| {
@@ -186,7 +191,8 @@ impl Loewner {
 }
 
 impl Tangents {
-    /// Takes crosses with partial pivots: the next row is that of the largest entry left in the last column.
+    /// Computes crosses with partial pivoting: the next row is that of the largest remaining entry of the last
+    /// column.
     fn crosses(&self, share: f64) -> Vec<Cross> {
         let mut crosses: Vec<Cross> = Vec::new();
         let (rows, columns) = (2 * self.left.len(), 2 * self.right.len());
@@ -250,7 +256,7 @@ impl Tangents {
             .collect()
     }
 
-    /// μ times the columns of a matrix, in the real form of rows.
+    /// Multiplies the columns of a matrix by μ, in the real form of rows.
     fn times_points(&self, matrix: &DMatrix<f64>) -> DMatrix<f64> {
         DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, k| {
             let at = self.left[i / 2].at;
@@ -293,7 +299,8 @@ fn lines_as_columns(lines: &[&[f64]]) -> DMatrix<f64> {
     DMatrix::from_fn(length, lines.len(), |i, k| lines[k][i])
 }
 
-/// A matrix as orthonormal columns times a triangle, by Cholesky's factor of its squares: columns of crosses are far from parallel.
+/// Factorises a matrix into orthonormal columns and a triangle by the Cholesky factor of its Gram matrix; the
+/// columns of crosses are well conditioned.
 fn orthogonalised(columns: DMatrix<f64>) -> (DMatrix<f64>, DMatrix<f64>) {
     match columns.tr_mul(&columns).cholesky() {
         Some(factor) => {
@@ -316,14 +323,15 @@ fn subtract(line: &mut [f64], factor: f64, other: &[f64]) {
     }
 }
 
-/// The place of the largest entry that is not taken.
+/// Index of the largest entry not yet taken.
 fn largest_free(line: &[f64], taken: &[bool]) -> Option<usize> {
     (0..line.len())
         .filter(|&k| !taken[k])
         .max_by(|&i, &j| line[i].abs().total_cmp(&line[j].abs()))
 }
 
-/// The entries of L of a row and a column with their conjugates, made real: [real, imaginary] rows of [real, imaginary] columns.
+/// Entries of L for a row and a column with their conjugates in real form: [real, imaginary] rows of [real,
+/// imaginary] columns.
 fn block(row: &Tangent, column: &Tangent) -> [[f64; 2]; 2] {
     let along = |value: &DVector<C>, direction: &DVector<f64>| -> C {
         value.iter().zip(direction).map(|(v, d)| v * *d).sum()

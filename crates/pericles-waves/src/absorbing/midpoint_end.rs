@@ -1,49 +1,53 @@
-//! The end of a bar that lets waves leave, stepped by the implicit midpoint rule.
+//! Absorbing boundary of a bar for the implicit midpoint rule.
 
 use super::history::History;
 use super::{AbsorbingError, LatticeStep, OuterLayer};
 use pericles::StepEnd;
 use pericles::StepKind;
-use pericles::boundary::{Boundary, Exchange, Stage, WithinStep};
+use pericles::boundary::{Boundary, Exchange, ImplicitBoundary, Stage};
 
-/// An absorbing end for the implicit midpoint rule and, its exterior being linear, the trapezoidal rule.
+/// Absorbing boundary for the implicit midpoint rule and, because its exterior is linear, the trapezoidal rule.
 ///
-/// Both rules take the exterior's forces at the mean ū of the displacements at both ends of a step. Of a lattice at rest at the start these means obey, from the first step on,
-/// σ(w) ū = A ū with σ = (4/dt²)((1 − w)/(1 + w))² and nothing added for the start, so that
+/// Both rules evaluate the exterior forces at the mean ū of the displacements at both ends of a step. For a lattice
+/// at rest initially these means satisfy, from the first step on, σ(w) ū = A ū with σ = (4/dt²)((1 − w)/(1 + w))²
+/// and no initial terms, so
 ///
 /// ```text
 /// ū_{−n}^j = Σ_m Σ_{α ≥ 0} F_n^m[α] ū_m^{j−α}
 /// ```
 ///
-/// F\[0\] ≠ 0: the ghosts hang on the step that is to be found. What they owe to it is eliminated: with T the bonds between outer points and ghosts, the body feels
-/// T (past) − S ū, S = diag(Σ a) − T F\[0\], a symmetric K × K corner that is added to the matrix of the step ([`WithinStep`]).
+/// Since F\[0\] ≠ 0 the ghosts depend on the unknown step. This dependence is eliminated: with T the bonds between
+/// outer points and ghosts, the force on the body is T (past) − S ū, where S = diag(Σ a) − T F\[0\] is a symmetric
+/// K × K corner added to the matrix of the step ([`ImplicitBoundary`]).
 ///
-/// The work of an end over a step is its force at the middle times the change of displacement; with it the energy account closes as that of the rule does.
+/// The work of the boundary over a step is its force at the middle times the change of displacement; with it the
+/// energy balance closes as accurately as that of the rule.
 pub struct MidpointEnd {
     layer: OuterLayer,
     history: Box<dyn History>,
     dt: f64,
     /// S, row by row.
     corner: Vec<f64>,
-    /// What the past alone pulls at the middle of the coming step.
+    /// Force due to the past at the middle of the next step.
     past: Vec<f64>,
-    /// Displacements of the present state: of the outer points, and before the step; of the ghosts.
+    /// Displacements of the outer points in the current state and before the step, and of the ghosts.
     own: Vec<f64>,
     before: Vec<f64>,
     beyond: Vec<f64>,
-    /// What the ghosts pull in the present state.
+    /// Force of the ghosts in the current state.
     pull: Vec<f64>,
-    /// Means over a step: of the outer points; of the ghosts.
+    /// Means over a step, of the outer points and of the ghosts.
     middle: Vec<f64>,
     ghosts: Vec<f64>,
     started: bool,
 }
 
 impl MidpointEnd {
-    /// An end whose history gives the ghosts of the layer, with the kernels of [`LatticeScheme::Midpoint`](super::LatticeScheme::Midpoint).
+    /// Creates the boundary with a history that determines the ghosts of the layer, with kernels of
+    /// [`LatticeScheme::Midpoint`](super::LatticeScheme::Midpoint).
     ///
     /// # Errors
-    /// A step that is not positive.
+    /// The time step is not positive.
     pub fn new(
         layer: OuterLayer,
         history: Box<dyn History>,
@@ -80,7 +84,7 @@ impl MidpointEnd {
         })
     }
 
-    /// Ends the step that took the outer points from `before` to `own`: the work and impulse of the ghosts.
+    /// Completes the step that moved the outer points from `before` to `own`: work and impulse of the ghosts.
     fn end_step(&mut self) -> Exchange {
         let ends = self.before.iter().zip(&self.own);
         for (middle, (before, now)) in self.middle.iter_mut().zip(ends) {
@@ -103,7 +107,7 @@ impl MidpointEnd {
         exchange
     }
 
-    /// Finds what the ghosts pull in the present state, and what the past pulls in the coming step.
+    /// Updates the force of the ghosts in the current state and the force of the past in the next step.
     fn update_pulls(&mut self) {
         self.layer
             .pull_into(&self.own, &self.beyond, &mut self.pull);
@@ -114,7 +118,7 @@ impl MidpointEnd {
             .pull_into(&self.middle, &self.ghosts, &mut self.past);
     }
 
-    /// S u of the outer points, with their places.
+    /// S u for the outer points, with their indices.
     fn corner_product<'a>(&'a self, u: &'a [f64]) -> impl Iterator<Item = (usize, f64)> + 'a {
         let points = &self.layer.points;
         let rows = self.corner.chunks_exact(points.len());
@@ -152,12 +156,12 @@ impl Boundary for MidpointEnd {
         self.history.steps()
     }
 
-    fn within_step(&self) -> Option<&dyn WithinStep> {
+    fn within_step(&self) -> Option<&dyn ImplicitBoundary> {
         Some(self)
     }
 }
 
-impl WithinStep for MidpointEnd {
+impl ImplicitBoundary for MidpointEnd {
     fn add_present(&self, acceleration: &mut [f64]) {
         for (pull, &i) in self.pull.iter().zip(&self.layer.points) {
             acceleration[i] += pull;
@@ -178,7 +182,7 @@ impl WithinStep for MidpointEnd {
 }
 
 pericles::saved! {
-    impl Saved for MidpointEnd {
+    impl Checkpointed for MidpointEnd {
         own: array("{}/own", layer.name()),
         beyond: array("{}/beyond", layer.name()),
         history: under("{}", layer.name()),

@@ -1,4 +1,4 @@
-//! The kernels and the history of an end, as asked for.
+//! Choice of the kernels and the history of an absorbing boundary.
 
 use super::history::{
     BlockedHistory, DirectHistory, ExponentialHistory, History, HistoryCost, HistoryForm,
@@ -12,20 +12,20 @@ use super::{
 use pericles::cache::Cache;
 use pericles::sum::max_norm;
 
-/// Which lattice the ends stand for.
+/// Lattice that the boundary represents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum KernelMethod {
-    /// That stepped as the body is: exact for the scheme.
+    /// The lattice integrated by the scheme of the body: exact for the scheme.
     #[default]
     Discrete,
-    /// That in continuous time, by the trapezoidal rule: second order, the paper's.
+    /// The lattice in continuous time, by the trapezoidal rule: second order, as in the paper.
     SemiDiscrete,
-    /// The same with the paper's closed chain: its errors grow.
+    /// As `SemiDiscrete`, with the closed chain of the paper: its errors grow.
     Historical,
 }
 
 impl KernelMethod {
-    /// As in decks.
+    /// Name in decks.
     pub fn name(self) -> &'static str {
         match self {
             Self::Discrete => "discrete",
@@ -35,53 +35,57 @@ impl KernelMethod {
     }
 }
 
-/// What an end is to be made of.
+/// Requested kernels and history.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct EndPlan {
-    /// The kernels.
+pub struct AbsorbingBoundaryPlan {
+    /// Method for the kernels.
     pub method: KernelMethod,
-    /// The form of the history; none for the cheapest by [`HistoryCost`], which is one of the exact forms unless a tolerance is given.
+    /// Form of the history; `None` for the cheapest by [`HistoryCost`], which is an exact form unless a tolerance
+    /// is given.
     pub form: Option<HistoryForm>,
-    /// Allowed error of a ghost's displacement, relative to displacements; [`EndPlan::TOLERANCE`] where exponentials are asked for without.
+    /// Allowed error of a ghost displacement, relative to displacements; [`AbsorbingBoundaryPlan::TOLERANCE`] if exponentials are
+    /// requested without one.
     pub tolerance: Option<f64>,
-    /// Whether the exponentials are compared with the exact kernels.
+    /// Compare the exponentials with the exact kernels.
     pub verify: bool,
 }
 
-/// What was made.
+/// Properties of the created history.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EndReport {
-    /// Kernels.
+    /// Method of the kernels.
     pub method: KernelMethod,
-    /// The history's name.
+    /// Name of the history.
     pub history: &'static str,
-    /// Its memory, bytes.
+    /// Memory of the history, bytes.
     pub bytes: usize,
-    /// Number of exponentials; none for exact forms.
+    /// Number of exponentials; `None` for exact forms.
     pub exponentials: Option<usize>,
-    /// Their error on the samples of the fit.
+    /// Error of the exponentials at the samples of the fit.
     pub residual: Option<f64>,
-    /// Their distance from the exact kernels ([`history_distance`]), if it was asked for.
+    /// Difference from the exact kernels ([`history_distance`]), if requested.
     pub distance: Option<f64>,
-    /// The error of the Green functions that the historical method makes in this run, relative to their largest.
+    /// Error of the Green functions of the historical method in this run, relative to their largest value.
     pub growth: Option<f64>,
 }
 
-impl EndPlan {
-    /// Of a fit that no tolerance is given for.
+impl AbsorbingBoundaryPlan {
+    /// Default tolerance of a fit.
     pub const TOLERANCE: f64 = 1e-9;
 
-    /// Whether only exponentials will do, whose memory does not grow with the steps; where they are compared with exact kernels, it does.
+    /// Returns true if only exponentials are acceptable, whose memory does not grow with the number of steps;
+    /// comparing them with exact kernels does need such memory.
     pub fn forgets(&self) -> bool {
         self.form == Some(HistoryForm::Exponentials) && !self.verify
     }
 
-    /// Makes the history of an end for N steps of a scheme; exact kernels come from the cache. A fit that is tried because it would be cheaper gives way to blocks if it misses
-    /// the tolerance.
+    /// Creates the history of a boundary for N steps of a scheme; exact kernels are cached. If a fit is tried only
+    /// because it would be cheaper and misses the tolerance, the blocked form is used.
     ///
     /// # Errors
-    /// [`AbsorbingError::Fit`] and [`AbsorbingError::Tolerance`] where exponentials are asked for, or where they are verified and farther from the exact kernels than ten
-    /// times the tolerance. [`AbsorbingError::VerletOnly`] for continuous-time kernels with another scheme.
+    /// [`AbsorbingError::Fit`] and [`AbsorbingError::Tolerance`] if exponentials are requested, or if they are
+    /// verified and differ from the exact kernels by more than ten times the tolerance.
+    /// [`AbsorbingError::VerletOnly`] for continuous-time kernels with another scheme.
     pub fn history(
         &self,
         stencil: &LatticeStencil,
@@ -155,7 +159,7 @@ impl EndPlan {
         if self.verify {
             let mut exact = BlockedHistory::new(cached_kernels(stencil, step, steps, cache));
             let apart = history_distance([&mut history, &mut exact], stencil.reach(), steps);
-            // Sums over time of an error whose spectrum holds the tolerance.
+            // The sum over time of an error whose spectrum is within the tolerance.
             if apart.is_nan() || apart > 10.0 * tolerance {
                 return Err(AbsorbingError::Fit {
                     tolerance,
@@ -178,7 +182,7 @@ impl EndPlan {
     }
 }
 
-/// The largest error of the closed chain's Green functions at the last step, relative to the largest value of all.
+/// Largest error of the closed chain's Green functions at the last step, relative to the largest value of all.
 fn growth(stencil: &LatticeStencil, dt: f64, closed: &[Vec<f64>]) -> f64 {
     let steps = closed[0].len() - 1;
     let exact = green_functions(stencil, dt, steps, closed.len());

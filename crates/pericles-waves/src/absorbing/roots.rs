@@ -1,4 +1,4 @@
-//! The factor of the symbol at complex frequencies, from its roots and along curves.
+//! Factor of the symbol at complex frequencies, from its roots and by continuation along curves.
 
 use nalgebra::{Complex, DMatrix, Schur};
 
@@ -7,12 +7,14 @@ use super::schur::ITERATIONS;
 
 type C = Complex<f64>;
 
-/// h_1 … h_K at s² → σ: (−1)^{m+1} e_m of the roots of D(z) = σ + 2Σa_k − Σ a_k (z^k + z^{−k}) inside the unit circle.
+/// Computes h_1 … h_K at s² → σ: (−1)^{m+1} e_m of the roots of D(z) = σ + 2Σa_k − Σ a_k (z^k + z^{−k}) inside the
+/// unit circle.
 pub(super) fn factor_at(stencil: &LatticeStencil, sigma: C) -> Vec<C> {
     Factor::at(stencil, sigma).kernels()
 }
 
-/// c^½ (1, −h_1 … −h_K), the solution b of Σ_j b_j b_{j+k} = (σ + 2Σa, −a_1 … −a_K) whose zeros lie outside the unit circle.
+/// Factor c^½ (1, −h_1 … −h_K): the solution b of Σ_j b_j b_{j+k} = (σ + 2Σa, −a_1 … −a_K) whose zeros lie outside
+/// the unit circle.
 pub(super) struct Factor<'a> {
     stencil: &'a LatticeStencil,
     b: Vec<C>,
@@ -21,14 +23,15 @@ pub(super) struct Factor<'a> {
     step: Vec<C>,
 }
 
-/// A correction so small, relative to the factor, leaves an error of its square.
+/// Relative size of a correction that leaves an error of its square.
 const SMALL: f64 = 1e-9;
-/// Corrections after which a curve is left.
+/// Number of corrections after which the continuation is abandoned.
 const CORRECTIONS: usize = 6;
 
 impl<'a> Factor<'a> {
-    /// With x = (z + 1/z)/2 the symbol is a Chebyshev series in x, whose zeros are the eigenvalues of its colleague matrix (Good 1961); two Newton steps on the
-    /// autocorrelation then give full accuracy.
+    /// Computes the factor from its roots. With x = (z + 1/z)/2 the symbol is a Chebyshev series in x, whose zeros
+    /// are the eigenvalues of its colleague matrix (Good 1961); two Newton steps on the autocorrelation then give
+    /// full accuracy.
     pub(super) fn at(stencil: &'a LatticeStencil, sigma: C) -> Self {
         let reach = stencil.reach();
         let mut factor = Self {
@@ -50,7 +53,7 @@ impl<'a> Factor<'a> {
         for x in chebyshev_zeros(centre, a) {
             let root = (x * x - 1.0).sqrt();
             let (one, other) = (x + root, x - root);
-            // The larger one has no cancellation; the other is its reciprocal.
+            // The larger root has no cancellation; the other is its reciprocal.
             let z = if one.norm_sqr() > other.norm_sqr() {
                 one.inv()
             } else {
@@ -71,7 +74,8 @@ impl<'a> Factor<'a> {
         }
     }
 
-    /// Goes on to a σ nearby: from the line through the last two factors by Newton's method, from the roots where that does not converge.
+    /// Moves to a nearby σ: by Newton's method from linear extrapolation of the last two factors, or from the roots
+    /// if it does not converge.
     pub(super) fn follow(&mut self, sigma: C) {
         let last = self.b.clone();
         if let Some(before) = &self.before {
@@ -94,7 +98,7 @@ impl<'a> Factor<'a> {
         kernels
     }
 
-    /// The same into a buffer.
+    /// As [`Factor::kernels`], into a buffer.
     pub(super) fn kernels_into(&self, kernels: &mut [C]) {
         let first = -self.b[0].inv();
         for (h, b) in kernels.iter_mut().zip(&self.b[1..]) {
@@ -102,10 +106,12 @@ impl<'a> Factor<'a> {
         }
     }
 
-    /// A Newton step; its size relative to the factor. At a branch point, where there is no unique solution, the factor stands as it is.
+    /// Performs a Newton step and returns its size relative to the factor. At a branch point, where the solution is
+    /// not unique, the factor is left unchanged.
     ///
-    /// In place of the equation for k = 0 stands the sum of all, (Σ b)² = D(1) = σ: the other would lose the digits of σ beside 2Σa, and an exterior with a little stiffness to the ground returns an
-    /// error that grows with the square of time.
+    /// The equation for k = 0 is replaced by the sum of all, (Σ b)² = D(1) = σ: the original one would lose the
+    /// digits of σ compared with 2Σa, and an exterior with a small stiffness to the ground causes an error that
+    /// grows with the square of time.
     fn correct(&mut self, sigma: C) -> f64 {
         let n = self.b.len();
         let (b, a) = (&self.b, self.stencil.weights());
@@ -136,7 +142,8 @@ impl<'a> Factor<'a> {
     }
 }
 
-/// Solves a small system by elimination with row pivots; the matrix, row by row, is used up. False if it is singular.
+/// Solves a small system by Gaussian elimination with row pivoting; the matrix (row by row) is overwritten. Returns
+/// false if it is singular.
 fn solve(matrix: &mut [C], x: &mut [C]) -> bool {
     let n = x.len();
     for p in 0..n {
@@ -173,7 +180,7 @@ fn solve(matrix: &mut [C], x: &mut [C]) -> bool {
     true
 }
 
-/// The zeros of centre − 2 Σ a_k T_k(x).
+/// Zeros of centre − 2 Σ a_k T_k(x).
 fn chebyshev_zeros(centre: C, a: &[f64]) -> Vec<C> {
     let reach = a.len();
     let coefficient = |k: usize| {
@@ -200,7 +207,7 @@ fn chebyshev_zeros(centre: C, a: &[f64]) -> Vec<C> {
     eigenvalues(colleague)
 }
 
-/// The eigenvalues of a complex matrix; NaN if the iteration for them does not converge.
+/// Eigenvalues of a complex matrix; NaN if the iteration does not converge.
 pub(super) fn eigenvalues(matrix: DMatrix<C>) -> Vec<C> {
     let count = matrix.nrows();
     match Schur::try_new(matrix, f64::EPSILON, ITERATIONS * count) {

@@ -1,13 +1,15 @@
-//! Eigenvalues and eigenvectors of real matrices by a real Schur form that is made complex.
+//! Eigenvalues and eigenvectors of real matrices by a real Schur form converted to a complex one.
 
 use nalgebra::{Complex, DMatrix, Schur};
 
 type C = Complex<f64>;
 
-/// Iterations per eigenvalue: two or three are usual. What is made of rounding errors may go on for ever.
+/// Largest number of iterations per eigenvalue; two or three are usual. For matrices that consist of round-off the
+/// iteration may not terminate.
 pub(super) const ITERATIONS: usize = 30;
 
-/// M = Q T Qᴴ with T upper triangular: the real form of M, whose 2 × 2 blocks are then rotated to triangles; a quarter of the work of a complex form. None if the iterations do not end.
+/// M = Q T Qᴴ with T upper triangular: computes the real Schur form of M and rotates its 2 × 2 blocks to triangles,
+/// a quarter of the work of a complex Schur decomposition. `None` if the iteration does not converge.
 pub(super) fn complex_schur(matrix: DMatrix<f64>) -> Option<(DMatrix<C>, DMatrix<C>)> {
     let most = ITERATIONS * matrix.nrows();
     let (q, t) = Schur::try_new(matrix, f64::EPSILON, most)?.unpack();
@@ -46,13 +48,13 @@ pub(super) fn complex_schur(matrix: DMatrix<f64>) -> Option<(DMatrix<C>, DMatrix
     Some((q, t))
 }
 
-/// The eigenvectors of an upper triangular matrix, as columns of an upper triangular matrix with ones on the diagonal.
+/// Eigenvectors of an upper triangular matrix, as columns of an upper triangular matrix with unit diagonal.
 pub(super) fn triangular_eigenvectors(triangle: &DMatrix<C>) -> DMatrix<C> {
     let n = triangle.nrows();
     let smallest = f64::EPSILON * triangle.norm();
     let mut vectors = DMatrix::identity(n, n);
     for p in 0..n {
-        // Column by column of the triangle, which lie one after the other: what known entries leave for the others.
+        // By columns of the triangle, which are contiguous: the residual that known entries leave for the others.
         let mut left: Vec<C> = triangle.column(p).iter().take(p).copied().collect();
         for i in (0..p).rev() {
             let mut gap = triangle[(p, p)] - triangle[(i, i)];
@@ -74,7 +76,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_real_matrix_is_taken_apart() {
+    fn schur_form_reproduces_the_matrix_and_its_eigenvectors() {
         let n = 23;
         let noise = pericles::noise::noise(n * n, 5);
         let matrix = DMatrix::from_row_slice(n, n, &noise);
@@ -89,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_eigenvalues_is_given_up() {
+    fn nan_matrix_has_no_schur_form() {
         let matrix = DMatrix::from_element(4, 4, f64::NAN);
         assert!(complex_schur(matrix).is_none());
     }

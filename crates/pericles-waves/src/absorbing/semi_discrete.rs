@@ -1,31 +1,32 @@
-//! The kernels of the semi-discrete lattice, as in the paper.
+//! Kernels of the semi-discrete lattice, as in the paper.
 
 use super::history::{BlockedHistory, History};
 use super::{GhostKernels, LatticeStencil, green_functions};
 
-/// The K² kernels dt f_n^m(j dt) for the trapezoidal rule, from the lattice's own Green functions ([`green_functions`]).
+/// Computes the K² kernels dt f_n^m(j dt) for the trapezoidal rule, from the Green functions of the lattice
+/// ([`green_functions`]).
 ///
-/// f_n^m is the displacement of exterior site n when site m alone moves, by a delta in time, and obeys
+/// f_n^m is the displacement of exterior site n when only site m moves, by a delta in time, and satisfies
 ///
 /// ```text
 /// f_n^m + Σ_l Σ_{k=1−l..K} a_k (g_{k+l−n} * f_l^m) = Σ_{k=0..K−m} a_{k+m} g_{k+n},      n, l = 0, −1 … −(K − 1)
 /// ```
 ///
-/// (the paper's equations 19–20). The products are taken by the trapezoidal rule with the step of the run: only then is Σ_j dt f consistent at
-/// zero frequency, and no drift is left; exact samples of f would leave one. With g(0) = 0 the rule is explicit, and its sums are found by blocks:
-/// O(K³ N log² N).
+/// (equations 19–20 of the paper). The convolutions are evaluated by the trapezoidal rule with the step of the run:
+/// only then is Σ_j dt f consistent at zero frequency; exact samples of f would cause a drift. With g(0) = 0 the
+/// rule is explicit; its sums are computed by blocks in O(K³ N log² N).
 ///
-/// Second order in dt; the ends of [`super::factor_kernels`] cost the same and add no error.
+/// Second order in dt; [`super::factor_kernels`] has the same cost and adds no error.
 pub fn semi_discrete_kernels(stencil: &LatticeStencil, dt: f64, steps: usize) -> GhostKernels {
     let g = green_functions(stencil, dt, steps, 2 * stencil.reach());
     trapezoidal_kernels(stencil, dt, &g)
 }
 
-/// The same from given Green functions g_0 … g_{2K−1}.
+/// As [`semi_discrete_kernels`], from given Green functions g_0 … g_{2K−1}.
 pub fn trapezoidal_kernels(stencil: &LatticeStencil, dt: f64, g: &[Vec<f64>]) -> GhostKernels {
     let (reach, a) = (stencil.reach(), stencil.weights());
     let length = g[0].len();
-    // Σ of a_k g over pairs (k, site).
+    // Sum of a_k g over pairs (k, site).
     let sum = |factor: f64, terms: &mut dyn Iterator<Item = (usize, usize)>| {
         let mut series = vec![0.0; length];
         for (k, site) in terms {

@@ -1,11 +1,11 @@
-//! The lattice beyond an absorbing end.
+//! Lattice beyond an absorbing boundary.
 
 use std::f64::consts::PI;
 
 use super::AbsorbingError;
 use pericles::sum::max_norm;
 
-/// u_n'' = Σ_{k=1..K} a_k (u_{n+k} − 2 u_n + u_{n−k}): a homogeneous lattice of any symmetric weights a_k (1/s²).
+/// Homogeneous lattice u_n'' = Σ_{k=1..K} a_k (u_{n+k} − 2 u_n + u_{n−k}) with symmetric weights a_k (1/s²).
 ///
 /// A bar has a_k = c α κ V/(ρ |ξ|); the Euler–Bernoulli lattice has (4, −1), the harmonic chain one weight.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,14 +13,14 @@ pub struct LatticeStencil {
     weights: Vec<f64>,
 }
 
-/// Samples of the band: many per oscillation of cos Kθ for every usual K.
+/// Samples of the band: many per oscillation of cos Kθ for all common K.
 const SAMPLES: usize = 4096;
 
 impl LatticeStencil {
-    /// The lattice with the given weights a_1 … a_K, 1/s².
+    /// Creates the lattice with weights a_1 … a_K, 1/s².
     ///
     /// # Errors
-    /// No weights, weights that are not finite, a_K = 0, ω² ≤ 0 for some wave.
+    /// No weights, weights that are not finite, a_K = 0, or ω² ≤ 0 for some wave.
     pub fn new(weights: &[f64]) -> Result<Self, AbsorbingError> {
         for (k, &weight) in weights.iter().enumerate() {
             if !weight.is_finite() {
@@ -31,7 +31,7 @@ impl LatticeStencil {
         let largest = max_norm(weights);
         match weights.last() {
             None => return Err(AbsorbingError::EmptyStencil),
-            // Round-off of a weight that should vanish, as the conical function's at the horizon.
+            // Round-off of a weight that should vanish, as for the conical function at the horizon.
             Some(last) if last.abs() <= 1e-13 * largest => {
                 let reach = weights.len();
                 return Err(AbsorbingError::OutermostWeightZero { reach });
@@ -57,17 +57,18 @@ impl LatticeStencil {
         &self.weights
     }
 
-    /// K, the farthest neighbour in spacings.
+    /// Reach K: the farthest neighbour in spacings.
     pub fn reach(&self) -> usize {
         self.weights.len()
     }
 
-    /// Σ a_k.
+    /// Sum Σ a_k.
     pub fn sum(&self) -> f64 {
         self.weights.iter().sum()
     }
 
-    /// ω²(θ) = 2 Σ a_k (1 − cos kθ), θ in radians per spacing; as squares of sines, so that long waves lose no digits.
+    /// ω²(θ) = 2 Σ a_k (1 − cos kθ), θ in radians per spacing; evaluated as squares of sines, accurate for long
+    /// waves.
     pub fn square_frequency(&self, theta: f64) -> f64 {
         let terms = self.weights.iter().enumerate();
         terms
@@ -86,7 +87,7 @@ impl LatticeStencil {
             .sum()
     }
 
-    /// The frequencies ω at which waves do not travel, ascending: the edge of the band, and its inner extrema.
+    /// Frequencies ω with zero group velocity, ascending: the band edge and interior extrema.
     pub fn stationary_frequencies(&self) -> Vec<f64> {
         let samples = self.samples();
         let at = |n: usize| PI * n as f64 / samples as f64;
@@ -111,13 +112,13 @@ impl LatticeStencil {
         found
     }
 
-    /// The highest frequency max ω, 1/s.
+    /// Highest frequency max ω, 1/s.
     pub fn highest_frequency(&self) -> f64 {
         let frequencies = self.stationary_frequencies();
         frequencies.last().copied().unwrap_or_default()
     }
 
-    /// The fastest waves max |dω/dθ|, spacings per second: nothing travels faster.
+    /// Largest group velocity max |dω/dθ|, spacings per second.
     pub fn fastest(&self) -> f64 {
         let samples = self.samples();
         (1..samples)
@@ -131,7 +132,7 @@ impl LatticeStencil {
     /// Checks that velocity Verlet is stable on this lattice.
     ///
     /// # Errors
-    /// dt max ω ≥ 2, or a step that is not positive.
+    /// dt max ω ≥ 2, or a time step that is not positive.
     pub fn check_step(&self, dt: f64) -> Result<(), AbsorbingError> {
         let omega = self.highest_frequency();
         let limit = 2.0 / omega;

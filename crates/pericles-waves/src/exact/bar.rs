@@ -1,19 +1,20 @@
-//! The local bar, held at x = 0 and free at its other end.
+//! Exact solutions of the local bar, fixed at x = 0 and free at its other end.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::ExactSolution;
 
-/// Released from uniform strain: u = ½ [tri(x − ct) + tri(x + ct)], tri the triangle wave of period 4 · length and slope ε through the origin.
+/// Bar released from uniform strain: u = ½ [tri(x − ct) + tri(x + ct)] with tri the triangle wave of period 4 ·
+/// length and slope ε through the origin.
 ///
-/// The series is u = (8εL/π²) Σ_k (−1)^k/(2k+1)² sin((2k+1)πx/2L) cos((2k+1)πct/2L); the closed form is the same.
+/// The equivalent series is u = (8εL/π²) Σ_k (−1)^k/(2k+1)² sin((2k+1)πx/2L) cos((2k+1)πct/2L).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StretchedBar {
     /// Length L, m.
     pub length: f64,
-    /// The strain ε at the start.
+    /// Initial strain ε.
     pub strain: f64,
-    /// c = √(E/ρ), m/s.
+    /// Wave speed c = √(E/ρ), m/s.
     pub speed: f64,
 }
 
@@ -29,7 +30,7 @@ impl StretchedBar {
         self.strain * height
     }
 
-    /// The first `terms` terms of the series.
+    /// Sum of the first `terms` terms of the series.
     pub fn series(&self, t: f64, x: f64, terms: usize) -> f64 {
         let term = |k: usize| {
             let odd = (2 * k + 1) as f64;
@@ -50,14 +51,14 @@ impl ExactSolution for StretchedBar {
     }
 }
 
-/// The slowest vibration: u = U sin(πx/2L) cos(πct/2L).
+/// Fundamental mode: u = U sin(πx/2L) cos(πct/2L).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BarMode {
     /// Length L, m.
     pub length: f64,
-    /// U.
+    /// Amplitude U.
     pub amplitude: f64,
-    /// c = √(E/ρ), m/s.
+    /// Wave speed c = √(E/ρ), m/s.
     pub speed: f64,
 }
 
@@ -75,7 +76,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_closed_form_is_the_series() {
+    fn closed_form_equals_the_series() {
         let bar = StretchedBar {
             length: 2.0,
             strain: 0.1,
@@ -84,7 +85,7 @@ mod tests {
         for (x, t) in [(0.3, 0.0), (1.9, 0.4), (1.0, 5.0), (2.0, 1.7)] {
             let mut u = [0.0];
             bar.displacement_into(t, &[x], &mut u);
-            // The rest of the series is below the sum of 1/(2k+1)² from 20000 on.
+            // The remainder of the series is below the sum of 1/(2k+1)² from 20000 on.
             assert!((u[0] - bar.series(t, x, 20_000)).abs() < 5e-6, "{x} {t}");
         }
     }

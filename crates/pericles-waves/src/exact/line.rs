@@ -1,15 +1,16 @@
-//! Pulses on the line.
+//! Pulses on the infinite line.
 
 use rayon::prelude::*;
 
 use super::ExactSolution;
 use pericles::parallel::BLOCK;
 
-/// The nonlocal line after a Gaussian start at rest:
+/// Displacement of the nonlocal line after a Gaussian initial displacement at rest:
 /// u = (2U/√π) ∫₀^∞ e^{−s²} cos(2sx/L) cos[ (2t/l) √(E/ρ) √(1 − e^{−(sl/L)²}) ] ds.
 ///
-/// The trapezoidal rule is exact to round-off, for the integrand is even and entire; a step ds stands for a period πL/ds, which is taken far
-/// beyond what the solution reaches. Error: 1e-14 of the amplitude. Cost: some 120 + 2 (|x| + 6ct)/L terms of a few operations for each place.
+/// The trapezoidal rule is exact to round-off because the integrand is even and entire; a step ds corresponds to a
+/// period πL/ds, which is chosen far beyond the extent of the solution. Error: 1e-14 of the amplitude. Cost: about
+/// 120 + 2 (|x| + 6ct)/L terms of a few operations per position.
 ///
 /// Source: Coclite et al., Appl. Numer. Math. 155 (2020) 119–139, who print it for E = ρ = l = L = 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,35 +21,37 @@ pub struct LineSolution {
     pub density: f64,
     /// Length l of the micromodulus, m.
     pub length: f64,
-    /// Width L of the start, m.
+    /// Width L of the initial pulse, m.
     pub width: f64,
-    /// Its height U.
+    /// Amplitude U of the initial pulse.
     pub amplitude: f64,
-    /// Its middle, m.
+    /// Centre of the initial pulse, m.
     pub centre: f64,
 }
 
-/// e^{−s²} is below 1e-17 beyond.
+/// Upper limit of s; e^{−s²} is below 1e-17 beyond.
 const LARGEST: f64 = 6.3;
 
 impl LineSolution {
-    /// √(E/ρ), the speed of long waves, m/s.
+    /// Speed of long waves √(E/ρ), m/s.
     pub fn speed(&self) -> f64 {
         (self.young / self.density).sqrt()
     }
 
-    /// The step ds of the rule for places up to `reach` from the centre.
+    /// Step ds of the rule for positions up to `reach` from the centre.
     fn spacing(&self, t: f64, reach: f64) -> f64 {
         let period = reach + 6.0 * t.abs() * self.speed() + 60.0 * self.length.max(self.width);
         std::f64::consts::PI * self.width / period
     }
 
-    /// Terms of the sum for one place up to `reach` from the centre at time t: what the solution costs, in time and in memory.
+    /// Number of terms for one position up to `reach` from the centre at time t, which determines computing time
+    /// and memory.
     pub fn terms(&self, t: f64, reach: f64) -> f64 {
         LARGEST / self.spacing(t, reach)
     }
 
-    /// Places and weights of the rule for places up to `reach` from the centre: (s, e^{−s²} cos(ω(s) t) times all factors).
+    /// Step and weights of the rule for positions up to `reach` from the centre: (ds, e^{−s²} cos(ω(s) t) times all
+    /// factors).
     fn rule(&self, t: f64, reach: f64) -> (f64, Vec<f64>) {
         let ds = self.spacing(t, reach);
         let count = (LARGEST / ds).ceil() as usize;
@@ -63,9 +66,10 @@ impl LineSolution {
         (ds, (0..=count).map(weight).collect())
     }
 
-    /// How much a ring of the given period P differs from the line until time t at places y within `window` of the centre, as a share of the amplitude: the largest
-    /// |Σ_{j≥1} u(jP − y) + u(jP + y)| on samples of time and place. At most eight images on each side are summed, so that for rings that waves circle more often it is a
-    /// lower bound of order one.
+    /// Estimates the largest difference between a ring of period P and the infinite line until time t at positions
+    /// y within `window` of the centre, relative to the amplitude: max |Σ_{j≥1} u(jP − y) + u(jP + y)| over samples
+    /// of time and position. At most eight images on each side are summed, so for rings that waves circle more
+    /// often the result is a lower bound of order one.
     pub fn image_error(&self, period: f64, window: f64, t: f64) -> f64 {
         const TIMES: u32 = 16;
         const PLACES: u32 = 64;
@@ -73,7 +77,8 @@ impl LineSolution {
         let tail = 6.0 * self.width.max(self.length);
         let travelled = window + self.speed() * t.abs() + tail;
         let images = (travelled / period).ceil().clamp(1.0, MOST_IMAGES) as u32;
-        // As dense as the waves where that is enough to cover the window; the edge of the window is next to the image.
+        // As dense as the waves where that suffices to cover the window; the edge of the window is closest to the
+        // image.
         let dense = 0.25 * self.width.min(self.length.max(0.1 * self.width));
         let step = dense.max(window / f64::from(PLACES));
         let near = (0..8).map(|k| window - f64::from(k) * dense);
@@ -113,7 +118,7 @@ impl ExactSolution for LineSolution {
     }
 }
 
-/// Σ_k w_k cos(kθ), with cosines of whole runs of terms from those of a first run by the addition theorem.
+/// Σ_k w_k cos(kθ); the cosines of all runs of terms follow from those of the first run by the addition theorem.
 fn cosine_sum(weights: &[f64], angle: f64) -> f64 {
     const RUN: usize = 64;
     let first: [(f64, f64); RUN] = std::array::from_fn(|k| (k as f64 * angle).sin_cos());
@@ -129,16 +134,17 @@ fn cosine_sum(weights: &[f64], angle: f64) -> f64 {
     runs.sum()
 }
 
-/// The local string after the same start: two halves that run apart, u = U/2 [g(x − ct) + g(x + ct)], g = exp(−(x/L)²).
+/// Local string with the same initial pulse: two halves that travel apart, u = U/2 [g(x − ct) + g(x + ct)], g =
+/// exp(−(x/L)²).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TravellingPulse {
-    /// c, m/s.
+    /// Wave speed c, m/s.
     pub speed: f64,
-    /// L, m.
+    /// Width L, m.
     pub width: f64,
-    /// U.
+    /// Amplitude U.
     pub amplitude: f64,
-    /// The middle at the start, m.
+    /// Initial centre, m.
     pub centre: f64,
 }
 
@@ -173,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn scales_as_the_equation_does() {
+    fn line_solution_scales_with_length_and_time() {
         // Lengths by 3, time by 3/c with c = 5: the same shape.
         let scaled = LineSolution {
             young: 50.0,
@@ -190,8 +196,8 @@ mod tests {
     }
 
     #[test]
-    fn solves_the_equation() {
-        // ρ u_tt by differences against 4E/(l³√π) ∫ e^{−ξ²/l²} (u(x+ξ) − u(x)) dξ by the trapezoidal rule.
+    fn line_solution_satisfies_the_equation_of_motion() {
+        // ρ u_tt by differences compared with 4E/(l³√π) ∫ e^{−ξ²/l²} (u(x+ξ) − u(x)) dξ by the trapezoidal rule.
         let line = LineSolution {
             length: 0.6,
             ..UNIT
@@ -214,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn a_short_micromodulus_is_the_string() {
+    fn short_micromodulus_converges_to_the_local_string() {
         // The difference is of second order in l.
         let miss = |length: f64| {
             let line = LineSolution { length, ..UNIT };
@@ -233,8 +239,9 @@ mod tests {
     }
 
     #[test]
-    fn images_on_a_period_are_estimated() {
-        // Recomputed errors on [−π, π] at t = 3.5 for half periods of 2π, 2.5π and 3π, relative to the largest displacement there.
+    fn image_error_matches_reference_values() {
+        // Independently computed errors on [−π, π] at t = 3.5 for half periods of 2π, 2.5π and 3π, relative to the
+        // largest displacement there.
         let pi = std::f64::consts::PI;
         for (half, error) in [(2.0, 4.72e-5), (2.5, 2.15e-8), (3.0, 3.9e-12)] {
             let estimate = UNIT.image_error(2.0 * half * pi, pi, 3.5);
@@ -247,11 +254,12 @@ mod tests {
     }
 
     #[test]
-    fn images_that_pass_through_the_window_count() {
-        // On a ring of period 8 the pulses of the neighbours meet in the middle at t = 8: half the amplitude each, less what dispersion takes.
+    fn image_error_includes_images_that_pass_through_the_window() {
+        // On a ring of period 8 the pulses of the neighbours meet in the middle at t = 8: half the amplitude each,
+        // less the effect of dispersion.
         let estimate = UNIT.image_error(8.0, 1.0, 9.0);
         assert!((0.3..1.5).contains(&estimate), "{estimate}");
-        // Once they have passed, the error of the past remains.
+        // After they have passed, the error up to that time remains.
         assert!(UNIT.image_error(8.0, 1.0, 12.0) > 0.9 * estimate.min(0.5));
     }
 }

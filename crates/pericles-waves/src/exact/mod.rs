@@ -1,11 +1,11 @@
-//! Exact solutions in one dimension, to measure errors against.
+//! Exact solutions in one dimension, used to measure errors.
 //!
-//! | | medium | start |
+//! | | medium | initial displacement, at rest |
 //! |---|---|---|
-//! | [`LineSolution`] | the whole line with the Gaussian micromodulus C(ξ) = 4E/(l³√π) exp(−(ξ/l)²) | u = U exp(−(x/L)²), at rest |
+//! | [`LineSolution`] | the infinite line with the Gaussian micromodulus C(ξ) = 4E/(l³√π) exp(−(ξ/l)²) | u = U exp(−(x/L)²) |
 //! | [`TravellingPulse`] | the local string, c² = E/ρ: the limit l → 0 (d'Alembert) | the same |
-//! | [`StretchedBar`] | the local bar, held at x = 0 and free at x = length | u = ε x, at rest |
-//! | [`BarMode`] | the same bar | its slowest vibration, u = U sin(πx/(2 length)) |
+//! | [`StretchedBar`] | the local bar, fixed at x = 0 and free at x = length | u = ε x |
+//! | [`BarMode`] | the same bar | its fundamental mode, u = U sin(πx/(2 length)) |
 //!
 //! Lengths in m, moduli in Pa, densities in kg/m³; displacements in the unit of the amplitude.
 //!
@@ -23,27 +23,27 @@ mod line;
 pub use bar::{BarMode, StretchedBar};
 pub use line::{LineSolution, TravellingPulse};
 
-/// A displacement known for all times.
+/// Displacement known for all times.
 pub trait ExactSolution: Send + Sync {
-    /// Fills `out` with the displacements at time t of the places `x`.
+    /// Writes the displacements at time t of the positions `x` to `out`.
     fn displacement_into(&self, t: f64, x: &[f64], out: &mut [f64]);
 }
 
-/// Distance of a computed displacement from the exact one.
+/// Error of a computed displacement.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Miss {
-    /// The largest over all points.
+    /// Largest error over all points.
     pub largest: f64,
-    /// The root of the mean square over the root of the mean square of the exact solution; the first alone where that is zero.
+    /// Root mean square error divided by the root mean square of the exact solution; undivided where that is zero.
     pub relative: f64,
 }
 
 impl Miss {
-    /// Between a computed and an exact field.
+    /// Compares a computed with an exact field.
     pub fn between(computed: &[f64], exact: &[f64]) -> Self {
         let square = |values: &mut dyn Iterator<Item = f64>| values.map(|x| x * x).sum::<f64>();
         let differences = || computed.iter().zip(exact).map(|(a, b)| a - b);
-        // A difference that is no number must not be overlooked.
+        // A NaN difference must not be ignored.
         let largest = differences().fold(0.0f64, |largest, d| {
             if d.is_nan() {
                 f64::NAN

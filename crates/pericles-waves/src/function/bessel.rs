@@ -1,11 +1,12 @@
-//! Bessel functions of the first kind, a whole sequence of orders at once.
+//! Bessel functions of the first kind for a sequence of orders.
 
-/// Fills `values` with J_0(x) … J_{m−1}(x) for x ≥ 0, all to some 1e-16 of max(1, …) and small ones to full relative accuracy.
+/// Computes J_0(x) … J_{m−1}(x) for x ≥ 0, accurate to some 1e-16 of max(1, …), small values to full relative
+/// accuracy.
 ///
-/// Miller's backward recurrence J_{k−1} = (2k/x) J_k − J_{k+1} from far beyond the turning point k ≈ x, normalised by
-/// J₀ + 2 Σ J_2k = 1 (DLMF 3.6, 10.12.4).
+/// Miller's backward recurrence J_{k−1} = (2k/x) J_k − J_{k+1} from far beyond the turning point k ≈ x, normalised
+/// by J₀ + 2 Σ J_2k = 1 (DLMF 3.6, 10.12.4).
 pub fn bessel_into(x: f64, values: &mut [f64]) {
-    /// Powers of two, so that rescaling is exact.
+    /// A power of two, so that rescaling is exact.
     const LARGE: f64 = 1.340_780_792_994_259_7e154;
     const SMALL: f64 = 1.0 / LARGE;
     values.fill(0.0);
@@ -16,7 +17,7 @@ pub fn bessel_into(x: f64, values: &mut [f64]) {
         values[0] = 1.0;
         return;
     }
-    // Beyond x + 12 x^⅓ + 30 orders J is below 1e-17 of its largest.
+    // Beyond x + 12 x^⅓ + 30 orders J is below 1e-17 of its largest value.
     let turning = x + 12.0 * x.cbrt() + 30.0;
     let start = 2 * ((turning.max(values.len() as f64 + 30.0) / 2.0).ceil() as usize);
     let (mut above, mut here) = (0.0, SMALL);
@@ -57,7 +58,7 @@ mod tests {
     }
 
     #[test]
-    fn equals_the_integral() {
+    fn bessel_functions_equal_their_integral() {
         let mut values = vec![0.0; 140];
         for x in [1e-3, 0.7, 2.4, 11.0, 60.0, 100.0] {
             bessel_into(x, &mut values);
@@ -69,7 +70,7 @@ mod tests {
     }
 
     #[test]
-    fn small_values_keep_their_digits() {
+    fn small_bessel_values_keep_relative_accuracy() {
         // J_4(x) = (x/2)⁴/24 (1 − x²/20 + …)
         let mut values = [0.0; 6];
         for x in [1e-9f64, 1e-3] {

@@ -8,7 +8,7 @@ use pericles::Result;
 use pericles::parallel::BLOCK;
 use pericles::sum::max_norm;
 
-/// g(A) x = Σ′ c_k T_k(Y) x with Y = 2A/λ − 1, for an operator whose eigenvalues lie in [0, λ].
+/// Computes g(A) x = Σ′ c_k T_k(Y) x with Y = 2A/λ − 1, for an operator with eigenvalues in [0, λ].
 ///
 /// With a = τ√λ and J the Bessel functions, halved at k = 0:
 ///
@@ -19,8 +19,9 @@ use pericles::sum::max_norm;
 /// | −W sin τW | λ^½ (J_{2k−1} − J_{2k+1})(a) |
 /// | (1 − cos τW) W⁻² | 8 λ⁻¹ Σ_j (j+1) J_{2k+2j+2}(a) |
 ///
-/// (the second and the last from the first by ∫ over τ). Coefficients fall faster than exponentially beyond k = a/2, where the series is cut;
-/// one series may reach any time. One recurrence serves all terms. Memory: three vectors. Measured error: below 1e-13 up to a = 100.
+/// (the second and the last follow from the first by integration over τ). Coefficients decrease superexponentially
+/// beyond k = a/2, where the series is truncated; one series can cover any time. One recurrence serves all terms.
+/// Memory: three vectors. Measured error: below 1e-13 up to a = 100.
 pub struct Chebyshev {
     bound: f64,
     vectors: [Vec<f64>; 3],
@@ -29,14 +30,15 @@ pub struct Chebyshev {
     products: u64,
 }
 
-/// Relative to the largest, below which coefficients are left out.
+/// Threshold relative to the largest coefficient below which coefficients are dropped.
 const NEGLIGIBLE: f64 = 1e-17;
 
 impl Chebyshev {
-    /// For vectors of `entries` numbers and eigenvalues between 0 and `bound` (1/s²), which must be positive.
+    /// Creates the engine for vectors of `entries` numbers and eigenvalues between 0 and `bound` (1/s²), which must
+    /// be positive.
     pub fn new(bound: f64, entries: usize) -> Self {
         Self {
-            // A bound met exactly must not be exceeded by rounding: outside [−1, 1] the series explodes.
+            // A bound that is attained must not be exceeded by round-off: outside [−1, 1] the series diverges.
             bound: bound * (1.0 + 1e-12),
             vectors: std::array::from_fn(|_| vec![0.0; entries]),
             bessel: Vec::new(),
@@ -45,18 +47,18 @@ impl Chebyshev {
         }
     }
 
-    /// Products with A so far.
+    /// Number of products with A so far.
     pub fn products(&self) -> u64 {
         self.products
     }
 
-    /// The degree that a time τ needs.
+    /// Degree required for a time τ.
     pub fn degree(&self, tau: f64) -> usize {
         let a = tau.abs() * self.bound.sqrt();
         (0.5 * a + 6.0 * a.cbrt() + 12.0).ceil() as usize
     }
 
-    /// Fills `self.coefficients[k]` with those of term k, and returns the largest degree.
+    /// Computes the coefficients `self.coefficients[k]` of term k and returns the largest degree.
     fn prepare(&mut self, terms: &[Term<'_>]) -> usize {
         self.coefficients.resize_with(terms.len(), Vec::new);
         let mut degree = 0;
@@ -81,10 +83,10 @@ impl Chebyshev {
     }
 }
 
-/// The coefficients before the one of k = 0 is halved; `bessel` reaches beyond them to where J is negligible.
+/// Computes the coefficients before the one of k = 0 is halved; `bessel` extends to orders where J is negligible.
 fn series(function: WaveFunction, bound: f64, bessel: &[f64], out: &mut [f64]) {
     let root = bound.sqrt();
-    // Sums over higher orders, from the smallest on.
+    // Sums over higher orders, starting from the smallest values.
     let (mut sum, mut double) = (0.0, 0.0);
     for k in (0..=(bessel.len() - 3) / 2).rev() {
         let value = match function {
@@ -124,7 +126,7 @@ impl MatrixFunction for Chebyshev {
             interrupt.poll()?;
             apply(here, product);
             self.products += 1;
-            // T₁ = Y T₀, T_{k+1} = 2 Y T_k − T_{k−1}; the new one takes the place of the oldest.
+            // T₁ = Y T₀, T_{k+1} = 2 Y T_k − T_{k−1}; the new vector replaces the oldest.
             let (double, oldest) = if k == 1 { (1.0, 0.0) } else { (2.0, 1.0) };
             before
                 .par_chunks_mut(BLOCK)
@@ -143,7 +145,7 @@ impl MatrixFunction for Chebyshev {
     }
 }
 
-/// Adds c_k T_k x to every term that reaches so far.
+/// Adds c_k T_k x to every term of sufficient degree.
 fn accumulate(coefficients: &[Vec<f64>], k: usize, vector: &[f64], terms: &mut [Term<'_>]) {
     for (coefficients, term) in coefficients.iter().zip(terms) {
         let Some(&factor) = coefficients.get(k) else {
@@ -165,7 +167,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_function_of_a_number() {
+    fn series_equal_the_functions_for_a_scalar() {
         for a in [0.01f64, 0.2, 6.0, 60.0, 300.0] {
             let tau = 1.7;
             let bound = (a / tau).powi(2);

@@ -6,21 +6,22 @@ use super::{MatrixFunction, Product, Term};
 use pericles::Interrupt;
 use pericles::{PericlesError, Result};
 
-/// g(A) x from all eigenvectors of the matrix, which is symmetric in the inner product Σ m_i x_i y_i.
+/// Computes g(A) x from all eigenvectors of the matrix, which is symmetric in the inner product Σ m_i x_i y_i.
 ///
-/// O(n³) time and O(n²) memory once, O(n²) for each application: for checks, and for bodies of some hundred points that are stepped very often.
+/// O(n³) time and O(n²) memory once, O(n²) per application: for checks, and for bodies of some hundred points that
+/// take very many steps.
 pub struct Eigenvectors {
-    /// m^½
+    /// m^½.
     root_mass: Vec<f64>,
     values: DVector<f64>,
     vectors: DMatrix<f64>,
 }
 
-/// More entries make the matrix larger than a gigabyte.
+/// Largest number of entries; beyond it the matrix exceeds a gigabyte.
 const MOST: usize = 10_000;
 
 impl Eigenvectors {
-    /// The eigenvectors of x ↦ A x, with the mass of every entry.
+    /// Computes the eigenvectors of x ↦ A x from the mass of every entry.
     ///
     /// # Errors
     /// More than ten thousand entries.
@@ -30,7 +31,7 @@ impl Eigenvectors {
             return Err(PericlesError::OutOfRange {
                 quantity: "the number of unknowns for all eigenvectors of a body",
                 value: n as f64,
-                allowed: "at most 10000; Chebyshev series have no limit",
+                allowed: "at most 10000; functions = \"chebyshev\" has no limit",
             });
         }
         let root_mass: Vec<f64> = mass.iter().map(|m| m.sqrt()).collect();
@@ -44,7 +45,7 @@ impl Eigenvectors {
                 matrix[(i, j)] = root_mass[i] * column[i] / root_mass[j];
             }
         }
-        // What rounding made unsymmetric.
+        // Removes asymmetry due to round-off.
         let symmetric = 0.5 * (&matrix + matrix.transpose());
         let SymmetricEigen {
             eigenvalues: values,
@@ -57,7 +58,7 @@ impl Eigenvectors {
         })
     }
 
-    /// The largest eigenvalue, 1/s².
+    /// Largest eigenvalue, 1/s².
     pub fn largest(&self) -> f64 {
         self.values.max()
     }

@@ -1,4 +1,4 @@
-//! Functions of an operator by Lanczos' method.
+//! Functions of an operator by the Lanczos method.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
@@ -7,11 +7,12 @@ use pericles::Interrupt;
 use pericles::sum::{max_norm, sum};
 use pericles::{PericlesError, Result};
 
-/// g(A) x ≈ ‖x‖ Q g(T) e₁, T the projection of A on the Krylov space of x with the basis Q, orthonormal in the inner product Σ m_i x_i y_i.
+/// Computes g(A) x ≈ ‖x‖ Q g(T) e₁, with T the projection of A on the Krylov space of x with basis Q, orthonormal
+/// in the inner product Σ m_i x_i y_i.
 ///
-/// The basis grows until the last coefficients of all terms are below round-off, so that nothing need be known of the spectrum. Every vector is
-/// made orthogonal to all others twice; m vectors are kept. For bounded spectra [`Chebyshev`](super::Chebyshev) needs the same number of products and
-/// three vectors.
+/// The basis grows until the last coefficients of all terms are below round-off, so no bound of the spectrum is
+/// required. Every vector is orthogonalised twice against all others; m vectors are stored. For bounded spectra
+/// [`Chebyshev`](super::Chebyshev) needs the same number of products and three vectors.
 pub struct Lanczos {
     mass: Vec<f64>,
     basis: Vec<Vec<f64>>,
@@ -20,11 +21,12 @@ pub struct Lanczos {
 
 const MOST: usize = 2000;
 const LOOK_EVERY: usize = 8;
-/// Size of the last two coefficients, relative to the vector's norm and the largest coefficient, at which the basis is large enough.
+/// Size of the last two coefficients, relative to the norm of the vector and the largest coefficient, at which the
+/// basis is large enough.
 const ENOUGH: f64 = 1e-15;
 
 impl Lanczos {
-    /// With the mass of every entry.
+    /// Creates the engine from the mass of every entry.
     pub fn new(mass: Vec<f64>) -> Self {
         Self {
             mass,
@@ -33,7 +35,7 @@ impl Lanczos {
         }
     }
 
-    /// Products with A so far.
+    /// Number of products with A so far.
     pub fn products(&self) -> u64 {
         self.products
     }
@@ -92,11 +94,11 @@ impl MatrixFunction for Lanczos {
             }
             if diagonal.len() >= MOST {
                 return Err(PericlesError::NotConverged {
-                    solver: "Lanczos' method for a function of the stiffness",
+                    solver: "the Lanczos method for a function of the stiffness",
                     iterations: MOST,
                     residual: size,
                     tolerance: ENOUGH * norm,
-                    cause: "the step is too long for it; functions = \"chebyshev\" has no limit",
+                    cause: "the time step is too long for this method; functions = \"chebyshev\" has no limit",
                 });
             }
             off.push(size);
@@ -116,14 +118,15 @@ impl MatrixFunction for Lanczos {
     }
 }
 
-/// Of what is no number no function is either: who watches the run sees it in the result. Eigenvalues of such a matrix would be sought for ever.
+/// Sets the results to NaN for a NaN or infinite input, so that the run reports it. The eigenvalue iteration would
+/// not terminate for such a matrix.
 fn spoil(terms: &mut [Term<'_>]) {
     for term in terms {
         term.out.fill(f64::NAN);
     }
 }
 
-/// g(T) e₁ of every term.
+/// Coefficients g(T) e₁ of every term.
 fn coefficients(diagonal: &[f64], off: &[f64], terms: &[Term<'_>]) -> Vec<Vec<f64>> {
     let m = diagonal.len();
     let matrix = DMatrix::from_fn(m, m, |i, j| match i.abs_diff(j) {
@@ -165,7 +168,7 @@ mod tests {
     use crate::function::WaveFunction;
 
     #[test]
-    fn of_what_is_no_number_no_function_is() {
+    fn nan_input_gives_nan_results() {
         for x in [[1.0, f64::NAN, 0.0], [f64::INFINITY, 0.0, 0.0]] {
             let mut out = [0.0; 3];
             let mut terms = [Term::new(WaveFunction::Cosine, 1.0, &mut out)];

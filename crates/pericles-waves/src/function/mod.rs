@@ -1,25 +1,26 @@
 //! Functions of the stiffness operator applied to vectors: the exact flow of a linear body.
 //!
-//! With A = M⁻¹K (symmetric in the inner product of the masses, eigenvalues ω² ≥ 0) and W = A^½, free motion over a time τ is
-//! u′ = cos(τW) u + τ sinc(τW) v, v′ = −W sin(τW) u + cos(τW) v. All functions here are entire functions of A, so that no root of a matrix
-//! is ever taken and zero modes (rigid motion) are exact.
+//! With A = M⁻¹K (symmetric in the inner product of the masses, eigenvalues ω² ≥ 0) and W = A^½, free motion over a
+//! time τ is u′ = cos(τW) u + τ sinc(τW) v, v′ = −W sin(τW) u + cos(τW) v. All functions here are entire functions
+//! of A, so no square root of a matrix is computed and zero modes (rigid motion) are exact.
 //!
-//! | [`WaveFunction`] | of ω² | limit at ω = 0 |
+//! | [`WaveFunction`] | as a function of ω² | limit at ω = 0 |
 //! |---|---|---|
 //! | `Cosine` | cos τω | 1 |
 //! | `Sine` | sin(τω)/ω = τ sinc τω | τ |
 //! | `Slope` | −ω sin τω | 0 |
 //! | `Versine` | (1 − cos τω)/ω² | τ²/2 |
 //!
-//! | engine | needs | products with A for accuracy 1e-15 | use |
+//! | engine | requires | products with A for accuracy 1e-15 | use |
 //! |---|---|---|---|
 //! | [`Chebyshev`] | a bound of ω² | about τω/2 + 6 (τω)^⅓ + 12 | the default: any operator, any τ |
-//! | [`Diagonal`](pericles::operator::Diagonal) | a periodic homogeneous body | two transforms | the fastest where there is one ([`LinearOperator::as_diagonal`](pericles::operator::LinearOperator::as_diagonal)) |
-//! | [`Lanczos`] | an inner product | about the same degree, with m vectors kept and O(m² n) beside | where no bound is known |
+//! | [`Diagonal`](pericles::operator::Diagonal) | a periodic homogeneous body | two transforms | the fastest where available ([`LinearOperator::as_diagonal`](pericles::operator::LinearOperator::as_diagonal)) |
+//! | [`Lanczos`] | an inner product | about the same degree, with m stored vectors and O(m² n) additional work | if no bound is known |
 //! | [`Eigenvectors`] | O(n²) memory, O(n³) time once | n once | reference, n up to some thousand |
 //!
-//! Sources: N. J. Higham, Functions of Matrices (SIAM 2008), ch. 13; M. Hochbruck & A. Ostermann, Exponential integrators, Acta Numerica 19 (2010);
-//! the coefficients from cos(a cos φ) = J₀(a) + 2 Σ (−1)^k J_2k(a) cos 2kφ (DLMF 10.12.3).
+//! Sources: N. J. Higham, Functions of Matrices (SIAM 2008), ch. 13; M. Hochbruck & A. Ostermann, Exponential
+//! integrators, Acta Numerica 19 (2010); the coefficients from cos(a cos φ) = J₀(a) + 2 Σ (−1)^k J_2k(a) cos 2kφ
+//! (DLMF 10.12.3).
 //!
 //! ```
 //! use pericles::Interrupt;
@@ -44,7 +45,7 @@ pub use lanczos::Lanczos;
 
 use pericles::{Interrupt, Result};
 
-/// An entire function of A = W², for a time τ.
+/// Entire function of A = W² for a time τ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum WaveFunction {
     /// cos τW
@@ -58,7 +59,7 @@ pub enum WaveFunction {
 }
 
 impl WaveFunction {
-    /// The value at an eigenvalue ω²; values below zero by round-off count as zero.
+    /// Value at an eigenvalue ω²; values made negative by round-off count as zero.
     pub fn value(self, tau: f64, square: f64) -> f64 {
         let omega = square.max(0.0).sqrt();
         let angle = tau * omega;
@@ -67,32 +68,32 @@ impl WaveFunction {
             Self::Sine if angle.abs() < 1e-4 => tau * (1.0 - angle * angle / 6.0),
             Self::Sine => angle.sin() / omega,
             Self::Slope => -omega * angle.sin(),
-            // 2 sin²(a/2)/ω² has no cancellation.
+            // 2 sin²(a/2)/ω² avoids cancellation.
             Self::Versine if angle.abs() < 1e-4 => 0.5 * tau * tau * (1.0 - angle * angle / 12.0),
             Self::Versine => 2.0 * ((0.5 * angle).sin() / omega).powi(2),
         }
     }
 }
 
-/// `out` += factor · g(A) x, as asked of an engine.
+/// Requested contribution `out` += factor · g(A) x.
 pub struct Term<'a> {
-    /// g.
+    /// Function g.
     pub function: WaveFunction,
-    /// τ, s; not negative.
+    /// Time τ ≥ 0, s.
     pub tau: f64,
     /// The factor.
     pub factor: f64,
-    /// Where the result is added.
+    /// Vector to which the result is added.
     pub out: &'a mut [f64],
 }
 
 impl<'a> Term<'a> {
-    /// With factor 1.
+    /// Creates a term with factor 1.
     pub fn new(function: WaveFunction, tau: f64, out: &'a mut [f64]) -> Self {
         Self::times(1.0, function, tau, out)
     }
 
-    /// With a factor.
+    /// Creates a term with a given factor.
     pub fn times(factor: f64, function: WaveFunction, tau: f64, out: &'a mut [f64]) -> Self {
         Self {
             function,
@@ -102,21 +103,21 @@ impl<'a> Term<'a> {
         }
     }
 
-    /// factor · g at an eigenvalue.
+    /// Value of factor · g at an eigenvalue.
     pub fn value(&self, square: f64) -> f64 {
         self.factor * self.function.value(self.tau, square)
     }
 }
 
-/// x ↦ A x.
+/// Operator x ↦ A x.
 pub type Product<'a> = dyn FnMut(&[f64], &mut [f64]) + 'a;
 
-/// A way of computing functions of an operator given by its products.
+/// Engine that computes functions of an operator given by its products with vectors.
 pub trait MatrixFunction: Send {
     /// Adds g(A) x for every term.
     ///
     /// # Errors
-    /// Engines that iterate report when they do not converge, and poll `interrupt` before every product.
+    /// Iterative engines return an error if they do not converge, and check `interrupt` before every product.
     fn add(
         &mut self,
         apply: &mut Product<'_>,

@@ -1,11 +1,12 @@
-//! The banded loop: Σ_r t_r u_{i+r} with the results of 32 neighbouring points in registers.
+//! Banded product Σ_r t_r u_{i+r} with the results of 32 neighbouring points in registers.
 
 use pericles::lanes::LANES;
 use pericles::lanes::{F64x8, for_each_instruction_set};
 
-/// Groups of eight outputs in registers: four AVX-512 or eight AVX2 registers, enough to hide the latency of an addition.
+/// Groups of eight outputs in registers: four AVX-512 or eight AVX2 registers, enough to hide the latency of an
+/// addition.
 const GROUPS: usize = 4;
-/// Outputs of one pass over the coefficients.
+/// Number of outputs computed in one pass over the coefficients.
 pub(super) const TILE: usize = GROUPS * LANES;
 
 #[inline(always)]
@@ -46,7 +47,7 @@ fn banded_tiles_body<const SYMMETRIC: bool>(
         }
         for g in 0..GROUPS {
             let from = first + g * LANES;
-            // The last tile is cut where the outputs end.
+            // The last tile is truncated at the end of the outputs.
             let count = out.len().saturating_sub(from).min(LANES);
             if count == LANES {
                 out[from..from + LANES].copy_from_slice(&sum[g].0);
@@ -59,8 +60,8 @@ fn banded_tiles_body<const SYMMETRIC: bool>(
 }
 
 for_each_instruction_set! {
-    /// `out[i]` = Σ_r (`above[r−1]` w_{R+i+r} + `below[r−1]` w_{R+i−r}), r = 1 … R, w the window, which reaches R beyond the outputs on both sides
-    /// once their number is rounded up to whole tiles of [`TILE`].
+    /// Computes `out[i]` = Σ_r (`above[r−1]` w_{R+i+r} + `below[r−1]` w_{R+i−r}), r = 1 … R. The window w extends R
+    /// beyond the outputs on both sides, with their number rounded up to whole tiles of [`TILE`].
     pub(super) fn banded_tiles [const SYMMETRIC: bool] <SYMMETRIC> (
         below: &[f64],
         above: &[f64],
@@ -75,7 +76,7 @@ mod tests {
     use pericles::operator::InstructionSet;
 
     #[test]
-    fn every_instruction_set_gives_the_bits_of_the_plain_sum() {
+    fn every_instruction_set_equals_the_plain_sum_bit_for_bit() {
         for (outputs, reach) in [(1usize, 3usize), (32, 1), (70, 40)] {
             let number = |k: usize| ((k * k) as f64 * 0.37).sin();
             let above: Vec<f64> = (0..reach).map(|r| number(r + 5)).collect();

@@ -1,8 +1,9 @@
 //! Convolution of fields on a lattice body with a tensor kernel, by transforms over the padded box.
 //!
-//! Three passes, each over fixed pieces in parallel: (1) planes: rows of points to wave numbers along x, then along y; (2) pencils: forth along z, product
-//! with the kernel, and back; (3) planes: back along y and x, into the points. Boxes in 2D have their y in the place of z, and
-//! no middle axis. Zeros are neither stored nor transformed along the last axis, and along the others as little as possible.
+//! Three passes, each over fixed pieces in parallel: (1) planes: rows of points to wavenumbers along x, then along
+//! y; (2) pencils: forward along z, product with the kernel, and backward; (3) planes: backward along y and x, into
+//! the points. 2D boxes use their y as z and have no middle axis. Zeros are neither stored nor transformed along
+//! the last axis, and as few as possible along the others.
 
 use std::ops::Range;
 
@@ -13,14 +14,14 @@ use super::fourier::{AxisTransform, LineTransform, stride};
 use super::tensor_kernel::Axis;
 use super::tensor_spectra::{Product, TensorSpectra};
 use super::wanted::{count_wanted, for_each_wanted};
-use pericles::operator::On;
+use pericles::operator::PointSubset;
 use pericles::operator::pool::Pool;
 use pericles::space::Lattice;
 
-/// Columns taken together when an array is read across its rows: two cache lines.
+/// Columns processed together when an array is read across its rows: two cache lines.
 const TILE: usize = 8;
 
-/// Arrays of a whole application.
+/// Work arrays of a whole application.
 struct Workspace {
     /// [field][last][middle, padded][x mode]
     planes: Vec<Complex<f64>>,
@@ -31,19 +32,19 @@ struct Workspace {
 /// Arrays of one thread.
 struct Scratch {
     row: Vec<f64>,
-    /// One plane of wave numbers.
+    /// One plane of wavenumbers.
     plane: Vec<Complex<f64>>,
     /// Lines along the middle or the last axis.
     lines: Vec<Complex<f64>>,
     scratch: Vec<Complex<f64>>,
 }
 
-/// Σ_j K_ab(x_j − x_i) u_b(x_j) over the points of a lattice body.
+/// Convolution Σ_j K_ab(x_j − x_i) u_b(x_j) over the points of a lattice body.
 pub(super) struct BoxConvolution<const D: usize> {
     lattice: Lattice,
     /// First point of each row of the lattice, and the number of points.
     row_start: Vec<u32>,
-    /// Nodes along the middle and the last axis; the padded lengths are the transforms'.
+    /// Nodes along the middle and the last axis; the padded lengths are those of the transforms.
     middle_nodes: usize,
     last_nodes: usize,
     along_x: LineTransform,
@@ -55,9 +56,9 @@ pub(super) struct BoxConvolution<const D: usize> {
 }
 
 impl<const D: usize> BoxConvolution<D> {
-    /// The convolution with `value(offset)` on a lattice body; `axes` in the lattice's order.
+    /// Creates the convolution with `value(offset)` on a lattice body; `axes` in the order of the lattice.
     pub fn new(lattice: &Lattice, axes: [Axis; 3], value: impl Fn([i64; 3], &mut [f64])) -> Self {
-        // In 2D y takes the place of z.
+        // In 2D y is used as z.
         let [x, middle, last] = if D == 2 {
             [axes[0], axes[2], axes[1]]
         } else {
@@ -124,12 +125,12 @@ impl<const D: usize> BoxConvolution<D> {
             + size_of_val(&self.lattice.node[..])
     }
 
-    /// Σ_j K_p(x_j − x_i) for every point.
+    /// Returns Σ_j K_p(x_j − x_i) for every point.
     pub fn kernel_sums(&self, p: usize) -> Vec<f64> {
         let mut sums = vec![0.0; self.lattice.node.len()];
         self.apply(
             Product::Pair(p),
-            &On::All,
+            &PointSubset::All,
             &|_, _, line| line.fill(1.0),
             [&mut sums[..]],
             &|_, _, values, out| out.copy_from_slice(values),
@@ -137,14 +138,15 @@ impl<const D: usize> BoxConvolution<D> {
         sums
     }
 
-    /// The products of fields, at the wanted points.
+    /// Computes the products of fields at the requested points.
     ///
-    /// `input(field, points, line)` fills a line with a field's values at some points; `finish(field, points, values, out)` takes the products at some
-    /// points and changes the part of `out` that belongs to them.
+    /// `input(field, points, line)` fills a line with the values of a field at some points;
+    /// `finish(field, points, values, out)` receives the products at some points and modifies the part of `out`
+    /// that belongs to them.
     pub fn apply<const F: usize>(
         &self,
         product: Product,
-        on: &On<'_>,
+        on: &PointSubset<'_>,
         input: &(impl Fn(usize, Range<usize>, &mut [f64]) + Sync),
         out: [&mut [f64]; F],
         finish: &(impl Fn(usize, Range<usize>, &[f64], &mut [f64]) + Sync),
@@ -213,7 +215,7 @@ impl<const D: usize> BoxConvolution<D> {
             work.row[count..].fill(0.0);
             input(points.clone(), &mut work.row[..count]);
             if count < self.lattice.shape[0] {
-                // To their places: never below their number, so from the end.
+                // Moved to their places, which are never below their number; hence from the end.
                 let start = self.row_node(middle, last);
                 for (k, &node) in self.lattice.node[points].iter().enumerate().rev() {
                     let value = std::mem::take(&mut work.row[k]);
@@ -253,7 +255,7 @@ impl<const D: usize> BoxConvolution<D> {
         }
     }
 
-    /// Forth along the last axis, product, and back, for the x modes of a tile at one middle mode.
+    /// Forward along the last axis, product, and backward, for the x modes of a tile at one middle mode.
     fn pencil<const F: usize>(
         &self,
         product: Product,
@@ -268,7 +270,7 @@ impl<const D: usize> BoxConvolution<D> {
         let plane = self.middle.length * modes;
         let first = tile * TILE;
         let width = TILE.min(modes - first);
-        // [field][x mode][last]
+        // [field][x mode][last].
         let lines = &mut work.lines[..F * width * stride];
         for f in 0..F {
             for t in 0..width {
@@ -305,13 +307,13 @@ impl<const D: usize> BoxConvolution<D> {
         }
     }
 
-    /// The third pass on a range of planes, halved until one is left; `out` begins at point `first`.
+    /// Third pass on a range of planes, halved until one is left; `out` begins at point `first`.
     fn planes_back<const F: usize>(
         &self,
         range: Range<usize>,
         first: usize,
         pencils: &[Complex<f64>],
-        on: &On<'_>,
+        on: &PointSubset<'_>,
         out: [&mut [f64]; F],
         finish: &(impl Fn(usize, Range<usize>, &[f64], &mut [f64]) + Sync),
     ) {
@@ -340,7 +342,7 @@ impl<const D: usize> BoxConvolution<D> {
         last: usize,
         first: usize,
         pencils: &[Complex<f64>],
-        on: &On<'_>,
+        on: &PointSubset<'_>,
         out: [&mut [f64]; F],
         finish: &impl Fn(usize, Range<usize>, &[f64], &mut [f64]),
     ) {

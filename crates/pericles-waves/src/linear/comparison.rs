@@ -1,4 +1,4 @@
-//! Convolution or bond list: what one evaluation of a linear body costs either way.
+//! Cost of one evaluation of a linear body by convolution and by the bond list.
 
 use super::refuse;
 use super::tensor_kernel::axes;
@@ -6,21 +6,23 @@ use pericles::family::VolumeCorrection;
 use pericles::space::PointCloud;
 use pericles::{Result, positive};
 
-/// Measured as told in `cost.rs`, single-threaded: a directed bond of the list (2D and 3D, 28 to 514 neighbours: 4 to 6 ns), and a number of the
-/// padded fields of a convolution, within the L3 cache (2D and 3D: 6.6 to 12 ns) and beyond it (14 to 18 ns).
+/// Times measured as described in `cost.rs`, single-threaded: a directed bond of the list (2D and 3D, 28 to 514
+/// neighbours: 4 to 6 ns), and a number of the padded fields of a convolution, within the L3 cache (2D and 3D: 6.6
+/// to 12 ns) and beyond it (14 to 18 ns).
 const LIST_BOND: f64 = 5e-9;
 const FIELD_NUMBER: f64 = 8e-9;
 const FAR_FIELD_NUMBER: f64 = 16e-9;
-/// Numbers of all fields beyond which the work arrays leave the cache.
+/// Numbers of all fields beyond which the work arrays exceed the cache.
 const NEAR_NUMBERS: f64 = 2e6;
 
-/// Estimated cost of one evaluation of the linear force of a lattice body. From sizes alone, so that equal runs choose alike; the seconds are those of
-/// one core of the machine the constants were measured on, and what counts is their ratio.
+/// Estimated cost of one evaluation of the linear force of a lattice body. It depends on sizes only, so that equal
+/// runs make the same choice; the seconds are those of one core of the machine on which the constants were
+/// measured, and only their ratio matters.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CostComparison {
-    /// By the bond list, s.
+    /// Time of the bond list, s.
     pub bond_list: f64,
-    /// By convolution, s.
+    /// Time of the convolution, s.
     pub convolution: f64,
     /// Directed bonds: exact for boxes, an estimate for other shapes.
     pub directed_bonds: f64,
@@ -31,22 +33,22 @@ pub struct CostComparison {
 }
 
 impl CostComparison {
-    /// The costs for a body without periodic axes.
+    /// Estimates the costs for a body without periodic axes.
     ///
     /// # Errors
-    /// Points that are no lattice, for which there is only the bond list; a horizon that is not positive.
+    /// Points that are not on a lattice, for which only the bond list is available; a horizon that is not positive.
     pub fn new(cloud: &PointCloud, horizon: f64, correction: VolumeCorrection) -> Result<Self> {
         let Some(lattice) = cloud.lattice() else {
             return refuse("it needs points on a regular grid; use the bond list for this body");
         };
         let horizon = positive("the horizon", horizon)?;
-        // Lengths in spacings along x.
+        // Lengths in units of the spacing along x.
         let dx = lattice.spacing[0];
         let sides = lattice.spacing.map(|side| side / dx);
         let reach = correction.reach(horizon, cloud.spacing()) / dx;
         let raw = sides.map(|side| (reach / side).floor() as usize);
         let points = cloud.len() as f64;
-        // Pairs of nodes of the bounding box at each offset, thinned by the part of it that is filled.
+        // Pairs of nodes of the bounding box at each offset, multiplied by the filled fraction of the box.
         let range = |axis: usize| {
             let most = (raw[axis] as i64).min(lattice.shape[axis] as i64 - 1);
             -most..=most
@@ -88,14 +90,14 @@ impl CostComparison {
             bond_list: LIST_BOND * directed_bonds,
             convolution: number * numbers,
             directed_bonds,
-            // Number and stiffness of the neighbour, and two bits, a bond; rows are padded to eight.
+            // Index and stiffness of the neighbour, and two bits, per bond; rows are padded to eight.
             bond_list_bytes: 12.25 * (directed_bonds + 4.0 * points)
                 + word * (fields + 1.0) * points,
             convolution_bytes: word * (pairs * (octant + points) + 2.0 * stored),
         })
     }
 
-    /// Whether the convolution is the cheaper way.
+    /// Returns true if the convolution is cheaper.
     pub fn convolution_is_cheaper(&self) -> bool {
         self.convolution < self.bond_list
     }
@@ -124,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn bonds_of_boxes_are_counted_exactly() {
+    fn bond_counts_of_boxes_are_exact() {
         for cells in [&[30.0][..], &[9.0, 14.0], &[5.0, 4.0, 6.0]] {
             let cloud = body(cells);
             for horizon in [1.0, 3.0, 3.6, 8.0] {
@@ -139,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn convolution_wins_for_large_horizons_and_full_boxes() {
+    fn convolution_is_cheaper_for_large_horizons_and_full_boxes() {
         let cheaper = |cloud: &PointCloud, horizon| {
             CostComparison::new(cloud, horizon, VolumeCorrection::None)
                 .unwrap()
@@ -147,7 +149,7 @@ mod tests {
         };
         let block = body(&[40.0; 3]);
         assert!(!cheaper(&block, 1.0) && cheaper(&block, 4.0));
-        // Four corners: the convolution pays for the hole, the list does not.
+        // Four corners: the convolution includes the empty space, the list does not.
         let corners = Grid {
             shape: Shape::Box {
                 origin: [0.0; 3],

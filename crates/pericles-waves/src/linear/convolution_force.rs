@@ -1,4 +1,4 @@
-//! The force operator of linear lattice bodies by convolution.
+//! Force operator of linear lattice bodies by convolution.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -16,28 +16,31 @@ use pericles::family::{Crack, VolumeCorrection};
 use pericles::material::{BondConstants, BondMaterial};
 use pericles::operator::pool::Pool;
 use pericles::operator::{
-    Capabilities, Feature, Force, InstructionSet, LatticeSprings, LinearOperator, Linearity, On,
+    Capabilities, Feature, Force, InstructionSet, LatticeSprings, LinearOperator, Linearity,
+    PointSubset,
 };
 use pericles::parallel::{components, components_mut};
 use pericles::space::{Lattice, PointCloud};
 use pericles::{PericlesError, Result};
 
-/// f_a(x_i) = Σ_b [ Σ_j K_ab(ξ_ij) u_b(x_j) − u_b(x_i) Σ_j K_ab(ξ_ij) ], K(ξ) = c α κ V ξ⊗ξ/|ξ|³: the force density (N/m³) of the
-/// linear, unbreakable bond-based law on a lattice body.
+/// Force density (N/m³) of the linear, unbreakable bond-based law on a lattice body: f_a(x_i) = Σ_b [ Σ_j
+/// K_ab(ξ_ij) u_b(x_j) − u_b(x_i) Σ_j K_ab(ξ_ij) ], K(ξ) = c α κ V ξ⊗ξ/|ξ|³.
 ///
-/// The same operator as `BondForce<LinearBond, D>` to round-off, at a cost of O(N log N) that hardly depends on the horizon. Bodies may have
-/// any shape, holes included; axes may be periodic, with the bounding box of the lattice as the period. Whole bars use a [`Toeplitz`] line.
+/// Equal to `BondForce<LinearBond, D>` to round-off, at a cost of O(N log N) that hardly depends on the horizon.
+/// Bodies may have any shape, including holes; axes may be periodic, with the bounding box of the lattice as the
+/// period. Whole bars use a [`Toeplitz`] line.
 ///
-/// * All points are computed whatever subset is asked for; only rows without wanted points save some of the way back.
+/// * All points are computed for any requested subset; only rows without requested points save part of the inverse
+///   transforms.
 /// * A rigid translation gives exactly zero.
-/// * Memory: D(D+1)/2 spectra on an octant of the wave numbers, D(D+1)/2 numbers per point, and two complex arrays of D fields on the box,
-///   padded by the horizon along x (and y in 3D).
+/// * Memory: D(D+1)/2 spectra on an octant of the wavenumbers, D(D+1)/2 numbers per point, and two complex arrays
+///   of D fields on the box, padded by the horizon along x (and y in 3D).
 pub struct ConvolutionForce<const D: usize> {
     cloud: Arc<PointCloud>,
     engine: Engine<D>,
     /// Σ_j K_ab per point, one array per pair.
     diagonal: Vec<Vec<f64>>,
-    /// Σ |k|/|ξ| over a full family, where K is not positive semidefinite.
+    /// Σ |k|/|ξ| over a full family, if K is not positive semidefinite.
     signed_bound: Option<f64>,
     springs: Option<LatticeSprings>,
     directed_bonds: u64,
@@ -51,10 +54,11 @@ enum Engine<const D: usize> {
 }
 
 impl<const D: usize> ConvolutionForce<D> {
-    /// The operator of a material on a body whose axes are periodic or not.
+    /// Creates the operator of a material on a body whose axes may be periodic.
     ///
     /// # Errors
-    /// What a convolution cannot do, with the reason: points that are no lattice, another law than the linear one, breaking, pre-cracks.
+    /// Cases that a convolution does not represent, with the reason: points that are not on a lattice, a nonlinear
+    /// pair law, breaking, pre-cracks.
     pub fn new(
         cloud: Arc<PointCloud>,
         material: &BondMaterial,
@@ -79,10 +83,12 @@ impl<const D: usize> ConvolutionForce<D> {
         )
     }
 
-    /// An operator whose bonds have the stiffness c α given as a function of their reference vector ξ, m; it must be the same for ξ and −ξ.
+    /// Creates an operator whose bonds have the stiffness c α given as a function of their reference vector ξ, m;
+    /// it must be equal for ξ and −ξ.
     ///
     /// # Errors
-    /// Points that are no lattice, or of another dimension; a horizon below the spacing; a stiffness that is not finite.
+    /// Points that are not on a lattice, or of another dimension; a horizon below the spacing; a stiffness that is
+    /// not finite.
     pub fn with_stiffness(
         cloud: Arc<PointCloud>,
         horizon: f64,
@@ -92,7 +98,7 @@ impl<const D: usize> ConvolutionForce<D> {
     ) -> Result<Self> {
         if cloud.dimension() != D {
             return Err(PericlesError::WrongDimension {
-                what: "a convolution of this kind",
+                what: "a convolution of this type",
                 needed: ["1", "2", "3"][D - 1],
                 dimension: cloud.dimension(),
             });
@@ -149,7 +155,7 @@ impl<const D: usize> ConvolutionForce<D> {
         Ok(operator)
     }
 
-    fn add(&self, u: &[f64], on: &On<'_>, out: &mut [f64]) {
+    fn add(&self, u: &[f64], on: &PointSubset<'_>, out: &mut [f64]) {
         let n = self.cloud.len();
         match &self.engine {
             Engine::Line(line) => {
@@ -187,7 +193,7 @@ impl<const D: usize> ConvolutionForce<D> {
         }
     }
 
-    /// Σ_ab Σ_j K_ab (u_a u_b(x_j) − u_a u_b(x_i)), added to `out`.
+    /// Adds Σ_ab Σ_j K_ab (u_a u_b(x_j) − u_a u_b(x_i)) to `out`.
     fn add_squares(&self, u: &[f64], origin: [f64; D], out: &mut [f64]) {
         let n = self.cloud.len();
         let u = components::<D>(u, n);
@@ -213,7 +219,7 @@ impl<const D: usize> ConvolutionForce<D> {
                             *out += value - self.diagonal[p][i] * square(i);
                         }
                     };
-                    let all = On::All;
+                    let all = PointSubset::All;
                     convolution.apply(Product::Pair(p), &all, &squares, [&mut *out], &less_own);
                 }
             }
@@ -221,7 +227,7 @@ impl<const D: usize> ConvolutionForce<D> {
     }
 }
 
-/// Directed bonds, by the same convolution with a kernel of ones.
+/// Counts directed bonds, by the same convolution with a kernel of ones.
 fn count_bonds<const D: usize>(
     lattice: &Lattice,
     axes: [Axis; 3],
@@ -234,7 +240,7 @@ fn count_bonds<const D: usize>(
     counts.iter().map(|count| count.round() as u64).sum()
 }
 
-/// The same for a bar.
+/// Counts directed bonds of a bar.
 fn count_bonds_of_bar(nodes: u64, reach: u64, periodic: bool) -> u64 {
     let at = |r: u64| {
         if periodic {
@@ -252,7 +258,7 @@ impl<const D: usize> LinearOperator for ConvolutionForce<D> {
             Engine::Line(line) => line.apply_into(u, out),
             Engine::Box(_) => {
                 out.fill(0.0);
-                self.add(u, &On::All, out);
+                self.add(u, &PointSubset::All, out);
             }
         }
     }
@@ -274,12 +280,13 @@ impl<const D: usize> Force for ConvolutionForce<D> {
         D
     }
 
-    fn add_force(&self, _t: f64, u: &[f64], on: On<'_>, out: &mut [f64]) {
+    fn add_force(&self, _t: f64, u: &[f64], on: PointSubset<'_>, out: &mut [f64]) {
         self.add(u, &on, out);
     }
 
-    /// w_i = ¼ Σ_ab [ Σ_j K_ab (u_a u_b(x_j) − u_a u_b(x_i)) ] − ½ f(x_i)·u(x_i), relative to a common origin: accurate to round-off of the largest K u²,
-    /// so that points without strain may show energies of either sign that small.
+    /// Energy density w_i = ¼ Σ_ab [ Σ_j K_ab (u_a u_b(x_j) − u_a u_b(x_i)) ] − ½ f(x_i)·u(x_i), relative to a
+    /// common origin. Accurate to round-off of the largest K u², so points without strain may have small energies
+    /// of either sign.
     fn add_energy_density(&self, _t: f64, u: &[f64], out: &mut [f64]) {
         let n = self.points();
         let origin = origin::<D>(u);
@@ -290,7 +297,7 @@ impl<const D: usize> Force for ConvolutionForce<D> {
         add_density(u, &force, origin, &squares, out);
     }
 
-    /// −½ Σ V f·u.
+    /// Energy −½ Σ V f·u.
     fn energy(&self, _t: f64, u: &[f64]) -> f64 {
         let origin = origin::<D>(u);
         let mut force = self.fields.take();
@@ -298,7 +305,8 @@ impl<const D: usize> Force for ConvolutionForce<D> {
         elastic_energy(self.cloud.volumes(), u, &force, origin)
     }
 
-    /// ω² ≤ max_i (2/ρ_i) Σ_j |k_ij|/|ξ|, by Gershgorin's discs of D×D blocks; for kernels with negative values over a full family.
+    /// Gershgorin bound ω² ≤ max_i (2/ρ_i) Σ_j |k_ij|/|ξ| for D×D blocks; for kernels with negative values over a
+    /// full family.
     fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {
         let row = |i: usize| match (&self.engine, self.signed_bound) {
             (_, Some(bound)) => bound,
@@ -308,7 +316,7 @@ impl<const D: usize> Force for ConvolutionForce<D> {
         };
         let largest =
             (0..self.points()).fold(0.0f64, |largest, i| largest.max(2.0 * row(i) / density(i)));
-        // A bound must not fall below the truth by the transforms' rounding.
+        // Round-off of the transforms must not make the bound too small.
         (largest * (1.0 + 1e-12)).sqrt()
     }
 
@@ -316,7 +324,7 @@ impl<const D: usize> Force for ConvolutionForce<D> {
         self.apply_into(direction, out);
     }
 
-    /// The bonds the convolution stands for; no loop runs over them.
+    /// Number of bonds represented by the convolution; no loop runs over them.
     fn directed_bonds(&self) -> u64 {
         self.directed_bonds
     }
@@ -347,7 +355,7 @@ impl<const D: usize> Force for ConvolutionForce<D> {
 }
 
 pericles::saved! {
-    impl<const D: usize> Saved for ConvolutionForce<D> {
+    impl<const D: usize> Checkpointed for ConvolutionForce<D> {
         cloud, engine, diagonal, signed_bound, springs, directed_bonds: fixed,
         fields: scratch,
     }

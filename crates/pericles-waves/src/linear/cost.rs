@@ -1,11 +1,12 @@
-//! What a product costs, estimated from the sizes alone.
+//! Cost of products, estimated from sizes alone.
 //!
-//! Nothing is timed when the program runs: the route decides how results are rounded, and equal runs must give equal results. The constants
-//! were measured on one core of an AMD EPYC (AVX-512, 1 MiB L2 a core, 32 MiB L3) with `cargo bench --bench linear` in `benches/criterion`; only their
-//! ratios matter, and those move little from machine to machine.
+//! Nothing is timed at run time: the route determines the round-off, and equal runs must give equal results. The
+//! constants were measured on one core of an AMD EPYC (AVX-512, 1 MiB L2 per core, 32 MiB L3) with
+//! `cargo bench --bench linear` in `benches/criterion`; only their ratios matter, and these vary little between
+//! machines.
 
-/// Measured time of a real transform forth and back with the product between, ns per point, at lengths 2^6, 2^7, … 2^22. The steps are
-/// where the arrays leave the L2 (2^17) and the L3 cache (2^20).
+/// Measured time of a real transform forward and backward with a product in between, ns per point, for lengths 2^6,
+/// 2^7, … 2^22. The steps occur where the arrays exceed the L2 (2^17) and the L3 cache (2^20).
 const TRANSFORM: [f64; 17] = [
     2.5, 2.0, 2.0, 2.6, 2.8, 2.9, 3.1, 3.6, 3.8, 4.3, 4.8, 5.1, 7.5, 8.7, 9.8, 12.0, 12.0,
 ];
@@ -14,16 +15,16 @@ const SHORTEST: u32 = 6;
 /// Measured time of a banded product: ns per point, and ns per point and pair of coefficients.
 const BANDED_POINT: f64 = 0.7;
 const BANDED_PAIR: f64 = 0.12;
-/// A pair of different coefficients costs one multiplication more.
+/// Factor for pairs of different coefficients, which cost one more multiplication.
 const UNSYMMETRIC: f64 = 1.25;
 
 /// Measured time of loading and storing a point around the transforms, ns.
 const TRANSFORM_POINT: f64 = 0.9;
 
-/// How a line product is computed.
+/// Route by which a line product is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Route {
-    /// The sum over the coefficients.
+    /// Sum over the coefficients.
     Banded,
     /// Transforms of overlapping pieces of the line.
     OverlapSave,
@@ -31,7 +32,8 @@ pub enum Route {
     OneTransform,
 }
 
-/// Pieces of a line: transforms of `length` points that give `outputs` results each, the first of them at place `lead` of the piece.
+/// Division of a line into pieces: transforms of `length` points that give `outputs` results each, the first of
+/// them at index `lead` of the piece.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Pieces {
     pub length: usize,
@@ -39,7 +41,7 @@ pub(super) struct Pieces {
     pub outputs: usize,
 }
 
-/// A transform forth and back, ns per point.
+/// Cost of a transform forward and backward, ns per point.
 pub(super) fn transform_cost(length: usize) -> f64 {
     let place = (length.max(1) as f64).log2() - f64::from(SHORTEST);
     let place = place.clamp(0.0, (TRANSFORM.len() - 1) as f64);
@@ -49,19 +51,19 @@ pub(super) fn transform_cost(length: usize) -> f64 {
     between * if length.is_power_of_two() { 1.0 } else { 1.2 }
 }
 
-/// A banded product of a line, ns.
+/// Cost of a banded product of a line, ns.
 pub(super) fn banded_cost(nodes: usize, reach: usize, symmetric: bool) -> f64 {
     let pair = BANDED_PAIR * if symmetric { 1.0 } else { UNSYMMETRIC };
     nodes as f64 * (BANDED_POINT + pair * reach as f64)
 }
 
-/// A product of a line by pieces, ns.
+/// Cost of a product of a line by pieces, ns.
 pub(super) fn pieces_cost(nodes: usize, pieces: Pieces) -> f64 {
     let count = nodes.div_ceil(pieces.outputs) as f64;
     count * pieces.length as f64 * transform_cost(pieces.length) + TRANSFORM_POINT * nodes as f64
 }
 
-/// The cheapest pieces for overlap-save.
+/// Cheapest pieces for overlap-save.
 pub(super) fn overlap_save(nodes: usize, reach: usize) -> Pieces {
     let candidate = |k: u32| {
         let length = 1usize << k;
@@ -74,7 +76,7 @@ pub(super) fn overlap_save(nodes: usize, reach: usize) -> Pieces {
     let first = (2 * reach + 1).next_power_of_two().ilog2().max(SHORTEST);
     let mut best = candidate(first);
     for k in first + 1..first + 8 {
-        // Beyond one piece for the whole line, longer ones only cost more.
+        // Beyond one piece for the whole line, longer pieces only cost more.
         if best.outputs >= nodes {
             break;
         }
@@ -102,7 +104,8 @@ pub(super) fn one_transform(nodes: usize, reach: usize, periodic: bool) -> Piece
     }
 }
 
-/// The least even number from `least` on (1 stays 1) without prime factors above 5, which transforms are fast for.
+/// Returns the smallest even number not below `least` (1 stays 1) without prime factors above 5, for which
+/// transforms are fast.
 pub(crate) fn smooth_length(least: usize) -> usize {
     if least <= 1 {
         return 1;
@@ -126,7 +129,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn smooth_lengths_are_the_least() {
+    fn smooth_lengths_are_minimal() {
         for least in 2..2000 {
             let smooth = |mut n: usize| {
                 for p in [2, 3, 5] {
@@ -143,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn the_crossover_lies_where_it_was_measured() {
+    fn route_crossover_is_at_the_measured_reach() {
         let nodes = 1_000_000;
         let fastest = |reach| {
             let banded = banded_cost(nodes, reach, true);

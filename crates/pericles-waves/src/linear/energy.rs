@@ -1,14 +1,14 @@
-//! Energies of linear operators from the force: no loop over bonds is needed.
+//! Energies of linear operators from forces, without a loop over bonds.
 
 use pericles::sum::sum;
 
-/// The value that displacements are taken relative to: a rigid translation is then exactly zero.
+/// Value relative to which displacements are taken, so that a rigid translation gives exactly zero.
 pub(super) fn origin<const D: usize>(u: &[f64]) -> [f64; D] {
     let n = u.len() / D;
     std::array::from_fn(|c| u[c * n + n / 2])
 }
 
-/// −½ Σ V f·u, J.
+/// Elastic energy −½ Σ V f·u, J.
 pub(super) fn elastic_energy<const D: usize>(
     volumes: &[f64],
     u: &[f64],
@@ -22,7 +22,7 @@ pub(super) fn elastic_energy<const D: usize>(
     -0.5 * work
 }
 
-/// Adds w = ¼ s − ½ f·u of every point to `out`, J/m³; s are the operator's sums over products u_a u_b.
+/// Adds w = ¼ s − ½ f·u of every point to `out`, J/m³; s are the sums of the operator over products u_a u_b.
 pub(super) fn add_density<const D: usize>(
     u: &[f64],
     force: &[f64],

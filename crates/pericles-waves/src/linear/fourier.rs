@@ -6,7 +6,7 @@ use realfft::num_complex::Complex;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use rustfft::{Fft, FftPlanner};
 
-/// Transforms of a line of real numbers of fixed length, forth and back.
+/// Forward and inverse transforms of a real line of fixed length.
 #[derive(Clone)]
 pub(crate) struct LineTransform {
     forward: Arc<dyn RealToComplex<f64>>,
@@ -26,12 +26,12 @@ impl LineTransform {
         self.forward.len()
     }
 
-    /// Numbers in a spectrum.
+    /// Number of entries of a spectrum.
     pub fn modes(&self) -> usize {
         self.len() / 2 + 1
     }
 
-    /// Work numbers that both directions need.
+    /// Allocates the work array of both directions.
     pub fn scratch(&self) -> Vec<Complex<f64>> {
         let len = self
             .forward
@@ -40,7 +40,7 @@ impl LineTransform {
         vec![Complex::default(); len]
     }
 
-    /// The spectrum of `line`, which is used up.
+    /// Computes the spectrum of `line`, which is overwritten.
     pub fn forward(
         &self,
         line: &mut [f64],
@@ -51,14 +51,14 @@ impl LineTransform {
         debug_assert!(done.is_ok(), "buffers have the plan's lengths");
     }
 
-    /// The line of a spectrum, which is used up; not divided by the length.
+    /// Computes the line of a spectrum, which is overwritten; not divided by the length.
     pub fn inverse(
         &self,
         spectrum: &mut [Complex<f64>],
         line: &mut [f64],
         scratch: &mut [Complex<f64>],
     ) {
-        // A real line has no imaginary part there; what rounding left would be refused by the plan.
+        // The spectrum of a real line is real here; the plan would reject an imaginary part due to round-off.
         spectrum[0].im = 0.0;
         if self.len().is_multiple_of(2) {
             spectrum[self.modes() - 1].im = 0.0;
@@ -90,13 +90,14 @@ impl LineScratch {
 }
 
 impl CircularKernel {
-    /// Coefficients t_{−r} = `below[r − 1]`, t_r = `above[r − 1]`; none reaches more than half way round.
+    /// Creates the kernel from coefficients t_{−r} = `below[r − 1]`, t_r = `above[r − 1]`; none extends more than
+    /// half the length.
     pub fn new(length: usize, below: &[f64], above: &[f64]) -> Self {
         let transform = LineTransform::new(length);
         let mut line = vec![0.0; length];
         let norm = 1.0 / length as f64;
         for r in 1..=above.len() {
-            // A correlation: what lies above is reached by a shift backwards.
+            // A correlation: coefficients above the diagonal shift backwards.
             line[(length - r) % length] += norm * above[r - 1];
             line[r % length] += norm * below[r - 1];
         }
@@ -133,12 +134,13 @@ impl CircularKernel {
     }
 }
 
-/// Numbers between the starts of consecutive lines of a length: not a power of two, which would put all lines into the same few places of the L1 cache.
+/// Distance between the starts of consecutive lines of a length: not a power of two, which would map all lines to
+/// the same few sets of the L1 cache.
 pub(super) fn stride(length: usize) -> usize {
     length + 4
 }
 
-/// A complex transform of an axis, none if the axis has one node.
+/// Complex transform of an axis; none if the axis has one node.
 pub(super) struct AxisTransform {
     pub length: usize,
     plans: Option<[Arc<dyn Fft<f64>>; 2]>,
@@ -166,7 +168,7 @@ impl AxisTransform {
         })
     }
 
-    /// Transforms lines that start a [`stride`] apart; `back` to the inverse, not divided by the length.
+    /// Transforms lines that start a [`stride`] apart; `back` selects the inverse, not divided by the length.
     pub fn apply(&self, lines: &mut [Complex<f64>], back: bool, scratch: &mut [Complex<f64>]) {
         if let Some(plans) = &self.plans {
             for line in lines.chunks_mut(stride(self.length)) {
@@ -175,7 +177,7 @@ impl AxisTransform {
         }
     }
 
-    /// Transforms one line of the axis' length.
+    /// Transforms one line of the length of the axis.
     pub fn apply_to_one(
         &self,
         line: &mut [Complex<f64>],
@@ -193,7 +195,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn equals_the_circular_sum() {
+    fn circular_kernel_equals_the_direct_sum() {
         for (length, reach) in [(8usize, 4usize), (15, 7), (12, 1), (1, 0), (2, 1)] {
             let number = |k: usize| ((k * k) as f64 * 0.7 + 0.1).sin();
             let above: Vec<f64> = (0..reach).map(|r| number(r + 5)).collect();

@@ -1,4 +1,4 @@
-//! The linear force on a bar with two Gauss nodes in every cell.
+//! Linear force on a bar with two Gauss nodes per cell.
 
 use std::sync::Arc;
 
@@ -10,21 +10,25 @@ use crate::form::ForceForm;
 use pericles::family::VolumeCorrection;
 use pericles::material::{BondConstants, BondMaterial};
 use pericles::operator::pool::Pool;
-use pericles::operator::{Capabilities, Force, InstructionSet, LinearOperator, Linearity, On};
+use pericles::operator::{
+    Capabilities, Force, InstructionSet, LinearOperator, Linearity, PointSubset,
+};
 use pericles::space::PointCloud;
 use pericles::{PericlesError, Result};
 
-/// f_i = Σ_j c α κ V/|ξ| (u_j − u_i) on the nodes of [`gauss_bar`](pericles::space::gauss_bar), free ends.
+/// Force density f_i = Σ_j c α κ V/|ξ| (u_j − u_i) on the nodes of [`gauss_bar`](pericles::space::gauss_bar), with
+/// free ends.
 ///
-/// The same operator as the bond list's to round-off. Nodes of equal place in their cells form a Toeplitz matrix, those of different place another and its transpose: four
-/// [`Toeplitz`] products of half the size, O(n log n) for any horizon. A rigid translation gives exactly zero. Memory: O(n).
+/// Equal to the bond list to round-off. Nodes at the same position within their cells form a Toeplitz matrix, those
+/// at different positions another one and its transpose: four [`Toeplitz`] products of half the size, O(n log n)
+/// for any horizon. A rigid translation gives exactly zero. Memory: O(n).
 pub struct GaussForce {
     cloud: Arc<PointCloud>,
-    /// Between nodes of the same place in their cells.
+    /// Products between nodes at the same position in their cells.
     same: Toeplitz,
-    /// What first nodes see of second nodes, and second nodes of first nodes.
+    /// Products of first nodes with second nodes, and of second nodes with first nodes.
     across: [Toeplitz; 2],
-    /// Their sums over the nodes that exist.
+    /// Their sums over the existing nodes.
     sums: [Vec<f64>; 2],
     directed_bonds: u64,
     work: Pool<Work>,
@@ -37,15 +41,15 @@ struct Work {
 }
 
 impl GaussForce {
-    /// Whether points are the two Gauss nodes of equal cells of a bar.
+    /// Returns true if the points are the two Gauss nodes of equal cells of a bar.
     pub fn fits(cloud: &PointCloud) -> bool {
         cell_of(cloud).is_some()
     }
 
-    /// The operator of a material on a bar.
+    /// Creates the operator of a material on a bar.
     ///
     /// # Errors
-    /// What it cannot do, with the reason: other points, another law than the linear one, breaking.
+    /// Unsupported cases, with the reason: other points, a nonlinear pair law, breaking.
     pub fn new(
         cloud: Arc<PointCloud>,
         material: &BondMaterial,
@@ -61,10 +65,11 @@ impl GaussForce {
         )
     }
 
-    /// An operator whose bonds have the stiffness c α given as a function of their length, m.
+    /// Creates an operator whose bonds have the stiffness c α given as a function of their length, m.
     ///
     /// # Errors
-    /// Points that are no Gauss nodes of equal cells; a horizon that reaches no node; a stiffness that is not finite.
+    /// Points that are not Gauss nodes of equal cells; a horizon that contains no node; a stiffness that is not
+    /// finite.
     pub fn with_stiffness(
         cloud: Arc<PointCloud>,
         horizon: f64,
@@ -73,7 +78,7 @@ impl GaussForce {
     ) -> Result<Self> {
         let Some(cell) = cell_of(&cloud) else {
             return refuse(
-                "these points are not the two Gauss nodes of equal cells of a bar; use the bond list",
+                "the points are not the two Gauss nodes of equal cells of a bar; use the bond list",
             );
         };
         let cells = cloud.len() / 2;
@@ -130,7 +135,7 @@ impl GaussForce {
         })
     }
 
-    /// Products of the values relative to a common origin.
+    /// Computes the products of the values relative to a common origin.
     fn products(&self, u: impl Fn(usize) -> f64, work: &mut Work) {
         for (place, half) in work.halves.iter_mut().enumerate() {
             for (k, half) in half.iter_mut().enumerate() {
@@ -151,7 +156,7 @@ impl GaussForce {
     }
 }
 
-/// The width of the cells whose Gauss nodes the points are.
+/// Returns the width of the cells whose Gauss nodes the points are.
 fn cell_of(cloud: &PointCloud) -> Option<f64> {
     let cell = 2.0 * cloud.spacing();
     let between = cell / 3.0f64.sqrt();
@@ -160,7 +165,7 @@ fn cell_of(cloud: &PointCloud) -> Option<f64> {
         return None;
     }
     let x = cloud.axis(0);
-    // Positions carry rounding of their size, which may be large against a cell.
+    // Round-off of positions is relative to their size, which may be large compared with a cell.
     let tolerance = 1e-9 * cell + 1e-15 * x[0].abs().max(x[n - 1].abs());
     let fits = (0..n).all(|k| {
         let place = (k / 2) as f64 * cell + if k % 2 == 0 { 0.0 } else { between };
@@ -171,7 +176,7 @@ fn cell_of(cloud: &PointCloud) -> Option<f64> {
     (fits && equal).then_some(cell)
 }
 
-/// Σ of the coefficients whose partner exists, for every node of a line.
+/// Sum of the coefficients whose partner exists, for every node of a line.
 fn sums(nodes: usize, centre: f64, below: &[f64], above: &[f64]) -> Vec<f64> {
     let partial = |t: &[f64]| {
         let mut sum = vec![0.0];
@@ -209,7 +214,7 @@ impl Force for GaussForce {
         1
     }
 
-    fn add_force(&self, _t: f64, u: &[f64], on: On<'_>, out: &mut [f64]) {
+    fn add_force(&self, _t: f64, u: &[f64], on: PointSubset<'_>, out: &mut [f64]) {
         let [origin] = origin(u);
         let mut work = self.work.take();
         self.products(|i| u[i] - origin, &mut work);
@@ -220,7 +225,7 @@ impl Force for GaussForce {
         });
     }
 
-    /// w_i = ¼ Σ_j k (u_j² − u_i²) − ½ f_i u_i, relative to a common origin.
+    /// Energy density w_i = ¼ Σ_j k (u_j² − u_i²) − ½ f_i u_i, relative to a common origin.
     fn add_energy_density(&self, _t: f64, u: &[f64], out: &mut [f64]) {
         let [origin] = origin(u);
         let mut work = self.work.take();
@@ -234,7 +239,7 @@ impl Force for GaussForce {
         }
     }
 
-    /// −½ Σ V f·u.
+    /// Energy −½ Σ V f·u.
     fn energy(&self, _t: f64, u: &[f64]) -> f64 {
         let [origin] = origin(u);
         let mut work = self.work.take();
@@ -242,7 +247,7 @@ impl Force for GaussForce {
         elastic_energy(self.cloud.volumes(), u, &work.force, [origin])
     }
 
-    /// ω² ≤ max_i (2/ρ_i) Σ_j |k_ij|, by Gershgorin's discs; for functions without negative values.
+    /// Gershgorin bound ω² ≤ max_i (2/ρ_i) Σ_j |k_ij|; for functions without negative values.
     fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {
         let row = |i: usize| self.sums[i % 2][i / 2] - self.same.diagonal(i / 2);
         let largest =
@@ -254,7 +259,7 @@ impl Force for GaussForce {
         self.apply_into(direction, out);
     }
 
-    /// The bonds it stands for; no loop runs over them.
+    /// Number of bonds represented by the products; no loop runs over them.
     fn directed_bonds(&self) -> u64 {
         self.directed_bonds
     }
@@ -277,7 +282,7 @@ impl Force for GaussForce {
 }
 
 pericles::saved! {
-    impl Saved for GaussForce {
+    impl Checkpointed for GaussForce {
         cloud, same, across, sums, directed_bonds: fixed,
         work: scratch,
     }

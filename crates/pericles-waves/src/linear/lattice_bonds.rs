@@ -1,4 +1,4 @@
-//! The bonds of a lattice body by their offset.
+//! Bonds of a lattice body by offset.
 
 use super::refuse;
 use pericles::family::VolumeCorrection;
@@ -6,14 +6,15 @@ use pericles::operator::{LatticeSpring, LatticeSprings};
 use pericles::space::{Lattice, PointCloud};
 use pericles::{PericlesError, Result};
 
-/// A bond of some offset: k = c α κ V, the length |ξ| and the vector ξ.
+/// Bond of a given offset: k = c α κ V, the length |ξ| and the vector ξ.
 pub(super) struct OffsetBond {
     pub stiffness: f64,
     pub length: f64,
     pub xi: [f64; 3],
 }
 
-/// What makes bonds of an offset: the same arithmetic as the bond list's, so that the same bonds exist.
+/// Rule that creates the bond of an offset, with the same arithmetic as the bond list, so that the same bonds
+/// exist.
 pub(super) struct LatticeBonds<S: Fn([f64; 3]) -> f64> {
     stiffness_of_bond: S,
     correction: VolumeCorrection,
@@ -26,10 +27,10 @@ pub(super) struct LatticeBonds<S: Fn([f64; 3]) -> f64> {
 }
 
 impl<S: Fn([f64; 3]) -> f64> LatticeBonds<S> {
-    /// The bonds of a cloud, and its lattice.
+    /// Creates the bonds of a cloud and its lattice.
     ///
     /// # Errors
-    /// Points that are no lattice, or of different volume; a horizon below the spacing.
+    /// Points that are not on a lattice, or of different volume; a horizon below the spacing.
     pub fn new(
         cloud: &PointCloud,
         horizon: f64,
@@ -62,12 +63,12 @@ impl<S: Fn([f64; 3]) -> f64> LatticeBonds<S> {
         Ok((bonds, lattice))
     }
 
-    /// The largest offset along each axis.
+    /// Largest offset along each axis.
     pub fn largest_offset(&self) -> [usize; 3] {
         self.sides.map(|dx| (self.reach / dx).floor() as usize)
     }
 
-    /// The bond of an offset; none beyond the horizon.
+    /// Returns the bond of an offset; `None` beyond the horizon.
     pub fn at(&self, offset: [i64; 3]) -> Option<OffsetBond> {
         let xi: [f64; 3] = std::array::from_fn(|c| offset[c] as f64 * self.sides[c]);
         let length = (xi[0] * xi[0] + xi[1] * xi[1] + xi[2] * xi[2]).sqrt();
@@ -80,9 +81,9 @@ impl<S: Fn([f64; 3]) -> f64> LatticeBonds<S> {
         })
     }
 
-    /// The bonds as springs, with offsets up to `most` along each axis.
+    /// Returns the bonds as springs, with offsets up to `most` along each axis.
     pub fn springs(&self, dimension: usize, most: [usize; 3]) -> Option<LatticeSprings> {
-        // Plane waves are taken of cubic lattices only.
+        // Plane waves are used for cubic lattices only.
         if self.sides[..dimension]
             .iter()
             .any(|dx| *dx != self.sides[0])
@@ -101,7 +102,8 @@ impl<S: Fn([f64; 3]) -> f64> LatticeBonds<S> {
         LatticeSprings::new(dimension, all)
     }
 
-    /// Σ |k|/|ξ| over a full family with offsets up to `most` along each axis, and whether any k is negative.
+    /// Returns Σ |k|/|ξ| over a full family with offsets up to `most` along each axis, and whether any k is
+    /// negative.
     ///
     /// # Errors
     /// A stiffness that is not finite.

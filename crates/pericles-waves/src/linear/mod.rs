@@ -1,21 +1,22 @@
 //! Linear operators by convolution: lines, and lattice bodies of any shape.
 //!
-//! Where all bonds of an offset are alike, the linear force is a convolution, and costs O(N log N) for any horizon.
+//! If all bonds of an offset are equal, the linear force is a convolution and costs O(N log N) for any horizon.
 //!
 //! | | formula | routes |
 //! |---|---|---|
-//! | [`Toeplitz`] | y_i = Σ_r w_r (u_{i+r} + u_{i−r} − 2 u_i), and with different coefficients up and down | banded loop, overlap-save, one transform |
+//! | [`Toeplitz`] | y_i = Σ_r w_r (u_{i+r} + u_{i−r} − 2 u_i), also with different coefficients above and below | banded loop, overlap-save, one transform |
 //! | [`ConvolutionForce`] | f_a = Σ_b [ K_ab * (χ u_b) − (K_ab * χ) u_b ], K = c α κ V ξ⊗ξ/‖ξ‖³ | transforms over the padded box; whole bars use `Toeplitz` |
-//! | [`GaussForce`] | the bar's force with two Gauss nodes in every cell | four `Toeplitz` lines |
-//! | [`SpectralForce`] | f = Σ_k −M(k) û exp(ik·x) on periodic boxes, M the continuum's [`Symbol`] | transforms |
+//! | [`GaussForce`] | the force of a bar with two Gauss nodes per cell | four `Toeplitz` lines |
+//! | [`SpectralForce`] | f = Σ_k −M(k) û exp(ik·x) on periodic boxes, M the [`Symbol`] of the continuum | transforms |
 //!
-//! χ is one on the points of the body and zero elsewhere, so holes and boundaries are exact: bonds to absent points are absent. Single bonds cannot be
-//! absent: pre-cracks and breaking need the bond list. Arrays are component-major (see [`pericles::space::PointCloud`]), displacements in m, force
-//! densities in N/m³; a `Toeplitz` line has any units.
+//! χ is one on the points of the body and zero elsewhere, so holes and boundaries are exact: bonds to missing
+//! points are missing. Individual bonds cannot be missing: pre-cracks and breaking need the bond list. Arrays are
+//! component-major (see [`pericles::space::PointCloud`]), displacements in m, force densities in N/m³; a `Toeplitz`
+//! line has any units.
 //!
-//! **Choice.** [`Toeplitz`] takes the route of least estimated cost: the loop up to R ≈ 20, overlap-save from there, one transform where R comes near N.
-//! [`CostComparison`] does the same for convolution against the bond list. Nothing is timed at run time, because the route decides how results
-//! are rounded.
+//! **Selection.** [`Toeplitz`] takes the route of least estimated cost: the loop up to R ≈ 20, overlap-save above,
+//! one transform if R is close to N. [`CostComparison`] selects between convolution and the bond list in the same
+//! way. Nothing is timed at run time, because the route determines the round-off.
 //!
 //! **Cost**, CPU ms of one product of N = 10⁶ points on one core (AMD EPYC, AVX-512):
 //!
@@ -25,17 +26,20 @@
 //! | overlap-save | 3.8 | 3.9 | **3.7** | **3.9** | **4.6** | **4.7** | **5.0** | **5.7** | **6.2** |
 //! | one transform | 13 | 12 | 14 | 13 | 12 | 12 | 12 | 12 | 12 |
 //!
-//! (bold: chosen). Lattice bodies take some 15 ns per point in 2D and 50 to 100 ns in 3D, about what the bond list takes for 3 to 20 neighbours.
+//! (bold: selected). Lattice bodies take about 15 ns per point in 2D and 50 to 100 ns in 3D, as much as the bond
+//! list with 3 to 20 neighbours.
 //!
-//! **Accuracy.** All routes agree with the sums to some 1e-15 of Σ|K| max|u|. Displacements are taken relative to a point's, so that rigid translations
-//! give exactly zero. Results have the same bits for any number of threads and any [`On`](pericles::parallel::On); transforms use the machine's best instructions,
-//! so the last bits may differ between machines. A mirror-symmetric body stays symmetric to round-off only.
+//! **Accuracy.** All routes agree with the sums to some 1e-15 of Σ|K| max|u|. Displacements are taken relative to
+//! those of one point, so rigid translations give exactly zero. Results have the same bits for any number of
+//! threads and any [`PointSubset`](pericles::parallel::PointSubset); transforms use the best instructions of the machine, so the last
+//! bits may differ between machines. A mirror-symmetric body stays symmetric to round-off only.
 //!
-//! **Memory and threads.** Work arrays are lent by a pool ([`Toeplitz`] and [`ConvolutionForce`] work by `&self`, from any number of threads at once); once it has
-//! as many as are ever in use together, an application allocates nothing.
+//! **Memory and threads.** Work arrays come from a pool ([`Toeplitz`] and [`ConvolutionForce`] work by `&self`,
+//! from any number of threads at once); an application allocates nothing once the pool contains as many as are used
+//! simultaneously.
 //!
-//! References: Zhang & Wang, Comput. Methods Appl. Mech. Engrg. 311 (2016) 280–303, for linear bond-based bodies by Toeplitz structure; overlap-save is in
-//! any book on digital signal processing, such as Oppenheim & Schafer's.
+//! References: Zhang & Wang, Comput. Methods Appl. Mech. Engrg. 311 (2016) 280–303, for linear bond-based bodies by
+//! Toeplitz structure; for overlap-save any book on digital signal processing, such as Oppenheim & Schafer's.
 //!
 //! ```
 //! use pericles::operator::LinearOperator;
@@ -77,7 +81,7 @@ use pericles::{PericlesError, Result};
 
 use crate::form::ForceForm;
 
-/// The features of a material's bonds in so many dimensions.
+/// Returns the features of a material's bonds in a given dimension.
 fn features_of(material: &BondMaterial, constants: &BondConstants, dimension: usize) -> Features {
     let law = Feature::of_law(material.law, dimension);
     let breaks = constants.critical_stretch.is_finite();
@@ -85,16 +89,16 @@ fn features_of(material: &BondMaterial, constants: &BondConstants, dimension: us
         .with(Feature::Breaking, breaks)
 }
 
-/// Refuses features that a form does not represent.
+/// Returns an error for features that a form does not represent.
 fn require(form: ForceForm, features: Features) -> Result<()> {
     form.refusal(features).map_or(Ok(()), refuse)
 }
 
-/// An operator that cannot be applied as a convolution.
+/// Operator that cannot be applied as a convolution.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("convolution: {reason}")]
 pub struct NoConvolution {
-    /// Why, and what is allowed.
+    /// The reason and the allowed alternatives.
     pub reason: String,
 }
 
@@ -104,7 +108,7 @@ impl From<NoConvolution> for PericlesError {
     }
 }
 
-/// The error of what is no convolution.
+/// Returns the error with a reason.
 fn refuse<T>(reason: impl Into<String>) -> Result<T> {
     let reason = reason.into();
     Err(NoConvolution { reason }.into())

@@ -1,7 +1,8 @@
-//! The tensor kernel of a linear bond-based body on a lattice, and its Fourier transform.
+//! Tensor kernel of a linear bond-based body on a lattice, and its Fourier transform.
 //!
-//! K_ab(ξ) = k(|ξ|) ξ_a ξ_b / |ξ|³ is even under reflection of every axis, but for K_ab with a ≠ b, which is odd under reflection of axis a and of axis b.
-//! Offsets and wave numbers of one octant therefore hold everything, and all transforms are real.
+//! K_ab(ξ) = k(|ξ|) ξ_a ξ_b / |ξ|³ is even under reflection of every axis, except that K_ab with a ≠ b is odd under
+//! reflection of axis a and of axis b. Offsets and wavenumbers of one octant therefore suffice, and all transforms
+//! are real.
 
 use realfft::num_complex::Complex;
 
@@ -9,12 +10,12 @@ use super::cost::smooth_length;
 use super::fourier::LineTransform;
 use pericles::space::Lattice;
 
-/// Offsets along an axis, wrapped round a transform of some length.
+/// Offsets along an axis, wrapped periodically with the length of the transform.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Axis {
     /// Lattice nodes.
     pub nodes: usize,
-    /// Length of the transform: the nodes if periodic, else enough that nothing wraps.
+    /// Length of the transform: the number of nodes if periodic, otherwise large enough that nothing wraps.
     pub padded: usize,
     /// Largest true offset between two nodes, and largest wrapped one.
     pub raw: usize,
@@ -23,12 +24,12 @@ pub(super) struct Axis {
 }
 
 impl Axis {
-    /// Wave numbers 0 … π.
+    /// Number of wavenumbers 0 … π.
     pub fn modes(&self) -> usize {
         self.padded / 2 + 1
     }
 
-    /// Wrapped offsets o ≥ 0 with the true offsets that fall on them, those of the mirrored side left out.
+    /// Wrapped offsets o ≥ 0 with the true offsets that map to them, except those of the mirrored side.
     fn images(&self) -> Vec<(usize, i64)> {
         let raw = self.raw as i64;
         let from = if self.periodic { -raw } else { 0 };
@@ -46,7 +47,7 @@ impl Axis {
     }
 }
 
-/// The axes of a lattice with the lengths of their transforms.
+/// Axes of a lattice with the lengths of their transforms.
 pub(super) fn axes<const D: usize>(
     lattice: &Lattice,
     raw: [usize; 3],
@@ -75,7 +76,7 @@ pub(super) fn axes<const D: usize>(
     })
 }
 
-/// Pairs of components, in the order (0,0), (1,1) … and then (0,1), (0,2), (1,2).
+/// Pairs of components in the order (0,0), (1,1) … and then (0,1), (0,2), (1,2).
 pub(super) fn pairs(dimension: usize) -> Vec<(usize, usize)> {
     let mut pairs: Vec<_> = (0..dimension).map(|a| (a, a)).collect();
     for a in 0..dimension {
@@ -86,7 +87,7 @@ pub(super) fn pairs(dimension: usize) -> Vec<(usize, usize)> {
     pairs
 }
 
-/// The kernel's values on the offsets of one octant.
+/// Values of the kernel on the offsets of one octant.
 pub(super) struct TensorKernel {
     axes: [Axis; 3],
     /// One table per pair: x fastest, then y, then z.
@@ -94,7 +95,7 @@ pub(super) struct TensorKernel {
 }
 
 impl TensorKernel {
-    /// `value(offset)` gives K_ab at a true offset, for the pairs in order.
+    /// Creates the kernel; `value(offset)` returns K_ab at a true offset, for the pairs in order.
     pub fn new(axes: [Axis; 3], pairs: usize, value: impl Fn([i64; 3], &mut [f64])) -> Self {
         let shape = axes.map(|axis| axis.reach + 1);
         let mut tables = vec![vec![0.0; shape.iter().product()]; pairs];
@@ -115,15 +116,17 @@ impl TensorKernel {
         Self { axes, tables }
     }
 
-    /// Σ K_p(o) exp(−i θ·o) on the wave numbers of one octant, times `scale`, at index z + Z (x + X y) for X × Y × Z of them: z fastest, because products
-    /// run along z. `odd` tells under which axes' reflection K_p changes its sign: none or two.
+    /// Computes Σ K_p(o) exp(−i θ·o) on the wavenumbers of one octant, times `scale`, at index z + Z (x + X y) for
+    /// X × Y × Z of them: z is fastest, because products run along z. `odd` returns true for the axes under whose
+    /// reflection K_p changes its sign: none or two.
     pub fn spectrum(&self, p: usize, odd: impl Fn(usize) -> bool, scale: f64) -> Vec<f64> {
         let mut values = self.tables[p].clone();
         // i·i from two odd axes.
         let scale = if (0..3).any(&odd) { -scale } else { scale };
         let mut shape = self.axes.map(|axis| axis.reach + 1);
         for axis in 0..3 {
-            // Transform the fastest axis, then make it the slowest: after three rounds the order is x, y, z again.
+            // Transforms the fastest axis, then makes it the slowest: after three rounds the order is x, y, z
+            // again.
             let plan = LineTransform::new(self.axes[axis].padded);
             let (lines, modes) = (values.len() / shape[0], plan.modes());
             let mut next = vec![0.0; lines * modes];
@@ -172,7 +175,8 @@ impl OctantLine {
         for (o, value) in side.iter().enumerate() {
             self.line[(length - o) % length] = if odd { -value } else { *value };
         }
-        // Second, so that offset 0 and the one half way round, which are their own mirror images, keep their value (zero if odd).
+        // Copied last, so that offset 0 and the one at half the length, which are their own mirror images, keep
+        // their value (zero if odd).
         self.line[..side.len()].copy_from_slice(side);
         plan.forward(&mut self.line, &mut self.spectrum, &mut self.scratch);
     }

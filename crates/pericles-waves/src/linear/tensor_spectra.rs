@@ -1,10 +1,10 @@
-//! The tensor kernel in the space of wave numbers, and products with it.
+//! Tensor kernel in wavenumber space, and products with it.
 
 use rustfft::num_complex::Complex;
 
 use super::tensor_kernel::{Axis, TensorKernel, pairs};
 
-/// What is multiplied in the space of wave numbers.
+/// Product computed in wavenumber space.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Product {
     /// v_a = Σ_b K_ab u_b on as many fields as dimensions.
@@ -13,9 +13,9 @@ pub(super) enum Product {
     Pair(usize),
 }
 
-/// K̂_ab on one octant of the wave numbers, divided by the transforms' length.
+/// K̂_ab on one octant of the wavenumbers, divided by the length of the transforms.
 pub(super) struct TensorSpectra<const D: usize> {
-    /// Per pair: along the last axis fastest, then x, then the middle axis (which 1D and 2D do not have).
+    /// Per pair: the last axis fastest, then x, then the middle axis (absent in 1D and 2D).
     spectra: Vec<Vec<f64>>,
     pairs: Vec<(usize, usize)>,
     /// Modes of x, middle and last axis in the octant.
@@ -25,17 +25,17 @@ pub(super) struct TensorSpectra<const D: usize> {
     last: usize,
 }
 
-/// The place of (a, b) among the pairs of components.
+/// Index of (a, b) among the pairs of components.
 pub(super) fn pair(dimension: usize, a: usize, b: usize) -> usize {
     if a == b { a } else { dimension + a + b - 1 }
 }
 
 impl<const D: usize> TensorSpectra<D> {
-    /// The spectra of K_ab = `value(offset)`; `axes` are x, middle, last, which are x, z, y in 2D.
+    /// Computes the spectra of K_ab = `value(offset)`; `axes` are x, middle, last, which are x, z, y in 2D.
     pub fn new(axes: [Axis; 3], value: impl Fn([i64; 3], &mut [f64])) -> Self {
         let pairs = pairs(D);
         let scale = 1.0 / axes.iter().map(|axis| axis.padded as f64).product::<f64>();
-        // The place of each axis among x, y, z.
+        // Position of each axis among x, y, z.
         let place = if D == 2 { [0, 2, 1] } else { [0, 1, 2] };
         let kernel = TensorKernel::new(axes, pairs.len(), |offset, values| {
             value(place.map(|axis| offset[axis]), values);
@@ -61,14 +61,14 @@ impl<const D: usize> TensorSpectra<D> {
         self.spectra.iter().map(|s| size_of_val(&s[..])).sum()
     }
 
-    /// Whether K_p changes its sign under reflection of an axis: 1 the middle, 2 the last.
+    /// Returns true if K_p changes its sign under reflection of an axis: 1 the middle, 2 the last.
     fn is_odd(&self, p: usize, axis: usize) -> bool {
         let (a, b) = self.pairs[p];
         let axis = if D == 2 && axis == 2 { 1 } else { axis };
         a != b && (axis == a || axis == b)
     }
 
-    /// Multiplies the lines of all fields along the last axis, at one wave number of the others.
+    /// Multiplies the lines of all fields along the last axis, at one wavenumber of the other axes.
     pub fn multiply<const F: usize>(
         &self,
         product: Product,
@@ -89,7 +89,7 @@ impl<const D: usize> TensorSpectra<D> {
             let flips = (mirrored && self.is_odd(p, 1)) != (back && self.is_odd(p, 2));
             if flips { -1.0 } else { 1.0 }
         };
-        // Wave numbers 0 … π as stored, the others mirrored.
+        // Wavenumbers 0 … π as stored, the others mirrored.
         for back in [false, true] {
             let range = if back { modes..self.last } else { 0..modes };
             let at = |l: usize| if back { self.last - l } else { l };

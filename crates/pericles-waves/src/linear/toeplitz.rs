@@ -10,37 +10,40 @@ use pericles::operator::pool::Pool;
 use pericles::operator::{InstructionSet, LinearOperator};
 use pericles::{PericlesError, Result};
 
-/// What is beyond the ends of a line.
+/// Condition beyond the ends of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ends {
-    /// Nothing: bonds that would reach beyond an end are absent.
+    /// No points: bonds that would extend beyond an end are missing.
     Free,
     /// Points with u = 0.
     Zero,
-    /// The line again.
+    /// Periodic continuation.
     Periodic,
 }
 
-/// y = T u on N points in a row, for coefficients that depend on the distance only.
+/// Product y = T u on N points of a line with coefficients that depend on the distance only.
 ///
 /// * [`Toeplitz::stencil`]: y_i = Σ_r w_r (u_{i+r} + u_{i−r} − 2 u_i), the linear bond force of a bar;
-/// * [`Toeplitz::differences`]: y_i = Σ_{r≠0} t_r (u_{i+r} − u_i), the same with different coefficients up and down;
-/// * [`Toeplitz::product`]: y_i = Σ_r t_r u_{i+r}, a matrix that is constant along its diagonals (or circulant).
+/// * [`Toeplitz::differences`]: y_i = Σ_{r≠0} t_r (u_{i+r} − u_i), the same with different coefficients above and
+///   below;
+/// * [`Toeplitz::product`]: y_i = Σ_r t_r u_{i+r}, a Toeplitz (or circulant) matrix.
 ///
-/// The route (see [`Route`]) is chosen by estimated cost; all agree to round-off. Differences are taken from a value nearby, so that a constant
-/// gives exactly zero and a large rigid motion costs no digits. Results do not depend on the number of threads; transforms make them depend on
-/// the machine's instruction set in the last bits. An application allocates nothing once as many threads as will ever run have done so.
+/// The route (see [`Route`]) is selected by estimated cost; all agree to round-off. Differences are taken from a
+/// nearby value, so that a constant gives exactly zero and a large rigid motion loses no digits. Results do not
+/// depend on the number of threads; with transforms the last bits depend on the instruction set of the machine. An
+/// application allocates nothing once as many threads as will ever run have done so.
 pub struct Toeplitz {
     nodes: usize,
     ends: Ends,
-    /// Coefficients t_{−1}, t_{−2}, … and t_1, t_2, …, without those that reach beyond the line or more than half way round.
+    /// Coefficients t_{−1}, t_{−2}, … and t_1, t_2, …, without those that extend beyond the line or more than half
+    /// way around it.
     below: Vec<f64>,
     above: Vec<f64>,
     /// Coefficient of u_i far from the ends, of the first points, and of the last.
     middle: f64,
     first: Vec<f64>,
     last: Vec<f64>,
-    /// Constants give zero: values may be taken relative to any one.
+    /// True if constants give zero, so that values may be taken relative to any one of them.
     differences: bool,
     engine: Engine,
     instruction_set: InstructionSet,
@@ -58,11 +61,12 @@ struct Work {
     line: Option<LineScratch>,
 }
 
-/// Results of a block of the banded loop: block and halo stay in the L1 cache for small reach.
+/// Results per block of the banded loop: block and halo stay in the L1 cache for small reach.
 const BLOCK: usize = 1024;
 
 impl Toeplitz {
-    /// y_i = Σ_r w_r (u_{i+r} + u_{i−r} − 2 u_i) with w_r = `weights[r − 1]`. Bonds beyond free ends are absent; beyond [`Ends::Zero`] u = 0.
+    /// Creates y_i = Σ_r w_r (u_{i+r} + u_{i−r} − 2 u_i) with w_r = `weights[r − 1]`. Bonds beyond free ends are
+    /// missing; beyond [`Ends::Zero`] u = 0.
     ///
     /// # Errors
     /// No nodes; a weight that is not finite.
@@ -70,7 +74,8 @@ impl Toeplitz {
         Self::differences(nodes, weights, weights, ends)
     }
 
-    /// y_i = Σ_r t_r (u_{i+r} − u_i) + t_{−r} (u_{i−r} − u_i) with t_{−r} = `below[r − 1]`, t_r = `above[r − 1]`.
+    /// Creates y_i = Σ_r t_r (u_{i+r} − u_i) + t_{−r} (u_{i−r} − u_i) with t_{−r} = `below[r − 1]`, t_r =
+    /// `above[r − 1]`.
     ///
     /// # Errors
     /// No nodes; arrays of different lengths; a coefficient that is not finite.
@@ -78,7 +83,7 @@ impl Toeplitz {
         let full = -(below.iter().sum::<f64>() + above.iter().sum::<f64>());
         let mut operator = Self::with_middle(nodes, full, below, above, ends, true)?;
         if ends == Ends::Free {
-            // Node i has the coefficients down to −i and up to nodes − 1 − i.
+            // Node i has the coefficients from −i to nodes − 1 − i.
             let sums = |t: &[f64]| {
                 let mut sums = vec![0.0];
                 for (r, t) in t.iter().enumerate() {
@@ -99,10 +104,12 @@ impl Toeplitz {
         Ok(operator)
     }
 
-    /// y_i = t_0 u_i + Σ_r t_r u_{i+r} + t_{−r} u_{i−r}, with u = 0 beyond the ends unless they are periodic.
+    /// Creates y_i = t_0 u_i + Σ_r t_r u_{i+r} + t_{−r} u_{i−r}, with u = 0 beyond the ends unless they are
+    /// periodic.
     ///
     /// # Errors
-    /// No nodes; arrays of different lengths; a coefficient that is not finite; free ends, which products do not have.
+    /// No nodes; arrays of different lengths; a coefficient that is not finite; free ends, which products do not
+    /// support.
     pub fn product(
         nodes: usize,
         centre: f64,
@@ -112,7 +119,8 @@ impl Toeplitz {
     ) -> Result<Self> {
         if ends == Ends::Free {
             return refuse(
-                "a product has no bonds that could be absent beyond free ends; use zero or periodic ends, or differences",
+                "free ends are not available for products, which have no bonds; use zero or periodic ends, or \
+                differences",
             );
         }
         Self::with_middle(nodes, centre, below, above, ends, false)
@@ -131,14 +139,16 @@ impl Toeplitz {
         }
         if below.len() != above.len() {
             return refuse(format!(
-                "as many coefficients are needed below as above the diagonal, not {} and {}",
+                "the numbers of coefficients below and above the diagonal must be equal, but are {} and {}",
                 below.len(),
                 above.len()
             ));
         }
         let all = || below.iter().chain(above);
         if let Some(bad) = all().chain([&middle]).find(|t| !t.is_finite()) {
-            return refuse(format!("coefficients must be finite, not {bad}"));
+            return refuse(format!(
+                "coefficients must be finite numbers, but one is {bad}"
+            ));
         }
         let (mut middle, mut below, mut above) = (middle, below.to_vec(), above.to_vec());
         if ends == Ends::Periodic {
@@ -155,7 +165,7 @@ impl Toeplitz {
             middle,
             first: vec![],
             last: vec![],
-            // Beyond zero ends the value is fixed.
+            // Beyond zero ends the value is prescribed.
             differences: differences && ends != Ends::Zero,
             engine: Engine::Banded,
             instruction_set: InstructionSet::detect(),
@@ -178,7 +188,7 @@ impl Toeplitz {
         Ok(operator)
     }
 
-    /// The same operator by a given route; for tests and benchmarks.
+    /// Selects another route; for tests and benchmarks.
     pub fn with_route(mut self, route: Route) -> Self {
         let threads = rayon::current_num_threads();
         if route == Route::Banded {
@@ -206,12 +216,12 @@ impl Toeplitz {
         self.nodes
     }
 
-    /// The largest distance with a coefficient, once what no point can use is left out.
+    /// Largest distance with a coefficient, without those that no point can use.
     pub fn reach(&self) -> usize {
         self.above.len()
     }
 
-    /// The route taken.
+    /// Selected route.
     pub fn route(&self) -> Route {
         match self.engine {
             Engine::Banded => Route::Banded,
@@ -229,7 +239,7 @@ impl Toeplitz {
         kernel + numbers * size_of::<f64>()
     }
 
-    /// The coefficient of u_i in y_i.
+    /// Coefficient of u_i in y_i.
     pub fn diagonal(&self, i: usize) -> f64 {
         let tail = self.nodes - self.last.len();
         if i < self.first.len() {
@@ -254,7 +264,7 @@ impl Toeplitz {
         }
     }
 
-    /// Fills `window` with u_from − shift, u_{from+1} − shift …, where `from` is relative to the line's start.
+    /// Fills `window` with u_from − shift, u_{from+1} − shift …, where `from` is relative to the start of the line.
     fn load(&self, u: &[f64], from: isize, shift: f64, window: &mut [f64]) {
         let n = self.nodes as isize;
         if self.ends == Ends::Periodic {
@@ -279,7 +289,7 @@ impl Toeplitz {
         }
     }
 
-    /// The results of the block that starts at point `first`.
+    /// Computes the results of the block that starts at point `first`.
     fn block(&self, u: &[f64], first: usize, out: &mut [f64], work: &mut Work) {
         let reach = self.reach();
         let here = &u[first..first + out.len()];
@@ -302,7 +312,8 @@ impl Toeplitz {
             Engine::Fourier(_, pieces, kernel) => {
                 let Some(line) = &mut work.line else { return };
                 let lead = pieces.lead;
-                // What the results need; the rest of the piece is empty, and with no lead what lies before the line wraps into it.
+                // Part needed for the results; the rest of the piece is empty. With no lead, values before the line
+                // wrap into it.
                 let used = if lead > 0 {
                     out.len() + 2 * reach
                 } else {
@@ -367,7 +378,7 @@ fn subtract_into(u: &[f64], shift: f64, out: &mut [f64]) {
     }
 }
 
-/// Coefficients of the nearest images, each the sum over all its images; at most half way round.
+/// Coefficients of the nearest images, each the sum over all its images; at most half way around.
 fn fold(nodes: usize, middle: &mut f64, below: &mut Vec<f64>, above: &mut Vec<f64>) {
     let half = nodes / 2;
     if above.len() <= half {

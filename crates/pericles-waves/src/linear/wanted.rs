@@ -1,10 +1,10 @@
-//! The wanted points of a range.
+//! Requested points of a range.
 
 use std::ops::Range;
 
-use pericles::operator::On;
+use pericles::operator::PointSubset;
 
-/// What a range and a set of points have in common.
+/// Intersection of a range with a set of points.
 fn common<'a>(set: &'a [u32], range: &Range<usize>) -> &'a [u32] {
     let from = set.partition_point(|&i| (i as usize) < range.start);
     let to = set.partition_point(|&i| (i as usize) < range.end);
@@ -16,25 +16,25 @@ fn overlap(wanted: &Range<usize>, range: &Range<usize>) -> Range<usize> {
     start..wanted.end.min(range.end).max(start)
 }
 
-/// How many points of a range are wanted.
-pub(super) fn count_wanted(on: &On<'_>, range: Range<usize>) -> usize {
+/// Number of requested points in a range.
+pub(super) fn count_wanted(on: &PointSubset<'_>, range: Range<usize>) -> usize {
     match on {
-        On::All => range.len(),
-        On::Range(wanted) => overlap(wanted, &range).len(),
-        On::Set(set) => common(set, &range).len(),
+        PointSubset::All => range.len(),
+        PointSubset::Range(wanted) => overlap(wanted, &range).len(),
+        PointSubset::Set(set) => common(set, &range).len(),
     }
 }
 
-/// Visits the wanted points of a range as ranges, ascending.
+/// Visits the requested points of a range as ascending sub-ranges.
 pub(super) fn for_each_wanted(
-    on: &On<'_>,
+    on: &PointSubset<'_>,
     range: Range<usize>,
     mut visit: impl FnMut(Range<usize>),
 ) {
     match on {
-        On::All => visit(range),
-        On::Range(wanted) => visit(overlap(wanted, &range)),
-        On::Set(set) => {
+        PointSubset::All => visit(range),
+        PointSubset::Range(wanted) => visit(overlap(wanted, &range)),
+        PointSubset::Set(set) => {
             for &i in common(set, &range) {
                 visit(i as usize..i as usize + 1);
             }
@@ -47,16 +47,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn subsets() {
-        let visited = |on: On<'_>, range: Range<usize>| {
+    fn requested_points_of_ranges_and_sets_are_visited() {
+        let visited = |on: PointSubset<'_>, range: Range<usize>| {
             let mut seen = vec![];
             for_each_wanted(&on, range.clone(), |points| seen.extend(points));
             assert_eq!(seen.len(), count_wanted(&on, range));
             seen
         };
-        assert_eq!(visited(On::All, 2..4), [2, 3]);
-        assert_eq!(visited(On::Range(0..3), 2..4), [2]);
-        assert_eq!(visited(On::Range(5..9), 2..4), [0usize; 0]);
-        assert_eq!(visited(On::Set(&[1, 3, 7]), 2..8), [3, 7]);
+        assert_eq!(visited(PointSubset::All, 2..4), [2, 3]);
+        assert_eq!(visited(PointSubset::Range(0..3), 2..4), [2]);
+        assert_eq!(visited(PointSubset::Range(5..9), 2..4), [0usize; 0]);
+        assert_eq!(visited(PointSubset::Set(&[1, 3, 7]), 2..8), [3, 7]);
     }
 }

@@ -1,4 +1,4 @@
-//! Linear operators by convolution against the sums they stand for.
+//! Linear operators by convolution compared with direct sums.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use pericles::material::{
     BondMaterial, BondStretch, Calibration, ElasticModulus, Fracture, LinearBond, Modulus,
     PairForce, PairLaw, StressState,
 };
-use pericles::operator::{BondForce, DamageMeasure, Force, LinearOperator, On};
+use pericles::operator::{BondForce, DamageMeasure, Force, LinearOperator, PointSubset};
 use pericles::space::{Grid, PointCloud, Region, Shape};
 use pericles_waves::linear::NoConvolution;
 use pericles_waves::linear::{ConvolutionForce, Ends, Route, Toeplitz};
@@ -18,7 +18,7 @@ use proptest::prelude::*;
 const ROUTES: [Route; 3] = [Route::Banded, Route::OverlapSave, Route::OneTransform];
 const DX: f64 = 0.01;
 
-/// Numbers in (−1, 1).
+/// Random numbers in (−1, 1).
 fn noise(len: usize) -> Vec<f64> {
     (0..len)
         .map(|k| ((k as f64 * 12.9898).sin() * 43758.5453).fract())
@@ -53,7 +53,7 @@ fn assert_close(a: &[f64], b: &[f64], tolerance: f64, name: &str) {
     }
 }
 
-/// y_i = Σ_{r≠0} t_r (u_{i+r} − u_i), or the plain product with `centre`, from the definition.
+/// y_i = Σ_{r≠0} t_r (u_{i+r} − u_i), or the product with `centre`, from the definition.
 fn naive_line(
     u: &[f64],
     centre: Option<f64>,
@@ -84,7 +84,7 @@ fn naive_line(
 }
 
 #[test]
-fn the_routes_of_a_line_equal_the_sum() {
+fn all_routes_of_a_line_equal_the_direct_sum() {
     for (nodes, reach) in [
         (1, 0),
         (1, 3),
@@ -138,7 +138,7 @@ fn the_routes_of_a_line_equal_the_sum() {
 
 proptest! {
     #[test]
-    fn any_line(nodes in 1usize..400, reach in 0usize..300, seed in 0usize..1000, symmetric: bool, ends in 0usize..3) {
+    fn random_lines_equal_the_direct_sum(nodes in 1usize..400, reach in 0usize..300, seed in 0usize..1000, symmetric: bool, ends in 0usize..3) {
         let ends = [Ends::Free, Ends::Zero, Ends::Periodic][ends];
         let numbers = noise(nodes + 2 * reach + seed);
         let numbers = &numbers[seed..];
@@ -159,7 +159,7 @@ proptest! {
 }
 
 #[test]
-fn long_lines_agree_and_do_not_depend_on_threads() {
+fn long_lines_are_independent_of_route_and_threads() {
     let nodes = 150_001;
     let u = noise(nodes);
     for reach in [7, 60, 700] {
@@ -178,7 +178,7 @@ fn long_lines_agree_and_do_not_depend_on_threads() {
 }
 
 #[test]
-fn constants_on_a_line_give_exactly_zero() {
+fn constant_fields_on_a_line_give_exactly_zero() {
     let weights = noise(30);
     for route in ROUTES {
         for ends in [Ends::Free, Ends::Periodic] {
@@ -191,10 +191,10 @@ fn constants_on_a_line_give_exactly_zero() {
 }
 
 #[test]
-fn a_far_shift_costs_no_digits() {
+fn large_rigid_shift_loses_no_digits() {
     let weights: Vec<f64> = (1..=50).map(|r| 1.0 / f64::from(r)).collect();
     let wave: Vec<f64> = (0..4000).map(|i| (f64::from(i) * 0.01).sin()).collect();
-    // A power of two keeps the sum exact enough to compare: 2^20 + u has 32 bits of u left.
+    // A power of two keeps the sum exact enough to compare: 2^20 + u leaves 32 bits for u.
     let shifted: Vec<f64> = wave
         .iter()
         .map(|u| (u * 2f64.powi(30)).round() / 2f64.powi(30))
@@ -209,7 +209,7 @@ fn a_far_shift_costs_no_digits() {
 }
 
 #[test]
-fn lines_refuse_what_they_cannot_do() {
+fn invalid_lines_are_errors() {
     let bad = |result: Result<Toeplitz, PericlesError>| {
         result.is_err_and(|error| error.extension::<NoConvolution>().is_some())
     };
@@ -243,7 +243,7 @@ fn influences() -> Vec<Influence> {
             length: 0.02,
             cutoff: None,
         },
-        // Signed: a tuned kernel may be.
+        // Signed, as a tuned kernel may be.
         InfluenceFunction::Tabulated {
             table: vec![(0.01, 3.0), (0.02, -0.2), (0.03, 0.5)],
         },
@@ -283,7 +283,7 @@ fn body(cells: &[usize], hole: bool) -> Arc<PointCloud> {
         section: if cells.len() == 3 { 1.0 } else { 0.02 },
         holes,
     };
-    // Sides in 0.01 m are whole cells only to rounding, which the grid allows.
+    // In units of 0.01 m the sides are whole numbers of cells only up to round-off, which the grid accepts.
     Arc::new(grid.points().unwrap())
 }
 
@@ -336,7 +336,7 @@ fn convolution<const D: usize>(
     ConvolutionForce::new(cloud.clone(), material, &constants, &[], periodic).unwrap()
 }
 
-/// Calls `check` for bodies × influences × corrections × horizons.
+/// Calls `check` for bodies × influence functions × volume corrections × horizons.
 fn for_each_case<const D: usize>(check: impl Fn(&str, &Arc<PointCloud>, &BondMaterial)) {
     let bodies: Vec<(Vec<usize>, Vec<f64>)> = match D {
         1 => vec![(vec![40], vec![1.0, 3.0, 7.3, 60.0]), (vec![1], vec![3.0])],
@@ -405,7 +405,7 @@ fn equals_the_bond_list<const D: usize>() {
         if !material.influence.is_signed(material.horizon) {
             assert!(b <= a * (1.0 + 1e-11), "{name}: bound {b} above {a}");
         }
-        // A large smooth strain, where neighbouring contributions cancel.
+        // A large smooth strain, for which neighbouring contributions cancel.
         let strained: Vec<f64> = (0..D * n)
             .map(|k| 0.01 * cloud.point(k % n)[k / n] + 5.0)
             .collect();
@@ -466,7 +466,7 @@ fn conserves<const D: usize>(cells: [usize; D]) {
         let (left, right) = (dot(&v, &force), dot(&u, &applied(&operator, &v)));
         let magnitude = largest(&force) * (D * n) as f64;
         assert!((left - right).abs() <= 1e-13 * magnitude);
-        // The energy is that of its density, and its gradient is the force.
+        // The energy equals the sum of its density, and its gradient is the force.
         let mut density = vec![0.0; n];
         operator.add_energy_density(0.0, &u, &mut density);
         let total = density.iter().sum::<f64>() * cloud.volumes()[0];
@@ -475,7 +475,7 @@ fn conserves<const D: usize>(cells: [usize; D]) {
         let work = -0.5 * dot(&u, &force) * cloud.volumes()[0];
         assert!((energy - work).abs() <= 1e-12 * energy);
         assert!(density.iter().all(|&w| w > 0.0));
-        // Rayleigh quotients, of noise and of the vector that 50 applications make of it, stay below the bound.
+        // Rayleigh quotients of noise, and of the vector after 50 applications, stay below the bound.
         let bound = operator.frequency_bound(&|_| 2.0).powi(2);
         let mut x = u.clone();
         for _ in 0..50 {
@@ -491,17 +491,17 @@ fn conserves<const D: usize>(cells: [usize; D]) {
             shift[c * n..(c + 1) * n].fill(1.0 / (3.0 + c as f64));
         }
         assert!(applied(&operator, &shift).iter().all(|&f| f == 0.0));
-        // Subsets and adding.
+        // Subsets, and accumulation.
         let mut parts = force.clone();
         let odd: Vec<u32> = (0..n as u32).filter(|i| i % 2 == 1).collect();
-        operator.add_force(0.0, &u, On::Set(&odd), &mut parts);
+        operator.add_force(0.0, &u, PointSubset::Set(&odd), &mut parts);
         for i in (0..n).step_by(2) {
-            operator.add_force(0.0, &u, On::Range(i..i + 1), &mut parts);
+            operator.add_force(0.0, &u, PointSubset::Range(i..i + 1), &mut parts);
         }
         let twice: Vec<f64> = force.iter().map(|f| f + f).collect();
         assert_eq!(
             parts, twice,
-            "a point's force depends on who else is computed"
+            "the force on a point depends on the requested subset"
         );
         // Threads.
         for threads in [1, 3] {
@@ -514,13 +514,13 @@ fn conserves<const D: usize>(cells: [usize; D]) {
 }
 
 #[test]
-fn conservation_symmetry_subsets_threads() {
+fn convolution_conserves_momentum_is_symmetric_and_independent_of_subsets_and_threads() {
     conserves([60]);
     conserves([20, 31]);
     conserves([9, 11, 10]);
 }
 
-/// The force on a plane wave in a periodic box: −λ times it, with λ_ab = Σ_o K_ab(o) (1 − cos θ·o).
+/// Force on a plane wave in a periodic box: −λ times the wave, with λ_ab = Σ_o K_ab(o) (1 − cos θ·o).
 fn plane_wave<const D: usize>(cells: [usize; D], wave: [usize; D], m: f64) {
     let cloud = body(&cells, false);
     let n = cloud.len();
@@ -589,7 +589,7 @@ fn plane_wave<const D: usize>(cells: [usize; D], wave: [usize; D], m: f64) {
 }
 
 #[test]
-fn plane_waves_have_the_dispersion_of_the_lattice() {
+fn plane_waves_satisfy_the_lattice_dispersion_relation() {
     plane_wave([50], [3], 3.0);
     plane_wave([7], [2], 20.0);
     plane_wave([24, 15], [3, 5], 3.0);
@@ -599,7 +599,7 @@ fn plane_waves_have_the_dispersion_of_the_lattice() {
 }
 
 #[test]
-fn strips_are_periodic_along_one_axis_only() {
+fn strips_may_be_periodic_along_one_axis() {
     // Sum over all pairs and images.
     let cloud = body(&[9, 6], true);
     let material = material(Influence::default(), VolumeCorrection::Extended, 4.0);
@@ -647,7 +647,7 @@ fn strips_are_periodic_along_one_axis_only() {
 }
 
 #[test]
-fn what_is_no_convolution_is_refused() {
+fn bodies_without_a_convolution_are_errors() {
     let cloud = body(&[12, 12], false);
     let linear = material(Influence::default(), VolumeCorrection::None, 3.0);
     let refused = |cloud: &Arc<PointCloud>, material: &BondMaterial, cracks: &[Crack]| {

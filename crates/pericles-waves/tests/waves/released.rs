@@ -1,4 +1,4 @@
-//! Points that are let go within a run, under schemes that solve for a step as a whole.
+//! Release of constrained points within a run, for schemes that solve for a whole step.
 
 use std::sync::Arc;
 
@@ -17,7 +17,8 @@ use pericles::time::{
 use pericles::{Control, PointScalar, Simulation, System};
 use pericles_waves::{FunctionMethod, Trigonometric, TrigonometricOptions};
 
-/// A bar of 40 cells whose right end is pulled at a constant velocity until it is let go; the left end is held for good, or free.
+/// Bar of 40 cells whose right end is pulled at constant velocity until it is released; the left end is fixed
+/// permanently, or free.
 fn pulled(law: PairLaw, held: bool) -> System {
     let shape = Shape::Box {
         origin: [0.0; 3],
@@ -68,7 +69,8 @@ fn pulled(law: PairLaw, held: bool) -> System {
     system
 }
 
-/// A half-integer number of steps of [`STEP`], and of a third of it: the last push of the support, half of a step long, ends then.
+/// A half-integer multiple of [`STEP`], and of a third of it: the last push of the support, half a step long, ends
+/// then.
 const UNTIL: f64 = 21.5 * STEP;
 const STEP: f64 = 0.15;
 const END: f64 = 60.0 * STEP;
@@ -132,15 +134,18 @@ fn ended(law: PairLaw, held: bool, make: Make, dt: f64) -> Simulation {
 }
 
 #[test]
-fn released_points_move_freely_to_the_order_of_the_scheme() {
-    // The bond-stretch law is linear in one dimension, but the schemes do not know that.
+fn released_points_converge_with_the_order_of_the_scheme() {
+    // The bond-stretch law is linear in one dimension, but the schemes treat it as nonlinear.
     for law in [PairLaw::Linear, PairLaw::BondStretch, PairLaw::GreenStrain] {
         let verlet: Make = |_| Box::new(VelocityVerlet);
         let reference = ended(law, true, verlet, STEP / 27.0);
         let exact = &reference.state().u;
         let size = exact.iter().fold(0.0, |most: f64, u| most.max(u.abs()));
         let held = 0.01 * END;
-        assert!((exact[39] - held).abs() > 0.1 * held, "it has snapped back");
+        assert!(
+            (exact[39] - held).abs() > 0.1 * held,
+            "the released end has moved back"
+        );
         for (name, make) in SCHEMES {
             let error = |dt: f64| {
                 let run = ended(law, true, make, dt);
@@ -148,7 +153,7 @@ fn released_points_move_freely_to_the_order_of_the_scheme() {
                 each.fold(0.0, f64::max) / size
             };
             let [wide, narrow] = [STEP, STEP / 3.0].map(error);
-            // A ninth for order two.
+            // One ninth for order two.
             assert!(
                 wide < 0.05 && wide > 6.0 * narrow,
                 "{law:?}, {name}: {wide:e}, {narrow:e}"
@@ -158,9 +163,10 @@ fn released_points_move_freely_to_the_order_of_the_scheme() {
 }
 
 #[test]
-fn the_momentum_of_a_released_body_is_the_impulse_of_its_support() {
+fn momentum_of_a_released_body_equals_the_impulse_of_its_support() {
     for (name, make) in SCHEMES {
-        // Impulses of supports are means of the forces at both ends of a step: exact for linear forces and schemes of two ends.
+        // Impulses of supports are means of the forces at both ends of a step: exact for linear forces and
+        // two-point schemes.
         if name.starts_with("trigonometric") {
             continue;
         }
@@ -176,7 +182,7 @@ fn the_momentum_of_a_released_body_is_the_impulse_of_its_support() {
 }
 
 #[test]
-fn the_energy_balance_closes_over_a_release() {
+fn energy_balance_closes_over_a_release() {
     for (name, make) in SCHEMES {
         let off = |dt: f64| {
             let run = ended(PairLaw::Linear, true, make, dt);
@@ -194,7 +200,7 @@ fn the_energy_balance_closes_over_a_release() {
 }
 
 #[test]
-fn runs_are_resumed_on_both_sides_of_a_release() {
+fn runs_resume_before_and_after_a_release() {
     for (name, make) in SCHEMES {
         let run = || simulation(PairLaw::Linear, true, make, STEP);
         check_resume(run, [10, 21, 22, 40]).unwrap_or_else(|error| panic!("{name}: {error}"));

@@ -1,4 +1,5 @@
-//! The nonlocal wave equation: functions of the stiffness, trigonometric and implicit schemes, spectral and Gauss-point bodies.
+//! Nonlocal wave equation: functions of the stiffness, trigonometric and implicit schemes, spectral and Gauss-point
+//! bodies.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -28,7 +29,7 @@ const UNIT_LINE: LineSolution = LineSolution {
     centre: 0.0,
 };
 
-/// Makes a scheme for a body.
+/// Creates a scheme for a body.
 type Make = fn(&System) -> Box<dyn Integrator>;
 
 fn cells(origin: f64, sides: &[f64], spacing: f64) -> Arc<PointCloud> {
@@ -60,7 +61,7 @@ fn material(law: PairLaw, horizon: f64, influence: Influence) -> BondMaterial {
     }
 }
 
-/// C(ξ) = 4/√π exp(−ξ²)
+/// C(ξ) = 4/√π exp(−ξ²).
 fn gaussian() -> BondMaterial {
     let function = InfluenceFunction::Gaussian {
         length: 1.0,
@@ -110,7 +111,7 @@ fn implicit(rule: ImplicitRule, system: &System) -> Box<dyn Integrator> {
     Box::new(Implicit::new(rule, system).unwrap())
 }
 
-/// A smooth start without symmetry.
+/// Smooth initial state without symmetry.
 fn start(system: &System, size: f64) -> State {
     let n = system.points();
     let mut state = State::at_rest(system.dimension() * n);
@@ -150,7 +151,7 @@ fn energy(system: &System, state: &State) -> f64 {
 }
 
 #[test]
-fn all_engines_give_the_same_flow() {
+fn all_matrix_function_engines_agree() {
     let cloud = cells(-8.0, &[16.0], 0.1);
     // ω_max = 2 for the Gaussian.
     for tau in [0.1, 3.0, 50.0] {
@@ -186,7 +187,7 @@ fn all_engines_give_the_same_flow() {
 }
 
 #[test]
-fn one_step_of_a_plate_and_a_block_is_many_small_steps() {
+fn one_trigonometric_step_equals_many_small_steps() {
     let stretch = |m: f64| material(PairLaw::Linear, m, Influence::default());
     for (sides, m) in [(&[3.0, 2.0][..], 0.6), (&[1.2, 1.0, 0.8], 0.4)] {
         let cloud = cells(-0.5, sides, 0.2);
@@ -224,7 +225,7 @@ fn distance_by_convolution<const D: usize>(
 }
 
 #[test]
-fn energies_do_not_drift() {
+fn energy_of_a_linear_body_does_not_drift() {
     let cloud = cells(-6.0, &[12.0], 0.2);
     let body = || system(&cloud, bonds(&cloud, &gaussian(), ForceForm::Grid));
     let schemes: [(Make, f64); 4] = [
@@ -249,7 +250,7 @@ fn energies_do_not_drift() {
 }
 
 #[test]
-fn one_plane_wave_has_the_frequency_of_the_scheme() {
+fn plane_wave_has_the_numerical_frequency_of_the_scheme() {
     // k = 2π/P, ω² = 4 (1 − e^{−k²/4}) on a period of 10.
     let cloud = cells(0.0, &[10.0], 0.25);
     let k = 2.0 * PI / 10.0;
@@ -283,8 +284,8 @@ fn one_plane_wave_has_the_frequency_of_the_scheme() {
 }
 
 #[test]
-fn the_line_is_met_to_round_off_on_a_long_period() {
-    // Half period 4π, 128 cells, t = 3.5; every other place is a node of the line's window.
+fn spectral_solution_equals_the_exact_line_to_round_off() {
+    // Half period 4π, 128 cells, t = 3.5; every other point is a node of the window of the line.
     let half = 4.0 * PI;
     let cloud = cells(-half, &[2.0 * half], 2.0 * half / 128.0);
     let mut body = system(&cloud, Box::new(spectral::<1>(&cloud, &gaussian())));
@@ -305,7 +306,7 @@ fn the_line_is_met_to_round_off_on_a_long_period() {
 }
 
 #[test]
-fn gauss_points_by_lines_are_the_bond_list() {
+fn gauss_force_equals_the_bond_list() {
     for (horizon, influence) in [
         (0.7, Influence::default()),
         (7.0, gaussian().influence),
@@ -323,7 +324,7 @@ fn gauss_points_by_lines_are_the_bond_list() {
             .collect();
         let (mut a, mut b) = (vec![0.0; u.len()], vec![0.0; u.len()]);
         fast.apply_into(&u, &mut a);
-        list.add_force(0.0, &u, pericles::operator::On::All, &mut b);
+        list.add_force(0.0, &u, pericles::operator::PointSubset::All, &mut b);
         let scale = b.iter().fold(0.0f64, |m, x| m.max(x.abs()));
         assert!(
             distance(&a, &b) < 1e-13 * scale,
@@ -343,8 +344,8 @@ fn gauss_points_by_lines_are_the_bond_list() {
 }
 
 #[test]
-fn the_spectral_operator_is_the_limit_of_the_grid() {
-    // Second order of the grid with partial volumes; the spectral operator does not change with the grid.
+fn grid_converges_to_the_spectral_operator() {
+    // The grid with partial volumes is of second order; the spectral operator does not change with the grid.
     fn miss<const D: usize>(spacing: f64) -> f64 {
         let cloud = cells(0.0, &vec![2.0; D], spacing);
         let influence = Influence {
@@ -387,7 +388,7 @@ fn the_spectral_operator_is_the_limit_of_the_grid() {
 }
 
 #[test]
-fn functions_of_plane_waves_are_those_of_chebyshev_series() {
+fn fourier_functions_equal_chebyshev_series() {
     fn compare<const D: usize>(sides: &[f64]) {
         let cloud = cells(-0.5, sides, 0.2);
         let material = material(PairLaw::Linear, 0.6, Influence::default());
@@ -395,7 +396,7 @@ fn functions_of_plane_waves_are_those_of_chebyshev_series() {
         for method in [FunctionMethod::Fourier, FunctionMethod::Chebyshev] {
             let mut body = system(&cloud, Box::new(spectral::<D>(&cloud, &material)));
             let mut scheme = trigonometric(method, &body);
-            // Rough: all wave vectors, those at the top included.
+            // Rough field: all wave vectors, including the highest.
             let mut state = start(&body, 0.1);
             state
                 .u
@@ -412,7 +413,7 @@ fn functions_of_plane_waves_are_those_of_chebyshev_series() {
 }
 
 #[test]
-fn loads_and_supports_are_of_the_order_promised() {
+fn loads_and_supports_have_the_expected_order() {
     let cloud = cells(0.0, &[6.0], 0.25);
     let n = cloud.len();
     let run = |rule: Option<LoadRule>, count: usize| {
@@ -469,7 +470,7 @@ fn loads_and_supports_are_of_the_order_promised() {
 }
 
 #[test]
-fn constant_loads_are_exact() {
+fn constant_loads_are_integrated_exactly() {
     let cloud = cells(0.0, &[6.0], 0.25);
     let n = cloud.len();
     let run = |count: usize| {
@@ -493,7 +494,7 @@ fn constant_loads_are_exact() {
 }
 
 #[test]
-fn nonlinear_bodies_are_stepped_in_second_order_and_keep_their_energy() {
+fn nonlinear_bodies_are_second_order_and_conserve_energy() {
     let cloud = cells(-0.6, &[1.6, 1.2], 0.1);
     let material = material(PairLaw::BondStretch, 0.3, Influence::default());
     let body = || system(&cloud, bonds(&cloud, &material, ForceForm::Grid));
@@ -502,7 +503,7 @@ fn nonlinear_bodies_are_stepped_in_second_order_and_keep_their_energy() {
         |s| implicit(ImplicitRule::Midpoint, s),
         |s| implicit(ImplicitRule::Trapezoidal, s),
     ];
-    // Strains of a tenth.
+    // Strains of ten per cent.
     let run = |scheme: Make, count: usize| {
         let mut body = body();
         let mut scheme = scheme(&body);
@@ -529,10 +530,10 @@ fn nonlinear_bodies_are_stepped_in_second_order_and_keep_their_energy() {
 }
 
 #[test]
-fn a_nonlinear_bar_on_gauss_nodes_by_both_schemes() {
-    // Both converge to the same motion, which is not the linear one.
+fn nonlinear_gauss_bar_converges_for_both_schemes() {
+    // Both converge to the same motion, which differs from the linear one.
     let cloud = Arc::new(gauss_bar(-3.0, 6.0, 0.2, 1.0).unwrap());
-    for law in [PairLaw::GreenStrain, PairLaw::Literal57] {
+    for law in [PairLaw::GreenStrain, PairLaw::CubicSoftening] {
         let material = material(law, 0.6, Influence::default());
         let run = |law, make: Make, count: usize| {
             let material = BondMaterial {
@@ -565,8 +566,8 @@ fn a_nonlinear_bar_on_gauss_nodes_by_both_schemes() {
 }
 
 #[test]
-fn nonlinear_forces_by_fourier_series_are_the_sums_over_bonds() {
-    // Smooth micromodulus, field and sum: both are exact but for round-off and what reaches the ends.
+fn spectral_nonlinear_forces_equal_sums_over_bonds() {
+    // Smooth micromodulus, field and sum: both are exact except for round-off and values at the ends.
     let material = BondMaterial {
         law: PairLaw::GreenStrain,
         volume_correction: VolumeCorrection::None,
@@ -585,8 +586,8 @@ fn nonlinear_forces_by_fourier_series_are_the_sums_over_bonds() {
     let (u, d) = (bell(1.0), bell(1.3));
     let n = x.len();
     let (mut a, mut b) = (vec![0.0; n], vec![0.0; n]);
-    list.add_force(0.0, &u, pericles::operator::On::All, &mut a);
-    series.add_force(0.0, &u, pericles::operator::On::All, &mut b);
+    list.add_force(0.0, &u, pericles::operator::PointSubset::All, &mut a);
+    series.add_force(0.0, &u, pericles::operator::PointSubset::All, &mut b);
     let size = a.iter().fold(0.0f64, |m, x| m.max(x.abs()));
     assert!(
         distance(&a, &b) < 1e-10 * size,
@@ -602,7 +603,8 @@ fn nonlinear_forces_by_fourier_series_are_the_sums_over_bonds() {
     );
     let ratio = series.energy(0.0, &u) / list.energy(0.0, &u);
     assert!((ratio - 1.0).abs() < 1e-11, "{ratio}");
-    // A gradient: the energy of a motion is kept by the midpoint rule's relatives to second order, and momentum to round-off.
+    // The force is a gradient: schemes related to the midpoint rule conserve energy to second order, and momentum
+    // to round-off.
     let mut body = system(&ring, series);
     let mut scheme = trigonometric(FunctionMethod::Fastest, &body);
     let mut state = State::at_rest(n);
@@ -614,7 +616,7 @@ fn nonlinear_forces_by_fourier_series_are_the_sums_over_bonds() {
 }
 
 #[test]
-fn the_error_of_a_linearisation_is_of_second_order() {
+fn linearisation_error_is_second_order() {
     let cloud = cells(0.0, &[1.2, 1.0], 0.1);
     let stretch = material(PairLaw::BondStretch, 0.3, Influence::default());
     let linear = material(PairLaw::Linear, 0.3, Influence::default());
@@ -627,14 +629,14 @@ fn the_error_of_a_linearisation_is_of_second_order() {
     body.operator().as_linear().unwrap().apply_into(&u, &mut b);
     let size = b.iter().fold(0.0f64, |m, x| m.max(x.abs()));
     assert!(distance(&a, &b) < 1e-13 * size);
-    // Relative to the force, of first order in the strain.
+    // Relative to the force, hence of first order in the strain.
     let error = |scale: f64| about.model_error(&u.iter().map(|u| scale * u).collect::<Vec<_>>());
     let order = (error(1e-2) / error(5e-3)).log2();
     assert!((order - 1.0).abs() < 0.05, "{order}");
 }
 
 #[test]
-fn schemes_say_what_they_cannot_do() {
+fn unsupported_bodies_and_options_are_errors() {
     let cloud = cells(0.0, &[6.0], 0.25);
     let body = system(&cloud, bonds(&cloud, &gaussian(), ForceForm::Grid));
     let with = |options| {
@@ -660,7 +662,7 @@ fn schemes_say_what_they_cannot_do() {
     assert!(gauss.to_string().contains("Gauss nodes"), "{gauss}");
 }
 
-/// A bar of Gaussian bonds whose left end is moved.
+/// Bar of Gaussian bonds whose left end is moved.
 fn driven_bar(form: ForceForm) -> System {
     let cloud = cells(-6.0, &[12.0], 0.1);
     let n = cloud.len();
@@ -684,7 +686,7 @@ fn driven_bar(form: ForceForm) -> System {
 }
 
 #[test]
-fn a_factor_solves_what_conjugate_gradients_solve() {
+fn direct_solver_agrees_with_conjugate_gradients() {
     for form in [ForceForm::Grid, ForceForm::List, ForceForm::Convolution] {
         for rule in [ImplicitRule::Midpoint, ImplicitRule::Trapezoidal] {
             let run = |solver| {
@@ -700,7 +702,7 @@ fn a_factor_solves_what_conjugate_gradients_solve() {
             assert!(distance(&direct.v, &iterated.v) < 1e-12);
         }
     }
-    // Two nodes in a cell, and a full matrix.
+    // Two nodes per cell, and a full matrix.
     let cloud = Arc::new(gauss_bar(-3.0, 6.0, 0.2, 1.0).unwrap());
     let plate = cells(0.0, &[1.0, 0.8], 0.2);
     let stretch = material(PairLaw::Linear, 0.4, Influence::default());
@@ -718,7 +720,7 @@ fn a_factor_solves_what_conjugate_gradients_solve() {
 }
 
 #[test]
-fn the_factor_is_taken_where_it_is_cheaper() {
+fn direct_solver_is_selected_where_it_is_cheaper() {
     let stretch = |m: f64| material(PairLaw::Linear, m, Influence::default());
     let direct = |cloud: &Arc<PointCloud>, horizon: f64, dt: f64| {
         let body = system(cloud, bonds(cloud, &stretch(horizon), ForceForm::Fastest));
@@ -727,14 +729,14 @@ fn the_factor_is_taken_where_it_is_cheaper() {
     };
     let bar = cells(0.0, &[400.0], 0.1);
     assert!(direct(&bar, 0.3, 0.1) && direct(&bar, 0.3, 100.0));
-    // A band so wide that transforms and few iterations win, but for very large steps.
+    // A band so wide that transforms with few iterations are cheaper, except for very large steps.
     assert!(!direct(&bar, 100.0, 1.0) && direct(&bar, 10.0, 1e3));
     let block = cells(0.0, &[8.0, 8.0, 8.0], 0.5);
     assert!(!direct(&block, 1.5, 0.1));
 }
 
 #[test]
-fn runs_go_on_where_they_stopped() {
+fn runs_resume_bit_for_bit() {
     let direct: Make = |body| {
         let rule = ImplicitRule::Midpoint;
         Box::new(Implicit::with_solver(rule, LinearSolver::Direct, body).unwrap())
@@ -763,7 +765,7 @@ fn runs_go_on_where_they_stopped() {
 }
 
 #[test]
-fn stress_of_a_body_without_single_bonds_is_refused() {
+fn stress_without_individual_bonds_is_an_error() {
     use pericles::observe::{Field, Snapshot, StartEnergy};
     let bar = driven_bar(ForceForm::Convolution);
     let state = State::at_rest(bar.points());

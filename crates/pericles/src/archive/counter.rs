@@ -1,16 +1,17 @@
-//! Counts that go on from a checkpoint.
+//! Counters that are saved in checkpoints.
 
-/// A count that goes on from a checkpoint. What a checkpoint holds may be any number, so it stays at the largest one in place of an overflow.
+/// A counter that is saved in checkpoints. A checkpoint may contain any number, so the counter saturates instead of
+/// overflowing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub(crate) struct Counter(u64);
 
 impl Counter {
-    /// Counts `more`.
+    /// Adds `more` to the count.
     pub(crate) fn add(&mut self, more: u64) {
         self.0 = self.0.saturating_add(more);
     }
 
-    /// The count.
+    /// Returns the count.
     pub(crate) fn get(self) -> u64 {
         self.0
     }
@@ -36,7 +37,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn counters_stay_at_the_largest_number() {
+    fn counters_saturate_at_the_largest_number() {
         let mut counter = Counter::from(u64::MAX - 1);
         counter.add(1);
         counter.add(7);

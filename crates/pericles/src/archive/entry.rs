@@ -1,30 +1,30 @@
-//! Values that are arrays of an archive, or parts of one.
+//! Values that are stored as arrays of an archive or as parts of one.
 
 use super::{Counter, Values};
 
-/// A kind of number that archives hold.
+/// A type of number that archives can contain.
 pub trait Number: Copy {
-    /// The array of an archive with these numbers.
+    /// Wraps numbers into an array of an archive.
     fn values(numbers: Vec<Self>) -> Values;
 
-    /// The numbers of an array, if they are of this kind.
+    /// Returns the numbers of an array, if they are of this type.
     fn of(values: &Values) -> Option<&[Self]>;
 }
 
-/// A value that is stored as a number of numbers that the model determines; a checkpoint does not change it.
+/// A value stored as a fixed count of numbers. The model determines the count; a checkpoint does not change it.
 ///
 /// Structures whose fields are entries list them in [`saved!`](crate::saved).
 pub trait Entry {
-    /// The kind of its numbers.
+    /// The type of its numbers.
     type Number: Number;
 
-    /// How many numbers it is.
+    /// Returns the count of its numbers.
     fn count(&self) -> usize;
 
-    /// Adds its numbers to an array.
+    /// Appends its numbers to an array.
     fn append_to(&self, array: &mut Vec<Self::Number>);
 
-    /// Takes its numbers from the start of an array that has at least [`count`](Self::count), and returns the rest.
+    /// Reads its numbers from the start of an array that has at least [`count`](Self::count) and returns the rest.
     fn take_from<'a>(&mut self, array: &'a [Self::Number]) -> &'a [Self::Number];
 }
 
@@ -136,7 +136,7 @@ impl<E: Entry, F: Entry<Number = E::Number>> Entry for (E, F) {
     }
 }
 
-/// NaN in every place if there is no value.
+/// A missing value is stored as NaN in every number.
 impl<E: Entry<Number = f64> + Default> Entry for Option<E> {
     type Number = f64;
 
@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn entries_take_back_what_they_stored() {
+    fn entries_restore_what_they_stored() {
         let mut pair = (0.0, [0.0; 2]);
         through(&(1.0, [2.0, 3.0]), &mut pair, 3);
         assert_eq!(pair, (1.0, [2.0, 3.0]));

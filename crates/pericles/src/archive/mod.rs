@@ -1,7 +1,8 @@
-//! Stored state: what a run must keep to go on as if it had never stopped.
+//! Checkpoints: the state that a run needs to resume as if it had never stopped.
 //!
-//! An [`Archive`] holds named arrays of numbers. A type that carries state from step to step implements [`Saved`], as a rule by listing all its fields in [`saved!`](crate::saved): saving and
-//! restoring are made of the one list, and a type with a field that the list leaves out does not compile. [`round_trip`](crate::round_trip) checks whole runs.
+//! An [`Archive`] contains named arrays of numbers. A type with state from step to step implements [`Checkpointed`],
+//! usually by listing all its fields in [`saved!`](crate::saved). The list generates the code for saving and
+//! restoring; a missing field is a compile error. [`round_trip`](crate::round_trip) tests whole runs.
 
 mod counter;
 mod entry;
@@ -25,57 +26,59 @@ pub enum Values {
     U8(Vec<u8>),
 }
 
-/// Named arrays. Their format in files is that of `pericles-io`.
+/// Named arrays. `pericles-io` defines their file format.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Archive {
     arrays: BTreeMap<String, Values>,
 }
 
-/// A type that may carry state from step to step: operators (damage), boundaries, integrators, observers.
+/// A type that may have state from step to step: an operator (damage), boundary, integrator or observer.
 ///
-/// Types list their fields in [`saved!`](crate::saved), those without state too. There are no default methods, so that no type is taken for one without state by mistake.
-pub trait Saved {
+/// Types list their fields in [`saved!`](crate::saved), including types without state. There are no default
+/// methods, so that no type is mistaken for one without state.
+pub trait Checkpointed {
     /// Adds the state to the archive.
     fn save(&self, archive: &mut Archive);
 
-    /// Takes the state back.
+    /// Restores the state.
     ///
     /// # Errors
-    /// [`PericlesError::BadArchive`] if an array is missing or has another size; the object is then unchanged or to be thrown away.
+    /// [`PericlesError::BadArchive`] if an array is missing or has another length; the object is then unchanged or
+    /// must be discarded.
     fn restore(&mut self, archive: &Archive) -> Result<()>;
 }
 
-/// A type with state of which a run may have several: each is saved under a name of its own.
+/// A type with state of which a run may have several; each is saved under its own name.
 ///
 /// Elements of vectors and arrays are numbered from 0, as in `motion/0`.
 pub trait SavedUnder {
     /// Adds the state to the archive, in arrays whose names begin with `name`.
     fn save_under(&self, name: &str, archive: &mut Archive);
 
-    /// Takes the state back.
+    /// Restores the state.
     ///
     /// # Errors
-    /// As [`Saved::restore`].
+    /// Those of [`Checkpointed::restore`].
     fn restore_under(&mut self, name: &str, archive: &Archive) -> Result<()>;
 }
 
 impl Archive {
-    /// Adds an array; an array of the same name is replaced.
+    /// Adds an array, replacing an array of the same name.
     pub fn put(&mut self, name: impl Into<String>, values: Values) {
         self.arrays.insert(name.into(), values);
     }
 
-    /// All arrays by name.
+    /// Returns all arrays by name.
     pub fn arrays(&self) -> &BTreeMap<String, Values> {
         &self.arrays
     }
 
-    /// All arrays, given away.
+    /// Returns all arrays by name, consuming the archive.
     pub fn into_arrays(self) -> BTreeMap<String, Values> {
         self.arrays
     }
 
-    /// The numbers stored under `name`, of any length.
+    /// Returns the numbers stored under `name`, of any count.
     ///
     /// # Errors
     /// [`PericlesError::BadArchive`] if the array is missing or of another type.
@@ -84,7 +87,7 @@ impl Archive {
         stored.ok_or_else(|| missing(name))
     }
 
-    /// The numbers stored under `name`, which must be `count`.
+    /// Returns the numbers stored under `name`, which must be `count` in number.
     ///
     /// # Errors
     /// [`PericlesError::BadArchive`] if the array is missing, of another type or of another length.
@@ -94,7 +97,7 @@ impl Archive {
         Ok(stored)
     }
 
-    /// The names of the arrays that differ from those of another archive in any bit, and of those that only one of the two has.
+    /// Returns the names of the arrays that differ in any bit between two archives or exist in only one of them.
     pub fn differences(&self, other: &Self) -> Vec<String> {
         let names = self.arrays.keys().chain(other.arrays.keys());
         let names: BTreeSet<&String> = names.collect();
@@ -105,27 +108,27 @@ impl Archive {
         names.into_iter().filter(differs).cloned().collect()
     }
 
-    /// Fills `target` with the numbers stored under `name`.
+    /// Copies the numbers stored under `name` to `target`.
     pub fn f64_into(&self, name: &str, target: &mut [f64]) -> Result<()> {
         copy(name, self.numbers(name)?, target)
     }
 
-    /// Fills `target` with the bytes stored under `name`.
+    /// Copies the bytes stored under `name` to `target`.
     pub fn u8_into(&self, name: &str, target: &mut [u8]) -> Result<()> {
         copy(name, self.numbers(name)?, target)
     }
 
-    /// Fills `target` with the counts stored under `name`.
+    /// Copies the counts stored under `name` to `target`.
     pub fn u64_into(&self, name: &str, target: &mut [u64]) -> Result<()> {
         copy(name, self.numbers(name)?, target)
     }
 
-    /// The array of counts stored under `name`, of any length.
+    /// Returns the counts stored under `name`, of any length.
     pub fn u64s(&self, name: &str) -> Result<&[u64]> {
         self.numbers(name)
     }
 
-    /// The array of numbers stored under `name`, of any length.
+    /// Returns the numbers stored under `name`, of any length.
     pub fn f64s(&self, name: &str) -> Result<&[f64]> {
         self.numbers(name)
     }
@@ -143,8 +146,8 @@ impl Values {
     }
 }
 
-/// A part that a model has or has not; a checkpoint does not change which.
-impl<S: Saved> Saved for Option<S> {
+/// An optional part; the model, not the checkpoint, determines whether it exists.
+impl<S: Checkpointed> Checkpointed for Option<S> {
     fn save(&self, archive: &mut Archive) {
         self.iter().for_each(|part| part.save(archive));
     }
@@ -154,7 +157,7 @@ impl<S: Saved> Saved for Option<S> {
     }
 }
 
-impl<S: Saved> Saved for Vec<S> {
+impl<S: Checkpointed> Checkpointed for Vec<S> {
     fn save(&self, archive: &mut Archive) {
         self.iter().for_each(|part| part.save(archive));
     }
@@ -164,7 +167,7 @@ impl<S: Saved> Saved for Vec<S> {
     }
 }
 
-impl<S: Saved + ?Sized> Saved for Box<S> {
+impl<S: Checkpointed + ?Sized> Checkpointed for Box<S> {
     fn save(&self, archive: &mut Archive) {
         (**self).save(archive);
     }
@@ -174,7 +177,7 @@ impl<S: Saved + ?Sized> Saved for Box<S> {
     }
 }
 
-/// A part that a model has or has not; a checkpoint does not change which.
+/// An optional part; the model, not the checkpoint, determines whether it exists.
 impl<S: SavedUnder> SavedUnder for Option<S> {
     fn save_under(&self, name: &str, archive: &mut Archive) {
         self.iter().for_each(|part| part.save_under(name, archive));

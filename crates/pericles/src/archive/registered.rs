@@ -1,26 +1,27 @@
-//! Checkpoints by registration.
+//! The macro `saved!`, which generates saving and restoring from a list of fields.
 
-/// Implements [`Saved`](crate::Saved) for a type from the list of all its fields.
+/// Implements [`Checkpointed`](crate::Checkpointed) for a type from the list of all its fields.
 ///
-/// Saving and restoring are made of the one list. A list without one of the fields does not compile; the error names the field. After each field, or several fields with commas between, the
-/// list says how it goes through a checkpoint:
+/// Saving and restoring are generated from the same list. A missing field is a compile error that names the field.
+/// After each field, or after several fields separated by commas, the list states how a checkpoint treats it:
 ///
-/// | | the field |
+/// | treatment | the field |
 /// |---|---|
-/// | `array("name")` | is an [`Entry`](crate::archive::Entry), stored in the array of this name; several fields become one array. The name is a format string with its arguments, which may use other fields |
-/// | `part` | is [`Saved`](crate::Saved) itself |
-/// | `under("name")` | is [`SavedUnder`](crate::archive::SavedUnder) this name |
+/// | `array("name")` | is an [`Entry`](crate::archive::Entry) stored in the array of this name; several fields share one array. The name is a format string with its arguments, which may use other fields |
+/// | `part` | implements [`Checkpointed`](crate::Checkpointed) |
+/// | `under("name")` | implements [`SavedUnder`](crate::archive::SavedUnder) and is saved under this name |
 /// | `fixed` | does not change after construction |
 /// | `scratch` | is written before it is read in every step, or does not influence results |
-/// | `rebuilt` | follows from the others: when it is next needed, or by the function after `then` |
-/// | `set(value)` | has this value after a checkpoint is restored |
+/// | `rebuilt` | follows from the other fields, on demand or by the function after `then` |
+/// | `set(value)` | gets this value when a checkpoint is restored |
 ///
-/// A type without fields has an empty list. `then |object| …` after the list is called when all fields are restored; it may refuse.
+/// A type without fields has an empty list. `then |object| …` after the list is called after all fields are
+/// restored and may return an error.
 ///
 /// ```
-/// use pericles::{Archive, Saved, saved};
+/// use pericles::{Archive, Checkpointed, saved};
 ///
-/// /// Takes a tenth off the step whenever a step fails.
+/// /// Reduces the step by a tenth whenever a step fails.
 /// struct Careful {
 ///     most: u32,
 ///     step: f64,
@@ -30,7 +31,7 @@
 /// }
 ///
 /// saved! {
-///     impl Saved for Careful {
+///     impl Checkpointed for Careful {
 ///         step: array("careful/step"),
 ///         failed: array("careful/failed"),
 ///         most: fixed,
@@ -49,7 +50,7 @@
 /// # Ok::<(), pericles::PericlesError>(())
 /// ```
 ///
-/// A list without one of the fields is an error:
+/// A missing field is a compile error:
 ///
 /// ```compile_fail,E0063
 /// struct Careful {
@@ -58,17 +59,19 @@
 /// }
 ///
 /// pericles::saved! {
-///     impl Saved for Careful {
+///     impl Checkpointed for Careful {
 ///         step: array("careful/step"),
 ///     }
 /// }
 /// ```
 ///
-/// Types of which a run may have several implement [`SavedUnder`](crate::archive::SavedUnder), with a name for the names of their arrays; structures of numbers that are part of one array
-/// implement [`Entry`](crate::archive::Entry). Generic types have parameters as in `impl<L: Law> …`, `impl<const D: usize> …` or `impl<L: Law, const D: usize> …`.
+/// Types of which a run may have several implement [`SavedUnder`](crate::archive::SavedUnder), with a name that
+/// prefixes the names of their arrays. Structures of numbers that are part of one array implement
+/// [`Entry`](crate::archive::Entry). Generic types are written as `impl<L: Law> …`, `impl<const D: usize> …` or
+/// `impl<L: Law, const D: usize> …`.
 ///
 /// ```
-/// use pericles::{Archive, Saved, saved};
+/// use pericles::{Archive, Checkpointed, saved};
 ///
 /// #[derive(Default)]
 /// struct Spring {
@@ -99,7 +102,7 @@
 /// }
 ///
 /// saved! {
-///     impl Saved for Supports {
+///     impl Checkpointed for Supports {
 ///         springs: under("supports"),
 ///     }
 /// }
@@ -150,11 +153,12 @@ macro_rules! saved {
         $crate::saved! { @impl [] $($rest)* }
     };
 
-    // Implementations. A closure that is never called makes the type of the listed fields: it is there for its error, which names those that are missing.
-    (@impl [$($generics:tt)*] Saved for $type:ty {
+    // Implementations. The closure is never called: it constructs the type from the listed fields, so that the
+    // compiler reports missing ones.
+    (@impl [$($generics:tt)*] Checkpointed for $type:ty {
         $($($field:ident),+: $how:ident $(($($what:tt)*))?),* $(,)?
     } $(then $then:expr)?) => {
-        impl<$($generics)*> $crate::Saved for $type {
+        impl<$($generics)*> $crate::Checkpointed for $type {
             fn save(&self, archive: &mut $crate::Archive) {
                 let _every_field = |_all: Self| Self { $($($field: _all.$field),+),* };
                 let Self { $($($field,)+)* .. } = self;
@@ -215,10 +219,10 @@ macro_rules! saved {
         let _ = numbers;
     }};
     (@save $archive:ident [$($field:ident),+] part) => {
-        $($crate::Saved::save($field, $archive);)+
+        $($crate::Checkpointed::save($field, $archive);)+
     };
     (@restore $archive:ident [$($field:ident),+] part) => {
-        $($crate::Saved::restore(&mut *$field, $archive)?;)+
+        $($crate::Checkpointed::restore(&mut *$field, $archive)?;)+
     };
     (@save $archive:ident [$field:ident] under($($name:tt)*)) => {{
         let name = ::std::fmt::format(::std::format_args!($($name)*));

@@ -2,22 +2,23 @@
 
 use super::Body;
 use crate::error::{PericlesError, Result};
-use crate::material::{BondConstants, PairClasses, StressState};
+use crate::material::{BondConstants, MaterialPairs, StressState};
 use crate::scalar::PointScalar;
 use crate::space::check_points;
 
-/// What several materials make of a body.
+/// The materials of a body.
 pub(super) struct Mixture {
-    /// The materials by point; none where there is one only.
-    pub classes: Option<PairClasses>,
+    /// Material of each point; `None` for a single material.
+    pub classes: Option<MaterialPairs>,
     /// Mass densities, kg/m³.
     pub density: PointScalar,
 }
 
 impl Body {
-    /// The constants of all bonds and the densities of all points; `first` are the constants of the first material.
+    /// Returns the constants of all bonds and the densities of all points; `first` are the constants of the first
+    /// material.
     pub(super) fn mixture(&self, first: &BondConstants, state: StressState) -> Result<Mixture> {
-        /// Numbers of materials are bytes.
+        /// Material numbers are bytes.
         const MOST: usize = 255;
         if self.others.is_empty() {
             return Ok(Mixture {
@@ -27,7 +28,7 @@ impl Body {
         }
         if self.others.len() > MOST {
             return Err(PericlesError::OutOfRange {
-                quantity: "the number of materials beside the first",
+                quantity: "the number of materials after the first",
                 value: self.others.len() as f64,
                 allowed: "at most 255",
             });
@@ -46,7 +47,7 @@ impl Body {
                 && material.influence == self.material.influence;
             if !same {
                 return Err(PericlesError::BadSet {
-                    what: "a material of some points",
+                    what: "a further material of the body",
                     reason: "its pair law, horizon, influence function and volume correction must be those of the first material",
                 });
             }
@@ -57,7 +58,7 @@ impl Body {
             }
         }
         Ok(Mixture {
-            classes: Some(PairClasses::new(number_of, &constants, self.interface)?),
+            classes: Some(MaterialPairs::new(number_of, &constants, self.interface)?),
             density: PointScalar::PerPoint(density),
         })
     }

@@ -1,4 +1,4 @@
-//! Bodies step by step: points, material, cracks, loads and supports, from which a [`System`] is built.
+//! Builder of bodies: points, materials, cracks, loads and constraints, from which a [`System`] is assembled.
 
 mod materials;
 
@@ -8,7 +8,8 @@ use crate::boundary::{Boundary, Load, PrescribedMotion};
 use crate::error::{PericlesError, Result};
 use crate::family::{Crack, EndRule};
 use crate::material::{
-    BondConstants, BondMaterial, InterfaceRule, PairForce, StressState, SurfaceCorrection,
+    BondConstants, BondMaterial, InterfaceRule, PairForce, Softening, StressState,
+    SurfaceCorrection,
 };
 use crate::operator::{
     AssembledBonds, BondBody, BondForm, CompositeBody, DamageMeasure, Feature, Features, Force,
@@ -17,18 +18,19 @@ use crate::space::{PointCloud, PointSet, check_points};
 use crate::system::System;
 use crate::thermal::ThermalExpansion;
 
-/// How the bonds of an own pair law are assembled.
+/// Assembles the bonds of a custom pair law.
 type Assemble = fn(&CompositeBody<'_>, BondForm) -> Result<AssembledBonds>;
 
-/// A bond-based body, given part by part; [`Body::build`] makes the [`System`] that integrators step.
+/// Builder of a bond-based body; [`Body::build`] returns the [`System`] that integrators advance.
 ///
-/// Horizon, influence function, partial volumes, density and fracture come with the material. Everything else has a default: no cracks, bonds that may break everywhere, the faster
-/// of stencil and neighbour list, no loads, no supports.
+/// Horizon, influence function, volume correction, density and fracture are properties of the material. Everything
+/// else has a default: no cracks, bonds that may break everywhere, the faster of stencil and neighbour list, no
+/// loads, no constraints.
 ///
 /// ```
 /// use pericles::prelude::*;
 ///
-/// // A plate of 40 mm × 20 mm with a crack from its left edge, pulled up and down.
+/// // A plate of 40 mm × 20 mm with an edge crack, pulled apart at its top and bottom.
 /// let plate = Grid::plate([0.04, 0.02], 0.5e-3, 1e-3).points()?;
 /// let top = plate.select(&Region::layer("+y", 0.5e-3)?);
 /// let bottom = plate.select(&Region::layer("-y", 0.5e-3)?);
@@ -58,6 +60,7 @@ pub struct Body {
     form: BondForm,
     assemble: Assemble,
     expansion: Option<ThermalExpansion>,
+    softening: Option<Softening>,
     forces: Vec<Box<dyn Force>>,
     loads: Vec<Load>,
     motions: Vec<PrescribedMotion>,
@@ -65,7 +68,7 @@ pub struct Body {
 }
 
 impl Body {
-    /// A free body of one material. Pass the points as an [`Arc`] where they are needed afterwards.
+    /// A free body of one material. Pass the points as an [`Arc`] to use them afterwards.
     pub fn new(points: impl Into<Arc<PointCloud>>, material: BondMaterial) -> Self {
         Self {
             cloud: points.into(),
@@ -80,6 +83,7 @@ impl Body {
             form: BondForm::default(),
             assemble: |body, form| body.operator(form),
             expansion: None,
+            softening: None,
             forces: Vec::new(),
             loads: Vec::new(),
             motions: Vec::new(),
@@ -87,106 +91,116 @@ impl Body {
         }
     }
 
-    /// The stress state of a two-dimensional body, which must be given; bars and bodies in space have one each.
+    /// Sets the stress state, which a two-dimensional body requires; bars and three-dimensional bodies have only
+    /// one.
     pub fn stress_state(mut self, state: StressState) -> Self {
         self.state = Some(state);
         self
     }
 
-    /// Another material of some points. Density, modulus and fracture are its own; pair law, horizon, influence function and partial volumes are those of the body's first
-    /// material for all bonds, and must be the same. Where sets overlap, the last one counts.
+    /// Assigns another material to a set of points. It has its own density, modulus and fracture parameters; pair
+    /// law, horizon, influence function and volume correction must be those of the first material. Where sets
+    /// overlap, the last one applies.
     pub fn material(mut self, points: PointSet, material: BondMaterial) -> Self {
         self.others.push((points, material));
         self
     }
 
-    /// The constant of bonds between two materials; by default the harmonic mean.
+    /// Sets the stiffness of bonds between two materials; the default is the harmonic mean.
     pub fn interface(mut self, rule: InterfaceRule) -> Self {
         self.interface = rule;
         self
     }
 
-    /// Corrects the stiffness of the bonds near surfaces.
+    /// Sets the surface correction, which corrects the stiffness of bonds near free surfaces.
     pub fn surface_correction(mut self, correction: SurfaceCorrection) -> Self {
         self.correction = correction;
         self
     }
 
-    /// A pre-crack, border included: no bond crosses it.
+    /// Adds a pre-crack: bonds that cross it or touch its edge are removed.
     pub fn crack(mut self, crack: Crack) -> Self {
         self.cracks.push((crack, EndRule::Closed));
         self
     }
 
-    /// Points whose bonds never break, beside those named before.
+    /// Adds points whose bonds never break.
     pub fn no_fail(mut self, points: PointSet) -> Self {
         self.no_fail.extend(points);
         self
     }
 
-    /// How damage weighs bonds.
+    /// Sets the damage measure.
     pub fn damage(mut self, measure: DamageMeasure) -> Self {
         self.damage = measure;
         self
     }
 
-    /// How bonds are kept: as a list, as a stencil, or in the faster of these forms.
+    /// Sets the form of the bonds: neighbour list, stencil, or the faster of the two.
     pub fn form(mut self, form: BondForm) -> Self {
         self.form = form;
         self
     }
 
-    /// A pair law of the program's own, in place of the material's.
+    /// Uses a custom pair law instead of the material's.
     ///
-    /// The force of a bond is c α κ V_j L::force(ξ, η): the constant c follows from the material's modulus as for the built-in laws, so that a law whose force is ξ·η/|ξ|² for small η has this modulus.
+    /// The force density of a bond is c α κ V_j L::force(ξ, η). The constant c follows from the modulus of the
+    /// material as for the built-in laws, so that a law with the force ξ·η/|ξ|² for small η has this modulus.
     pub fn pair_law<L: PairForce>(mut self) -> Self {
         self.assemble = |body, form| body.operator_of_law::<L>(form);
         self
     }
 
-    /// A thermal expansion of the bonds, which are then a list.
+    /// Bonds that soften before they break, which are then a list.
+    pub fn softening(mut self, softening: Softening) -> Self {
+        self.softening = Some(softening);
+        self
+    }
+
+    /// Adds thermal expansion of the bonds, which then use a neighbour list.
     pub fn expansion(mut self, expansion: ThermalExpansion) -> Self {
         self.expansion = Some(expansion);
         self
     }
 
-    /// Another force between the points of the body, beside that of its bonds.
+    /// Adds another force between the points of the body.
     pub fn force(mut self, force: Box<dyn Force>) -> Self {
         self.forces.push(force);
         self
     }
 
-    /// A load.
+    /// Adds a load.
     pub fn load(mut self, load: Load) -> Self {
         self.loads.push(load);
         self
     }
 
-    /// A prescribed displacement or velocity.
+    /// Adds a prescribed displacement or velocity.
     pub fn motion(mut self, motion: PrescribedMotion) -> Self {
         self.motions.push(motion);
         self
     }
 
-    /// A boundary with a state of its own, such as a damping layer.
+    /// Adds a boundary with a state of its own, such as a damping layer.
     pub fn boundary(mut self, boundary: Box<dyn Boundary>) -> Self {
         self.boundaries.push(boundary);
         self
     }
 
-    /// The constants of the bonds of the first material on this body: micromodulus, critical stretch.
+    /// Returns the bond constants of the first material on this body: micromodulus and critical stretch.
     ///
     /// # Errors
-    /// A material that is refused ([`BondMaterial::constants`]), a two-dimensional body without a stress state.
+    /// Invalid material parameters ([`BondMaterial::constants`]); a two-dimensional body without a stress state.
     pub fn constants(&self) -> Result<BondConstants> {
         self.material.constants(&self.cloud, self.given_state()?)
     }
 
-    /// The equation of motion of the body.
+    /// Assembles the equation of motion of the body.
     ///
     /// # Errors
-    /// A two-dimensional body without a stress state; materials that are refused or do not go together; a horizon that reaches no neighbour; cracks that cut nothing or have no extent; a
-    /// form that does not fit the body; points that the body does not have; two motions of one point.
+    /// A two-dimensional body without a stress state; invalid or incompatible materials; a horizon that reaches no
+    /// neighbour; cracks without extent; a form that is not available for the body; points that the body does not
+    /// have; two constraints on one component of a point.
     pub fn build(self) -> Result<System> {
         let state = self.given_state()?;
         let constants = self.material.constants(&self.cloud, state)?;
@@ -205,6 +219,7 @@ impl Body {
         let composite = CompositeBody {
             classes: mixture.classes.as_ref(),
             correction: self.correction,
+            softening: self.softening,
             ..CompositeBody::from(body)
         };
         let form = match (&self.expansion, self.form) {

@@ -1,29 +1,32 @@
-//! Layers in which motion dies away: an approximate absorbing side of bodies in any dimension.
+//! Damping layers: approximate absorbing boundaries for bodies of any dimension.
 
-use super::{Boundary, Exchange, Stage, WithinStep};
+use super::{Boundary, Exchange, ImplicitBoundary, Stage};
 use crate::error::{PericlesError, Result};
 use crate::scalar::PointScalar;
 use crate::space::{Face, PointCloud, PointSet, check_length};
 use crate::step_end::{Path, StepEnd};
 use crate::step_kind::StepKind;
+use crate::units::{quantity, significant};
 
-/// How the damping of a layer grows inwards from its inner face to the side of the body.
+/// Profile of the damping in a layer: it grows from the inner face to the side of the body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DampingProfile {
-    /// Depth of the layer, m.
+    /// Thickness of the layer, m.
     pub thickness: f64,
-    /// The damping at the side of the body, 1/s.
+    /// Damping at the side of the body, 1/s.
     pub strength: f64,
-    /// The power with which it grows.
+    /// Exponent of the profile.
     pub power: f64,
 }
 
 impl DampingProfile {
-    /// The profile that lets waves of speed c (m/s), which meet it head on and are long against the spacing and short against the layer, come back from the body's side with the given share
-    /// of their amplitude: R = exp(−σ L/((p + 1) c)).
+    /// Returns the profile with a given reflection coefficient R (ratio of amplitudes) for waves of speed c (m/s)
+    /// at normal incidence: R = exp(−σ L/((p + 1) c)).
     ///
-    /// Slower waves are damped more, and so are waves at an angle φ, which stay longer in the layer: R^{1/cos φ}. But the layer's growth itself reflects waves that are as long as it is deep, and
-    /// waves that graze it, the more the smaller R is asked for.
+    /// It holds for wavelengths that are long compared with the spacing and short compared with the layer. Slower
+    /// waves are damped more, and so are waves at an angle φ to the normal, whose path is longer: R^{1/cos φ}. The
+    /// growth of σ itself reflects waves as long as the layer is thick, and waves at grazing incidence, the more
+    /// the smaller R is.
     pub fn of_reflection(thickness: f64, reflection: f64, power: f64, speed: f64) -> Self {
         Self {
             thickness,
@@ -32,61 +35,64 @@ impl DampingProfile {
         }
     }
 
-    /// σ at a depth below the inner face, 1/s.
+    /// Returns σ at a depth below the inner face, 1/s.
     pub fn at(&self, depth: f64) -> f64 {
         self.strength * (depth / self.thickness).clamp(0.0, 1.0).powf(self.power)
     }
 
-    /// The largest stable ω dt of velocity Verlet with the damping of the step before: (ω dt)² < 4 − 2 σ dt.
+    /// Largest stable ω dt of velocity Verlet with the damping velocity of the previous step: (ω dt)² < 4 − 2 σ dt.
     pub fn stability_limit(&self, dt: f64) -> f64 {
         (4.0 - 2.0 * self.strength * dt).max(0.0).sqrt()
     }
 }
 
-/// The steps that a layer is made for.
+/// The time steps for which a layer is made.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DampedSteps {
-    /// Where within a step the scheme takes the forces.
+    /// Kind of step of the scheme.
     pub kind: StepKind,
-    /// Length of the steps, s. Schemes of stages may take others; Runge–Kutta schemes are stable up to (ω dt/ℓ)² + σ dt/2 = 1, with their limit ω dt = ℓ without damping.
+    /// Time step, s. Schemes with stages may use others: Runge–Kutta schemes are stable up to (ω dt/ℓ)² + σ dt/2 =
+    /// 1, where ℓ is their limit of ω dt without damping.
     pub dt: f64,
-    /// The highest frequency of the body, 1/s, where it is known.
+    /// Highest frequency of the body, 1/s, if known.
     pub frequency: Option<f64>,
 }
 
-/// ρ u_tt = f − σ ρ u_t in a layer along a side, σ = σ₀ (depth/L)^p.
+/// Damping layer along a side: ρ u_tt = f − σ ρ u_t with σ = σ₀ (depth/L)^p.
 ///
-/// Unlike an exact end it takes any body, law and dimension, and reflects: measure how much. The velocity that it damps is
+/// Unlike an exact absorbing boundary it supports any body, law and dimension, but reflects a small part of the
+/// waves. The damped velocity depends on the scheme:
 ///
-/// | steps | velocity | work of the damping |
+/// | steps | damped velocity | work of the damping |
 /// |---|---|---|
-/// | velocity Verlet ([`StepKind::EndOfStep`]) | of the middle of the step before, so that the scheme stays explicit | exact |
-/// | Runge–Kutta schemes, also with two time steps, Newmark by fixed-point iteration ([`StepKind::Stages`]) | of the stage: the order of the scheme is kept | of the order of the scheme, at most four |
-/// | implicit midpoint and trapezoidal rule ([`StepKind::Middle`]) | of the middle of the step, part of the equation of the step | exact |
-/// | r-RESPA ([`StepKind::Kicks`]), trigonometric ([`StepKind::Flow`]) | by e^(−σ dt/2) before and after each step: second order | exact |
+/// | velocity Verlet ([`StepKind::EndOfStep`]) | at the middle of the previous step, so that the scheme stays explicit | exact |
+/// | Runge–Kutta schemes, also multirate, and Newmark by fixed-point iteration ([`StepKind::Stages`]) | at the stage, which keeps the order of the scheme | of the order of the scheme, at most four |
+/// | implicit midpoint and trapezoidal rule ([`StepKind::Middle`]) | at the middle of the step, part of the equation of the step | exact |
+/// | r-RESPA ([`StepKind::Kicks`]), trigonometric ([`StepKind::Flow`]) | factor e^(−σ dt/2) before and after each step: second order | exact |
 pub struct DampingLayer {
     kind: StepKind,
     points: PointSet,
-    /// σ of each point, 1/s.
+    /// σ of each point of the layer, 1/s.
     damping: Vec<f64>,
-    /// Mass of each point, kg.
+    /// Mass of each point of the layer, kg.
     mass: Vec<f64>,
     total: usize,
     dimension: usize,
     dt: f64,
-    /// Accelerations by the damping, by component and point of the layer, and those of the step before.
+    /// Accelerations due to the damping, by component and point of the layer, and those of the previous step.
     pull: Vec<f64>,
     pull_before: Vec<f64>,
-    /// Displacements of the layer at the start of the step, where they are part of its equation.
+    /// Displacements of the layer at the start of the step, for schemes whose equation includes the damping.
     place: Vec<f64>,
     name: String,
 }
 
 impl DampingLayer {
-    /// A layer along a side of a body's bounding box.
+    /// Makes a layer along a side of the bounding box of a body.
     ///
     /// # Errors
-    /// [`PericlesError::BadDampingLayer`]: a side that the body does not have, a layer thinner than a cell or as thick as the body, a step that is unstable with the damping.
+    /// [`PericlesError::BadDampingLayer`]: a side that the body does not have, a layer thinner than a cell or as
+    /// thick as the body, a step that is unstable with the damping.
     pub fn new(
         cloud: &PointCloud,
         density: &PointScalar,
@@ -125,12 +131,13 @@ impl DampingLayer {
         })
     }
 
-    /// Points in the layer.
+    /// Number of points in the layer.
     pub fn points(&self) -> usize {
         self.points.len()
     }
 
-    /// Calls `visit(entry of the state's arrays, entry of the layer's arrays, number of the point in the layer)` for every entry of the layer.
+    /// Calls `visit(entry of the state's arrays, entry of the layer's arrays, index of the point in the layer)` for
+    /// every entry of the layer.
     fn each(&self, mut visit: impl FnMut(usize, usize, usize)) {
         for c in 0..self.dimension {
             for (p, &i) in self.points.iter().enumerate() {
@@ -143,7 +150,7 @@ impl DampingLayer {
         matches!(self.kind, StepKind::Flow | StepKind::Kicks)
     }
 
-    /// ∫ v dt (m) and ∫ v² dt (m²/s) of an entry over a step.
+    /// Returns ∫ v dt (m) and ∫ v² dt (m²/s) of an entry over a step.
     fn integrals(&self, step: &StepEnd<'_>, entry: usize) -> (f64, f64) {
         let mean = step.mean_velocity(entry);
         match step.path {
@@ -175,28 +182,34 @@ fn check(
 ) -> std::result::Result<(), String> {
     let (name, dimension) = (face_name(face), cloud.dimension());
     if face.axis >= dimension {
-        return Err(format!("a body in {dimension}D has no side {name}"));
+        return Err(format!("a {dimension}D body has no side {name}"));
     }
     let [low, high] = extent(cloud, face.axis);
     let (thickness, most) = (profile.thickness, high - low);
     let cell = cloud.cell_side(face.axis);
     if !(thickness >= cell && thickness < most) {
         return Err(format!(
-            "its thickness at {name} is {thickness:e} m; allowed: from a cell, {cell:e} m, to less than the body, {most:e} m"
+            "the thickness at {name} is {}; allowed: from one cell, {}, to less than the body, {}",
+            quantity(thickness, "m"),
+            quantity(cell, "m"),
+            quantity(most, "m")
         ));
     }
     let (phase, limit) = (frequency.unwrap_or(0.0) * dt, profile.stability_limit(dt));
     if kind == StepKind::EndOfStep && phase > limit {
         return Err(format!(
-            "with its damping of up to {:.4e} 1/s the step {dt:e} s is unstable: ω dt is {phase:.4} for the highest frequency of the body, allowed are {limit:.4}; make the layer \
-             thicker, its reflection larger, or the step smaller (time.safety)",
-            profile.strength
+            "with a damping of up to {} 1/s the time step {} is unstable: ω dt is {} for the highest frequency of the body; allowed: {}. Use a thicker layer, a larger reflection \
+             or a smaller step (time.safety)",
+            significant(profile.strength, 4),
+            quantity(dt, "s"),
+            significant(phase, 4),
+            significant(limit, 4)
         ));
     }
     Ok(())
 }
 
-/// Where a body begins and ends along an axis, m.
+/// Lower and upper end of a body along an axis, m.
 fn extent(cloud: &PointCloud, axis: usize) -> [f64; 2] {
     let (axis, half) = (cloud.axis(axis), 0.5 * cloud.cell_side(axis));
     let low = axis.iter().fold(f64::INFINITY, |a, x| a.min(*x));
@@ -204,7 +217,7 @@ fn extent(cloud: &PointCloud, axis: usize) -> [f64; 2] {
     [low - half, high + half]
 }
 
-/// How deep each point lies below the inner face of a layer, m; not positive outside.
+/// Returns the depth of each point below the inner face of a layer, m; not positive outside the layer.
 fn depths(cloud: &PointCloud, face: Face, thickness: f64) -> Vec<f64> {
     let axis = cloud.axis(face.axis);
     let [low, high] = extent(cloud, face.axis);
@@ -288,13 +301,14 @@ impl Boundary for DampingLayer {
         }
     }
 
-    fn within_step(&self) -> Option<&dyn WithinStep> {
+    fn within_step(&self) -> Option<&dyn ImplicitBoundary> {
         (self.kind == StepKind::Middle).then_some(self)
     }
 }
 
-/// With u₀ at the start and u at the middle of the step the velocity of the middle is 2 (u − u₀)/dt: S = 2 σ/dt.
-impl WithinStep for DampingLayer {
+/// With u₀ at the start of the step and u at its middle the velocity at the middle is 2 (u − u₀)/dt, hence S = 2
+/// σ/dt.
+impl ImplicitBoundary for DampingLayer {
     fn add_present(&self, acceleration: &mut [f64]) {
         self.each(|entry, k, _| acceleration[entry] += self.pull[k]);
     }
@@ -313,7 +327,7 @@ impl WithinStep for DampingLayer {
 }
 
 crate::saved! {
-    impl Saved for DampingLayer {
+    impl Checkpointed for DampingLayer {
         pull: array("{name}/pull"),
         place: array("{name}/place"),
         kind, points, damping, mass, total, dimension, dt, name: fixed,

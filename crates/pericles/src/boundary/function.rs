@@ -1,4 +1,4 @@
-//! Functions of time that loads and prescribed motions follow.
+//! Time functions of loads and prescribed motions.
 
 use std::f64::consts::PI;
 use std::fmt;
@@ -6,45 +6,45 @@ use std::sync::Arc;
 
 use super::TimeTable;
 
-/// A factor g(t) that is not one of the kinds of [`TimeFunction`].
+/// A custom time function g(t).
 pub trait TimeCourse: fmt::Debug + Send + Sync {
     /// g(t).
     fn value(&self, t: f64) -> f64;
-    /// g'(t); at a kink the derivative from the right.
+    /// g'(t); at a kink the right-hand derivative.
     fn derivative(&self, t: f64) -> f64;
-    /// g''(t) without the impulses at kinks.
+    /// g''(t) without the delta functions at kinks.
     fn second_derivative(&self, t: f64) -> f64;
     /// ∫₀ᵗ g.
     fn integral(&self, t: f64) -> f64;
 }
 
-/// A dimensionless factor g(t) with its integral and derivatives.
+/// A time function: a dimensionless factor g(t) with its integral and derivatives.
 #[derive(Debug, Clone, Default)]
 pub enum TimeFunction {
-    /// g = 1 from the start.
+    /// g = 1.
     #[default]
     Constant,
-    /// g rises linearly from 0 at `start` to 1 at `start + duration` and stays there.
+    /// g rises linearly from 0 at `start` to 1 at `start + duration` and stays 1.
     Ramp {
-        /// Begin, s.
+        /// Start, s.
         start: f64,
-        /// Length of the rise, s; positive.
+        /// Duration of the rise, s; positive.
         duration: f64,
     },
-    /// g = sin²(π (t − start)/duration) between `start` and `start + duration`, zero elsewhere: a smooth pulse.
+    /// A smooth pulse: g = sin²(π (t − start)/duration) between `start` and `start + duration`, zero elsewhere.
     Pulse {
-        /// Begin, s.
+        /// Start, s.
         start: f64,
-        /// Length of the pulse, s; positive.
+        /// Duration of the pulse, s; positive.
         duration: f64,
     },
-    /// g between given values, linearly.
+    /// Linear interpolation in a table.
     Table(Arc<TimeTable>),
-    /// Any other course.
+    /// Any other time function.
     Course(Arc<dyn TimeCourse>),
 }
 
-/// Tables are equal if their numbers are, other courses if they are the same object.
+/// Tables are equal if their numbers are equal, custom functions if they are the same object.
 impl PartialEq for TimeFunction {
     fn eq(&self, other: &Self) -> bool {
         match (self, other) {
@@ -89,7 +89,7 @@ impl TimeFunction {
         }
     }
 
-    /// g'(t); at a kink the derivative from the right.
+    /// g'(t); at a kink the right-hand derivative.
     pub fn derivative(&self, t: f64) -> f64 {
         match *self {
             Self::Table(ref table) => table.derivative(t),
@@ -113,7 +113,7 @@ impl TimeFunction {
         }
     }
 
-    /// g''(t) without the impulses at the kinks of a ramp.
+    /// g''(t) without the delta functions at the kinks of a ramp.
     pub fn second_derivative(&self, t: f64) -> f64 {
         match *self {
             Self::Constant | Self::Ramp { .. } | Self::Table(_) => 0.0,
@@ -138,7 +138,7 @@ impl TimeFunction {
         }
     }
 
-    /// For the kinds that have one in closed form.
+    /// The integral of the kinds that have it in closed form.
     fn primitive(&self, t: f64) -> f64 {
         match *self {
             Self::Constant | Self::Table(_) | Self::Course(_) => t,
@@ -159,7 +159,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn derivatives_and_integrals_belong_together() {
+    fn derivatives_and_integrals_agree_with_values() {
         let functions = [
             TimeFunction::Constant,
             TimeFunction::Ramp {

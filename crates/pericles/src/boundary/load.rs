@@ -1,33 +1,34 @@
-//! Body forces.
+//! Loads: body forces and tractions.
 
 use std::fmt;
 use std::sync::Arc;
 
 use super::TimeFunction;
 use crate::error::{PericlesError, Result, positive};
-use crate::operator::On;
+use crate::operator::PointSubset;
 use crate::space::{PointCloud, PointSet, check_length, check_set};
 
-/// A vector field in place and time.
+/// A vector field of position and time.
 pub trait FieldFunction: fmt::Debug + Send + Sync {
-    /// Component c at a place (m) and time (s).
+    /// Component c at a position (m) and time (s).
     fn value(&self, c: usize, place: [f64; 3], t: f64) -> f64;
 }
 
-/// The amplitude of a load, N/m³.
+/// Amplitude of a load, N/m³.
 #[derive(Debug, Clone)]
 pub enum LoadDensity {
-    /// The same on all points; components beyond the body's dimension are zero.
+    /// The same on all points; components beyond the dimension of the body are zero.
     Uniform([f64; 3]),
-    /// One number per loaded point and component: that of component c of the k-th loaded point is entry c · (loaded points) + k.
+    /// One number per loaded point and component: component c of the k-th loaded point is entry c · (loaded points)
+    /// + k.
     PerPoint(Vec<f64>),
-    /// A field that changes with time by itself, times a factor, at the places of the loaded points.
+    /// A field of position and time multiplied by a factor.
     Field {
         /// The field.
         field: Arc<dyn FieldFunction>,
         /// The factor.
         factor: f64,
-        /// Places of the loaded points, m.
+        /// Positions of the loaded points, m.
         places: Vec<[f64; 3]>,
     },
 }
@@ -38,20 +39,20 @@ impl From<[f64; 3]> for LoadDensity {
     }
 }
 
-/// A force density b(x, t) = density(x) · g(t) on a set of points while it acts, N/m³.
+/// A force density b(x, t) = density(x) · g(t), N/m³, on a set of points during a time window.
 #[derive(Debug, Clone)]
 pub struct Load {
     /// The loaded points.
     pub points: PointSet,
     /// Amplitude, N/m³.
     pub density: LoadDensity,
-    /// g(t).
+    /// Time function g(t).
     pub function: TimeFunction,
-    /// From when to when it acts, s: at both ends too.
+    /// First and last time at which the load acts, s.
     pub window: [f64; 2],
 }
 
-/// Always.
+/// The window of a load that always acts.
 pub const ALWAYS: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
 impl Load {
@@ -65,10 +66,11 @@ impl Load {
         }
     }
 
-    /// A traction (force per area, Pa) that acts on `area` (m²) of a layer, spread over the layer's volume: b = traction · area / ΣV.
+    /// A traction (force per area, Pa) on `area` (m²) of a layer of points, distributed over the volume of the
+    /// layer: b = traction · area / ΣV.
     ///
     /// # Errors
-    /// A layer without points or with points that the cloud does not have; an area that is not positive.
+    /// A layer without points or with points that the body does not have; an area that is not positive.
     pub fn traction(
         cloud: &PointCloud,
         points: PointSet,
@@ -88,13 +90,13 @@ impl Load {
         Ok(Self::new(points, traction.map(|c| c * factor), function))
     }
 
-    /// Refuses a load that does not fit a body of `points` points: numbers of points, one amplitude or place for each.
+    /// Checks that a load fits a body of `points` points: point numbers, and one amplitude or position per point.
     pub(crate) fn check(&self, dimension: usize, points: usize) -> Result<()> {
         check_set("the points of a load", &self.points, points)?;
         let loaded = self.points.len();
         match &self.density {
             LoadDensity::Uniform(_) => Ok(()),
-            // All three axes, also of a body in fewer dimensions.
+            // All three axes are given, even for bodies of fewer dimensions.
             LoadDensity::PerPoint(densities) if densities.len() == 3 * loaded => Ok(()),
             LoadDensity::PerPoint(densities) => check_length(
                 "the amplitudes of a load",
@@ -102,17 +104,17 @@ impl Load {
                 dimension * loaded,
             ),
             LoadDensity::Field { places, .. } => {
-                check_length("the places of a load", places.len(), loaded)
+                check_length("the positions of a load", places.len(), loaded)
             }
         }
     }
 
-    /// Whether it never has a component along axis c.
+    /// Returns whether the load has no component along axis c at any time.
     pub(crate) fn is_free_of(&self, c: usize) -> bool {
         matches!(self.density, LoadDensity::Uniform(density) if density[c] == 0.0)
     }
 
-    /// g(t) while the load acts, else zero.
+    /// Returns g(t) while the load acts, else zero.
     pub(crate) fn factor(&self, t: f64) -> f64 {
         if (self.window[0]..=self.window[1]).contains(&t) {
             self.function.value(t)
@@ -121,7 +123,7 @@ impl Load {
         }
     }
 
-    /// Amplitude along axis c of the k-th loaded point.
+    /// Amplitude along axis c on the k-th loaded point.
     pub(crate) fn amplitude(&self, c: usize, k: usize, t: f64) -> f64 {
         match &self.density {
             LoadDensity::Uniform(density) => density[c],
@@ -134,7 +136,8 @@ impl Load {
         }
     }
 
-    /// Whether the force at time t is finite: on all points where the amplitude is constant, at the first, the middle and the last point of a field that changes with time.
+    /// Returns whether the force at time t is finite: on all points for a constant amplitude, on the first, middle
+    /// and last point for a field of position and time.
     pub fn is_finite_at(&self, t: f64, dimension: usize) -> bool {
         let factor = self.factor(t);
         if factor == 0.0 || self.points.is_empty() {
@@ -152,11 +155,11 @@ impl Load {
             }
     }
 
-    /// Adds the force density at time t for the points named by `on`.
+    /// Adds the force density at time t on the points of `on`.
     pub(crate) fn add_force(
         &self,
         t: f64,
-        on: &On<'_>,
+        on: &PointSubset<'_>,
         points: usize,
         dimension: usize,
         out: &mut [f64],

@@ -1,4 +1,4 @@
-//! Loads, prescribed motion, and boundaries with memory.
+//! Boundary conditions: loads, prescribed motions, damping layers and other boundaries with a state.
 
 mod damping;
 mod function;
@@ -14,12 +14,12 @@ pub use motion::{AxisMotion, MotionKind, PrescribedMotion, Trajectory};
 pub use rayleigh::{RayleighDamping, RayleighRates, Stiffness, StiffnessProduct};
 pub use table::TimeTable;
 
-use crate::archive::Saved;
-use crate::parallel::On;
+use crate::archive::Checkpointed;
+use crate::parallel::PointSubset;
 use crate::step_end::StepEnd;
 use crate::step_kind::StepKind;
 
-/// What a boundary gave the body over a step.
+/// Work and impulse of a boundary on the body over a step.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Exchange {
     /// Work, J.
@@ -29,7 +29,7 @@ pub struct Exchange {
 }
 
 impl Exchange {
-    /// Adds another one.
+    /// Adds another exchange.
     pub fn add(&mut self, other: Self) {
         self.work += other.work;
         for (sum, impulse) in self.impulse.iter_mut().zip(other.impulse) {
@@ -38,25 +38,25 @@ impl Exchange {
     }
 }
 
-/// A stage of a step, as a boundary sees it.
+/// A stage of a step, as passed to a boundary.
 #[derive(Debug, Clone)]
 pub struct Stage<'a> {
-    /// Its time, s.
+    /// Time, s.
     pub t: f64,
     /// Displacement, m.
     pub u: &'a [f64],
-    /// Velocity, m/s; of velocity Verlet the mean velocity of the step before.
+    /// Velocity, m/s; for velocity Verlet the mean velocity of the previous step.
     pub v: &'a [f64],
-    /// The points whose accelerations are computed.
-    pub on: On<'a>,
+    /// Points whose accelerations are computed.
+    pub on: PointSubset<'a>,
 }
 
-/// What a boundary gives the body within a step whose end is an unknown: an acceleration that depends linearly on it.
+/// Linear action of a boundary within an implicit step.
 ///
-/// With displacements u at the middle of the step the acceleration is d − S u, where d is what the boundary remembers of the steps before, and S is symmetric and positive semidefinite when weighed by
-/// masses.
-pub trait WithinStep {
-    /// Adds the acceleration that is part of the present state's.
+/// With displacements u at the middle of the step the boundary adds the acceleration d − S u, where d depends on
+/// previous steps and S is symmetric and positive semidefinite in the inner product weighted by the masses.
+pub trait ImplicitBoundary {
+    /// Adds the acceleration of the present state.
     fn add_present(&self, acceleration: &mut [f64]);
 
     /// Adds d − S u.
@@ -66,30 +66,32 @@ pub trait WithinStep {
     fn add_stiffness(&self, u: &[f64], out: &mut [f64]);
 }
 
-/// A boundary that acts on the state around force evaluations: ghost points, absorbing ends, damping layers.
-pub trait Boundary: Saved + Send + Sync {
-    /// Called before the force is evaluated at time t, with the displacement and velocity of that stage.
+/// A boundary that acts around force evaluations: ghost points, absorbing boundaries, damping layers.
+pub trait Boundary: Checkpointed + Send + Sync {
+    /// Called before the force is evaluated at time t, with displacement and velocity of the stage.
     fn before_force(&mut self, t: f64, u: &mut [f64], v: &mut [f64]) {
         let _ = (t, u, v);
     }
 
-    /// Called once for the initial state and for every accepted one, before [`Boundary::after_stage`] is called for it: here memory goes on. Returns what the
-    /// boundary did to the body over the step that ended, which has length 0 at the start.
+    /// Called once for the initial state and once for every accepted state, before [`Boundary::after_stage`] of
+    /// that state: updates the memory. Returns work and impulse on the body over the step that ended, which has
+    /// length 0 at the start.
     fn accept(&mut self, step: &StepEnd<'_>) -> Exchange {
         let _ = step;
         Exchange::default()
     }
 
-    /// Called after the accelerations of a stage are known for the points named by `on`; may change these. Velocities are those of the stage.
+    /// Called when the accelerations of a stage are known on the points of `on`; may change them. Velocities are
+    /// those of the stage.
     fn after_stage(&mut self, stage: &Stage<'_>, acceleration: &mut [f64]);
 
-    /// [`Boundary::accept`] with what it may ask of the forces of the body.
+    /// [`Boundary::accept`] with access to the stiffness of the body.
     fn accept_with(&mut self, step: &StepEnd<'_>, stiffness: Stiffness<'_>) -> Exchange {
         let _ = stiffness;
         self.accept(step)
     }
 
-    /// [`Boundary::after_stage`] with what it may ask of the forces of the body.
+    /// [`Boundary::after_stage`] with access to the stiffness of the body.
     fn after_stage_with(
         &mut self,
         stage: &Stage<'_>,
@@ -100,29 +102,31 @@ pub trait Boundary: Saved + Send + Sync {
         self.after_stage(stage, acceleration);
     }
 
-    /// Whether what it does depends on more than the state that it is given: schemes that try steps, or whose steps have different lengths, cannot follow such a boundary.
+    /// Returns whether the boundary depends on more than the current state. Schemes with trial steps or steps of
+    /// varying length do not support such a boundary.
     fn has_memory(&self) -> bool {
         true
     }
 
-    /// The kinds of steps it is made for; empty if any.
+    /// Supported kinds of steps; empty if all are supported.
     fn step_kinds(&self) -> &'static [StepKind] {
         &[]
     }
 
-    /// Damps velocities (m/s) as it does over a time dt in which nothing else acts, for schemes that take the force nowhere or in parts ([`StepKind::Flow`], [`StepKind::Kicks`]): they let it act
-    /// for half of a step before and half of it after their own. Returns what the boundary did to the body.
+    /// Damps velocities (m/s) over a time dt in which no other force acts. Schemes without a force evaluation in
+    /// the step or with split forces ([`StepKind::Flow`], [`StepKind::Kicks`]) call it for half a step before and
+    /// after their own step. Returns work and impulse on the body.
     fn damp(&self, dt: f64, v: &mut [f64]) -> Exchange {
         let _ = (dt, v);
         Exchange::default()
     }
 
-    /// Its part in a step that is solved for as a whole; none for boundaries that explicit schemes alone can follow.
-    fn within_step(&self) -> Option<&dyn WithinStep> {
+    /// Returns the action within an implicit step; `None` for boundaries that only explicit schemes support.
+    fn within_step(&self) -> Option<&dyn ImplicitBoundary> {
         None
     }
 
-    /// Steps that it is made for; none if any number.
+    /// Number of steps for which the boundary is made; `None` if any.
     fn steps(&self) -> Option<u64> {
         None
     }

@@ -1,4 +1,4 @@
-//! Prescribed displacement and velocity.
+//! Constraints: prescribed displacement and velocity.
 
 use std::fmt;
 use std::sync::Arc;
@@ -6,72 +6,72 @@ use std::sync::Arc;
 use super::TimeFunction;
 use crate::domain::Domain;
 use crate::error::{PericlesError, Result};
-use crate::operator::On;
+use crate::operator::PointSubset;
 use crate::space::{PointCloud, PointSet, check_length, check_set};
 
 const WHAT: &str = "the points of a prescribed motion";
 
-/// What is prescribed.
+/// The prescribed quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MotionKind {
     /// u(t) = amplitude · g(t).
     Displacement,
-    /// v(t) = amplitude · g(t), from the displacement at the start.
+    /// v(t) = amplitude · g(t), starting from the initial displacement.
     Velocity,
 }
 
-/// A displacement that depends on place and time otherwise than as a product.
+/// A prescribed displacement that is not a product of amplitude and time function.
 pub trait Trajectory: fmt::Debug + Send + Sync {
-    /// The displacement (m) of the point at a place (m) and time (s), or its first or second derivative in time, as `order` says.
+    /// Displacement (m) at a position (m) and time (s), or its time derivative of order `order` (1 or 2).
     fn derivative(&self, order: usize, place: [f64; 3], t: f64) -> f64;
 }
 
-/// What is prescribed along one axis.
+/// The prescribed motion along one axis.
 #[derive(Debug, Clone)]
 pub enum AxisMotion {
     /// The same amplitude (m or m/s) for all points.
     Uniform(f64),
-    /// An amplitude for every point of the set.
+    /// One amplitude per point of the set.
     PerPoint(Vec<f64>),
-    /// A displacement by place and time; the amplitude and g(t) play no part.
+    /// A displacement as a function of position and time; amplitude and g(t) are not used.
     Trajectory {
         /// The displacement.
         trajectory: Arc<dyn Trajectory>,
-        /// Places of the points of the set, m.
+        /// Positions of the points of the set, m.
         places: Vec<[f64; 3]>,
     },
 }
 
-/// The motion of a set of points along one or more axes, as a closed function of time: displacement and velocity are exact at the end of every
-/// step.
+/// Constraint on a set of points along one or more axes, as a closed function of time: displacement and velocity
+/// are exact at the end of every step.
 #[derive(Debug, Clone)]
 pub struct PrescribedMotion {
-    /// Name for reports.
+    /// Name in reports.
     pub name: String,
-    /// The held points.
+    /// The constrained points.
     pub points: PointSet,
     /// Displacement or velocity.
     pub kind: MotionKind,
-    /// What is prescribed along each axis; none where the axis is free.
+    /// The prescribed motion along each axis; `None` where the axis is free.
     pub along: [Option<AxisMotion>; 3],
-    /// g(t).
+    /// Time function g(t).
     pub function: TimeFunction,
-    /// The last time at which the points are held, s; from then on they are free.
+    /// Last time at which the constraint acts, s; afterwards the points are free.
     pub until: Option<f64>,
-    /// Displacement at the start of the points, per prescribed axis; zero for prescribed displacements.
+    /// Initial displacement of the points, per prescribed axis; zero for prescribed displacements.
     start: Vec<f64>,
-    /// Force density of the support on the held points at the last accepted state, per prescribed axis.
+    /// Reaction force density on the constrained points at the last accepted state, per prescribed axis.
     reaction: Vec<f64>,
 }
 
 impl PrescribedMotion {
-    /// Points that stay where they are, along all axes of a body of this dimension.
+    /// Points fixed along all axes of a body of this dimension.
     pub fn fixed(points: PointSet, dimension: usize) -> Self {
         let amplitude = std::array::from_fn(|c| (c < dimension).then_some(0.0));
         Self::displacement(points, amplitude, TimeFunction::Constant)
     }
 
-    /// Points with the displacement amplitude · g(t), m; free along axes without an amplitude.
+    /// Points with the prescribed displacement amplitude · g(t), m; free along axes without an amplitude.
     pub fn displacement(
         points: PointSet,
         amplitude: [Option<f64>; 3],
@@ -80,8 +80,9 @@ impl PrescribedMotion {
         Self::from_rest(points, MotionKind::Displacement, amplitude, function)
     }
 
-    /// Points with the velocity amplitude · g(t), m/s; free along axes without an amplitude. They start at zero displacement, or at that of the
-    /// state with which [`Simulation::builder`](crate::Simulation::builder) starts.
+    /// Points with the prescribed velocity amplitude · g(t), m/s; free along axes without an amplitude. They start
+    /// at zero displacement, or at the initial displacement set in
+    /// [`Simulation::builder`](crate::Simulation::builder).
     pub fn velocity(points: PointSet, amplitude: [Option<f64>; 3], function: TimeFunction) -> Self {
         Self::from_rest(points, MotionKind::Velocity, amplitude, function)
     }
@@ -106,7 +107,7 @@ impl PrescribedMotion {
         }
     }
 
-    /// The same under a name for reports.
+    /// Sets the name in reports.
     #[must_use]
     pub fn named(self, name: impl Into<String>) -> Self {
         Self {
@@ -115,10 +116,10 @@ impl PrescribedMotion {
         }
     }
 
-    /// A motion with the same amplitudes (m or m/s) for all points, for a body whose initial displacement is `u`.
+    /// A constraint with the same amplitudes (m or m/s) for all points, for a body with initial displacement `u`.
     ///
     /// # Errors
-    /// As [`PrescribedMotion::along`].
+    /// Those of [`PrescribedMotion::along`].
     pub fn new(
         name: String,
         points: PointSet,
@@ -132,10 +133,11 @@ impl PrescribedMotion {
         Self::along(name, points, kind, along, function, u, cloud_len)
     }
 
-    /// A motion along the axes given, for a body whose initial displacement is `u`.
+    /// A constraint along the given axes, for a body with initial displacement `u`.
     ///
     /// # Errors
-    /// Points that a body of `cloud_len` points does not have; a displacement that does not have `cloud_len` entries for every axis along which the velocity is prescribed.
+    /// Points that a body of `cloud_len` points does not have; a displacement without `cloud_len` entries for every
+    /// axis along which the velocity is prescribed.
     pub fn along(
         name: String,
         points: PointSet,
@@ -170,7 +172,7 @@ impl PrescribedMotion {
         Ok(motion)
     }
 
-    /// Takes `u` as the displacement at the start, to which prescribed velocities add.
+    /// Sets the initial displacement, to which prescribed velocities add.
     pub(crate) fn start_from(&mut self, u: &[f64], cloud_len: usize) {
         if self.kind == MotionKind::Displacement {
             return;
@@ -182,7 +184,7 @@ impl PrescribedMotion {
         self.start = entries.collect();
     }
 
-    /// Refuses a motion that does not fit a body: numbers of points, axes, one amplitude or place for each point.
+    /// Checks that a constraint fits a body: point numbers, axes, and one amplitude or position per point.
     pub(crate) fn check(&self, dimension: usize, points: usize) -> Result<()> {
         check_set(WHAT, &self.points, points)?;
         let held = self.points.len();
@@ -199,16 +201,16 @@ impl PrescribedMotion {
                 Some(AxisMotion::PerPoint(amplitudes)) => amplitudes.len(),
                 Some(AxisMotion::Trajectory { places, .. }) => places.len(),
             };
-            check_length("the amplitudes or places of a motion", given, held)?;
+            check_length("the amplitudes or positions of a motion", given, held)?;
         }
         check_length(
-            "the numbers of a motion whose points or axes were changed after it was made",
+            "the values of a motion whose points or axes were changed after it was made",
             self.start.len(),
             self.axes().count() * held,
         )
     }
 
-    /// Numbers of the prescribed axes.
+    /// Indices of the prescribed axes.
     pub fn axes(&self) -> impl Iterator<Item = usize> + '_ {
         (0..3).filter(|&c| self.along[c].is_some())
     }
@@ -221,14 +223,15 @@ impl PrescribedMotion {
         }
     }
 
-    /// Whether the points are held at time t.
+    /// Returns whether the constraint acts at time t.
     pub fn holds(&self, t: f64) -> bool {
-        // Times are whole multiples of the step: the last one before the release may be a rounding off.
+        // Times are whole multiples of the step: the last one before the release may differ by rounding.
         self.until
             .is_none_or(|until| t <= until * (1.0 + 1e-12) + f64::MIN_POSITIVE)
     }
 
-    /// Whether displacement, velocity and acceleration at time t are finite: of fields at the first, the middle and the last point.
+    /// Returns whether displacement, velocity and acceleration at time t are finite; for fields of position and
+    /// time at the first, middle and last point.
     pub fn is_finite_at(&self, t: f64) -> bool {
         if !self.holds(t) || self.points.is_empty() {
             return true;
@@ -242,12 +245,13 @@ impl PrescribedMotion {
                 _ => self.unit(order, t).is_finite(),
             })
         };
-        // A displacement that is an integral of its velocity is finite where that is.
+        // A displacement that is an integral of its velocity is finite where the velocity is.
         let first = usize::from(self.kind == MotionKind::Velocity);
         (first..=2).all(is_finite)
     }
 
-    /// Displacement beyond the start (order 0), velocity (1) or acceleration (2) at time t for unit amplitude.
+    /// Displacement beyond the initial one (order 0), velocity (1) or acceleration (2) at time t for unit
+    /// amplitude.
     fn unit(&self, order: usize, t: f64) -> f64 {
         let g = &self.function;
         match order + usize::from(self.kind == MotionKind::Displacement) {
@@ -258,13 +262,13 @@ impl PrescribedMotion {
         }
     }
 
-    /// Calls `set(entry of the state's arrays, slot, number)` for every prescribed number of the points named by `on`, with their displacement
-    /// beyond the start, velocity or acceleration.
+    /// Calls `set(entry of the state's arrays, slot, value)` for every prescribed component of the points of `on`.
+    /// The value is the displacement beyond the initial one, the velocity or the acceleration.
     fn for_each(
         &self,
         order: usize,
         t: f64,
-        on: &On<'_>,
+        on: &PointSubset<'_>,
         cloud_len: usize,
         mut set: impl FnMut(usize, usize, f64),
     ) {
@@ -285,8 +289,8 @@ impl PrescribedMotion {
         }
     }
 
-    /// Sets displacements of time t.
-    pub(crate) fn place(&self, t: f64, on: &On<'_>, cloud_len: usize, u: &mut [f64]) {
+    /// Sets the displacements at time t.
+    pub(crate) fn place(&self, t: f64, on: &PointSubset<'_>, cloud_len: usize, u: &mut [f64]) {
         if self.holds(t) {
             self.for_each(0, t, on, cloud_len, |entry, slot, displacement| {
                 u[entry] = self.start[slot] + displacement;
@@ -294,8 +298,8 @@ impl PrescribedMotion {
         }
     }
 
-    /// Sets velocities of time t.
-    pub(crate) fn drive(&self, t: f64, on: &On<'_>, cloud_len: usize, v: &mut [f64]) {
+    /// Sets the velocities at time t.
+    pub(crate) fn drive(&self, t: f64, on: &PointSubset<'_>, cloud_len: usize, v: &mut [f64]) {
         if self.holds(t) {
             self.for_each(1, t, on, cloud_len, |entry, _, velocity| {
                 v[entry] = velocity
@@ -304,7 +308,14 @@ impl PrescribedMotion {
     }
 
     /// Sets the mean velocities between t and t + dt.
-    pub(crate) fn drive_mean(&self, t: f64, dt: f64, on: &On<'_>, cloud_len: usize, v: &mut [f64]) {
+    pub(crate) fn drive_mean(
+        &self,
+        t: f64,
+        dt: f64,
+        on: &PointSubset<'_>,
+        cloud_len: usize,
+        v: &mut [f64],
+    ) {
         if self.holds(t + dt) {
             self.for_each(0, t + dt, on, cloud_len, |entry, _, after| v[entry] = after);
             self.for_each(0, t, on, cloud_len, |entry, _, before| {
@@ -313,11 +324,11 @@ impl PrescribedMotion {
         }
     }
 
-    /// Replaces accelerations by the prescribed ones of time t.
+    /// Replaces accelerations by the prescribed ones at time t.
     pub(crate) fn accelerate(
         &self,
         t: f64,
-        on: &On<'_>,
+        on: &PointSubset<'_>,
         cloud_len: usize,
         acceleration: &mut [f64],
     ) {
@@ -328,7 +339,7 @@ impl PrescribedMotion {
         }
     }
 
-    /// Zeros the prescribed entries of a vector, as in a virtual displacement. Points that are freed one day count as free.
+    /// Zeros the prescribed entries of a virtual displacement. Points with a release time count as free.
     pub(crate) fn project(&self, cloud_len: usize, vector: &mut [f64]) {
         if self.until.is_none() {
             self.zero(cloud_len, vector);
@@ -344,17 +355,18 @@ impl PrescribedMotion {
         }
     }
 
-    /// Adds the prescribed accelerations of time t.
+    /// Adds the prescribed accelerations at time t.
     pub(crate) fn add_acceleration(&self, t: f64, cloud_len: usize, acceleration: &mut [f64]) {
         if self.holds(t) {
-            self.for_each(2, t, &On::All, cloud_len, |entry, _, rate| {
+            self.for_each(2, t, &PointSubset::All, cloud_len, |entry, _, rate| {
                 acceleration[entry] += rate;
             });
         }
     }
 
-    /// Notes the reaction ρ a − f at an accepted state, from the accelerations f/ρ before they are replaced, and returns the work (J)
-    /// and impulse (N s) of the support since the last accepted state. Its points have moved as prescribed, or along the `chord` between two static states.
+    /// Stores the reaction ρ a − f of an accepted state, from the accelerations f/ρ before they are replaced, and
+    /// returns work (J) and impulse (N s) of the constraint since the last accepted state. Its points have moved as
+    /// prescribed, or along the `chord` between two static states.
     pub(crate) fn account(
         &mut self,
         t: f64,
@@ -370,27 +382,40 @@ impl PrescribedMotion {
         if !held && domain.all(self.reaction.iter().all(nothing)) {
             return (0.0, [0.0; 3]);
         }
-        // Of the step after the release the support has pushed the first half; its points then move on with about the last velocity.
+        // In the step after the release the constraint acts for the first half only; its points then continue with
+        // about the last velocity.
         let mut advance = vec![0.0; self.reaction.len()];
         if let Some([before, after]) = chord {
-            self.for_each(0, t, &On::All, cloud_len, |entry, slot, _| {
+            self.for_each(0, t, &PointSubset::All, cloud_len, |entry, slot, _| {
                 advance[slot] = after[entry] - before[entry];
             });
         } else if held {
-            self.for_each(0, t, &On::All, cloud_len, |_, slot, after| {
+            self.for_each(0, t, &PointSubset::All, cloud_len, |_, slot, after| {
                 advance[slot] = after
             });
-            self.for_each(0, t - dt, &On::All, cloud_len, |_, slot, before| {
-                advance[slot] -= before;
-            });
+            self.for_each(
+                0,
+                t - dt,
+                &PointSubset::All,
+                cloud_len,
+                |_, slot, before| {
+                    advance[slot] -= before;
+                },
+            );
         } else {
-            self.for_each(1, t - dt, &On::All, cloud_len, |_, slot, velocity| {
-                advance[slot] = velocity * dt;
-            });
+            self.for_each(
+                1,
+                t - dt,
+                &PointSubset::All,
+                cloud_len,
+                |_, slot, velocity| {
+                    advance[slot] = velocity * dt;
+                },
+            );
         }
         let mut reaction = std::mem::take(&mut self.reaction);
         let mut push = vec![0.0; reaction.len()];
-        self.for_each(2, t, &On::All, cloud_len, |entry, slot, rate| {
+        self.for_each(2, t, &PointSubset::All, cloud_len, |entry, slot, rate| {
             let i = entry % cloud_len;
             let now = if held {
                 density(i) * (rate - acceleration[entry])
@@ -407,7 +432,7 @@ impl PrescribedMotion {
         (work, self.sums(domain, &push))
     }
 
-    /// Sums over the points of slots, by axis.
+    /// Sums slots over the points, by axis.
     fn sums(&self, domain: &Domain, slots: &[f64]) -> [f64; 3] {
         let (n, mut sums) = (self.points.len(), [0.0; 3]);
         for (axis, c) in self.axes().enumerate() {
@@ -416,7 +441,7 @@ impl PrescribedMotion {
         sums
     }
 
-    /// The force of the support on the body at the last accepted state, N.
+    /// Reaction force: the force of the constraint on the body at the last accepted state, N.
     pub fn reaction(&self, cloud: &PointCloud) -> [f64; 3] {
         let volumes = cloud.volumes();
         let points = self.points.iter().cycle();
@@ -425,7 +450,7 @@ impl PrescribedMotion {
         self.sums(cloud.domain(), &slots)
     }
 
-    /// Adds the force density of the support at the last accepted state (N/m³) to the entries of held points.
+    /// Adds the reaction force density at the last accepted state (N/m³) to the entries of the constrained points.
     pub fn add_reaction(&self, cloud_len: usize, out: &mut [f64]) {
         let slots = self.reaction.chunks(self.points.len().max(1));
         for (c, reactions) in self.axes().zip(slots) {

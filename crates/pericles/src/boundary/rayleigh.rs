@@ -1,4 +1,4 @@
-//! Damping of motion in proportion to mass and stiffness.
+//! Rayleigh damping, proportional to mass and stiffness.
 
 use super::{Boundary, Exchange, Stage};
 use crate::error::{PericlesError, Result};
@@ -6,22 +6,25 @@ use crate::parallel::for_each_entry;
 use crate::step_end::{Path, StepEnd};
 use crate::step_kind::StepKind;
 
-/// ρ u_tt = f − α ρ u_t − β K u_t with the stiffness K of the forces at the present displacements (Rayleigh 1877): a vibration of angular frequency ω has the damping ratio ½ (α/ω + β ω).
+/// Rayleigh damping (Rayleigh 1877): ρ u_tt = f − α ρ u_t − β K u_t with the stiffness K of the forces at the
+/// current displacements. A vibration of angular frequency ω has the damping ratio ½ (α/ω + β ω).
 ///
-/// Velocities that are damped are those of [`DampingLayer`](super::DampingLayer): under velocity Verlet that of the middle of the step before, under schemes with stages that of the stage. K is that of the bonds that are left.
-/// Prescribed motions are not damped. Damping in proportion to the stiffness is made for velocity Verlet, damping in proportion to the mass alone for schemes with stages too.
+/// The damped velocity is that of [`DampingLayer`](super::DampingLayer): at the middle of the previous step for
+/// velocity Verlet, at the stage for schemes with stages. K contains the unbroken bonds only. Prescribed motions
+/// are not damped. Stiffness-proportional damping requires velocity Verlet; mass-proportional damping alone also
+/// supports schemes with stages.
 pub struct RayleighDamping {
     rates: RayleighRates,
     kind: StepKind,
-    /// Masses of all entries, kg.
+    /// Masses by entry, kg.
     masses: Vec<f64>,
     points: usize,
-    /// Accelerations by the damping, and those of the step before.
+    /// Accelerations due to the damping, and those of the previous step.
     pull: Vec<f64>,
     pull_before: Vec<f64>,
 }
 
-/// The factors of Rayleigh damping.
+/// Coefficients of Rayleigh damping.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RayleighRates {
     /// α, 1/s.
@@ -31,7 +34,7 @@ pub struct RayleighRates {
 }
 
 impl RayleighRates {
-    /// The kinds of steps that such a damping is made for.
+    /// The kinds of steps that support this damping.
     pub fn step_kinds(&self) -> &'static [StepKind] {
         match self.stiffness > 0.0 {
             true => &[StepKind::EndOfStep],
@@ -39,17 +42,19 @@ impl RayleighRates {
         }
     }
 
-    /// The rate at which a vibration of angular frequency ω loses velocity, α + β ω², 1/s.
+    /// Rate at which the velocity of a vibration of angular frequency ω is damped, α + β ω², 1/s; the amplitude decays
+    /// at half this rate.
     pub fn at(&self, omega: f64) -> f64 {
         self.mass + self.stiffness * omega * omega
     }
 }
 
 impl RayleighDamping {
-    /// The damping under a scheme with these steps of a body whose entries have these masses ([`System::masses`](crate::System::masses)), in a number of dimensions.
+    /// Damping for a scheme with the given steps and a body with the given masses by entry
+    /// ([`System::masses`](crate::System::masses)) and dimension.
     ///
     /// # Errors
-    /// Factors that are negative or not finite.
+    /// Coefficients that are negative or not finite.
     pub fn new(
         rates: RayleighRates,
         kind: StepKind,
@@ -78,7 +83,8 @@ impl RayleighDamping {
         })
     }
 
-    /// Sets the acceleration by the damping at a displacement and velocity; `stiffness(u, v, out)` sets K v/ρ, zero where motion is prescribed.
+    /// Computes the acceleration due to the damping at a displacement and velocity; `stiffness(u, v, out)` computes
+    /// K v/ρ, zero where motion is prescribed.
     fn set_pull(&mut self, u: &[f64], v: &[f64], stiffness: Stiffness<'_>) {
         let RayleighRates { mass, stiffness: b } = self.rates;
         stiffness.free_into(v, &mut self.pull);
@@ -94,7 +100,7 @@ impl RayleighDamping {
         }
     }
 
-    /// Impulse and work of the pulls over a time with a velocity: Σ m p dt and Σ m p·v dt.
+    /// Adds impulse and work of the accelerations p over a time dt at velocity v: Σ m p dt and Σ m p·v dt.
     fn exchange(&self, pull: &[f64], v: &[f64], dt: f64, exchange: &mut Exchange) {
         for (entry, pull) in pull.iter().enumerate() {
             let impulse = self.masses[entry] * pull * dt;
@@ -104,13 +110,13 @@ impl RayleighDamping {
     }
 }
 
-/// Sets K d/ρ at displacements u, from u, d and the place of the product.
+/// Computes K d/ρ at displacements u; the arguments are u, d and the result.
 pub type StiffnessProduct<'a> = dyn Fn(&[f64], &[f64], &mut [f64]) + 'a;
 
-/// What a boundary may ask of the forces of a body.
+/// Access of a boundary to the stiffness of the body.
 #[derive(Clone, Copy)]
 pub struct Stiffness<'a> {
-    /// Sets K d/ρ (1/s² times the unit of d) at u for a direction d, zero where motion is prescribed.
+    /// Computes K d/ρ (1/s² times the unit of d) at u for a direction d, zero where motion is prescribed.
     pub product: &'a StiffnessProduct<'a>,
     /// Zeros entries whose motion is prescribed.
     pub hold: &'a dyn Fn(&mut [f64]),
@@ -121,7 +127,7 @@ impl Stiffness<'_> {
         (self.product)(u, direction, out);
     }
 
-    /// The vector without its prescribed entries.
+    /// Copies a vector with its prescribed entries set to zero.
     fn free_into(&self, vector: &[f64], out: &mut [f64]) {
         out.copy_from_slice(vector);
         (self.hold)(out);
@@ -129,7 +135,7 @@ impl Stiffness<'_> {
 }
 
 impl Boundary for RayleighDamping {
-    /// Not without the forces of the body: [`Boundary::accept_with`].
+    /// Not available without the forces of the body; see [`Boundary::accept_with`].
     fn accept(&mut self, _step: &StepEnd<'_>) -> Exchange {
         Exchange::default()
     }
@@ -153,7 +159,7 @@ impl Boundary for RayleighDamping {
         else {
             return exchange;
         };
-        // Simpson's rule with the velocity of the cubic in the middle.
+        // Simpson's rule with the midpoint velocity of the cubic.
         let middle = |entry: usize| {
             1.5 * (step.u[entry] - u[entry]) / step.dt - 0.25 * (first[entry] + last[entry])
         };
@@ -199,7 +205,7 @@ impl Boundary for RayleighDamping {
 }
 
 crate::saved! {
-    impl Saved for RayleighDamping {
+    impl Checkpointed for RayleighDamping {
         pull: array("rayleigh/pull"),
         rates, kind, masses, points: fixed,
         pull_before: scratch,

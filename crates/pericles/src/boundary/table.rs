@@ -1,21 +1,21 @@
-//! Tables in time.
+//! Tables of time functions.
 
 use crate::error::{PericlesError, Result};
 
-/// g(t) between given values: linear between them, constant before the first and after the last.
+/// A time function given by a table: linear between the rows, constant before the first and after the last.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TimeTable {
     times: Vec<f64>,
     values: Vec<f64>,
-    /// ∫ g from the first time to each.
+    /// ∫ g from the first time to each row.
     integrals: Vec<f64>,
 }
 
 impl TimeTable {
-    /// A table of (time in s, value).
+    /// Makes a table from rows (time in s, value).
     ///
     /// # Errors
-    /// No rows, numbers that are not finite, times that do not rise.
+    /// No rows; numbers that are not finite; times that do not increase.
     pub fn new(rows: Vec<(f64, f64)>) -> Result<Self> {
         if rows.is_empty() {
             return Err(PericlesError::BadTimeTable { row: 0 });
@@ -40,7 +40,7 @@ impl TimeTable {
         })
     }
 
-    /// Number of the last row at or before t; none before the first.
+    /// Index of the last row at or before t; `None` before the first.
     fn row(&self, t: f64) -> Option<usize> {
         self.times.partition_point(|&time| time <= t).checked_sub(1)
     }
@@ -61,7 +61,7 @@ impl TimeTable {
         }
     }
 
-    /// g'(t), at a kink from the right.
+    /// g'(t); at a kink the right-hand derivative.
     pub fn derivative(&self, t: f64) -> f64 {
         self.row(t).map_or(0.0, |row| self.slope(row))
     }
@@ -87,7 +87,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn values_between_rows_and_beyond() {
+    fn interpolates_between_rows_and_is_constant_beyond() {
         let table = TimeTable::new(vec![(1.0, 2.0), (2.0, 6.0), (4.0, 0.0)]).unwrap();
         let cases = [
             (0.0, 2.0),

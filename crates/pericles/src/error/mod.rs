@@ -1,57 +1,58 @@
-//! The one error type of the library.
+//! The error type of the library.
 
 mod check;
+mod extension;
 mod text;
 
 pub use check::positive;
 
 use crate::step_kind::{StepKind, schemes_of};
-use crate::units::{precise, quantity};
+use crate::units::{precise, quantity, significant};
 use text::{inner_iteration, no_equilibrium, spacings_that_fit};
 
-/// What can go wrong when a model is built or a run is stepped. Every message says what is wrong and what is allowed.
+/// An error in building a model or advancing a run. Every message says what is wrong and what is allowed.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PericlesError {
-    /// A length, density, modulus … that must be a positive finite number is not.
+    /// A quantity that must be positive and finite, such as a length, density or modulus, is not.
     #[error("{quantity} must be positive and finite, not {value}")]
     NotPositive {
-        /// What the number stands for.
+        /// The quantity.
         quantity: &'static str,
-        /// The number given.
+        /// The value given.
         value: f64,
     },
-    /// A coordinate that is no number.
+    /// A coordinate is NaN or infinite.
     #[error("the coordinate {value} of point {point} is not a finite number")]
     NotFinite {
-        /// The point's number.
+        /// Number of the point.
         point: usize,
         /// The coordinate given.
         value: f64,
     },
-    /// Coordinates whose rounding is not small beside the spacing.
+    /// The rounding of coordinates is not small compared with the spacing.
     #[error(
-        "the body reaches {} from the origin, where double precision resolves {} only: too coarse for a spacing of {}; with this spacing places up to {} \
-         from the origin are possible; is a unit wrong?",
+        "the body reaches {} from the origin, where double precision resolves only {}: too coarse for a spacing of {}. Allowed with this spacing: \
+         coordinates up to {}. Check the unit of the lengths",
         quantity(*farthest, "m"), quantity(*resolution, "m"), quantity(*spacing, "m"), quantity(*allowed, "m")
     )]
     Unresolved {
-        /// The largest coordinate in size, m.
+        /// Largest absolute value of a coordinate, m.
         farthest: f64,
-        /// The distance of neighbouring numbers there, m.
+        /// Distance between adjacent floating-point numbers there, m.
         resolution: f64,
-        /// Distance of neighbouring points, m.
+        /// Spacing of the points, m.
         spacing: f64,
-        /// The largest coordinate allowed, m.
+        /// Largest allowed absolute value of a coordinate, m.
         allowed: f64,
     },
-    /// A body's side is no whole number of cells.
+    /// A side of the body is not a whole number of cells.
     #[error(
-        "a side of {} is not a whole number of cells of {}; the nearest sides that are: {} and {}{}",
+        "a side of {} is not a whole number of cells of {}; the nearest sides that fit: {} and {}{}",
         precise(*length, "m"), precise(*spacing, "m"), precise(*below, "m"), precise(*above, "m"), spacings_that_fit(fitting)
     )]
     NotWholeCells {
-        /// The side asked for, m.
+        /// The side given, m.
         length: f64,
         /// Spacing of the grid, m.
         spacing: f64,
@@ -59,43 +60,42 @@ pub enum PericlesError {
         below: f64,
         /// The next longer side that fits, m.
         above: f64,
-        /// Spacings near the one asked for that divide all sides, m.
+        /// Spacings near the given one that divide all sides, m.
         fitting: Vec<f64>,
     },
-    /// The shape, less its holes, contains no cell centre.
+    /// The shape without its holes contains no cell centre.
     #[error("the body has no points: no cell centre lies inside the shape and outside its holes")]
     EmptyBody,
-    /// More points than the numbering can hold or than a grid may have.
-    #[error("the grid would have {cells} cells; at most {limit} are possible")]
+    /// The grid has more points than can be numbered or than a grid may have.
+    #[error("the grid would have {} cells; allowed: at most {limit}. Use a larger spacing", significant(*cells, 4))]
     TooManyPoints {
         /// Cells of the bounding box.
         cells: f64,
         /// The limit.
         limit: u64,
     },
-    /// Lists of points, blocks and volumes that do not go together.
-    #[error(
-        "{positions} positions, {blocks} blocks and {volumes} volumes are listed: each point needs one of each"
-    )]
+    /// The lists of positions, blocks and volumes differ in length.
+    #[error("{positions} positions, {blocks} blocks, {volumes} volumes; each point needs one each")]
     ListedLengths {
-        /// Positions.
+        /// Number of positions.
         positions: usize,
-        /// Blocks.
+        /// Number of blocks.
         blocks: usize,
-        /// Volumes.
+        /// Number of volumes.
         volumes: usize,
     },
-    /// Two points at one place.
+    /// Two points coincide.
     #[error("points {first} and {second} of the list (counted from 0) are at the same place")]
     SamePlace {
-        /// The first of them.
+        /// The first point.
         first: usize,
-        /// The other.
+        /// The other point.
         second: usize,
     },
-    /// The horizon reaches no neighbour.
+    /// The horizon is smaller than the spacing, so that no point has a neighbour.
     #[error(
-        "the horizon {horizon} m reaches no neighbour: it must be at least the spacing, {spacing} m (usual: 3 spacings)"
+        "the horizon {} reaches no neighbour; allowed: at least the spacing, {} (usual: 3 spacings)",
+        precise(*horizon, "m"), precise(*spacing, "m")
     )]
     HorizonTooSmall {
         /// Horizon, m.
@@ -103,108 +103,117 @@ pub enum PericlesError {
         /// Spacing, m.
         spacing: f64,
     },
-    /// A horizon with far too many neighbours.
+    /// The horizon holds too many neighbours.
     #[error(
-        "the horizon {horizon} m is {:.0} spacings of {spacing} m, so that each point would have up to {neighbours:.0e} neighbours; at most {most:.0e} are \
-         possible (usual: 3 spacings); is a unit wrong?",
-        horizon / spacing
+        "the horizon {} is {:.0} spacings of {}, which gives each point up to {neighbours:.0e} neighbours; allowed: at most {most:.0e} (usual: 3 spacings). \
+         Check the unit of the horizon",
+        precise(*horizon, "m"), horizon / spacing, precise(*spacing, "m")
     )]
     HorizonTooLarge {
         /// Horizon, m.
         horizon: f64,
         /// Spacing, m.
         spacing: f64,
-        /// Cells of the cube about a family.
+        /// Cells of the cube around a family.
         neighbours: f64,
-        /// The largest number.
+        /// Largest allowed number of neighbours.
         most: f64,
     },
-    /// Shape, region or crack of another dimension than the body.
-    #[error("{what} needs a body of dimension {needed}, this one has dimension {dimension}")]
+    /// A shape, region or crack has another dimension than the body.
+    #[error("{what} needs a body of dimension {needed}; this body has dimension {dimension}")]
     WrongDimension {
-        /// What does not fit.
+        /// The object that does not fit.
         what: &'static str,
-        /// Dimensions it can be used in.
+        /// Allowed dimensions.
         needed: &'static str,
-        /// The body's dimension.
+        /// Dimension of the body.
         dimension: usize,
     },
-    /// A force made for another body than the other forces of a system.
+    /// A force was made for another body than the other forces of the system.
     #[error(
-        "the force acts on {points} points in {dimension} dimensions; the body has {needed_points} points in {needed_dimension} dimensions"
+        "the force acts on {points} points in {dimension} dimensions, but the body has {needed_points} points in {needed_dimension} dimensions"
     )]
     ForceOfAnotherBody {
         /// Points of the force.
         points: usize,
-        /// Its dimension.
+        /// Dimension of the force.
         dimension: usize,
         /// Points of the body.
         needed_points: usize,
-        /// Its dimension.
+        /// Dimension of the body.
         needed_dimension: usize,
     },
-    /// A crack surface without extent, or a polygon that is not plane.
+    /// A crack surface has no area, or its polygon is not plane.
     #[error("the crack has no usable surface: {reason}")]
     BadCrack {
-        /// Why.
+        /// The reason.
         reason: &'static str,
     },
-    /// A number outside its range.
+    /// A body has no layer of ghost points at its surface.
+    #[error("no ghost layer at the surface: {reason}")]
+    NoGhostLayer {
+        /// The reason and what to do.
+        reason: String,
+    },
+    /// A number is outside its range.
     #[error("{quantity} is {value}; allowed: {allowed}")]
     OutOfRange {
-        /// What the number stands for.
+        /// The quantity.
         quantity: &'static str,
-        /// The number given.
+        /// The value given.
         value: f64,
-        /// What is allowed.
+        /// The allowed range.
         allowed: &'static str,
     },
-    /// A field that is made of single bonds, of a body that does not know them.
+    /// A field is a sum over single bonds, which this form of the forces does not provide.
     #[error(
-        "{field} is a sum over single bonds, which this form of the bonds does not have: use a list or a grid of bonds, or leave the field out"
+        "{field} is a sum over single bonds, which this form of the bonds does not provide; use bonds = \"list\" or \"grid\", or leave the field out"
     )]
     NoSuchField {
         /// The field.
         field: &'static str,
     },
-    /// A field of materials that the body does not have.
-    #[error("{field} is a field of {of}, which this body does not have: leave the field out")]
+    /// A field belongs to materials that the body does not have.
+    #[error("{field} is a field of {of}, which this body does not have; leave the field out")]
     NoMaterialOfField {
         /// The field.
         field: &'static str,
-        /// Which materials have it.
+        /// The materials that have it.
         of: &'static str,
     },
-    /// An influence function that cannot be used here.
+    /// The influence function is not supported here.
     #[error("influence function: {reason}")]
     BadInfluence {
-        /// Why, and what is allowed.
+        /// The reason, and what is allowed.
         reason: String,
     },
-    /// A Poisson ratio that bond-based peridynamics cannot have.
+    /// The Poisson's ratio differs from the fixed one of bond-based peridynamics.
     #[error(
-        "Poisson's ratio {given} cannot be had: bond-based peridynamics in {state} has {fixed} (one constant only); leave it out or give {fixed}"
+        "Poisson's ratio {given} is not supported: bond-based peridynamics in {state} has one elastic constant and Poisson's ratio {fixed}; \
+         leave the ratio out or set it to {fixed}"
     )]
     PoissonRatio {
-        /// The ratio asked for.
+        /// The ratio given.
         given: f64,
-        /// The stress state, in words.
+        /// The stress state.
         state: &'static str,
-        /// The ratio the model has.
+        /// The ratio of the model.
         fixed: f64,
     },
-    /// Elastic constants that no solid has, or too few of them.
+    /// The elastic constants contradict each other, describe no solid, or are too few.
     #[error("elastic constants: {reason}")]
     ElasticConstants {
-        /// Why, and what is allowed.
+        /// The reason, and what is allowed.
         reason: String,
     },
-    /// The time step is larger than the scheme's limit.
+    /// The time step exceeds the stability limit of the scheme.
     #[error(
-        "the time step {dt:e} s is unstable: the highest frequency of the body is {omega:.4e} 1/s, so {scheme} needs dt ≤ {limit:.4e} s (give a smaller dt, \"auto\", or allow_unstable = true)"
+        "the time step {} is unstable: the highest frequency of the body is {} 1/s, so {scheme} needs dt ≤ {} s. Use a smaller dt, dt = \"auto\", \
+         or allow_unstable = true",
+        quantity(*dt, "s"), significant(*omega, 4), significant(*limit, 5)
     )]
     UnstableStep {
-        /// The step asked for, s.
+        /// The step given, s.
         dt: f64,
         /// Highest angular frequency, 1/s.
         omega: f64,
@@ -213,171 +222,173 @@ pub enum PericlesError {
         /// Name of the scheme.
         scheme: &'static str,
     },
-    /// A damping layer that cannot be.
+    /// A damping layer has invalid parameters.
     #[error("damping layer: {reason}")]
     BadDampingLayer {
-        /// Why, and what is allowed.
+        /// The reason, and what is allowed.
         reason: String,
     },
-    /// Nothing in the body resists motion, so that no stable step can be found.
-    #[error("the body has no bond that resists motion: the stable step cannot be found; give dt")]
+    /// No bond resists motion, so that the body has no stable step.
+    #[error("the body has no bond that resists motion, so it has no stable step; give dt")]
     NoStiffness,
-    /// A stored state does not fit this model.
-    #[error("the stored state does not fit: {reason}")]
+    /// A checkpoint does not match the model.
+    #[error("the checkpoint does not match this model: {reason}")]
     BadArchive {
-        /// What is missing or has another size.
+        /// The missing entry, or the one of wrong length.
         reason: String,
     },
-    /// A body that cannot repeat.
-    #[error("only a full box of cells can be periodic: a bar, plate or block without holes")]
+    /// The body cannot be periodic.
+    #[error(
+        "only a full box of cells can be periodic; allowed: a bar, plate or block without holes"
+    )]
     NotPeriodic,
-    /// A form of bonds that does not fit the body.
-    #[error("bonds = \"{form}\" does not fit this body: {reason}")]
+    /// A form of the forces is not available for the body.
+    #[error("bonds = \"{form}\" is not available for this body: {reason}")]
     FormNotUsable {
         /// The form, as in decks.
         form: &'static str,
-        /// Why, and what fits.
+        /// The reason, and what is available.
         reason: &'static str,
     },
-    /// A ratio of time steps below one.
-    #[error("the ratio of the time steps is {ratio}: it must be a whole number of at least 1")]
+    /// The ratio of time steps is below one.
+    #[error("the ratio of the time steps is {ratio}; allowed: a whole number of at least 1")]
     StepRatio {
         /// The ratio given.
         ratio: u32,
     },
-    /// Smaller cells that are not smaller.
-    #[error("part {part} with smaller cells divides them by {ratio}; allowed: 2 or more")]
+    /// The refinement ratio of a region is below two.
+    #[error("refined region {part} divides the cells by {ratio}; allowed: 2 or more")]
     FinerRatio {
-        /// Which of the parts, from 0.
+        /// Index of the region, from 0.
         part: usize,
-        /// The division.
+        /// The ratio given.
         ratio: u32,
     },
-    /// A part with smaller cells in which no cell lies.
-    #[error(
-        "part {part} with smaller cells divides none: no cell's centre lies in it, or later parts hide it"
-    )]
+    /// A refined region contains no cell.
+    #[error("refined region {part} contains no cell centre, or later regions cover it")]
     FinerEmpty {
-        /// Which of the parts, from 0.
+        /// Index of the region, from 0.
         part: usize,
     },
-    /// More parts with smaller cells than can be numbered.
-    #[error("{parts} parts with smaller cells; allowed: at most {most}")]
+    /// There are more refined regions than can be numbered.
+    #[error("{parts} refined regions; allowed: at most {most}")]
     FinerParts {
-        /// The number of parts.
+        /// Number of regions.
         parts: usize,
-        /// The largest number.
+        /// Largest allowed number.
         most: usize,
     },
-    /// What bonds between cells of different sizes cannot do.
-    #[error("a body with cells of several sizes cannot have {what}: {reason}")]
+    /// A feature is not supported on a body with several cell sizes.
+    #[error("{what} is not supported on a body with several cell sizes: {reason}")]
     Graded {
-        /// What was asked for.
+        /// The feature.
         what: &'static str,
-        /// Why not, and what is possible.
+        /// The reason, and what is supported.
         reason: &'static str,
     },
-    /// A fine region without points.
-    #[error("fine region {region} has no points; each needs at least one")]
+    /// A fine region has no points.
+    #[error("fine region {region} has no points; at least one is needed")]
     FineRegionEmpty {
-        /// Which of the regions, from 0.
+        /// Index of the region, from 0.
         region: usize,
     },
-    /// Two fine regions that share a point.
-    #[error("fine regions {first} and {second} overlap, at point {point}: give them as one region")]
+    /// Two fine regions share a point.
+    #[error("fine regions {first} and {second} overlap at point {point}; give them as one region")]
     FineRegionsOverlap {
-        /// One region, from 0.
+        /// Index of one region, from 0.
         first: usize,
-        /// The other.
+        /// Index of the other region.
         second: usize,
         /// A common point, in the user's numbering.
         point: usize,
     },
-    /// A fine region that bonds reach across.
+    /// A fine region is thinner than its longest bond.
     #[error(
-        "fine region {region} is {} thick along {axis}; it must be at least as thick as its longest bond, {}, or bonds of points with the coarse step pass over it",
+        "fine region {region} is {} thick along {axis}; allowed: at least its longest bond, {}, so that no bond between points with the coarse step crosses it",
         quantity(*extent, "m"), quantity(*reach, "m")
     )]
     FineRegionThin {
-        /// Which of the regions, from 0.
+        /// Index of the region, from 0.
         region: usize,
-        /// Its extent, m.
+        /// Its thickness, m.
         extent: f64,
         /// The axis, x, y or z.
         axis: char,
         /// Length of the longest bond, m.
         reach: f64,
     },
-    /// A scheme that this body cannot be stepped with.
-    #[error("{scheme} cannot step this body: {reason}")]
+    /// The scheme is not available for the body.
+    #[error("{scheme} is not available for this body: {reason}")]
     SchemeNotUsable {
         /// Name of the scheme.
         scheme: &'static str,
-        /// Why, and what can be done.
+        /// The reason, and what to do.
         reason: &'static str,
     },
-    /// A parameter of a scheme outside its range.
+    /// A parameter of a scheme is outside its range.
     #[error("{parameter} is {value}; allowed: {allowed}")]
     SchemeParameter {
-        /// What the number stands for.
+        /// The parameter.
         parameter: &'static str,
-        /// The number given.
+        /// The value given.
         value: f64,
-        /// The range.
+        /// The allowed range.
         allowed: &'static str,
     },
-    /// An adaptive scheme that finds no step small enough.
+    /// An adaptive scheme reached its smallest step without meeting the tolerance.
     #[error(
-        "at t = {t:e} s no step meets the tolerance: {step:e} s is the smallest that was tried; a looser tolerance or a smoother load helps"
+        "at t = {} s no step meets the tolerance; the smallest tried is {} s. Use a looser tolerance or a smoother load",
+        significant(*t, 4), significant(*step, 3)
     )]
     StepTooSmall {
         /// Time, s.
         t: f64,
-        /// The step, s.
+        /// The smallest step tried, s.
         step: f64,
     },
-    /// A table in time whose rows cannot be used.
+    /// A table of a time function has an unusable row.
     #[error(
-        "row {row} of the table in time cannot be used: at least one row is needed, all numbers finite, each time later than the one before"
+        "row {row} of the time table (counted from 0) is not usable; needed: at least one row, finite numbers, times that increase from row to row"
     )]
     BadTimeTable {
-        /// The row, from 0.
+        /// Index of the row, from 0.
         row: usize,
     },
-    /// An iterative solver that did not reach its tolerance.
+    /// An iterative solver did not reach its tolerance.
     #[error(
-        "{solver} stopped after {iterations} iterations with a residual of {residual:e}, {tolerance:e} was asked for: {cause}; a smaller time step helps"
+        "{solver} did not converge: the residual is {} after {iterations} iterations, the tolerance {} ({cause}). Use a smaller time step",
+        significant(*residual, 3), significant(*tolerance, 3)
     )]
     NotConverged {
-        /// The solver.
+        /// Name of the solver.
         solver: &'static str,
-        /// Its iterations.
+        /// Number of iterations.
         iterations: usize,
         /// Norm of the last residual.
         residual: f64,
-        /// Norm asked for.
+        /// Allowed norm of the residual.
         tolerance: f64,
-        /// What stands in the way.
+        /// The likely cause.
         cause: &'static str,
     },
-    /// A step was asked to stop.
+    /// A step was interrupted on request.
     #[error("the step was interrupted")]
     Interrupted,
-    /// A load step without an equilibrium.
+    /// No equilibrium was found in a load step.
     #[error("{}", no_equilibrium(*t, *iterations, *residual, *tolerance))]
     NoEquilibrium {
         /// Time of the load step, s.
         t: f64,
-        /// Iterations done.
+        /// Number of iterations.
         iterations: u32,
-        /// The residual force over the forces that act.
+        /// Relative residual: unbalanced force over applied force.
         residual: f64,
-        /// The ratio asked for.
+        /// Allowed relative residual.
         tolerance: f64,
     },
-    /// A boundary in a run by a scheme that takes the forces elsewhere within a step.
+    /// A boundary does not support the kind of step that the scheme takes.
     #[error(
-        "absorbing end: {what} is made for {}, not for {scheme}{}",
+        "{what} needs {}, not {scheme}{}",
         schemes_of(needed),
         kind.why_not()
     )]
@@ -386,25 +397,25 @@ pub enum PericlesError {
         what: &'static str,
         /// The scheme of the run.
         scheme: &'static str,
-        /// Where the scheme takes the forces.
+        /// The kind of step of the scheme.
         kind: StepKind,
-        /// The kinds of steps that the boundary is made for.
+        /// The kinds of steps that the boundary supports.
         needed: &'static [StepKind],
     },
-    /// A run longer than what a boundary is made for.
+    /// The run is longer than the absorbing boundary supports.
     #[error(
-        "absorbing end: the run has {steps} steps, its absorbing end is made for {made_for}: make it for all steps of the run"
+        "the run has {steps} steps, but its absorbing boundary was made for {made_for}; make it for all steps of the run"
     )]
     BoundarySteps {
-        /// Steps of the run.
+        /// Number of steps of the run.
         steps: u64,
-        /// Steps of the boundary.
+        /// Number of steps of the boundary.
         made_for: u64,
     },
-    /// What a crate that extends the engine refuses.
+    /// An error of an extension crate.
     #[error(transparent)]
     Extension(Box<dyn std::error::Error + Send + Sync>),
-    /// The inner iteration of a step that does not end.
+    /// The inner iteration of an implicit step did not converge.
     #[error(
         "{}",
         inner_iteration(*t, *iterations, *change, *tolerance, *dt, *omega, *safe)
@@ -412,79 +423,71 @@ pub enum PericlesError {
     InnerIteration {
         /// Time at the end of the step, s.
         t: f64,
-        /// Evaluations allowed.
+        /// Largest allowed number of evaluations.
         iterations: u32,
-        /// Last change of the velocity, m/s; NaN or infinite where the iteration diverged.
+        /// Last change of the velocity, m/s; NaN or infinite if the iteration diverged.
         change: f64,
-        /// Change allowed, m/s.
+        /// Allowed change, m/s.
         tolerance: f64,
-        /// The step, s.
+        /// The time step, s.
         dt: f64,
-        /// Estimate of the highest angular frequency at the state, 1/s.
+        /// Estimate of the highest angular frequency at the current state, 1/s.
         omega: f64,
-        /// A step below dt that converges in as many iterations, s; none if the step is not the reason.
+        /// A smaller step that would converge in as many iterations, s; `None` if the step is not the reason.
         safe: Option<f64>,
     },
-    /// An array of another length than the body needs.
+    /// An array has the wrong length.
     #[error("{what}: {length} entries are given, {needed} are needed")]
     WrongLength {
-        /// What the array holds.
+        /// What the array contains.
         what: &'static str,
-        /// Entries given.
+        /// Number of entries given.
         length: usize,
-        /// Entries needed.
+        /// Number of entries needed.
         needed: usize,
     },
-    /// A set that names a point that the body does not have.
-    #[error("{what}: point {point} is named, the points of the body are 0 to {}", points - 1)]
+    /// A set contains a point that the body does not have.
+    #[error("{what}: point {point} does not exist; the points of the body are 0 to {}", points - 1)]
     NoSuchPoint {
-        /// What the set is for.
+        /// Purpose of the set.
         what: &'static str,
-        /// The number given.
+        /// The point given.
         point: u32,
-        /// Points of the body.
+        /// Number of points of the body.
         points: usize,
     },
-    /// A set of points that cannot be used.
+    /// A set of points is not usable.
     #[error("{what}: {reason}")]
     BadSet {
-        /// What the set is for.
+        /// Purpose of the set.
         what: &'static str,
-        /// Why, and what is allowed.
+        /// The reason, and what is allowed.
         reason: &'static str,
     },
-    /// A name that no face of a body has.
-    #[error("`{name}` is not a face of a body; allowed: -x, +x, -y, +y, -z and +z")]
+    /// No face has this name.
+    #[error("`{name}` is not a face; allowed: -x, +x, -y, +y, -z and +z")]
     UnknownFace {
         /// The name given.
         name: String,
     },
-    /// A value without a default that was not given.
+    /// A required value is missing.
     #[error("{what} is not given: {allowed}")]
     NotGiven {
-        /// What is missing.
+        /// The missing value.
         what: &'static str,
         /// What to give.
         allowed: &'static str,
     },
-    /// Two conditions prescribe the motion of the same point and component.
-    #[error("the motion of point {point} along {axis} is prescribed twice")]
+    /// Two constraints prescribe the same component of the motion of a point.
+    #[error(
+        "the motion of point {point} along {axis} is prescribed twice; leave out one of the constraints"
+    )]
     PrescribedTwice {
-        /// The point's number.
+        /// Number of the point.
         point: usize,
         /// The axis, x, y or z.
         axis: char,
     },
-}
-
-impl PericlesError {
-    /// The refusal of an extension, if it is one of this type.
-    pub fn extension<E: std::error::Error + 'static>(&self) -> Option<&E> {
-        match self {
-            Self::Extension(error) => error.downcast_ref(),
-            _ => None,
-        }
-    }
 }
 
 /// Result with [`PericlesError`].

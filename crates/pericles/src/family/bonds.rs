@@ -1,4 +1,4 @@
-//! All families of a body, in compressed rows of eight.
+//! Neighbour list: the families of all points in compressed rows of eight.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -11,41 +11,43 @@ use crate::error::{PericlesError, Result, positive};
 use crate::lanes::LANES;
 use crate::space::{PointCloud, PointSet, Sites, check_length};
 
-/// What a crack removed.
+/// The effect of a crack on a neighbour list.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Cut {
+pub struct BondCut {
     /// Bonds removed.
     pub bonds: u64,
     /// Points that lost bonds.
     pub points: PointSet,
 }
 
-/// The bonds of every own point: compressed rows whose length is padded to whole groups of [`LANES`].
+/// The neighbour list: the bonds of every own point, in compressed rows padded to whole groups of [`LANES`].
 ///
-/// Group g holds the neighbours `base[g] + offsets[g * LANES + k]`; bit k of `present[g]` says whether its k-th bond exists. Point i owns the groups
-/// `start[i]..start[i + 1]`; one whose neighbours were too far apart for two bytes is split. Padding entries name the neighbour before them, so that computing them
-/// is harmless. Each bond is stored at both of its ends, in ascending order of the neighbour's number.
+/// Group g contains the neighbours `base[g] + offsets[g * LANES + k]`; bit k of `present[g]` is set if its k-th
+/// bond exists. Point i has the groups `start[i]..start[i + 1]`; a group whose neighbours are too far apart for
+/// two-byte offsets is split. Padding entries repeat the previous neighbour, so that computing them is harmless.
+/// Each bond is stored at both of its ends, in ascending order of the neighbour's number.
 ///
-/// Neighbours are [`Sites`]: points, ghosts of other processes and images beyond periodic faces. Methods about the geometry of a bond take the sites of both of its ends; that of point i is [`BondList::site`].
+/// Neighbours are [`Sites`]: points, ghosts of other processes, and images beyond periodic faces. Methods on the
+/// geometry of a bond take the sites of both of its ends; the site of point i is [`BondList::site`].
 #[derive(Debug, Clone)]
 pub struct BondList {
     sites: Arc<Sites>,
     start: Vec<usize>,
     base: Vec<u32>,
     offsets: Vec<u16>,
-    /// Bonds of the geometric family.
+    /// Bonds of the geometric family, one bit each.
     geometric: Vec<u8>,
-    /// Bonds left after pre-cutting.
+    /// Bonds that remain after pre-cutting, one bit each.
     present: Vec<u8>,
     horizons: Horizons,
     correction: VolumeCorrection,
 }
 
-/// How far families reach, m.
+/// Horizons of the points, m.
 #[derive(Debug, Clone)]
 enum Horizons {
     Uniform(f64),
-    /// By site. A bond reaches as far as the farther-reaching of its ends.
+    /// By site. A bond exists within the larger horizon of its two ends.
     PerSite(Vec<f64>),
 }
 
@@ -68,10 +70,10 @@ impl Horizons {
 }
 
 impl BondList {
-    /// The families of a cloud.
+    /// The families of a point cloud with one horizon.
     ///
     /// # Errors
-    /// A horizon that is not positive, or that reaches no neighbour at all.
+    /// A horizon that is not positive or reaches no neighbour of any point.
     pub fn new(
         cloud: &Arc<PointCloud>,
         horizon: f64,
@@ -84,10 +86,11 @@ impl BondList {
         Self::of_sites(sites, reach, horizons, correction, &|_, _, r| r <= reach)
     }
 
-    /// The families of a cloud whose points have different horizons: a bond exists if it is within reach of one of its ends.
+    /// The families of a point cloud with one horizon per point: a bond exists within the larger horizon of its
+    /// ends.
     ///
     /// # Errors
-    /// Horizons that are not positive, not one for each point, or that reach no neighbour at all.
+    /// Horizons that are not positive, not one per point, or reach no neighbour of any point.
     pub fn with_horizons(
         cloud: &Arc<PointCloud>,
         horizons: Vec<f64>,
@@ -137,7 +140,7 @@ impl BondList {
             let mut row = &pairs[row_start[i]..row_start[i + 1]];
             while let Some(&first) = row.first() {
                 let number = sites.number(first as usize);
-                // By numbers in the whole body, so that groups do not depend on the division.
+                // By numbers in the whole body, so that groups do not depend on the division among processes.
                 let near = |&j: &u32| sites.number(j as usize) - number <= u64::from(u16::MAX);
                 let len = row[..row.len().min(LANES)].partition_point(near);
                 let (group, rest) = row.split_at(len);
@@ -165,16 +168,16 @@ impl BondList {
         })
     }
 
-    /// Removes the bonds that meet a crack. Those through periodic faces meet its images too.
+    /// Removes the bonds that meet a crack, or, in periodic bodies, one of its images.
     ///
     /// # Errors
-    /// A crack of another dimension than the cloud's, or without extent.
-    pub fn cut(&mut self, crack: &Crack, rule: EndRule) -> Result<Cut> {
+    /// A crack of another dimension than the body, or without extent.
+    pub fn cut(&mut self, crack: &Crack, rule: EndRule) -> Result<BondCut> {
         let sites = Arc::clone(&self.sites);
         let cloud = sites.cloud();
         if crack.dimension() != cloud.dimension() {
             return Err(PericlesError::WrongDimension {
-                what: "a crack of this kind",
+                what: "this type of crack",
                 needed: ["1", "2", "3"][crack.dimension() - 1],
                 dimension: cloud.dimension(),
             });
@@ -201,7 +204,7 @@ impl BondList {
             })
             .collect();
         let directed = removed.iter().map(|&count| u64::from(count)).sum();
-        Ok(Cut {
+        Ok(BondCut {
             bonds: cloud.domain().count(directed) / 2,
             points: (0..removed.len() as u32)
                 .filter(|&i| removed[i as usize] > 0)
@@ -209,12 +212,12 @@ impl BondList {
         })
     }
 
-    /// The sites that the bonds lead to.
+    /// The sites to which bonds lead.
     pub fn sites(&self) -> &Sites {
         &self.sites
     }
 
-    /// The same, shared.
+    /// The sites to which bonds lead, shared.
     pub(crate) fn shared_sites(&self) -> Arc<Sites> {
         Arc::clone(&self.sites)
     }
@@ -225,7 +228,7 @@ impl BondList {
         self.sites.of_point(i)
     }
 
-    /// First group of each point, and the number of groups at the end.
+    /// First group of each point, and at the end the number of groups.
     pub fn start(&self) -> &[usize] {
         &self.start
     }
@@ -235,7 +238,7 @@ impl BondList {
         self.start[i]..self.start[i + 1]
     }
 
-    /// The neighbours of a group, all below the number of sites.
+    /// The neighbours of a group as site numbers; valid for padding entries too.
     #[inline(always)]
     pub fn group(&self, group: usize) -> [usize; LANES] {
         let base = self.base[group] as usize;
@@ -252,17 +255,17 @@ impl BondList {
         neighbour((&self.base, &self.offsets), entry)
     }
 
-    /// Bonds that exist once the pre-cracks are cut, one byte a group.
+    /// Bonds that exist after pre-cutting, one byte per group.
     pub fn present(&self) -> &[u8] {
         &self.present
     }
 
-    /// Bonds of the geometric family, pre-cut ones included.
+    /// Bonds of the geometric family including pre-cut ones, one byte per group.
     pub fn geometric(&self) -> &[u8] {
         &self.geometric
     }
 
-    /// Whether an entry's bond is left after pre-cutting.
+    /// Returns whether the bond of an entry exists after pre-cutting.
     pub fn is_present(&self, entry: usize) -> bool {
         self.present[entry / LANES] >> (entry % LANES) & 1 == 1
     }
@@ -272,22 +275,22 @@ impl BondList {
         self.start.len() - 1
     }
 
-    /// Never true.
+    /// Returns false: every body has points.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Entries of all families after pre-cutting: each bond counts twice.
+    /// Number of directed bonds after pre-cutting: each bond counts twice.
     pub fn directed_bonds(&self) -> u64 {
         self.present.iter().map(|g| u64::from(g.count_ones())).sum()
     }
 
-    /// Horizon δ, the largest if there are several, m.
+    /// Horizon δ, m; the largest if there are several.
     pub fn horizon(&self) -> f64 {
         self.horizons.largest()
     }
 
-    /// Horizon δ, m, if it is the same everywhere.
+    /// Horizon δ, m, if it is the same for all points.
     pub fn uniform_horizon(&self) -> Option<f64> {
         match &self.horizons {
             Horizons::Uniform(horizon) => Some(*horizon),
@@ -295,12 +298,12 @@ impl BondList {
         }
     }
 
-    /// How cells cut by the horizon count.
+    /// The volume correction for cells cut by the horizon.
     pub fn correction(&self) -> VolumeCorrection {
         self.correction
     }
 
-    /// The neighbours of a point in its geometric family, with the entry's place in the list.
+    /// The neighbours of a point in its geometric family, each with its entry in the list.
     pub fn family(&self, i: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
         self.groups(i).flat_map(move |g| {
             (0..LANES)
@@ -309,14 +312,14 @@ impl BondList {
         })
     }
 
-    /// Calls `visit` for every own point but i that point i is bonded to, once each.
+    /// Calls `visit` once for every own point other than i that has a bond with point i.
     pub(crate) fn for_each_neighbour(&self, i: usize, visit: &mut dyn FnMut(usize)) {
         let family = self.family(i);
         let near = family.filter(|&(entry, _)| self.is_present(entry));
         if self.sites.are_points() {
             return near.for_each(|(_, j)| visit(j));
         }
-        // By images a point may be a neighbour more than once, and its own.
+        // Through periodic images a point may be a neighbour more than once, and a neighbour of itself.
         let mut points: Vec<usize> = near
             .filter_map(|(_, site)| self.sites.own_point(site))
             .collect();
@@ -325,7 +328,8 @@ impl BondList {
         points.into_iter().filter(|&j| j != i).for_each(visit);
     }
 
-    /// One bit for each entry whose bond may break: those between points other than `no_fail`; none if all may.
+    /// One bit per entry, set if the bond may break: bonds with an end in `no_fail` may not. `None` if all bonds
+    /// may break.
     pub(crate) fn breakable(&self, no_fail: &[u32]) -> Option<Vec<u8>> {
         let sites = &self.sites;
         if sites.cloud().domain().all(no_fail.is_empty()) {
@@ -345,7 +349,7 @@ impl BondList {
         Some(breakable)
     }
 
-    /// The partial-volume factor κ of the bond between two sites: the mean of what its ends see.
+    /// Volume fraction κ of the bond between two sites: the mean of the values of its two ends.
     pub fn volume_factor(&self, a: usize, b: usize) -> f64 {
         match &self.horizons {
             Horizons::Uniform(horizon) => {
@@ -356,7 +360,7 @@ impl BondList {
         }
     }
 
-    /// The partial-volume factor κ that site a sees of its bond to b: zero beyond its own reach.
+    /// Volume fraction κ of the bond from a to b with the horizon of site a; zero beyond that horizon.
     pub fn end_factor(&self, a: usize, b: usize) -> f64 {
         let (r, cell, horizon) = (
             self.length(a, b),
@@ -385,7 +389,7 @@ impl BondList {
         self.sites.places().volumes()[site]
     }
 
-    /// Memory of the list, bytes.
+    /// Memory of the neighbour list, bytes.
     pub fn bytes(&self) -> usize {
         self.sites.bytes()
             + size_of_val(&self.start[..])
@@ -435,13 +439,13 @@ mod tests {
     }
 
     #[test]
-    fn interior_families_of_a_plate() {
+    fn interior_family_sizes_of_a_plate_equal_lattice_counts() {
         let cloud = plate(12.0);
         let count = |correction| {
             let bonds = BondList::new(&cloud, 3.0, correction).unwrap();
             bonds.family(6 * 12 + 6).count()
         };
-        // Nodes within 3 spacings: 28; those within 3.5 spacings add (2,2)… up to √10 and √(2²+2²) < 3: 36 in all.
+        // Nodes within 3 spacings: 28. Nodes within 3.5 spacings add (2,2)… up to √10 and √(2²+2²) < 3: 36 in all.
         assert_eq!(count(VolumeCorrection::None), 28);
         assert_eq!(count(VolumeCorrection::Extended), 36);
     }
@@ -461,7 +465,8 @@ mod tests {
         assert_eq!((again.bonds, again.points.len()), (0, 0));
         let mut open = BondList::new(&cloud, 3.0, VolumeCorrection::None).unwrap();
         let kept = cut.bonds - open.cut(&crack, EndRule::Open).unwrap().bonds;
-        // Through the closed end pass the six bonds of types (1,1), twice, and (2,2) … that lie symmetrically about it.
+        // The six bonds of types (1,1), twice, and (2,2) … that lie symmetrically about the closed end pass through
+        // it.
         assert_eq!(kept, 6);
     }
 

@@ -1,14 +1,14 @@
-//! Families: which points are bonded, and how strongly a neighbour's volume counts.
+//! Families: the neighbours of each point within the horizon, and the weights of their volumes.
 //!
-//! A point's family are the points within the horizon δ. [`BondList`] stores all families; [`VolumeCorrection`] weighs cells that the
-//! horizon cuts; [`Crack`] removes bonds before the run starts.
+//! The family of a point contains all points within the horizon δ. [`BondList`] stores all families;
+//! [`VolumeCorrection`] weights cells that the horizon cuts; [`Crack`] removes bonds before the run starts.
 
 mod bonds;
 mod crack;
 mod search;
 mod volume;
 
-pub use bonds::{BondList, Cut};
+pub use bonds::{BondCut, BondList};
 pub use crack::{Crack, Cutter, EndRule};
 pub use search::{pairs_where, pairs_within};
 pub use volume::VolumeCorrection;

@@ -4,17 +4,18 @@ use rayon::prelude::*;
 
 use crate::space::PointCloud;
 
-/// For every point, the points within `reach` (m) of it, itself excluded, ascending. Result in compressed rows: neighbours of i are
-/// `neighbours[start[i]..start[i + 1]]`.
+/// Returns, for every point, the other points within `reach` (m), in ascending order, as compressed rows: the
+/// neighbours of i are `neighbours[start[i]..start[i + 1]]`.
 ///
-/// Points are sorted into cubes of side `reach` by counting; each point looks through the 3^D cubes around its own. On a lattice, lengths are taken
-/// from integer offsets, so that points at exactly the same distance are treated alike. Cost O(N · family), memory
-/// O(N) besides the result.
+/// Points are sorted by counting into cubes of side `reach`; each point searches the 3^D cubes around its own. On a
+/// lattice, lengths are computed from integer offsets, so that points at exactly the same distance are treated
+/// alike. Cost O(N · family); memory O(N) in addition to the result.
 pub fn pairs_within(cloud: &PointCloud, reach: f64) -> (Vec<usize>, Vec<u32>) {
     pairs_where(cloud, reach, &|_, _, distance| distance <= reach)
 }
 
-/// The pairs at most `reach` apart of which `wanted(i, j, distance)` is true. It must be the same from both ends.
+/// Returns the pairs at most `reach` (m) apart for which `wanted(i, j, distance)` is true. The condition must be
+/// symmetric in i and j.
 pub fn pairs_where(
     cloud: &PointCloud,
     reach: f64,
@@ -23,7 +24,7 @@ pub fn pairs_where(
     pairs_of(cloud, cloud.len(), &|k| k, reach, wanted)
 }
 
-/// The same for the places of a cloud that `place` gives for the rows 0 to `rows`.
+/// As [`pairs_where`] for the sites that `place` assigns to the rows 0 to `rows`.
 pub(super) fn pairs_of(
     cloud: &PointCloud,
     rows: usize,
@@ -62,7 +63,7 @@ pub(super) fn pairs_of(
     (start, neighbours)
 }
 
-/// The vector from point i to point j; exact multiples of the spacing on a lattice.
+/// Returns the vector from point i to point j; on a lattice an exact multiple of the spacing.
 pub(crate) fn bond_vector(cloud: &PointCloud, i: usize, j: usize) -> [f64; 3] {
     if let Some(lattice) = cloud.lattice() {
         let (a, b) = (
@@ -87,14 +88,15 @@ struct CellList {
     start: Vec<u32>,
     /// The points, cell by cell.
     order: Vec<u32>,
-    /// Where they are, in the same order, in units of `unit`: integers on a lattice, see [`bond_vector`].
+    /// Their positions in the same order, in units of `unit`: integers on a lattice, see [`bond_vector`].
     places: Vec<[f64; 3]>,
     unit: [f64; 3],
-    /// The place of each point in that order.
+    /// Position of each point in that order.
     rank: Vec<u32>,
 }
 
-/// Coordinates of a point in units of [`CellList::unit`]; their differences give [`bond_vector`], bit for bit.
+/// Returns the coordinates of a point in units of [`CellList::unit`]; their differences equal [`bond_vector`] bit
+/// for bit.
 fn coordinates(cloud: &PointCloud, i: usize) -> [f64; 3] {
     match cloud.lattice() {
         Some(lattice) => lattice.coordinates(lattice.node[i]).map(f64::from),
@@ -106,7 +108,7 @@ impl CellList {
     fn new(cloud: &PointCloud, reach: f64) -> Self {
         let bounds = cloud.bounds();
         let n = cloud.len();
-        // No more cells than points: sparse clouds get larger cells instead of more memory.
+        // At most as many cells as points: sparse clouds get larger cells, not more memory.
         let mut side = reach * (1.0 + 1e-6);
         let shape_for = |side: f64| -> [f64; 3] {
             std::array::from_fn(|c| ((bounds[1][c] - bounds[0][c]) / side).floor().max(1.0))
@@ -154,10 +156,10 @@ impl CellList {
         }
     }
 
-    /// Calls `visit(j, |ξ|)` for the points within reach of point i and some slightly beyond.
+    /// Calls `visit(j, |ξ|)` for the points within reach of point i and for some slightly beyond.
     fn for_each_near(&self, i: usize, reach: f64, mut visit: impl FnMut(usize, f64)) {
         let here = self.places[self.rank[i] as usize];
-        // No root for points that are clearly too far: most of those looked at.
+        // Skips the square root for points clearly out of reach, which are most of the candidates.
         let far = (reach * (1.0 + 1e-6)).powi(2);
         let cell = self.cell_of[i] as usize;
         let at = [
@@ -192,7 +194,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn equals_the_search_over_all_pairs(
+        fn cell_list_finds_the_same_pairs_as_a_full_search(
             dimension in 1usize..=3,
             coordinates in prop::collection::vec(-1.0f64..1.0, 30..90),
             reach in 0.05f64..2.5,

@@ -1,34 +1,36 @@
-//! The bonds of a family that cross a plane.
+//! Integrals over the bonds that cross a plane.
 
 use std::f64::consts::PI;
 
 use super::Influence;
 use super::quadrature::integral;
 
-/// Integrals over the bonds that cross a plane, of the points on one side of it.
+/// Integrals over the bonds that cross a plane from points on one side of it.
 ///
-/// The cap of a point at the distance z from the plane is the part of its family beyond it. With the share p(z) = (1/m) ∫_cap α r² dV of the cap in the weighted volume m = ∫ α r² dV, these are
-/// ∫₀^δ p dz, ∫₀^δ p² dz and ∫₀^δ (volume of the cap) dz.
+/// The cap of a point at distance z from the plane is the part of its family beyond the plane. With the fraction
+/// p(z) = (1/m) ∫_cap α r² dV of the cap in the weighted volume m = ∫ α r² dV, the integrals are ∫₀^δ p dz, ∫₀^δ p²
+/// dz and ∫₀^δ (volume of the cap) dz.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CapIntegrals {
     /// ∫ p dz, m.
     pub share: f64,
     /// ∫ p² dz, m.
     pub share_squared: f64,
-    /// ∫∫_cap dV dz: m² in one dimension, m³ in two, m⁴ in three, each per section of the body.
+    /// ∫∫_cap dV dz per cross-section of the body: m² in one dimension, m³ in two, m⁴ in three.
     pub volume: f64,
 }
 
 impl Influence {
-    /// The weighted volume ∫ α r² dV of a whole family: m³ in one dimension, m⁴ in two, m⁵ in three, times the unit of α, each per section of the body.
+    /// Returns the weighted volume ∫ α r² dV of a full family per cross-section of the body: m³ in one dimension,
+    /// m⁴ in two, m⁵ in three, times the unit of α.
     pub fn weighted_volume(&self, dimension: usize, horizon: f64) -> f64 {
         sphere(dimension) * self.moment((dimension + 1) as f64, horizon)
     }
 
-    /// The integrals over caps of the continuum.
+    /// Returns the cap integrals of the continuum.
     pub fn cap_integrals(&self, dimension: usize, horizon: f64) -> CapIntegrals {
         let whole = self.weighted_volume(dimension, horizon);
-        // ∫ (ξ·n) q dV over half of a ball is this times ∫ q r^dimension dr.
+        // ∫ (ξ·n) q dV over half of a ball is this constant times ∫ q r^dimension dr.
         let half = [1.0, 2.0, PI][dimension - 1];
         let power = (dimension + 1) as i32;
         let square = |z: f64| (self.cap(dimension, horizon, z) / whole).powi(2);
@@ -41,9 +43,9 @@ impl Influence {
         }
     }
 
-    /// ∫ α r² over the cap beyond a plane at the distance z.
+    /// Returns ∫ α r² dV over the cap beyond a plane at distance z.
     fn cap(&self, dimension: usize, horizon: f64, z: f64) -> f64 {
-        // Measure of the directions at distance r that cross the plane, over dr.
+        // Measure of the directions at distance r that cross the plane, per dr.
         let crossing = |r: f64| match dimension {
             1 => 1.0,
             2 => 2.0 * r * (z / r).min(1.0).acos(),
@@ -52,7 +54,7 @@ impl Influence {
         let mut breaks = self.smooth_pieces(horizon);
         breaks.retain(|r| *r > z);
         breaks.insert(0, z);
-        // The arc grows with the root of r − z.
+        // The arc grows as the square root of r − z.
         let integrand = |x: f64| {
             let r = z + x * x;
             2.0 * x * self.alpha(r, horizon) * r * r * crossing(r)
@@ -64,7 +66,8 @@ impl Influence {
             .sum()
     }
 
-    /// Pieces of 0 … horizon on which the caps are smooth: towards zero in powers of two, where they are not analytic in the plane.
+    /// Returns the ends of pieces of 0 … horizon on which the caps are smooth. They are halved towards zero,
+    /// because the caps are not analytic at the plane.
     fn breaks_of_distances(&self, horizon: f64) -> Vec<f64> {
         let mut breaks = self.smooth_pieces(horizon);
         breaks.extend((0..=12).map(|k| horizon * 0.5f64.powi(k)));
@@ -74,7 +77,7 @@ impl Influence {
     }
 }
 
-/// Length, circumference and area of the unit sphere: the measure of all directions.
+/// Measure of all directions: 2 ends of a line, circumference of the unit circle, area of the unit sphere.
 fn sphere(dimension: usize) -> f64 {
     [2.0, 2.0 * PI, 4.0 * PI][dimension - 1]
 }
@@ -91,7 +94,8 @@ mod tests {
         }
     }
 
-    /// ∫ p dz/δ and ∫ p² dz/δ: the first by closed forms, the second of 1/r in three dimensions by its closed form 26/405, others by an independent quadrature with mpmath.
+    /// ∫ p dz/δ and ∫ p² dz/δ: the first from closed forms; the second for 1/r in three dimensions from its closed form
+    /// 26/405, others from an independent quadrature with mpmath.
     #[test]
     fn caps_of_usual_functions() {
         let cases = [
@@ -152,8 +156,8 @@ mod tests {
     }
 
     #[test]
-    fn caps_share_the_family_between_them() {
-        // ∫ p dz by the caps themselves is that of the closed form.
+    fn cap_integrals_from_caps_equal_their_closed_forms() {
+        // ∫ p dz from the caps equals the closed form.
         let gaussian = of(InfluenceFunction::Gaussian {
             length: 0.4,
             cutoff: None,

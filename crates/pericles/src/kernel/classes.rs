@@ -1,12 +1,12 @@
-//! Influence functions given per class of lattice bonds.
+//! Influence functions given by a value per class of lattice bonds.
 
 use crate::error::{PericlesError, Result, positive};
 
-/// A class of bonds: the offsets of a lattice that its symmetries turn into each other, named by the absolute offsets in
-/// descending order, such as (2, 1, 0).
+/// A class of bonds: lattice offsets that the symmetries of the lattice map to each other, named by their absolute
+/// values in descending order, such as (2, 1, 0).
 pub type ClassOffset = [i32; 3];
 
-/// A number for every class of bonds of a square or cubic lattice.
+/// A value for every class of bonds of a square or cubic lattice.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ClassTable {
     dimension: usize,
@@ -16,10 +16,12 @@ pub struct ClassTable {
 }
 
 impl ClassTable {
-    /// A table for the lattice of the given dimension and spacing (m). Offsets may be given in any order and sign.
+    /// Makes a table for a lattice of given dimension and spacing (m). Offsets may be given in any order and with
+    /// any sign.
     ///
     /// # Errors
-    /// An empty table, a class given twice, offsets along axes that the dimension has not, values that are not finite.
+    /// An empty table; a class given twice; an offset along an axis beyond the dimension; values that are not
+    /// finite.
     pub fn new(dimension: usize, spacing: f64, entries: &[(ClassOffset, f64)]) -> Result<Self> {
         let refuse = |reason: String| Err(PericlesError::BadInfluence { reason });
         positive("the spacing of a table per class", spacing)?;
@@ -31,22 +33,23 @@ impl ClassTable {
         for (offset, value) in &entries {
             if *offset == [0; 3] || offset[dimension.min(3)..].iter().any(|c| *c != 0) {
                 return refuse(format!(
-                    "({}, {}, {}) is no bond of a lattice of dimension {dimension}: allowed are offsets with at most {dimension} \
-                     numbers other than zero, and at least one",
+                    "({}, {}, {}) is not a bond of a lattice of dimension {dimension}; allowed: offsets with 1 to {dimension} nonzero components",
                     offset[0], offset[1], offset[2]
                 ));
             }
             if !value.is_finite() {
-                return refuse(format!("a value per class must be finite, not {value}"));
+                return refuse(format!(
+                    "the value {value} of a class is not finite; allowed: finite numbers"
+                ));
             }
         }
         if let Some(twice) = entries.windows(2).find(|pair| pair[0].0 == pair[1].0) {
             return refuse(format!(
-                "the class ({}, {}, {}) is given twice",
+                "the class ({}, {}, {}) is given twice; leave out one of the values",
                 twice[0].0[0], twice[0].0[1], twice[0].0[2]
             ));
         }
-        // Classes of one length count by their number of bonds.
+        // Classes of equal length are averaged, weighted by their numbers of bonds.
         let mut chord: Vec<(f64, f64)> = Vec::new();
         for same in entries.chunk_by(|a, b| square(a.0) == square(b.0)) {
             let weight = |offset| multiplicity(offset, dimension) as f64;
@@ -72,23 +75,24 @@ impl ClassTable {
         self.spacing
     }
 
-    /// Classes with their values, by length.
+    /// Classes with their values, ordered by length.
     pub fn entries(&self) -> &[(ClassOffset, f64)] {
         &self.entries
     }
 
-    /// Points (r, mean value) of the polygon that stands for the table where a function of r is needed.
+    /// Points (r, mean value) of the piecewise linear function that replaces the table where a function of r is
+    /// needed.
     pub fn chord(&self) -> &[(f64, f64)] {
         &self.chord
     }
 
-    /// The value of a bond with vector ξ, m; zero for classes that the table does not have.
+    /// Returns the value of a bond with vector ξ, m; zero for classes not in the table.
     pub fn value(&self, xi: [f64; 3]) -> f64 {
         self.lookup(xi.map(|x| (x / self.spacing).round() as i32))
             .unwrap_or(0.0)
     }
 
-    /// The value of the class of an offset, if the table has it.
+    /// Returns the value of the class of an offset, if the table contains it.
     pub fn lookup(&self, offset: [i32; 3]) -> Option<f64> {
         let class = class_of(offset);
         let found = self
@@ -97,7 +101,7 @@ impl ClassTable {
         found.ok().map(|entry| self.entries[entry].1)
     }
 
-    /// Whether a value is negative.
+    /// Returns whether any value is negative.
     pub fn is_signed(&self) -> bool {
         self.entries.iter().any(|(_, value)| *value < 0.0)
     }
@@ -114,14 +118,14 @@ impl ClassTable {
     }
 }
 
-/// The class of an offset.
+/// Returns the class of an offset.
 pub fn class_of(offset: [i32; 3]) -> ClassOffset {
     let mut class = offset.map(i32::abs);
     class.sort_unstable_by(|a, b| b.cmp(a));
     class
 }
 
-/// Number of offsets in a class: all signs and orders along the axes of the dimension.
+/// Number of offsets in a class: all signs and permutations within the dimension.
 pub fn multiplicity(class: ClassOffset, dimension: usize) -> usize {
     let axes = &class[..dimension];
     let factorial = |n: usize| (1..=n).product::<usize>();
@@ -137,7 +141,7 @@ fn square(class: ClassOffset) -> i32 {
     class.iter().map(|c| c * c).sum()
 }
 
-/// By length; of one length, the longest axis first, as in (3, 0, 0), (2, 2, 1).
+/// Sort key: by length, then by the longest component first, as in (3, 0, 0), (2, 2, 1).
 fn class_order(class: ClassOffset) -> (i32, [std::cmp::Reverse<i32>; 3]) {
     (square(class), class.map(std::cmp::Reverse))
 }
@@ -147,7 +151,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn multiplicities_are_the_numbers_of_offsets() {
+    fn multiplicities_equal_the_numbers_of_offsets() {
         for dimension in 1..=3 {
             let axis = |c: usize| if c < dimension { -3..=3 } else { 0..=0 };
             let mut counts = std::collections::BTreeMap::new();
@@ -165,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn classes_of_one_length_keep_their_own_values() {
+    fn classes_of_equal_length_keep_their_own_values() {
         let table = ClassTable::new(
             3,
             0.5,
@@ -183,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn bad_tables_are_refused() {
+    fn invalid_tables_are_refused() {
         for entries in [
             &[][..],
             &[([0, 0, 0], 1.0)],

@@ -1,9 +1,10 @@
-//! The functions and where they act.
+//! Influence functions: shape and the quantity they multiply.
 
 use super::ClassTable;
 use crate::error::{PericlesError, Result, positive};
+use crate::units::precise;
 
-/// The shape g(r) of an influence function; δ is the horizon.
+/// Shape g(r) of an influence function; δ is the horizon.
 #[derive(Debug, Clone, PartialEq)]
 pub enum InfluenceFunction {
     /// g = 1.
@@ -21,41 +22,43 @@ pub enum InfluenceFunction {
     Gaussian {
         /// The length l, m.
         length: f64,
-        /// Cut-off, m; at most the horizon, which is the cut-off if none is given.
+        /// Cut-off, m; at most the horizon, which is the default.
         cutoff: Option<f64>,
     },
-    /// Piecewise linear through (r, g), constant before the first and after the last entry.
+    /// Piecewise linear interpolation of (r, g), constant before the first and after the last entry.
     Tabulated {
-        /// Ascending r (m) with values.
+        /// Pairs (r in m, g) with increasing r.
         table: Vec<(f64, f64)>,
     },
     /// g = a₀ + Σ_j a_j cos(j wavenumber r).
     Cosines {
-        /// The wavenumber of the first cosine, rad/m.
+        /// Wavenumber of the first cosine, rad/m.
         wavenumber: f64,
         /// a₀, a₁ …
         coefficients: Vec<f64>,
     },
-    /// A number per class of a lattice's bonds, as tuned against dispersion; it need not be a function of r.
+    /// A value per class of lattice bonds, as obtained by tuning against the dispersion relation; not necessarily a
+    /// function of r.
     Classes(ClassTable),
 }
 
-/// What the function multiplies.
+/// The quantity that the influence function multiplies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ActsOn {
-    /// The stretch: α = g, force density c g s. In 1D the micromodulus is C(r) = c g(r) / r.
+    /// The stretch s: α = g, force density c g s. In 1D the micromodulus is C(r) = c g(r) / r.
     #[default]
     Stretch,
-    /// The relative displacement: force density c g (r s), that is α = r g. In 1D the micromodulus is C(r) = c g(r).
+    /// The relative displacement r s: force density c g r s, that is α = r g. In 1D the micromodulus is C(r) = c
+    /// g(r).
     Displacement,
 }
 
-/// An influence function as used by a material.
+/// The influence function of a material.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Influence {
     /// Its shape.
     pub function: InfluenceFunction,
-    /// What it multiplies.
+    /// The quantity it multiplies.
     pub acts_on: ActsOn,
 }
 
@@ -69,8 +72,8 @@ impl Default for Influence {
 }
 
 impl Influence {
-    /// α at reference length r (m). Cells that reach into the horizon although their centre lies beyond it take the value at
-    /// the horizon: that is where their partial volume lies.
+    /// Returns α at reference length r (m). Cells that overlap the horizon with their centre beyond it take the
+    /// value at the horizon, where their partial volume lies.
     pub fn alpha(&self, r: f64, horizon: f64) -> f64 {
         let r = r.min(horizon);
         let shape = match &self.function {
@@ -98,8 +101,8 @@ impl Influence {
         }
     }
 
-    /// α of a bond with reference vector ξ (m): what operators use. Differs from [`Influence::alpha`] at |ξ| for tables per class only, where two
-    /// classes may have one length.
+    /// Returns α of a bond with reference vector ξ (m), as used by force operators. It differs from
+    /// [`Influence::alpha`] at |ξ| only for class tables, where two classes may have equal length.
     pub fn alpha_of(&self, xi: [f64; 3], horizon: f64) -> f64 {
         let r = (xi[0] * xi[0] + xi[1] * xi[1] + xi[2] * xi[2]).sqrt();
         match (&self.function, self.acts_on) {
@@ -109,21 +112,23 @@ impl Influence {
         }
     }
 
-    /// Checks the parameters for a body of `dimension` with the given horizon.
+    /// Checks the parameters for a body of given dimension and horizon.
     ///
     /// # Errors
-    /// Lengths that are not positive; a table that is not ascending; an exponent for which the modulus integral
+    /// Lengths that are not positive; a table whose r does not increase; an exponent for which the modulus integral
     /// ∫ α r^dimension dr diverges.
     pub fn check(&self, dimension: usize, horizon: f64) -> Result<()> {
         let refuse = |reason: String| Err(PericlesError::BadInfluence { reason });
         match &self.function {
             InfluenceFunction::Gaussian { length, cutoff } => {
-                positive("the Gaussian's length", *length)?;
+                positive("the length of the Gaussian", *length)?;
                 if let Some(end) = cutoff {
-                    positive("the Gaussian's cut-off", *end)?;
+                    positive("the cut-off of the Gaussian", *end)?;
                     if *end > horizon * (1.0 + 1e-9) {
                         return refuse(format!(
-                            "the cut-off {end} m lies beyond the horizon {horizon} m; the horizon is the largest cut-off"
+                            "the cut-off {} is beyond the horizon {}; allowed: at most the horizon",
+                            precise(*end, "m"),
+                            precise(horizon, "m")
                         ));
                     }
                 }
@@ -135,7 +140,7 @@ impl Influence {
                     .all(|(r, g)| r.is_finite() && *r >= 0.0 && g.is_finite());
                 if table.is_empty() || !ascending || !finite {
                     return refuse(
-                        "a table needs at least one pair (r, value), finite, with r ≥ 0 ascending"
+                        "a table needs at least one pair (r, value); allowed: finite numbers, r ≥ 0 and increasing"
                             .into(),
                     );
                 }
@@ -146,11 +151,13 @@ impl Influence {
             } => {
                 positive("the wavenumber of the cosines", *wavenumber)?;
                 if coefficients.is_empty() || coefficients.iter().any(|a| !a.is_finite()) {
-                    return refuse("cosines need at least the coefficient a₀, all finite".into());
+                    return refuse(
+                        "cosines need at least the coefficient a₀; allowed: finite numbers".into(),
+                    );
                 }
             }
             InfluenceFunction::Classes(table) => {
-                // Its modulus is a lattice sum, which only the body knows.
+                // Its modulus is a lattice sum, which is computed with the body.
                 return table.check_dimension(dimension);
             }
             _ => {}
@@ -159,24 +166,25 @@ impl Influence {
         let power = exponent + dimension as f64;
         if !power.is_finite() || power <= -1.0 {
             return refuse(format!(
-                "the exponent {} makes the modulus infinite in dimension {dimension}; it must exceed {}",
+                "the exponent {} makes the modulus infinite in dimension {dimension}; allowed: more than {}",
                 exponent - self.shift(),
                 -1.0 - dimension as f64 - self.shift()
             ));
         }
         if self.moment(dimension as f64, horizon) <= 0.0 {
-            return refuse("its modulus integral ∫ α r^dimension dr must be positive".into());
+            return refuse("the modulus integral ∫ α r^dimension dr must be positive".into());
         }
         Ok(())
     }
 
-    /// Whether α is negative anywhere within the horizon: such bonds store energy with the wrong sign and must not break.
+    /// Returns whether α is negative anywhere within the horizon: such bonds store negative energy and must not
+    /// break.
     pub fn is_signed(&self, horizon: f64) -> bool {
         match &self.function {
             InfluenceFunction::Tabulated { table } => table.iter().any(|(_, g)| *g < 0.0),
             InfluenceFunction::Classes(table) => table.is_signed(),
             InfluenceFunction::Cosines { .. } => {
-                // Twenty samples to a period of the highest cosine.
+                // Twenty samples per period of the highest cosine.
                 let samples = 20 * self.cosine_waves(horizon).ceil() as usize;
                 (0..=samples)
                     .any(|k| self.alpha(horizon * k as f64 / samples as f64, horizon) < 0.0)
@@ -185,7 +193,7 @@ impl Influence {
         }
     }
 
-    /// Periods of the highest cosine within the horizon, at least one.
+    /// Number of periods of the highest cosine within the horizon, at least one.
     pub(super) fn cosine_waves(&self, horizon: f64) -> f64 {
         match &self.function {
             InfluenceFunction::Cosines {
@@ -193,14 +201,14 @@ impl Influence {
                 coefficients,
             } => {
                 let highest = wavenumber * coefficients.len() as f64;
-                // Beyond a thousand periods no deck means it.
+                // A thousand periods are more than any real input has.
                 (highest * horizon / std::f64::consts::TAU).clamp(1.0, 1e3)
             }
             _ => 1.0,
         }
     }
 
-    /// 1 where α carries an extra factor r.
+    /// Returns 1 where α has an additional factor r, else 0.
     pub(super) fn shift(&self) -> f64 {
         match self.acts_on {
             ActsOn::Stretch => 0.0,
@@ -208,7 +216,7 @@ impl Influence {
         }
     }
 
-    /// α ~ factor · r^exponent as r → 0.
+    /// Returns (factor, exponent) of α ~ factor · r^exponent as r → 0.
     fn leading_power(&self) -> (f64, f64) {
         let exponent = match &self.function {
             InfluenceFunction::Inverse => -1.0,
@@ -225,7 +233,7 @@ pub(super) fn cosines(coefficients: &[f64], angle: f64) -> f64 {
     terms.map(|(j, a)| a * (j as f64 * angle).cos()).sum()
 }
 
-/// The polygon through the points of a table, constant outside.
+/// Piecewise linear interpolation of a table, constant outside.
 pub(super) fn interpolate(table: &[(f64, f64)], r: f64) -> f64 {
     let after = table.partition_point(|(x, _)| *x <= r);
     match (after.checked_sub(1).map(|k| table[k]), table.get(after)) {
@@ -249,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn moments_have_their_closed_forms() {
+    fn moments_equal_their_closed_forms() {
         let delta: f64 = 0.7;
         let cases: [(InfluenceFunction, f64, f64); 6] = [
             (InfluenceFunction::Constant, 2.0, delta.powi(3) / 3.0),
@@ -288,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn a_table_of_a_line_has_the_line_s_moments() {
+    fn a_table_of_a_linear_function_has_its_moments() {
         let delta = 2.0;
         let table = on_stretch(InfluenceFunction::Tabulated {
             table: vec![(0.0, 1.0), (0.3, 0.85), (2.0, 0.0)],
@@ -313,7 +321,7 @@ mod tests {
     }
 
     #[test]
-    fn bad_functions_are_refused() {
+    fn invalid_functions_are_refused() {
         let power = |exponent| on_stretch(InfluenceFunction::Power { exponent });
         assert!(power(-2.0).check(1, 1.0).is_err());
         assert!(power(-1.9).check(1, 1.0).is_ok());

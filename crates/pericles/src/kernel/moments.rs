@@ -5,8 +5,9 @@ use super::quadrature::integral;
 use super::{Influence, InfluenceFunction};
 
 impl Influence {
-    /// The moment m_q = ∫₀^δ α(r) r^q dr, by closed form for powers and by Gauss–Legendre quadrature (exact to round-off) for
-    /// the Gaussian, cosines and the pieces of a table. A table per class stands for the polygon through its values.
+    /// Returns the moment m_q = ∫₀^δ α(r) r^q dr: by closed form for powers, by Gauss–Legendre quadrature (exact to
+    /// round-off) for Gaussians, cosines and the pieces of a table. A class table is replaced by its piecewise
+    /// linear function.
     pub fn moment(&self, q: f64, horizon: f64) -> f64 {
         // ∫₀^δ r^p dr
         let power = |p: f64| horizon.powf(p + 1.0) / (p + 1.0);
@@ -18,7 +19,8 @@ impl Influence {
             InfluenceFunction::Power { exponent } => power(q + exponent) / horizon.powf(*exponent),
             InfluenceFunction::Gaussian { length, cutoff } => {
                 let end = cutoff.unwrap_or(horizon).min(horizon);
-                // Beyond 7 lengths the integrand is below round-off; a piece per length keeps the quadrature exact.
+                // Beyond 7 lengths the integrand is below round-off; one piece per length keeps the quadrature
+                // exact.
                 let end = end.min(7.0 * length + 7.0 * length * q.max(0.0).sqrt());
                 let pieces = (end / length).ceil().max(1.0) as usize;
                 quadrature(&equal_pieces(end, pieces), |r| {
@@ -41,11 +43,12 @@ impl Influence {
 }
 
 impl Influence {
-    /// Limits of pieces of 0 … horizon on which α is smooth on the scale of the piece: quadratures with many nodes are exact there.
+    /// Returns the ends of pieces of 0 … horizon on which α is smooth, so that quadratures with many nodes are
+    /// exact to round-off.
     pub fn smooth_pieces(&self, horizon: f64) -> Vec<f64> {
         match &self.function {
             InfluenceFunction::Gaussian { length, cutoff } => {
-                // Beyond seven lengths nothing is left.
+                // Beyond seven lengths α is negligible.
                 let end = cutoff.unwrap_or(horizon).min(horizon).min(7.0 * length);
                 equal_pieces(end, (end / length).ceil().max(1.0) as usize)
             }
@@ -60,7 +63,7 @@ impl Influence {
                 equal_pieces(horizon, self.cosine_waves(horizon).ceil() as usize)
             }
             InfluenceFunction::Power { .. } => {
-                // Towards a root or pole at zero in powers of two.
+                // Halved towards a root or pole at zero.
                 let halvings = (0..=40).rev().map(|k| horizon * 0.5f64.powi(k));
                 std::iter::once(0.0).chain(halvings).collect()
             }
@@ -69,7 +72,7 @@ impl Influence {
     }
 }
 
-/// ∫₀^horizon of the polygon through a table times r^q.
+/// Returns ∫₀^horizon of a piecewise linear table times r^q.
 fn polygon(table: &[(f64, f64)], q: f64, horizon: f64) -> f64 {
     let mut breaks = vec![0.0];
     let inside = table.iter().map(|(r, _)| *r);
@@ -84,7 +87,7 @@ fn equal_pieces(end: f64, pieces: usize) -> Vec<f64> {
         .collect()
 }
 
-/// Gauss–Legendre with 32 nodes on each piece.
+/// Gauss–Legendre quadrature with 32 nodes on each piece.
 fn quadrature(breaks: &[f64], integrand: impl Fn(f64) -> f64) -> f64 {
     breaks
         .windows(2)

@@ -1,6 +1,7 @@
 //! Gauss–Legendre quadrature.
 
-/// Positive nodes and their weights of the rule with 32 nodes on [−1, 1] (zeros of the Legendre polynomial P₃₂, correctly rounded).
+/// Positive nodes and weights of the 32-node rule on [−1, 1] (zeros of the Legendre polynomial P₃₂, correctly
+/// rounded).
 const RULE: [(f64, f64); 16] = [
     (0.9972638618494816, 0.007018610009470096),
     (0.9856115115452684, 0.01627439473090567),
@@ -20,7 +21,7 @@ const RULE: [(f64, f64); 16] = [
     (0.04830766568773832, 0.0965400885147278),
 ];
 
-/// ∫ₐᵇ f(x) dx with 32 nodes: exact to round-off for polynomials up to degree 63.
+/// Returns ∫ₐᵇ f(x) dx with 32 nodes, exact to round-off for polynomials up to degree 63.
 pub(super) fn integral(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
     let (half, middle) = (0.5 * (b - a), 0.5 * (b + a));
     let pairs = RULE.iter();

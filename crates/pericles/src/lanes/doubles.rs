@@ -1,15 +1,15 @@
-//! Eight doubles as an array: what every machine has.
+//! Eight doubles as an array, for every instruction set.
 
 use super::lanewise::lanewise;
 use super::numbers::{LANES, Lanes, Real, Row, Vector, vector};
 
-/// Eight numbers.
+/// Eight doubles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(align(64))]
 pub struct F64x8(pub [f64; LANES]);
 
 impl F64x8 {
-    /// Number by number.
+    /// Makes the lanes from a function of their index.
     #[inline(always)]
     pub fn from_fn(mut number: impl FnMut(usize) -> f64) -> Self {
         let mut lanes = [0.0; LANES];
@@ -19,13 +19,13 @@ impl F64x8 {
         Self(lanes)
     }
 
-    /// The lanes whose bit is set in `mask`; zero in the others, whatever they hold.
+    /// Returns the lanes whose bit is set in `mask`, and zero in the others, even if they are NaN.
     #[inline(always)]
     pub fn masked(self, mask: u8) -> Self {
         Self::from_fn(|k| if mask >> k & 1 == 1 { self.0[k] } else { 0.0 })
     }
 
-    /// One bit per lane: self > other. NaN compares false.
+    /// Returns one bit per lane: self > other. NaN compares false.
     #[inline(always)]
     pub fn greater(self, other: Self) -> u8 {
         let mut mask = 0;
@@ -35,7 +35,7 @@ impl F64x8 {
         mask
     }
 
-    /// The sum of the lanes, in a fixed order.
+    /// Returns the sum of the lanes, in a fixed order.
     #[inline(always)]
     pub fn sum(self) -> f64 {
         let a = self.0;
@@ -104,7 +104,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn masks() {
+    fn masked_lanes_and_comparisons() {
         let numbers = F64x8([1.0, f64::NAN, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0]);
         assert_eq!(numbers.masked(0b1000_0101).sum(), 12.0);
         assert_eq!(numbers.greater(F64x8::splat(4.5)), 0b1111_0000);

@@ -1,21 +1,23 @@
-//! Eight numbers in registers of x86-64's vector extensions.
+//! Eight doubles in registers of the vector extensions of x86-64.
 //!
-//! These types may only be used in functions compiled for their set, which `for_each_instruction_set` sees to: it alone
-//! names them, and calls such a function only after [`super::InstructionSet::detect`] has found the set.
+//! These types may only be used in functions compiled for their instruction set. `for_each_instruction_set` ensures
+//! this: only it names them, and it calls such a function only after [`super::InstructionSet::detect`] has found
+//! the set.
 //!
-//! No closures and no adapters here, nor in the loops that use these types: compilers inline them at their own judgement, and a copy that is called takes the instructions of
-//! the baseline and passes all registers through memory. `.ci/inlined.sh` looks for such calls.
+//! This file and the loops that use these types contain no closures or iterator adapters: compilers inline them at
+//! their discretion, and a copy that is called uses baseline instructions and passes all registers through memory.
+//! `.ci/inlined.sh` searches for such calls.
 
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::numbers::{LANES, Lanes, Real, Row, Vector};
 
-/// Eight numbers in one 512-bit register.
+/// Eight doubles in one 512-bit register.
 #[derive(Clone, Copy)]
 pub struct Avx512x8(__m512d);
 
-/// Eight numbers in two 256-bit registers.
+/// Eight doubles in two 256-bit registers.
 #[derive(Clone, Copy)]
 pub struct Avx2x8(__m256d, __m256d);
 
@@ -92,7 +94,7 @@ impl Real for Avx2x8 {
     }
 }
 
-/// The four numbers of a row.
+/// Loads the four numbers of a row.
 ///
 /// # Safety
 /// The index is below `rows.len()`, and the caller is compiled for AVX2.
@@ -102,7 +104,7 @@ unsafe fn four(rows: &[Row], index: usize) -> __m256d {
     unsafe { _mm256_load_pd(rows.get_unchecked(index).0.as_ptr()) }
 }
 
-/// Two rows side by side.
+/// Loads two rows into one register.
 ///
 /// # Safety
 /// The indices are below `rows.len()`, and the caller is compiled for AVX-512.
@@ -112,7 +114,7 @@ unsafe fn pair(rows: &[Row], a: usize, b: usize) -> __m512d {
     unsafe { _mm512_insertf64x4::<1>(_mm512_castpd256_pd512(four(rows, a)), four(rows, b)) }
 }
 
-/// The numbers of four rows, number by number.
+/// Transposes four rows: register c contains number c of each row.
 ///
 /// # Safety
 /// The indices are below `rows.len()`, and the caller is compiled for AVX2.
@@ -132,7 +134,8 @@ unsafe fn turned(rows: &[Row], a: usize, b: usize, c: usize, d: usize) -> [__m25
     }
 }
 
-/// 1/√x from a seed y with eleven good bits or more: y (1 − e)^(−1/2) with e = 1 − x y², as a series of which the next term is below round-off.
+/// Returns 1/√x from an estimate y with at least eleven correct bits: y (1 − e)^(−1/2) with e = 1 − x y², as a
+/// series whose next term is below round-off.
 #[inline(always)]
 fn refined<T: Lanes>(x: T, seed: T) -> T {
     let e = (-(x * seed)).mul_add(seed, T::splat(1.0));
@@ -186,7 +189,8 @@ impl Lanes for Avx512x8 {
         // SAFETY: the slice holds eight numbers.
         Self(unsafe { _mm512_cvtps_pd(_mm256_loadu_ps(numbers.as_ptr())) })
     }
-    /// Eight rows of four are loaded in pairs and turned by eleven exchanges: fewer loads than three gathers, and they stay in line.
+    /// Loads eight rows of four in pairs and transposes them with eleven shuffles: fewer loads than three gathers,
+    /// each within a cache line.
     #[inline(always)]
     unsafe fn gather(rows: &[Row], indices: [usize; LANES]) -> [Self; 4] {
         // SAFETY: the indices are in range, as the caller has promised.
@@ -222,7 +226,7 @@ impl Lanes for Avx512x8 {
     }
 }
 
-/// Four words, all bits set where the index has a bit.
+/// Four words per nibble, all bits of a word set where the nibble has a bit.
 static NIBBLES: [[u64; 4]; 16] = {
     let mut table = [[0; 4]; 16];
     let mut bits = 0;
@@ -239,7 +243,7 @@ static NIBBLES: [[u64; 4]; 16] = {
     table
 };
 
-/// The half of a register that a nibble keeps.
+/// Returns the half register with the lanes of a nibble; the others are zero.
 #[inline(always)]
 fn kept(half: __m256d, nibble: u8) -> __m256d {
     let words = &NIBBLES[usize::from(nibble)];

@@ -1,23 +1,23 @@
-//! Sixteen floats side by side: half the memory and twice the bonds per instruction, at seven digits.
+//! Sixteen floats in a vector: half the memory and twice the bonds per instruction, with seven digits.
 //!
-//! They are two chunks of eight that lie anywhere, so that loops which take chunks one by one take two at a time.
+//! They belong to two independent chunks of eight, so that loops over single chunks process two at a time.
 
 use super::lanewise::lanewise;
 use super::numbers::{LANES, Real, Vector};
 
-/// Numbers of two chunks.
+/// Count of numbers in two chunks.
 pub const FLOATS: usize = 2 * LANES;
 
 /// Sixteen floats of two chunks.
 pub trait FloatLanes: Vector<Mask = u16> {
     /// The same number in every lane.
     fn broadcast(number: f32) -> Self;
-    /// The eight numbers from each of two places on.
+    /// Loads eight numbers each from two positions.
     ///
     /// # Panics
     /// If the slice ends before.
     fn load_two(numbers: &[f32], at: [usize; 2]) -> Self;
-    /// The numbers, in order.
+    /// Returns the numbers in order.
     fn to_floats(self) -> [f32; FLOATS];
 }
 
@@ -93,7 +93,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn masks() {
+    fn masked_lanes_and_comparisons() {
         let numbers = F32x16::from_fn(|k| if k == 1 { f32::NAN } else { k as f32 });
         let kept = numbers.masked(0b1000_0000_0000_1001).to_floats();
         assert_eq!(kept.iter().sum::<f32>(), 18.0);
@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn two_chunks() {
+    fn chunks_are_loaded_from_two_positions() {
         let numbers: Vec<f32> = (0..40).map(|k| k as f32).collect();
         let found = F32x16::load_two(&numbers, [3, 30]).to_floats();
         assert_eq!(

@@ -1,4 +1,5 @@
-//! Sixteen floats in registers of x86-64's vector extensions. What is said in [`super::doubles_x86`] holds here too.
+//! Sixteen floats in registers of the vector extensions of x86-64. The rules of [`super::doubles_x86`] apply here
+//! too.
 
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -139,7 +140,7 @@ impl FloatLanes for Avx512x16 {
     }
 }
 
-/// For every byte, eight words, all bits set where the byte has a bit: read as signed bytes, to be widened.
+/// Eight signed bytes per byte, all bits of one set where the byte has a bit; widened to words when used.
 static BYTES: [[i8; LANES]; 256] = {
     let mut table = [[0; LANES]; 256];
     let mut bits = 0;
@@ -156,7 +157,7 @@ static BYTES: [[i8; LANES]; 256] = {
     table
 };
 
-/// The numbers of a register that a byte keeps.
+/// Returns the register with the lanes of a byte; the others are zero.
 #[inline(always)]
 fn kept(numbers: __m256, byte: u8) -> __m256 {
     let words = &BYTES[usize::from(byte)];

@@ -2,10 +2,10 @@
 
 use std::sync::atomic::{AtomicU8, Ordering};
 
-/// The instruction set of the vector loops, in ascending order of what it holds.
+/// An instruction set of the vector loops, in ascending order of capability.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum InstructionSet {
-    /// What every machine of the architecture has.
+    /// The baseline of the architecture.
     Baseline,
     /// AVX2 with FMA.
     Avx2,
@@ -13,22 +13,23 @@ pub enum InstructionSet {
     Avx512,
 }
 
-/// The largest set that operators of this process choose by themselves.
+/// The largest set that operators of this process choose by default.
 static MOST: AtomicU8 = AtomicU8::new(InstructionSet::Avx512 as u8);
 
 impl InstructionSet {
     const ALL: [Self; 3] = [Self::Baseline, Self::Avx2, Self::Avx512];
 
-    /// The set that new operators use: the best one of this machine, or less after [`Self::limit_process`].
+    /// Returns the set that new operators use: the best one of this machine, unless [`Self::limit_process`] has
+    /// lowered it.
     pub fn detect() -> Self {
         let allowed = Self::ALL[usize::from(MOST.load(Ordering::Relaxed))];
         Self::of_machine().min(allowed)
     }
 
-    /// Limits the operators that this process makes from now on to a set, for tests and comparisons. Returns whether the machine has the set; nothing
-    /// changes if it does not.
+    /// Limits operators constructed from now on in this process to a set, for tests and comparisons. Returns
+    /// whether the machine supports the set; if not, nothing changes.
     ///
-    /// Libraries for dense matrices and Fourier transforms choose their instructions themselves.
+    /// Libraries for dense matrices and Fourier transforms choose their instructions independently.
     #[must_use]
     pub fn limit_process(self) -> bool {
         let runs = self <= Self::of_machine();
@@ -55,18 +56,18 @@ impl InstructionSet {
         Self::Baseline
     }
 
-    /// All sets that operators of this process may use, the best one last.
+    /// Returns all sets that operators of this process may use, the best one last.
     pub fn available() -> Vec<Self> {
         let best = Self::detect();
         Self::ALL.into_iter().filter(|set| *set <= best).collect()
     }
 
-    /// The set of a name as [`Self::name`] writes it.
+    /// Returns the set with a name as written by [`Self::name`].
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|set| set.name() == name)
     }
 
-    /// As written in run.json.
+    /// Name of the set in run.json.
     pub fn name(self) -> &'static str {
         match self {
             Self::Baseline => "baseline",
@@ -76,10 +77,12 @@ impl InstructionSet {
     }
 }
 
-/// Compiles one inlined function for every instruction set and chooses among the copies at run time.
+/// Compiles an inlined function for every instruction set and chooses among the copies at run time.
 ///
-/// Written `= body on lanes`, the function's first generic argument is the set's own type of eight doubles (see [`Lanes`](crate::lanes::Lanes)); `on floats` (inside the engine), of sixteen
-/// floats. The function made takes the [`InstructionSet`](crate::lanes::InstructionSet) first: one of [`InstructionSet::available`](crate::lanes::InstructionSet::available), for any other has undefined results.
+/// In the form `= body on lanes` the first generic argument of the function is the type of eight doubles of the set
+/// (see [`Lanes`](crate::lanes::Lanes)); with `on floats` (inside the engine) that of sixteen floats. The generated
+/// function takes an [`InstructionSet`](crate::lanes::InstructionSet) as its first argument. It must be one of
+/// [`InstructionSet::available`](crate::lanes::InstructionSet::available); any other is undefined behaviour.
 #[macro_export]
 macro_rules! for_each_instruction_set {
     ($(#[$doc:meta])* $visibility:vis fn $name:ident [$($generics:tt)*] <$($argument:ident),*> ($($parameter:ident : $type:ty),* $(,)?) = $body:ident) => {

@@ -1,6 +1,7 @@
-//! Arithmetic of numbers held in arrays, lane by lane.
+//! Lane-by-lane arithmetic of arrays.
 
-/// `+ − × ÷` and the change of sign of a type with lanes in an array `self.0` and `from_fn`; within its implementation of [`Vector`](super::Vector), `max` and `min`.
+/// Implements `+ − × ÷` and negation for a type with its lanes in an array `self.0` and a function `from_fn`;
+/// inside its implementation of [`Vector`](super::Vector), `max` and `min`.
 macro_rules! lanewise {
     ($lanes:ident) => {
         lanewise!($lanes: Add, add, +);

@@ -1,11 +1,12 @@
-//! Numbers on which pair forces are written: one `f64`, or eight side by side.
+//! Numbers for pair forces: one `f64`, or eight in a vector.
 //!
-//! A pair law is written once, generic over [`Real`]. With [`F64x8`] the loops over the lanes become vector instructions of the
-//! set the surrounding function is compiled for; with `f64` the same text is the naive twin used by tests. No
-//! operation is contracted or reassociated, so all instruction sets give the same bits.
+//! A pair law is written once, generic over [`Real`]. With [`F64x8`] the loops over the lanes become vector
+//! instructions of the set for which the surrounding function is compiled; with `f64` the same code is the scalar
+//! reference used by tests. No operation is contracted or reordered, so that all instruction sets give the same
+//! bits.
 //!
-//! Kernels whose speed must not depend on how well a compiler finds vectors are written on [`Vector`]: numbers held in whole registers of each set, eight
-//! doubles ([`Lanes`]) or sixteen floats. Only [`Vector::mul_add`] may round differently from set to set.
+//! Kernels that must not depend on automatic vectorisation use [`Vector`]: numbers in whole registers of each set,
+//! eight doubles ([`Lanes`]) or sixteen floats. Only [`Vector::mul_add`] may round differently between sets.
 
 mod doubles;
 #[cfg(target_arch = "x86_64")]

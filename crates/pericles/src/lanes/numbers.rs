@@ -1,11 +1,11 @@
-//! What numbers side by side can do: traits of the hot loops.
+//! Traits of scalar and vector numbers in the inner loops.
 
 use std::ops::{Add, Div, Index, IndexMut, Mul, Neg, Sub};
 
-/// Numbers in a group: bonds and points are stored and computed in groups of eight.
+/// Number of lanes: bonds and points are stored and computed in groups of eight.
 pub const LANES: usize = 8;
 
-/// Four numbers of a point, which one load reads: aligned, so that no row lies across two lines of a cache.
+/// Four numbers of a point that one load reads; aligned, so that no row crosses a cache line.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[repr(C, align(32))]
 pub struct Row(pub [f64; 4]);
@@ -25,7 +25,7 @@ impl IndexMut<usize> for Row {
     }
 }
 
-/// Arithmetic of the hot loops.
+/// Arithmetic of the inner loops.
 pub trait Real:
     Copy
     + Add<Output = Self>
@@ -51,50 +51,50 @@ impl Real for f64 {
     }
 }
 
-/// Numbers side by side, in whole registers of an instruction set.
+/// A vector of numbers in whole registers of an instruction set.
 pub trait Vector: Real {
     /// One bit per lane.
     type Mask: Copy + Default + PartialEq;
     /// Relative rounding error of one number.
     const EPSILON: f64;
-    /// self · factor + addend, rounded once where the set has such an instruction.
+    /// self · factor + addend, rounded once where the set has a fused instruction.
     fn mul_add(self, factor: Self, addend: Self) -> Self;
-    /// The larger of each pair; `other` if one of them is no number.
+    /// Larger number of each pair; `other` if one of them is NaN.
     fn max(self, other: Self) -> Self;
-    /// The smaller of each pair; `other` if one of them is no number.
+    /// Smaller number of each pair; `other` if one of them is NaN.
     fn min(self, other: Self) -> Self;
-    /// The lanes whose bit is set in `mask`; zero in the others, whatever they hold.
+    /// Returns the lanes whose bit is set in `mask`, and zero in the others, even if they are NaN.
     fn masked(self, mask: Self::Mask) -> Self;
-    /// One bit per lane: self > other. NaN compares false.
+    /// Returns one bit per lane: self > other. NaN compares false.
     fn greater(self, other: Self) -> Self::Mask;
 }
 
-/// Eight doubles side by side.
+/// A vector of eight doubles.
 pub trait Lanes: Vector<Mask = u8> {
-    /// The eight numbers from `numbers[at]` on.
+    /// Loads eight numbers starting at `numbers[at]`.
     ///
     /// # Panics
     /// If the slice ends before.
     fn load(numbers: &[f64], at: usize) -> Self;
-    /// The same of floats.
+    /// Loads eight floats starting at `numbers[at]` and converts them to doubles.
     ///
     /// # Panics
     /// If the slice ends before.
     fn load_floats(numbers: &[f32], at: usize) -> Self;
-    /// The numbers of eight rows, number by number.
+    /// Gathers eight rows and transposes them: entry c of the result contains number c of each row.
     ///
     /// # Safety
     /// Every index is below `rows.len()`.
     unsafe fn gather(rows: &[Row], indices: [usize; LANES]) -> [Self; 4];
-    /// 1/√self to round-off.
+    /// Returns 1/√self to round-off.
     fn inverse_root(self) -> Self;
-    /// The numbers, in order.
+    /// Returns the numbers in order.
     fn to_array(self) -> [f64; LANES];
 }
 
-/// The vector whose component c is `component(c)`.
+/// Returns the vector whose component c is `component(c)`.
 ///
-/// `std::array::from_fn` would do, but is not always inlined, and a copy that is not takes the instruction set of the baseline.
+/// `std::array::from_fn` is not always inlined, and a copy that is called uses baseline instructions.
 #[inline(always)]
 pub fn vector<T: Real, const D: usize>(mut component: impl FnMut(usize) -> T) -> [T; D] {
     let mut vector = [T::splat(0.0); D];

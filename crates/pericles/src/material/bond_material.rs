@@ -1,39 +1,39 @@
-//! Materials as a user describes them.
+//! Bond-based materials: law, moduli, horizon, influence function and fracture.
 
 use super::law::PairLaw;
 use super::modulus::ElasticModulus;
 use crate::family::VolumeCorrection;
 use crate::kernel::Influence;
 
-/// The modulus with the way it enters.
+/// An elastic modulus and the calibration that gives the bond constant c.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Modulus {
-    /// The constant given.
+    /// The modulus.
     pub value: ElasticModulus,
-    /// How c follows from it.
+    /// Calibration of c.
     pub calibration: Calibration,
 }
 
-/// When bonds break.
+/// Failure criterion of bonds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Fracture {
-    /// Never.
+    /// Bonds never break.
     Unbreakable,
-    /// Beyond this stretch.
+    /// Bonds break beyond this stretch.
     CriticalStretch(f64),
-    /// Beyond the stretch for which a unit area of crack costs a given energy.
+    /// Bonds break beyond the stretch that corresponds to a fracture energy.
     Energy {
         /// The fracture energy G, J/m².
         energy: f64,
-        /// How the critical stretch follows from it.
+        /// Calibration of the critical stretch.
         calibration: FractureCalibration,
     },
 }
 
-/// A bond-based material as a user describes it.
+/// A bond-based material.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BondMaterial {
-    /// Linear in the displacement, or in the stretch of the deformed bond.
+    /// Pair law.
     pub law: PairLaw,
     /// Mass density ρ, kg/m³.
     pub density: f64,
@@ -45,13 +45,13 @@ pub struct BondMaterial {
     pub influence: Influence,
     /// Partial volumes at the horizon.
     pub volume_correction: VolumeCorrection,
-    /// Breaking.
+    /// Failure criterion.
     pub fracture: Fracture,
 }
 
 impl BondMaterial {
-    /// A material that never breaks, of density `density` (kg/m³) and horizon `horizon` (m): bond-stretch law, constant influence function, partial
-    /// volumes of all cells that reach into the horizon, constants of the continuum.
+    /// Returns an unbreakable material of density `density` (kg/m³) and horizon `horizon` (m) with the
+    /// bond-stretch law, a constant influence function, the extended volume correction and continuum calibration.
     ///
     /// ```
     /// use pericles::material::{BondMaterial, ElasticModulus};
@@ -73,26 +73,26 @@ impl BondMaterial {
         }
     }
 
-    /// The same with another pair law.
+    /// Sets the pair law.
     #[must_use]
     pub fn with_law(self, law: PairLaw) -> Self {
         Self { law, ..self }
     }
 
-    /// The same with another influence function.
+    /// Sets the influence function.
     #[must_use]
     pub fn with_influence(self, influence: Influence) -> Self {
         Self { influence, ..self }
     }
 
-    /// The same with constants from other moments.
+    /// Sets the calibration of the bond constant.
     #[must_use]
     pub fn with_calibration(mut self, calibration: Calibration) -> Self {
         self.modulus.calibration = calibration;
         self
     }
 
-    /// The same with bonds that break beyond a stretch.
+    /// Sets the critical stretch.
     #[must_use]
     pub fn with_critical_stretch(self, stretch: f64) -> Self {
         Self {
@@ -101,7 +101,7 @@ impl BondMaterial {
         }
     }
 
-    /// The same with bonds that break such that a unit area of crack costs `energy` (J/m²).
+    /// Sets the fracture energy, J/m².
     #[must_use]
     pub fn with_fracture_energy(self, energy: f64) -> Self {
         Self {
@@ -114,32 +114,34 @@ impl BondMaterial {
     }
 }
 
-/// From which moments the constant c follows.
+/// Calibration of the bond constant c: the moments from which it follows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Calibration {
-    /// The integrals, as in the continuum; the grid's own error remains.
+    /// Integrals of the continuum; the discretisation error of the grid remains.
     #[default]
     Continuum,
-    /// The sums over the lattice's bonds, so that the bulk modulus of the grid is exact. A table per class is always taken so: it has no
-    /// integrals.
+    /// Sums over the bonds of the lattice, so that the bulk modulus of the grid is exact. Tables per lattice
+    /// class always use these sums, because they have no integrals.
     Lattice,
-    /// The integrals of the constant function, g ≡ 1, whatever g is: for functions made to carry the modulus themselves. What the function acts
-    /// on counts: α ≡ 1 for the stretch, α = r for the relative displacement.
+    /// Integrals of the constant function g ≡ 1 instead of g, for influence functions that contain the
+    /// modulus themselves: α ≡ 1 if the function acts on the stretch, α = r if it acts on the relative
+    /// displacement.
     Unmodified,
 }
 
-/// How the critical stretch follows from the fracture energy.
+/// Calibration of the critical stretch from the fracture energy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum FractureCalibration {
-    /// The mean over the crack planes of the lattice costs the energy asked for ([`CrackPlane::mean`](super::CrackPlane::mean)).
+    /// The fracture energy is the mean energy of cracks along planes of the lattice
+    /// ([`CrackPlane::mean`](super::CrackPlane::mean)).
     #[default]
     Lattice,
-    /// The integrals of the continuum; on a grid a crack costs several per cent more or less.
+    /// Integrals of the continuum; on a grid the energy of a crack differs by several per cent.
     Continuum,
 }
 
 impl FractureCalibration {
-    /// The word for it in decks and reports.
+    /// Returns the name used in decks and reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Lattice => "lattice",
@@ -149,7 +151,7 @@ impl FractureCalibration {
 }
 
 impl Fracture {
-    /// The same for a body without a lattice: only the continuum has integrals there.
+    /// Returns the criterion with continuum calibration, for bodies without a lattice.
     pub(super) fn of_the_continuum(self) -> Self {
         match self {
             Self::Energy { energy, .. } => Self::Energy {

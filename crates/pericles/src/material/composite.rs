@@ -1,14 +1,14 @@
-//! Bodies of several materials: the constants of a bond by the materials of its two ends.
+//! Bodies of several materials: bond constants by the materials of both end points.
 
 use super::BondConstants;
 use super::scatter::Factors;
 use crate::error::{PericlesError, Result};
 use crate::space::{Sites, check_length};
 
-/// The constant c of a bond between two materials, from theirs.
+/// Mixing rule for the constant c of bonds between two materials.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum InterfaceRule {
-    /// 2 c₁c₂/(c₁ + c₂): two springs of half the length in a row.
+    /// 2 c₁c₂/(c₁ + c₂): two springs of half the length in series.
     #[default]
     Harmonic,
     /// (c₁ + c₂)/2.
@@ -18,10 +18,10 @@ pub enum InterfaceRule {
 }
 
 impl InterfaceRule {
-    /// The constant of a bond between two materials, from theirs.
+    /// Returns the constant of a bond between materials with the constants a and b.
     pub fn mix(self, [a, b]: [f64; 2]) -> f64 {
         match self {
-            // A mean of equals is that number, to the last bit.
+            // Bitwise exact for equal constants.
             _ if a == b => a,
             Self::Harmonic => 2.0 * a * b / (a + b),
             Self::Arithmetic => 0.5 * (a + b),
@@ -30,25 +30,25 @@ impl InterfaceRule {
     }
 }
 
-/// The material of every point, and a small symmetric table of the constants for every pair of materials.
+/// Material of every point, and a symmetric table of bond constants for every pair of materials.
 ///
-/// A bond between points of the materials a and b has the constant c_ab by the [`InterfaceRule`] and the smaller of the two critical stretches, unless
-/// [`PairClasses::set_critical_stretch`] says otherwise.
+/// A bond between materials a and b has the constant c_ab of the [`InterfaceRule`] and the smaller of both
+/// critical stretches, unless [`MaterialPairs::set_critical_stretch`] sets another one.
 #[derive(Debug, Clone, PartialEq)]
-pub struct PairClasses {
+pub struct MaterialPairs {
     of_point: Vec<u8>,
     count: usize,
     micromodulus: Vec<f64>,
     critical_stretch: Vec<f64>,
-    /// Factors of the critical stretch by points.
+    /// Factor of the critical stretch of each point.
     strength: Factors,
 }
 
-impl PairClasses {
-    /// The classes of materials with these constants; `of_point` gives the number of each point's material.
+impl MaterialPairs {
+    /// Creates the table for materials with these constants; `of_point` gives the material number of each point.
     ///
     /// # Errors
-    /// More than 256 materials, or a number without a material.
+    /// More than 256 materials, or a material number out of range.
     pub fn new(
         of_point: Vec<u8>,
         constants: &[BondConstants],
@@ -71,10 +71,10 @@ impl PairClasses {
         })
     }
 
-    /// Gives bonds between two materials a critical stretch of their own; infinite: they never break.
+    /// Sets the critical stretch of bonds between two materials; infinite for unbreakable bonds.
     ///
     /// # Errors
-    /// A number that is not one of the materials given.
+    /// A material number out of range.
     pub fn set_critical_stretch(&mut self, pair: [u8; 2], stretch: f64) -> Result<()> {
         for class in self.classes_of(pair)? {
             self.critical_stretch[class] = stretch;
@@ -82,10 +82,12 @@ impl PairClasses {
         Ok(())
     }
 
-    /// The same with a factor of the critical stretch for every point, such as [`StrengthScatter::factors`](super::StrengthScatter::factors): a bond has the mean of its ends.
+    /// Sets a factor of the critical stretch for every point, for example
+    /// [`StrengthScatter::factors`](super::StrengthScatter::factors). A bond has the mean factor of its end
+    /// points.
     ///
     /// # Errors
-    /// Factors that are not one for each point.
+    /// A number of factors other than the number of points.
     pub fn with_strengths(self, factors: Vec<f64>) -> Result<Self> {
         check_length(
             "the strengths of the points",
@@ -98,10 +100,10 @@ impl PairClasses {
         })
     }
 
-    /// Gives bonds between two materials a constant of their own.
+    /// Sets the constant c of bonds between two materials.
     ///
     /// # Errors
-    /// A number that is not one of the materials given.
+    /// A material number out of range.
     pub fn set_micromodulus(&mut self, pair: [u8; 2], micromodulus: f64) -> Result<()> {
         for class in self.classes_of(pair)? {
             self.micromodulus[class] = micromodulus;
@@ -109,26 +111,26 @@ impl PairClasses {
         Ok(())
     }
 
-    /// Refuses a number that is not one of the materials given.
+    /// Returns an error if a material number is out of range.
     pub(super) fn check_pair(&self, pair: [u8; 2]) -> Result<()> {
         self.classes_of(pair).map(|_| ())
     }
 
-    /// The classes of bonds between two materials, seen from either end.
+    /// Table entries of bonds between two materials, for both directions.
     fn classes_of(&self, pair: [u8; 2]) -> Result<[usize; 2]> {
         let [a, b] = pair.map(usize::from);
         let last = a.max(b);
         if last >= self.count {
             return Err(PericlesError::OutOfRange {
-                quantity: "the number of a material of a pair",
+                quantity: "the material number of an interface",
                 value: last as f64,
-                allowed: "numbers of the materials given, from 0",
+                allowed: "0 to the number of materials less 1",
             });
         }
         Ok([a * self.count + b, b * self.count + a])
     }
 
-    /// The same by the sites that bonds lead to.
+    /// Returns the table by sites, the end points of bonds.
     pub(crate) fn on_sites(&self, sites: &Sites) -> Self {
         Self {
             of_point: sites.spread_numbers(&self.of_point),
@@ -137,7 +139,7 @@ impl PairClasses {
         }
     }
 
-    /// The same for other places, with the number of the material of each and, where strengths scatter, its factor.
+    /// Returns the table for other positions, given the material number of each and, if strengths scatter, its factor.
     pub(crate) fn at(&self, of_place: Vec<u8>, strengths: Vec<f64>) -> Self {
         Self {
             of_point: of_place,
@@ -146,73 +148,84 @@ impl PairClasses {
         }
     }
 
-    /// The number of each point's material.
+    /// Returns the material number of each point.
     pub fn of_point(&self) -> &[u8] {
         &self.of_point
     }
 
-    /// The constant c of a bond between two points.
+    /// Returns the constant c of the bond between two points.
     pub fn micromodulus(&self, i: usize, j: usize) -> f64 {
         self.micromodulus[self.class(i, j)]
     }
 
-    /// The critical stretch s₀ of a bond between two points; infinite if it never breaks.
+    /// Returns the critical stretch s₀ of the bond between two points; infinite for unbreakable bonds.
     pub fn critical_stretch(&self, i: usize, j: usize) -> f64 {
         self.critical_stretch[self.class(i, j)] * self.strength.of_bond(i, j)
     }
 
-    /// The constant c of bonds between two materials.
+    /// Returns the constant c of bonds between two materials.
     ///
     /// # Panics
-    /// If a material is not one of those given.
+    /// If a material number is out of range.
     pub fn pair_micromodulus(&self, [a, b]: [u8; 2]) -> f64 {
         self.micromodulus[usize::from(a) * self.count + usize::from(b)]
     }
 
-    /// The critical stretch s₀ of bonds between two materials.
+    /// Returns the critical stretch s₀ of bonds between two materials.
     ///
     /// # Panics
-    /// If a material is not one of those given.
+    /// If a material number is out of range.
     pub fn pair_critical_stretch(&self, [a, b]: [u8; 2]) -> f64 {
         self.critical_stretch[usize::from(a) * self.count + usize::from(b)]
     }
 
-    /// Whether all bonds have one critical stretch.
+    /// Returns whether all bonds have the same critical stretch.
     pub fn has_one_critical_stretch(&self) -> bool {
         let first = self.critical_stretch[0];
         let mut stretches = self.critical_stretch.iter();
         self.strength.is_uniform() && stretches.all(|stretch| *stretch == first)
     }
 
-    /// The smallest critical stretch of all.
+    /// Returns the smallest critical stretch of all bonds.
     pub fn smallest_critical_stretch(&self) -> f64 {
         let stretches = self.critical_stretch.iter();
         self.strength.smallest() * stretches.copied().fold(f64::INFINITY, f64::min)
     }
 
-    /// Whether critical stretches scatter from point to point.
+    /// Returns whether critical stretches scatter from point to point.
     pub fn scatters(&self) -> bool {
         !self.strength.is_uniform()
     }
 
-    /// The factor of the critical stretch of every point; empty if strengths do not scatter.
+    /// Returns the factor of the critical stretch of every point; empty if strengths do not scatter.
     pub(crate) fn strengths(&self) -> &[f64] {
         self.strength.as_slice()
     }
 
-    /// Critical stretches by class.
+    /// Returns the factor of the critical stretch of the bond between two points.
+    #[inline(always)]
+    pub(crate) fn strength(&self, i: usize, j: usize) -> f64 {
+        self.strength.of_bond(i, j)
+    }
+
+    /// Returns the smallest factor of all points.
+    pub(crate) fn smallest_strength(&self) -> f64 {
+        self.strength.smallest()
+    }
+
+    /// Returns the critical stretches by pair of materials.
     pub(crate) fn critical_stretches(&self) -> &[f64] {
         &self.critical_stretch
     }
 
-    /// The class of a bond between two points.
+    /// Returns the table entry of the bond between two points.
     #[inline(always)]
     pub(crate) fn class(&self, i: usize, j: usize) -> usize {
         usize::from(self.of_point[i]) * self.count + usize::from(self.of_point[j])
     }
 }
 
-/// Refuses more than 256 materials, and points of a material that is not one of so many.
+/// Returns an error for more than 256 materials, and for material numbers that are not below `count`.
 pub(crate) fn check_materials(of_point: &[u8], count: usize) -> Result<()> {
     if count > 256 {
         return Err(PericlesError::OutOfRange {
@@ -226,9 +239,9 @@ pub(crate) fn check_materials(of_point: &[u8], count: usize) -> Result<()> {
         .find(|&&number| usize::from(number) >= count);
     match unknown {
         Some(&number) => Err(PericlesError::OutOfRange {
-            quantity: "the number of a point's material",
+            quantity: "the material number of a point",
             value: f64::from(number),
-            allowed: "numbers of the materials given, from 0",
+            allowed: "0 to the number of materials less 1",
         }),
         None => Ok(()),
     }
@@ -252,17 +265,17 @@ mod tests {
     }
 
     #[test]
-    fn mixed_bonds_follow_the_rule() {
+    fn bonds_between_materials_follow_the_interface_rule() {
         let two = [constants(3.0, 0.01), constants(6.0, f64::INFINITY)];
         let mixed = |rule| {
-            PairClasses::new(vec![0, 1, 1], &two, rule)
+            MaterialPairs::new(vec![0, 1, 1], &two, rule)
                 .unwrap()
                 .micromodulus(0, 2)
         };
         assert_eq!(mixed(InterfaceRule::Harmonic), 4.0);
         assert_eq!(mixed(InterfaceRule::Arithmetic), 4.5);
         assert_eq!(mixed(InterfaceRule::Weaker), 3.0);
-        let mut classes = PairClasses::new(vec![0, 1, 1], &two, InterfaceRule::Weaker).unwrap();
+        let mut classes = MaterialPairs::new(vec![0, 1, 1], &two, InterfaceRule::Weaker).unwrap();
         assert_eq!(classes.micromodulus(1, 2), 6.0);
         assert_eq!(classes.critical_stretch(2, 0), 0.01);
         assert_eq!(classes.critical_stretch(1, 2), f64::INFINITY);
@@ -271,6 +284,6 @@ mod tests {
         assert_eq!(classes.critical_stretch(0, 1), 0.002);
         assert_eq!(classes.critical_stretch(2, 0), 0.002);
         assert_eq!(classes.smallest_critical_stretch(), 0.002);
-        assert!(PairClasses::new(vec![2], &two, InterfaceRule::Weaker).is_err());
+        assert!(MaterialPairs::new(vec![2], &two, InterfaceRule::Weaker).is_err());
     }
 }

@@ -1,4 +1,4 @@
-//! Bond constants from engineering constants.
+//! Bond constants from elastic moduli and fracture energy.
 
 use std::f64::consts::PI;
 
@@ -12,13 +12,14 @@ use super::lattice::{Cells, LatticeSums};
 use super::modulus::StressState;
 
 impl Calibration {
-    /// The moment that E is divided by, for a body without a table per class; `lattice` is the lattice's.
+    /// Returns the moment by which E is divided, for influence functions other than class tables; `lattice`
+    /// is the lattice sum.
     fn moment(self, dimension: usize, horizon: f64, influence: &Influence, lattice: f64) -> f64 {
         match self {
             Self::Continuum => influence.moment(dimension as f64, horizon),
             Self::Lattice => lattice,
             Self::Unmodified => {
-                // ∫₀^δ r^dimension dr, with one power more where α = r g.
+                // ∫₀^δ r^dimension dr; one more power of r if α = r g.
                 let shift = i32::from(influence.acts_on == ActsOn::Displacement);
                 let power = dimension as i32 + 1 + shift;
                 horizon.powi(power) / f64::from(power)
@@ -27,29 +28,30 @@ impl Calibration {
     }
 }
 
-/// The constants of a material's bonds on a given body.
+/// Bond constants of a material on a given body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BondConstants {
-    /// The constant c of the force density c α s.
+    /// Constant c of the force density c α s.
     pub micromodulus: f64,
-    /// Critical stretch s₀; infinite if bonds never break.
+    /// Critical stretch s₀; infinite for unbreakable bonds.
     pub critical_stretch: f64,
-    /// Fracture energy that belongs to s₀, J/m²: the energy asked for; where the critical stretch is given, that of the continuum. Infinite if bonds
-    /// never break.
+    /// Fracture energy that corresponds to s₀, J/m²: the given fracture energy, or the continuum value for a
+    /// given critical stretch. Infinite for unbreakable bonds.
     pub fracture_energy: f64,
-    /// How s₀ follows from the fracture energy; none if no fracture energy is given. A body without a lattice always has the continuum's.
+    /// Calibration of s₀ from the fracture energy; `None` if no fracture energy is given. Always continuum
+    /// calibration for bodies without a lattice.
     pub fracture_calibration: Option<FractureCalibration>,
-    /// What cracks along planes of the lattice cost; empty if bonds never break, and for bodies without a lattice.
+    /// Energies of cracks along planes of the lattice; empty for unbreakable bonds and for bodies without a lattice.
     pub crack_planes: Vec<CrackPlane>,
     /// Young's modulus, Pa.
     pub young: f64,
-    /// Bulk stiffness of the grid's interior over the continuum's, less one.
+    /// Relative error of the bulk stiffness in the interior of the grid.
     pub stiffness_error: f64,
-    /// Stiffness of the grid's interior against a shear along its axes over the continuum's, less one; 0 for a bar.
+    /// Relative error of the stiffness against shear along the axes in the interior of the grid; 0 for a bar.
     pub shear_error: f64,
 }
 
-/// The factor of c s₀² m_(dimension + 1) in the fracture energy of the continuum.
+/// Returns the factor of c s₀² m_(dimension + 1) in the fracture energy of the continuum.
 fn crack_factor(state: StressState, section: f64) -> f64 {
     match state {
         StressState::Uniaxial => 0.5 * section,
@@ -59,12 +61,12 @@ fn crack_factor(state: StressState, section: f64) -> f64 {
 }
 
 impl BondMaterial {
-    /// The constants for bonds of `cloud`. Cells that are equal boxes make a lattice, whatever their sides; the sums over other points are replaced
-    /// by those over a cubic lattice of their mean spacing.
+    /// Returns the constants for bonds of `cloud`. Cells that are equal boxes form a lattice; for other
+    /// points, lattice sums are those of a cubic lattice with the mean spacing.
     ///
     /// # Errors
-    /// Non-positive constants, a bad influence function, a stress state of another dimension than the cloud's, a signed influence
-    /// function together with breaking.
+    /// Constants that are not positive, an invalid influence function, a stress state whose dimension differs
+    /// from that of the cloud, a signed influence function together with a failure criterion.
     pub fn constants(&self, cloud: &PointCloud, state: StressState) -> Result<BondConstants> {
         let dimension = cloud.dimension();
         if state.dimension() != dimension {
@@ -92,10 +94,11 @@ impl BondMaterial {
         }
     }
 
-    /// The constants for bonds of a lattice whose cells have these sides (m, one per axis) and section (m² in 1D, m in 2D, 1 in 3D).
+    /// Returns the constants for bonds of a lattice whose cells have these sides (m, one per axis) and
+    /// section (m² in 1D, m in 2D, 1 in 3D).
     ///
     /// # Errors
-    /// Those of [`BondMaterial::constants`]; sides that are not one for each axis, or not positive.
+    /// Those of [`BondMaterial::constants`]; a number of sides other than the dimension; sides that are not positive.
     pub fn constants_on(
         &self,
         sides: &[f64],
@@ -123,7 +126,7 @@ impl BondMaterial {
             StressState::PlaneStrain => 16.0 * young / (5.0 * PI * section * modulus_moment),
             StressState::Spatial => 3.0 * young / (PI * modulus_moment),
         };
-        // Energies of a unit area of crack over s₀².
+        // Fracture energy over s₀².
         let continuum = micromodulus
             * self.influence.moment((dimension + 1) as f64, self.horizon)
             * crack_factor(state, section);
@@ -165,7 +168,7 @@ impl BondMaterial {
         })
     }
 
-    /// The sums over a lattice, unless the material has no constants there.
+    /// Returns the lattice sums, or an error if the material has no constants on the lattice.
     fn checked_sums(&self, cells: Cells<'_>) -> Result<LatticeSums> {
         positive("the density", self.density)?;
         positive("the horizon", self.horizon)?;
@@ -179,15 +182,15 @@ impl BondMaterial {
         };
         if signed && self.fracture != Fracture::Unbreakable {
             return refuse(
-                "a function with negative values cannot be used with bonds that break: a negative bond gains energy as it \
-                 stretches; leave out the fracture energy and critical stretch, or use a positive function",
+                "a function with negative values cannot be used with bonds that break, because a bond with negative stiffness \
+                 gains energy as it stretches; remove the fracture energy and the critical stretch, or use a positive function",
             );
         }
         match self.lattice_sums(cells) {
             sums if sums.moment > 0.0 => Ok(sums),
-            _ if signed => {
-                refuse("its modulus, the sum of α |ξ| over the lattice's bonds, must be positive")
-            }
+            _ if signed => refuse(
+                "its modulus, the sum of α |ξ| over the bonds of the lattice, must be positive",
+            ),
             _ => Err(PericlesError::HorizonTooSmall {
                 horizon: self.horizon,
                 spacing: cells.size(),
@@ -238,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn constants_for_unit_influence() {
+    fn constants_of_the_unit_influence_function_match_closed_forms() {
         let (young, energy, delta, section) = (72e9, 135.0, 3e-3_f64, 0.2);
         let cases = [
             (
@@ -286,7 +289,7 @@ mod tests {
     }
 
     #[test]
-    fn soda_lime_and_duran_critical_stretches() {
+    fn critical_stretches_of_soda_lime_and_duran_glass_match_their_references() {
         // δ = 0.75 mm, plane strain; the paper prints 0.0013 for soda-lime, which is too small by √2.
         let cloud = body(2, 1.0);
         let stretch = |young, energy| {
@@ -315,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn every_function_gives_the_same_modulus() {
+    fn every_influence_function_gives_the_same_young_modulus() {
         // In 1D the micromodulus c must satisfy c A ∫ α r dr = E whatever α is.
         let cloud = body(1, 0.5);
         for function in [

@@ -1,4 +1,4 @@
-//! What a crack along a plane of the lattice costs.
+//! Energies of cracks along planes of the lattice.
 
 use std::fmt::{self, Display};
 
@@ -6,29 +6,29 @@ use super::BondMaterial;
 use super::lattice::{Cells, for_each_offset};
 use crate::family::VolumeCorrection;
 
-/// A plane of the lattice with the energy that a crack along it takes.
+/// A plane of the lattice and the energy of a crack along it.
 ///
-/// The bonds that join the two sides of a plane with the unit normal n, each broken at the critical stretch, take per area
+/// The energy per area of the bonds across a plane with the unit normal n, each broken at the critical stretch, is
 ///
-/// G = ½ c s₀² V Σ κ α |ξ| (ξ·n), over the bonds ξ of a point with ξ·n > 0,
+/// G = ½ c s₀² V Σ κ α |ξ| (ξ·n), summed over the bonds ξ of a point with ξ·n > 0,
 ///
-/// with the volume V of a cell: a bond ξ crosses a unit area ξ·n / V times. The sum is exact for planes between rows of points.
+/// with the cell volume V: ξ·n / V bonds ξ cross a unit area. The sum is exact for planes between rows of points.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CrackPlane {
-    /// Miller indices, each 0 or 1, one for each axis: the normal is (h/Δx, k/Δy, l/Δz) over its length.
+    /// Miller indices, 0 or 1, one for each axis: the normal is (h/Δx, k/Δy, l/Δz) over its length.
     indices: Vec<u8>,
     /// J/m².
     energy: f64,
 }
 
 impl CrackPlane {
-    /// The energy of a unit area, J/m².
+    /// Returns the energy per area, J/m².
     pub fn energy(&self) -> f64 {
         self.energy
     }
 
-    /// The mean of the families of planes, J/m²: (10), (11) in 2D, (100), (110), (111) in 3D, each with the same weight. Planes of one family that
-    /// differ, on cells of unequal sides, share the weight of their family.
+    /// Returns the mean energy of the families of planes, J/m²: (10), (11) in 2D, (100), (110), (111) in 3D
+    /// with equal weights. On cells of unequal sides, different planes of a family share its weight.
     pub fn mean(planes: &[Self]) -> f64 {
         let order = |plane: &Self| plane.indices.iter().filter(|index| **index > 0).count();
         let families: Vec<f64> = (1..=3)
@@ -45,7 +45,8 @@ impl CrackPlane {
         families.iter().sum::<f64>() / families.len() as f64
     }
 
-    /// How many planes of the family lie between the ends of a bond, negative where it runs against the normal.
+    /// Returns the number of planes of the family between the end points of a bond, negative for bonds
+    /// against the normal.
     pub(super) fn crossed(&self, offset: [i32; 3]) -> i32 {
         let indices = self.indices.iter().zip(offset);
         indices
@@ -53,7 +54,7 @@ impl CrackPlane {
             .sum()
     }
 
-    /// Planes of the family per length, along their normal, 1/m.
+    /// Returns the number of planes of the family per length along their normal, 1/m.
     pub(super) fn per_length(&self, cells: Cells<'_>) -> f64 {
         let normal = self.indices.iter().zip(cells.sides());
         let square: f64 = normal
@@ -62,12 +63,12 @@ impl CrackPlane {
         square.sqrt()
     }
 
-    /// The same plane with another energy, J/m².
+    /// Sets the energy, J/m².
     pub(super) fn with_energy(self, energy: f64) -> Self {
         Self { energy, ..self }
     }
 
-    /// The same plane with its energy times a factor.
+    /// Multiplies the energy by a factor.
     pub fn scaled(self, factor: f64) -> Self {
         Self {
             energy: factor * self.energy,
@@ -75,7 +76,8 @@ impl CrackPlane {
         }
     }
 
-    /// The planes of a lattice with indices of 0 and 1, those of square and cubic lattices once for each family; energies are still to be found.
+    /// Returns the planes of a lattice with indices 0 and 1, with zero energy; on square and cubic lattices
+    /// one plane for each family.
     pub(super) fn all(cells: Cells<'_>) -> Vec<Self> {
         let dimension = cells.sides().len();
         let mut planes: Vec<Self> = (1..1u8 << dimension)
@@ -90,22 +92,24 @@ impl CrackPlane {
     }
 }
 
-/// Sums over the bonds of a point of a lattice in one of the layers beside a crack, each bond weighted by its influence function and partial volume, in units of the volume of a cell.
+/// Sums over the bonds of a point in a lattice layer beside a crack. Each bond is weighted by its influence
+/// function and partial volume, in units of the cell volume.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LayerMoments {
     /// Σ κ w ξ ⊗ ξ over all bonds, m².
     pub whole: [[f64; 3]; 3],
-    /// The same over the bonds that cross the crack.
+    /// Σ κ w ξ ⊗ ξ over the bonds that cross the crack, m².
     pub crossing: [[f64; 3]; 3],
     /// Σ κ w over all bonds.
     pub weight: f64,
 }
 
 impl CrackPlane {
-    /// The planes of a lattice whose cells have these sides (m), with the energy of a unit area of crack along each, from the energy density (J/m³) that a crack takes from the points of each layer beside it:
-    /// materials whose points have an energy that is not a sum over bonds.
+    /// Returns the planes of a lattice whose cells have these sides (m), with crack energies per area from
+    /// the energy density (J/m³) that a crack takes from the points of each adjacent layer. For materials whose
+    /// energy is not a sum over bonds.
     ///
-    /// `extent` is the horizon with the correction of volumes, `weight` the influence function of a bond ξ.
+    /// The pair contains the horizon and the volume correction; `weight` is the influence function of a bond ξ.
     pub fn by_layers(
         sides: &[f64],
         (horizon, correction): (f64, VolumeCorrection),
@@ -131,7 +135,7 @@ impl CrackPlane {
         });
         let energy = |plane: &Self, sums: &[[[f64; 3]; 3]]| {
             let mut layer = whole;
-            // From the layer that is farthest from the crack, on both of its sides.
+            // From the layer farthest from the crack, on both sides.
             let layers = sums[1..].iter().rev().map(|sum| {
                 for (row, more) in layer
                     .crossing
@@ -164,7 +168,7 @@ fn add_square(sum: &mut [[f64; 3]; 3], weight: f64, xi: [f64; 3]) {
     }
 }
 
-/// Such as (110).
+/// Prints Miller indices, for example (110).
 impl Display for CrackPlane {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "(")?;
@@ -176,7 +180,8 @@ impl Display for CrackPlane {
 }
 
 impl BondMaterial {
-    /// The planes of a lattice with the energy of a crack at s₀ = 1, J/m². `stiffness` is the constant c times the section.
+    /// Returns the planes of a lattice with the energy of a crack at s₀ = 1, J/m². `stiffness` is the
+    /// constant c times the section.
     pub(super) fn crack_planes(&self, cells: Cells<'_>, stiffness: f64) -> Vec<CrackPlane> {
         let mut planes = CrackPlane::all(cells);
         let size = cells.size();
@@ -188,7 +193,7 @@ impl BondMaterial {
             }
         });
         for plane in &mut planes {
-            // ξ·n is the number of planes crossed times their distance.
+            // ξ·n is the number of crossed planes times their distance.
             plane.energy *= 0.5 * stiffness * cells.volume() / plane.per_length(cells);
         }
         planes

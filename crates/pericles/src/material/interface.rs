@@ -1,17 +1,17 @@
-//! Interfaces between bond-based materials: the constant and the critical stretch of the bonds across.
+//! Interfaces between bond-based materials: constant and critical stretch of bonds across the interface.
 
 use super::bond_material::{BondMaterial, Fracture, Modulus};
-use super::composite::{InterfaceRule, PairClasses};
+use super::composite::{InterfaceRule, MaterialPairs};
 use super::constants::BondConstants;
 use super::modulus::ElasticModulus;
 use crate::error::Result;
 
-/// What the constant c of bonds between two materials follows from.
+/// Source of the constant c of bonds between two materials.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum InterfaceStiffness {
-    /// The constants of both materials.
+    /// A rule that mixes the constants of both materials.
     Rule(InterfaceRule),
-    /// An elastic modulus of the interface, as a material's constant does.
+    /// An elastic modulus of the interface, calibrated like that of a material.
     Modulus(Modulus),
 }
 
@@ -21,22 +21,24 @@ impl Default for InterfaceStiffness {
     }
 }
 
-/// The bonds between two materials.
+/// Properties of the bonds between two materials.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct MaterialInterface {
-    /// What their constant follows from.
+    /// Stiffness of the bonds.
     pub stiffness: InterfaceStiffness,
-    /// When they break; none for the smaller of the two critical stretches.
+    /// Failure criterion; `None` for the smaller of both critical stretches.
     ///
-    /// A fracture energy is calibrated as that of a material with the constant c of these bonds: a crack between two half-spaces of the materials breaks no other bonds.
+    /// A fracture energy is calibrated as for a material with the constant c of these bonds, because a crack
+    /// along the interface of two half-spaces breaks only such bonds.
     pub fracture: Option<Fracture>,
 }
 
-impl PairClasses {
-    /// Gives bonds between two materials the constants of an interface. `material` is the material of the first number, and `constants` finds the constants that a material has on the body.
+impl MaterialPairs {
+    /// Sets the constants of bonds between two materials. `material` is the first material of the pair;
+    /// `constants` returns the constants of a material on the body.
     ///
     /// # Errors
-    /// A number that is not one of the materials given; what `constants` refuses.
+    /// A material number out of range; errors of `constants`.
     pub fn set_interface(
         &mut self,
         pair: [u8; 2],
@@ -79,7 +81,7 @@ impl PairClasses {
 }
 
 impl Modulus {
-    /// The same modulus times a factor.
+    /// Multiplies the modulus by a factor.
     fn scaled(self, factor: f64) -> Self {
         let value = match self.value {
             ElasticModulus::Young(value) => ElasticModulus::Young(factor * value),

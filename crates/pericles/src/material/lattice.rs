@@ -1,4 +1,4 @@
-//! What a material needs to know of the lattice it is used on.
+//! Lattice sums of a material, and checks of horizon and class tables against the lattice.
 
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
@@ -12,12 +12,12 @@ use crate::space::PointCloud;
 /// The cells of a regular lattice: boxes with one point each.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Cells<'a> {
-    /// Length of a cell along each axis, m: one to three numbers.
+    /// Side of a cell along each axis, m: one to three numbers.
     sides: &'a [f64],
 }
 
 impl<'a> Cells<'a> {
-    /// Cells with the given sides, m; as many as the body has dimensions.
+    /// Creates cells with these sides, m, one per dimension.
     pub(super) fn new(sides: &'a [f64]) -> Self {
         Self { sides }
     }
@@ -26,12 +26,12 @@ impl<'a> Cells<'a> {
         self.sides
     }
 
-    /// Whether all sides are the same.
+    /// Returns whether all sides are equal.
     pub(super) fn is_cubic(self) -> bool {
         self.sides.iter().all(|side| *side == self.sides[0])
     }
 
-    /// The size of a cell that volume corrections use, m: the side of the square or cube of the same volume.
+    /// Returns the cell size for volume corrections, m: the side of the square or cube of the same volume.
     pub(super) fn size(self) -> f64 {
         if self.is_cubic() {
             return self.sides[0];
@@ -40,7 +40,7 @@ impl<'a> Cells<'a> {
         product.powf(1.0 / self.sides.len() as f64)
     }
 
-    /// Product of the sides: m, m² or m³.
+    /// Returns the product of the sides: m, m² or m³.
     pub(super) fn volume(self) -> f64 {
         self.sides.iter().product()
     }
@@ -49,13 +49,14 @@ impl<'a> Cells<'a> {
 /// Sums over the bonds of an interior point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct LatticeSums {
-    /// Σ κ α r ΠΔx over 2, 2π, 4π: what resists a uniform dilation.
+    /// Σ κ α r ΠΔx over 2, 2π, 4π: stiffness against a uniform dilation.
     pub(super) moment: f64,
-    /// The same with n_a² n_b² over its mean in all directions, the mean of all pairs of axes: what resists a shear along the axes.
+    /// The same sum weighted by n_a² n_b² over its mean in all directions, averaged over pairs of axes:
+    /// stiffness against shear along the axes.
     pub(super) shear_moment: f64,
 }
 
-/// Calls `visit(offset, ξ, |ξ|)` for the bonds of an interior point of a lattice.
+/// Calls `visit(offset, ξ, |ξ|)` for each bond of an interior point of a lattice.
 pub(super) fn for_each_offset(
     cells: Cells<'_>,
     horizon: f64,
@@ -72,7 +73,7 @@ pub(super) fn for_each_offset(
         }
         None => 0..=0,
     };
-    // In units of the first side, so that lengths on square and cubic lattices are roots of whole numbers, exactly.
+    // In units of the first side, so that lengths on square and cubic lattices are exact roots of integers.
     let shape: [f64; 3] = std::array::from_fn(|c| side(c) / sides[0]);
     for z in range(2) {
         for y in range(1) {
@@ -92,13 +93,13 @@ pub(super) fn for_each_offset(
     }
 }
 
-/// Refuses horizons with so many neighbours that sums over them do not end.
+/// Returns an error for horizons with too many neighbours to sum over.
 pub(super) fn check_reach(
     cells: Cells<'_>,
     horizon: f64,
     correction: VolumeCorrection,
 ) -> Result<()> {
-    /// A second's work, and far more bonds than any body can have.
+    /// About a second of computing time, and far more bonds than any body has.
     const MOST: f64 = 1e8;
     let reach = correction.reach(horizon, cells.size());
     let along = |side: &f64| 2.0 * (reach / side).floor() + 1.0;
@@ -115,9 +116,9 @@ pub(super) fn check_reach(
 }
 
 impl BondMaterial {
-    /// The sums over an interior point's bonds that become m_dimension as the spacing goes to zero.
+    /// Returns the sums over the bonds of an interior point, which converge to m_dimension as the spacing goes to zero.
     pub(super) fn lattice_sums(&self, cells: Cells<'_>) -> LatticeSums {
-        /// The mean of n_a² n_b² over all directions n, for two different axes.
+        /// Mean of n_a² n_b² over all directions n, for two different axes.
         const ISOTROPIC: [f64; 3] = [1.0, 1.0 / 8.0, 1.0 / 15.0];
         let dimension = cells.sides.len();
         let (mut bulk, mut shear, size) = (0.0, 0.0, cells.size());
@@ -140,7 +141,7 @@ impl BondMaterial {
         }
     }
 
-    /// Calls `visit(offset, ξ, |ξ|)` for the bonds of an interior point of a lattice.
+    /// Calls `visit(offset, ξ, |ξ|)` for each bond of an interior point of a lattice.
     pub(super) fn for_each_offset(
         &self,
         cells: Cells<'_>,
@@ -149,7 +150,7 @@ impl BondMaterial {
         for_each_offset(cells, self.horizon, self.volume_correction, visit);
     }
 
-    /// Refuses horizons with so many neighbours that sums over them do not end.
+    /// Returns an error for horizons with too many neighbours to sum over.
     pub(super) fn check_reach(&self, cells: Cells<'_>) -> Result<()> {
         check_reach(cells, self.horizon, self.volume_correction)
     }
@@ -161,7 +162,8 @@ impl BondMaterial {
         }
     }
 
-    /// A table per class must belong to the body's lattice and name exactly the classes within reach.
+    /// Returns an error unless a class table fits the lattice of the body and contains exactly the classes
+    /// within reach.
     pub(super) fn check_classes(&self, cloud: &PointCloud) -> Result<()> {
         let Some(table) = self.class_table() else {
             return Ok(());
@@ -170,12 +172,12 @@ impl BondMaterial {
         let spacing = cloud.spacing();
         if !(cloud.lattice()).is_some_and(|lattice| lattice.is_cubic(cloud.dimension())) {
             return refuse(
-                "a table per class needs points on a regular grid of cubic cells".into(),
+                "a table per lattice class requires points on a regular grid of cubic cells".into(),
             );
         }
         if (table.spacing() / spacing - 1.0).abs() > 1e-9 {
             return refuse(format!(
-                "the table per class was made for a spacing of {} m, the grid has {spacing} m",
+                "the table per lattice class belongs to a spacing of {} m, but the spacing of the grid is {spacing} m",
                 table.spacing()
             ));
         }
@@ -189,8 +191,8 @@ impl BondMaterial {
         let name = |class: ClassOffset| format!("({}, {}, {})", class[0], class[1], class[2]);
         if let Some(missing) = within.iter().find(|class| table.lookup(**class).is_none()) {
             return refuse(format!(
-                "the table has no value for the class {} that lies within reach; it needs all {} classes (with the extended volume \
-                 correction the reach is half a spacing more than the horizon)",
+                "the table has no value for the class {}, which lies within reach; it requires all {} classes (with the extended \
+                 volume correction the reach exceeds the horizon by half a spacing)",
                 name(*missing),
                 within.len()
             ));
@@ -201,7 +203,7 @@ impl BondMaterial {
             .find(|(class, _)| !within.contains(class))
         {
             Some((class, _)) => refuse(format!(
-                "the table has a value for the class {}, which lies beyond the reach of bonds",
+                "the table has a value for the class {}, which lies beyond the reach of bonds; remove it",
                 name(*class)
             )),
             None => Ok(()),

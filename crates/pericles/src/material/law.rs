@@ -1,10 +1,10 @@
 //! Pair forces of bonds.
 
+use super::approximation::Approximation;
 use super::pair_force::PairForce;
-use super::treatment::Treatment;
 use crate::lanes::{Real, dot, vector};
 
-/// Which pair force a material uses.
+/// Pair force of a material.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PairLaw {
     /// [`LinearBond`].
@@ -13,28 +13,28 @@ pub enum PairLaw {
     BondStretch,
     /// [`GreenBond`](super::GreenBond).
     GreenStrain,
-    /// [`LiteralBond`](super::LiteralBond), for bars.
-    Literal57,
-    /// [`Treated`](super::Treated), for bars.
-    Treated(CubicLaw, Treatment),
+    /// [`CubicSofteningBond`](super::CubicSofteningBond), for bars.
+    CubicSoftening,
+    /// [`Approximated`](super::Approximated), for bars.
+    Approximated(CubicLaw, Approximation),
 }
 
-/// The laws that are cubic in the relative displacement.
+/// Laws that are cubic in the relative displacement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CubicLaw {
     /// [`GreenBond`](super::GreenBond).
     GreenStrain,
-    /// [`LiteralBond`](super::LiteralBond).
-    Literal57,
+    /// [`CubicSofteningBond`](super::CubicSofteningBond).
+    CubicSoftening,
 }
 
 /// s = (|ξ+η| − |ξ|)/|ξ|, n = (ξ+η)/|ξ+η|: the prototype microelastic brittle material (Silling & Askari 2005).
 ///
-/// With q = η·(2ξ+η) the stretch is q/(|ξ| (|ξ+η| + |ξ|)), free of cancellation at small strains.
+/// With q = η·(2ξ+η) the stretch is q/(|ξ| (|ξ+η| + |ξ|)), without cancellation at small strains.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct BondStretch;
 
-/// s = ξ·η/|ξ|², n = ξ/|ξ|: the linearisation of [`BondStretch`] about the reference.
+/// s = ξ·η/|ξ|², n = ξ/|ξ|: the linearisation of [`BondStretch`] about the reference configuration.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct LinearBond;
 
@@ -54,6 +54,7 @@ fn growth<T: Real, const D: usize>(xi: [T; D], eta: [T; D]) -> T {
 
 impl PairForce for BondStretch {
     const LINEAR: bool = false;
+    const OF_STRETCH: bool = true;
 
     #[inline(always)]
     fn force<T: Real, const D: usize>(xi: [T; D], eta: [T; D]) -> [T; D] {
@@ -81,6 +82,7 @@ impl PairForce for BondStretch {
 
 impl PairForce for LinearBond {
     const LINEAR: bool = true;
+    const OF_STRETCH: bool = true;
 
     #[inline(always)]
     fn force<T: Real, const D: usize>(xi: [T; D], eta: [T; D]) -> [T; D] {
@@ -109,15 +111,20 @@ impl PairForce for LinearBond {
     fn threshold(stretch: f64) -> f64 {
         stretch
     }
+
+    #[inline(always)]
+    fn stretch<T: Real>(t: T) -> T {
+        t
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::material::{GreenBond, LiteralBond, SecondOrder, Trapezoidal, Treated};
+    use crate::material::{Approximated, CubicSofteningBond, GreenBond, SecondOrder, Trapezoidal};
     use proptest::prelude::*;
 
-    /// The definition, without the cancellation-free forms.
+    /// Definition of the bond-stretch force, with cancellation at small strains.
     fn naive(xi: [f64; 3], eta: [f64; 3]) -> [f64; 3] {
         let y: [f64; 3] = std::array::from_fn(|c| xi[c] + eta[c]);
         let (r, l) = (dot(xi, xi).sqrt(), dot(y, y).sqrt());
@@ -131,7 +138,7 @@ mod tests {
         let work = dot(L::force(xi, eta), d);
         assert!(
             (slope - work).abs() < 1e-8,
-            "force is no gradient: {slope} {work}"
+            "the force is not the gradient of the energy: {slope} {work}"
         );
         let tangent = L::tangent(xi, eta, d);
         let (up, down) = (L::force(xi, moved(1.0)), L::force(xi, moved(-1.0)));
@@ -147,7 +154,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn forces_are_gradients_and_tangents_derivatives(
+        fn forces_are_energy_gradients_and_tangents_are_force_derivatives(
             xi in prop::array::uniform3(0.5f64..1.0),
             eta in prop::array::uniform3(-0.3f64..0.3),
             d in prop::array::uniform3(-1.0f64..1.0),
@@ -155,9 +162,9 @@ mod tests {
             check_gradients::<BondStretch>(xi, eta, d);
             check_gradients::<LinearBond>(xi, eta, d);
             check_gradients::<GreenBond>(xi, eta, d);
-            check_gradients::<LiteralBond>(xi, eta, d);
-            check_gradients::<Treated<GreenBond, Trapezoidal>>(xi, eta, d);
-            check_gradients::<Treated<LiteralBond, SecondOrder>>(xi, eta, d);
+            check_gradients::<CubicSofteningBond>(xi, eta, d);
+            check_gradients::<Approximated<GreenBond, Trapezoidal>>(xi, eta, d);
+            check_gradients::<Approximated<CubicSofteningBond, SecondOrder>>(xi, eta, d);
             let (force, expected) = (BondStretch::force(xi, eta), naive(xi, eta));
             for c in 0..3 {
                 prop_assert!((force[c] - expected[c]).abs() < 1e-14);
@@ -171,14 +178,14 @@ mod tests {
     }
 
     #[test]
-    fn all_laws_of_a_bar_have_one_linearisation() {
-        // And the bond-stretch law is linear there while bonds do not cross.
+    fn all_laws_of_a_bar_have_the_same_linearisation() {
+        // In 1D the bond-stretch law is itself linear unless end points pass each other.
         let (xi, d) = ([-0.4], [0.3]);
         let linear = LinearBond::force(xi, d)[0];
         for tangent in [
             BondStretch::tangent(xi, [0.0], d),
             GreenBond::tangent(xi, [0.0], d),
-            LiteralBond::tangent(xi, [0.0], d),
+            CubicSofteningBond::tangent(xi, [0.0], d),
             BondStretch::force(xi, d),
         ] {
             assert!(
@@ -186,14 +193,14 @@ mod tests {
                 "{tangent:?} {linear}"
             );
         }
-        // The cubic of equation 58.
+        // The cubic polynomial of equation 58.
         let (x, e) = (0.4, 0.17);
         let cubic = (2.0 * x * x * e + 3.0 * x * e * e + e * e * e) / (2.0 * x * x * x);
         assert!((GreenBond::force([x], [e])[0] / cubic - 1.0).abs() < 1e-14);
     }
 
     #[test]
-    fn small_strains_keep_their_digits() {
+    fn forces_at_small_strains_lose_no_digits() {
         let (xi, eta) = ([0.3, 0.4, 0.0], [3e-17, 4e-17, 0.0]);
         let force = BondStretch::force(xi, eta);
         assert!((force[0] / (0.6 * 1e-16) - 1.0).abs() < 1e-12, "{force:?}");

@@ -1,8 +1,9 @@
 //! Materials: from engineering constants to bond constants.
 //!
-//! A bond of reference length r pulls its ends together with the force density (per volume squared) c α(r) s, where s is its stretch. The
-//! constant c follows from one elastic modulus, the critical stretch s₀ from the fracture energy, both through the moments
-//! m_q = ∫₀^δ α r^q dr of the influence function (Alebrahim et al. 2022, eqs. 5 and 52, written for any α):
+//! A bond of reference length r and stretch s exerts the pairwise force density c α(r) s (N/m⁶) between its
+//! end points. The constant c follows from one elastic modulus, the critical stretch s₀ from the fracture
+//! energy, both through the moments m_q = ∫₀^δ α r^q dr of the influence function (Alebrahim et al. 2022,
+//! eqs. 5 and 52, written for any α):
 //!
 //! | | c | fixed ν | G₀ |
 //! |---|---|---|---|
@@ -11,10 +12,12 @@
 //! | plane strain, thickness h | 16E/(5π h m₂) | 1/4 | h c s₀² m₃ |
 //! | 3D | 9K/(2π m₃), K = 2E/3 | 1/4 | (π/2) c s₀² m₄ |
 //!
-//! On a grid sums over a point's bonds take the place of the integrals if asked for: [`Calibration`] for c, [`FractureCalibration`] for s₀.
+//! On a grid, sums over the bonds of a point can replace the integrals: see [`Calibration`] for c and
+//! [`FractureCalibration`] for s₀.
 //!
 //! Units: E, K in Pa; c in N/m⁶ for a dimensionless α; G₀ in J/m².
 
+mod approximation;
 mod bond_material;
 mod composite;
 mod constants;
@@ -26,28 +29,31 @@ mod modulus;
 mod pair_force;
 mod polynomial;
 mod scatter;
+mod softening;
 mod state_based;
 mod surface_correction;
-mod treatment;
 mod waves;
 
+pub use approximation::{
+    Approximated, Approximation, CubicBond, CubicFactor, SecondOrder, Trapezoidal,
+};
 pub use bond_material::{BondMaterial, Calibration, Fracture, FractureCalibration, Modulus};
 pub(crate) use composite::check_materials;
-pub use composite::{InterfaceRule, PairClasses};
+pub use composite::{InterfaceRule, MaterialPairs};
 pub use constants::BondConstants;
 pub use crack_planes::{CrackPlane, LayerMoments};
 pub use interface::{InterfaceStiffness, MaterialInterface};
 pub use law::{BondStretch, CubicLaw, LinearBond, PairLaw};
 pub use modulus::{ElasticModulus, StressState};
 pub use pair_force::PairForce;
-pub use polynomial::{GreenBond, LiteralBond};
+pub use polynomial::{CubicSofteningBond, GreenBond};
 pub(crate) use scatter::Factors;
 pub use scatter::{Scattered, StrengthScatter};
+pub use softening::{Softening, SofteningCurve, SofteningLaw};
 pub use state_based::{
     BondFailure, BondLimits, ElasticConstants, GivenConstants, Inelasticity, IsotropicInfluence,
     LatticeShear, LinearSolid, LinearSolidConstants, MOST_TERMS, SolidClasses, SolidSurface,
     StateInfluence, Strains, StretchDefinition, ViscousTerm, Yield,
 };
 pub use surface_correction::{SurfaceCorrection, SurfaceFactors};
-pub use treatment::{CubicBond, CubicFactor, SecondOrder, Trapezoidal, Treated, Treatment};
 pub use waves::{ElasticWaves, TransverseWaves};

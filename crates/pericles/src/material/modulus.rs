@@ -2,7 +2,7 @@
 
 use crate::error::{PericlesError, Result, positive};
 
-/// The state of stress, which fixes Poisson's ratio of a bond-based material.
+/// State of stress, which fixes Poisson's ratio of a bond-based material.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StressState {
     /// A bar under axial stress.
@@ -16,7 +16,7 @@ pub enum StressState {
 }
 
 impl StressState {
-    /// Dimension of the bodies in this state.
+    /// Returns the dimension of bodies in this state.
     pub fn dimension(self) -> usize {
         match self {
             Self::Uniaxial => 1,
@@ -25,7 +25,7 @@ impl StressState {
         }
     }
 
-    /// Poisson's ratio of the bond-based material; none for a bar.
+    /// Returns Poisson's ratio of the bond-based material; `None` for a bar.
     pub fn poisson_ratio(self) -> Option<f64> {
         match self {
             Self::Uniaxial => None,
@@ -34,7 +34,7 @@ impl StressState {
         }
     }
 
-    /// ρ c² of longitudinal waves for a Young's modulus, Pa: 1, 9/8 (plane stress) and 6/5 of it.
+    /// Returns ρ c² of longitudinal waves, Pa: E in a bar, 9/8 E in plane stress, 6/5 E otherwise.
     pub fn longitudinal_modulus(self, young: f64) -> f64 {
         match self {
             Self::Uniaxial => young,
@@ -43,7 +43,7 @@ impl StressState {
         }
     }
 
-    /// In words.
+    /// Returns the name used in messages.
     pub fn name(self) -> &'static str {
         match self {
             Self::Uniaxial => "a bar",
@@ -53,10 +53,10 @@ impl StressState {
         }
     }
 
-    /// Checks a Poisson's ratio given by the user.
+    /// Returns an error if a given Poisson's ratio is not that of the bond-based material.
     pub fn check_poisson_ratio(self, given: f64) -> Result<()> {
         match self.poisson_ratio() {
-            // 0.33 and 0.333 mean one third.
+            // The tolerance accepts 0.33 and 0.333 for one third.
             Some(fixed) if (given - fixed).abs() > 5e-3 || !given.is_finite() => {
                 Err(PericlesError::PoissonRatio {
                     given,
@@ -69,7 +69,7 @@ impl StressState {
     }
 }
 
-/// The elastic constant a user gives; the other follows from the fixed Poisson's ratio.
+/// One elastic modulus; the others follow from the fixed Poisson's ratio.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ElasticModulus {
     /// Young's modulus E, Pa.
@@ -81,12 +81,12 @@ pub enum ElasticModulus {
 }
 
 impl ElasticModulus {
-    /// Young's modulus, Pa.
+    /// Returns Young's modulus, Pa.
     pub fn young(self, state: StressState) -> Result<f64> {
         let ratio = |what| {
             state.poisson_ratio().ok_or(PericlesError::WrongDimension {
                 what,
-                needed: "2 or 3; a bar takes Young's modulus",
+                needed: "2 or 3; give Young's modulus for a bar",
                 dimension: 1,
             })
         };
@@ -109,7 +109,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn poisson_ratios() {
+    fn poisson_ratio_is_fixed_by_the_state_of_stress() {
         assert!(StressState::PlaneStress.check_poisson_ratio(0.33).is_ok());
         assert!(StressState::PlaneStress.check_poisson_ratio(0.25).is_err());
         assert!(StressState::Spatial.check_poisson_ratio(0.3).is_err());

@@ -3,18 +3,21 @@
 use super::pair_force::PairForce;
 use crate::lanes::{Real, dot, vector};
 
-/// (|ζ|² − |ξ|²)/(2|ξ|³) ζ with ζ = ξ+η: proportional to the bond's Green strain and indifferent to rigid motions; its linearisation is
-/// [`LinearBond`](super::LinearBond)'s. In one dimension a cubic, (2ξ²η + 3ξη² + η³)/(2|ξ|³).
+/// (|ζ|² − |ξ|²)/(2|ξ|³) ζ with ζ = ξ+η: proportional to the Green strain of the bond and invariant under
+/// rigid motions, with the linearisation of [`LinearBond`](super::LinearBond). In 1D it is the cubic
+/// polynomial (2ξ²η + 3ξη² + η³)/(2|ξ|³).
 ///
-/// Softens in compression and is unstable there beyond a stretch of −0.42. Source: Coclite et al., Appl. Numer. Math. 155 (2020), equation 58, with ζ where η is
-/// printed: as printed the stiffness at rest is negative.
+/// Softens in compression and is unstable beyond a stretch of −0.42. Source: Coclite et al., Appl. Numer.
+/// Math. 155 (2020), equation 58, with ζ in place of the printed η, which would make the initial stiffness
+/// negative.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct GreenBond;
 
-/// (|η| − |ξ|)²/|ξ|³ η: equation 57 of the same paper as it is printed, for bars. Its linearisation is that of the other laws; it softens in tension and compression alike, to
-/// nothing at |η| = |ξ|. (With ζ for η, the objective form, the linearisation would vanish.)
+/// (|η| − |ξ|)²/|ξ|³ η: equation 57 of the same paper as printed, for bars. It has the linearisation of the
+/// other laws and softens in tension and compression, to zero force at |η| = |ξ|. The objective form, with ζ
+/// in place of η, has no linear part.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct LiteralBond;
+pub struct CubicSofteningBond;
 
 /// |ζ|² − |ξ|² = η·(2ξ+η)
 #[inline(always)]
@@ -63,7 +66,7 @@ impl PairForce for GreenBond {
     }
 }
 
-impl PairForce for LiteralBond {
+impl PairForce for CubicSofteningBond {
     const LINEAR: bool = false;
 
     #[inline(always)]
@@ -87,7 +90,7 @@ impl PairForce for LiteralBond {
         let gap = e - dot(xi, xi).sqrt();
         let inverse = T::splat(1.0) / cube(xi);
         let across = gap * gap * inverse;
-        // η (η·d)/|η| is nothing where η is.
+        // η (η·d)/|η| vanishes at η = 0.
         let unit = T::splat(1.0) / (e + T::splat(f64::MIN_POSITIVE));
         let along = T::splat(2.0) * gap * inverse * (dot(eta, d) * unit);
         vector(|c| across * d[c] + along * eta[c])
@@ -100,5 +103,10 @@ impl PairForce for LiteralBond {
 
     fn threshold(stretch: f64) -> f64 {
         stretch
+    }
+
+    #[inline(always)]
+    fn stretch<T: Real>(t: T) -> T {
+        t
     }
 }

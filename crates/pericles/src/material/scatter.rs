@@ -1,4 +1,4 @@
-//! Strength that scatters from point to point.
+//! Random scatter of strength from point to point.
 
 use std::f64::consts::PI;
 
@@ -6,35 +6,37 @@ use crate::error::{PericlesError, Result};
 use crate::noise::SplitMix64;
 use crate::space::PointCloud;
 
-/// Weibull-distributed strength: every point has a random factor, and a bond bears its limit times the mean of both ends' factors.
+/// Weibull-distributed strength: every point has a random factor, and the limit of a bond is multiplied by
+/// the mean factor of its end points.
 ///
-/// The distribution function is 1 − exp(−(k/k₀)^m) with the shape m (Weibull's modulus) and the scale k₀ = 1/Γ(1 + 1/m), so that the mean of k is one. The factor of a point depends on the seed and on its number in files
-/// alone, not on threads or on the division among processes.
+/// The distribution function is 1 − exp(−(k/k₀)^m) with the shape m (Weibull modulus) and the scale k₀ =
+/// 1/Γ(1 + 1/m), so that the mean of k is one. The factor of a point depends only on the seed and on its
+/// number in output files, not on threads or on the partition into processes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StrengthScatter {
-    /// What is distributed.
+    /// The distributed quantity.
     pub of: Scattered,
-    /// Weibull's modulus m: the larger, the narrower the distribution.
+    /// Weibull modulus m; larger values give a narrower distribution.
     pub shape: f64,
     /// Random seed.
     pub seed: u64,
 }
 
-/// The strength that is distributed.
+/// Quantity with random scatter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Scattered {
     /// The critical stretch.
     #[default]
     CriticalStretch,
-    /// The fracture energy, with which the critical stretch grows as the square root.
+    /// The fracture energy; the critical stretch is proportional to its square root.
     FractureEnergy,
 }
 
 impl StrengthScatter {
-    /// Weibull's modulus, the least and the largest.
+    /// Smallest and largest Weibull modulus.
     pub const SHAPES: [f64; 2] = [0.5, 1000.0];
 
-    /// Refuses a shape that is no Weibull's modulus of a solid.
+    /// Returns an error if the Weibull modulus is out of range.
     ///
     /// # Errors
     /// A shape outside [`StrengthScatter::SHAPES`].
@@ -43,26 +45,26 @@ impl StrengthScatter {
         match (least..=most).contains(&self.shape) {
             true => Ok(()),
             false => Err(PericlesError::OutOfRange {
-                quantity: "the shape of the distribution of strength",
+                quantity: "the shape (Weibull modulus) of the distribution of strength",
                 value: self.shape,
                 allowed: "a number from 0.5 to 1000",
             }),
         }
     }
 
-    /// The factors of the critical stretch of all own points.
+    /// Returns the factors of the critical stretch of all own points.
     ///
     /// # Errors
-    /// As [`StrengthScatter::check`].
+    /// Those of [`StrengthScatter::check`].
     pub fn factors(&self, cloud: &PointCloud) -> Result<Vec<f64>> {
         self.check()?;
         let factor = |i: usize| self.factor(cloud.user_number(i) as u64);
         Ok((0..cloud.len()).map(factor).collect())
     }
 
-    /// The factor of the critical stretch of a point with a number.
+    /// Returns the factor of the critical stretch of the point with this number.
     pub fn factor(&self, number: u64) -> f64 {
-        /// Half of the distance of neighbouring random numbers: zero and one are left out.
+        /// Half the distance of neighbouring random numbers, which excludes 0 and 1.
         const HALF: f64 = 0.25 * f64::EPSILON;
         let uniform = 0.5 + 0.5 * SplitMix64::after(self.seed, number).signed() + HALF;
         let value = (-(-uniform).ln_1p()).powf(1.0 / self.shape) / gamma(1.0 + 1.0 / self.shape);
@@ -73,7 +75,7 @@ impl StrengthScatter {
     }
 }
 
-/// Γ(x) for 1 ≤ x ≤ 3 by the series of Lanczos (g = 7, nine terms), to about 1e-14.
+/// Returns Γ(x) for 1 ≤ x ≤ 3 by the Lanczos series (g = 7, nine terms), accurate to about 1e-14.
 fn gamma(x: f64) -> f64 {
     const G: f64 = 7.0;
     const FIRST: f64 = 0.999_999_999_999_809_9;
@@ -97,7 +99,7 @@ fn gamma(x: f64) -> f64 {
     (2.0 * PI).sqrt() * t.powf(x + 0.5) * (-t).exp() * sum
 }
 
-/// Factors by points or sites; none if all strengths are as given.
+/// Strength factors of points or sites; empty if strengths do not scatter.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Factors(Vec<f64>);
 
@@ -106,7 +108,7 @@ impl Factors {
         Self(factors)
     }
 
-    /// The mean of two ends.
+    /// Returns the mean factor of two end points.
     #[inline(always)]
     pub fn of_bond(&self, a: usize, b: usize) -> f64 {
         match &self.0[..] {
@@ -115,7 +117,7 @@ impl Factors {
         }
     }
 
-    /// The smallest, at most one where there are none.
+    /// Returns the smallest factor; 1 if there are no factors.
     pub fn smallest(&self) -> f64 {
         let factors = self.0.iter().copied();
         factors.reduce(f64::min).unwrap_or(1.0)
@@ -136,7 +138,7 @@ mod tests {
 
     /// Γ(3/2) = √π/2, Γ(1 + 1/4) and Γ(1 + 1/10) from Abramowitz & Stegun, table 6.1.
     #[test]
-    fn the_gamma_function_is_exact() {
+    fn gamma_function_matches_tabulated_values() {
         for (x, value) in [
             (1.0, 1.0),
             (2.0, 1.0),
@@ -149,9 +151,10 @@ mod tests {
         }
     }
 
-    /// The mean is one; the quantiles are those of the distribution. Standard errors of 40 000 points: 0.5 % of the standard deviation, 0.25 % of the share.
+    /// The mean is one and quantiles match the distribution. Standard errors for 40 000 points: 0.5 % of the
+    /// standard deviation, 0.25 % of the share.
     #[test]
-    fn factors_have_the_distribution_of_weibull() {
+    fn strength_factors_follow_the_weibull_distribution() {
         for shape in [2.0, 8.0] {
             let scatter = StrengthScatter {
                 of: Scattered::CriticalStretch,

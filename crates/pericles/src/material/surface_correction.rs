@@ -1,4 +1,4 @@
-//! Corrections for the bonds that points near a surface lack.
+//! Surface correction: factors of bonds near free surfaces.
 
 use rayon::prelude::*;
 
@@ -9,33 +9,44 @@ use crate::parallel::BLOCK;
 use crate::solve::principal_axes;
 use crate::space::PointCloud;
 
-/// What is kept the same near surfaces as inside the body.
+/// Method of surface correction, by the quantity that points near a surface share with interior points.
 ///
-/// A bond is multiplied by a factor that is the same seen from both of its ends, so that momentum is conserved to round-off. Inside a body on a grid it is 1: the
-/// reference is the family of a grid's interior, of the cloud's cells. Bonds that pre-cracks cut count as there: cracks are not corrected.
+/// Each bond has a factor that is the same from both end points, so that momentum is conserved to round-off.
+/// The reference is the family of an interior point of a grid with the cells of the cloud; in the interior of
+/// a grid the factor is 1. Bonds cut by pre-cracks are counted as present: crack faces are not corrected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum SurfaceCorrection {
-    /// The factor 1: bodies are softer within a horizon of their surface.
+    /// No correction: bodies are softer within a horizon of their surface.
     #[default]
     None,
-    /// ½(g_i + g_j) with g_i = V₀/V_i, the volume V = Σ_j κ V_j of a family and of the point itself (Le & Bobaru, Comput. Mech. 61, 499, 2018).
+    /// ½(g_i + g_j) with g_i = V₀/V_i and the volume V = V_i + Σ_j κ V_j of a point and its family; V₀ is
+    /// that of an interior point (Le & Bobaru, Comput. Mech. 61, 499, 2018).
     Volume,
-    /// Factors for three directions c at each point, from the energy of uniaxial tension along them, combined for a bond along the unit vector n by an
-    /// ellipsoid (Madenci & Oterkus, Peridynamic Theory and Its Applications, 2014, chapter 4):
+    /// Factors for three directions c at each point from the energy of uniaxial tension along them, combined
+    /// for a bond along the unit vector n by an ellipsoid (Madenci & Oterkus, Peridynamic Theory and Its
+    /// Applications, 2014, chapter 4):
     ///
-    /// g = (Σ_c (n_c/g_c)²)^(−1/2), written as g = 1/|G⁻¹ n| with the tensor G, the mean of both ends, that has the factors g_c along the directions c.
+    /// g = (Σ_c (n_c/g_c)²)^(−1/2) = 1/|G⁻¹ n|, where the tensor G, the mean of both end points, has the
+    /// factors g_c along the directions c.
     ///
-    /// The directions are the principal axes of Σ_j κ α |ξ| n⊗n V_j, and not those of the coordinates, so that oblique surfaces are corrected as well as those along the
-    /// grid. The strain is 1 along c and −ν across, ν the contraction of the bond-based body (1/3 in 2D, 1/4 in 3D), and g_c is such that the energy density
-    /// W_c ∝ Σ_j g κ α |ξ| (n_c² − ν (1 − n_c²))² V_j is that of the interior. The condition hangs on the factors themselves; it is iterated three times from
-    /// g = 1. Beyond four horizons from a surface the factor is 1 to round-off.
+    /// The directions are the principal axes of Σ_j κ α |ξ| n⊗n V_j rather than the coordinate axes, so that
+    /// oblique surfaces are corrected as well as surfaces along the grid. The strain is 1 along c and −ν in
+    /// the other directions, with Poisson's ratio ν of the bond-based body (1/3 in 2D, 1/4 in 3D); g_c is
+    /// such that the energy density W_c ∝ Σ_j g κ α |ξ| (n_c² − ν (1 − n_c²))² V_j equals that of the
+    /// interior. The condition depends on the factors themselves and is iterated three times from g = 1.
+    /// Beyond four horizons from a surface the factor is 1 to round-off.
     Energy,
+    /// Families completed by ghost points in free cells of the lattice, with displacements extrapolated from
+    /// the body; forces are the exact gradient of the energy of the body
+    /// ([`GhostForce`](crate::operator::GhostForce)). For outer surfaces without fracture: bonds cannot
+    /// break, and pre-cracks are not corrected.
+    Ghosts,
 }
 
-/// A symmetric tensor: xx, yy, zz, xy, yz, zx.
+/// Symmetric tensor: xx, yy, zz, xy, yz, zx.
 pub(super) type Tensor = [f64; 6];
 
-/// The factors of a body's points.
+/// Surface correction factors of the points of a body.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SurfaceFactors {
     /// All bonds have the factor 1.
@@ -47,7 +58,7 @@ pub enum SurfaceFactors {
 }
 
 impl SurfaceFactors {
-    /// The factor of the bond ξ (m) from point i to point j; the same bits for −ξ from j to i.
+    /// Returns the factor of the bond ξ (m) from point i to point j; bitwise the same for −ξ from j to i.
     pub fn of_bond(&self, i: usize, j: usize, xi: [f64; 3]) -> f64 {
         match self {
             Self::None => 1.0,
@@ -57,10 +68,10 @@ impl SurfaceFactors {
     }
 }
 
-/// |ξ|/|G⁻¹ ξ| with the mean G of the tensors of both ends.
+/// Returns |ξ|/|G⁻¹ ξ| with the mean G of the tensors of both end points.
 pub(super) fn ellipsoid([a, b]: [&Tensor; 2], xi: [f64; 3]) -> f64 {
     let [xx, yy, zz, xy, yz, zx]: Tensor = std::array::from_fn(|k| 0.5 * (a[k] + b[k]));
-    // Cofactors: the inverse times the determinant.
+    // Cofactors, which are the inverse times the determinant.
     let inverse = [
         [yy * zz - yz * yz, yz * zx - xy * zz, xy * yz - yy * zx],
         [yz * zx - xy * zz, xx * zz - zx * zx, xy * zx - xx * yz],
@@ -77,9 +88,9 @@ pub(super) fn ellipsoid([a, b]: [&Tensor; 2], xi: [f64; 3]) -> f64 {
 }
 
 impl SurfaceCorrection {
-    /// The factors of a body.
+    /// Returns the factors of a body.
     pub fn factors(self, bonds: &BondList, material: &BondMaterial) -> SurfaceFactors {
-        /// Two leave 7 % of the tension of thin bars, further ones make shear softer.
+        /// Two passes leave an error of 7 % in the tension of thin bars; more than three make shear softer.
         const PASSES: usize = 3;
         let body = Body {
             cloud: bonds.sites().cloud(),
@@ -87,7 +98,8 @@ impl SurfaceCorrection {
             material,
         };
         match self {
-            Self::None => SurfaceFactors::None,
+            // Ghosts are points, not factors.
+            Self::None | Self::Ghosts => SurfaceFactors::None,
             Self::Volume => body.volume_factors(),
             Self::Energy => {
                 let mut points = body.uncorrected();
@@ -100,12 +112,12 @@ impl SurfaceCorrection {
     }
 }
 
-/// The factors of a point along three directions.
+/// Factors of a point along three directions.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Directions {
-    /// Unit vectors at right angles.
+    /// Orthogonal unit vectors.
     pub(super) axes: [[f64; 3]; 3],
-    /// Energies of tension along them inside the body.
+    /// Energies of uniaxial tension along them in the interior.
     pub(super) interior: [f64; 3],
     pub(super) factors: [f64; 3],
 }
@@ -123,9 +135,9 @@ impl Directions {
     }
 }
 
-/// The principal axes of a second moment; those of the coordinates where they are principal.
+/// Returns the principal axes of a second moment; the coordinate axes if they are principal.
 pub(super) fn axes_of(moment: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
-    /// Rounding of the sums, far below what bends an axis.
+    /// Relative round-off of the sums, far below off-diagonal entries that turn the axes.
     const NOTHING: f64 = 1e-9;
     let trace = moment[0][0] + moment[1][1] + moment[2][2];
     let across = [moment[0][1], moment[1][2], moment[0][2]];
@@ -136,7 +148,7 @@ pub(super) fn axes_of(moment: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
     }
 }
 
-/// The tensors of all sites of a bond list.
+/// Returns the tensors of all sites of a bond list.
 pub(super) fn tensors_of_sites(bonds: &BondList, points: &[Directions]) -> Vec<Tensor> {
     let own: Vec<Tensor> = points.iter().map(Directions::tensor).collect();
     let sites = bonds.sites();
@@ -153,7 +165,7 @@ pub(super) fn tensors_of_sites(bonds: &BondList, points: &[Directions]) -> Vec<T
         .collect()
 }
 
-/// What factors are found for.
+/// The body whose factors are computed.
 struct Body<'a> {
     cloud: &'a PointCloud,
     bonds: &'a BondList,
@@ -161,7 +173,7 @@ struct Body<'a> {
 }
 
 impl Body<'_> {
-    /// Calls `visit(κ, ξ, |ξ|)` for the bonds of an interior point, and returns the volume of its cell.
+    /// Calls `visit(κ, ξ, |ξ|)` for each bond of an interior point and returns the volume of its cell.
     fn interior(&self, mut visit: impl FnMut(f64, [f64; 3], f64)) -> f64 {
         let (cloud, material) = (self.cloud, self.material);
         let cubic = vec![cloud.spacing(); cloud.dimension()];
@@ -174,7 +186,7 @@ impl Body<'_> {
     }
 
     fn volume_factors(&self) -> SurfaceFactors {
-        // The point itself has volume.
+        // The volume of the point itself.
         let mut cells = 1.0;
         let volume = self.interior(|kappa, _, _| cells += kappa);
         let interior = cells * volume;
@@ -191,12 +203,12 @@ impl Body<'_> {
         SurfaceFactors::Scalar(self.bonds.sites().spread(&factors).into_owned())
     }
 
-    /// α |ξ| of a bond.
+    /// Returns α |ξ| of a bond.
     fn weight(&self, xi: [f64; 3], r: f64) -> f64 {
         self.material.influence.alpha_of(xi, self.material.horizon) * r
     }
 
-    /// What a bond of weight 1 adds to the energies of tension along each axis, over c s² V/2.
+    /// Returns the contribution of a bond of weight 1 to the energies of tension along each axis, over c s² V/2.
     fn energies(&self, axes: &[[f64; 3]; 3], xi: [f64; 3], r: f64) -> [f64; 3] {
         const CONTRACTION: [f64; 3] = [0.0, 1.0 / 3.0, 1.0 / 4.0];
         let nu = CONTRACTION[self.cloud.dimension() - 1];
@@ -208,7 +220,7 @@ impl Body<'_> {
         })
     }
 
-    /// The directions of every point with the factors 1.
+    /// Returns the directions of every point with the factors 1.
     fn uncorrected(&self) -> Vec<Directions> {
         let mut family = Vec::new();
         let volume = self.interior(|kappa, xi, r| family.push((kappa, xi, r)));
@@ -229,7 +241,7 @@ impl Body<'_> {
         })
     }
 
-    /// The principal axes of a family; those of the coordinates where they are principal.
+    /// Returns the principal axes of a family; the coordinate axes if they are principal.
     fn principal_axes(&self, i: usize) -> [[f64; 3]; 3] {
         let (bonds, here) = (self.bonds, self.bonds.site(i));
         let mut moment = [[0.0; 3]; 3];
@@ -246,7 +258,7 @@ impl Body<'_> {
         axes_of(moment)
     }
 
-    /// Takes factors under which the energies of corrected bonds are nearer those of the interior.
+    /// Performs one pass of the iteration of the factors.
     fn improve(&self, points: &mut [Directions]) {
         let bonds = self.bonds;
         let tensors = tensors_of_sites(bonds, points);
@@ -263,7 +275,7 @@ impl Body<'_> {
                     self.energies(&own.axes, xi, r),
                 );
             }
-            // A point without bonds has nothing to be corrected.
+            // Points without bonds keep their factors.
             std::array::from_fn(|c| match sums[c] {
                 sum if sum > 0.0 => own.factors[c] * own.interior[c] / sum,
                 _ => own.factors[c],

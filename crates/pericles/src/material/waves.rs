@@ -1,27 +1,27 @@
-//! Wave speeds of the elastic material that a bond-based one approaches.
+//! Wave speeds of the elastic continuum in the limit of small horizons.
 
 use super::{ElasticConstants, StressState};
 
-/// Speeds of waves, m/s.
+/// Wave speeds, m/s.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ElasticWaves {
-    /// Pressure waves; in a bar the bar wave, √(E/ρ).
+    /// Speed of pressure waves; in a bar √(E/ρ).
     pub pressure: f64,
-    /// Shear and Rayleigh waves; none in a bar.
+    /// Speeds of shear and Rayleigh waves; `None` in a bar.
     pub transverse: Option<TransverseWaves>,
 }
 
 /// Speeds of transverse waves, m/s.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TransverseWaves {
-    /// Shear waves, m/s.
+    /// Speed of shear waves, m/s.
     pub shear: f64,
-    /// Rayleigh waves along a free surface, which a crack in mode I cannot overtake, m/s.
+    /// Speed of Rayleigh waves, m/s: the upper limit of the speed of mode-I cracks.
     pub rayleigh: f64,
 }
 
 impl ElasticWaves {
-    /// The speeds for Young's modulus (Pa), density (kg/m³) and the state of stress, with Poisson's ratio fixed by the state.
+    /// Returns the speeds for Young's modulus (Pa), density (kg/m³) and a state of stress, which fixes Poisson's ratio.
     pub fn of(young: f64, density: f64, state: StressState) -> Self {
         let Some(nu) = state.poisson_ratio() else {
             return Self {
@@ -30,7 +30,7 @@ impl ElasticWaves {
             };
         };
         let shear = (young / (2.0 * (1.0 + nu) * density)).sqrt();
-        // c_s²/c_p²: in plane stress the pressure wave runs at √(E/(1−ν²)/ρ).
+        // c_s²/c_p²; in plane stress the speed of pressure waves is √(E/(1−ν²)/ρ).
         let ratio = match state {
             StressState::PlaneStress => 0.5 * (1.0 - nu),
             _ => (1.0 - 2.0 * nu) / (2.0 * (1.0 - nu)),
@@ -44,7 +44,7 @@ impl ElasticWaves {
         }
     }
 
-    /// The speeds in a solid with any Poisson's ratio, for the density (kg/m³) and the state of stress.
+    /// Returns the speeds in a solid with any Poisson's ratio, for a density (kg/m³) and a state of stress.
     pub fn of_solid(solid: &ElasticConstants, density: f64, state: StressState) -> Self {
         let longitudinal = solid.longitudinal_modulus(state);
         let pressure = (longitudinal / density).sqrt();
@@ -60,10 +60,10 @@ impl ElasticWaves {
     }
 }
 
-/// The root x = c_R²/c_s² in (0, 1) of Rayleigh's equation (2 − x)² = 4 √(1 − x) √(1 − r x), r = c_s²/c_p² < 1.
+/// Returns the root x = c_R²/c_s² in (0, 1) of Rayleigh's equation (2 − x)² = 4 √(1 − x) √(1 − r x), r = c_s²/c_p² < 1.
 fn rayleigh(ratio: f64) -> f64 {
     let excess = |x: f64| (2.0 - x).powi(2) - 4.0 * ((1.0 - x) * (1.0 - ratio * x)).sqrt();
-    // x = 0 is a root too; just above it the excess is negative, at 1 it is 1.
+    // x = 0 is also a root; the excess is negative just above it and 1 at x = 1.
     let (mut low, mut high) = (0.1, 1.0);
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
@@ -81,14 +81,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rayleigh_s_equation_has_a_closed_form_at_a_quarter() {
+    fn rayleigh_speed_for_poisson_ratio_one_quarter_matches_the_closed_form() {
         // Poisson's ratio 1/4: x = 2 − 2/√3.
         let exact = 2.0 - 2.0 / 3f64.sqrt();
         assert!((rayleigh(1.0 / 3.0) - exact).abs() < 1e-14);
     }
 
     #[test]
-    fn glasses_of_the_fracture_studies() {
+    fn rayleigh_speeds_of_soda_lime_and_duran_glass_match_references() {
         let rayleigh = |young, density| {
             ElasticWaves::of(young, density, StressState::PlaneStrain)
                 .transverse
@@ -100,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn solids_with_the_fixed_ratio_have_the_speeds_of_bond_based_materials() {
+    fn wave_speeds_of_solids_with_the_fixed_poisson_ratio_equal_bond_based_speeds() {
         for state in [
             StressState::Uniaxial,
             StressState::PlaneStress,
@@ -123,8 +123,8 @@ mod tests {
     }
 
     #[test]
-    fn rayleigh_waves_of_any_poisson_s_ratio() {
-        // Viktorov's approximation (0.87 + 1.12 ν)/(1 + ν) is off by less than 0.5 %.
+    fn rayleigh_speeds_agree_with_the_approximation_of_viktorov() {
+        // The error of Viktorov's approximation (0.87 + 1.12 ν)/(1 + ν) is below 0.5 %.
         for nu in [0.0, 0.2, 0.45] {
             let solid = ElasticConstants::of_young(1.0, nu).unwrap();
             let waves = ElasticWaves::of_solid(&solid, 1.0, StressState::PlaneStrain);
@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn a_steel_bar() {
+    fn wave_speed_of_a_steel_bar_is_root_of_modulus_over_density() {
         let speeds = ElasticWaves::of(210e9, 7850.0, StressState::Uniaxial);
         assert!((speeds.pressure - 5172.2).abs() < 0.1);
         assert_eq!(speeds.transverse, None);

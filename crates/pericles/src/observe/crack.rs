@@ -4,12 +4,12 @@ use crate::error::Result;
 use crate::family::{Crack, pairs_within};
 use crate::space::{Point, PointCloud, PointSet, check_points};
 
-/// A pre-crack with the points that lost bonds to it.
+/// A pre-crack and the points that it took bonds from.
 #[derive(Debug, Clone)]
 pub struct TrackedCrack {
-    /// The surface.
+    /// Surface of the crack.
     pub crack: Crack,
-    /// Points it took bonds from.
+    /// Points that lost bonds to the crack.
     pub points: PointSet,
 }
 
@@ -18,14 +18,14 @@ pub struct TrackedCrack {
 pub struct CrackTip {
     /// Reference position of the tip, m.
     pub place: Point,
-    /// Its distance from the pre-crack, m.
+    /// Distance from the pre-crack, m.
     pub advance: f64,
-    /// Points of the crack: damaged beyond the threshold and connected to the pre-crack.
+    /// Number of points of the crack: damaged beyond the threshold and connected to the pre-crack.
     pub points: usize,
 }
 
-/// Finds the crack that has grown from each pre-crack: the points damaged beyond a threshold that are connected to it through such points,
-/// neighbours on the grid (diagonals included) being connected.
+/// Finds the crack that has grown from each pre-crack: the points damaged beyond a threshold and connected to the
+/// pre-crack through such points. Neighbours on the grid, diagonals included, are connected.
 #[derive(Debug, Clone)]
 pub struct CrackTracker {
     cracks: Vec<TrackedCrack>,
@@ -35,10 +35,10 @@ pub struct CrackTracker {
 }
 
 impl CrackTracker {
-    /// A tracker for the pre-cracks of a body.
+    /// Makes a tracker for the pre-cracks of a body.
     ///
     /// # Errors
-    /// A pre-crack with points that the cloud does not have.
+    /// A pre-crack with points that the body does not have.
     pub fn new(cloud: &PointCloud, cracks: Vec<TrackedCrack>, threshold: f64) -> Result<Self> {
         for crack in &cracks {
             check_points("the points of a pre-crack", &crack.points, cloud.len())?;
@@ -58,7 +58,7 @@ impl CrackTracker {
         &self.cracks
     }
 
-    /// The points of the crack that has grown from a pre-crack, ascending.
+    /// Returns the points of the crack that has grown from a pre-crack, in ascending order.
     pub fn connected(&self, crack: usize, damage: &[f64]) -> PointSet {
         let mut reached = vec![false; damage.len()];
         let mut open: Vec<u32> = self.cracks[crack].points.clone();
@@ -81,7 +81,7 @@ impl CrackTracker {
             .collect()
     }
 
-    /// The tip of each crack: its point farthest from the pre-crack; none while nothing has grown.
+    /// Returns the tip of each crack: its point farthest from the pre-crack; `None` before any growth.
     pub fn tips(&self, cloud: &PointCloud, damage: &[f64]) -> Vec<Option<CrackTip>> {
         (0..self.cracks.len())
             .map(|k| {
@@ -107,7 +107,7 @@ mod tests {
     use crate::space::{Grid, Shape};
 
     #[test]
-    fn only_what_is_connected_belongs_to_the_crack() {
+    fn only_connected_points_belong_to_the_crack() {
         let cloud = Grid {
             shape: Shape::Box {
                 origin: [0.0; 3],
@@ -131,7 +131,7 @@ mod tests {
         for i in [11, 12, 23, 24, 26, 27] {
             damage[i] = 0.5;
         }
-        // 26 and 27 are damaged, but a column away from the rest.
+        // 26 and 27 are damaged, but separated from the others by a column.
         assert_eq!(tracker.connected(0, &damage), [11, 12, 23, 24]);
         let tip = tracker.tips(&cloud, &damage)[0].unwrap();
         assert_eq!((tip.place, tip.points), ([4.5, 2.5, 0.0], 4));

@@ -1,40 +1,41 @@
-//! Fragments: what the bonds that are left hold together.
+//! Fragments: sets of points connected by unbroken bonds.
 
 use crate::operator::Force;
 
-/// The pieces of a body: two points belong to one piece if a chain of bonds that are left joins them. One bond is enough, so that pieces which hang together by a thread count
-/// as one. Cost: a pass over all bonds (10 ns each on one core) and 4 bytes a point.
+/// The connected pieces of a body: two points belong to the same piece if a chain of unbroken bonds connects them.
+/// A single bond is enough, so that pieces connected by one bond count as one. Cost: a pass over all bonds (10 ns
+/// each on one core) and 4 bytes per point.
 #[derive(Debug, Clone)]
 pub struct Fragments {
-    /// The first point of each point's piece.
+    /// First point of the piece of each point.
     first: Vec<u32>,
 }
 
-/// How many pieces there are, and what they weigh.
+/// Numbers and masses of the pieces.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct FragmentCount {
-    /// Pieces that are heavy enough to count as fragments.
+    /// Number of pieces heavy enough to count as fragments.
     pub fragments: u64,
     /// Mass of the heaviest piece, kg.
     pub largest: f64,
-    /// Lighter pieces of two points or more.
+    /// Number of lighter pieces with two or more points.
     pub small: u64,
-    /// Their mass, kg.
+    /// Mass of these pieces, kg.
     pub small_mass: f64,
-    /// Points that have lost all bonds.
+    /// Number of points without unbroken bonds.
     pub single: u64,
-    /// Their mass, kg.
+    /// Mass of these points, kg.
     pub single_mass: f64,
 }
 
 impl Fragments {
-    /// The pieces of a body whose bonds can break.
+    /// Finds the pieces of a body whose bonds can break.
     pub fn of(operator: &dyn Force) -> Self {
         let mut first: Vec<u32> = (0..operator.points() as u32).collect();
         if let Some(breaking) = operator.capabilities().breaking {
             breaking.for_each_intact(&mut |i, j| {
                 let (i, j) = (root(&mut first, i as u32), root(&mut first, j as u32));
-                // The smaller number leads, whatever the order of the bonds.
+                // The smaller number is the parent, whatever the order of the bonds.
                 first[i.max(j) as usize] = i.min(j);
             });
         }
@@ -45,12 +46,13 @@ impl Fragments {
         Self { first }
     }
 
-    /// For each point the first point of its piece.
+    /// Returns, for each point, the first point of its piece.
     pub fn first(&self) -> &[u32] {
         &self.first
     }
 
-    /// Counts the pieces, given the mass of each point (kg); a piece of at least the share `smallest` of the whole mass is a fragment, if it has two points or more.
+    /// Counts the pieces, given the mass of each point (kg). A piece of two or more points with at least the
+    /// fraction `smallest` of the total mass is a fragment.
     pub fn count(&self, masses: &[f64], smallest: f64) -> FragmentCount {
         let mut points = vec![0u32; masses.len()];
         let mut mass = vec![0.0; masses.len()];
@@ -79,7 +81,7 @@ impl Fragments {
     }
 }
 
-/// The first point of a piece, found through ever shorter chains.
+/// Returns the first point of a piece, with path compression.
 fn root(first: &mut [u32], mut i: u32) -> u32 {
     while first[i as usize] != i {
         let next = first[first[i as usize] as usize];

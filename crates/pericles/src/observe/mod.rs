@@ -1,7 +1,7 @@
-//! Observers: what looks at a run without touching it.
+//! Observers: read-only output of a run.
 //!
-//! The loop hands a [`Snapshot`] to every [`Observer`] whose [`Schedule`] names the step. Fields that cost an evaluation are computed when first
-//! asked for, once per snapshot.
+//! The time loop passes a [`Snapshot`] to every [`Observer`] whose [`Schedule`] contains the step. Fields that need
+//! an evaluation are computed on first use, once per snapshot.
 
 mod crack;
 mod fragments;
@@ -17,31 +17,32 @@ pub use probe::{Probe, ProbeReading};
 pub use schedule::Schedule;
 pub use snapshot::{Energies, Field, Snapshot, StartEnergy};
 
-use crate::archive::Saved;
+use crate::archive::Checkpointed;
 
-/// What an observer failed of; the library does not know files.
+/// The error of an observer, of any type: the engine knows no files.
 pub type ObserveError = Box<dyn std::error::Error + Send + Sync>;
 
-/// Someone who looks at a run. What is saved lets an observer continue where it was, without gap or repetition.
-pub trait Observer: Saved + Send {
-    /// Sees a state.
+/// Reads the states of a run. Its saved state lets it continue after a resume without gap or repetition.
+pub trait Observer: Checkpointed + Send {
+    /// Receives a state.
     ///
     /// # Errors
-    /// Whatever keeps the observer from doing its work; the run then stops.
+    /// Any failure of the observer; the run then stops.
     fn observe(&mut self, snapshot: &Snapshot<'_>) -> Result<(), ObserveError>;
 
-    /// Waits until everything seen so far is kept: asked before the run's state is saved. For observers that work beside the run.
+    /// Waits until all output so far is written; called before a checkpoint, for observers that write in a separate
+    /// thread.
     ///
     /// # Errors
-    /// Whatever kept the observer from doing its work.
+    /// Any failure of the observer.
     fn settle(&self) -> Result<(), ObserveError> {
         Ok(())
     }
 
-    /// Hears that the run has come to its end; not of a run that is stopped, which may go on.
+    /// Called at the end of the run; not when the run is stopped, because it may be resumed.
     ///
     /// # Errors
-    /// Whatever keeps the observer from doing its work.
+    /// Any failure of the observer.
     fn finish(&mut self) -> Result<(), ObserveError> {
         Ok(())
     }

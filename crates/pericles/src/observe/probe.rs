@@ -1,19 +1,19 @@
-//! Readings at points and means over sets.
+//! Probes: mean displacement and velocity of point sets.
 
 use super::Snapshot;
 use crate::error::{PericlesError, Result};
 use crate::space::{PointSet, check_points};
 
-/// A place where displacement and velocity are read.
+/// A set of points at which displacement and velocity are recorded.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Probe {
     /// Name in tables.
     pub name: String,
-    /// The points over which the mean is taken, each weighing the same.
+    /// Points of the mean, equally weighted.
     pub points: PointSet,
 }
 
-/// Mean displacement (m) and velocity (m/s) of a probe.
+/// Mean displacement and velocity of a probe.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ProbeReading {
     /// Mean displacement, m.
@@ -23,7 +23,7 @@ pub struct ProbeReading {
 }
 
 impl Probe {
-    /// Reads the probe.
+    /// Returns the current reading.
     ///
     /// # Errors
     /// A probe without points, or with points that the body does not have.

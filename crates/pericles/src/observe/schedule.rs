@@ -1,21 +1,21 @@
-//! When observers look.
+//! Schedules of observers.
 
-/// A schedule in steps or time. The first and the last state of a run are always due, unless the schedule is `Never`.
+/// A schedule in steps or time. The first and the last state of a run are always included, except with `Never`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Schedule {
-    /// Not at all.
+    /// Never.
     #[default]
     Never,
-    /// Every so many steps.
+    /// Every given number of steps.
     Every(u64),
     /// At the first step at or after every multiple of this time, s.
     Interval(f64),
-    /// So many times over the run, evenly, besides the first state.
+    /// This number of times, evenly spaced over the run, in addition to the first state.
     Count(u64),
 }
 
 impl Schedule {
-    /// Whether the state after `step` of `steps` steps of length `dt` is due.
+    /// Returns whether the state after `step` of `steps` steps of length `dt` is due.
     pub fn is_due(&self, step: u64, dt: f64, steps: u64) -> bool {
         if matches!(self, Self::Never) {
             return false;
@@ -27,7 +27,7 @@ impl Schedule {
             Self::Never => false,
             Self::Every(every) => every > 0 && step.is_multiple_of(every),
             Self::Interval(interval) => {
-                // A multiple of the interval that is a multiple of dt up to rounding belongs to its own step.
+                // A multiple of the interval that equals a multiple of dt up to rounding belongs to that step.
                 let passed = |step: u64| (step as f64 * dt / interval + 1e-6).floor();
                 passed(step) > passed(step - 1)
             }
@@ -38,12 +38,13 @@ impl Schedule {
         }
     }
 
-    /// A number of states that is not below that of the states due in a run of `steps` steps of length `dt`, and above it by two at most.
+    /// Returns an upper bound of the number of states due in a run of `steps` steps of length `dt`; it exceeds the
+    /// number by at most two.
     pub fn most(&self, dt: f64, steps: u64) -> u64 {
         match *self {
             Self::Never => 0,
             Self::Every(every) => steps.checked_div(every).unwrap_or(0) + 2,
-            // A cast keeps what is too large within the numbers.
+            // The cast saturates.
             Self::Interval(interval) => {
                 ((steps as f64 * dt / interval + 1e-6) as u64).min(steps) + 2
             }
@@ -57,7 +58,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn schedules() {
+    fn schedules_select_the_expected_steps() {
         let due = |schedule: Schedule| -> Vec<u64> {
             (0..=10)
                 .filter(|&step| schedule.is_due(step, 0.1, 10))

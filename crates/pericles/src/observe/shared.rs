@@ -1,15 +1,15 @@
-//! Observers that a program keeps a hand on.
+//! Observers shared between a run and the program.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::{ObserveError, Observer, Snapshot};
-use crate::archive::{Archive, Saved};
+use crate::archive::{Archive, Checkpointed};
 use crate::error::Result;
 
-/// The run has one clone, the program another, with which it reads what was observed.
+/// The run owns one clone; the program reads the results through another.
 impl<O: Observer> Observer for Arc<Mutex<O>> {
     fn observe(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), ObserveError> {
-        // What another thread left behind when it panicked is still what was observed.
+        // A panic in another thread does not invalidate what was observed.
         let mut observer = self.lock().unwrap_or_else(PoisonError::into_inner);
         observer.observe(snapshot)
     }
@@ -23,7 +23,7 @@ impl<O: Observer> Observer for Arc<Mutex<O>> {
     }
 }
 
-impl<O: Observer> Saved for Arc<Mutex<O>> {
+impl<O: Observer> Checkpointed for Arc<Mutex<O>> {
     fn save(&self, archive: &mut Archive) {
         self.lock()
             .unwrap_or_else(PoisonError::into_inner)

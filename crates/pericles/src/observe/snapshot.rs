@@ -1,8 +1,9 @@
-//! A view of a run at one time.
+//! Snapshots: read-only views of a run at one time.
 
 use std::cell::OnceCell;
 
-use super::tensors::{equivalent_stress, fitted_strain, places, virial_stress};
+use super::fragments::Fragments;
+use super::tensors::{equivalent_stress, fitted_strain, places, principal_stresses, virial_stress};
 use crate::error::{PericlesError, Result};
 use crate::operator::BondView;
 use crate::space::PointCloud;
@@ -18,36 +19,49 @@ pub enum Field {
     Velocity,
     /// Internal and external force density, N/m³.
     ForceDensity,
-    /// 1 − bonds left over bonds at the start.
+    /// Damage: 1 − unbroken bonds / initial bonds.
     Damage,
     /// Elastic energy density, J/m³.
     StrainEnergyDensity,
-    /// Loads, N/m³.
+    /// Force density of loads, N/m³.
     ExternalForce,
-    /// What supports exert on held points, N/m³.
+    /// Reaction force density of constraints, N/m³.
     Reaction,
-    /// Virial stress, Pa: ½ Σ f ⊗ (ξ + η) over the bonds of a point. Of operators that list their bonds; else not a number.
+    /// Virial stress, Pa: ½ Σ f ⊗ (ξ + η) over the bonds of a point. NaN if the force does not list its bonds.
     Stress,
-    /// Strain of the displacement gradient that fits a point's bonds best. As stress.
+    /// Strain of the displacement gradient fitted to the bonds of a point by least squares. NaN if the force does
+    /// not list its bonds.
     Strain,
-    /// Volume of the point, m³; its area on a surface, m². The same at all times.
+    /// Volume of the point, m³, or its area on a surface, m²; constant in time.
     Volume,
     /// Kinetic energy density ½ ρ v², J/m³.
     KineticEnergyDensity,
-    /// Dilatation of a state-based material: the relative change of volume, in the plane of area. Else not a number.
+    /// Dilatation of a state-based material: the relative change of volume, or of area in two dimensions. NaN for
+    /// other materials.
     Dilatation,
-    /// Equivalent stress, Pa: von Mises' of the virial stress; in the plane of the components within it, in a bar the size of the stress. As stress.
+    /// Equivalent stress, Pa: von Mises stress of the virial stress; in two dimensions of the in-plane components,
+    /// in a bar the absolute value. NaN if the force does not list its bonds.
     EquivalentStress,
-    /// Equivalent plastic strain. Of materials that yield; else not a number.
+    /// Equivalent plastic strain; NaN for materials that do not yield.
     PlasticStrain,
-    /// 1 where a point has yielded, 0 elsewhere. As plastic strain.
+    /// 1 where a point has yielded, else 0; NaN for materials that do not yield.
     YieldFlag,
-    /// Temperature, K. Of materials that expand with it; else not a number.
+    /// Temperature, K; NaN for materials without thermal expansion.
     Temperature,
+    /// Von Mises stress, Pa: the same numbers as [`Field::EquivalentStress`].
+    VonMisesStress,
+    /// Principal stresses, Pa: eigenvalues of the virial stress in descending order, as many as the body has dimensions. As stress.
+    PrincipalStress,
+    /// Half the size of a point's cell, m: ½ (V / section)^(1/dimension). The same at all times.
+    Radius,
+    /// Number of the point in the user's numbering, from 0. The same at all times.
+    PointId,
+    /// Number of the fragment that the point belongs to, from 0 in the order of the first points. 0 for bodies whose bonds do not break.
+    FragmentId,
 }
 
 impl Field {
-    /// Fields that are written if nothing else is asked for.
+    /// Fields written by default.
     pub const USUAL: [Self; 5] = [
         Self::Displacement,
         Self::Velocity,
@@ -57,7 +71,7 @@ impl Field {
     ];
 
     /// All fields.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 21] = [
         Self::Displacement,
         Self::Velocity,
         Self::ForceDensity,
@@ -74,6 +88,11 @@ impl Field {
         Self::PlasticStrain,
         Self::YieldFlag,
         Self::Temperature,
+        Self::VonMisesStress,
+        Self::PrincipalStress,
+        Self::Radius,
+        Self::PointId,
+        Self::FragmentId,
     ];
 
     /// Name in files.
@@ -95,28 +114,38 @@ impl Field {
             Self::PlasticStrain => "Plastic_Strain",
             Self::YieldFlag => "Yield_Flag",
             Self::Temperature => "Temperature",
+            Self::VonMisesStress => "Von_Mises_Stress",
+            Self::PrincipalStress => "Principal_Stress",
+            Self::Radius => "Radius",
+            Self::PointId => "Point_Id",
+            Self::FragmentId => "Fragment_Id",
         }
     }
 
-    /// SI unit.
+    /// SI unit of the field.
     pub fn unit(self) -> &'static str {
         match self {
-            Self::Displacement => "m",
+            Self::Displacement | Self::Radius => "m",
             Self::Velocity => "m/s",
             Self::ForceDensity | Self::ExternalForce | Self::Reaction => "N/m³",
-            Self::Stress | Self::EquivalentStress => "Pa",
+            Self::Stress
+            | Self::EquivalentStress
+            | Self::VonMisesStress
+            | Self::PrincipalStress => "Pa",
             Self::Damage
             | Self::Strain
             | Self::Dilatation
             | Self::PlasticStrain
-            | Self::YieldFlag => "",
+            | Self::YieldFlag
+            | Self::PointId
+            | Self::FragmentId => "",
             Self::StrainEnergyDensity | Self::KineticEnergyDensity => "J/m³",
             Self::Volume => "m³",
             Self::Temperature => "K",
         }
     }
 
-    /// Whether it is a vector field, component-major.
+    /// Returns whether the field has one component per dimension of the body, stored component-major.
     pub fn is_vector(self) -> bool {
         matches!(
             self,
@@ -125,22 +154,36 @@ impl Field {
                 | Self::ForceDensity
                 | Self::ExternalForce
                 | Self::Reaction
+                | Self::PrincipalStress
         )
     }
 
-    /// Whether it is a symmetric tensor field, component-major in the order of [`Field::components`].
+    /// Returns whether the values are whole numbers from 0 to 2³¹ − 1.
+    pub fn is_integer(self) -> bool {
+        matches!(self, Self::PointId | Self::FragmentId)
+    }
+
+    /// Returns whether the field is a symmetric tensor, stored component-major in the order of
+    /// [`Field::components`].
     pub fn is_tensor(self) -> bool {
         matches!(self, Self::Stress | Self::Strain)
     }
 
-    /// Whether it is made of single bonds.
+    /// Returns whether the field is computed from single bonds.
     pub fn is_of_bonds(self) -> bool {
-        self.is_tensor() || self == Self::EquivalentStress
+        let of_stress = [
+            Self::EquivalentStress,
+            Self::VonMisesStress,
+            Self::PrincipalStress,
+        ];
+        self.is_tensor() || of_stress.contains(&self)
     }
 
-    /// Names of the components in a body of a dimension, none for a scalar.
+    /// Names of the components for a body of a dimension; empty for scalars.
     pub fn components(self, dimension: usize) -> &'static [&'static str] {
-        if self.is_vector() {
+        if self == Self::PrincipalStress {
+            &["1", "2", "3"][..dimension]
+        } else if self.is_vector() {
             &["x", "y", "z"][..dimension]
         } else if self.is_tensor() {
             match dimension {
@@ -154,26 +197,27 @@ impl Field {
     }
 }
 
-/// The energy account of a body, J.
+/// The energy balance of a body, J.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Energies {
-    /// ½ Σ ρ V v².
+    /// Kinetic energy ½ Σ ρ V v².
     pub kinetic: f64,
-    /// Stored in bonds.
+    /// Elastic energy of the bonds.
     pub elastic: f64,
-    /// Lost to breaking.
+    /// Energy dissipated by fracture and inelastic deformation.
     pub dissipated: f64,
-    /// Work of loads, supports and changing temperatures since the start.
+    /// Work of loads, constraints and temperature changes since the start.
     pub work: f64,
     /// Kinetic and elastic energy at the start.
     pub initial: f64,
-    /// What the scheme's own conserved energy differs from kinetic + elastic, less that difference at the start
-    /// ([`crate::time::Integrator::energy_correction`]).
+    /// Difference between the energy that the scheme conserves and kinetic + elastic energy, minus that difference
+    /// at the start ([`crate::time::Integrator::energy_correction`]).
     pub scheme: f64,
 }
 
 impl Energies {
-    /// kinetic + elastic + dissipated + scheme − work − initial: zero but for the nonlinearity of the forces, of order dt², if nothing is lost.
+    /// Error of the energy balance: kinetic + elastic + dissipated + scheme − work − initial. It is zero up to
+    /// rounding for linear forces and of order dt² for nonlinear forces.
     pub fn balance(&self) -> f64 {
         self.kinetic + self.elastic + self.dissipated + self.scheme - self.work - self.initial
     }
@@ -184,11 +228,11 @@ impl Energies {
 pub struct StartEnergy {
     /// Kinetic and elastic energy.
     pub energy: f64,
-    /// The scheme's correction.
+    /// Correction of the scheme.
     pub scheme: f64,
 }
 
-/// A body at one time.
+/// A body and its state at one time.
 pub struct Snapshot<'a> {
     system: &'a System,
     state: &'a State,
@@ -208,10 +252,15 @@ pub struct Snapshot<'a> {
     plastic_strain: OnceCell<Vec<f64>>,
     yielded: OnceCell<Vec<f64>>,
     temperature: OnceCell<Vec<f64>>,
+    principal_stress: OnceCell<Vec<f64>>,
+    radius: OnceCell<Vec<f64>>,
+    numbers: OnceCell<Vec<f64>>,
+    fragments: OnceCell<Vec<f64>>,
 }
 
 impl<'a> Snapshot<'a> {
-    /// A view of a state, with the energies of the run's start and the scheme's correction at this state.
+    /// Makes a view of a state, with the energies at the start of the run and the correction of the scheme at this
+    /// state.
     pub fn new(system: &'a System, state: &'a State, start: StartEnergy, scheme: f64) -> Self {
         Self {
             system,
@@ -232,34 +281,40 @@ impl<'a> Snapshot<'a> {
             plastic_strain: OnceCell::new(),
             yielded: OnceCell::new(),
             temperature: OnceCell::new(),
+            principal_stress: OnceCell::new(),
+            radius: OnceCell::new(),
+            numbers: OnceCell::new(),
+            fragments: OnceCell::new(),
         }
     }
 
-    /// The same with what the scheme's inner iterations did.
+    /// Adds the statistics of the inner iterations of the scheme.
     pub fn with_inner(mut self, inner: Option<InnerIterations>) -> Self {
         self.inner = inner;
         self
     }
 
-    /// What the scheme's inner iterations did, if it has some.
+    /// Returns the statistics of the inner iterations, for schemes that iterate.
     pub fn inner_iterations(&self) -> Option<InnerIterations> {
         self.inner
     }
 
-    /// The equation of motion.
+    /// Returns the system.
     pub fn system(&self) -> &'a System {
         self.system
     }
 
-    /// The state.
+    /// Returns the state.
     pub fn state(&self) -> &'a State {
         self.state
     }
 
-    /// Whether a field can be computed for this body. Stress and strain are sums over single bonds, which convolutions, plane waves and surfaces do not have; only state-based materials have a dilatation, only materials that yield a plastic strain, and only bodies with thermal expansion a temperature.
+    /// Checks that a field is available for this body. Stress and strain are sums over single bonds, which
+    /// convolutions, plane waves and surfaces do not provide; dilatation requires a state-based material, plastic
+    /// strain a material that yields, temperature a body with thermal expansion.
     ///
     /// # Errors
-    /// A field that cannot.
+    /// A field that is not available.
     pub fn check(&self, field: Field) -> Result<()> {
         let capabilities = self.system.operator().capabilities();
         let of = match field {
@@ -286,7 +341,7 @@ impl<'a> Snapshot<'a> {
         Ok(())
     }
 
-    /// A field; vectors component-major. Not numbers where [`Snapshot::check`] refuses it.
+    /// Returns a field, vectors component-major; NaN if [`Snapshot::check`] refuses it.
     pub fn field(&self, field: Field) -> &[f64] {
         let (t, u) = (self.state.t, &self.state.u);
         match field {
@@ -330,10 +385,12 @@ impl<'a> Snapshot<'a> {
                 }
                 dilatation
             }),
-            Field::EquivalentStress => self.equivalent_stress.get_or_init(|| {
-                let dimension = self.system.cloud().dimension();
-                equivalent_stress(dimension, self.field(Field::Stress))
-            }),
+            Field::EquivalentStress | Field::VonMisesStress => {
+                self.equivalent_stress.get_or_init(|| {
+                    let dimension = self.system.cloud().dimension();
+                    equivalent_stress(dimension, self.field(Field::Stress))
+                })
+            }
             Field::PlasticStrain => self.plastic_strain.get_or_init(|| {
                 let mut strain = vec![f64::NAN; self.system.points()];
                 if let Some(view) = self.system.operator().capabilities().plastic {
@@ -356,6 +413,21 @@ impl<'a> Snapshot<'a> {
                 }
                 temperatures
             }),
+            Field::PrincipalStress => self.principal_stress.get_or_init(|| {
+                let dimension = self.system.cloud().dimension();
+                principal_stresses(dimension, self.field(Field::Stress))
+            }),
+            Field::Radius => self.radius.get_or_init(|| {
+                let cloud = self.system.cloud();
+                let radius = |i: usize| 0.5 * cloud.cell_size(i);
+                (0..cloud.len()).map(radius).collect()
+            }),
+            Field::PointId => self.numbers.get_or_init(|| {
+                let cloud = self.system.cloud();
+                let number = |i: usize| cloud.user_number(i) as f64;
+                (0..cloud.len()).map(number).collect()
+            }),
+            Field::FragmentId => self.fragments.get_or_init(|| self.fragment_numbers()),
             Field::Volume => self.system.cloud().volumes(),
             Field::KineticEnergyDensity => self
                 .kinetic_density
@@ -374,7 +446,30 @@ impl<'a> Snapshot<'a> {
         }
     }
 
-    /// ½ ρ |v|² of every point, J/m³ (J/m² on surfaces).
+    /// Numbers of the fragments of all points, from 0 in the order of the lowest user number in each.
+    fn fragment_numbers(&self) -> Vec<f64> {
+        let operator = self.system.operator();
+        if operator.capabilities().breaking.is_none() {
+            return vec![0.0; self.system.points()];
+        }
+        let cloud = self.system.cloud();
+        let fragments = Fragments::of(operator);
+        let mut in_order: Vec<u32> = (0..cloud.len() as u32).collect();
+        in_order.sort_unstable_by_key(|&i| cloud.user_number(i as usize));
+        let mut numbers = vec![f64::NAN; cloud.len()];
+        let mut count = 0.0;
+        for i in in_order {
+            let first = fragments.first()[i as usize] as usize;
+            if numbers[first].is_nan() {
+                numbers[first] = count;
+                count += 1.0;
+            }
+        }
+        let first = fragments.first().iter();
+        first.map(|&first| numbers[first as usize]).collect()
+    }
+
+    /// Kinetic energy density ½ ρ |v|² of every point, J/m³ (J/m² on surfaces).
     pub fn kinetic_energy_density(&self) -> Vec<f64> {
         let n = self.system.points();
         let square = |i: usize| -> f64 {
@@ -389,7 +484,7 @@ impl<'a> Snapshot<'a> {
             .collect()
     }
 
-    /// The energy account.
+    /// Returns the energy balance.
     pub fn energies(&self) -> Energies {
         Energies {
             kinetic: self.system.kinetic_energy(&self.state.v),

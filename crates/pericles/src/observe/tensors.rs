@@ -1,6 +1,6 @@
-//! Stress and strain at points, from their bonds.
+//! Stress and strain at points, computed from their bonds.
 //!
-//! Symmetric tensors are kept as their components xx (1D), xx, yy, xy (2D), xx, yy, zz, xy, yz, xz (3D), one after the other.
+//! Symmetric tensors are stored by component, in the order xx (1D), xx, yy, xy (2D), xx, yy, zz, xy, yz, xz (3D).
 
 use rayon::prelude::*;
 
@@ -20,7 +20,7 @@ pub(super) fn places(dimension: usize) -> &'static [(usize, usize)] {
 
 type Matrix = [[f64; 3]; 3];
 
-/// Von Mises' equivalent stress of stresses in the order of their components, Pa; of the components within the plane in two dimensions.
+/// Returns the von Mises equivalent stress, Pa, in two dimensions of the in-plane components.
 pub(super) fn equivalent_stress(dimension: usize, stress: &[f64]) -> Vec<f64> {
     let n = stress.len() / places(dimension).len();
     let of_point = |i: usize| {
@@ -42,8 +42,55 @@ pub(super) fn equivalent_stress(dimension: usize, stress: &[f64]) -> Vec<f64> {
     (0..n).map(of_point).collect()
 }
 
-/// The virial stress σ_i = ½ Σ_j f_ij ⊗ (ξ + η), Pa, with the force densities f_ij of the bonds of point i; the symmetric part. In a body under uniform strain it is that of
-/// the continuum; within a horizon of a surface bonds, and so parts of it, are missing.
+/// Principal stresses in descending order, Pa, component-major: the eigenvalues of stresses in the order of their components.
+pub(super) fn principal_stresses(dimension: usize, stress: &[f64]) -> Vec<f64> {
+    let places = places(dimension);
+    let n = stress.len() / places.len();
+    let mut principal = vec![0.0; dimension * n];
+    for i in 0..n {
+        let mut matrix = Matrix::default();
+        for (k, &(a, b)) in places.iter().enumerate() {
+            (matrix[a][b], matrix[b][a]) = (stress[k * n + i], stress[k * n + i]);
+        }
+        diagonalise(&mut matrix);
+        let mut values = [matrix[0][0], matrix[1][1], matrix[2][2]];
+        // Axes that the body does not have keep their zero, which is no principal stress.
+        values[..dimension].sort_unstable_by(|a, b| b.total_cmp(a));
+        for (c, value) in values[..dimension].iter().enumerate() {
+            principal[c * n + i] = *value;
+        }
+    }
+    principal
+}
+
+/// Turns a symmetric matrix to its principal axes by Jacobi rotations: the eigenvalues are on the diagonal to round-off of the largest one.
+fn diagonalise(m: &mut Matrix) {
+    /// Convergence is quadratic: three to five sweeps reach round-off.
+    const SWEEPS: usize = 12;
+    for _ in 0..SWEEPS {
+        for (p, q) in [(0, 1), (0, 2), (1, 2)] {
+            // Not a number stays one.
+            if m[p][q] == 0.0 || m[p][q].is_nan() {
+                continue;
+            }
+            let theta = 0.5 * (m[q][q] - m[p][p]) / m[p][q];
+            let t = theta.signum() / (theta.abs() + theta.hypot(1.0));
+            let c = 1.0 / t.hypot(1.0);
+            let s = t * c;
+            let r = 3 - p - q;
+            let (pp, qq, pq) = (m[p][p], m[q][q], m[p][q]);
+            let (rp, rq) = (m[r][p], m[r][q]);
+            (m[p][p], m[q][q]) = (pp - t * pq, qq + t * pq);
+            (m[p][q], m[q][p]) = (0.0, 0.0);
+            (m[r][p], m[p][r]) = (c * rp - s * rq, c * rp - s * rq);
+            (m[r][q], m[q][r]) = (s * rp + c * rq, s * rp + c * rq);
+        }
+    }
+}
+
+/// Returns the symmetric part of the virial stress σ_i = ½ Σ_j f_ij ⊗ (ξ + η), Pa, with the force densities f_ij of
+/// the bonds of point i. Under uniform strain it equals the stress of the continuum, except within a horizon of
+/// free surfaces, where bonds are missing.
 pub(super) fn virial_stress(cloud: &PointCloud, bonds: &dyn BondView, u: &[f64]) -> Vec<f64> {
     let ghosts = cloud.domain().ghosts(u);
     let u = Field::new(u, &ghosts);
@@ -60,7 +107,8 @@ pub(super) fn virial_stress(cloud: &PointCloud, bonds: &dyn BondView, u: &[f64])
     })
 }
 
-/// The strain of the displacement gradient G that fits the bonds best: Σ_j V_j |η − G ξ|² is least. Zero where the bonds left do not span the space.
+/// Returns the strain of the displacement gradient G that minimises Σ_j V_j |η − G ξ|². Zero where the unbroken
+/// bonds do not span the space.
 pub(super) fn fitted_strain(cloud: &PointCloud, bonds: &dyn BondView, u: &[f64]) -> Vec<f64> {
     let dimension = cloud.dimension();
     let ghosts = cloud.domain().ghosts(u);
@@ -78,7 +126,7 @@ pub(super) fn fitted_strain(cloud: &PointCloud, bonds: &dyn BondView, u: &[f64])
             }
         });
         let size = (0..dimension).map(|c| shape[c][c]).sum::<f64>();
-        // Missing axes stand apart, so that the inverse is that of the others.
+        // A unit diagonal for missing axes makes the inverse block-diagonal.
         for c in dimension..3 {
             shape[c][c] = size;
         }
@@ -89,7 +137,7 @@ pub(super) fn fitted_strain(cloud: &PointCloud, bonds: &dyn BondView, u: &[f64])
     })
 }
 
-/// The symmetric parts of a matrix for every point, component-major.
+/// Returns the symmetric part of a matrix for every point, component-major.
 fn per_point(cloud: &PointCloud, matrix: impl Fn(usize) -> Matrix + Send + Sync) -> Vec<f64> {
     let n = cloud.len();
     let matrices: Vec<Matrix> = (0..n)
@@ -107,7 +155,7 @@ fn product(a: &Matrix, b: &Matrix) -> Matrix {
     std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| a[i][k] * b[k][j]).sum()))
 }
 
-/// None if the matrix is singular to round-off.
+/// Returns the inverse, or `None` if the matrix is singular to round-off.
 fn inverse(m: &Matrix) -> Option<Matrix> {
     let minor = |i: usize, j: usize| {
         let (a, b) = ((i + 1) % 3, (i + 2) % 3);
@@ -122,4 +170,65 @@ fn inverse(m: &Matrix) -> Option<Matrix> {
     Some(std::array::from_fn(|i| {
         std::array::from_fn(|j| minor(j, i) / determinant)
     }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// R diag(values) Rᵀ for the rotation by `angle` about the axis (1, 2, 2)/3, as components.
+    fn turned(values: [f64; 3], angle: f64) -> Vec<f64> {
+        let axis = [1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0];
+        let (s, c) = angle.sin_cos();
+        let cross = [
+            [0.0, -axis[2], axis[1]],
+            [axis[2], 0.0, -axis[0]],
+            [-axis[1], axis[0], 0.0],
+        ];
+        let rotation: Matrix = std::array::from_fn(|a| {
+            std::array::from_fn(|b| {
+                let same = if a == b { c } else { 0.0 };
+                same + s * cross[a][b] + (1.0 - c) * axis[a] * axis[b]
+            })
+        });
+        let entry = |&(a, b): &(usize, usize)| {
+            (0..3)
+                .map(|k| rotation[a][k] * values[k] * rotation[b][k])
+                .sum()
+        };
+        places(3).iter().map(entry).collect()
+    }
+
+    #[test]
+    fn principal_stresses_are_the_eigenvalues_in_descending_order() {
+        for values in [
+            [3.0, -1.0, 0.5],
+            [2.0, 2.0, -5.0],
+            [1.0, 1.0, 1.0],
+            [1e9, 1.0, -1e9],
+        ] {
+            let mut sorted: [f64; 3] = values;
+            sorted.sort_by(|a, b| b.total_cmp(a));
+            for angle in [0.0, 0.3, 1.2, 2.9] {
+                let found = principal_stresses(3, &turned(values, angle));
+                let size = values.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+                for (found, value) in found.iter().zip(sorted) {
+                    assert!((found - value).abs() < 4e-15 * size, "{values:?}: {found}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn principal_stresses_in_the_plane_follow_mohrs_circle() {
+        let (xx, yy, xy): (f64, f64, f64) = (3.0, -1.0, 1.5);
+        let (middle, radius) = (0.5 * (xx + yy), (0.25 * (xx - yy).powi(2) + xy * xy).sqrt());
+        let found = principal_stresses(2, &[xx, yy, xy]);
+        assert!((found[0] - middle - radius).abs() < 1e-15);
+        assert!((found[1] - middle + radius).abs() < 1e-15);
+        let pressed = principal_stresses(2, &[-2.0, -1.0, 0.0]);
+        assert_eq!(pressed, [-1.0, -2.0]);
+        assert_eq!(principal_stresses(1, &[-2.0]), [-2.0]);
+        assert!(principal_stresses(2, &[f64::NAN; 3])[0].is_nan());
+    }
 }

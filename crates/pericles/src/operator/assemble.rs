@@ -1,49 +1,52 @@
-//! The choice of an operator's form for a body.
+//! Bodies of one bond-based material, and the choice between list and stencil kernels.
 
 use std::sync::Arc;
 
 use super::limits::{Feature, Features, Limit};
-use super::{BondForce, BondForm, Breaking, DamageMeasure, FastLaw, Force, GridForce};
+use super::{BondForce, BondForm, Breaking, DamageMeasure, Force, GridForce, VectorLaw};
 use crate::error::Result;
-use crate::family::{BondList, Crack, Cut, EndRule};
+use crate::family::{BondCut, BondList, Crack, EndRule};
 use crate::lanes::LANES;
 use crate::material::{BondConstants, BondMaterial};
 use crate::space::{PointCloud, check_length};
 
-/// A body of one bond-based material: all that its operator is made of.
+/// A body of one bond-based material: the input of its force operator.
 #[derive(Debug, Clone)]
 pub struct BondBody<'a> {
     /// The points.
     pub cloud: &'a Arc<PointCloud>,
     /// The material.
     pub material: &'a BondMaterial,
-    /// Its constants on this body.
+    /// Bond constants of the material on this body.
     pub constants: &'a BondConstants,
     /// Pre-cracks.
     pub cracks: &'a [(Crack, EndRule)],
     /// Points whose bonds never break.
     pub no_fail: &'a [u32],
-    /// Stiffness of each point over the material's; empty if all are the same. A bond has the mean of its ends.
+    /// Stiffness of each point relative to the material; empty if uniform. A bond has the mean stiffness of
+    /// its ends.
     pub stiffness: &'a [f64],
-    /// How damage weighs bonds.
+    /// Definition of damage.
     pub damage: DamageMeasure,
 }
 
-/// An operator, and what each pre-crack removed from it.
+/// A force operator and the bonds that each pre-crack removed.
 pub struct AssembledBonds {
     /// The operator.
     pub operator: Box<dyn Force>,
-    /// One for each pre-crack.
-    pub cuts: Vec<Cut>,
-    /// The form taken, never [`BondForm::Fastest`].
+    /// Removed bonds of each pre-crack.
+    pub cuts: Vec<BondCut>,
+    /// Selected kernel, never [`BondForm::Fastest`].
     pub form: BondForm,
 }
 
-/// Places of the padded box per point above which the list is better: the box is mostly empty, or very short along x.
+/// Number of places of the padded box per point above which the list is faster: the box is mostly empty, or
+/// very short along x.
 const SPARSE: usize = 8;
 
 impl<'a> BondBody<'a> {
-    /// A body without pre-cracks, of one stiffness, all of whose bonds may break, with the default measure of damage.
+    /// Creates a body of uniform stiffness without pre-cracks, in which all bonds may break, with the default
+    /// damage measure.
     pub fn new(
         cloud: &'a Arc<PointCloud>,
         material: &'a BondMaterial,
@@ -62,7 +65,7 @@ impl<'a> BondBody<'a> {
 }
 
 impl BondBody<'_> {
-    /// What the body has that not every form represents.
+    /// Returns the features of the body that not every kernel supports.
     pub fn features(&self) -> Features {
         let breaks = self.constants.critical_stretch.is_finite();
         Features::of_points(self.material.law, self.cloud)
@@ -71,8 +74,8 @@ impl BondBody<'_> {
             .with(Feature::Inclusions, !self.stiffness.is_empty())
     }
 
-    /// The grid operator of the material itself everywhere.
-    pub(super) fn grid_of_material<L: FastLaw, const D: usize>(&self) -> Result<GridForce<L, D>> {
+    /// Returns the stencil operator of a body that consists of the material only.
+    pub(super) fn grid_of_material<L: VectorLaw, const D: usize>(&self) -> Result<GridForce<L, D>> {
         GridForce::new(
             self.cloud.clone(),
             self.material,
@@ -94,8 +97,8 @@ impl BondBody<'_> {
         }
     }
 
-    /// The families without the bonds that pre-cracks cut, and what each crack removed.
-    pub(super) fn families(&self) -> Result<(BondList, Vec<Cut>)> {
+    /// Returns the families without bonds cut by pre-cracks, and the bonds removed by each crack.
+    pub(super) fn families(&self) -> Result<(BondList, Vec<BondCut>)> {
         self.check_stiffness()?;
         let material = self.material;
         let mut bonds = BondList::new(self.cloud, material.horizon, material.volume_correction)?;
@@ -107,11 +110,11 @@ impl BondBody<'_> {
         Ok((bonds, cuts))
     }
 
-    /// The list operator, and what each pre-crack removed from it.
+    /// Returns the list operator and the bonds removed by each pre-crack.
     ///
     /// # Errors
-    /// A horizon that reaches no neighbour, an unusable crack.
-    pub fn list<L: FastLaw, const D: usize>(&self) -> Result<(BondForce<L, D>, Vec<Cut>)> {
+    /// A horizon without neighbours, an invalid crack.
+    pub fn list<L: VectorLaw, const D: usize>(&self) -> Result<(BondForce<L, D>, Vec<BondCut>)> {
         let material = self.material;
         let (bonds, cuts) = self.families()?;
         let constants = self.constants;
@@ -137,7 +140,7 @@ impl BondBody<'_> {
     }
 }
 
-/// The faster of grid and list for a body with these features.
+/// Returns the faster of grid and list for a body with these features.
 pub(super) fn fastest_form(cloud: &PointCloud, features: Features) -> BondForm {
     let refused = Limit::refusal(BondForm::Grid.limits(), features).is_some();
     match !refused && fills_lattice(cloud) {
@@ -146,7 +149,7 @@ pub(super) fn fastest_form(cloud: &PointCloud, features: Features) -> BondForm {
     }
 }
 
-/// Whether the points lie on a lattice and fill its box well enough for a stencil.
+/// Returns whether the points lie on a lattice and fill enough of its bounding box for a stencil.
 pub(super) fn fills_lattice(cloud: &PointCloud) -> bool {
     cloud.lattice().is_some_and(|lattice| {
         let [x, y, z] = lattice.shape;

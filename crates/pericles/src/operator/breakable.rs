@@ -1,35 +1,38 @@
-//! Bonds that break, or are missing from the start.
+//! Forces with bonds that break or were removed by pre-cracks.
 
 use super::CoarseBreak;
 
-/// A force whose bonds may be missing: cut by pre-cracks, or broken since the start.
+/// A force whose bonds can be cut by pre-cracks or break during the run.
 pub trait Breakable {
-    /// Whether anything can break.
+    /// Returns whether any bond can break.
     fn can_break(&self) -> bool;
 
-    /// Bonds broken so far, each counted once.
+    /// Returns the number of broken bonds, each counted once.
     fn broken_bonds(&self) -> u64;
 
-    /// Points that lost all of their bonds because those that were left determined no deformation; none of forces whose bonds break for their own reasons alone.
+    /// Returns the number of points that lost all bonds because the remaining bonds did not determine a
+    /// deformation gradient; zero for forces whose bonds break independently of each other.
     fn dropped_points(&self) -> u64 {
         0
     }
 
-    /// Energy dissipated by breaking so far, and by plastic flow where the material yields, J.
+    /// Returns the energy dissipated by breaking bonds and by plastic flow, J.
     fn dissipated(&self) -> f64;
 
-    /// Books energy that breaking dissipated beside what was booked when it was decided, J.
+    /// Adds to the dissipated energy a correction for bonds that are already broken, J.
     fn dissipate(&mut self, energy: f64);
 
-    /// Takes the bonds broken since this was asked last by steps too coarse for them, each once, in an order that depends on nothing but the bonds.
+    /// Returns and clears the bonds that broke, since the last call, in steps too large for them; each once,
+    /// in an order that depends on the bonds only.
     fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak>;
 
-    /// Damage of each point, 0 … 1: the part of its family that is missing.
+    /// Sets the damage of each point, 0 … 1: the missing fraction of its family.
     fn damage_into(&self, out: &mut [f64]);
 
-    /// Calls `visit` with the two ends of every bond that is left, once or twice for each.
+    /// Calls `visit` with both ends of each intact bond, once or twice per bond.
     fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize));
 
-    /// Marks the points with a bond that is left, may break and is stretched beyond `fraction` of the critical stretch.
+    /// Marks the points with an intact breakable bond whose stretch exceeds `fraction` of the critical
+    /// stretch.
     fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]);
 }

@@ -1,28 +1,30 @@
-//! From a pair law and a dimension that are known when the program runs to code that is compiled for them.
+//! Dispatch from a pair law and a dimension known at run time to code compiled for them.
 
-use super::fast_law::FastLaw;
+use super::fast_law::VectorLaw;
 use crate::error::{PericlesError, Result};
 use crate::material::{
-    BondStretch, CubicLaw, GreenBond, LinearBond, LiteralBond, PairLaw, SecondOrder, Trapezoidal,
-    Treated, Treatment,
+    Approximated, Approximation, BondStretch, CubicLaw, CubicSofteningBond, GreenBond, LinearBond,
+    PairLaw, SecondOrder, Trapezoidal,
 };
 
-/// Something that is made for a pair law `L` in `D` dimensions.
+/// A constructor that is generic over the pair law `L` and the dimension `D`.
 pub trait ByLaw: Sized {
-    /// What is made.
+    /// Type of the result.
     type Output;
 
-    /// Makes it.
+    /// Constructs the result for a pair law and a dimension.
     ///
     /// # Errors
-    /// Those of the maker.
-    fn of_law<L: FastLaw, const D: usize>(self) -> Result<Self::Output>;
+    /// Errors of the constructor.
+    fn of_law<L: VectorLaw, const D: usize>(self) -> Result<Self::Output>;
 }
 
-/// Makes something for a pair law in 1, 2 or 3 dimensions: the one place that joins the names of laws with their implementations.
+/// Calls a generic constructor for a pair law in 1, 2 or 3 dimensions. This is the only mapping from names of
+/// laws to implementations.
 ///
 /// # Errors
-/// [`PericlesError::WrongDimension`] for a law that is not defined in this dimension; those of the maker.
+/// [`PericlesError::WrongDimension`] for a law that is not defined in this dimension; errors of the
+/// constructor.
 pub fn by_law<M: ByLaw>(law: PairLaw, dimension: usize, maker: M) -> Result<M::Output> {
     match (law, dimension) {
         (PairLaw::Linear, 1) => maker.of_law::<LinearBond, 1>(),
@@ -34,28 +36,28 @@ pub fn by_law<M: ByLaw>(law: PairLaw, dimension: usize, maker: M) -> Result<M::O
         (PairLaw::GreenStrain, 1) => maker.of_law::<GreenBond, 1>(),
         (PairLaw::GreenStrain, 2) => maker.of_law::<GreenBond, 2>(),
         (PairLaw::GreenStrain, 3) => maker.of_law::<GreenBond, 3>(),
-        (PairLaw::Literal57, 1) => maker.of_law::<LiteralBond, 1>(),
-        (PairLaw::Treated(law, treatment), 1) => match (law, treatment) {
-            (CubicLaw::GreenStrain, Treatment::SecondOrder) => {
-                maker.of_law::<Treated<GreenBond, SecondOrder>, 1>()
+        (PairLaw::CubicSoftening, 1) => maker.of_law::<CubicSofteningBond, 1>(),
+        (PairLaw::Approximated(law, approximation), 1) => match (law, approximation) {
+            (CubicLaw::GreenStrain, Approximation::SecondOrder) => {
+                maker.of_law::<Approximated<GreenBond, SecondOrder>, 1>()
             }
-            (CubicLaw::GreenStrain, Treatment::Trapezoidal) => {
-                maker.of_law::<Treated<GreenBond, Trapezoidal>, 1>()
+            (CubicLaw::GreenStrain, Approximation::Trapezoidal) => {
+                maker.of_law::<Approximated<GreenBond, Trapezoidal>, 1>()
             }
-            (CubicLaw::Literal57, Treatment::SecondOrder) => {
-                maker.of_law::<Treated<LiteralBond, SecondOrder>, 1>()
+            (CubicLaw::CubicSoftening, Approximation::SecondOrder) => {
+                maker.of_law::<Approximated<CubicSofteningBond, SecondOrder>, 1>()
             }
-            (CubicLaw::Literal57, Treatment::Trapezoidal) => {
-                maker.of_law::<Treated<LiteralBond, Trapezoidal>, 1>()
+            (CubicLaw::CubicSoftening, Approximation::Trapezoidal) => {
+                maker.of_law::<Approximated<CubicSofteningBond, Trapezoidal>, 1>()
             }
         },
-        (PairLaw::Treated(..), dimension) => Err(PericlesError::WrongDimension {
-            what: "a treatment of a nonlinear law",
+        (PairLaw::Approximated(..), dimension) => Err(PericlesError::WrongDimension {
+            what: "an approximation of a cubic pair law",
             needed: "1",
             dimension,
         }),
-        (PairLaw::Literal57, dimension) => Err(PericlesError::WrongDimension {
-            what: "the law of equation 57 as printed",
+        (PairLaw::CubicSoftening, dimension) => Err(PericlesError::WrongDimension {
+            what: "the cubic softening law",
             needed: "1",
             dimension,
         }),

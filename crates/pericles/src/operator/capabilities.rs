@@ -1,4 +1,4 @@
-//! What a force can do beside computing forces, each a trait of its own.
+//! Optional capabilities of forces, each described by a trait.
 
 use super::{
     BondForm, BondView, Breakable, DilatationView, Force, Limit, LinearOperator, LocalForce,
@@ -7,48 +7,52 @@ use super::{
 use crate::error::{PericlesError, Result};
 use crate::thermal::ThermalExpansion;
 
-/// The capabilities of a force; schemes, boundaries and observers ask for those that they need, and are refused where one is missing.
+/// The optional capabilities of a force. Schemes, boundaries and observers that require a missing one return
+/// an error.
 #[derive(Default, Clone, Copy)]
 pub struct Capabilities<'a> {
-    /// Whether, and as what, the force is linear in the displacement.
+    /// Linearity in the displacement.
     pub linear: Linearity<'a>,
-    /// Its bonds can break, or be missing from the start.
+    /// Breaking bonds and pre-cracks.
     pub breaking: Option<&'a dyn Breakable>,
-    /// It knows the points that the force on a point depends on, so that schemes may evaluate it on a part of the body at a time.
+    /// The points on which the force on a point depends; required by schemes that evaluate the force on
+    /// subsets of points.
     pub local: Option<&'a dyn LocalForce>,
-    /// It is a sum over bonds that can be summed up in parts.
+    /// Evaluation as a sum over subsets of bonds.
     pub split: Option<&'a dyn SplitForce>,
-    /// It is computed in single precision.
+    /// Whether the force is computed in single precision.
     pub single_precision: bool,
-    /// Its bonds can be looked at one by one.
+    /// Access to individual bonds.
     pub bonds: Option<&'a dyn BondView>,
-    /// Its points have a dilatation: it is state-based.
+    /// Dilatations of points, for state-based materials.
     pub dilatation: Option<&'a dyn DilatationView>,
-    /// Its points can yield.
+    /// Plastic strains of points.
     pub plastic: Option<&'a dyn PlasticView>,
-    /// It depends on the states that the body has gone through: schemes end a step at every state that they accept, whether bonds can break or not.
+    /// Whether the force depends on the history of states. Schemes then end a step at each accepted state,
+    /// even if no bond can break.
     pub path_dependent: bool,
-    /// Its material expands with temperature.
+    /// Thermal expansion of the material.
     pub thermal: Option<&'a ThermalExpansion>,
 }
 
-/// Whether a force is linear in the displacement as long as no bond breaks.
+/// Linearity of a force in the displacement while no bond breaks.
 #[derive(Default, Clone, Copy)]
 pub enum Linearity<'a> {
-    /// It is not.
+    /// The force is nonlinear.
     #[default]
     Nonlinear,
-    /// It is, but computed in floats.
+    /// The force is linear, but computed in single precision.
     Rounded,
-    /// It is a linear map to double precision.
+    /// The force is a linear map in double precision.
     Exact(&'a dyn LinearOperator),
 }
 
 impl dyn Force + '_ {
-    /// Gives its material a thermal expansion from now on.
+    /// Sets the thermal expansion of the material.
     ///
     /// # Errors
-    /// A force that does not represent thermal expansion; those of [`Expandable::expand`](crate::Expandable::expand).
+    /// A force without support for thermal expansion; errors of
+    /// [`Expandable::expand`](crate::Expandable::expand).
     pub fn expand(&mut self, expansion: ThermalExpansion) -> Result<()> {
         match self.expandable_mut() {
             Some(material) => material.expand(expansion),
@@ -59,12 +63,12 @@ impl dyn Force + '_ {
         }
     }
 
-    /// Whether the force is linear in the displacement as long as no bond breaks, computed in whatever precision.
+    /// Returns whether the force is linear in the displacement while no bond breaks, in any precision.
     pub fn is_linear(&self) -> bool {
         !matches!(self.capabilities().linear, Linearity::Nonlinear)
     }
 
-    /// The force as a linear map to double precision, if it is one.
+    /// Returns the force as a linear map in double precision, if it is one.
     pub fn as_linear(&self) -> Option<&dyn LinearOperator> {
         match self.capabilities().linear {
             Linearity::Exact(linear) => Some(linear),
@@ -72,45 +76,45 @@ impl dyn Force + '_ {
         }
     }
 
-    /// [`Capabilities::bonds`].
+    /// Returns [`Capabilities::bonds`].
     pub fn as_bonds(&self) -> Option<&dyn BondView> {
         self.capabilities().bonds
     }
 
-    /// [`Capabilities::local`].
+    /// Returns [`Capabilities::local`].
     pub fn as_local(&self) -> Option<&dyn LocalForce> {
         self.capabilities().local
     }
 
-    /// [`Capabilities::split`].
+    /// Returns [`Capabilities::split`].
     pub fn as_split(&self) -> Option<&dyn SplitForce> {
         self.capabilities().split
     }
 
-    /// Whether anything in the body can break.
+    /// Returns whether any bond can break.
     pub fn can_break(&self) -> bool {
         let breaking = self.capabilities().breaking;
         breaking.is_some_and(|breaking| breaking.can_break())
     }
 
-    /// Whether the end of a step changes more than time: bonds may break, or the body keeps a history.
+    /// Returns whether the end of a step changes the force: bonds can break, or the force is path-dependent.
     pub fn changes_at_step_ends(&self) -> bool {
         self.can_break() || self.capabilities().path_dependent
     }
 
-    /// Bonds broken so far, each counted once.
+    /// Returns the number of broken bonds, each counted once.
     pub fn broken_bonds(&self) -> u64 {
         let breaking = self.capabilities().breaking;
         breaking.map_or(0, |breaking| breaking.broken_bonds())
     }
 
-    /// Energy dissipated by breaking so far, J.
+    /// Returns the energy dissipated by breaking bonds and by plastic flow, J.
     pub fn dissipated(&self) -> f64 {
         let breaking = self.capabilities().breaking;
         breaking.map_or(0.0, |breaking| breaking.dissipated())
     }
 
-    /// Damage of each point, 0 … 1.
+    /// Sets the damage of each point, 0 … 1.
     pub fn damage_into(&self, out: &mut [f64]) {
         match self.capabilities().breaking {
             Some(breaking) => breaking.damage_into(out),

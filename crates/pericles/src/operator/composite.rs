@@ -1,57 +1,65 @@
-//! Bodies whose bonds depend on their two ends: several materials, corrected surfaces.
+//! Bodies of several materials, with inclusions, surface correction or softening bonds.
 
 use super::assemble::fastest_form;
 use super::by_law::{ByLaw, by_law};
 use super::limits::{Feature, Features};
-use super::{AssembledBonds, BondBody, BondForce, BondForm, Breaking, GridForce};
-use crate::error::Result;
+use super::{
+    AssembledBonds, BondBody, BondForce, BondForm, Breaking, Force, GridForce, SofteningForce,
+};
+use crate::error::{PericlesError, Result};
 use crate::family::BondList;
-use crate::material::{BondConstants, PairClasses, SurfaceCorrection, SurfaceFactors};
-use crate::operator::fast_law::FastLaw;
+use crate::material::{BondConstants, MaterialPairs, Softening, SurfaceCorrection, SurfaceFactors};
+use crate::operator::fast_law::VectorLaw;
 use crate::space::{Sites, check_length};
 
-/// A body of several materials, with inclusions or corrected surfaces.
+/// A bond-based body of several materials, with inclusions, surface correction or softening bonds.
 ///
-/// The force of a bond is c_ab · g · ½(k_i + k_j) · α κ V_j s n with the constant c_ab of the materials of its ends ([`PairClasses`]), the factor g of
-/// [`SurfaceCorrection`] and the relative stiffness k of [`BondBody::stiffness`]. Law, horizon, influence function and partial volumes are those of the body's
-/// material for all bonds.
+/// The force of a bond is c_ab · g · ½(k_i + k_j) · α κ V_j s n with the constant c_ab of the materials of
+/// its ends ([`MaterialPairs`]), the factor g of [`SurfaceCorrection`] and the relative stiffness k of
+/// [`BondBody::stiffness`]. All bonds have the law, horizon, influence function and partial volumes of the
+/// body's material.
 #[derive(Debug, Clone)]
 pub struct CompositeBody<'a> {
-    /// Points, law, horizon, pre-cracks; the constants are used if there are no classes.
+    /// Points, law, horizon, pre-cracks; its constants apply if there are no classes.
     pub body: BondBody<'a>,
-    /// Materials by point.
-    pub classes: Option<&'a PairClasses>,
-    /// Correction of surfaces.
+    /// Material of each point.
+    pub classes: Option<&'a MaterialPairs>,
+    /// Surface correction.
     pub correction: SurfaceCorrection,
+    /// Softening law, if bonds soften before they break.
+    pub softening: Option<Softening>,
 }
 
 impl<'a> From<BondBody<'a>> for CompositeBody<'a> {
-    /// A body of one material without a correction.
+    /// Creates a body of one material without surface correction.
     fn from(body: BondBody<'a>) -> Self {
         Self {
             body,
             classes: None,
             correction: SurfaceCorrection::None,
+            softening: None,
         }
     }
 }
 
 impl CompositeBody<'_> {
-    /// Whether it is no more than its [`BondBody`].
+    /// Returns whether the body has one material and no surface correction.
     pub fn is_plain(&self) -> bool {
         self.classes.is_none() && self.correction == SurfaceCorrection::None
     }
 
-    /// The faster of grid and list.
+    /// Returns the faster of grid and list.
     pub fn fastest_form(&self) -> BondForm {
         fastest_form(self.body.cloud, self.features())
     }
 
-    /// What the body has that not every form represents.
+    /// Returns the features of the body that not every kernel supports.
     pub fn features(&self) -> Features {
         let correction = self.correction != SurfaceCorrection::None;
         let features = self.body.features();
-        let features = features.with(Feature::SurfaceCorrection, correction);
+        let features = features
+            .with(Feature::SurfaceCorrection, correction)
+            .with(Feature::Softening, self.softening.is_some());
         match self.classes {
             None => features,
             Some(classes) => features.with(Feature::SeveralMaterials, true).with(
@@ -61,24 +69,28 @@ impl CompositeBody<'_> {
         }
     }
 
-    /// The operator.
+    /// Returns the force operator.
     ///
     /// # Errors
-    /// Those of [`BondBody::operator`].
+    /// Errors of [`BondBody::operator`].
     pub fn operator(&self, form: BondForm) -> Result<AssembledBonds> {
+        if self.correction == SurfaceCorrection::Ghosts {
+            return self.with_ghosts(form);
+        }
         let dimension = self.body.cloud.dimension();
         by_law(self.body.material.law, dimension, OfBody(self, form))
     }
 
-    /// The operator for a pair law.
-    pub(super) fn operator_of<L: FastLaw, const D: usize>(
+    /// Returns the force operator for a pair law.
+    pub(super) fn operator_of<L: VectorLaw, const D: usize>(
         &self,
         form: BondForm,
     ) -> Result<AssembledBonds> {
         OfBody(self, form).of_law::<L, D>()
     }
 
-    /// The stiffness of bonds by their sites. `bonds` are the families without bonds that pre-cracks cut; only the correction of surfaces needs them.
+    /// Returns the stiffness of bonds as a function of their sites. `bonds`, the families without bonds cut
+    /// by pre-cracks, are required for surface correction only.
     fn of_ends(&self, sites: &Sites, bonds: Option<&BondList>) -> EndStiffness<'_> {
         EndStiffness {
             constants: self.body.constants,
@@ -91,6 +103,11 @@ impl CompositeBody<'_> {
     }
 
     fn check(&self) -> Result<()> {
+        if self.correction == SurfaceCorrection::Ghosts {
+            return Err(PericlesError::NoGhostLayer {
+                reason: "a force of the body alone has no ghost points; build it with `CompositeBody::operator`".into(),
+            });
+        }
         let points = self.body.cloud.len();
         if let Some(classes) = self.classes {
             let given = classes.of_point().len();
@@ -99,11 +116,11 @@ impl CompositeBody<'_> {
         self.body.check_stiffness()
     }
 
-    /// The grid operator.
+    /// Returns the stencil operator.
     ///
     /// # Errors
     /// See [`GridForce::new`].
-    pub fn grid<L: FastLaw, const D: usize>(&self) -> Result<GridForce<L, D>> {
+    pub fn grid<L: VectorLaw, const D: usize>(&self) -> Result<GridForce<L, D>> {
         self.check()?;
         let grid = self.body.grid_of_material::<L, D>()?;
         if self.is_plain() && self.body.stiffness.is_empty() {
@@ -124,12 +141,12 @@ impl CompositeBody<'_> {
         })
     }
 
-    fn list<L: FastLaw, const D: usize>(&self) -> Result<AssembledBonds> {
+    fn list<L: VectorLaw, const D: usize>(&self) -> Result<AssembledBonds> {
         self.check()?;
         if self.is_plain() {
             let (list, cuts) = self.body.list::<L, D>()?;
             return Ok(AssembledBonds {
-                operator: Box::new(list),
+                operator: self.softened(list)?,
                 cuts,
                 form: BondForm::List,
             });
@@ -164,23 +181,34 @@ impl CompositeBody<'_> {
             None => list,
         };
         Ok(AssembledBonds {
-            operator: Box::new(list),
+            operator: self.softened(list)?,
             cuts,
             form: BondForm::List,
         })
     }
+
+    /// Adds the softening law of the body, if any, to a list operator.
+    fn softened<L: VectorLaw, const D: usize>(
+        &self,
+        list: BondForce<L, D>,
+    ) -> Result<Box<dyn Force>> {
+        Ok(match &self.softening {
+            Some(softening) => Box::new(SofteningForce::new(list, self.classes, softening)?),
+            None => Box::new(list),
+        })
+    }
 }
 
-/// What the stiffness of a body's bonds depends on at their ends.
+/// Data at the ends of bonds that determine their stiffness.
 struct EndStiffness<'a> {
     constants: &'a BondConstants,
     inclusions: Vec<f64>,
     factors: SurfaceFactors,
-    classes: Option<PairClasses>,
+    classes: Option<MaterialPairs>,
 }
 
 impl EndStiffness<'_> {
-    /// The constant c of a bond between two sites.
+    /// Returns the constant c of a bond between two sites.
     fn micromodulus(&self, a: usize, b: usize) -> f64 {
         match &self.classes {
             Some(classes) => classes.micromodulus(a, b),
@@ -188,7 +216,7 @@ impl EndStiffness<'_> {
         }
     }
 
-    /// What multiplies it, for a bond with the vector ξ, m; the same from both ends.
+    /// Returns the factor of the constant for a bond with the vector ξ, m; it is the same from both ends.
     fn factor(&self, a: usize, b: usize, xi: [f64; 3]) -> f64 {
         let inclusion = match &self.inclusions[..] {
             [] => 1.0,
@@ -199,35 +227,36 @@ impl EndStiffness<'_> {
 }
 
 impl BondBody<'_> {
-    /// The faster of grid and list.
+    /// Returns the faster of grid and list.
     pub fn fastest_form(&self) -> BondForm {
         fastest_form(self.cloud, self.features())
     }
 
-    /// The operator.
+    /// Returns the force operator.
     ///
     /// # Errors
-    /// A form that does not represent the body ([`BondForm::check`]), a law that is not defined in this dimension, a horizon that reaches no neighbour, an unusable crack.
+    /// A kernel that does not support the body ([`BondForm::check`]), a law that is not defined in this
+    /// dimension, a horizon without neighbours, an invalid crack.
     pub fn operator(&self, form: BondForm) -> Result<AssembledBonds> {
         CompositeBody::from(self.clone()).operator(form)
     }
 
-    /// The grid operator.
+    /// Returns the stencil operator.
     ///
     /// # Errors
     /// See [`GridForce::new`].
-    pub fn grid<L: FastLaw, const D: usize>(&self) -> Result<GridForce<L, D>> {
+    pub fn grid<L: VectorLaw, const D: usize>(&self) -> Result<GridForce<L, D>> {
         CompositeBody::from(self.clone()).grid()
     }
 }
 
-/// Makes the operator of a body in a form.
+/// Constructs the operator of a body with a kernel.
 struct OfBody<'a>(&'a CompositeBody<'a>, BondForm);
 
 impl ByLaw for OfBody<'_> {
     type Output = AssembledBonds;
 
-    fn of_law<L: FastLaw, const D: usize>(self) -> Result<AssembledBonds> {
+    fn of_law<L: VectorLaw, const D: usize>(self) -> Result<AssembledBonds> {
         let Self(body, form) = self;
         let form = match form {
             BondForm::Fastest => body.fastest_form(),

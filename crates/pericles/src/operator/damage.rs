@@ -1,4 +1,4 @@
-//! Damage by breaking bonds: which are left, and what those lost took with them. One account for every form of operator.
+//! Damage: intact bonds, broken bonds and the energy they dissipated, for all force kernels.
 
 use crate::archive::{Archive, Counter, SavedUnder, Values};
 use crate::domain::Domain;
@@ -6,25 +6,25 @@ use crate::error::Result;
 use crate::step_end::{BreakingBond, StepEnd};
 use crate::sum::BinnedSum;
 
-/// How damage weighs bonds.
+/// Definition of damage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct DamageMeasure {
-    /// Count bonds instead of weighing them by the volume Vκ they stand for.
+    /// Whether bonds are counted instead of weighted by their volume Vκ.
     pub count: bool,
-    /// Let bonds cut by pre-cracks count as broken; else they never belonged to the family.
+    /// Whether bonds cut by pre-cracks count as broken. Otherwise they are not part of the family.
     pub count_precut: bool,
 }
 
-/// When and which bonds break.
+/// Failure criterion of bonds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Breaking<'a> {
-    /// Critical stretch s₀; infinite: never.
+    /// Critical stretch s₀; infinite if bonds never break.
     pub critical_stretch: f64,
     /// Points whose bonds never break.
     pub no_fail: &'a [u32],
 }
 
-/// An entry that broke, and the energy it booked.
+/// An entry that broke and the energy recorded for it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BreakEvent {
     pub point: u32,
@@ -32,47 +32,53 @@ pub(super) struct BreakEvent {
     pub dissipated: f64,
 }
 
-/// A bond that a step too coarse for it broke: the energy booked for it is far from what it stored at its critical stretch.
+/// A bond that broke in a step too large for it: the energy recorded for it differs strongly from its energy
+/// at the critical stretch.
 ///
-/// The work of its force over the step decides what a breaking bond dissipates ([`StepEnd::dissipated`]). A bond that was compressed at the
-/// start of the step and is over-stretched at its end has negative work booked, as if breaking made energy; one that was pulled far beyond its critical stretch dissipates many times its energy.
+/// The energy dissipated by a breaking bond follows from the work of its force over the step
+/// ([`StepEnd::dissipated`]). For a bond that is compressed at the start of the step and over-stretched at
+/// its end this energy is negative, as if breaking released energy; a bond stretched far beyond its critical
+/// stretch dissipates many times its energy.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CoarseBreak {
-    /// Its ends, the smaller number first.
+    /// Both ends, the smaller index first.
     pub points: [u32; 2],
-    /// The direction of its force, of either sign; any length but zero, missing components are zero.
+    /// Direction of its force, with either sign and any nonzero length; missing components are zero.
     pub along: [f64; 3],
-    /// Energy at its critical stretch minus the energy booked, J.
+    /// Energy at the critical stretch minus the recorded energy, J.
     pub missing: f64,
 }
 
-/// Energies booked for a broken bond that are taken as they are, over its energy at the critical stretch. The errors of both signs within these bounds cancel: they are of first
-/// order in the step for one bond, of second order in the mean.
+/// Range of the recorded energy of a broken bond, relative to its energy at the critical stretch, that is
+/// accepted without correction. Errors of both signs within this range cancel: they are of first order in the
+/// step for one bond, of second order in the mean.
 const RESOLVED: std::ops::RangeInclusive<f64> = 0.0..=4.0;
 
-/// What breaking did to a block.
+/// Broken bonds and dissipated energy of a block.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Tally {
-    /// Bonds broken by steps too coarse for them, once for each end that found it; not saved, as every step settles its own.
+    /// Bonds broken in steps too large for them, once per end that detected the failure. They are not saved,
+    /// because each step corrects its own.
     pub coarse: Vec<CoarseBreak>,
-    /// Σ over directed bonds broken of V/2 times the energy dissipated, J.
+    /// Σ over broken directed bonds of V/2 times the dissipated energy, J.
     pub dissipated: BinnedSum,
-    /// Directed bonds broken.
+    /// Number of broken directed bonds.
     pub broken: Counter,
-    /// The entries broken in the last sweep, if they were asked for.
+    /// Entries broken in the last sweep, if requested.
     pub events: Vec<BreakEvent>,
 }
 
 /// Damage of a block of points.
 #[derive(Debug, Clone)]
 pub(super) struct BlockDamage {
-    /// Bonds left, one byte per group of eight.
+    /// Intact bonds, one byte per group of eight.
     pub intact: Vec<u8>,
     pub tally: Tally,
 }
 
 impl CoarseBreak {
-    /// A bond that broke and dissipated so much, J, if that is far from its energy at the critical stretch; none where that energy is not known.
+    /// Returns a record of a broken bond if its dissipated energy, J, is outside the accepted range; `None`
+    /// if the energy at the critical stretch is unknown.
     pub fn of<const D: usize>(bond: &BreakingBond<D>, dissipated: f64) -> Option<Self> {
         let critical = bond.weight * bond.critical?;
         let resolved = critical * RESOLVED.start()..=critical * RESOLVED.end();
@@ -86,7 +92,8 @@ impl CoarseBreak {
 }
 
 impl Tally {
-    /// Books half of what a bond dissipates at the end of a step for one of its ends; returns that half, J.
+    /// Records half of the energy that a bond dissipates at the end of a step, for one of its ends, and
+    /// returns that half, J.
     pub fn book<const D: usize>(&mut self, step: &StepEnd<'_>, bond: &BreakingBond<D>) -> f64 {
         let dissipated = step.dissipated(bond);
         let half = 0.5 * dissipated;
@@ -97,7 +104,8 @@ impl Tally {
     }
 }
 
-/// Takes the bonds that steps too coarse for them broke, each once, by their ends.
+/// Returns and clears the bonds that broke in steps too large for them, each once, in the order of their
+/// ends.
 pub(super) fn take_coarse_breaks(blocks: &mut [BlockDamage]) -> Vec<CoarseBreak> {
     let mut coarse: Vec<CoarseBreak> = Vec::new();
     for block in blocks {
@@ -106,14 +114,14 @@ pub(super) fn take_coarse_breaks(blocks: &mut [BlockDamage]) -> Vec<CoarseBreak>
     each_once(coarse)
 }
 
-/// Bonds in the order of their ends, without the second copies.
+/// Sorts bonds by their ends and removes duplicates.
 pub fn each_once(mut coarse: Vec<CoarseBreak>) -> Vec<CoarseBreak> {
     coarse.sort_by_key(|bond| bond.points);
     coarse.dedup_by_key(|bond| bond.points);
     coarse
 }
 
-/// Books energy, J.
+/// Adds dissipated energy, J.
 pub(super) fn dissipate(blocks: &mut [BlockDamage], energy: f64) {
     if let Some(block) = blocks.first_mut() {
         block.tally.dissipated.add(energy);
@@ -121,7 +129,7 @@ pub(super) fn dissipate(blocks: &mut [BlockDamage], energy: f64) {
 }
 
 impl BlockDamage {
-    /// A block that nothing has happened to yet.
+    /// Creates a block without broken bonds.
     pub fn new(intact: Vec<u8>) -> Self {
         Self {
             intact,
@@ -129,7 +137,8 @@ impl BlockDamage {
         }
     }
 
-    /// The second end of a bond whose first one broke: clears it, and books its half of the energy, unless that is done.
+    /// Breaks a bond at its second end: clears the entry and records its half of the energy, unless this is
+    /// already done.
     pub fn break_other_end(&mut self, group: usize, lane: usize, dissipated: f64) {
         if self.intact[group] >> lane & 1 == 1 {
             self.intact[group] &= !(1 << lane);
@@ -139,7 +148,7 @@ impl BlockDamage {
     }
 }
 
-/// Energy dissipated by all processes, J.
+/// Returns the energy dissipated in all processes, J.
 pub(super) fn dissipated(domain: &Domain, blocks: &[BlockDamage]) -> f64 {
     domain.total(own_dissipation(blocks))
 }
@@ -149,13 +158,13 @@ fn own_dissipation(blocks: &[BlockDamage]) -> BinnedSum {
     sums.fold(BinnedSum::default(), BinnedSum::merged)
 }
 
-/// Bonds broken in all processes, each counted once.
+/// Returns the number of broken bonds of all processes, each counted once.
 pub(super) fn broken_bonds(domain: &Domain, blocks: &[BlockDamage]) -> u64 {
     let directed: Counter = blocks.iter().map(|block| block.tally.broken).sum();
     domain.count(directed.get()) / 2
 }
 
-/// Bonds left, each counted twice.
+/// Returns the number of intact bonds, each counted twice.
 pub(super) fn bonds_left(blocks: &[BlockDamage]) -> u64 {
     let bytes = blocks.iter().flat_map(|block| &block.intact);
     bytes.map(|byte| u64::from(byte.count_ones())).sum()
@@ -188,7 +197,7 @@ impl SavedUnder for Vec<BlockDamage> {
         let mut dissipated = BinnedSum::default();
         let energies = format!("{name}/dissipated");
         match archive.numbers::<f64>(&energies) {
-            // As earlier versions saved it: by blocks.
+            // Earlier versions saved one value per block.
             Ok(of_blocks) => of_blocks.iter().for_each(|&energy| dissipated.add(energy)),
             Err(_) => dissipated.restore_under(&energies, archive)?,
         }

@@ -1,11 +1,12 @@
-//! Pair laws in the operators' loops: the same forces as [`PairForce`], without roots and divisions where that is possible.
+//! Pair laws in vectorised loops: the forces of [`PairForce`] without roots and divisions where possible.
 
 use crate::lanes::Vector;
 use crate::material::{
-    BondStretch, CubicBond, CubicFactor, GreenBond, LinearBond, LiteralBond, PairForce, Treated,
+    Approximated, BondStretch, CubicBond, CubicFactor, CubicSofteningBond, GreenBond, LinearBond,
+    PairForce,
 };
 
-/// What stays of bonds side by side while their points move.
+/// Constant data of the bonds in the lanes of a vector.
 #[derive(Debug, Clone, Copy)]
 pub struct FixedBond<T, const D: usize> {
     /// ξ, m.
@@ -19,7 +20,7 @@ pub struct FixedBond<T, const D: usize> {
 }
 
 impl<T: Vector, const D: usize> FixedBond<T, D> {
-    /// The bond that has the length (1 + τ)|ξ| without stress, and η as its law sees it: η − τ ξ.
+    /// Returns the bond with the stress-free length (1 + τ)|ξ| and its relative displacement η − τ ξ.
     #[inline(always)]
     pub(super) fn expanded(self, stretch: T, eta: [T; D]) -> (Self, [T; D]) {
         let one = T::splat(1.0);
@@ -30,7 +31,7 @@ impl<T: Vector, const D: usize> FixedBond<T, D> {
             xi[c] = scale * self.xi[c];
             pulled[c] = eta[c] - stretch * self.xi[c];
         }
-        // The factor, stiffness over length, stays.
+        // The factor, stiffness over length, is unchanged.
         let bond = Self {
             xi,
             inverse_square: self.inverse_square * (inverse * inverse),
@@ -41,21 +42,22 @@ impl<T: Vector, const D: usize> FixedBond<T, D> {
     }
 }
 
-/// The fast form of a pair force.
+/// The vectorised form of a pair law.
 ///
-/// With the measure m of [`PairForce::stretch_measure`], t = m/|ξ|² decides all: the bond is over-stretched if t > threshold(s₀), and
-/// its force may be written as a function of t times a direction. A law without such a form takes what it has.
-pub trait FastLaw: PairForce {
-    /// The largest |t| for which [`FastLaw::add_force`] holds to round-off.
+/// With the measure m of [`PairForce::stretch_measure`] and the strain t = m/|ξ|², a bond is over-stretched
+/// if t > threshold(s₀), and its force can be written as a function of t times a direction. The default
+/// methods use [`PairForce`].
+pub trait VectorLaw: PairForce {
+    /// Largest |t| for which [`VectorLaw::add_force`] is exact to round-off.
     const REACH: f64 = f64::INFINITY;
 
-    /// t of bonds side by side; the same bits seen from the other end.
+    /// Returns the strain t of the bonds; bitwise identical from both ends.
     #[inline(always)]
     fn strain<T: Vector, const D: usize>(bond: &FixedBond<T, D>, eta: [T; D]) -> T {
         Self::stretch_measure(bond.xi, eta).0 * bond.inverse_square
     }
 
-    /// Adds the force of the bonds that `mask` names to `sum`. Their strain is t; it is zero for the others.
+    /// Adds the force of the bonds selected by `mask` to `sum`. `t` is their strain, zero for other bonds.
     #[inline(always)]
     fn add_force<T: Vector, const D: usize>(
         bond: &FixedBond<T, D>,
@@ -70,7 +72,7 @@ pub trait FastLaw: PairForce {
         }
     }
 
-    /// The derivative of the force in the direction d, at any strain.
+    /// Returns the derivative of the force in the direction d, at any strain.
     #[inline(always)]
     fn tangent_force<T: Vector, const D: usize>(
         bond: &FixedBond<T, D>,
@@ -85,13 +87,14 @@ pub trait FastLaw: PairForce {
     }
 }
 
-impl FastLaw for GreenBond {}
+impl VectorLaw for GreenBond {}
 
-impl FastLaw for LiteralBond {}
+impl VectorLaw for CubicSofteningBond {}
 
-impl<L: CubicBond, T: CubicFactor> FastLaw for Treated<L, T> {}
+impl<L: CubicBond, T: CubicFactor> VectorLaw for Approximated<L, T> {}
 
-/// Coefficients of φ(t)/t = 1/((1+t) + √(1+t)), ascending: the polynomial through its values at the seven Chebyshev nodes of
+/// Coefficients of φ(t)/t = 1/((1+t) + √(1+t)), ascending: the polynomial through its values at the seven
+/// Chebyshev nodes of
 /// |t| ≤ 0.02, computed with 50 digits; relative error below 8e-15 there.
 pub(super) const PHI: [f64; 7] = [
     0.5,
@@ -103,10 +106,10 @@ pub(super) const PHI: [f64; 7] = [
     0.20960254454644783,
 ];
 
-/// Rounding errors above which the polynomial of degree four will do: its relative error is below 2e-9.
+/// Rounding error above which the polynomial of degree four is sufficient: its relative error is below 2e-9.
 const SHORT_PHI: f64 = 1e-8;
 
-impl FastLaw for BondStretch {
+impl VectorLaw for BondStretch {
     const REACH: f64 = 0.02;
 
     /// t = η·(2ξ+η)/|ξ|².
@@ -149,7 +152,8 @@ impl FastLaw for BondStretch {
     ) -> [T; D] {
         let (zero, one) = (T::splat(0.0), T::splat(1.0));
         let t = Self::strain(bond, eta);
-        // At rest, where the highest frequency is looked for, neither root nor division; r is one to the last bit by either way.
+        // At rest, where the highest frequency is computed, neither root nor division is needed; r is one in
+        // both cases, bitwise.
         let moved = [t.greater(zero), (-t).greater(zero)];
         let r = if moved == [T::Mask::default(); 2] {
             one
@@ -172,7 +176,7 @@ impl FastLaw for BondStretch {
     }
 }
 
-impl FastLaw for LinearBond {
+impl VectorLaw for LinearBond {
     /// t = ξ·η/|ξ|².
     #[inline(always)]
     fn strain<T: Vector, const D: usize>(bond: &FixedBond<T, D>, eta: [T; D]) -> T {

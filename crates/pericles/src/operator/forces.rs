@@ -1,23 +1,23 @@
-//! Several forces on one body.
+//! Sums of several forces on a body.
 
 use super::{
     BondAt, BondView, Breakable, Capabilities, CoarseBreak, Force, InstructionSet, Inversion,
-    LinearOperator, Linearity, LocalForce, On, SplitForce,
+    LinearOperator, Linearity, LocalForce, PointSubset, SplitForce,
 };
-use crate::archive::{Archive, Saved};
+use crate::archive::{Archive, Checkpointed};
 use crate::domain::Field;
 use crate::error::{PericlesError, Result};
 use crate::step_end::StepEnd;
 
-/// The forces that act between the points of a body, at least one: their sum is a force.
+/// The sum of one or more forces between the points of a body.
 ///
-/// It can do what all of them can; it can break where one of them can.
+/// It has the capabilities that all of its forces have, and it can break if one of them can.
 pub struct Forces {
     list: Vec<Box<dyn Force>>,
 }
 
 impl Forces {
-    /// One force.
+    /// Creates a sum of one force.
     pub fn new(force: Box<dyn Force>) -> Self {
         Self { list: vec![force] }
     }
@@ -32,7 +32,7 @@ impl Forces {
         Ok(())
     }
 
-    /// Refuses a force that was not made for a body of so many points in a dimension.
+    /// Checks that a force belongs to a body with this number of points and this dimension.
     pub(crate) fn check_body(
         force: &dyn Force,
         needed_points: usize,
@@ -50,7 +50,7 @@ impl Forces {
         })
     }
 
-    /// The sum of all forces; a force that is alone stands for itself.
+    /// Returns the sum of all forces; a single force is returned directly.
     pub fn sum(&self) -> &dyn Force {
         match &self.list[..] {
             [one] => &**one,
@@ -58,7 +58,7 @@ impl Forces {
         }
     }
 
-    /// The same, to be changed.
+    /// Returns the sum of all forces for modification.
     pub fn sum_mut(&mut self) -> &mut dyn Force {
         if self.list.len() == 1 {
             return &mut *self.list[0];
@@ -66,7 +66,7 @@ impl Forces {
         self
     }
 
-    /// The forces one by one.
+    /// Returns an iterator over the forces.
     pub fn iter(&self) -> impl Iterator<Item = &dyn Force> {
         self.list.iter().map(|force| &**force)
     }
@@ -76,7 +76,7 @@ impl Forces {
             .filter_map(|force| force.capabilities().breaking)
     }
 
-    /// A capability that all of them have.
+    /// Returns a capability of the sum if all forces have it.
     fn all<'a, T: ?Sized + 'a>(
         &'a self,
         own: &'a T,
@@ -99,7 +99,7 @@ impl Force for Forces {
         self.list[0].dimension()
     }
 
-    fn add_force(&self, t: f64, u: &[f64], on: On<'_>, out: &mut [f64]) {
+    fn add_force(&self, t: f64, u: &[f64], on: PointSubset<'_>, out: &mut [f64]) {
         for force in &self.list {
             force.add_force(t, u, on.clone(), out);
         }
@@ -130,7 +130,7 @@ impl Force for Forces {
         }
     }
 
-    fn end_step(&mut self, step: &StepEnd<'_>, on: On<'_>, out: &mut [f64]) {
+    fn end_step(&mut self, step: &StepEnd<'_>, on: PointSubset<'_>, out: &mut [f64]) {
         for force in &mut self.list {
             force.end_step(step, on.clone(), out);
         }
@@ -175,7 +175,7 @@ impl Force for Forces {
         Some(self)
     }
 
-    /// The sum of their largest errors: each is relative to the largest force of its own.
+    /// Returns the sum of the largest errors, each relative to the largest force of its own operator.
     fn rounding(&self, u: &[f64]) -> Option<f64> {
         let errors = self.list.iter().filter_map(|force| force.rounding(u));
         errors.reduce(|sum, error| sum + error)
@@ -244,7 +244,7 @@ impl Breakable for Forces {
             .collect()
     }
 
-    /// The largest damage of all forces.
+    /// Sets the largest damage over all forces.
     fn damage_into(&self, out: &mut [f64]) {
         let mut part = vec![0.0; out.len()];
         out.fill(0.0);
@@ -282,7 +282,14 @@ impl LocalForce for Forces {
 }
 
 impl SplitForce for Forces {
-    fn add_force_from(&self, t: f64, u: &[f64], on: On<'_>, partners: &[bool], out: &mut [f64]) {
+    fn add_force_from(
+        &self,
+        t: f64,
+        u: &[f64],
+        on: PointSubset<'_>,
+        partners: &[bool],
+        out: &mut [f64],
+    ) {
         for split in self.iter().filter_map(|force| force.capabilities().split) {
             split.add_force_from(t, u, on.clone(), partners, out);
         }
@@ -291,7 +298,7 @@ impl SplitForce for Forces {
     fn end_step_from(
         &mut self,
         step: &StepEnd<'_>,
-        on: On<'_>,
+        on: PointSubset<'_>,
         partners: &[bool],
         out: &mut [f64],
     ) {
@@ -313,7 +320,7 @@ impl BondView for Forces {
 impl LinearOperator for Forces {
     fn apply_into(&self, u: &[f64], out: &mut [f64]) {
         out.fill(0.0);
-        self.add_force(0.0, u, On::All, out);
+        self.add_force(0.0, u, PointSubset::All, out);
     }
 
     fn half_bandwidth(&self) -> Option<usize> {
@@ -327,8 +334,8 @@ impl LinearOperator for Forces {
     }
 }
 
-/// The arrays of force k of several are stored under names that begin with `force/k/`; a force that is alone has its names for itself.
-impl Saved for Forces {
+/// Arrays of the k-th of several forces have the prefix `force/k/`; arrays of a single force have no prefix.
+impl Checkpointed for Forces {
     fn save(&self, archive: &mut Archive) {
         if let [one] = &self.list[..] {
             return one.save(archive);

@@ -1,23 +1,25 @@
-//! The forms in which bonds are kept, and what they do not represent.
+//! Force kernels and the features they do not support.
 
 use super::limits::{Feature, Features, Limit};
 use crate::error::Result;
 
-/// How bonds are kept.
+/// Force kernels, by the way bonds are stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum BondForm {
-    /// The grid where the points fill a lattice well enough, else the list.
+    /// Grid if the points fill enough of a lattice, otherwise list.
     #[default]
     Fastest,
-    /// One stencil for all nodes of a lattice ([`GridForce`](super::GridForce), [`LinearSolidGrid`](super::LinearSolidGrid)).
+    /// One stencil for all nodes of a lattice ([`GridForce`](super::GridForce),
+    /// [`LinearSolidGrid`](super::LinearSolidGrid)).
     Grid,
-    /// The same with forces and breaking computed in floats ([`GridForce::in_floats`](super::GridForce::in_floats)).
+    /// A stencil with forces and bond failure in single precision
+    /// ([`GridForce::in_floats`](super::GridForce::in_floats)).
     FloatGrid,
-    /// A list of every point's bonds ([`BondForce`](super::BondForce), [`LinearSolidForce`](super::LinearSolidForce)).
+    /// Neighbour list ([`BondForce`](super::BondForce), [`LinearSolidForce`](super::LinearSolidForce)).
     List,
 }
 
-const NO_LATTICE: &str = "its points lie on no regular grid; use \"list\"";
+const NO_LATTICE: &str = "the points do not lie on a regular grid; use bonds = \"list\"";
 
 const OF_GRID: &[Limit] = &[
     Limit::CORRESPONDENCE,
@@ -26,12 +28,13 @@ const OF_GRID: &[Limit] = &[
     Limit::new(Feature::GaussNodes, NO_LATTICE),
     Limit::BOND_ENERGY,
     Limit::THERMAL_EXPANSION,
+    Limit::SOFTENING,
 ];
 
-/// In floats no state-based material is computed either.
+/// State-based materials are not supported in single precision.
 const OF_FLOAT_GRID: &[Limit] = &preceded::<{ OF_GRID.len() + 1 }>(Limit::STATE_BASED, OF_GRID);
 
-/// A limit and others behind it.
+/// Returns a limit followed by others.
 const fn preceded<const N: usize>(first: Limit, others: &[Limit]) -> [Limit; N] {
     let mut limits = [first; N];
     let mut k = 0;
@@ -43,7 +46,7 @@ const fn preceded<const N: usize>(first: Limit, others: &[Limit]) -> [Limit; N] 
 }
 
 impl BondForm {
-    /// As written in decks.
+    /// Returns the name in decks.
     pub fn name(self) -> &'static str {
         match self {
             Self::Fastest => "fastest",
@@ -53,7 +56,8 @@ impl BondForm {
         }
     }
 
-    /// What the form does not represent; the first limit that a body exceeds is the reason of its refusal. The fastest form is a list where a grid is not possible.
+    /// Returns the features that the kernel does not support. The first one that a body has is the reason of
+    /// the error. The fastest kernel is a list if a grid is not possible.
     pub fn limits(self) -> &'static [Limit] {
         match self {
             Self::Fastest | Self::List => &[],
@@ -62,10 +66,10 @@ impl BondForm {
         }
     }
 
-    /// Refuses a body with features that the form does not represent.
+    /// Checks that the kernel supports a body with these features.
     ///
     /// # Errors
-    /// [`FormNotUsable`](crate::PericlesError::FormNotUsable), with the reason.
+    /// [`FormNotUsable`](crate::PericlesError::FormNotUsable) with the reason.
     pub fn check(self, features: Features) -> Result<()> {
         Limit::check(self.limits(), self.name(), features)
     }

@@ -1,4 +1,4 @@
-//! Bonds of a body with cells of several sizes or materials of different horizons.
+//! Bond-based bodies with cells of several sizes or materials of different horizons.
 
 use std::sync::Arc;
 
@@ -7,53 +7,61 @@ use super::by_law::{ByLaw, by_law};
 use super::grid::build::LatticeBonds;
 use super::limits::{Feature, Features, Limit};
 use super::{
-    AssembledBonds, BondForce, BondForm, Breaking, DamageMeasure, FastLaw, Force, GridForce,
+    AssembledBonds, BondForce, BondForm, Breaking, DamageMeasure, Force, GridForce, VectorLaw,
 };
 use crate::error::{PericlesError, Result};
-use crate::family::{BondList, Crack, Cut, EndRule};
+use crate::family::{BondCut, BondList, Crack, EndRule};
 use crate::kernel::Influence;
 use crate::material::{
-    BondConstants, BondMaterial, InterfaceRule, MaterialInterface, PairClasses, StressState,
+    BondConstants, BondMaterial, InterfaceRule, MaterialInterface, MaterialPairs, StressState,
     check_materials,
 };
 use crate::space::{PointCloud, Sites, check_length};
 
-/// Several materials of a body, which share law, influence function and partial volumes. Each has the horizon that it says.
+/// Several materials of a body with the same law, influence function and partial volumes, but different
+/// horizons.
 #[derive(Debug, Clone, Copy)]
 pub struct Materials<'a> {
-    /// All materials, the body's own first.
+    /// All materials; the first is that of the body.
     pub all: &'a [BondMaterial],
-    /// The number of each point's material.
+    /// Index of the material of each point.
     pub of_point: &'a [u8],
-    /// Bonds between two materials that do not follow the harmonic rule with the smaller critical stretch of both.
+    /// Interfaces between two materials. Other pairs have the harmonic mean of both stiffnesses and the
+    /// smaller critical stretch.
     pub interfaces: &'a [([u8; 2], MaterialInterface)],
 }
 
-/// A body on grids of different spacing, each with a horizon of the same number of spacings, or of materials of different horizons.
+/// A body of grids with different spacings, each with the same ratio of horizon to spacing, or of materials
+/// with different horizons.
 ///
-/// Points i and j are bonded if |ξ| < max(δ_i, δ_j). The force of the bond is the mean of the laws of its ends, each nothing beyond its own horizon:
+/// Points i and j are bonded if |ξ| < max(δ_i, δ_j). The force of the bond is the mean of the laws of its
+/// ends, each of which vanishes beyond its own horizon:
 ///
 /// f_ij = ½ (c_i α(ξ/δ_i) κ_i + c_j α(ξ/δ_j) κ_j) s n,
 ///
-/// so that both ends exert equal and opposite forces and momentum is conserved to round-off. A uniform strain is in balance inside each grid; within a horizon of an interface
-/// there is a spurious force, for a point sees different grids on its two sides. It falls with the spacing over the length of what is of interest,
-/// as the missing bonds at a free surface do.
+/// so that the forces on both ends are equal and opposite and momentum is conserved to round-off. A uniform
+/// strain is in equilibrium inside each grid. Within a horizon of an interface there is a spurious force,
+/// because a point has different grids on its two sides. As at a free surface, the error decreases with the
+/// spacing relative to the length of interest.
 ///
-/// δ_i is the horizon of the material of i over the ratio of its grid. With several materials c_i is the constant that bonds between the materials of i and j have with the horizon of i on the grid of i.
+/// δ_i is the horizon of the material of i divided by the ratio of its grid. With several materials c_i is
+/// the constant of bonds between the materials of i and j, for the horizon of i and the grid of i.
 ///
-/// **Breaking.** A fracture energy belongs to another critical stretch on each grid, s_g. Bonds between two grids g and h break at the stretch at which they store, all together, the mean energy of both
-/// laws: s² = (w_g s_g² + w_h s_h²)/(w_g + w_h), with the sums w of c α κ |ξ| V_i V_j over these bonds by the law of each grid. A crack along an interface then takes the mean of what both grids take.
+/// **Breaking.** The critical stretch s_g of a fracture energy differs between grids. Bonds between two grids
+/// g and h break at the stretch at which they store, in total, the mean energy of both laws: s² = (w_g
+/// s_g² + w_h s_h²)/(w_g + w_h), with the sums w of c α κ |ξ| V_i V_j over these bonds by the law of each
+/// grid. A crack along an interface then dissipates the mean of the energies of both grids.
 #[derive(Debug, Clone)]
 pub struct GradedBody<'a> {
     /// The points.
     pub cloud: &'a Arc<PointCloud>,
-    /// Division of the cells of each grid, see [`GradedCloud`](crate::space::GradedCloud).
+    /// Refinement ratio of each grid, see [`GradedCloud`](crate::space::GradedCloud).
     pub ratios: &'a [u32],
-    /// The grid of each point.
+    /// Index of the grid of each point.
     pub grid_of_point: &'a [u8],
     /// The material with the horizon of the large cells.
     pub material: &'a BondMaterial,
-    /// Several materials; none if all points have the body's.
+    /// Several materials; `None` if all points have the material of the body.
     pub materials: Option<Materials<'a>>,
     /// The state of stress.
     pub state: StressState,
@@ -61,9 +69,10 @@ pub struct GradedBody<'a> {
     pub cracks: &'a [(Crack, EndRule)],
     /// Points whose bonds never break.
     pub no_fail: &'a [u32],
-    /// Stiffness of each point over the material's; empty if all are the same. A bond has the mean of its ends.
+    /// Stiffness of each point relative to the material; empty if uniform. A bond has the mean stiffness of
+    /// its ends.
     pub stiffness: &'a [f64],
-    /// How damage weighs bonds.
+    /// Definition of damage.
     pub damage: DamageMeasure,
 }
 
@@ -78,7 +87,7 @@ struct Kind {
 struct Laws {
     kinds: Vec<Kind>,
     /// Classes of points by kind and material, materials fastest.
-    classes: PairClasses,
+    classes: MaterialPairs,
     /// The number of materials.
     materials: u8,
 }
@@ -88,28 +97,28 @@ impl Laws {
         usize::from(class / self.materials)
     }
 
-    /// The horizon of the points of a class, m.
+    /// Returns the horizon of the points of a class, m.
     fn horizon_of(&self, class: u8) -> f64 {
         self.kinds[self.kind_of(class)].horizon
     }
 
-    /// The pair of classes of two points where both are of the kind of the first.
+    /// Returns the classes that two points would have if both were of the kind of the first.
     fn as_kind_of(&self, [a, b]: [u8; 2]) -> [u8; 2] {
         [a, a - a % self.materials + b % self.materials]
     }
 }
 
 impl GradedBody<'_> {
-    /// What the list of such a body does not represent.
+    /// Features that are not supported on such bodies.
     pub const LIMITS: &'static [Limit] = &[Limit::new(
         Feature::SurfaceCorrection,
-        "a point near an interface has families of two grids or horizons, which a correction would take for those at a surface; leave surface_correction out",
+        "points near an interface have families of two grids or horizons, which the correction would treat as families at a surface; omit `surface_correction`",
     )];
 
-    /// Refuses a body with features that a list of bonds between cells of several sizes does not represent.
+    /// Checks that bonds between cells of several sizes support these features.
     ///
     /// # Errors
-    /// [`PericlesError::Graded`], with the reason.
+    /// [`PericlesError::Graded`] with the reason.
     pub fn check(features: Features) -> Result<()> {
         let exceeded = Self::LIMITS.iter().find(|one| features.has(one.feature));
         match exceeded {
@@ -121,7 +130,7 @@ impl GradedBody<'_> {
         }
     }
 
-    /// The constants of a material with the horizon of a kind of points on its grid.
+    /// Returns the constants of a material for the horizon and grid of a kind of points.
     fn constants(&self, material: &BondMaterial, kind: &Kind) -> Result<BondConstants> {
         let cloud = self.cloud;
         let own = BondMaterial {
@@ -145,7 +154,7 @@ impl GradedBody<'_> {
         if let Some(materials) = &self.materials {
             check_materials(materials.of_point, all.len())?;
         }
-        // A table per class of bonds names those of one lattice, which this body is not.
+        // Rejects tables per class of lattice bonds: this body is not a single lattice.
         self.material.constants(self.cloud, self.state)?;
         let mut horizons: Vec<f64> = Vec::new();
         for material in all {
@@ -156,7 +165,7 @@ impl GradedBody<'_> {
         let count = self.ratios.len() * horizons.len() * all.len();
         if count > 255 {
             return Err(PericlesError::OutOfRange {
-                quantity: "the number of materials times those of cell sizes and horizons",
+                quantity: "the number of combinations of material, cell size and horizon",
                 value: count as f64,
                 allowed: "at most 255",
             });
@@ -187,18 +196,18 @@ impl GradedBody<'_> {
             kind * materials + material
         };
         let of_point = (0..self.cloud.len()).map(class).collect();
-        let mut classes = PairClasses::new(of_point, &constants, InterfaceRule::default())?;
+        let mut classes = MaterialPairs::new(of_point, &constants, InterfaceRule::default())?;
         for (pair, interface) in interfaces {
             let last = pair[0].max(pair[1]);
             if last >= materials {
                 return Err(PericlesError::OutOfRange {
-                    quantity: "the number of a material of a pair",
+                    quantity: "the index of a material of a pair",
                     value: f64::from(last),
-                    allowed: "numbers of the materials given, from 0",
+                    allowed: "indices of the given materials, from 0",
                 });
             }
             let material = &all[usize::from(pair[0])];
-            // Critical stretches between two kinds of points follow from those of each of them.
+            // Critical stretches between two kinds of points follow from those of each kind.
             for (number, kind) in kinds.iter().enumerate() {
                 let pair = pair.map(|material| number as u8 * materials + material);
                 classes.set_interface(pair, interface, material, |across| {
@@ -213,7 +222,7 @@ impl GradedBody<'_> {
         })
     }
 
-    /// What the body has that not every form represents.
+    /// Returns the features of the body that not every kernel supports.
     pub fn features(&self) -> Features {
         let materials = self.materials.map_or(&[][..], |materials| materials.all);
         let differ = |two: &[BondMaterial]| two[0].horizon != two[1].horizon;
@@ -225,10 +234,11 @@ impl GradedBody<'_> {
             .with(Feature::SeveralSpacings, self.ratios.len() > 1)
     }
 
-    /// The operator: a list, or a stencil of the largest horizon if all cells are of one size.
+    /// Returns the operator: a list, or a stencil of the largest horizon if all cells have the same size.
     ///
     /// # Errors
-    /// Those of [`BondMaterial::constants`]; a form that does not represent the body; a horizon that reaches no neighbour, an unusable crack.
+    /// Errors of [`BondMaterial::constants`]; a kernel that does not support the body; a horizon without
+    /// neighbours, an invalid crack.
     pub fn operator(&self, form: BondForm) -> Result<AssembledBonds> {
         let features = self.features();
         form.check(features)?;
@@ -243,7 +253,7 @@ impl GradedBody<'_> {
         )
     }
 
-    fn make<L: FastLaw, const D: usize>(&self, form: BondForm) -> Result<AssembledBonds> {
+    fn make<L: VectorLaw, const D: usize>(&self, form: BondForm) -> Result<AssembledBonds> {
         let points = self.cloud.len();
         check_length("the grids of the points", self.grid_of_point.len(), points)?;
         if let [_, ..] = self.stiffness {
@@ -265,8 +275,8 @@ impl GradedBody<'_> {
         }
     }
 
-    /// The classes with the critical stretches of bonds between two kinds.
-    fn with_stretches_between(&self, laws: &Laws, bonds: &BondList) -> Result<PairClasses> {
+    /// Returns the classes with critical stretches of bonds between two kinds.
+    fn with_stretches_between(&self, laws: &Laws, bonds: &BondList) -> Result<MaterialPairs> {
         let mut classes = laws.classes.clone();
         let ends = self.ends(laws, bonds.sites());
         let weighted = |bonds: &BondList, a: usize, b: usize| {
@@ -288,13 +298,13 @@ impl GradedBody<'_> {
         }
     }
 
-    fn list<L: FastLaw, const D: usize>(
+    fn list<L: VectorLaw, const D: usize>(
         &self,
         laws: &Laws,
-        classes: PairClasses,
+        classes: MaterialPairs,
         mut bonds: BondList,
     ) -> Result<AssembledBonds> {
-        let cuts: Vec<Cut> = self
+        let cuts: Vec<BondCut> = self
             .cracks
             .iter()
             .map(|(crack, rule)| bonds.cut(crack, *rule))
@@ -324,11 +334,12 @@ impl GradedBody<'_> {
         })
     }
 
-    /// A stencil of unit stiffness and the largest horizon, whose factors are the stiffnesses of the bonds.
-    fn grid<L: FastLaw, const D: usize>(
+    /// Returns a stencil of unit stiffness and the largest horizon, whose factors are the stiffnesses of the
+    /// bonds.
+    fn grid<L: VectorLaw, const D: usize>(
         &self,
         laws: &Laws,
-        classes: &PairClasses,
+        classes: &MaterialPairs,
         horizons: &[f64],
         form: BondForm,
     ) -> Result<AssembledBonds> {
@@ -368,7 +379,8 @@ impl GradedBody<'_> {
         })
     }
 
-    /// The critical stretches of bonds between grids whose own ones differ, from the classes of sites and the stiffness by the law of the first end.
+    /// Returns the critical stretches of bonds between grids with different critical stretches, from the
+    /// classes of sites and the stiffness by the law of the first end.
     fn between_grids(
         &self,
         laws: &Laws,
@@ -408,15 +420,15 @@ impl GradedBody<'_> {
     }
 }
 
-/// A number of the bond between two sites.
+/// A property of the bond between two sites.
 type OfBond<'a> = dyn Fn(&BondList, usize, usize) -> f64 + Sync + 'a;
 
-/// The pairs of so many numbers, each once.
+/// Returns all pairs of `count` numbers, each once.
 fn pairs(count: u8) -> impl Iterator<Item = [u8; 2]> {
     (0..count).flat_map(move |a| (a..count).map(move |b| [a, b]))
 }
 
-/// What the stiffness of bonds depends on at their ends.
+/// Data at the ends of bonds that determine their stiffness.
 struct Ends<'a> {
     laws: &'a Laws,
     influence: &'a Influence,
@@ -426,7 +438,8 @@ struct Ends<'a> {
 }
 
 impl Ends<'_> {
-    /// c α κ of a bond with the vector ξ, m, by the law of its first end, beyond whose horizon κ is zero.
+    /// Returns c α κ of a bond with the vector ξ, m, by the law of its first end; κ is zero beyond the
+    /// horizon of that end.
     fn by_first(&self, a: usize, b: usize, xi: [f64; 3], factor: f64) -> f64 {
         if factor == 0.0 {
             return 0.0;
@@ -444,7 +457,7 @@ impl Ends<'_> {
         }
     }
 
-    /// The mean of both ends' laws, with κ by the law of each.
+    /// Returns the mean of the laws of both ends, each with its own κ.
     fn of_bond(&self, a: usize, b: usize, xi: [f64; 3], factors: [f64; 2]) -> f64 {
         let back = xi.map(|x| -x);
         let ends = self.by_first(a, b, xi, factors[0]) + self.by_first(b, a, back, factors[1]);
@@ -452,13 +465,13 @@ impl Ends<'_> {
     }
 }
 
-/// Makes the operator of a body in a form.
+/// Constructs the operator of a body with a kernel.
 struct OfBody<'a>(&'a GradedBody<'a>, BondForm);
 
 impl ByLaw for OfBody<'_> {
     type Output = AssembledBonds;
 
-    fn of_law<L: FastLaw, const D: usize>(self) -> Result<AssembledBonds> {
+    fn of_law<L: VectorLaw, const D: usize>(self) -> Result<AssembledBonds> {
         self.0.make::<L, D>(self.1)
     }
 }

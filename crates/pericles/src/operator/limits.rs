@@ -1,10 +1,11 @@
-//! Features of bodies that not every form of forces represents: one list of limits for each form, from which refusals and the table of the book are made.
+//! Features of bodies that some force kernels do not support. Each kernel has one list of limits, from which
+//! error messages and the composition table of the book are generated.
 
 use crate::error::{PericlesError, Result};
 use crate::material::PairLaw;
 use crate::space::PointCloud;
 
-/// A property of a body that some forms of forces do not represent.
+/// A property of a body that some force kernels do not support.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Feature {
     /// The bond-stretch law.
@@ -13,7 +14,8 @@ pub enum Feature {
     GreenStrainBar,
     /// The Green-strain law on a plate or block.
     GreenStrain,
-    /// The other cubic laws, which are defined for bars: equation 57 as printed, and treatments of a cubic law.
+    /// The other cubic laws, which are defined for bars: the cubic softening law and approximations of cubic
+    /// laws.
     OtherCubic,
     /// State-based materials, whose bonds depend on the dilatations of both ends.
     StateBased,
@@ -21,7 +23,7 @@ pub enum Feature {
     Correspondence,
     /// Bonds that break.
     Breaking,
-    /// Bonds that break by their energy, the work of their force states since the start.
+    /// Bonds that break by their energy, the accumulated work of their force states.
     BondEnergy,
     /// Pre-cracks.
     PreCracks,
@@ -29,7 +31,7 @@ pub enum Feature {
     SeveralMaterials,
     /// Materials of different horizons.
     SeveralHorizons,
-    /// Inclusions: points with a stiffness of their own.
+    /// Inclusions: points with a different stiffness.
     Inclusions,
     /// A surface correction.
     SurfaceCorrection,
@@ -39,19 +41,21 @@ pub enum Feature {
     PeriodicFaces,
     /// Free faces: the body is not periodic.
     FreeFaces,
-    /// Points that lie on no regular grid.
+    /// Points that do not lie on a regular grid.
     NoLattice,
-    /// Two Gauss nodes in every cell of a bar.
+    /// Two Gauss nodes in each cell of a bar.
     GaussNodes,
-    /// Output of stress or strain, which are sums over single bonds.
+    /// Output of stress or strain, which are sums over individual bonds.
     Tensors,
     /// Thermal expansion.
     ThermalExpansion,
+    /// Bonds that soften before they break.
+    Softening,
 }
 
 impl Feature {
     /// All features, in the order of the table.
-    pub const ALL: [Self; 20] = [
+    pub const ALL: [Self; 21] = [
         Self::BondStretch,
         Self::GreenStrainBar,
         Self::GreenStrain,
@@ -72,9 +76,10 @@ impl Feature {
         Self::GaussNodes,
         Self::Tensors,
         Self::ThermalExpansion,
+        Self::Softening,
     ];
 
-    /// The feature in words.
+    /// Returns the name of the feature in messages and tables.
     pub fn words(self) -> &'static str {
         match self {
             Self::BondStretch => "bond-stretch law",
@@ -83,8 +88,8 @@ impl Feature {
             Self::OtherCubic => "other cubic laws (bars)",
             Self::StateBased => "state-based materials",
             Self::Correspondence => "correspondence materials",
-            Self::Breaking => "breaking",
-            Self::BondEnergy => "breaking by bond energy",
+            Self::Breaking => "breaking bonds",
+            Self::BondEnergy => "bonds that break by their energy",
             Self::PreCracks => "pre-cracks",
             Self::SeveralMaterials => "several materials",
             Self::SeveralHorizons => "materials of different horizons",
@@ -93,42 +98,44 @@ impl Feature {
             Self::SeveralSpacings => "cells of several sizes",
             Self::PeriodicFaces => "periodic faces",
             Self::FreeFaces => "free faces",
-            Self::NoLattice => "points off a grid",
+            Self::NoLattice => "points not on a grid",
             Self::GaussNodes => "Gauss nodes (bars)",
-            Self::Tensors => "stress and strain",
+            Self::Tensors => "output of stress and strain",
             Self::ThermalExpansion => "thermal expansion",
+            Self::Softening => "bond softening",
         }
     }
 
-    /// The feature of a pair law in so many dimensions; none for the linear law, which every form computes.
+    /// Returns the feature of a pair law in a dimension; `None` for the linear law, which every kernel
+    /// supports.
     pub fn of_law(law: PairLaw, dimension: usize) -> Option<Self> {
         match law {
             PairLaw::Linear => None,
             PairLaw::BondStretch => Some(Self::BondStretch),
             PairLaw::GreenStrain if dimension == 1 => Some(Self::GreenStrainBar),
             PairLaw::GreenStrain => Some(Self::GreenStrain),
-            PairLaw::Literal57 | PairLaw::Treated(..) => Some(Self::OtherCubic),
+            PairLaw::CubicSoftening | PairLaw::Approximated(..) => Some(Self::OtherCubic),
         }
     }
 }
 
-/// The features that a body has.
+/// The set of features of a body.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Features(u32);
 
 impl Features {
-    /// These features and another one if `present`, or without that one if not.
+    /// Returns these features with one added if `present`, otherwise removed.
     pub fn with(self, feature: Feature, present: bool) -> Self {
         let bit = 1 << feature as u32;
         Self(if present { self.0 | bit } else { self.0 & !bit })
     }
 
-    /// Whether a feature is among them.
+    /// Returns whether the set contains a feature.
     pub fn has(self, feature: Feature) -> bool {
         self.0 & (1 << feature as u32) != 0
     }
 
-    /// The features that a pair law and points have by themselves.
+    /// Returns the features of a pair law and of points.
     pub fn of_points(law: PairLaw, cloud: &PointCloud) -> Self {
         let law = Feature::of_law(law, cloud.dimension());
         law.map_or_else(Self::default, Self::from)
@@ -144,64 +151,71 @@ impl From<Feature> for Features {
     }
 }
 
-/// A feature that a form of forces does not represent.
+/// A feature that a force kernel does not support.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Limit {
     /// The feature.
     pub feature: Feature,
-    /// Why it is not represented, and what to use instead.
+    /// Reason, and what to use instead.
     pub reason: &'static str,
 }
 
-/// Limits of several forms.
+/// Limits shared by several kernels.
 impl Limit {
-    /// Of forms that compute pair forces only.
+    /// Limit of kernels that compute pair forces only.
     pub const STATE_BASED: Self = Self::new(
         Feature::StateBased,
-        "state-based materials are computed on a list of bonds or, in double precision, on a stencil; leave `bonds` out or give \"list\" or \"grid\"",
+        "state-based materials need a neighbour list or a stencil in double precision; use bonds = \"list\" or \"grid\", or omit `bonds`",
     );
 
-    /// Of all forms but lists.
+    /// Limit of all kernels except lists.
     pub const CORRESPONDENCE: Self = Self::new(
         Feature::Correspondence,
-        "correspondence materials are computed on a list of bonds; leave `bonds` out or give \"list\"",
+        "correspondence materials need a neighbour list; use bonds = \"list\" or omit `bonds`",
     );
 
-    /// Of forms that store no number per bond.
+    /// Limit of kernels that store no value per bond.
     pub const BOND_ENERGY: Self = Self::new(
         Feature::BondEnergy,
-        "the work of every bond is kept as a list; use \"list\", leave `bonds` out, or break bonds by their stretch",
+        "the work of each bond is stored with a neighbour list only; use bonds = \"list\", omit `bonds`, or use failure = \"stretch\"",
     );
 
-    /// Of all forms but lists.
+    /// Limit of all kernels except lists.
     pub const THERMAL_EXPANSION: Self = Self::new(
         Feature::ThermalExpansion,
-        "thermal expansion is computed on a list of bonds; leave `bonds` out or give \"list\"",
+        "thermal expansion needs a neighbour list; use bonds = \"list\" or omit `bonds`",
     );
 
-    /// Of forms that need one lattice.
+    /// Limit of all kernels except lists.
+    pub const SOFTENING: Self = Self::new(
+        Feature::Softening,
+        "the largest stretch of each bond is stored with a neighbour list only; use bonds = \"list\" or omit `bonds`",
+    );
+
+    /// Limit of kernels that need a single lattice.
     pub const SEVERAL_SPACINGS: Self = Self::new(
         Feature::SeveralSpacings,
-        "there is no one lattice; leave `bonds` out or give \"list\"",
+        "cells of several sizes do not form a single lattice; use bonds = \"list\" or omit `bonds`",
     );
 }
 
 impl Limit {
-    /// A limit.
+    /// Creates a limit.
     pub const fn new(feature: Feature, reason: &'static str) -> Self {
         Self { feature, reason }
     }
 
-    /// The reason of the first limit of a form that a body with these features exceeds; none if the form represents the body.
+    /// Returns the reason of the first limit that these features exceed; `None` if the kernel supports the
+    /// body.
     pub fn refusal(limits: &[Self], features: Features) -> Option<&'static str> {
         let exceeded = limits.iter().find(|limit| features.has(limit.feature));
         exceeded.map(|limit| limit.reason)
     }
 
-    /// Refuses a body with features that a form with these limits does not represent.
+    /// Checks that a kernel with these limits supports these features.
     ///
     /// # Errors
-    /// [`PericlesError::FormNotUsable`], with the name of the form and the reason.
+    /// [`PericlesError::FormNotUsable`] with the name of the kernel and the reason.
     pub fn check(limits: &[Self], form: &'static str, features: Features) -> Result<()> {
         match Self::refusal(limits, features) {
             None => Ok(()),

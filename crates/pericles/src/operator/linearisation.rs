@@ -1,11 +1,13 @@
-//! The linearisation of a force about a displacement.
+//! Linearisation of a force about a displacement.
 
-use super::{Force, LinearOperator, On};
+use super::{Force, LinearOperator, PointSubset};
 use crate::sum::sum;
 
-/// d ↦ f′(u₀) d, the force density's derivative at u₀; about the reference state of any bond-based law it is the linear law's operator.
+/// d ↦ f′(u₀) d, the derivative of the force density at u₀. About the reference state it is, for every
+/// bond-based law, the operator of the linear law.
 ///
-/// The force itself is f(u₀) + f′(u₀)(u − u₀) but for an error of second order in the relative displacements, which [`Linearisation::model_error`] measures.
+/// The force is f(u₀) + f′(u₀)(u − u₀) up to an error of second order in the relative displacements, measured
+/// by [`Linearisation::model_error`].
 pub struct Linearisation<'a> {
     operator: &'a dyn Force,
     about: Vec<f64>,
@@ -13,10 +15,10 @@ pub struct Linearisation<'a> {
 }
 
 impl<'a> Linearisation<'a> {
-    /// Of a force about the displacement `about`, m.
+    /// Creates the linearisation of a force about the displacement `about`, m.
     pub fn new(operator: &'a dyn Force, about: Vec<f64>) -> Self {
         let mut force = vec![0.0; about.len()];
-        operator.add_force(0.0, &about, On::All, &mut force);
+        operator.add_force(0.0, &about, PointSubset::All, &mut force);
         Self {
             operator,
             about,
@@ -24,7 +26,8 @@ impl<'a> Linearisation<'a> {
         }
     }
 
-    /// ‖f(u) − f(u₀) − f′(u₀)(u − u₀)‖ over ‖f(u) − f(u₀)‖, Euclidean norms; zero where the force does not change at all.
+    /// Returns ‖f(u) − f(u₀) − f′(u₀)(u − u₀)‖/‖f(u) − f(u₀)‖ with Euclidean norms; zero if the force does
+    /// not change.
     pub fn model_error(&self, u: &[f64]) -> f64 {
         let step: Vec<f64> = u
             .iter()
@@ -33,7 +36,8 @@ impl<'a> Linearisation<'a> {
             .collect();
         let (mut linear, mut force) = (vec![0.0; u.len()], vec![0.0; u.len()]);
         self.apply_into(&step, &mut linear);
-        self.operator.add_force(0.0, u, On::All, &mut force);
+        self.operator
+            .add_force(0.0, u, PointSubset::All, &mut force);
         let change = |k: usize| force[k] - self.force[k];
         let miss = sum(u.len(), |k| (change(k) - linear[k]).powi(2));
         let size = sum(u.len(), |k| change(k).powi(2));

@@ -1,19 +1,20 @@
-//! Pair laws from outside of the engine.
+//! User-defined pair laws.
 
-use super::fast_law::FastLaw;
+use super::fast_law::VectorLaw;
 use super::{AssembledBonds, BondForm, CompositeBody};
 use crate::error::{PericlesError, Result};
 use crate::lanes::Real;
 use crate::material::PairForce;
 
-/// A pair law in the loops of lists and grids as it is written, without a faster form for small strains.
+/// Adapter for a pair law in the loops of lists and grids, without a faster form for small strains.
 ///
-/// Whoever has a faster form implements [`FastLaw`] for the law itself.
+/// For a faster form, implement [`VectorLaw`] for the law.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct PlainLaw<L>(std::marker::PhantomData<L>);
 
 impl<L: PairForce> PairForce for PlainLaw<L> {
     const LINEAR: bool = L::LINEAR;
+    const OF_STRETCH: bool = L::OF_STRETCH;
 
     #[inline(always)]
     fn force<T: Real, const D: usize>(xi: [T; D], eta: [T; D]) -> [T; D] {
@@ -38,15 +39,21 @@ impl<L: PairForce> PairForce for PlainLaw<L> {
     fn threshold(stretch: f64) -> f64 {
         L::threshold(stretch)
     }
+
+    #[inline(always)]
+    fn stretch<T: Real>(t: T) -> T {
+        L::stretch(t)
+    }
 }
 
-impl<L: PairForce> FastLaw for PlainLaw<L> {}
+impl<L: PairForce> VectorLaw for PlainLaw<L> {}
 
 impl CompositeBody<'_> {
-    /// The operator with a pair law from outside in place of the material's, in any form that the body allows.
+    /// Returns the operator with a user-defined pair law instead of that of the material, with any kernel
+    /// that supports the body.
     ///
     /// # Errors
-    /// Those of [`CompositeBody::operator`].
+    /// Errors of [`CompositeBody::operator`].
     pub fn operator_of_law<L: PairForce>(&self, form: BondForm) -> Result<AssembledBonds> {
         match self.body.cloud.dimension() {
             1 => self.operator_of::<PlainLaw<L>, 1>(form),

@@ -1,17 +1,18 @@
-//! Work arrays lent to whoever computes, so that an application of an operator allocates nothing and needs `&self` only.
+//! Pools of work arrays, so that an operator is applied through `&self` without allocating memory.
 
 use std::ops::{Deref, DerefMut};
 use std::sync::{Mutex, PoisonError};
 
-/// Work arrays of one kind. The lock is held only while one is handed over, so that threads that compute never wait for each other; there are
-/// never more arrays than were in use at the same time.
+/// A pool of work arrays of one kind. The lock is held only while an array is taken or returned, so that
+/// threads do not wait for each other during computation. The number of arrays is the largest number in use
+/// at the same time.
 pub struct Pool<T> {
     idle: Mutex<Vec<T>>,
     make: Box<dyn Fn() -> T + Send + Sync>,
 }
 
 impl<T> Pool<T> {
-    /// A pool with `ready` arrays.
+    /// Creates a pool with `ready` arrays.
     pub fn new(ready: usize, make: impl Fn() -> T + Send + Sync + 'static) -> Self {
         Self {
             idle: Mutex::new((0..ready).map(|_| make()).collect()),
@@ -19,7 +20,7 @@ impl<T> Pool<T> {
         }
     }
 
-    /// Takes an array, the one used last; it goes back when dropped.
+    /// Takes the array used last; dropping it returns it to the pool.
     pub fn take(&self) -> Lent<'_, T> {
         let item = self
             .idle
@@ -71,7 +72,7 @@ mod tests {
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     #[test]
-    fn arrays_are_made_only_while_others_are_in_use() {
+    fn a_pool_allocates_only_if_all_arrays_are_in_use() {
         let made = Arc::new(AtomicUsize::new(0));
         let count = made.clone();
         let pool = Pool::new(1, move || {

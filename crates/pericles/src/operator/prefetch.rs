@@ -1,12 +1,13 @@
-//! Reading ahead where the processor does not do so by itself.
+//! Software prefetching.
 
-/// Asks for the cache line of an entry that will be read soon. Nothing happens if the array ends before.
+/// Prefetches the cache line of an entry that will be read soon. Entries beyond the end of the array are
+/// allowed.
 #[inline(always)]
 pub fn prefetch<T>(array: &[T], at: usize) {
     #[cfg(target_arch = "x86_64")]
     {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-        // SAFETY: every x86-64 processor has the instruction, and it faults at no address.
+        // SAFETY: all x86-64 processors have the instruction, and it never faults.
         unsafe { _mm_prefetch::<_MM_HINT_T0>(array.as_ptr().wrapping_add(at).cast()) };
     }
     #[cfg(not(target_arch = "x86_64"))]

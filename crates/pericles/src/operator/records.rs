@@ -1,4 +1,4 @@
-//! Vectors on points as rows of four numbers, so that a bond reads its neighbour with one load.
+//! Vectors on points as rows of four numbers: a bond reads its neighbour with one load.
 
 use rayon::prelude::*;
 
@@ -7,10 +7,10 @@ use crate::lanes::Row;
 use crate::parallel::BLOCK;
 use crate::space::Sites;
 
-/// One row for each point or site; what a row holds behind the components is its owner's.
+/// One row per point or site. The meaning of entries after the components depends on the owner.
 pub type Records = [Row];
 
-/// Writes a component-major field to the first numbers of the rows.
+/// Writes a component-major field to the first entries of the rows.
 pub fn pack<const D: usize>(field: &[f64], records: &mut Records) {
     let n = records.len();
     records
@@ -19,7 +19,7 @@ pub fn pack<const D: usize>(field: &[f64], records: &mut Records) {
         .for_each(|(part, records)| pack_part::<D>(field, n, part * 8 * BLOCK, records));
 }
 
-/// The same for the rows of the points from `first` on.
+/// Writes a component-major field to the rows of the points from `first` on.
 pub fn pack_part<const D: usize>(field: &[f64], n: usize, first: usize, records: &mut Records) {
     for c in 0..D {
         let component = &field[c * n + first..][..records.len()];

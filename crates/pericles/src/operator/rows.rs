@@ -1,36 +1,36 @@
-//! Which points of a block a loop over rows of bonds runs over.
+//! Requested points of a block in loops over rows of bonds.
 
 use std::ops::Range;
 
-use super::On;
+use super::PointSubset;
 
-/// Rows of a block: its first point, and which of its points are wanted.
+/// Rows of a block: its first point and its requested points.
 pub struct Rows<'a> {
     /// The first point of the block.
     pub first: usize,
     which: Which<'a>,
 }
 
-/// The wanted points of a block, in ascending order.
+/// The requested points of a block, in ascending order.
 enum Which<'a> {
     Range(Range<usize>),
     Set(&'a [u32]),
 }
 
 impl<'a> Rows<'a> {
-    /// The wanted points of the block of `len` points from `first` on, none if there are none.
-    pub fn of_block(on: &On<'a>, first: usize, len: usize) -> Option<Self> {
+    /// Returns the requested points of the block of `len` points from `first` on; `None` if there are none.
+    pub fn of_block(on: &PointSubset<'a>, first: usize, len: usize) -> Option<Self> {
         let block = first..first + len;
         let which = match on {
-            On::All => Which::Range(block),
-            On::Range(range) => {
+            PointSubset::All => Which::Range(block),
+            PointSubset::Range(range) => {
                 let common = range.start.max(block.start)..range.end.min(block.end);
                 if common.is_empty() {
                     return None;
                 }
                 Which::Range(common)
             }
-            On::Set(set) => {
+            PointSubset::Set(set) => {
                 let from = set.partition_point(|&i| (i as usize) < block.start);
                 let to = set.partition_point(|&i| (i as usize) < block.end);
                 if from == to {
@@ -42,7 +42,7 @@ impl<'a> Rows<'a> {
         Some(Self { first, which })
     }
 
-    /// Number of wanted points.
+    /// Returns the number of requested points.
     #[inline(always)]
     pub fn count(&self) -> usize {
         match &self.which {
@@ -51,7 +51,7 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// The k-th wanted point.
+    /// Returns the k-th requested point.
     #[inline(always)]
     pub fn at(&self, k: usize) -> usize {
         match &self.which {

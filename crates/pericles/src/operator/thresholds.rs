@@ -1,19 +1,19 @@
-//! Critical stretches of bonds by the materials of their ends.
+//! Critical stretches of bonds as a function of the materials of their ends.
 
-use crate::material::{PairClasses, PairForce};
+use crate::material::{MaterialPairs, PairForce};
 
-/// Critical stretches and thresholds of the strain by the materials of a bond's ends.
+/// Critical stretches and strain thresholds as a function of the materials of both ends of a bond.
 pub(super) struct PairThresholds {
-    /// The material of every place that bonds lead to, and the critical stretch of every pair of materials.
-    classes: PairClasses,
-    /// Thresholds by class of pairs; empty where strengths scatter.
+    /// Material of each place that is an end of bonds, and critical stretch of each pair of materials.
+    classes: MaterialPairs,
+    /// Thresholds per class of pairs; empty if strengths are scattered.
     table: Vec<f64>,
     threshold: fn(f64) -> f64,
 }
 
 impl PairThresholds {
-    /// Those of a pair law.
-    pub fn of<L: PairForce>(classes: PairClasses) -> Self {
+    /// Creates the thresholds of a pair law.
+    pub fn of<L: PairForce>(classes: MaterialPairs) -> Self {
         let stretches = match classes.strengths() {
             [] => classes.critical_stretches(),
             _ => &[],
@@ -26,7 +26,7 @@ impl PairThresholds {
         }
     }
 
-    /// The threshold of a bond between two places.
+    /// Returns the threshold of a bond between two places.
     pub fn threshold(&self, a: usize, b: usize) -> f64 {
         match &self.table[..] {
             [] => (self.threshold)(self.classes.critical_stretch(a, b)),
@@ -34,7 +34,7 @@ impl PairThresholds {
         }
     }
 
-    /// The critical stretch of a bond between two places.
+    /// Returns the critical stretch of a bond between two places.
     pub fn critical_stretch(&self, a: usize, b: usize) -> f64 {
         self.classes.critical_stretch(a, b)
     }

@@ -1,148 +1,155 @@
-//! Forces in two passes: one over points that leaves a few values at each, and one over bonds that reads them at both ends.
+//! Forces in two passes: a pass over points computes a few values per point, a pass over bonds reads the
+//! values of both ends.
 
 use std::sync::Arc;
 
 use super::pool::{Lent, Pool};
 use super::{
     BondView, Breakable, Capabilities, DilatationView, Force, InstructionSet, Inversion,
-    LinearOperator, Linearity, LocalForce, On, PlasticView,
+    LinearOperator, Linearity, LocalForce, PlasticView, PointSubset,
 };
-use crate::archive::{Archive, Saved};
+use crate::archive::{Archive, Checkpointed};
 use crate::domain::Field;
 use crate::error::Result;
 use crate::space::{PointCloud, PointSet};
 use crate::step_end::StepEnd;
 use crate::thermal::{Expandable, ThermalExpansion};
 
-/// What a pass over bonds reads at both ends of a bond.
+/// Data read by the pass over bonds at both ends of a bond.
 #[derive(Debug, Clone, Copy)]
 pub struct AtPoints<'a> {
     /// Displacement, m.
     pub u: Field<'a>,
-    /// What the pass over points left.
+    /// Result of the pass over points.
     pub values: Field<'a>,
 }
 
-/// A force density whose bonds depend on what other bonds of their ends do, such as those of state-based materials: the dilatation of a point, or a tensor, comes from all of its bonds, and the force of a bond
-/// from the values at both of its ends.
+/// A force density whose bonds depend on other bonds of their ends, such as that of a state-based material:
+/// the dilatation of a point, or a tensor, is a sum over all of its bonds, and the force of a bond depends on
+/// the values of both ends.
 ///
-/// [`TwoPassForce`] makes a [`Force`] of it: it runs the passes in turn, on the points that are needed, and exchanges what they leave where a body is divided among processes.
-pub trait TwoPass: Saved + Send + Sync {
-    /// How many values the pass over points leaves at each point.
+/// [`TwoPassForce`] implements [`Force`]: it runs both passes on the required points and exchanges values
+/// between processes.
+pub trait TwoPass: Checkpointed + Send + Sync {
+    /// Returns the number of values per point.
     fn values_per_point(&self) -> usize;
 
-    /// The pass over points: sets the values of the points named by `on` (component-major) from the displacements; other entries stay.
-    fn values_into(&self, t: f64, u: Field<'_>, on: &On<'_>, values: &mut [f64]);
+    /// Pass over points: sets the values (component-major) of the points `on` from the displacements; other
+    /// entries are unchanged.
+    fn values_into(&self, t: f64, u: Field<'_>, on: &PointSubset<'_>, values: &mut [f64]);
 
     /// Sets the derivatives of all values at `u` in a direction.
     fn value_changes_into(&self, t: f64, u: Field<'_>, direction: Field<'_>, changes: &mut [f64]);
 
-    /// The pass over bonds: adds the force density of the points named by `on`, N/m³.
-    fn add_bond_force(&self, t: f64, at: AtPoints<'_>, on: &On<'_>, out: &mut [f64]);
+    /// Pass over bonds: adds the force density of the points `on`, N/m³.
+    fn add_bond_force(&self, t: f64, at: AtPoints<'_>, on: &PointSubset<'_>, out: &mut [f64]);
 
-    /// Adds the derivative of the force density in a direction in which the values change by `change.values`.
+    /// Adds the derivative of the force density in the direction `change.u`, in which the values change by
+    /// `change.values`.
     fn add_bond_tangent(&self, t: f64, at: AtPoints<'_>, change: AtPoints<'_>, out: &mut [f64]);
 
     /// Adds the elastic energy density, J/m³.
     fn add_energy_density(&self, t: f64, at: AtPoints<'_>, out: &mut [f64]);
 
-    /// As [`Force::frequency_bound`].
+    /// See [`Force::frequency_bound`].
     fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64;
 
-    /// Whether the force is linear in the displacement as long as no bond breaks.
+    /// Returns whether the force is linear in the displacement while no bond breaks.
     fn is_linear(&self) -> bool {
         false
     }
 
-    /// Calls `visit` for every own point that point i is bonded to, once each.
+    /// Calls `visit` once for each own point that is bonded to point i.
     fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize));
 
-    /// At the end of a step, at the displacement `u`: decides breaking of the bonds of the points named by `on`, at both ends alike, and sets the values of the points named by `needed` by the bonds that are left.
-    /// `needed` are the points of `on` and all that they are bonded to.
+    /// Ends a step at the displacement `u`: applies the failure criterion to the bonds of the points `on`, at
+    /// both ends alike, and sets the values of the points `needed` from the remaining bonds. `needed` are the
+    /// points `on` and all points bonded to them.
     fn end_values_into(
         &mut self,
         step: &StepEnd<'_>,
         u: Field<'_>,
-        on: &On<'_>,
-        needed: &On<'_>,
+        on: &PointSubset<'_>,
+        needed: &PointSubset<'_>,
         values: &mut [f64],
     ) {
         let _ = on;
         self.values_into(step.t, u, needed, values);
     }
 
-    /// Its bonds as ones that break, if they do.
+    /// Returns the bonds if they can break.
     fn breaking(&self) -> Option<&dyn Breakable> {
         None
     }
 
-    /// The same, to be changed.
+    /// Returns the bonds for modification if they can break.
     fn breaking_mut(&mut self) -> Option<&mut dyn Breakable> {
         None
     }
 
-    /// The number of the value that is the dilatation of a point, if one is.
+    /// Returns the index of the value that is the dilatation, if there is one.
     fn dilatation(&self) -> Option<usize> {
         None
     }
 
-    /// As [`Force::inversion`].
+    /// See [`Force::inversion`].
     fn inversion(&self) -> Option<Inversion> {
         None
     }
 
-    /// Its bonds one by one, if they can be looked at.
+    /// Returns access to individual bonds, if available.
     fn bonds(&self) -> Option<&dyn BondView> {
         None
     }
 
-    /// Whether it depends on the states that the body has gone through.
+    /// Returns whether the force depends on the history of states.
     fn is_path_dependent(&self) -> bool {
         false
     }
 
-    /// Its plastic strain, if its points can yield.
+    /// Returns the plastic strain, if points can yield.
     fn plastic(&self) -> Option<&dyn PlasticView> {
         None
     }
 
-    /// The thermal expansion of its material, if it has one.
+    /// Returns the thermal expansion of the material, if any.
     fn thermal(&self) -> Option<&ThermalExpansion> {
         None
     }
 
-    /// Its material as one that can be given a thermal expansion. The number of values may change by that.
+    /// Returns the material for setting a thermal expansion, if supported. This may change the number of
+    /// values.
     fn expandable_mut(&mut self) -> Option<&mut dyn Expandable> {
         None
     }
 
-    /// Family entries that the loops run over: each bond counts twice.
+    /// Returns the number of family entries in the loops: each bond counts twice.
     fn directed_bonds(&self) -> u64;
 
-    /// Memory, bytes.
+    /// Returns the memory use, bytes.
     fn bytes(&self) -> usize;
 
-    /// What the loops are compiled for.
+    /// Returns the instruction set of the loops.
     fn instruction_set(&self) -> InstructionSet {
         InstructionSet::Baseline
     }
 
-    /// As [`Force::use_instruction_set`].
+    /// See [`Force::use_instruction_set`].
     fn use_instruction_set(&mut self, set: InstructionSet) {
         let _ = set;
     }
 }
 
-/// The [`Force`] of a force in two passes.
+/// [`Force`] of a [`TwoPass`] force.
 pub struct TwoPassForce<F: TwoPass> {
     force: F,
     cloud: Arc<PointCloud>,
-    /// Arrays for the values of own points.
+    /// Work arrays for the values of own points.
     work: Pool<Vec<f64>>,
 }
 
 impl<F: TwoPass> TwoPassForce<F> {
-    /// The operator of a force on the points of a body.
+    /// Creates the operator of a force on the points of a body.
     pub fn new(cloud: Arc<PointCloud>, force: F) -> Self {
         let entries = cloud.len() * force.values_per_point();
         Self {
@@ -152,35 +159,37 @@ impl<F: TwoPass> TwoPassForce<F> {
         }
     }
 
-    /// The force.
+    /// Returns the two-pass force.
     pub fn force(&self) -> &F {
         &self.force
     }
 
-    /// The values at `u` of the points named by `on` and of all that they are bonded to.
-    fn values(&self, t: f64, u: Field<'_>, on: &On<'_>) -> (Lent<'_, Vec<f64>>, Vec<f64>) {
+    /// Returns the values at `u` of the points `on` and of all points bonded to them: those of own points and
+    /// of ghosts.
+    fn values(&self, t: f64, u: Field<'_>, on: &PointSubset<'_>) -> (Lent<'_, Vec<f64>>, Vec<f64>) {
         let mut own = self.work.take();
         match on {
-            On::All => self.force.values_into(t, u, on, &mut own),
+            PointSubset::All => self.force.values_into(t, u, on, &mut own),
             part => {
                 let needed = self.with_neighbours(part);
-                self.force.values_into(t, u, &On::Set(&needed), &mut own);
+                self.force
+                    .values_into(t, u, &PointSubset::Set(&needed), &mut own);
             }
         }
         let ghosts = self.cloud.domain().ghosts(&own);
         (own, ghosts)
     }
 
-    fn with_neighbours(&self, on: &On<'_>) -> PointSet {
+    fn with_neighbours(&self, on: &PointSubset<'_>) -> PointSet {
         let mut marks = vec![false; self.cloud.len()];
         let mut mark = |i: usize| {
             marks[i] = true;
             self.force.neighbours(i, &mut |j| marks[j] = true);
         };
         match on {
-            On::All => (0..self.cloud.len()).for_each(&mut mark),
-            On::Range(range) => range.clone().for_each(&mut mark),
-            On::Set(points) => points.iter().for_each(|&i| mark(i as usize)),
+            PointSubset::All => (0..self.cloud.len()).for_each(&mut mark),
+            PointSubset::Range(range) => range.clone().for_each(&mut mark),
+            PointSubset::Set(points) => points.iter().for_each(|&i| mark(i as usize)),
         }
         let marked = |i: &u32| marks[*i as usize];
         (0..self.cloud.len() as u32).filter(marked).collect()
@@ -196,7 +205,7 @@ impl<F: TwoPass> Force for TwoPassForce<F> {
         self.cloud.dimension()
     }
 
-    fn add_force(&self, t: f64, u: &[f64], on: On<'_>, out: &mut [f64]) {
+    fn add_force(&self, t: f64, u: &[f64], on: PointSubset<'_>, out: &mut [f64]) {
         let ghosts = self.cloud.domain().ghosts(u);
         let u = Field::new(u, &ghosts);
         let (own, ghosts) = self.values(t, u, &on);
@@ -208,7 +217,7 @@ impl<F: TwoPass> Force for TwoPassForce<F> {
     fn add_energy_density(&self, t: f64, u: &[f64], out: &mut [f64]) {
         let ghosts = self.cloud.domain().ghosts(u);
         let u = Field::new(u, &ghosts);
-        let (own, ghosts) = self.values(t, u, &On::All);
+        let (own, ghosts) = self.values(t, u, &PointSubset::All);
         let values = Field::new(&own, &ghosts);
         self.force
             .add_energy_density(t, AtPoints { u, values }, out);
@@ -232,7 +241,7 @@ impl<F: TwoPass> Force for TwoPassForce<F> {
         let (ghosts, direction_ghosts) = (domain.ghosts(u), domain.ghosts(direction));
         let u = Field::new(u, &ghosts);
         let direction = Field::new(direction, &direction_ghosts);
-        let (own, ghosts) = self.values(t, u, &On::All);
+        let (own, ghosts) = self.values(t, u, &PointSubset::All);
         let values = Field::new(&own, &ghosts);
         let mut changes = self.work.take();
         self.force.value_changes_into(t, u, direction, &mut changes);
@@ -245,16 +254,16 @@ impl<F: TwoPass> Force for TwoPassForce<F> {
             .add_bond_tangent(t, AtPoints { u, values }, change, out);
     }
 
-    fn end_step(&mut self, step: &StepEnd<'_>, on: On<'_>, out: &mut [f64]) {
+    fn end_step(&mut self, step: &StepEnd<'_>, on: PointSubset<'_>, out: &mut [f64]) {
         let domain = self.cloud.domain();
         let ghosts = domain.ghosts(step.u);
         let u = Field::new(step.u, &ghosts);
         let part;
         let needed = match &on {
-            On::All => On::All,
+            PointSubset::All => PointSubset::All,
             on => {
                 part = self.with_neighbours(on);
-                On::Set(&part)
+                PointSubset::Set(&part)
             }
         };
         let mut own = self.work.take();
@@ -273,7 +282,7 @@ impl<F: TwoPass> Force for TwoPassForce<F> {
             },
             breaking: self.force.breaking(),
             local: Some(self),
-            // What a bond exerts depends on all bonds of its ends.
+            // The force of a bond depends on all bonds of its ends.
             split: None,
             bonds: self.force.bonds(),
             dilatation: self.force.dilatation().map(|_| self as &dyn DilatationView),
@@ -335,13 +344,14 @@ impl<F: TwoPass> DilatationView for TwoPassForce<F> {
         let ghosts = self.cloud.domain().ghosts(u);
         let mut own = self.work.take();
         self.force
-            .values_into(t, Field::new(u, &ghosts), &On::All, &mut own);
+            .values_into(t, Field::new(u, &ghosts), &PointSubset::All, &mut own);
         let n = self.cloud.len();
         out.copy_from_slice(&own[number * n..(number + 1) * n]);
     }
 }
 
-/// The values of a neighbour depend on its own neighbours: the force on a point depends on points two bonds away.
+/// The values of a neighbour depend on its neighbours, so the force on a point depends on points two bonds
+/// away.
 impl<F: TwoPass> LocalForce for TwoPassForce<F> {
     fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize)) {
         let mut near = Vec::new();
@@ -359,11 +369,11 @@ impl<F: TwoPass> LocalForce for TwoPassForce<F> {
 impl<F: TwoPass> LinearOperator for TwoPassForce<F> {
     fn apply_into(&self, u: &[f64], out: &mut [f64]) {
         out.fill(0.0);
-        self.add_force(0.0, u, On::All, out);
+        self.add_force(0.0, u, PointSubset::All, out);
     }
 }
 
-impl<F: TwoPass> Saved for TwoPassForce<F> {
+impl<F: TwoPass> Checkpointed for TwoPassForce<F> {
     fn save(&self, archive: &mut Archive) {
         self.force.save(archive);
     }

@@ -1,22 +1,26 @@
-//! Bonds one by one and dilatations, for fields.
+//! Access to bonds, dilatations and plastic strains for output fields.
 
 use crate::domain::Field;
 
-/// A bond as one of its ends sees it; missing components are zero.
+/// A bond seen from one of its ends; missing components are zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BondAt {
-    /// The other end; ghosts are counted behind own points.
+    /// The other end; ghosts are numbered after own points.
     pub neighbour: usize,
-    /// Reference vector to it ξ, m.
+    /// Whether the other end is a ghost of a surface layer ([`GhostForce`](super::GhostForce)); `neighbour`
+    /// is then the nearest point of the body.
+    pub to_ghost: bool,
+    /// Reference vector ξ to the other end, m.
     pub xi: [f64; 3],
     /// Relative displacement η, m.
     pub eta: [f64; 3],
-    /// Force density that the bond exerts on this end, N/m³: partial volumes and the other end's volume are part of it.
+    /// Force density of the bond on this end, N/m³, including the partial volume and the volume of the other
+    /// end.
     pub force: [f64; 3],
 }
 
 impl BondAt {
-    /// A bond of a body with D dimensions.
+    /// Creates a bond of a body with D dimensions.
     pub fn new<const D: usize>(
         neighbour: usize,
         xi: [f64; D],
@@ -27,6 +31,7 @@ impl BondAt {
             |vector: [f64; D]| std::array::from_fn(|c| vector.get(c).copied().unwrap_or(0.0));
         Self {
             neighbour,
+            to_ghost: false,
             xi: spatial(xi),
             eta: spatial(eta),
             force: spatial(force),
@@ -34,20 +39,21 @@ impl BondAt {
     }
 }
 
-/// An operator whose bonds can be looked at. Slow beside the operator itself: for output.
+/// An operator with access to individual bonds. The access is slow and meant for output.
 pub trait BondView: Sync {
-    /// Calls `visit` for every bond of point i that is left, at displacement u.
+    /// Calls `visit` for each intact bond of point i at displacement u.
     fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt));
 }
 
-/// An operator whose points yield.
+/// An operator whose points can yield.
 pub trait PlasticView: Sync {
-    /// Sets the equivalent plastic strain of every point.
+    /// Sets the equivalent plastic strain of each point.
     fn plastic_strain_into(&self, out: &mut [f64]);
 }
 
-/// An operator whose force on a bond depends on the dilatations of its ends.
+/// An operator with dilatations of points.
 pub trait DilatationView: Sync {
-    /// Sets the dilatation of every point, dimensionless: the relative change of volume in three dimensions, of area in the plane, of length in a bar.
+    /// Sets the dilatation of each point, dimensionless: the relative change of volume in 3D, of area in 2D,
+    /// of length in 1D.
     fn dilatation_into(&self, t: f64, u: &[f64], out: &mut [f64]);
 }

@@ -1,23 +1,38 @@
-//! What schemes with several time steps in one body ask of a force.
+//! Capabilities of forces required by multirate schemes.
 
-use super::On;
+use super::PointSubset;
 use crate::step_end::StepEnd;
 
-/// A force of finite reach: the force on a point depends on the displacements of points nearby.
+/// A force of finite range: the force on a point depends on the displacements of nearby points.
 pub trait LocalForce {
-    /// Calls `visit` for every point but i on whose displacement the force on point i depends, once each; i is among those of every such point. Bonds that broke since the start may count among them: zones are
-    /// then wider than needed, never too narrow.
+    /// Calls `visit` once for each point other than i on whose displacement the force on point i depends. The
+    /// relation is symmetric. Bonds broken during the run may be included: zones are then wider than
+    /// necessary, never too narrow.
     fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize));
 }
 
-/// A force made of bonds between points, of which the part that some neighbours exert can be computed alone.
+/// A force that is a sum over bonds, in which the contribution of some neighbours can be computed alone.
 ///
-/// Every method is the same for both ends of a bond, so that zones cut a body without changing the force between its parts.
+/// Both ends of a bond are treated alike, so that zones do not change the force between the parts of a body.
 pub trait SplitForce {
-    /// [`Force::add_force`](super::Force::add_force) of the bonds whose other end is marked in `partners` (one mark per point).
-    fn add_force_from(&self, t: f64, u: &[f64], on: On<'_>, partners: &[bool], out: &mut [f64]);
+    /// Adds [`Force::add_force`](super::Force::add_force) of the bonds whose other end is marked in
+    /// `partners` (one mark per point).
+    fn add_force_from(
+        &self,
+        t: f64,
+        u: &[f64],
+        on: PointSubset<'_>,
+        partners: &[bool],
+        out: &mut [f64],
+    );
 
-    /// [`Force::end_step`](super::Force::end_step) of the bonds whose other end is marked in `partners`; the others are neither
-    /// decided nor summed.
-    fn end_step_from(&mut self, step: &StepEnd<'_>, on: On<'_>, partners: &[bool], out: &mut [f64]);
+    /// Applies [`Force::end_step`](super::Force::end_step) to the bonds whose other end is marked in
+    /// `partners`; the failure criterion is not applied to other bonds, and their forces are not added.
+    fn end_step_from(
+        &mut self,
+        step: &StepEnd<'_>,
+        on: PointSubset<'_>,
+        partners: &[bool],
+        out: &mut [f64],
+    );
 }

@@ -1,4 +1,4 @@
-//! Simulations step by step.
+//! Builder of simulations.
 
 use super::{Simulation, check_compatibility};
 use crate::error::{PericlesError, Result, positive};
@@ -8,32 +8,33 @@ use crate::stop::StopWhen;
 use crate::system::System;
 use crate::time::{HighestFrequency, Integrator, State, VelocityVerlet, highest_frequency};
 
-/// How far a run goes.
+/// How the length of the run is given.
 #[derive(Clone, Copy)]
 enum Length {
-    /// To this time, s.
+    /// Up to this time, s.
     End(f64),
-    /// So many steps.
+    /// This number of steps.
     Steps(u64),
 }
 
-/// How long a step is.
+/// How the time step is given.
 #[derive(Clone, Copy)]
 enum Step {
-    /// This part of the largest stable step.
+    /// This fraction of the largest stable step.
     Safety(f64),
-    /// So many seconds, or a little less, so that a whole number of steps ends at the end.
+    /// This time step, s, or slightly less, so that a whole number of steps reaches the end.
     Fixed(f64),
 }
 
-/// A part of the stable step that is short enough for slightly nonlinear bodies as well.
+/// Default fraction of the stable step, small enough for slightly nonlinear bodies too.
 const SAFETY: f64 = 0.95;
-/// Rounding of a number of steps that is meant to be whole.
+/// Relative rounding error tolerated in a number of steps that should be whole.
 const WHOLE: f64 = 1e-9;
 
-/// A [`Simulation`] given part by part; made by [`Simulation::builder`].
+/// Builder of a [`Simulation`], made by [`Simulation::builder`].
 ///
-/// Give the end ([`end`](Self::end) or [`steps`](Self::steps)). Everything else has a default: velocity Verlet, 0.95 of the largest stable step, the undeformed body at rest, no observers.
+/// Set the end with [`end`](Self::end) or [`steps`](Self::steps). Everything else has a default: velocity Verlet,
+/// 0.95 of the largest stable step, the undeformed body at rest, no observers.
 #[must_use]
 pub struct SimulationBuilder {
     system: System,
@@ -47,12 +48,12 @@ pub struct SimulationBuilder {
 }
 
 impl Simulation {
-    /// A simulation of a system, part by part.
+    /// Starts to build a simulation of a system.
     ///
     /// ```
     /// use pericles::prelude::*;
     ///
-    /// // A steel bar of 0.2 m that vibrates in its first mode.
+    /// // A steel bar of 0.2 m vibrating in its first mode.
     /// let bar = Grid::bar(0.2, 1e-3, 1e-4).points()?;
     /// let steel = BondMaterial::new(ElasticModulus::Young(210e9), 7850.0, 3e-3);
     /// let mut run = Simulation::builder(Body::new(bar, steel).build()?)
@@ -79,16 +80,17 @@ impl Simulation {
 }
 
 impl SimulationBuilder {
-    /// The time integrator.
+    /// Sets the time integrator.
     pub fn scheme(mut self, scheme: impl Integrator + 'static) -> Self {
         self.scheme = Box::new(scheme);
         self
     }
 
-    /// A time integrator that is made for the system, such as `|system| Implicit::new(ImplicitRule::Midpoint, system)`.
+    /// Sets a time integrator that is constructed from the system, such as `|system|
+    /// Implicit::new(ImplicitRule::Midpoint, system)`.
     ///
     /// # Errors
-    /// Those of `make`.
+    /// The errors of `make`.
     pub fn scheme_for<I: Integrator + 'static>(
         self,
         make: impl FnOnce(&System) -> Result<I>,
@@ -97,10 +99,10 @@ impl SimulationBuilder {
         Ok(self.scheme(scheme))
     }
 
-    /// The initial state as a whole.
+    /// Sets the complete initial state.
     ///
     /// # Errors
-    /// A state of another body.
+    /// A state whose vectors do not fit the body.
     pub fn state(mut self, state: State) -> Result<Self> {
         let entries = self.state.u.len();
         check_length("the displacement of the state", state.u.len(), entries)?;
@@ -110,19 +112,21 @@ impl SimulationBuilder {
         Ok(self)
     }
 
-    /// The initial displacement (m) as a function of the reference position (m); components beyond the dimension are not used.
+    /// Sets the initial displacement (m) as a function of the reference position (m); components beyond the
+    /// dimension are ignored.
     pub fn displacement(mut self, field: impl Fn(Point) -> Point) -> Self {
         set(&self.system, &mut self.state.u, field);
         self
     }
 
-    /// The initial velocity (m/s) as a function of the reference position (m).
+    /// Sets the initial velocity (m/s) as a function of the reference position (m); components beyond the dimension
+    /// are ignored.
     pub fn velocity(mut self, field: impl Fn(Point) -> Point) -> Self {
         set(&self.system, &mut self.state.v, field);
         self
     }
 
-    /// The same initial velocity (m/s) of some points.
+    /// Sets the same initial velocity (m/s) on a set of points.
     ///
     /// # Errors
     /// Points that the body does not have.
@@ -137,52 +141,53 @@ impl SimulationBuilder {
         Ok(self)
     }
 
-    /// The end, s; the step is shortened so that a whole number of steps ends there.
+    /// Sets the end time, s. The step is shortened so that a whole number of steps reaches it.
     pub fn end(mut self, end: f64) -> Self {
         self.length = Some(Length::End(end));
         self
     }
 
-    /// The number of steps.
+    /// Sets the number of steps.
     pub fn steps(mut self, steps: u64) -> Self {
         self.length = Some(Length::Steps(steps));
         self
     }
 
-    /// The time step, s.
+    /// Sets the time step, s.
     pub fn dt(mut self, dt: f64) -> Self {
         self.step = Step::Fixed(dt);
         self
     }
 
-    /// The time step as a fraction of the largest stable step; the default is 0.95.
+    /// Sets the time step as a fraction of the largest stable step; the default is 0.95.
     pub fn safety(mut self, part: f64) -> Self {
         self.step = Step::Safety(part);
         self
     }
 
-    /// An observer and when it looks. What is to be read after the run is passed as `Arc<Mutex<…>>`, of which the program keeps a clone.
+    /// Adds an observer and its schedule. To read it after the run, pass it as `Arc<Mutex<…>>` and keep a clone.
     pub fn observe(mut self, schedule: Schedule, observer: impl Observer + 'static) -> Self {
         self.observers.push((schedule, Box::new(observer)));
         self
     }
 
-    /// A condition that ends the run before its end.
+    /// Adds a condition that ends the run early.
     pub fn stop_when(mut self, condition: StopWhen) -> Self {
         self.stops.push(condition);
         self
     }
 
-    /// Accepts steps above the stable one, and goes on where energy grows.
+    /// Accepts time steps above the stable step, and continues when the energy grows.
     pub fn allow_unstable(mut self) -> Self {
         self.allow_unstable = true;
         self
     }
 
-    /// The simulation, at its initial state.
+    /// Builds the simulation in its initial state.
     ///
     /// # Errors
-    /// No end; a step that is unstable or not positive; a scheme without a stable step of its own and no step given; a scheme that cannot step this system.
+    /// No end time or number of steps; a step that is not positive or is unstable; no step for a scheme without a
+    /// stable step of its own; a scheme that is not available for this system.
     pub fn build(mut self) -> Result<Simulation> {
         let length = self.length.ok_or(PericlesError::NotGiven {
             what: "the end of the simulation",
@@ -212,7 +217,7 @@ impl SimulationBuilder {
         Ok(run)
     }
 
-    /// The frequency that limits the step; none of schemes that are stable for any step.
+    /// Returns the frequency that limits the step; `None` for schemes that are stable at any step.
     fn limiting_frequency(&self) -> Result<Option<HighestFrequency>> {
         if self.scheme.stability_limit().is_none() {
             return Ok(None);
@@ -221,18 +226,18 @@ impl SimulationBuilder {
         let found = highest_frequency(system, u)
             .and_then(|body| self.scheme.limiting_frequency(system, u, body));
         match (found, self.step) {
-            // Bodies without stiffness take any step that is given.
+            // Bodies without stiffness accept any given step.
             (Err(PericlesError::NoStiffness), Step::Fixed(_)) => Ok(None),
             (found, _) => found.map(Some),
         }
     }
 
-    /// The step before it is shortened to end at the end.
+    /// Returns the step before it is shortened to reach the end exactly.
     fn longest_step(&self, frequency: Option<HighestFrequency>) -> Result<f64> {
         let limit = self.scheme.stability_limit().zip(frequency);
         match (self.step, limit) {
             (Step::Safety(part), Some((limit, frequency))) => {
-                positive("the part of the stable step", part)?;
+                positive("the fraction of the stable step", part)?;
                 Ok(frequency.stable_step(limit, part))
             }
             (Step::Safety(_), None) => Err(PericlesError::NotGiven {
@@ -259,9 +264,9 @@ impl SimulationBuilder {
     }
 }
 
-/// The step, at most `longest`, of which a whole number ends at `end`, and this number.
+/// Returns the largest step, at most `longest`, of which a whole number reaches `end`, and that number.
 fn whole_steps(end: f64, longest: f64) -> Result<(f64, u64)> {
-    /// Numbers of steps beyond it are no longer exact in a double.
+    /// Larger numbers of steps are not exact in a double.
     const MOST: f64 = 9e15;
     let ratio = positive("the end of the simulation", end)? / longest;
     if ratio > MOST {
@@ -275,7 +280,7 @@ fn whole_steps(end: f64, longest: f64) -> Result<(f64, u64)> {
     Ok((end / count, count as u64))
 }
 
-/// Sets a vector field on all points.
+/// Evaluates a vector field at all points.
 fn set(system: &System, values: &mut [f64], field: impl Fn(Point) -> Point) {
     let (cloud, n) = (system.cloud(), system.points());
     for i in 0..n {

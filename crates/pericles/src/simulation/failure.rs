@@ -1,44 +1,45 @@
-//! Why a run failed.
+//! Errors of a running simulation.
 
 use super::Simulation;
 use crate::error::PericlesError;
-use crate::guard::Cause;
+use crate::guard::InstabilityCause;
 use crate::observe::ObserveError;
+use crate::units::significant;
 
-/// Why a run failed.
+/// An error that ends a run.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SimulationError {
-    /// The guard found something that no body does.
+    /// The guard found a motion that is not physical.
     #[error(
-        "the run became unstable at step {step}, t = {t:e} s: {cause}; at point {point}, ({}, {}, {}) m, with {speed:e} m/s. {}",
-        place[0], place[1], place[2], cause.advice()
+        "the run became unstable at step {step}, t = {} s: {cause}; at point {point}, ({}, {}, {}) m, speed {} m/s. {}",
+        significant(*t, 5), short(place[0]), short(place[1]), short(place[2]), significant(*speed, 3), cause.advice()
     )]
     Unstable {
-        /// Step at which it was found.
+        /// Step at which the instability was found.
         step: u64,
         /// Time, s.
         t: f64,
-        /// What was found.
-        cause: Cause,
-        /// The point where it is worst, in the user's numbering.
+        /// The instability.
+        cause: InstabilityCause,
+        /// Point where it is strongest, in the user's numbering.
         point: usize,
         /// Its reference position, m.
         place: [f64; 3],
         /// Its speed, m/s.
         speed: f64,
     },
-    /// The scheme found no way on.
+    /// The scheme could not complete the next step.
     #[error(
-        "the run cannot go on from step {step}, t = {t:e} s: {source}; the fastest point is {point} at ({}, {}, {}) m with {speed:e} m/s",
-        place[0], place[1], place[2]
+        "the run stopped after step {step}, t = {} s: {source}. Fastest point: {point} at ({}, {}, {}) m, speed {} m/s",
+        significant(*t, 5), short(place[0]), short(place[1]), short(place[2]), significant(*speed, 3)
     )]
     Stuck {
-        /// Steps taken.
+        /// Number of completed steps.
         step: u64,
         /// Time, s.
         t: f64,
-        /// Why.
+        /// The reason.
         source: Box<PericlesError>,
         /// The fastest point, in the user's numbering.
         point: usize,
@@ -47,35 +48,35 @@ pub enum SimulationError {
         /// Its speed, m/s.
         speed: f64,
     },
-    /// A load step has no static state, or none was found.
+    /// No static state was found for a load step.
     #[error(
-        "no static state was found for the load step that follows step {step}, t = {t:.4e} s: {source}. The largest force out of balance acts on point {point} at ({}, {}, {}) m; \
+        "no static state was found for the load step that follows step {step}, t = {} s: {source}. The largest residual force acts on point {point} at ({}, {}, {}) m; \
          {}. {}",
-        short(place[0]), short(place[1]), short(place[2]), broke(*broken), no_state_advice(*broken)
+        significant(*t, 5), short(place[0]), short(place[1]), short(place[2]), broke(*broken), no_state_advice(*broken)
     )]
     NoStaticState {
-        /// Load steps that were completed.
+        /// Number of completed load steps.
         step: u64,
         /// Time of the last static state, s.
         t: f64,
-        /// Why.
+        /// The reason.
         source: Box<PericlesError>,
-        /// The point with the largest force out of balance, in the user's numbering.
+        /// Point with the largest residual force, in the user's numbering.
         point: usize,
         /// Its reference position, m.
         place: [f64; 3],
-        /// Bonds that broke in the load step.
+        /// Number of bonds that broke in the load step.
         broken: u64,
     },
-    /// The parts of the run do not fit together.
+    /// Parts of the simulation do not fit together.
     #[error(transparent)]
     Misfit(#[from] PericlesError),
-    /// An observer failed, usually because it could not write.
+    /// An observer failed, usually because a file could not be written.
     #[error("{0}")]
     Observe(#[source] ObserveError),
 }
 
-/// Four digits are enough to find a place.
+/// Rounds to four digits, enough to locate a point.
 fn short(x: f64) -> f64 {
     format!("{x:.3e}").parse().unwrap_or(x)
 }
@@ -90,19 +91,19 @@ fn broke(bonds: u64) -> String {
 
 fn no_state_advice(broken: u64) -> &'static str {
     if broken > 0 {
-        "The body can probably not bear this load any more. A stop condition (reaction_below or damage_above) ends such a run in time; a prescribed displacement in place of a \
-         load follows the failure; more load steps or iterations help where it only converges slowly"
+        "The body has probably lost its load-bearing capacity. Use a stop condition (reaction_below or damage_above) to end such a run in time, or a prescribed displacement instead \
+         of a load to follow the failure; more load steps or iterations help if convergence is only slow"
     } else {
-        "Usual causes: a part of the body that no support holds, a load beyond buckling, too few iterations, or load steps so large that the body becomes much stiffer within one"
+        "Usual causes: a part of the body without constraints, a load beyond buckling, too few iterations, or load steps so large that the body stiffens strongly within one"
     }
 }
 
 impl Simulation {
-    /// Of a load step before which `broken` bonds had broken.
+    /// Returns the error of a load step before which `broken` bonds had broken.
     pub(super) fn no_static_state(&self, source: PericlesError, broken: u64) -> SimulationError {
         let (system, state) = (&self.system, &self.state);
         let (cloud, n) = (system.cloud(), system.points());
-        // Loads are those that the step goes to.
+        // Loads at the end of the failed load step.
         let t_next = (state.step + 1) as f64 * self.dt;
         let mut force = vec![0.0; state.u.len()];
         system.force_density_into(t_next, &state.u, &mut force);

@@ -1,4 +1,4 @@
-//! The loop over time, written once.
+//! The time loop.
 
 mod builder;
 mod failure;
@@ -8,7 +8,7 @@ use std::sync::OnceLock;
 pub use builder::SimulationBuilder;
 pub use failure::SimulationError;
 
-use crate::archive::{Archive, Saved};
+use crate::archive::{Archive, Checkpointed};
 use crate::compatibility::require;
 use crate::error::{PericlesError, positive};
 use crate::guard::{Alarm, Watched};
@@ -19,19 +19,19 @@ use crate::stop::{StopReason, StopWhen};
 use crate::system::System;
 use crate::time::{HighestFrequency, Integrator, State, highest_frequency};
 
-/// What the caller wants after a step.
+/// What to do after a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Control {
-    /// Go on.
+    /// Continue with the next step.
     Continue,
     /// Stop here, between two steps.
     Stop,
 }
 
-/// Why a run ended.
+/// How a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outcome {
-    /// It reached its end.
+    /// It reached its end time or a stop condition.
     Finished,
     /// The caller stopped it.
     Stopped,
@@ -43,7 +43,8 @@ struct Scheduled {
     observer: Box<dyn Observer>,
 }
 
-/// Whether a system, with all its supports and boundaries, can be stepped by a scheme for a number of steps: what the scheme needs of the system, and what its boundaries need of the scheme.
+/// Checks that a scheme can integrate a system with all its constraints and boundaries for a number of steps: the
+/// [requirements](crate::Requirement) of the scheme on the system, and those of the boundaries on the scheme.
 ///
 /// # Errors
 /// [`PericlesError::SchemeNotUsable`], [`PericlesError::BoundaryScheme`] and [`PericlesError::BoundarySteps`].
@@ -70,7 +71,7 @@ pub fn check_compatibility(
     require(scheme, integrator.requirements(), system)
 }
 
-/// A body, a scheme, and those who look on.
+/// A system, a time integrator, a state and the observers of a run.
 pub struct Simulation {
     system: System,
     integrator: Box<dyn Integrator>,
@@ -81,19 +82,20 @@ pub struct Simulation {
     stops: Vec<StopWhen>,
     stopped: Option<StopReason>,
     start: StartEnergy,
-    /// The frequency that limits the step, if it is known.
+    /// The frequency that limits the step, if known.
     frequency: Option<HighestFrequency>,
-    /// The step over the stable one, once it was asked for.
+    /// Ratio of the step to the stable step, computed on first use.
     step_ratio: OnceLock<Option<f64>>,
     allow_unstable: bool,
     instability: Option<Box<SimulationError>>,
 }
 
 impl Simulation {
-    /// A run of `steps` steps of length `dt` from the given state, which is prepared by the integrator. [`Simulation::builder`] finds steps and scheme by itself.
+    /// A run of `steps` steps of length `dt` from the given state, which the integrator prepares.
+    /// [`Simulation::builder`] chooses scheme and step automatically.
     ///
     /// # Errors
-    /// A state or an integrator of another body, a step that is not positive.
+    /// A state or an integrator made for another body; a step that is not positive.
     pub fn new(
         mut system: System,
         mut integrator: Box<dyn Integrator>,
@@ -111,7 +113,7 @@ impl Simulation {
             check_length(what, given.len(), entries)?;
         }
         if let Some(made_for) = integrator.vector_length() {
-            let what = "the vectors of a time integrator that was made for another system";
+            let what = "the vectors of a time integrator made for another system";
             check_length(what, made_for, entries)?;
         }
         integrator.start(&mut system, &mut state);
@@ -136,7 +138,7 @@ impl Simulation {
         })
     }
 
-    /// The same where the frequency that limits the step is known, which the guard would look for otherwise.
+    /// Sets the frequency that limits the step, which the guard would compute otherwise.
     #[must_use]
     pub fn with_frequency(self, frequency: HighestFrequency) -> Self {
         Self {
@@ -145,7 +147,7 @@ impl Simulation {
         }
     }
 
-    /// The same, going on where energy grows until numbers end; see [`Simulation::instability`].
+    /// Continues when the energy grows, until a value is NaN or infinite; see [`Simulation::instability`].
     #[must_use]
     pub fn allowing_instability(self) -> Self {
         Self {
@@ -154,7 +156,7 @@ impl Simulation {
         }
     }
 
-    /// The first instability of a run that goes on all the same.
+    /// Returns the first instability of a run that continued nevertheless.
     pub fn instability(&self) -> Option<&SimulationError> {
         self.instability.as_deref()
     }
@@ -164,52 +166,52 @@ impl Simulation {
         self.observers.push(Scheduled { schedule, observer });
     }
 
-    /// Adds a condition that ends the run before its last step.
+    /// Adds a condition that ends the run early.
     ///
     /// # Errors
-    /// Motions or points that the system does not have.
+    /// Constraints or points that the system does not have.
     pub fn stop_when(&mut self, condition: StopWhen) -> Result<(), PericlesError> {
         condition.check(&self.system)?;
         self.stops.push(condition);
         Ok(())
     }
 
-    /// The condition that ended the run, if one did.
+    /// Returns the condition that ended the run, if one did.
     pub fn stop_reason(&self) -> Option<&StopReason> {
         self.stopped.as_ref()
     }
 
-    /// The equation of motion.
+    /// Returns the system.
     pub fn system(&self) -> &System {
         &self.system
     }
 
-    /// The present state.
+    /// Returns the current state.
     pub fn state(&self) -> &State {
         &self.state
     }
 
-    /// The scheme.
+    /// Returns the time integrator.
     pub fn integrator(&self) -> &dyn Integrator {
         &*self.integrator
     }
 
-    /// Step length, s.
+    /// Time step, s.
     pub fn dt(&self) -> f64 {
         self.dt
     }
 
-    /// Steps of the whole run.
+    /// Number of steps of the whole run.
     pub fn steps(&self) -> u64 {
         self.steps
     }
 
-    /// Energies at the start.
+    /// Energies at the start of the run.
     pub fn start_energy(&self) -> StartEnergy {
         self.start
     }
 
-    /// A view of the present for observers.
+    /// Returns the view of the current state that observers receive.
     pub fn snapshot(&self) -> Snapshot<'_> {
         let scheme = self
             .integrator
@@ -221,18 +223,20 @@ impl Simulation {
     /// Runs to the end.
     ///
     /// # Errors
-    /// As [`Simulation::run`].
+    /// Those of [`Simulation::run`].
     pub fn run_to_end(&mut self) -> Result<Outcome, SimulationError> {
         self.run(|_| Control::Continue)
     }
 
-    /// Runs to the end, or until `control` says stop; `control` is asked after every step.
+    /// Runs to the end, or until `control`, which is called after every step, returns [`Control::Stop`].
     ///
-    /// Observers see the initial state of a fresh run, every state their schedule names, and the last; then they hear that the run has come to its end. A run that one
-    /// of its [conditions](Simulation::stop_when) ends has finished as well: its last state is that in which the condition was met.
+    /// Observers see the initial state of a new run, every state of their schedule, and the last state; then
+    /// [`Observer::finish`] is called. A run ended by one of its [conditions](Simulation::stop_when) counts as
+    /// finished; its last state is the one that meets the condition.
     ///
     /// # Errors
-    /// Instability, a failing integrator, a failing observer. The state is then the one at which it happened.
+    /// Instability, an error of the integrator, an error of an observer. The simulation keeps the state at which it
+    /// occurred.
     pub fn run(
         &mut self,
         control: impl FnMut(&Self) -> Control,
@@ -240,11 +244,12 @@ impl Simulation {
         self.run_interruptible(Interrupt::never(), control)
     }
 
-    /// The same; schemes that iterate also poll `interrupt` within a step, which may take much longer than a step of an explicit scheme. A step that is interrupted is
-    /// undone: the run is then stopped at the last complete step, and a run that is continued from there takes the same path, bit for bit.
+    /// Runs as [`Simulation::run`]; iterative schemes also poll `interrupt` within a step, which may take much
+    /// longer than an explicit step. An interrupted step is undone: the run stops at the last complete step and
+    /// continues from there bit for bit as if it had not been interrupted.
     ///
     /// # Errors
-    /// As [`Simulation::run`].
+    /// Those of [`Simulation::run`].
     pub fn run_interruptible(
         &mut self,
         interrupt: Interrupt<'_>,
@@ -255,7 +260,7 @@ impl Simulation {
             self.show(false)?;
         }
         while self.state.step < self.steps {
-            // From the step's number, not by adding up, so that time carries no error.
+            // Computed from the step number, so that rounding errors of the time do not add up.
             let t_next = (self.state.step + 1) as f64 * self.dt;
             let broken = self.system.operator().broken_bonds();
             match self.step(t_next, interrupt) {
@@ -280,7 +285,7 @@ impl Simulation {
         Ok(Outcome::Finished)
     }
 
-    /// One step; one that is interrupted is undone.
+    /// Performs one step; undoes it if it is interrupted.
     fn step(&mut self, t_next: f64, interrupt: Interrupt<'_>) -> Result<(), PericlesError> {
         let evaluated = self.system.evaluated_points();
         let copied = interrupt.is_possible() && self.integrator.changes_within_step();
@@ -301,7 +306,7 @@ impl Simulation {
         stepped
     }
 
-    /// What steps change.
+    /// Saves everything that a step changes.
     fn save_motion(&self, archive: &mut Archive) {
         self.state.save(archive);
         self.system.save(archive);
@@ -315,10 +320,11 @@ impl Simulation {
         self.integrator.restore(archive)
     }
 
-    /// Waits until the observers have kept what they have seen; a state saved before may know of outputs that are not there.
+    /// Waits until the observers have written what they have seen. Otherwise a checkpoint may refer to output that
+    /// does not exist yet.
     ///
     /// # Errors
-    /// A failing observer.
+    /// An error of an observer.
     pub fn settle(&self) -> Result<(), SimulationError> {
         for scheduled in &self.observers {
             let settled = scheduled.observer.settle();
@@ -327,7 +333,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// The first condition that the present state meets; all of them look at it.
+    /// Evaluates all conditions and returns the first that the current state meets.
     fn met(&mut self) -> Option<StopReason> {
         let mut met = None;
         for stop in &mut self.stops {
@@ -342,7 +348,7 @@ impl Simulation {
         met
     }
 
-    /// Shows the present state to the observers that are due; the last one to all that are ever due.
+    /// Passes the current state to the observers that are due; the last state to all observers with a schedule.
     fn show(&mut self, last: bool) -> Result<(), SimulationError> {
         let (step, dt) = (self.state.step, self.dt);
         let steps = if last { step } else { self.steps };
@@ -363,9 +369,10 @@ impl Simulation {
         shown.map_err(SimulationError::Observe)
     }
 
-    /// Whether the state's step is one of this run, and its time that step's.
+    /// Checks that step number and time of the state belong to this run.
     fn check_time(&self) -> Result<(), PericlesError> {
-        /// Parts of a step. A step that is found from frequencies differs by rounding where it is found with other instructions.
+        /// Tolerance as a fraction of a step: a step derived from a computed frequency depends on the instruction
+        /// set by rounding.
         const ROUNDING: f64 = 1e-3;
         let State { step, t, .. } = self.state;
         let of_step = step as f64 * self.dt;
@@ -373,7 +380,9 @@ impl Simulation {
             return Ok(());
         }
         let (steps, dt) = (self.steps, self.dt);
-        let reason = format!("step {step} at t = {t:e} s is none of the {steps} steps of {dt:e} s");
+        let reason = format!(
+            "step {step} at t = {t:e} s does not belong to this run of {steps} steps of {dt:e} s"
+        );
         Err(PericlesError::BadArchive { reason })
     }
 
@@ -388,7 +397,8 @@ impl Simulation {
         }
     }
 
-    /// The step over the largest one that is stable at rest for certain; none for schemes without such a step and bodies without stiffness at rest.
+    /// Returns the ratio of the step to the largest step that is certainly stable at rest; `None` for schemes
+    /// without a stable step and bodies without stiffness.
     fn found_step_ratio(&self) -> Option<f64> {
         let limit = self.integrator.stability_limit()?;
         if let Some(frequency) = self.frequency {
@@ -450,16 +460,16 @@ impl Simulation {
     }
 }
 
-impl Saved for Simulation {
+impl Checkpointed for Simulation {
     fn save(&self, archive: &mut Archive) {
         let Self {
-            // In `save_motion`.
+            // Saved by `save_motion`.
             state: _,
             system: _,
             integrator: _,
             stops,
             observers,
-            // Given with the run, found at its start, or found anew.
+            // Given with the run, or computed again.
             dt: _,
             steps: _,
             start: _,
@@ -482,7 +492,7 @@ impl Saved for Simulation {
 }
 
 crate::saved! {
-    impl Saved for Scheduled {
+    impl Checkpointed for Scheduled {
         observer: part,
         schedule: fixed,
     }

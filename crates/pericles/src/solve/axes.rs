@@ -1,9 +1,10 @@
 //! Principal axes of symmetric 3 × 3 matrices.
 
-/// Sweeps at most; three or four are enough, because the method converges quadratically.
+/// Largest number of sweeps; three or four are usually enough, because the method converges quadratically.
 const SWEEPS: usize = 30;
 
-/// Orthonormal eigenvectors of a symmetric matrix, by Jacobi's rotations (Golub & Van Loan, Matrix Computations, section 8.5).
+/// Returns orthonormal eigenvectors of a symmetric matrix, by Jacobi rotations (Golub & Van Loan, Matrix
+/// Computations, section 8.5).
 ///
 /// ```
 /// let axes = pericles::solve::principal_axes([[2.0, 1.0, 0.0], [1.0, 2.0, 0.0], [0.0, 0.0, 1.0]]);
@@ -54,7 +55,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn axes_are_orthonormal_and_make_the_matrix_diagonal() {
+    fn principal_axes_are_orthonormal_and_diagonalise_the_matrix() {
         let noise = crate::noise::noise(600, 3);
         for numbers in noise.chunks(6) {
             let [a, b, c, d, e, f] = [0, 1, 2, 3, 4, 5].map(|k| numbers[k]);

@@ -1,21 +1,22 @@
-//! Direct solution of symmetric positive definite systems whose matrix is a band.
+//! Cholesky factorisation of symmetric positive definite band matrices.
 
 use super::{SolveLimits, Solved, Work, add_scaled};
 use crate::error::{PericlesError, Result};
 
-/// A = L Lᵀ for a symmetric positive definite A with A_ij = 0 beyond |i − j| = `reach`; a full matrix has the reach n − 1.
+/// The factor L of A = L Lᵀ for a symmetric positive definite A with A_ij = 0 for |i − j| > `reach`; a full matrix
+/// has the reach n − 1.
 ///
-/// Storage n (reach + 1) numbers, n reach² multiplications once, 2 n reach for each solution. Rows are stored in full length, so that both loops of a solution run over neighbouring
-/// numbers.
+/// Storage: n (reach + 1) numbers. Cost: n reach² multiplications for the factor, 2 n reach for each solution. Rows
+/// are stored in full length, so that both loops of a solution access contiguous memory.
 #[derive(Debug, Clone)]
 pub struct BandedCholesky {
     unknowns: usize,
     reach: usize,
-    /// Row i of L: entries i − reach … i, zero before the first column.
+    /// Row i of L: columns i − reach … i, zero before the first column.
     rows: Vec<f64>,
 }
 
-/// Sums side by side: a sum of one strand would wait for each addition.
+/// Number of independent partial sums: a single sum would wait for each addition.
 const STRANDS: usize = 8;
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
@@ -36,10 +37,11 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 impl BandedCholesky {
-    /// The factor of a matrix given by its products `apply(x, out)`; 2 reach + 1 products read it off, for columns so far apart do not meet.
+    /// Factorises a matrix given by its products `apply(x, out)`. Its entries are obtained from 2 reach + 1
+    /// products, because columns farther apart than that share no rows.
     ///
     /// # Errors
-    /// [`PericlesError::NotConverged`] where the matrix is not positive definite.
+    /// [`PericlesError::NotConverged`] if the matrix is not positive definite.
     pub fn new(
         apply: &mut dyn FnMut(&[f64], &mut [f64]),
         unknowns: usize,
@@ -69,7 +71,7 @@ impl BandedCholesky {
         Ok(matrix)
     }
 
-    /// Places in row i of its columns `from` and later, and before the diagonal.
+    /// Range in row i of the columns from `from` to before the diagonal.
     fn before_diagonal(&self, i: usize, from: usize) -> std::ops::Range<usize> {
         let start = i * (self.reach + 1) + self.reach;
         start + from - i..start
@@ -84,7 +86,7 @@ impl BandedCholesky {
         for i in 0..self.unknowns {
             let first = self.first_column(i);
             let (above, row) = self.rows.split_at_mut(i * width);
-            // Column j stands at place reach + j − i.
+            // Column j is stored at index reach + j − i.
             let at = |j: usize| self.reach + j - i;
             for j in first..i {
                 let other = &above[j * width..(j + 1) * width];
@@ -99,7 +101,7 @@ impl BandedCholesky {
             let square = row[self.reach] - dot(own, own);
             if square.is_nan() || square <= 0.0 {
                 return Err(PericlesError::NotConverged {
-                    solver: "Cholesky's factorisation",
+                    solver: "Cholesky factorisation",
                     iterations: i,
                     residual: square,
                     tolerance: 0.0,
@@ -131,10 +133,11 @@ impl BandedCholesky {
         }
     }
 
-    /// Solves A′ x = b from the `x` given, for an A′ near to A that is given by its products: x ← x + A⁻¹ (b − A′ x) until the residual meets the limits.
+    /// Solves A′ x = b, starting from the given `x`, for a matrix A′ close to A given by its products: x ← x + A⁻¹
+    /// (b − A′ x) until the residual meets the limits.
     ///
     /// # Errors
-    /// [`PericlesError::NotConverged`] when a correction no longer halves the residual; `x` is then the best found.
+    /// [`PericlesError::NotConverged`] if a correction does not halve the residual; `x` is then the best iterate.
     pub fn refine(
         &self,
         apply: &mut dyn FnMut(&[f64], &mut [f64]),
@@ -166,10 +169,10 @@ impl BandedCholesky {
             if found.is_finite() && solved.residual <= tolerance {
                 return Ok(solved);
             }
-            // What is no number would be refined for ever, or taken for solved: an infinite right side has an infinite tolerance.
+            // NaN and infinity end the refinement: an infinite right-hand side has an infinite tolerance.
             if !found.is_finite() || found > 0.5 * before {
                 return Err(PericlesError::NotConverged {
-                    solver: "Cholesky's factor",
+                    solver: "iterative refinement",
                     iterations: solved.iterations,
                     residual: solved.residual,
                     tolerance,
@@ -192,7 +195,7 @@ impl BandedCholesky {
 mod tests {
     use super::*;
 
-    /// A band with decaying entries and a strong diagonal.
+    /// A band matrix with decaying entries and a dominant diagonal.
     fn product(x: &[f64], out: &mut [f64], reach: usize, shift: f64) {
         let n = x.len();
         let entry = |i: usize, j: usize| match i.abs_diff(j) {
@@ -206,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn bands_and_full_matrices_are_solved_to_round_off() {
+    fn band_and_full_matrices_are_solved_to_round_off() {
         for (n, reach) in [
             (1, 0),
             (2, 1),
@@ -230,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn a_neighbouring_matrix_is_solved_by_refinement() {
+    fn refinement_solves_a_nearby_matrix() {
         let (n, reach) = (50, 3);
         let mut near = |x: &[f64], out: &mut [f64]| product(x, out, reach, 6.0 * (1.0 + 1e-7));
         let mut apply = |x: &[f64], out: &mut [f64]| product(x, out, reach, 6.0);
@@ -248,7 +251,7 @@ mod tests {
     }
 
     #[test]
-    fn an_indefinite_matrix_is_told() {
+    fn an_indefinite_matrix_is_an_error() {
         let mut apply = |x: &[f64], out: &mut [f64]| product(x, out, 2, 0.0);
         let error = BandedCholesky::new(&mut apply, 20, 2).unwrap_err();
         assert!(
@@ -258,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_given_up() {
+    fn nan_and_infinity_end_the_refinement() {
         let (n, reach) = (12, 2);
         let mut apply = |x: &[f64], out: &mut [f64]| product(x, out, reach, 4.0);
         let factor = BandedCholesky::new(&mut apply, n, reach).unwrap();

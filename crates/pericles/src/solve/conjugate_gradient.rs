@@ -4,14 +4,15 @@ use super::{SolveLimits, Solved, Work, add_scaled};
 use crate::domain::Domain;
 use crate::error::{PericlesError, Result};
 
-/// Solves A x = b for a symmetric positive definite A given by its products `apply(x, out)`, from the `x` given.
+/// Solves A x = b for a symmetric positive definite A given by its products `apply(x, out)`, starting from the
+/// given `x`.
 ///
-/// The norm that is compared is ‖b − A x‖₂ with ‖b‖₂. At the end the true residual is computed, not the recurrence's, so that `residual` is what
-/// it says.
+/// The limits compare ‖b − A x‖₂ with ‖b‖₂. At the end the true residual is computed and returned, not the
+/// recursive one.
 ///
 /// # Errors
-/// [`PericlesError::NotConverged`] after too many iterations, or when a direction of negative curvature shows that A is not positive definite;
-/// [`PericlesError::Interrupted`] if asked to stop.
+/// [`PericlesError::NotConverged`] after too many iterations, or for a direction of negative curvature, which shows
+/// that A is not positive definite; [`PericlesError::Interrupted`] if a stop is requested.
 pub fn conjugate_gradient(
     apply: &mut dyn FnMut(&[f64], &mut [f64]),
     right: &[f64],
@@ -21,7 +22,8 @@ pub fn conjugate_gradient(
 ) -> Result<Solved> {
     let tolerance = limits.tolerance(work.domain.norm(right));
     let mut solved = Solved::default();
-    // The residual of the recurrence drifts from the true one by rounding; a restart from the true one removes the drift.
+    // The recursive residual drifts from the true one by rounding; a restart from the true residual removes the
+    // drift.
     loop {
         let before = solved.residual;
         let end = sweep(
@@ -63,15 +65,15 @@ pub fn conjugate_gradient(
 pub(super) enum End {
     /// The true residual meets the tolerance.
     Reached,
-    /// The recurrence's residual meets it, the true one does not.
+    /// The recursive residual meets it, the true one does not.
     Drifted,
     /// Too many iterations.
     Exhausted,
-    /// A direction without positive curvature; `x` is the best before it.
+    /// A direction without positive curvature; `x` is the iterate before it.
     Indefinite,
 }
 
-/// Conjugate gradients from `x` until the recurrence's residual meets the tolerance.
+/// Iterates from `x` until the recursive residual meets the tolerance.
 pub(super) fn sweep(
     apply: &mut dyn FnMut(&[f64], &mut [f64]),
     right: &[f64],
@@ -139,7 +141,7 @@ fn true_residual(
 mod tests {
     use super::*;
 
-    /// Eigenvalues 1, 2, …, n in a basis turned by reflections.
+    /// A matrix with eigenvalues 1, 2, …, n in a basis given by reflections.
     fn product(x: &[f64], out: &mut [f64], shift: f64) {
         let n = x.len();
         let normal: Vec<f64> = (0..n).map(|i| ((i as f64) * 0.7).sin()).collect();
@@ -160,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn as_many_iterations_as_eigenvalues_solve_the_system() {
+    fn conjugate_gradients_need_at_most_as_many_iterations_as_eigenvalues() {
         let n = 12;
         let exact: Vec<f64> = (0..n).map(|i| (i as f64).cos()).collect();
         let mut right = vec![0.0; n];
@@ -179,7 +181,7 @@ mod tests {
         for (x, exact) in x.iter().zip(&exact) {
             assert!((x - exact).abs() < 1e-11);
         }
-        // from the solution nothing is left to do
+        // Starting from the solution no iteration is needed.
         let again = conjugate_gradient(
             &mut apply,
             &right,
@@ -192,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn an_indefinite_matrix_and_too_few_iterations_are_told() {
+    fn an_indefinite_matrix_and_too_few_iterations_are_errors() {
         let n = 12;
         let mut x = vec![0.0; n];
         let right = vec![1.0; n];

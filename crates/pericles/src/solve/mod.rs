@@ -1,15 +1,18 @@
-//! Solvers for the systems of implicit schemes: conjugate gradients, Newton–Krylov, Cholesky's factor of a band, and principal axes of small matrices.
+//! Solvers for implicit schemes: conjugate gradients, Newton–Krylov, banded Cholesky factorisation, and principal
+//! axes of 3 × 3 matrices.
 //!
-//! A system is given by its products, a nonlinear one by its residual and the products with its derivative
-//! ([`Nonlinear`]). Both need the symmetric positive definite systems that implicit schemes have: M + β dt² K with a positive mass M and a stiffness K = −f′.
+//! A linear system is given by its matrix–vector products, a nonlinear one by its residual and the products with
+//! its derivative ([`Nonlinear`]). Both must be symmetric and positive definite, as the matrices M + β dt² K of
+//! implicit schemes are, with positive mass M and stiffness K = −f′.
 //!
-//! Sums are taken in a fixed order, so that results do not depend on the number of threads. A solver's vectors live in [`Work`] and are made once.
+//! Sums have a fixed order, so that results do not depend on the number of threads. Solvers keep their vectors in
+//! [`Work`], which is allocated once.
 //!
 //! References: Hestenes & Stiefel, J. Res. NBS 49 (1952); Eisenstat & Walker, SIAM J. Sci. Comput. 17 (1996).
 //!
 //! ```
 //! use pericles::solve::{SolveLimits, Work, conjugate_gradient};
-//! // −x″ = 1 on a line of points with both ends held
+//! // −x″ = 1 on a line of points with both ends fixed
 //! let n = 50;
 //! let mut apply = |x: &[f64], out: &mut [f64]| {
 //!     for i in 0..n {
@@ -36,16 +39,18 @@ pub use newton::{Nonlinear, newton_krylov};
 use crate::domain::Domain;
 use crate::interrupt::Interrupt;
 
-/// When an iteration ends.
+/// Stopping criteria of an iteration.
 #[derive(Debug, Clone, Copy)]
 pub struct SolveLimits<'a> {
-    /// Largest norm of the residual, over that of the right-hand side (conjugate gradients) or of the scale given (Newton).
+    /// Largest norm of the residual relative to that of the right-hand side (conjugate gradients) or to the given
+    /// scale (Newton).
     pub relative: f64,
-    /// Largest norm of the residual whatever the right-hand side is.
+    /// Largest norm of the residual independent of the right-hand side.
     pub absolute: f64,
-    /// Iterations after which the solver gives up.
+    /// Largest number of iterations.
     pub iterations: usize,
-    /// Polled in every iteration: the solver fails with [`PericlesError::Interrupted`](crate::PericlesError::Interrupted) once it asks to stop.
+    /// Polled in every iteration; the solver fails with
+    /// [`PericlesError::Interrupted`](crate::PericlesError::Interrupted) if a stop is requested.
     pub interrupt: Interrupt<'a>,
 }
 
@@ -67,21 +72,21 @@ impl SolveLimits<'_> {
     }
 }
 
-/// What a solver did.
+/// Statistics of a solution.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Solved {
-    /// Iterations of Newton's method, or of conjugate gradients where they stand alone.
+    /// Iterations of Newton's method, or of conjugate gradients if used alone.
     pub iterations: usize,
-    /// Products with the matrix or the derivative.
+    /// Number of products with the matrix or derivative.
     pub products: usize,
     /// Norm of the last residual.
     pub residual: f64,
 }
 
-/// Vectors that solvers work with, made once for systems of one size.
+/// Work vectors of solvers, allocated once for systems of one size.
 #[derive(Debug, Clone)]
 pub struct Work {
-    /// What sums are taken over.
+    /// Domain over which sums are taken.
     domain: Domain,
     /// Conjugate gradients: residual, direction, product.
     krylov: [Vec<f64>; 3],
@@ -90,12 +95,12 @@ pub struct Work {
 }
 
 impl Work {
-    /// For systems of `n` unknowns, all of them of this process.
+    /// Makes work vectors for `n` unknowns, all owned by this process.
     pub fn new(n: usize) -> Self {
         Self::on(&Domain::alone(n), n)
     }
 
-    /// For systems of which this process has `n` unknowns.
+    /// Makes work vectors for the `n` unknowns that this process owns.
     pub fn on(domain: &Domain, n: usize) -> Self {
         Self {
             domain: domain.clone(),

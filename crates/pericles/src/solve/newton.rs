@@ -1,30 +1,31 @@
-//! Newton's method with conjugate gradients inside.
+//! Newton's method with conjugate gradients (Newton–Krylov).
 
 use super::conjugate_gradient::{End, sweep};
 use super::{SolveLimits, Solved, Work, add_scaled};
 use crate::error::{PericlesError, Result};
 
-/// A nonlinear system F(x) = 0 whose derivative is symmetric and positive definite.
+/// A nonlinear system F(x) = 0 with symmetric positive definite derivative.
 pub trait Nonlinear {
-    /// `out` = F(x).
+    /// Computes `out` = F(x).
     fn residual_into(&mut self, x: &[f64], out: &mut [f64]);
-    /// `out` = F′(x) direction.
+    /// Computes `out` = F′(x) direction.
     fn derivative_into(&mut self, x: &[f64], direction: &[f64], out: &mut [f64]);
 }
 
-/// Iterations of the inner solver in one step of Newton's method.
+/// Largest number of conjugate-gradient iterations per Newton step.
 const INNER: usize = 400;
-/// Halvings of a step that does not reduce the residual.
+/// Largest number of halvings of a step that does not reduce the residual.
 const HALVINGS: usize = 12;
 
-/// Solves F(x) = 0 from the `x` given: x ← x − λ F′(x)⁻¹ F(x), the linear system by conjugate gradients to a tolerance that tightens as Newton's method converges
-/// (Eisenstat & Walker, choice 2 with γ = 0.9 and exponent 2), λ halved until ‖F‖ falls.
+/// Solves F(x) = 0 starting from the given `x`: x ← x − λ F′(x)⁻¹ F(x). Conjugate gradients solve the linear system
+/// to a tolerance that tightens as Newton's method converges (Eisenstat & Walker, choice 2 with γ = 0.9 and
+/// exponent 2); λ is halved until ‖F‖ decreases.
 ///
-/// The norm that is compared is ‖F(x)‖₂ with `scale`, the size of the terms F is the difference of.
+/// The limits compare ‖F(x)‖₂ with `scale`, the size of the terms whose difference is F.
 ///
 /// # Errors
-/// [`PericlesError::NotConverged`] if the residual does not fall any more or after too many iterations; `x` is then the best found.
-/// [`PericlesError::Interrupted`] if asked to stop.
+/// [`PericlesError::NotConverged`] if the residual stagnates or after too many iterations; `x` is then the best
+/// iterate. [`PericlesError::Interrupted`] if a stop is requested.
 pub fn newton_krylov(
     problem: &mut dyn Nonlinear,
     x: &mut [f64],
@@ -60,7 +61,7 @@ pub fn newton_krylov(
             *b = -r;
         }
         correction.fill(0.0);
-        // No further than the goal of the outer iteration needs.
+        // Not tighter than the outer iteration needs.
         let inner_tolerance = (forcing * solved.residual).max(0.1 * tolerance);
         let inner = SolveLimits {
             iterations: INNER,
@@ -99,7 +100,7 @@ pub fn newton_krylov(
                 solved.residual = before;
                 return Err(failed(
                     solved,
-                    "the residual does not fall any more: the tolerance is below rounding, or the step too large",
+                    "the residual stagnates: the tolerance is below rounding, or the step is too large",
                 ));
             }
             length *= 0.5;
@@ -146,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn the_root_is_found_and_convergence_is_fast() {
+    fn newton_converges_quickly_to_the_root() {
         let n = 40;
         let exact: Vec<f64> = (0..n).map(|i| 2.0 * (0.3 * i as f64).sin()).collect();
         let mut chain = Chain {
@@ -174,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn a_system_without_a_root_is_told() {
+    fn a_system_without_a_root_is_an_error() {
         // x − x³ has its largest value at x = 1/√3, 0.385
         let mut chain = Chain {
             right: vec![0.5],

@@ -1,31 +1,31 @@
-//! The points of a body.
+//! Point clouds: the points of a body.
 
 use super::set::{check_resolution, check_set};
 use super::{Lattice, Point, Region};
 use crate::domain::Domain;
 use crate::error::{PericlesError, Result, positive};
 
-/// Numbers of points, ascending, in the cloud's own order.
+/// Point numbers in ascending order, in the order of the cloud.
 pub type PointSet = Vec<u32>;
 
 /// The points of a body with their volumes, as structure of arrays.
 ///
-/// Vectors on points (positions, displacements, forces …) are stored component by component: component c of point i is
-/// entry `c * len() + i`. Points are kept in an order that suits memory (grid order); [`PointCloud::user_number`] gives the
-/// number under which a point is written to files.
+/// Vectors on points (positions, displacements, forces …) are component-major: component c of point i is entry `c *
+/// len() + i`. Points are stored in an order that suits memory (grid order); [`PointCloud::user_number`] returns
+/// the number of a point in result files.
 #[derive(Debug, Clone)]
 pub struct PointCloud {
     dimension: usize,
     positions: Vec<f64>,
     volumes: Vec<f64>,
-    /// Area of a bar (m²) or thickness of a plate (m); 1 in 3D.
+    /// Cross-section of a bar (m²) or thickness of a plate (m); 1 in 3D.
     section: f64,
     spacing: f64,
     lattice: Option<Lattice>,
     /// Sides of the cells, m, if all are equal boxes.
     cell_sides: Option<Point>,
     periodic: bool,
-    /// The user's numbers of the points; empty if they are the points' own.
+    /// User's numbers of the points; empty if they equal the point numbers.
     user_numbers: Vec<u32>,
     /// The block of each point; empty if all are in block 1.
     blocks: Vec<u32>,
@@ -33,14 +33,14 @@ pub struct PointCloud {
 }
 
 impl PointCloud {
-    /// A cloud from positions (m, component-major, `dimension * n` entries) and volumes (m³).
+    /// Makes a cloud from positions (m, component-major, `dimension * n` entries) and volumes (m³).
     ///
-    /// `section` is the cross-section's area in 1D (m²), the thickness in 2D (m) and 1 in 3D, so that a cell of size Δx has volume
-    /// section · Δx^dimension. The cell size used by volume corrections is that of the mean volume.
+    /// `section` is the cross-section in 1D (m²), the thickness in 2D (m) and 1 in 3D, so that a cell of size Δx
+    /// has the volume section · Δx^dimension. Volume corrections use the cell size of the mean volume.
     ///
     /// # Errors
-    /// No points or too many; arrays of wrong lengths; volumes that are not positive; coordinates that are not finite, or so large that double precision
-    /// does not resolve the spacing.
+    /// No points or too many; arrays of wrong length; volumes that are not positive; coordinates that are not
+    /// finite, or so large that double precision does not resolve the spacing.
     pub fn new(
         dimension: usize,
         positions: Vec<f64>,
@@ -50,7 +50,7 @@ impl PointCloud {
         Self::with_spacing(dimension, positions, volumes, section, None)
     }
 
-    /// The same with a spacing of its own; without one that of the mean cell.
+    /// As [`PointCloud::new`], with a given spacing, or that of the mean cell if `None`.
     fn with_spacing(
         dimension: usize,
         positions: Vec<f64>,
@@ -105,10 +105,10 @@ impl PointCloud {
         })
     }
 
-    /// The same points with opposite faces of their box as one: what leaves at one side comes in at the other.
+    /// Makes opposite faces of the box of cells periodic.
     ///
     /// # Errors
-    /// Points that are no full box of cells.
+    /// Points that are not a full box of cells.
     pub fn with_periodic_faces(self) -> Result<Self> {
         match &self.lattice {
             Some(lattice) if lattice.shape.iter().product::<usize>() == self.len() => Ok(Self {
@@ -119,17 +119,18 @@ impl PointCloud {
         }
     }
 
-    /// Whether opposite faces are one.
+    /// Returns whether opposite faces are periodic.
     pub fn is_periodic(&self) -> bool {
         self.periodic
     }
 
-    /// Points of a surface in 3D, with their areas (m²) where other bodies have volumes: densities are then per area.
+    /// Points of a surface in 3D, with areas (m²) in place of volumes, so that densities are per area.
     ///
-    /// `spacing` is their typical distance, m; `user_numbers[i]` the number of point i in files.
+    /// `spacing` is a typical distance of neighbouring points, m; `user_numbers[i]` is the number of point i in
+    /// files.
     ///
     /// # Errors
-    /// Areas that are not positive, or not one a point.
+    /// Areas that are not positive, or not one per point.
     pub fn of_areas(
         positions: &[Point],
         areas: Vec<f64>,
@@ -144,7 +145,8 @@ impl PointCloud {
         Ok(cloud)
     }
 
-    /// Points at nodes of a lattice whose node (0, 0, 0) is at `origin`, m, each with the volume of a cell; `section` as in [`PointCloud::new`].
+    /// Points at nodes of a lattice with node (0, 0, 0) at `origin`, m, each with the volume of a cell; `section`
+    /// as in [`PointCloud::new`].
     ///
     /// ```
     /// use pericles::space::{Lattice, PointCloud};
@@ -156,7 +158,7 @@ impl PointCloud {
     /// ```
     ///
     /// # Errors
-    /// No points, a spacing or section that is not positive, nodes that are not ascending or beyond the lattice's shape.
+    /// No points; a spacing or section that is not positive; nodes not in ascending order or outside the lattice.
     pub fn on_lattice(
         dimension: usize,
         origin: Point,
@@ -190,7 +192,7 @@ impl PointCloud {
         Ok(cloud)
     }
 
-    /// A cloud of cells of several sizes; the spacing is that of the largest.
+    /// A cloud of cells of several sizes; the spacing is that of the largest cells.
     pub(super) fn graded(
         dimension: usize,
         positions: Vec<f64>,
@@ -201,7 +203,7 @@ impl PointCloud {
         Self::with_spacing(dimension, positions, volumes, section, Some(spacing))
     }
 
-    /// The same points with the numbers and blocks of a list.
+    /// Sets the user's numbers and blocks of a list of points.
     pub(super) fn listed(self, user_numbers: Vec<u32>, blocks: Vec<u32>) -> Self {
         Self {
             user_numbers,
@@ -215,26 +217,26 @@ impl PointCloud {
         self.volumes.len()
     }
 
-    /// Never true: a cloud has at least one point.
+    /// Returns false: a cloud has at least one point.
     pub fn is_empty(&self) -> bool {
         self.volumes.is_empty()
     }
 
-    /// The division of the body among processes.
+    /// The domain: how the body is divided among processes.
     pub fn domain(&self) -> &Domain {
         &self.domain
     }
 
-    /// The same points as those of one of several processes, with the spacing of the whole body, m.
+    /// Makes these points the part of one of several processes; `spacing` is that of the whole body, m.
     ///
     /// # Panics
-    /// If the domain owns another number of points.
+    /// If the domain owns another number of points than the cloud has.
     #[must_use]
     pub fn with_domain(self, domain: Domain, spacing: f64) -> Self {
         assert_eq!(
             domain.owned_points(),
             self.len(),
-            "one volume for each own point"
+            "one volume per own point"
         );
         Self {
             domain,
@@ -243,10 +245,10 @@ impl PointCloud {
         }
     }
 
-    /// The part of this body that a process owns, by the numbers of its points.
+    /// Returns the part of this body that a process owns, by the numbers of its points.
     ///
     /// # Panics
-    /// If a number is not one of this body's points.
+    /// If a number is not a point of this body.
     #[must_use]
     pub fn part(&self, domain: Domain) -> Self {
         let own: Vec<usize> = (0..domain.owned_points())
@@ -272,7 +274,7 @@ impl PointCloud {
         }
     }
 
-    /// The own points with the ghosts behind them, as points of one process. Every process must ask at the same time.
+    /// Returns own points and ghosts as points of a single process. All processes must call it together.
     pub(super) fn with_ghost_points(&self) -> Self {
         let axis = |c: usize| self.domain.with_ghosts(self.axis(c));
         let positions: Vec<f64> = (0..self.dimension)
@@ -298,7 +300,8 @@ impl PointCloud {
         }
     }
 
-    /// Points moved by whole numbers of periods, the sides of the lattice's box; several of them may stem from one point. The nodes of their lattice are in no order.
+    /// Returns points moved by whole numbers of periods (the sides of the lattice box); several may be images of
+    /// one point. The nodes of their lattice are not ordered.
     pub(super) fn moved_points(&self, points: &[([i16; 3], u32)]) -> Self {
         let n = self.len();
         let far: [i32; 3] = std::array::from_fn(|c| {
@@ -354,13 +357,13 @@ impl PointCloud {
         &self.positions
     }
 
-    /// One coordinate of all points, m.
+    /// Coordinate c of all points, m.
     pub fn axis(&self, c: usize) -> &[f64] {
         let n = self.len();
         &self.positions[c * n..(c + 1) * n]
     }
 
-    /// The reference position of a point, missing components zero.
+    /// Reference position of a point, m; missing components are zero.
     pub fn point(&self, i: usize) -> Point {
         let mut point = [0.0; 3];
         for (c, x) in point.iter_mut().enumerate().take(self.dimension) {
@@ -374,17 +377,17 @@ impl PointCloud {
         &self.volumes
     }
 
-    /// Area of a bar's section (m²), thickness of a plate (m), 1 in 3D.
+    /// Cross-section of a bar (m²), thickness of a plate (m), 1 in 3D.
     pub fn section(&self) -> f64 {
         self.section
     }
 
-    /// Distance of neighbouring points, m: the lattice's, else the size of the mean cell.
+    /// Distance of neighbouring points, m: that of the lattice, or else the size of the mean cell.
     pub fn spacing(&self) -> f64 {
         self.spacing
     }
 
-    /// The size of a point's cell, m: (V / section)^(1/dimension).
+    /// Size of the cell of a point, m: (V / section)^(1/dimension).
     pub fn cell_size(&self, i: usize) -> f64 {
         if self.lattice.is_some() {
             self.spacing
@@ -393,14 +396,14 @@ impl PointCloud {
         }
     }
 
-    /// The sides of the cells along the axes, m, one for each dimension, if all cells are equal boxes side by side; none for listed points,
-    /// quadrature nodes, surfaces and bodies with cells of several sizes.
+    /// Sides of the cells, m, one per dimension, if all cells are equal boxes side by side; `None` for listed
+    /// points, quadrature nodes, surfaces and bodies with several cell sizes.
     pub fn cell_sides(&self) -> Option<&[f64]> {
         let sides = self.cell_sides.as_ref()?;
         Some(&sides[..self.dimension])
     }
 
-    /// The side of a cell along an axis, m: exact for equal boxes, else the spacing.
+    /// Side of a cell along an axis, m: exact for equal boxes, else the spacing.
     pub fn cell_side(&self, axis: usize) -> f64 {
         match &self.cell_sides {
             Some(sides) => sides[axis],
@@ -408,12 +411,12 @@ impl PointCloud {
         }
     }
 
-    /// The lattice, if the points lie on one.
+    /// The lattice, if the points are on one.
     pub fn lattice(&self) -> Option<&Lattice> {
         self.lattice.as_ref()
     }
 
-    /// The number of a point in the user's numbering, in which files are written.
+    /// User's number of a point, which is used in files.
     pub fn user_number(&self, i: usize) -> usize {
         match &self.user_numbers[..] {
             [] => i,
@@ -421,12 +424,12 @@ impl PointCloud {
         }
     }
 
-    /// The block a point belongs to: a part of the body by number. Bodies on grids are block 1.
+    /// Block of a point; bodies on grids are block 1.
     pub fn block(&self, i: usize) -> u32 {
         self.blocks.get(i).copied().unwrap_or(1)
     }
 
-    /// Bounding box of the cells (half a cell beyond the outermost points), m.
+    /// Bounding box of the cells, m: half a cell beyond the outermost points.
     pub fn bounds(&self) -> [Point; 2] {
         let mut bounds = [[0.0; 3]; 2];
         for c in 0..self.dimension {
@@ -442,7 +445,7 @@ impl PointCloud {
         bounds
     }
 
-    /// The points of a region.
+    /// Returns the points in a region.
     pub fn select(&self, region: &Region) -> PointSet {
         let bounds = self.bounds();
         let tolerance = 1e-9 * self.spacing;
@@ -452,7 +455,7 @@ impl PointCloud {
             .collect()
     }
 
-    /// The point nearest to a place; the first of several.
+    /// Returns the point nearest to a position; the first of several.
     pub fn nearest(&self, place: Point) -> usize {
         let square = |i: usize| -> f64 {
             let x = self.point(i);

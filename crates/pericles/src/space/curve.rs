@@ -1,11 +1,11 @@
-//! An order of points in which neighbours in space are near in memory.
+//! Ordering of points along a Hilbert curve, so that neighbours in space are close in memory.
 
 use super::Point;
 
-/// Steps along each axis of the curve: three times 20 bits fit into a key.
+/// Bits per axis of the curve: three times 20 bits fit into a key.
 const BITS: u32 = 20;
 
-/// The numbers of points in the order of a Hilbert curve through their bounding cube. Cost O(n log n).
+/// Returns the numbers of points in the order of a Hilbert curve through their bounding cube. Cost O(n log n).
 pub fn hilbert_order(points: &[Point]) -> Vec<u32> {
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
     for point in points {
@@ -32,7 +32,7 @@ pub fn hilbert_order(points: &[Point]) -> Vec<u32> {
     order.into_iter().map(|(_, number)| number).collect()
 }
 
-/// The place of a cell along the Hilbert curve (Skilling, AIP Conf. Proc. 707, 381, 2004).
+/// Index of a cell along the Hilbert curve (Skilling, AIP Conf. Proc. 707, 381, 2004).
 fn hilbert(cell: [u32; 3]) -> u64 {
     let mut x = cell;
     let mut bit = 1 << (BITS - 1);
@@ -74,7 +74,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_curve_goes_from_cell_to_neighbouring_cell() {
+    fn consecutive_cells_of_the_curve_are_neighbours() {
         // The cells of the lowest 8 × 8 × 8 corner are the first 512 of the curve.
         let mut cells: Vec<(u64, [u32; 3])> = (0..512u32)
             .map(|k| [k % 8, k / 8 % 8, k / 64])

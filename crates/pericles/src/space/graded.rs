@@ -1,19 +1,19 @@
-//! Grids with smaller cells in parts of the body.
+//! Graded grids: grids with smaller cells in some regions.
 
 use super::grid::Cells;
 use super::{Grid, Point, PointCloud, Region};
 use crate::error::{PericlesError, Result};
 
-/// A part with smaller cells.
+/// A region with smaller cells.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finer {
-    /// Cells whose centres lie in it are divided.
+    /// Region; cells whose centres lie in it are divided.
     pub region: Region,
-    /// Into how many along each axis; at least two.
+    /// Number of small cells per large cell along each axis, at least two.
     pub ratio: u32,
 }
 
-/// A regular grid some of whose cells are divided into smaller ones.
+/// A regular grid of which some cells are divided into smaller ones.
 ///
 /// ```
 /// use pericles::space::{Finer, GradedGrid, Grid, Region, Shape};
@@ -31,25 +31,25 @@ pub struct Finer {
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct GradedGrid {
-    /// The body with its large cells.
+    /// The grid of large cells.
     pub grid: Grid,
-    /// Parts with smaller ones, later ones before earlier ones.
+    /// Regions with smaller cells; later ones take precedence.
     pub finer: Vec<Finer>,
 }
 
 /// The points of a graded grid.
 #[derive(Debug, Clone)]
 pub struct GradedCloud {
-    /// The points.
+    /// The point cloud.
     pub cloud: PointCloud,
-    /// Division of the cells of each grid: one for the large cells, then one for each finer part.
+    /// Refinement ratio of each grid: 1 for the large cells, then one per refined region.
     pub ratios: Vec<u32>,
-    /// The grid of each point.
+    /// Index of the grid of each point.
     pub grid_of_point: Vec<u8>,
 }
 
 impl GradedCloud {
-    /// The points of one grid.
+    /// Makes the points of a single grid.
     pub fn of_one_grid(cloud: PointCloud) -> Self {
         Self {
             grid_of_point: vec![0; cloud.len()],
@@ -59,43 +59,44 @@ impl GradedCloud {
     }
 }
 
-/// How some cells of a lattice are divided, whatever decides which cells belong to a body.
+/// Division of the cells of a lattice, independent of which cells belong to the body.
 #[derive(Debug, Clone, Copy)]
 pub struct Division<'a> {
     /// Dimension of the body.
     pub dimension: usize,
-    /// Size of the large cells.
+    /// Size of the large cells, m.
     pub spacing: f64,
-    /// Area of a bar, thickness of a body in two dimensions, 1 in three dimensions.
+    /// Cross-section of a bar, thickness of a plate, 1 in 3D.
     pub section: f64,
-    /// Parts with smaller cells, later ones before earlier ones.
+    /// Regions with smaller cells; later ones take precedence.
     pub finer: &'a [Finer],
 }
 
-/// A cell that may belong to a body: a large one, or a small one of a divided one.
+/// A cell that may belong to a body: a large cell, or a small cell of a divided one.
 #[derive(Debug, Clone, Copy)]
 pub struct GradedCell {
-    /// The large cell, by its place in the order of the centres.
+    /// Index of the large cell in the order of the centres.
     pub large: usize,
-    /// The finer part that the large cell belongs to, if it is divided.
+    /// Refined region of the large cell, if it is divided.
     pub part: Option<usize>,
-    /// The number of the small cell along each axis of the large one.
+    /// Index of the small cell along each axis of the large one.
     pub small: [u32; 3],
-    /// The centre.
+    /// Centre of the cell, m.
     pub centre: Point,
 }
 
 impl Division<'_> {
-    /// The part that a large cell belongs to, if it is divided. `is_in` says whether the centre lies in a region.
+    /// Returns the refined region of a large cell, if it is divided. `is_in` returns whether the centre lies in a
+    /// region.
     pub fn part(&self, is_in: impl Fn(&Region) -> bool) -> Option<usize> {
         self.finer.iter().rposition(|finer| is_in(&finer.region))
     }
 
-    /// Makes the cloud: large cells in the order of their centres, divided ones as their small cells, x running fastest. `is_in` says whether a place lies in
-    /// a region, `holds` whether a cell belongs to the body.
+    /// Makes the cloud: large cells in the order of their centres, divided ones as their small cells, x running
+    /// fastest. `is_in` returns whether a position lies in a region, `holds` whether a cell belongs to the body.
     ///
     /// # Errors
-    /// A part with a ratio below two or without cells; too many parts; a body without cells.
+    /// A region with a ratio below two or without cells; too many regions; a body without cells.
     pub fn points(
         &self,
         centres: impl Iterator<Item = Point>,
@@ -162,12 +163,12 @@ impl Division<'_> {
     }
 }
 
-/// Grids are numbered by a byte.
+/// Largest number of regions: grid numbers are bytes.
 const MOST_PARTS: usize = 200;
 
 impl GradedGrid {
-    /// How many points there will be, and nothing made yet; where they are more than `most`, how many there can be. A body that is no full box is counted cell by cell, the
-    /// small cells of a divided one being all counted.
+    /// Returns the number of points without making them, or an upper bound if it exceeds `most`. A body that is not
+    /// a full box is counted cell by cell, with all small cells of divided cells.
     ///
     /// # Errors
     /// Those of the grid.
@@ -201,7 +202,7 @@ impl GradedGrid {
         Ok(count)
     }
 
-    /// The numbers of the holes without a cell's centre inside the outline: they take nothing from the body.
+    /// Returns the indices of the holes that contain no cell centre of the shape and thus remove nothing.
     ///
     /// # Errors
     /// Those of the grid.
@@ -234,17 +235,17 @@ impl GradedGrid {
         Ok(idle)
     }
 
-    /// The part that a large cell belongs to, if it is divided.
+    /// Returns the refined region of a large cell, if it is divided.
     fn part(&self, cells: &Cells<'_>, centre: Point) -> Option<usize> {
         let holds = |finer: &Finer| cells.is_in(&finer.region, centre);
         self.finer.iter().rposition(holds)
     }
 
-    /// Makes the cloud: cells of the large grid in its order, x fastest, divided ones as their small cells in the same order. Which small cells belong to
-    /// the body is decided by their own centres.
+    /// Makes the cloud: cells of the large grid in its order, x fastest, divided ones as their small cells in the
+    /// same order. The centre of each small cell decides whether it belongs to the body.
     ///
     /// # Errors
-    /// Those of [`Grid::points`]; a part with a ratio below two or without cells; too many parts.
+    /// Those of [`Grid::points`]; a region with a ratio below two or without cells; too many regions.
     pub fn points(&self) -> Result<GradedCloud> {
         let cells = self.grid.cells()?;
         let division = Division {
@@ -264,7 +265,8 @@ impl GradedGrid {
     }
 }
 
-/// Calls `visit` with the numbers of each small cell and the offset, in small cells, of its centre from that of the large one.
+/// Calls `visit` with the indices of each small cell and the offset of its centre from that of the large cell, in
+/// small cells.
 fn for_each_part(dimension: usize, ratio: u32, mut visit: impl FnMut([u32; 3], Point)) {
     let range = |c: usize| 0..if c < dimension { ratio } else { 1 };
     let middle = 0.5 * f64::from(ratio - 1);
@@ -305,7 +307,7 @@ mod tests {
     }
 
     #[test]
-    fn cells_fill_the_body_whatever_their_size() {
+    fn the_total_volume_does_not_depend_on_the_division() {
         let region = Region::Box {
             min: [0.2, 0.1, f64::NEG_INFINITY],
             max: [0.4, 0.3, f64::INFINITY],
@@ -325,7 +327,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ball_is_rounder_where_its_cells_are_smaller() {
+    fn smaller_cells_approximate_a_ball_better() {
         let ball = |finer| GradedGrid {
             grid: Grid {
                 shape: Shape::Ball {
@@ -351,13 +353,13 @@ mod tests {
     }
 
     #[test]
-    fn points_are_counted_without_making_them() {
+    fn counts_equal_the_numbers_of_points() {
         let region = Region::Box {
             min: [0.2, 0.1, f64::NEG_INFINITY],
             max: [0.4, 0.3, f64::INFINITY],
         };
         let graded = block(vec![Finer { region, ratio: 3 }]);
-        // The bound is that of a body that is divided everywhere.
+        // The upper bound is that of a body divided everywhere.
         assert_eq!(graded.count(1e9).unwrap(), 48.0 * 27.0);
         assert_eq!(graded.count(300.0).unwrap(), 48.0 - 8.0 + 8.0 * 27.0);
         assert_eq!(graded.count(100.0).unwrap(), 48.0 * 27.0);
@@ -373,7 +375,7 @@ mod tests {
     }
 
     #[test]
-    fn parts_that_divide_nothing_are_refused() {
+    fn regions_that_divide_no_cell_are_refused() {
         let part = |min: f64, ratio| Finer {
             region: Region::Box {
                 min: [min; 3],
@@ -390,7 +392,7 @@ mod tests {
             error(vec![part(0.0, 2), part(5.0, 2)]),
             PericlesError::FinerEmpty { part: 1 }
         ));
-        // A later part hides an earlier one completely.
+        // A later region covers an earlier one completely.
         assert!(matches!(
             error(vec![part(0.1, 2), part(0.0, 3)]),
             PericlesError::FinerEmpty { part: 0 }

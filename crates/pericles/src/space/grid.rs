@@ -3,7 +3,7 @@
 use super::{Lattice, Point, PointCloud, Region};
 use crate::error::{PericlesError, Result, positive};
 
-/// The outline of a body made of cells.
+/// Outline of a body made of cells.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Shape {
     /// A box of dimension `size.len()` (bar, plate, block) from its lower corner `origin`.
@@ -20,7 +20,7 @@ pub enum Shape {
         /// Radius, m.
         radius: f64,
     },
-    /// A solid circular cylinder; a hole makes a tube of it.
+    /// A solid circular cylinder; with a hole, a tube.
     Cylinder {
         /// Centre of the lower base, m.
         base: Point,
@@ -31,7 +31,7 @@ pub enum Shape {
         /// Height along the axis, m.
         height: f64,
     },
-    /// A ball in space.
+    /// A ball (3D).
     Ball {
         /// Centre, m.
         centre: Point,
@@ -40,7 +40,7 @@ pub enum Shape {
     },
 }
 
-/// A body as the centres of the cubic cells of a regular grid that lie inside a shape and outside its holes.
+/// A body made of the cubic cells of a regular grid whose centres lie inside a shape and outside its holes.
 ///
 /// ```
 /// use pericles::space::{Grid, Shape};
@@ -63,16 +63,16 @@ pub struct Grid {
     pub shape: Shape,
     /// Cell size Δx, m.
     pub spacing: f64,
-    /// Area of a bar (m²), thickness of a plate (m), 1 in 3D.
+    /// Cross-section of a bar (m²), thickness of a plate (m), 1 in 3D.
     pub section: f64,
     /// Regions without material.
     pub holes: Vec<Region>,
 }
 
-/// Nodes of a bounding box must be numbered by u32.
+/// Largest number of nodes of a bounding box, which are numbered by u32.
 pub(super) const CELL_LIMIT: u64 = u32::MAX as u64 - 1;
 
-/// The number of cells along a side, which must be whole.
+/// Returns the number of cells along a side, which must be whole.
 pub(super) fn whole_cells(length: f64, spacing: f64) -> Result<f64> {
     positive("the spacing", spacing)?;
     let ratio = positive("a side of the body", length)? / spacing;
@@ -89,9 +89,9 @@ pub(super) fn whole_cells(length: f64, spacing: f64) -> Result<f64> {
     Ok(count)
 }
 
-/// The spacings next below and above one that divide all sides, as far as there are any within a factor of two.
+/// Returns the next smaller and larger spacing that divide all sides, if any within a factor of two.
 fn fitting_spacings(sides: &[f64], spacing: f64) -> Vec<f64> {
-    /// Sides of more cells are no sizes of bodies.
+    /// Larger numbers of cells along a side do not occur.
     const MOST: f64 = 1e5;
     let Some(first) = sides.iter().copied().reduce(f64::min) else {
         return Vec::new();
@@ -113,7 +113,7 @@ fn fitting_spacings(sides: &[f64], spacing: f64) -> Vec<f64> {
 }
 
 impl Grid {
-    /// A bar from x = 0 to `length` (m) with cells of `spacing` (m) and a section of `area` (m²).
+    /// A bar from x = 0 to `length` (m) with cells of size `spacing` (m) and cross-section `area` (m²).
     pub fn bar(length: f64, spacing: f64, area: f64) -> Self {
         Self::from_origin(vec![length], spacing, area)
     }
@@ -149,7 +149,7 @@ impl Grid {
         }
     }
 
-    /// Lower corner, sides and whether the sides must be whole numbers of cells.
+    /// Returns lower corner, sides, and whether each side must be a whole number of cells.
     fn frame(&self) -> Result<(Point, [f64; 3], [bool; 3])> {
         let centred = |centre: &Point, radius: f64, dimension: usize| {
             let mut corner = [0.0; 3];
@@ -202,18 +202,18 @@ impl Grid {
         }
     }
 
-    /// The box that holds the body: lower and upper corner, m.
+    /// Bounding box of the body: lower and upper corner, m.
     ///
     /// # Errors
-    /// As [`Grid::points`], but for a body without points.
+    /// Those of [`Grid::points`], except for a body without points.
     pub fn bounds(&self) -> Result<[Point; 2]> {
         Ok(self.cells()?.bounds)
     }
 
-    /// A test whether a place (m) belongs to the body: lies in the shape and in none of its holes.
+    /// Returns a test whether a position (m) belongs to the body: inside the shape and outside its holes.
     ///
     /// # Errors
-    /// As [`Grid::points`], but for a body without points.
+    /// Those of [`Grid::points`], except for a body without points.
     pub fn inside(&self) -> Result<impl Fn(Point) -> bool + Sync + '_> {
         let cells = self.cells()?;
         Ok(move |place: Point| {
@@ -223,10 +223,10 @@ impl Grid {
         })
     }
 
-    /// Makes the cloud, x fastest.
+    /// Makes the point cloud, x fastest.
     ///
     /// # Errors
-    /// Lengths that are not positive, sides that are not whole numbers of cells, too many cells, a body without points.
+    /// Lengths that are not positive; sides that are not whole numbers of cells; too many cells; no points.
     pub fn points(&self) -> Result<PointCloud> {
         let cells = self.cells()?;
         let shape = cells.shape;
@@ -242,7 +242,7 @@ impl Grid {
         PointCloud::on_lattice(self.dimension(), cells.origin, lattice, self.section)
     }
 
-    /// The cells of the bounding box, and which of them belong to the body.
+    /// Returns the cells of the bounding box and a test which of them belong to the body.
     pub(super) fn cells(&self) -> Result<Cells<'_>> {
         let spacing = positive("the spacing", self.spacing)?;
         let dimension = self.dimension();
@@ -260,7 +260,7 @@ impl Grid {
         for c in 0..dimension {
             let count = if whole[c] {
                 whole_cells(side[c], spacing).map_err(|error| match error {
-                    // What fits one side alone would not help.
+                    // The spacing must fit all sides, not one alone.
                     PericlesError::NotWholeCells {
                         length,
                         spacing,
@@ -290,7 +290,7 @@ impl Grid {
                 });
             }
             shape[c] = count as usize;
-            // Round bodies are centred on their bounding box, so that the cells have the body's symmetry.
+            // Round bodies are centred on their bounding box, so that the cells share the symmetry of the body.
             let slack = 0.5 * (side[c] - count * spacing);
             origin[c] = corner[c] + slack + 0.5 * spacing;
         }
@@ -331,7 +331,7 @@ impl Grid {
     }
 }
 
-/// The cells of a grid's bounding box.
+/// The cells of the bounding box of a grid.
 pub(super) struct Cells<'a> {
     pub(super) dimension: usize,
     pub(super) spacing: f64,
@@ -340,19 +340,19 @@ pub(super) struct Cells<'a> {
     /// Centre of the first cell.
     pub(super) origin: Point,
     pub(super) bounds: [Point; 2],
-    /// None if every cell belongs to the body.
+    /// `None` if every cell belongs to the body.
     outline: Option<Region>,
     holes: &'a [Region],
     tolerance: f64,
 }
 
 impl Cells<'_> {
-    /// Whether every cell belongs to the body.
+    /// Returns whether every cell belongs to the body.
     pub(super) fn is_full(&self) -> bool {
         self.outline.is_none()
     }
 
-    /// The centre of a cell.
+    /// Centre of a cell, m.
     pub(super) fn centre(&self, cell: [i32; 3]) -> Point {
         std::array::from_fn(|c| {
             if c < self.dimension {
@@ -363,7 +363,7 @@ impl Cells<'_> {
         })
     }
 
-    /// Whether a place belongs to the body.
+    /// Returns whether a position belongs to the body.
     pub(super) fn holds(&self, place: Point) -> bool {
         let inside = |region: &Region| self.is_in(region, place);
         match &self.outline {
@@ -372,13 +372,13 @@ impl Cells<'_> {
         }
     }
 
-    /// Whether a place lies in the shape, holes not counted.
+    /// Returns whether a position lies in the shape, ignoring holes.
     pub(super) fn is_in_outline(&self, place: Point) -> bool {
         let outline = self.outline.as_ref();
         outline.is_none_or(|outline| self.is_in(outline, place))
     }
 
-    /// Whether a place lies in a region.
+    /// Returns whether a position lies in a region.
     pub(super) fn is_in(&self, region: &Region, place: Point) -> bool {
         region.contains(place, &self.bounds, self.tolerance)
     }
@@ -429,7 +429,7 @@ mod tests {
     }
 
     #[test]
-    fn sides_must_be_whole_cells() {
+    fn sides_must_be_whole_numbers_of_cells() {
         let grid = |side| Grid {
             shape: Shape::Box {
                 origin: [0.0; 3],
@@ -444,7 +444,7 @@ mod tests {
         assert!(matches!(error, PericlesError::NotWholeCells { .. }));
         let message = error.to_string();
         assert!(
-            message.contains("spacings of 250 mm and 333.3333 mm fit"),
+            message.contains("spacings that divide all sides: 250 mm and 333.3333 mm"),
             "{message}"
         );
         assert!(grid(f64::NAN).points().is_err());
@@ -462,7 +462,7 @@ mod tests {
     }
 
     #[test]
-    fn places_belong_to_a_body_where_its_cells_do() {
+    fn positions_belong_to_the_body_where_its_cells_do() {
         let ring = Grid {
             shape: Shape::Disc {
                 centre: [1.0, 2.0, 0.0],
@@ -485,7 +485,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hole_that_takes_all_is_refused() {
+    fn a_hole_that_covers_the_body_is_refused() {
         let grid = Grid {
             shape: Shape::Box {
                 origin: [0.0; 3],

@@ -1,10 +1,10 @@
-//! Points given one by one.
+//! Points given as lists.
 
 use super::curve::hilbert_order;
 use super::{Point, PointCloud};
 use crate::error::{PericlesError, Result};
 
-/// Points as a mesh converter or another code lists them: places, blocks and volumes, one of each per point.
+/// Points as listed by a mesh converter or another code: position, block and volume of each point.
 ///
 /// ```
 /// use pericles::space::ListedPoints;
@@ -19,19 +19,21 @@ use crate::error::{PericlesError, Result};
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ListedPoints {
-    /// Reference positions, m; components beyond the body's dimension are not used.
+    /// Reference positions, m; components beyond the dimension of the body are ignored.
     pub positions: Vec<Point>,
-    /// The block of each point: a part of the body, by number.
+    /// Block number of each point, which identifies a part of the body.
     pub blocks: Vec<u32>,
-    /// Volumes, m³: in two dimensions area times thickness, in one length times the section's area.
+    /// Volumes, m³: in two dimensions area times thickness, in one dimension length times cross-section.
     pub volumes: Vec<f64>,
 }
 
 impl ListedPoints {
-    /// The cloud of these points, in the order of a space-filling curve; [`PointCloud::user_number`] gives a point's place in this list.
+    /// Makes the cloud of these points, in the order of a space-filling curve; [`PointCloud::user_number`] returns
+    /// the index of a point in this list.
     ///
     /// # Errors
-    /// No points, lists of different lengths, numbers that are not finite, volumes that are not positive, two points at one place.
+    /// No points; lists of different lengths; numbers that are not finite; volumes that are not positive; two
+    /// points at the same position.
     pub fn cloud(&self, dimension: usize, section: f64) -> Result<PointCloud> {
         let n = self.positions.len();
         if self.blocks.len() != n || self.volumes.len() != n {
@@ -56,10 +58,10 @@ impl ListedPoints {
             .map(|cloud| cloud.listed(order, blocks))
     }
 
-    /// Two points at the same place, counted from 0: the ones listed first. None if all places differ.
+    /// Returns the first two points at the same position, counted from 0; `None` if all positions differ.
     pub fn first_twins(&self) -> Option<(usize, usize)> {
         let mut order: Vec<usize> = (0..self.positions.len()).collect();
-        // Zeros of both signs are one place.
+        // Adding 0.0 makes zeros of both signs equal.
         let key = |k: usize| self.positions[k].map(|x| x + 0.0);
         order.sort_unstable_by(|&a, &b| {
             let pairs = key(a).into_iter().zip(key(b));
@@ -95,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn two_points_at_one_place_are_refused() {
+    fn coincident_points_are_refused() {
         let listed = ListedPoints {
             positions: vec![[1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [1.0, -0.0, 0.0]],
             blocks: vec![1; 3],

@@ -1,10 +1,12 @@
-//! Points in space: clouds, regular grids, regions and named sets.
+//! Points of a body: clouds, regular and graded grids, regions and point sets.
 //!
-//! A body is a set of points with volumes. [`PointCloud`] holds it as structure of arrays; [`Grid`] makes clouds of cell
-//! centres, [`GradedGrid`] those with smaller cells in parts, [`rectangular_cells`] those of cells longer along one axis than along another, [`ListedPoints`] those of points given one by one; [`Sites`] are the places that bonds lead to; [`Region`] says which points of space belong to a hole, a set or a layer.
+//! A body is a set of points with volumes, stored in a [`PointCloud`]. [`Grid`] makes clouds of cell centres,
+//! [`GradedGrid`] grids with smaller cells in some regions, [`rectangular_cells`] grids with anisotropic spacing,
+//! and [`ListedPoints`] clouds from lists of points. [`Sites`] are the positions to which bonds lead, including
+//! periodic images. A [`Region`] selects the points of holes, sets and layers.
 //!
-//! Lengths are in metres. Bodies have dimension 1, 2 or 3; coordinates handed to regions always have three components,
-//! the missing ones zero.
+//! Lengths are in metres. Bodies have dimension 1, 2 or 3; coordinates passed to regions always have three
+//! components, of which missing ones are zero.
 
 mod cloud;
 mod curve;
@@ -30,5 +32,5 @@ pub use region::{Face, Region};
 pub use set::{check_length, check_points, check_set};
 pub use sites::Sites;
 
-/// A point or vector in space; components beyond the body's dimension are zero.
+/// A point or vector in space; components beyond the dimension of the body are zero.
 pub type Point = [f64; 3];

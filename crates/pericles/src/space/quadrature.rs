@@ -1,16 +1,17 @@
-//! Bars with quadrature nodes that are not the middles of cells.
+//! Bars with Gauss points.
 
 use super::PointCloud;
 use super::grid::whole_cells;
 use crate::error::{PericlesError, Result};
 
-/// The two Gauss–Legendre nodes of every cell of a bar, ± spacing/(2√3) about the cells' middles, each with half the cell's volume: the integral over
-/// neighbours is of fourth order for smooth integrands, with equal weights, so that the stiffness stays symmetric.
+/// Makes a bar with the two Gauss–Legendre nodes of every cell, at ± spacing/(2√3) from its centre, each with half
+/// the volume of the cell. The integral over neighbours is of fourth order for smooth integrands; weights are
+/// equal, so that the stiffness is symmetric.
 ///
-/// Nodes 2i and 2i+1 lie in cell i. They are no lattice.
+/// Nodes 2i and 2i+1 lie in cell i. They do not form a lattice.
 ///
 /// # Errors
-/// A length that is no whole number of cells.
+/// A length that is not a whole number of cells.
 pub fn gauss_bar(origin: f64, length: f64, spacing: f64, section: f64) -> Result<PointCloud> {
     let cells = whole_cells(length, spacing)?;
     const LIMIT: u64 = u32::MAX as u64 / 2 - 1;

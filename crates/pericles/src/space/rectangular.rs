@@ -1,15 +1,16 @@
-//! Boxes of cells whose sides differ.
+//! Boxes of cells with anisotropic spacing.
 
 use super::grid::{CELL_LIMIT, whole_cells};
 use super::{Lattice, Point, PointCloud, Region};
 use crate::error::{PericlesError, Result};
 
-/// The centres of equal cells, as long along each axis as `spacing` says (m), that fill a box from its lower corner and lie in no hole; x fastest.
+/// Makes the cloud of equal cells with the given spacing along each axis (m) that fill a box, starting at its lower
+/// corner, without the cells whose centre lies in a hole; x fastest.
 ///
-/// The cell size that volume corrections use is that of the cube of equal volume.
+/// Volume corrections use the size of the cube of equal volume.
 ///
 /// # Errors
-/// Sides that are no whole numbers of cells; arrays of different lengths; no cell outside the holes.
+/// Sides that are not whole numbers of cells; arrays of different lengths; no cell outside the holes.
 pub fn rectangular_cells(
     origin: Point,
     size: &[f64],
@@ -32,10 +33,10 @@ pub fn rectangular_cells(
     PointCloud::on_lattice(dimension, centre(0), lattice, section)
 }
 
-/// The numbers of the holes without a centre of these cells: they take nothing from the body.
+/// Returns the indices of the holes that contain no cell centre and thus remove nothing.
 ///
 /// # Errors
-/// As [`rectangular_cells`].
+/// Those of [`rectangular_cells`].
 pub fn idle_holes(
     origin: Point,
     size: &[f64],
@@ -53,7 +54,7 @@ pub fn idle_holes(
     Ok(idle)
 }
 
-/// The cells that fill a box.
+/// Equal cells that fill a box.
 struct BoxOfCells<'a> {
     origin: Point,
     spacing: &'a [f64],
@@ -96,7 +97,7 @@ impl<'a> BoxOfCells<'a> {
         })
     }
 
-    /// The centres, x fastest.
+    /// Centres of the cells, x fastest.
     fn centres(&self) -> impl Iterator<Item = Point> + '_ {
         (0..self.shape.iter().product()).map(|cell| self.centre(cell))
     }
@@ -126,7 +127,7 @@ mod tests {
     use crate::space::{Grid, Shape};
 
     #[test]
-    fn equal_spacings_give_the_points_of_the_grid() {
+    fn equal_spacings_reproduce_the_points_of_a_grid() {
         let (origin, size) = ([0.5, -1.0, 0.0], [1.2, 0.8, 0.6]);
         let hole = Region::Ball {
             centre: [1.0, -0.6, 0.2],
@@ -176,7 +177,7 @@ mod tests {
         assert!((cloud.volumes()[0] - 0.05).abs() < 1e-16);
         assert!((cloud.spacing() - 0.025f64.sqrt()).abs() < 1e-15);
         assert_eq!(cloud.cell_sides(), Some(&[0.25, 0.1][..]));
-        // The box that the cells fill.
+        // The box filled by the cells.
         let [low, high] = cloud.bounds();
         for c in 0..2 {
             assert!(low[c].abs() < 1e-15 && (high[c] - 1.0).abs() < 1e-15);

@@ -1,19 +1,19 @@
-//! Regions of space, from which holes, sets and layers are made.
+//! Regions of space that define holes, sets and layers.
 
 use super::Point;
 use crate::error::{PericlesError, Result};
 
-/// A face of a body's bounding box, named by its outward normal.
+/// A face of the bounding box of a body, named by its outward normal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Face {
-    /// The axis of the outward normal: 0, 1 or 2.
+    /// Axis of the outward normal: 0, 1 or 2.
     pub axis: usize,
-    /// True for the face at the axis' upper end.
+    /// True for the face at the upper end of the axis.
     pub upper: bool,
 }
 
 impl Face {
-    /// The face called `-x`, `+x`, `-y`, `+y`, `-z` or `+z`.
+    /// Returns the face with the name `-x`, `+x`, `-y`, `+y`, `-z` or `+z`.
     pub fn named(name: &str) -> Option<Self> {
         let mut letters = name.chars();
         let upper = match letters.next()? {
@@ -36,7 +36,7 @@ impl Face {
 pub enum Region {
     /// All of space.
     All,
-    /// Axis-parallel box; infinite bounds are allowed.
+    /// A box along the axes; infinite bounds are allowed.
     Box {
         /// Lower corner, m.
         min: Point,
@@ -52,7 +52,7 @@ pub enum Region {
     },
     /// Points within `radius` of the infinite line through `centre` along the coordinate axis `axis`.
     Cylinder {
-        /// A point of the axis, m.
+        /// A point on the axis, m.
         centre: Point,
         /// Coordinate axis: 0, 1 or 2.
         axis: usize,
@@ -63,10 +63,10 @@ pub enum Region {
     HalfSpace {
         /// A point of the bounding plane, m.
         point: Point,
-        /// Outward normal, any length.
+        /// Outward normal of any length.
         normal: Point,
     },
-    /// Points within `depth` of a face of the body's bounding box.
+    /// Points within `depth` of a face of the bounding box of the body.
     Layer {
         /// The face.
         face: Face,
@@ -75,7 +75,7 @@ pub enum Region {
     },
     /// Points of a 2D polygon, extended infinitely along z.
     Polygon {
-        /// Corners in order, m; the last joins the first.
+        /// Corners in order, m; the last one connects to the first.
         corners: Vec<[f64; 2]>,
     },
     /// Points in any of the regions.
@@ -87,18 +87,19 @@ pub enum Region {
 }
 
 impl Region {
-    /// The layer of a body within `depth` (m) of its face with this outward normal: `-x`, `+x`, `-y`, `+y`, `-z` or `+z`.
+    /// Layer of a body within `depth` (m) of the face with this outward normal: `-x`, `+x`, `-y`, `+y`, `-z` or
+    /// `+z`.
     ///
     /// # Errors
-    /// Another name.
+    /// A name that is not a face.
     pub fn layer(face: &str, depth: f64) -> Result<Self> {
         let face =
             Face::named(face).ok_or_else(|| PericlesError::UnknownFace { name: face.into() })?;
         Ok(Self::Layer { face, depth })
     }
 
-    /// Whether `point` lies in the region of a body whose bounding box (of its cells) is `bounds`. Points on the boundary count
-    /// as inside, up to `tolerance` (m).
+    /// Returns whether `point` lies in the region, for a body with bounding box `bounds`. Points within `tolerance`
+    /// (m) of the boundary count as inside.
     pub fn contains(&self, point: Point, bounds: &[Point; 2], tolerance: f64) -> bool {
         let inside = |region: &Region| region.contains(point, bounds, tolerance);
         match self {
@@ -127,7 +128,7 @@ impl Region {
                 height <= tolerance * length
             }
             Self::Layer { face, depth } => {
-                // Space has no other axes, and no layers along them.
+                // Axes beyond 2 do not exist, nor do layers along them.
                 let [Some(low), Some(high), Some(place)] = [
                     bounds[0].get(face.axis),
                     bounds[1].get(face.axis),
@@ -192,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn regions_combine() {
+    fn unions_intersections_and_complements_combine_regions() {
         let ball = Region::Ball {
             centre: [1.0, 0.5, 0.0],
             radius: 0.3,
@@ -210,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn polygon_is_decided_by_crossings() {
+    fn polygons_use_the_even_odd_rule() {
         let corners = vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
         let triangle = Region::Polygon { corners };
         assert!(has(&triangle, 0.3, 0.3) && !has(&triangle, 0.7, 0.7));

@@ -1,25 +1,25 @@
-//! Checks of sets of points and of arrays on points.
+//! Checks of point sets and of arrays on points.
 
 use crate::error::{PericlesError, Result};
 use crate::sum::max_norm;
 
-/// Refuses a set that is not ascending, or that names a point that a body of `points` points does not have.
+/// Checks that a set is in ascending order and contains only points of a body with `points` points.
 ///
 /// # Errors
-/// [`PericlesError::NoSuchPoint`] and [`PericlesError::BadSet`], with the text `what`.
+/// [`PericlesError::NoSuchPoint`] and [`PericlesError::BadSet`], with `what` in the message.
 pub fn check_set(what: &'static str, set: &[u32], points: usize) -> Result<()> {
     check_points(what, set, points)?;
     if set.windows(2).any(|pair| pair[0] >= pair[1]) {
-        let reason = "the points must be ascending, and each may be named once";
+        let reason = "the points must be in ascending order, each at most once";
         return Err(PericlesError::BadSet { what, reason });
     }
     Ok(())
 }
 
-/// Refuses numbers of points that a body of `points` points does not have; they may be in any order.
+/// Checks that all numbers, in any order, are points of a body with `points` points.
 ///
 /// # Errors
-/// [`PericlesError::NoSuchPoint`], with the text `what`.
+/// [`PericlesError::NoSuchPoint`], with `what` in the message.
 pub fn check_points(what: &'static str, set: &[u32], points: usize) -> Result<()> {
     match set.iter().find(|&&i| i as usize >= points) {
         Some(&point) => Err(PericlesError::NoSuchPoint {
@@ -31,10 +31,10 @@ pub fn check_points(what: &'static str, set: &[u32], points: usize) -> Result<()
     }
 }
 
-/// Refuses an array that does not have the number of entries that is needed.
+/// Checks the length of an array.
 ///
 /// # Errors
-/// [`PericlesError::WrongLength`], with the text `what`.
+/// [`PericlesError::WrongLength`], with `what` in the message.
 pub fn check_length(what: &'static str, length: usize, needed: usize) -> Result<()> {
     if length == needed {
         return Ok(());
@@ -46,9 +46,10 @@ pub fn check_length(what: &'static str, length: usize, needed: usize) -> Result<
     })
 }
 
-/// Refuses positions (m) whose rounding is not small beside the spacing (m): points would coincide or be as far apart as rounding says.
+/// Checks that the rounding of positions (m) is small compared with the spacing (m); otherwise points would
+/// coincide or have arbitrary distances.
 pub(super) fn check_resolution(positions: &[f64], spacing: f64) -> Result<()> {
-    /// As exact as a side must be a whole number of cells.
+    /// Allowed rounding relative to the spacing, as for sides that must be whole numbers of cells.
     const SHARE: f64 = 1e-6;
     let farthest = max_norm(positions);
     let resolution = f64::EPSILON * farthest;

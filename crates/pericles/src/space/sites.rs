@@ -1,4 +1,4 @@
-//! The places that bonds lead to.
+//! Sites: the positions to which bonds lead.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -7,40 +7,42 @@ use super::{Lattice, PointCloud};
 use crate::domain::Domain;
 use crate::error::{PericlesError, Result};
 
-/// The places that the bonds of a body lead to: own points, *ghosts* that other processes own, and *images* of both beyond periodic faces.
+/// The sites to which the bonds of a body lead: own points, *ghosts* owned by other processes, and *images* of both
+/// beyond periodic faces.
 ///
-/// A site stands for a point, whose displacement it takes; its position is that of the point, moved by whole periods for images. Sites are numbered in the order of the points' numbers in the whole
-/// body, those without a shift first and then shift by shift, so that the neighbours of a point come in the same order for every division among processes. One process that owns all points of a body without
-/// periodic faces has as many sites as points, and site i is point i.
+/// A site has the displacement of its point; its position is that of the point, moved by whole periods for images.
+/// Sites are numbered in the order of the point numbers in the whole body, first those without a shift and then
+/// shift by shift, so that the neighbours of a point have the same order for every division among processes. For a
+/// single process that owns all points of a body without periodic faces, site i is point i.
 #[derive(Debug, Clone)]
 pub struct Sites {
     cloud: Arc<PointCloud>,
-    /// Positions and volumes of all sites; the cloud itself where site i is point i.
+    /// Positions and volumes of all sites; the cloud itself if site i is point i.
     places: Arc<PointCloud>,
-    /// None where site i is point i.
+    /// `None` if site i is point i.
     map: Option<Map>,
 }
 
 #[derive(Debug, Clone)]
 struct Map {
-    /// Site without a shift of each point, ghosts behind own ones.
+    /// Site without a shift of each point, first own points, then ghosts.
     unmoved: Vec<u32>,
-    /// Point of each site: own ones first, ghosts behind them.
+    /// Point of each site: first own points, then ghosts.
     point: Vec<u32>,
-    /// Periods by which each site is moved.
+    /// Number of periods by which each site is moved.
     shift: Vec<[i16; 3]>,
-    /// Number of the point in the whole body, behind the number of the shift.
+    /// Number of the point in the whole body in the low bits, index of the shift in the high bits.
     number: Vec<u64>,
 }
 
 impl Sites {
-    /// Periods that bonds may lead through a body at most.
+    /// Largest number of periods that a bond may span.
     pub const PERIODS: f64 = 100.0;
 
-    /// The sites of a cloud that bonds up to this length (m) may lead to.
+    /// Makes the sites of a cloud to which bonds of length up to `reach` (m) may lead.
     ///
     /// # Errors
-    /// Bonds that lead through a periodic body more than [`Sites::PERIODS`] times.
+    /// Bonds that span more than [`Sites::PERIODS`] periods of the body.
     pub fn new(cloud: &Arc<PointCloud>, reach: f64) -> Result<Self> {
         let domain = cloud.domain();
         if domain.ghost_points() == 0 && !cloud.is_periodic() {
@@ -51,9 +53,9 @@ impl Sites {
             let shortest = sides.iter().copied().fold(f64::INFINITY, f64::min);
             if reach / shortest > Self::PERIODS {
                 return Err(PericlesError::OutOfRange {
-                    quantity: "the reach of bonds over the shortest side of the periodic body",
+                    quantity: "the length of bonds over the shortest side of the periodic body",
                     value: reach / shortest,
-                    allowed: "at most 100; bonds = \"convolution\" and \"spectral\" reach any distance",
+                    allowed: "at most 100; use bonds = \"convolution\" or \"spectral\" for bonds of any length",
                 });
             }
         }
@@ -93,7 +95,7 @@ impl Sites {
         })
     }
 
-    /// The own points alone.
+    /// The own points only.
     fn of_points(cloud: &Arc<PointCloud>) -> Self {
         Self {
             cloud: cloud.clone(),
@@ -112,12 +114,12 @@ impl Sites {
         self.places.len()
     }
 
-    /// Never true.
+    /// Returns false: there is at least one site.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Whether site i is point i.
+    /// Returns whether site i is point i.
     pub fn are_points(&self) -> bool {
         self.map.is_none()
     }
@@ -127,7 +129,7 @@ impl Sites {
         &self.places
     }
 
-    /// The site of own point k, or of a ghost, counted behind own points.
+    /// The site of own point k, or of a ghost; ghosts are counted after the own points.
     #[inline(always)]
     pub fn of_point(&self, k: usize) -> usize {
         match &self.map {
@@ -136,7 +138,7 @@ impl Sites {
         }
     }
 
-    /// The point that a site stands for; ghosts are counted behind own points.
+    /// The point of a site; ghosts are counted after the own points.
     #[inline(always)]
     pub fn point(&self, site: usize) -> usize {
         match &self.map {
@@ -145,17 +147,17 @@ impl Sites {
         }
     }
 
-    /// The own point that a site stands for; none for ghosts.
+    /// The own point of a site; `None` for ghosts.
     pub fn own_point(&self, site: usize) -> Option<usize> {
         Some(self.point(site)).filter(|&point| point < self.cloud.len())
     }
 
-    /// Periods by which a site is moved from its point.
+    /// Number of periods by which a site is moved from its point.
     pub fn shift(&self, site: usize) -> [i16; 3] {
         self.map.as_ref().map_or([0; 3], |map| map.shift[site])
     }
 
-    /// The periods of the body, m: the sides of its box.
+    /// Periods of the body, m: the sides of its box.
     pub fn periods(&self) -> [f64; 3] {
         match self.cloud.lattice() {
             Some(lattice) => lattice.sides(),
@@ -163,7 +165,8 @@ impl Sites {
         }
     }
 
-    /// A number that ascends with the sites and does not depend on the division among processes. Between sites of one shift it differs at least as much as the sites' own numbers.
+    /// A number that increases with the sites and does not depend on the division among processes. Between sites of
+    /// one shift it differs at least as much as the site numbers.
     pub fn number(&self, site: usize) -> u64 {
         match &self.map {
             None => site as u64,
@@ -171,7 +174,8 @@ impl Sites {
         }
     }
 
-    /// One value for each site, from one for each own point; none from none. Every process must ask at the same time.
+    /// Returns one value per site from one value per own point; empty if the input is empty. All processes must
+    /// call it together.
     pub fn spread<'a>(&self, of_points: &'a [f64]) -> Cow<'a, [f64]> {
         let Some(map) = self.map.as_ref().filter(|_| !of_points.is_empty()) else {
             return Cow::Borrowed(of_points);
@@ -180,7 +184,7 @@ impl Sites {
         Cow::Owned(map.point.iter().map(|&k| values[k as usize]).collect())
     }
 
-    /// A mark for each site, from one for each own point.
+    /// Returns one flag per site from one flag per own point.
     pub fn spread_marks<'a>(&self, of_points: &'a [bool]) -> Cow<'a, [bool]> {
         let Some(map) = &self.map else {
             return Cow::Borrowed(of_points);
@@ -189,7 +193,7 @@ impl Sites {
         Cow::Owned(map.point.iter().map(|&k| marks[k as usize]).collect())
     }
 
-    /// A small number for each site, from one for each own point; none from none.
+    /// Returns one byte per site from one byte per own point; empty if the input is empty.
     pub fn spread_numbers(&self, of_points: &[u8]) -> Vec<u8> {
         let numbers: Vec<f64> = of_points.iter().map(|&k| f64::from(k)).collect();
         self.spread(&numbers).iter().map(|&k| k as u8).collect()
@@ -199,7 +203,7 @@ impl Sites {
         self.cloud.domain()
     }
 
-    /// Memory beside the points' own, bytes.
+    /// Memory in addition to that of the cloud, bytes.
     pub fn bytes(&self) -> usize {
         let Some(map) = &self.map else { return 0 };
         let places = (self.places.dimension() + 1) * size_of::<f64>() + size_of::<u32>();
@@ -208,9 +212,10 @@ impl Sites {
     }
 }
 
-/// The points of a periodic lattice and their images within `reach` of the box, shift by shift: that of no shift first.
+/// Returns the points of a periodic lattice and their images within `reach` of the box, shift by shift, starting
+/// without a shift.
 fn images(dimension: usize, lattice: &Lattice, reach: f64) -> Vec<Vec<([i16; 3], u32)>> {
-    // Rounding of the quotient must not lose the longest bonds.
+    // The margin keeps rounding of the quotient from losing the longest bonds.
     let cells = (lattice.spacing).map(|dx| (reach / dx * (1.0 + 1e-9)).floor() as i32);
     let sides = lattice.shape.map(|nodes| nodes as i32);
     let most: [i32; 3] = std::array::from_fn(|c| match c < dimension {

@@ -1,5 +1,6 @@
-//! The semi-discrete equation of motion: everything an integrator steps.
+//! The semi-discrete equation of motion, which integrators advance.
 
+mod booking;
 mod stored;
 mod supports;
 
@@ -10,16 +11,16 @@ use crate::archive::Counter;
 use crate::boundary::{Boundary, Exchange, Load, PrescribedMotion, Stage, Stiffness};
 use crate::domain::Domain;
 use crate::error::{PericlesError, Result, positive};
-use crate::operator::{Force, Forces, On};
+use crate::operator::{Force, Forces, PointSubset};
 use crate::parallel::{for_each_chunk, for_each_entry};
 use crate::scalar::PointScalar;
 use crate::space::{PointCloud, check_length};
-use crate::step_end::{Path, StepEnd};
+use crate::step_end::StepEnd;
 
-/// ρ u_tt = f(u) + b(t) with prescribed motions and boundaries.
+/// The equation of motion ρ u_tt = f(u) + b(t) with constraints and boundaries.
 ///
-/// Integrators call [`System::acceleration`] at stages and [`System::end_step`] at the end of steps; they hold no physics of their own. Schemes with zones call
-/// [`System::end_step_on`] at the end of sub-steps.
+/// Integrators call [`System::acceleration`] at stages and [`System::end_step`] at the end of steps; they contain
+/// no physics. Multirate schemes call [`System::end_step_on`] at the end of sub-steps.
 pub struct System {
     cloud: Arc<PointCloud>,
     forces: Forces,
@@ -33,10 +34,10 @@ pub struct System {
 }
 
 impl System {
-    /// A free body.
+    /// A free body without loads.
     ///
     /// # Errors
-    /// A force made for another body; densities that are not positive, or not one a point.
+    /// A force made for another body; densities that are not positive, or not one per point.
     pub fn new(
         cloud: Arc<PointCloud>,
         operator: Box<dyn Force>,
@@ -70,7 +71,7 @@ impl System {
     /// Adds a load.
     ///
     /// # Errors
-    /// Points that the body does not have, numbers that are not one for each loaded point and axis.
+    /// Points that the body does not have; values that are not one per loaded point and axis.
     pub fn add_load(&mut self, load: Load) -> Result<()> {
         load.check(self.dimension(), self.points())?;
         self.loads.push(load);
@@ -82,10 +83,11 @@ impl System {
         self.boundaries.push(boundary);
     }
 
-    /// Adds a prescribed motion.
+    /// Adds a constraint.
     ///
     /// # Errors
-    /// Points or axes that the body does not have, numbers that are not one for each point; a point and axis whose motion is prescribed already.
+    /// Points or axes that the body does not have; values that are not one per point; a component that another
+    /// constraint prescribes.
     pub fn add_motion(&mut self, motion: PrescribedMotion) -> Result<()> {
         motion.check(self.dimension(), self.points())?;
         for other in &self.motions {
@@ -109,7 +111,7 @@ impl System {
         Ok(())
     }
 
-    /// Takes `u` as the displacement at the start, to which prescribed velocities add.
+    /// Sets the initial displacement, to which prescribed velocities add.
     pub(crate) fn start_from(&mut self, u: &[f64]) {
         let n = self.points();
         for motion in &mut self.motions {
@@ -122,35 +124,35 @@ impl System {
         &self.cloud
     }
 
-    /// The division of the body among processes.
+    /// The domain: how the body is divided among processes.
     pub fn domain(&self) -> &Domain {
         self.cloud.domain()
     }
 
-    /// Adds a force between the points of the body, beside those that it has.
+    /// Adds a force between the points of the body to those it has.
     ///
     /// # Errors
-    /// A force on another number of points, or in another dimension.
+    /// A force on another number of points or in another dimension.
     pub fn add_force(&mut self, force: Box<dyn Force>) -> Result<()> {
         self.forces.add(force)
     }
 
-    /// The sum of the internal forces.
+    /// The sum of the internal forces as one force.
     pub fn operator(&self) -> &dyn Force {
         self.forces.sum()
     }
 
-    /// The internal forces one by one.
+    /// The internal forces.
     pub fn forces(&self) -> impl Iterator<Item = &dyn Force> {
         self.forces.iter()
     }
 
-    /// The sum of the internal forces, to be changed.
+    /// The sum of the internal forces, mutable.
     pub(crate) fn operator_mut(&mut self) -> &mut dyn Force {
         self.forces.sum_mut()
     }
 
-    /// Books work (J) and impulse (N s) of supports.
+    /// Adds work (J) and impulse (N s) of constraints to the energy balance.
     pub(crate) fn book_reaction(&mut self, work: f64, impulse: [f64; 3]) {
         self.ledger.book(work, impulse);
     }
@@ -160,7 +162,7 @@ impl System {
         &self.density
     }
 
-    /// The prescribed motions.
+    /// The constraints.
     pub fn motions(&self) -> &[PrescribedMotion] {
         &self.motions
     }
@@ -170,22 +172,22 @@ impl System {
         &self.loads
     }
 
-    /// Work and impulse so far.
+    /// Work and impulse of external forces so far.
     pub fn ledger(&self) -> &Ledger {
         &self.ledger
     }
 
-    /// Points whose force has been evaluated so far: an evaluation of the whole body counts as many as it has points.
+    /// Number of force evaluations at points so far: one evaluation of the whole body counts once per point.
     pub fn evaluated_points(&self) -> u64 {
         self.evaluated.get()
     }
 
-    /// Sets the count of a step that was undone back.
+    /// Resets the number of evaluations after a step is undone.
     pub(crate) fn set_evaluated_points(&mut self, points: u64) {
         self.evaluated = points.into();
     }
 
-    /// Whether there are boundaries with a state of their own.
+    /// Returns whether there are boundaries with a state of their own.
     pub fn has_boundaries(&self) -> bool {
         !self.boundaries.is_empty()
     }
@@ -205,26 +207,36 @@ impl System {
         self.cloud.dimension()
     }
 
-    /// Acceleration at a stage: internal force and loads over density; what boundaries give, by the stage's velocity `v` where there are any ([`System::has_boundaries`]); prescribed where motion is prescribed. Entries of other points stay.
-    pub fn acceleration(&mut self, t: f64, u: &[f64], v: &[f64], on: On<'_>, out: &mut [f64]) {
+    /// Computes the acceleration at a stage: internal force and loads over density, plus that of boundaries, for
+    /// which `v` is the velocity of the stage (needed only if [`System::has_boundaries`]); prescribed where motion
+    /// is prescribed. Entries of points outside `on` are unchanged.
+    pub fn acceleration(
+        &mut self,
+        t: f64,
+        u: &[f64],
+        v: &[f64],
+        on: PointSubset<'_>,
+        out: &mut [f64],
+    ) {
         self.free_acceleration(t, u, &on, out);
         self.finish(t, u, v, &on, out);
     }
 
-    /// The same at the end of a step with velocity `v`: decides breaking, books the work and impulse of the step, and lets boundaries with a memory go on.
+    /// Computes the acceleration at the end of a step with velocity `v`: breaks bonds, updates boundaries with
+    /// memory, and adds work and impulse of the step to the energy balance.
     pub fn end_step(&mut self, step: &StepEnd<'_>, v: &[f64], out: &mut [f64]) {
-        // With the bonds that act within the step, before it is decided which of them break at its end.
+        // With the bonds that acted within the step, before those that break at its end are removed.
         let heating = self.operator().heating(step);
-        self.end_step_on(step, &On::All, out);
+        self.end_step_on(step, &PointSubset::All, out);
         self.ledger.book(heating, [0.0; 3]);
         self.book_step(step, out);
         self.accept_boundaries(step);
-        self.finish(step.t, step.u, v, &On::All, out);
+        self.finish(step.t, step.u, v, &PointSubset::All, out);
     }
 
-    /// At the end of a sub-step of the points named by `on`: decides breaking of their bonds and evaluates f/ρ for them. Books nothing, and leaves prescribed
-    /// motion to [`System::finish`].
-    pub fn end_step_on(&mut self, step: &StepEnd<'_>, on: &On<'_>, out: &mut [f64]) {
+    /// Ends a sub-step of the points of `on`: breaks their bonds and evaluates f/ρ. Does not update the energy
+    /// balance and leaves prescribed motion to [`System::finish`].
+    pub fn end_step_on(&mut self, step: &StepEnd<'_>, on: &PointSubset<'_>, out: &mut [f64]) {
         self.zero(on, out);
         self.count(on);
         self.operator_mut().end_step(step, on.clone(), out);
@@ -232,11 +244,12 @@ impl System {
         self.divide_by_density(on, out);
     }
 
-    /// [`System::end_step_on`] of the bonds whose other end is marked in `partners`; loads are part of it if `with_loads`.
+    /// As [`System::end_step_on`], for the bonds whose other end is marked in `partners`; loads are included if
+    /// `with_loads`.
     pub fn end_step_on_from(
         &mut self,
         step: &StepEnd<'_>,
-        on: &On<'_>,
+        on: &PointSubset<'_>,
         partners: &[bool],
         with_loads: bool,
         out: &mut [f64],
@@ -252,13 +265,13 @@ impl System {
         self.divide_by_density(on, out);
     }
 
-    fn count(&mut self, on: &On<'_>) {
+    fn count(&mut self, on: &PointSubset<'_>) {
         let points = on.count(self.points());
         self.evaluated.add(points as u64);
     }
 
-    /// f/ρ with loads, for the points named by `on`, whether or not their motion is prescribed.
-    pub fn free_acceleration(&mut self, t: f64, u: &[f64], on: &On<'_>, out: &mut [f64]) {
+    /// Computes f/ρ including loads on the points of `on`, whether or not their motion is prescribed.
+    pub fn free_acceleration(&mut self, t: f64, u: &[f64], on: &PointSubset<'_>, out: &mut [f64]) {
         self.zero(on, out);
         self.count(on);
         self.operator().add_force(t, u, on.clone(), out);
@@ -266,12 +279,13 @@ impl System {
         self.divide_by_density(on, out);
     }
 
-    /// [`System::free_acceleration`] by the bonds whose other end is marked in `partners`; loads are part of it if `with_loads`.
+    /// As [`System::free_acceleration`], for the bonds whose other end is marked in `partners`; loads are included
+    /// if `with_loads`.
     pub fn free_acceleration_from(
         &mut self,
         t: f64,
         u: &[f64],
-        on: &On<'_>,
+        on: &PointSubset<'_>,
         partners: &[bool],
         with_loads: bool,
         out: &mut [f64],
@@ -287,8 +301,8 @@ impl System {
         self.divide_by_density(on, out);
     }
 
-    /// Puts prescribed accelerations and those of boundaries in place of f/ρ, for the points named by `on`.
-    pub fn finish(&mut self, t: f64, u: &[f64], v: &[f64], on: &On<'_>, out: &mut [f64]) {
+    /// Completes f/ρ on the points of `on` with prescribed accelerations and those of boundaries.
+    pub fn finish(&mut self, t: f64, u: &[f64], v: &[f64], on: &PointSubset<'_>, out: &mut [f64]) {
         for motion in &self.motions {
             motion.accelerate(t, on, self.cloud.len(), out);
         }
@@ -303,7 +317,7 @@ impl System {
         });
     }
 
-    /// Lets boundaries take an accepted state, and books what they did.
+    /// Updates boundaries with an accepted state and adds their work and impulse to the energy balance.
     fn accept_boundaries(&mut self, step: &StepEnd<'_>) {
         let mut exchanges: Vec<Exchange> = Vec::new();
         self.with_boundaries(step.t, |boundary, stiffness| {
@@ -314,7 +328,7 @@ impl System {
         }
     }
 
-    /// Calls `act` for every boundary, with what it may ask of the forces at time t.
+    /// Calls `act` for every boundary, with access to the stiffness at time t.
     fn with_boundaries(&mut self, t: f64, mut act: impl FnMut(&mut dyn Boundary, Stiffness<'_>)) {
         if self.boundaries.is_empty() {
             return;
@@ -322,7 +336,7 @@ impl System {
         let mut boundaries = std::mem::take(&mut self.boundaries);
         let product = |u: &[f64], direction: &[f64], out: &mut [f64]| {
             self.operator().tangent_into(t, u, direction, out);
-            self.divide_by_density(&On::All, out);
+            self.divide_by_density(&PointSubset::All, out);
             for_each_chunk(out, &|_, chunk| chunk.iter_mut().for_each(|x| *x = -*x));
             self.hold_at(t, out);
         };
@@ -337,43 +351,43 @@ impl System {
         self.boundaries = boundaries;
     }
 
-    /// Notes the reactions of the initial state.
+    /// Stores the reactions of the initial state.
     pub fn start(&mut self, t: f64, u: &[f64], v: &[f64], out: &mut [f64]) {
         let start = StepEnd::start(t, u, v);
-        self.free_acceleration(t, u, &On::All, out);
+        self.free_acceleration(t, u, &PointSubset::All, out);
         self.book_step(&start, out);
         self.accept_boundaries(&start);
-        self.finish(t, u, v, &On::All, out);
+        self.finish(t, u, v, &PointSubset::All, out);
     }
 
-    /// Internal force and loads at displacement u, N/m³.
+    /// Computes internal force and loads at displacement u, N/m³.
     pub fn force_density_into(&self, t: f64, u: &[f64], out: &mut [f64]) {
-        self.zero(&On::All, out);
-        self.operator().add_force(t, u, On::All, out);
-        self.add_loads(t, &On::All, out);
+        self.zero(&PointSubset::All, out);
+        self.operator().add_force(t, u, PointSubset::All, out);
+        self.add_loads(t, &PointSubset::All, out);
     }
 
-    /// Loads at time t, N/m³.
+    /// Computes loads at time t, N/m³.
     pub fn load_density_into(&self, t: f64, out: &mut [f64]) {
-        self.zero(&On::All, out);
-        self.add_loads(t, &On::All, out);
+        self.zero(&PointSubset::All, out);
+        self.add_loads(t, &PointSubset::All, out);
     }
 
-    /// Loads over density at time t, m/s².
+    /// Computes loads over density at time t, m/s².
     pub fn external_acceleration_into(&self, t: f64, out: &mut [f64]) {
-        self.zero(&On::All, out);
-        self.add_loads(t, &On::All, out);
-        self.divide_by_density(&On::All, out);
+        self.zero(&PointSubset::All, out);
+        self.add_loads(t, &PointSubset::All, out);
+        self.divide_by_density(&PointSubset::All, out);
     }
 
-    /// The mass of every unknown, kg, component-major.
+    /// Mass of every unknown, kg, component-major.
     pub fn masses(&self) -> Vec<f64> {
         let n = self.points();
         let mass = |entry: usize| self.density.at(entry % n) * self.cloud.volumes()[entry % n];
         (0..self.dimension() * n).map(mass).collect()
     }
 
-    /// K d / ρ at displacement u, with prescribed entries held: the operator of the linearised free vibration.
+    /// Computes K d / ρ at displacement u, zero on prescribed entries: the operator of linearised free vibration.
     pub fn vibration_into(&self, u: &[f64], direction: &[f64], out: &mut [f64]) {
         self.free_vibration_into(u, direction, out);
         self.hold(out);
@@ -384,42 +398,8 @@ impl System {
             Some(linear) => linear.apply_into(direction, out),
             None => self.operator().tangent_into(0.0, u, direction, out),
         }
-        self.divide_by_density(&On::All, out);
+        self.divide_by_density(&PointSubset::All, out);
         for_each_chunk(out, &|_, chunk| chunk.iter_mut().for_each(|x| *x = -*x));
-    }
-
-    /// Books a load step from one static state to another: loads and supports act as the mean of both ends, without inertia. With a length of zero they do not change on the way.
-    /// `work` is for accelerations.
-    pub fn book_equilibrium(&mut self, step: &StepEnd<'_>, work: &mut [f64]) {
-        self.free_acceleration(step.t, step.u, &On::All, work);
-        let n = self.points();
-        for motion in &self.motions {
-            motion.add_acceleration(step.t, n, work);
-        }
-        self.book_heating(step);
-        self.book_step(step, work);
-    }
-
-    /// Books the work of changing temperatures within a step that does not end by [`System::end_step`].
-    pub(crate) fn book_heating(&mut self, step: &StepEnd<'_>) {
-        let work = self.operator().heating(step);
-        self.ledger.book(work, [0.0; 3]);
-    }
-
-    /// Notes the reactions of supports to the internal forces alone at displacement u: those of a body that no load acts on yet and that is not heated yet. `work` is for accelerations.
-    pub fn note_unloaded(&mut self, t: f64, u: &[f64], work: &mut [f64]) {
-        self.zero(&On::All, work);
-        self.count(&On::All);
-        let is_heated = self.operator().capabilities().thermal.is_some();
-        let unheated = if is_heated { f64::NEG_INFINITY } else { t };
-        self.operator().add_force(unheated, u, On::All, work);
-        self.divide_by_density(&On::All, work);
-        let n = self.points();
-        let density = |i: usize| self.density.at(i);
-        for motion in &mut self.motions {
-            motion.add_acceleration(t, n, work);
-            motion.account(t, 0.0, n, work, None, (&density, &self.cloud));
-        }
     }
 
     /// Kinetic energy, J.
@@ -444,47 +424,23 @@ impl System {
         })
     }
 
-    fn zero(&self, on: &On<'_>, out: &mut [f64]) {
+    fn zero(&self, on: &PointSubset<'_>, out: &mut [f64]) {
         for_each_entry(on, self.points(), out, &|_, x| *x = 0.0);
     }
 
-    fn add_loads(&self, t: f64, on: &On<'_>, out: &mut [f64]) {
+    fn add_loads(&self, t: f64, on: &PointSubset<'_>, out: &mut [f64]) {
         for load in &self.loads {
             load.add_force(t, on, self.points(), self.dimension(), out);
         }
     }
 
-    fn divide_by_density(&self, on: &On<'_>, out: &mut [f64]) {
+    fn divide_by_density(&self, on: &PointSubset<'_>, out: &mut [f64]) {
         let n = self.points();
         match &self.density {
             PointScalar::Uniform(density) => for_each_entry(on, n, out, &|_, x| *x /= density),
             PointScalar::PerPoint(densities) => {
                 for_each_entry(on, n, out, &|i, x| *x /= densities[i]);
             }
-        }
-    }
-
-    /// Books the work and impulse of a step; `acceleration` are the free accelerations f/ρ of all points at its end.
-    pub fn book_step(&mut self, step: &StepEnd<'_>, acceleration: &[f64]) {
-        let n = self.points();
-        for load in &self.loads {
-            self.ledger.book_load(step, load, &self.cloud);
-        }
-        let density = |i: usize| self.density.at(i);
-        let chord = match step.path {
-            Path::Chord { u, .. } => Some([u, step.u]),
-            _ => None,
-        };
-        for motion in &mut self.motions {
-            let (work, impulse) = motion.account(
-                step.t,
-                step.dt,
-                n,
-                acceleration,
-                chord,
-                (&density, &self.cloud),
-            );
-            self.ledger.book(work, impulse);
         }
     }
 }

@@ -1,10 +1,10 @@
-//! What a checkpoint keeps of a system.
+//! The state of a system in checkpoints.
 
 use super::System;
 use crate::accounts::Ledger;
 
 crate::saved! {
-    impl Saved for System {
+    impl Checkpointed for System {
         forces: part,
         motions: under("motion"),
         boundaries: part,

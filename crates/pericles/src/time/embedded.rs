@@ -1,24 +1,26 @@
-//! Runge–Kutta with a step that follows the error.
+//! Runge–Kutta with error control.
 
 use rayon::prelude::*;
 
 use super::runge_kutta::{Stages, StepForm};
 use super::zone::{Sum, Zone};
 use super::{Integrator, State, Tableau};
-use crate::archive::{Archive, Counter, Saved, Values};
+use crate::archive::{Archive, Checkpointed, Counter, Values};
 use crate::compatibility::{Need, Requirement, require};
 use crate::error::{PericlesError, Result, positive};
 use crate::interrupt::Interrupt;
-use crate::operator::On;
+use crate::operator::PointSubset;
 use crate::parallel::{BLOCK, for_each_chunk};
 use crate::sum::max_norm;
 use crate::system::System;
 
-/// The Dormand–Prince pair with local extrapolation: within each step of the run as many sub-steps as the tolerance asks for.
+/// The Dormand–Prince pair with local extrapolation: within each step of the run, as many sub-steps as the
+/// tolerance requires.
 ///
-/// The error of a sub-step h is the difference of the two methods; it is accepted if max|e_u| ≤ tolerance · max|u| and the same for
-/// v, and the next is h · 0.9 · error^(−1/5), within [0.2, 5] (Hairer, Nørsett & Wanner, II.4). Seven evaluations a sub-step: the end of the step serves the
-/// estimate, and once more after breaking is decided there. The proposed step is carried from step to step.
+/// The error of a sub-step h is the difference of the two methods. A sub-step is accepted if max|e_u| ≤ tolerance ·
+/// max|u| and likewise for v; the next one is h · 0.9 · error^(−1/5), with a factor within [0.2, 5] (Hairer,
+/// Nørsett & Wanner, II.4). A sub-step costs seven evaluations: the last stage serves the error estimate, and is
+/// evaluated again after breaking. The proposed sub-step is carried over to the next step.
 pub struct AdaptiveRungeKutta {
     tolerance: f64,
     form: StepForm,
@@ -26,39 +28,40 @@ pub struct AdaptiveRungeKutta {
     error: [Vec<f64>; 2],
     zone: Zone,
     stage: Vec<f64>,
-    /// Velocity of a stage, where boundaries ask for it.
+    /// Velocity of a stage, if boundaries need it.
     velocity: Vec<f64>,
     a: Vec<Vec<f64>>,
     next: [Vec<f64>; 2],
-    /// The proposed sub-step, s; none before the first.
+    /// Proposed sub-step, s; `None` before the first.
     proposed: Option<f64>,
     accepted: Counter,
     rejected: Counter,
 }
 
-/// What a step is multiplied with at least and at most, and the safety factor.
+/// Smallest and largest factor between consecutive sub-steps, and safety factor.
 const SHRINK: f64 = 0.2;
 const GROW: f64 = 5.0;
 const SAFETY: f64 = 0.9;
-/// Sub-steps smaller than this part of a step are given up.
+/// Smallest sub-step, as a fraction of the step.
 const SMALLEST: f64 = 1e-9;
 
-/// The smallest tolerance with forces in single precision, whose rounding is up to 2e-5 of the largest where points are nearly in equilibrium.
+/// Smallest tolerance with forces in single precision, whose rounding is up to 2e-5 of the largest force where
+/// points are nearly in equilibrium.
 const SMALLEST_IN_FLOATS: f64 = 1e-5;
 
 const NAME: &str = "dormand-prince";
 
 impl AdaptiveRungeKutta {
-    /// What it needs of a system.
+    /// Requirements on the system.
     pub const REQUIREMENTS: &'static [Requirement] = &[Requirement {
         need: Need::NoMemory,
-        reason: "the kernels of a boundary with a memory are made for steps of one length, and its steps have many; use velocity-verlet",
+        reason: "its steps vary in length, but a boundary with memory is made for one step length; use velocity-verlet",
     }];
 
-    /// The scheme with a relative tolerance per sub-step.
+    /// Makes the scheme with a relative tolerance per sub-step.
     ///
     /// # Errors
-    /// A tolerance that is not positive; a body with boundaries that keep a state: sub-steps that are tried and rejected would disturb it.
+    /// A tolerance that is not positive; boundaries with memory, whose state rejected sub-steps would disturb.
     pub fn new(tolerance: f64, system: &System) -> Result<Self> {
         positive("the tolerance of the adaptive step", tolerance)?;
         let in_floats = system.operator().capabilities().single_precision;
@@ -95,12 +98,12 @@ impl AdaptiveRungeKutta {
         })
     }
 
-    /// Sub-steps accepted and rejected so far.
+    /// Numbers of accepted and rejected sub-steps so far.
     pub fn sub_steps(&self) -> (u64, u64) {
         (self.accepted.get(), self.rejected.get())
     }
 
-    /// Tries a sub-step: leaves its end in `next` and returns its error over the tolerance.
+    /// Tries a sub-step: stores its end in `next` and returns its error divided by the tolerance.
     fn attempt(&mut self, system: &mut System, state: &State, h: f64) -> f64 {
         let State { t, u, v, a, .. } = state;
         let (n, domain) = (system.points(), system.domain().clone());
@@ -122,7 +125,13 @@ impl AdaptiveRungeKutta {
                     .stage_velocity(i, h, known)
                     .onto(v, &self.zone, n, velocity);
             }
-            system.acceleration(t_stage, &self.stage, velocity, On::All, &mut later[0]);
+            system.acceleration(
+                t_stage,
+                &self.stage,
+                velocity,
+                PointSubset::All,
+                &mut later[0],
+            );
         }
         let known = Stages {
             first: a,
@@ -157,7 +166,7 @@ fn zero(array: &mut [f64]) {
     for_each_chunk(array, &|_, chunk| chunk.fill(0.0));
 }
 
-/// max |x|; infinite if an entry is not a number.
+/// Returns max |x|; infinite if an entry is NaN.
 fn largest(array: &[f64]) -> f64 {
     let of_chunk = |chunk: &[f64]| {
         let max = max_norm(chunk);
@@ -190,12 +199,12 @@ impl Integrator for AdaptiveRungeKutta {
         5
     }
 
-    /// The step is chosen by the error, which an unstable step would make large.
+    /// None: the error control reduces a step that would be unstable.
     fn stability_limit(&self) -> Option<f64> {
         None
     }
 
-    /// Its own sub-steps are accepted one by one.
+    /// Sub-steps are accepted one by one.
     fn changes_within_step(&self) -> bool {
         true
     }
@@ -208,12 +217,12 @@ impl Integrator for AdaptiveRungeKutta {
         interrupt: Interrupt<'_>,
     ) -> Result<()> {
         let whole = t_next - state.t;
-        // The first guess is small, and the controller finds its step within a few.
+        // The first guess is small; the controller adapts it within a few sub-steps.
         let mut h = self.proposed.unwrap_or(1e-3 * whole);
         loop {
             interrupt.poll()?;
             let left = t_next - state.t;
-            // What would leave less than a hundredth of a step is stretched to the end.
+            // A remainder below a hundredth of a sub-step is added to the last one.
             let last = h >= 0.99 * left;
             let try_h = if last { left } else { h };
             let error = self.attempt(system, state, try_h);
@@ -235,7 +244,7 @@ impl Integrator for AdaptiveRungeKutta {
             system.constrain(t, u_next, v_next);
             system.constrain_velocity(t, v_next);
             state.complete(system, &mut self.next, t, try_h);
-            // A sub-step cut short by the end of the step says little about the next.
+            // A sub-step shortened by the end of the step is no estimate for the next.
             h = if last {
                 h.max(try_h * factor)
             } else {
@@ -251,7 +260,7 @@ impl Integrator for AdaptiveRungeKutta {
     }
 }
 
-impl Saved for AdaptiveRungeKutta {
+impl Checkpointed for AdaptiveRungeKutta {
     fn save(&self, archive: &mut Archive) {
         let Self {
             proposed,

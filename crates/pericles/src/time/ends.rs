@@ -1,16 +1,17 @@
-//! Boundaries that are part of the step to be found.
+//! Boundaries that act within an implicit step.
 
-use crate::boundary::WithinStep;
+use crate::boundary::ImplicitBoundary;
 use crate::system::System;
 
-/// The boundaries' parts in a step; each has one where a scheme needs [`BoundariesWithinStep`](crate::Need::BoundariesWithinStep).
-fn parts(system: &System) -> impl Iterator<Item = &dyn WithinStep> {
+/// Actions of the boundaries within a step; all have one if the scheme requires
+/// [`BoundariesWithinStep`](crate::Need::BoundariesWithinStep).
+fn parts(system: &System) -> impl Iterator<Item = &dyn ImplicitBoundary> {
     system
         .boundaries()
         .filter_map(|boundary| boundary.within_step())
 }
 
-/// Adds what boundaries give at the middle of the coming step to a body displaced by `u` there.
+/// Adds the acceleration by boundaries at the middle of the next step, where the displacement is `u`.
 pub(super) fn add_middle(system: &System, u: &[f64], out: &mut [f64]) {
     parts(system).for_each(|part| part.add_middle(u, out));
 }
@@ -20,7 +21,7 @@ pub(super) fn add_stiffness(system: &System, u: &[f64], out: &mut [f64]) {
     parts(system).for_each(|part| part.add_stiffness(u, out));
 }
 
-/// `a` without what boundaries are part of it.
+/// Computes `a` without the part of the boundaries.
 pub(super) fn without_present(system: &System, a: &[f64], out: &mut [f64]) {
     out.fill(0.0);
     parts(system).for_each(|part| part.add_present(out));

@@ -1,43 +1,43 @@
-//! The choice of the points that take the fine step, and what is wrong with a choice.
+//! Selection of the points with the fine step, and its errors.
 
 use crate::error::{PericlesError, Result};
 use crate::operator::LocalForce;
 use crate::space::{PointCloud, PointSet, check_points};
 
-/// The points that take the fine step.
+/// The points with the fine step.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Fine {
-    /// These sets, from start to end; they may not overlap.
+    /// These sets during the whole run; they must not overlap.
     Fixed(Vec<PointSet>),
-    /// Those near to where bonds break or are about to.
+    /// Points near bonds that break or are about to break.
     Adaptive(Follow),
 }
 
-/// How the fine region follows damage and stretch.
+/// Criterion by which the fine region follows damage and stretch.
 ///
-/// Every so many coarse steps a point is a start point if its damage grew since the last look, or if one of its bonds is
-/// stretched beyond `threshold` of the critical stretch. It stays one for `hold` looks more, so that a region that comes and goes does not switch to and fro. Fine
-/// is everything within `layers` families of a start point.
+/// At regular checks a point becomes a seed if its damage has grown since the last check, or if one of its bonds is
+/// stretched beyond `threshold` times the critical stretch. It remains a seed for `keep_checks` further checks, so
+/// that the region does not switch on and off. All points within `layers` families of a seed are fine.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Follow {
-    /// Coarse steps between two looks.
+    /// Number of coarse steps between checks.
     pub every: u32,
-    /// Part of the critical stretch beyond which a bond is about to break.
+    /// Fraction of the critical stretch above which a bond is about to break.
     pub threshold: f64,
-    /// Families around start points.
+    /// Number of families around seeds.
     pub layers: u32,
-    /// Looks that a start point outlasts its cause.
-    pub hold: u32,
+    /// Number of further checks for which a point remains a seed.
+    pub keep_checks: u32,
 }
 
-/// Four steps, 0.85 of the critical stretch, two families; one look of hysteresis.
+/// Checks every four steps, 0.85 of the critical stretch, two families, one further check.
 impl Default for Follow {
     fn default() -> Self {
         Self {
             every: 4,
             threshold: 0.85,
             layers: 2,
-            hold: 1,
+            keep_checks: 1,
         }
     }
 }
@@ -54,34 +54,34 @@ pub(super) fn check(follow: &Follow) -> Result<()> {
         return refuse(
             "the stretch threshold of the fine region",
             follow.threshold,
-            "a part of the critical stretch, above 0 and below 1 (usual: 0.85)",
+            "a fraction of the critical stretch, above 0 and below 1 (usual: 0.85)",
         );
     }
     if follow.every < 1 {
         return refuse(
-            "the number of steps between two looks",
+            "the number of steps between checks of the fine region",
             f64::from(follow.every),
             "at least 1",
         );
     }
     if follow.layers < 1 {
         return refuse(
-            "the number of families around start points",
+            "the number of families around seed points",
             f64::from(follow.layers),
             "at least 1 (usual: 2)",
         );
     }
-    if follow.hold > 200 {
+    if follow.keep_checks > 200 {
         return refuse(
-            "the number of looks a start point outlasts its cause",
-            f64::from(follow.hold),
+            "the number of further checks for which a point remains a seed",
+            f64::from(follow.keep_checks),
             "at most 200",
         );
     }
     Ok(())
 }
 
-/// Marks the points of fixed regions.
+/// Marks the points of fixed fine regions.
 pub(super) fn mark_regions(
     cloud: &PointCloud,
     force: &dyn LocalForce,
@@ -111,7 +111,7 @@ pub(super) fn mark_regions(
     Ok(())
 }
 
-/// Along every axis a region is as long as its longest bond, unless the body ends there.
+/// Checks that a region is at least as thick as its longest bond along every axis, unless the body ends there.
 fn thick_enough(
     cloud: &PointCloud,
     force: &dyn LocalForce,

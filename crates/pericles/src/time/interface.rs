@@ -1,36 +1,39 @@
-//! What the two steps tell each other: predicted fine points for coarse stages, interpolated coarse points for fine stages.
+//! Coupling of the two steps of multirate schemes: predicted fine points for coarse stages, interpolated coarse
+//! points for fine stages.
 
 use super::Tableau;
 use super::runge_kutta::Stages;
 use super::zone::Sum;
-use crate::archive::{Archive, Saved, Values};
+use crate::archive::{Archive, Checkpointed, Values};
 use crate::error::Result;
 
-/// How displacements of fine points are guessed at the stages of the coarse step. Order r needs an error of O(dt^r) only.
+/// Prediction of the displacements of fine points at the stages of the coarse step. For order r an error of O(dt^r)
+/// is sufficient.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Predictor {
-    /// u + x v + x²/2 a (+ x³/6 (a − a₋₁)/dt for order four): the acceleration at the start of the step is known. Stable up to the full limit of the
-    /// method.
+    /// u + x v + x²/2 a (+ x³/6 (a − a₋₁)/dt for order four), with the known acceleration at the start of the step.
+    /// Stable up to the full limit of the method.
     #[default]
     Structured,
-    /// Derivatives of the velocity from backward differences, as in the method's first description (Liu, Sun, Tian, Don & Ju 2024). Weakly unstable: keep ω dt
-    /// below 0.5, and do not use it for long runs.
+    /// Derivatives of the velocity from backward differences, as in the original method (Liu, Sun, Tian, Don & Ju
+    /// 2024). Weakly unstable: keep ω dt below 0.5 and do not use it for long runs.
     BackwardDifference,
 }
 
-/// How displacements of coarse points are known at the stages of fine steps.
+/// Interpolation of the displacements of coarse points at the stages of fine steps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Interpolant {
     /// The cubic through displacements and velocities at both ends.
     #[default]
     Hermite,
-    /// The stages of the coarse step, weighed to give values of the method's order in between, as in the method's first description. Growth below the
-    /// stable limit was seen on one of two bodies whose fine points are stiffer (RK4, M = 4, sixteen times, at ω dt = 2.4 of 2.83).
+    /// The stages of the coarse step, weighted to give intermediate values of the order of the method, as in the
+    /// original method. Growth below the stability limit was observed on one of two bodies with stiffer fine points
+    /// (RK4, M = 4, sixteen-fold stiffness, at ω dt = 2.4 of 2.83).
     Stages,
 }
 
 impl Predictor {
-    /// Name as in decks.
+    /// Name in decks.
     pub fn name(self) -> &'static str {
         match self {
             Self::Structured => "structured",
@@ -38,7 +41,7 @@ impl Predictor {
         }
     }
 
-    /// Earlier levels that are needed.
+    /// Number of earlier levels that are needed.
     pub(super) fn levels(self, order: u32) -> usize {
         match self {
             Self::Structured => order as usize - 3,
@@ -46,7 +49,7 @@ impl Predictor {
         }
     }
 
-    /// u(x) − u for a time x after the start of a step, from the state there and from history.
+    /// Returns u(x) − u for a time x after the start of a step, from the state there and from history.
     pub(super) fn at<'a>(
         self,
         order: u32,
@@ -69,7 +72,7 @@ impl Predictor {
                 sum.plus(slope, v).plus(-slope, &past[0].array)
             }
             (Self::BackwardDifference, _) => {
-                // Newton's form: v' = [n,n−1] + h₁ [n,n−1,n−2], v'' = 2 [n,n−1,n−2], for steps of any length.
+                // Newton's form, for steps of any length: v' = [n,n−1] + h₁ [n,n−1,n−2], v'' = 2 [n,n−1,n−2].
                 let (h1, h2) = (past[0].dt, past[1].dt);
                 let second = (square * h1 + 2.0 * cube) / (h1 + h2);
                 sum.plus((square + second) / h1, v)
@@ -81,7 +84,7 @@ impl Predictor {
 }
 
 impl Interpolant {
-    /// Name as in decks.
+    /// Name in decks.
     pub fn name(self) -> &'static str {
         match self {
             Self::Hermite => "hermite",
@@ -100,7 +103,7 @@ pub(super) struct CoarseStep<'a> {
     pub(super) a: Stages<'a>,
 }
 
-/// Displacements within a coarse step.
+/// Interpolation within a coarse step.
 pub(super) struct Inside {
     kind: Interpolant,
     tableau: Tableau,
@@ -114,7 +117,7 @@ impl Inside {
         }
     }
 
-    /// β(θ): u(θ) = u + dt Σ β_i K_i with the velocities K_i of the stages.
+    /// Returns β(θ): u(θ) = u + dt Σ β_i K_i with the velocities K_i of the stages.
     fn weights(&self, theta: f64) -> [f64; 4] {
         let square = theta * theta;
         match (&self.tableau.weights[..], self.tableau.order) {
@@ -131,14 +134,14 @@ impl Inside {
         }
     }
 
-    /// u(θ) − u.
+    /// Returns u(θ) − u.
     pub(super) fn at<'a>(&self, theta: f64, step: &CoarseStep<'a>) -> Sum<'a> {
         let dt = step.dt;
         match self.kind {
             Interpolant::Hermite => {
                 let weight = theta * theta * (3.0 - 2.0 * theta);
                 let slope = dt * theta * (1.0 - theta);
-                // −w u first: at θ = 1 it cancels u exactly, and the end of the coarse step is left.
+                // −w u first: at θ = 1 it cancels u exactly and leaves the end of the coarse step.
                 Sum::new()
                     .plus(-weight, step.u)
                     .plus(weight, step.u_next)
@@ -164,7 +167,7 @@ impl Inside {
     }
 }
 
-/// Accelerations or velocities at the starts of earlier coarse steps, the latest first.
+/// Accelerations or velocities at the starts of previous coarse steps, the latest first.
 pub(super) struct History {
     levels: Vec<Level>,
     known: usize,
@@ -172,7 +175,7 @@ pub(super) struct History {
 
 struct Level {
     array: Vec<f64>,
-    /// Length of the step that began there, s.
+    /// Length of the step that starts there, s.
     dt: f64,
 }
 
@@ -188,12 +191,12 @@ impl History {
         }
     }
 
-    /// Whether all levels are known.
+    /// Returns whether all levels are known.
     pub(super) fn is_complete(&self) -> bool {
         self.known == self.levels.len()
     }
 
-    /// Takes the level at the start of a step of length dt, and leaves another array in its place.
+    /// Adds the level at the start of a step of length dt; swaps its array for an unused one.
     pub(super) fn push(&mut self, array: &mut Vec<f64>, dt: f64) {
         if self.levels.is_empty() {
             return;
@@ -205,7 +208,7 @@ impl History {
     }
 }
 
-impl Saved for History {
+impl Checkpointed for History {
     fn save(&self, archive: &mut Archive) {
         let Self { levels, known } = self;
         archive.put("scheme/levels", Values::U64(vec![*known as u64]));
@@ -233,7 +236,7 @@ mod tests {
     use super::*;
     use crate::time::zone::Zone;
 
-    /// A polynomial with its derivatives.
+    /// A polynomial and its derivatives.
     fn course(t: f64, degree: u32) -> [f64; 3] {
         let (mut u, mut v, mut a) = (0.0, 0.0, 0.0);
         for k in 0..=degree {
@@ -282,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn interpolants_begin_and_end_with_the_step() {
+    fn interpolants_match_both_ends_of_the_step() {
         for tableau in [Tableau::rk3(0.6).unwrap(), Tableau::rk4()] {
             let inside = Inside::new(Interpolant::Stages, &tableau);
             for (found, expected) in inside.weights(1.0).iter().zip(&tableau.weights) {

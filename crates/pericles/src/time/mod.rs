@@ -1,4 +1,4 @@
-//! Time integration: u(t) ↦ u(t + dt), any scheme.
+//! Time integrators: u(t) ↦ u(t + dt).
 
 mod embedded;
 mod ends;
@@ -36,7 +36,7 @@ pub use runge_kutta::RungeKutta;
 pub use tableau::Tableau;
 pub use verlet::VelocityVerlet;
 
-use crate::archive::Saved;
+use crate::archive::Checkpointed;
 use crate::compatibility::Requirement;
 use crate::error::Result;
 use crate::interrupt::Interrupt;
@@ -44,12 +44,12 @@ use crate::step_end::{Path, StepEnd};
 use crate::step_kind::StepKind;
 use crate::system::System;
 
-/// The state of a body: structure of arrays, component-major.
+/// The state of a body; vectors are component-major.
 #[derive(Debug, Clone, PartialEq)]
 pub struct State {
     /// Time, s.
     pub t: f64,
-    /// Steps taken.
+    /// Number of steps.
     pub step: u64,
     /// Displacement, m.
     pub u: Vec<f64>,
@@ -60,12 +60,12 @@ pub struct State {
 }
 
 impl State {
-    /// The body of a system, undeformed and at rest at t = 0.
+    /// The undeformed body of a system at rest at t = 0.
     pub fn of(system: &System) -> Self {
         Self::at_rest(system.dimension() * system.points())
     }
 
-    /// The same of a body with so many entries, dimension times points.
+    /// The undeformed body at rest, for vectors with `entries` = dimension times points entries.
     pub fn at_rest(entries: usize) -> Self {
         Self {
             t: 0.0,
@@ -78,15 +78,15 @@ impl State {
 }
 
 impl State {
-    /// Begins a run: prescribed values and the acceleration at the start.
+    /// Starts a run: applies prescribed values and computes the initial acceleration.
     pub fn start(&mut self, system: &mut System) {
         system.constrain(self.t, &mut self.u, &mut self.v);
         system.constrain_velocity(self.t, &mut self.v);
         system.start(self.t, &self.u, &self.v, &mut self.a);
     }
 
-    /// Ends a step of length dt at time t with the displacement and velocity in `next`, which then hold those before the step: decides breaking, books work and
-    /// impulse, and evaluates the acceleration.
+    /// Ends a step of length dt at time t with the displacement and velocity in `next`, which contain the previous
+    /// ones afterwards: breaks bonds, updates the energy balance and evaluates the acceleration.
     pub fn complete(&mut self, system: &mut System, [u, v]: &mut [Vec<f64>; 2], t: f64, dt: f64) {
         let end = StepEnd {
             t,
@@ -103,7 +103,8 @@ impl State {
         self.close(system, t);
     }
 
-    /// The last act of every step of motion, once displacement, velocity and acceleration are those of its end, time t: settles the bonds that broke in a step too coarse for them.
+    /// Completes a step of motion when displacement, velocity and acceleration are those of its end, time t:
+    /// corrects the velocities for bonds that broke in a step too coarse for them.
     pub fn close(&mut self, system: &mut System, t: f64) {
         system.settle_breaking(t, &mut self.v);
         self.t = t;
@@ -111,7 +112,7 @@ impl State {
 }
 
 crate::saved! {
-    impl Saved for State {
+    impl Checkpointed for State {
         t: array("state/t"),
         step: array("state/step"),
         u: array("state/u"),
@@ -120,22 +121,24 @@ crate::saved! {
     }
 }
 
-/// A scheme that takes a body from one time to the next. Integrators never print, save to files or catch signals.
-pub trait Integrator: Saved + Send {
-    /// Name as in decks.
+/// A time integrator. Integrators do not print, write files or catch signals.
+pub trait Integrator: Checkpointed + Send {
+    /// Name in decks.
     fn name(&self) -> &'static str;
 
-    /// Entries of the vectors that it was made for, dimension times points; none if it steps any body. A run of another body refuses it.
+    /// Length of the vectors for which the scheme was made, dimension times points; `None` if it supports any body.
+    /// A simulation of another body refuses it.
     fn vector_length(&self) -> Option<usize> {
         None
     }
 
-    /// Where within a step it takes the forces: what boundaries with a memory depend on.
+    /// Time within a step at which forces are evaluated, which boundaries with memory depend on.
     fn step_kind(&self) -> StepKind {
         StepKind::Stages
     }
 
-    /// What it needs of the system. Its constructor refuses a system that does not meet it, and so does a run before its first step, when all boundaries and supports are known.
+    /// Requirements on the system. The constructor checks them, and so does a run before its first step, when all
+    /// boundaries and constraints are known.
     fn requirements(&self) -> &'static [Requirement] {
         &[]
     }
@@ -143,13 +146,14 @@ pub trait Integrator: Saved + Send {
     /// Order of the error in dt.
     fn order(&self) -> u32;
 
-    /// The largest stable ω dt for an undamped oscillation; none if the scheme is stable for any step.
+    /// Largest stable ω dt for an undamped oscillation; `None` if the scheme is stable for any step.
     fn stability_limit(&self) -> Option<f64>;
 
-    /// The frequency that limits the step at displacement `u`, where `body` is the body's highest: the same, except for schemes whose step is not the same everywhere.
+    /// Returns the frequency that limits the step at displacement `u`, where `body` is the highest frequency of the
+    /// body. They differ only for schemes with several steps.
     ///
     /// # Errors
-    /// A body without any stiffness.
+    /// A body without stiffness.
     fn limiting_frequency(
         &self,
         system: &System,
@@ -160,50 +164,53 @@ pub trait Integrator: Saved + Send {
         Ok(body)
     }
 
-    /// What a scheme with two time steps did so far; none for other schemes.
+    /// Statistics of a multirate scheme; `None` for other schemes.
     fn refinement(&self) -> Option<RefinementReport> {
         None
     }
 
-    /// What the inner iterations of an implicit scheme did so far; none for other schemes.
+    /// Statistics of the inner iterations of an implicit scheme; `None` for other schemes.
     fn inner_iterations(&self) -> Option<InnerIterations> {
         None
     }
 
-    /// What must be added to the kinetic and elastic energy of a state so that their sum is what the scheme itself conserves, J. Zero
-    /// for schemes that conserve the plain energy, or none.
+    /// Energy to be added to kinetic and elastic energy to give the energy that the scheme conserves, J. Zero for
+    /// schemes that conserve the plain energy or none.
     fn energy_correction(&self, system: &System, state: &State, dt: f64) -> f64 {
         let _ = (system, state, dt);
         0.0
     }
 
-    /// Whether its states are static: velocities, momentum and true time play no part.
+    /// Returns whether the states are static: velocity, momentum and physical time have no meaning.
     fn is_static(&self) -> bool {
         false
     }
 
-    /// Whether a step changes state or system before it is complete, so that one that is interrupted has to be undone from a copy made before it.
+    /// Returns whether a step changes state or system before it is complete, so that an interrupted step must be
+    /// undone from a copy.
     fn changes_within_step(&self) -> bool {
         false
     }
 
-    /// Why the energy of the body drifts by design, and what to change if it shall not; none for schemes whose drift is an error of the step.
+    /// Reason why the energy drifts by design and how to avoid it; `None` for schemes whose drift is an error.
     fn intended_drift(&self) -> Option<&'static str> {
         None
     }
 
-    /// Prepares the state at t = 0: prescribed values and initial acceleration.
+    /// Prepares the initial state: prescribed values and initial acceleration.
     fn start(&mut self, system: &mut System, state: &mut State) {
         state.start(system);
     }
 
-    /// Steps from `state.t` to `t_next`.
+    /// Advances from `state.t` to `t_next`.
     ///
-    /// Schemes that iterate poll `interrupt` in every inner iteration. A step that is interrupted leaves state and system as they were before it, except for
-    /// work arrays, unless [`changes_within_step`](Integrator::changes_within_step) says that the caller must restore them.
+    /// Iterative schemes poll `interrupt` in every inner iteration. An interrupted step leaves state and system as
+    /// they were before it, except for work arrays, unless [`changes_within_step`](Integrator::changes_within_step)
+    /// requires the caller to restore them.
     ///
     /// # Errors
-    /// Schemes that iterate report when they do not converge; [`PericlesError::Interrupted`](crate::PericlesError::Interrupted) if asked to stop.
+    /// No convergence of an iterative scheme; [`PericlesError::Interrupted`](crate::PericlesError::Interrupted) if
+    /// a stop is requested.
     fn step(
         &mut self,
         system: &mut System,

@@ -1,4 +1,4 @@
-//! Runge–Kutta with small steps where they are needed.
+//! Multirate Runge–Kutta: small time steps in fine regions.
 
 use super::fine_region::Fine;
 use super::interface::{CoarseStep, History, Inside, Interpolant, Predictor};
@@ -14,28 +14,29 @@ use crate::interrupt::Interrupt;
 use crate::step_end::{Path, StepEnd};
 use crate::system::System;
 
-/// Choices of [`MultiTimeStep`].
+/// Options of [`MultiTimeStep`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct MultiTimeStepOptions {
-    /// Fine steps in a coarse one, M.
+    /// Number M of fine steps per coarse step.
     pub ratio: u32,
-    /// The points that take them.
+    /// The points with the fine step.
     pub fine: Fine,
-    /// Fine points at coarse stages.
+    /// Predictor of fine points at coarse stages.
     pub predictor: Predictor,
-    /// Coarse points at fine stages.
+    /// Interpolant of coarse points at fine stages.
     pub interpolant: Interpolant,
 }
 
-/// Multi-time-step Runge–Kutta of order three or four (Liu, Sun, Tian, Don & Ju 2024).
+/// Multirate Runge–Kutta of order three or four (Liu, Sun, Tian, Don & Ju 2024).
 ///
-/// The body falls into coarse points C, which take a step dt, and fine points F, which take M steps dt/M. One evaluation of all points serves
-/// both as first stage. Then the coarse points take their step, with the fine points they are bonded to predicted at the stages; then
-/// the fine points take theirs, with coarse neighbours interpolated at the stages. Each side sees the other as a given function of time known to
-/// O(dt^r), so the order r of the method stays. A step evaluates s (N_C + M N_F) points.
+/// Coarse points C take a step dt, fine points F take M steps dt/M. One evaluation of all points is the first stage
+/// of both. Then the coarse points take their step, with the fine points among their neighbours predicted at the
+/// stages; then the fine points take theirs, with coarse neighbours interpolated at the stages. Each side sees the
+/// other as a given function of time with error O(dt^r), so that the order r of the method is kept. A step
+/// evaluates s (N_C + M N_F) points.
 ///
-/// Bonds with a fine end may break after every sub-step, those between coarse points after every coarse step. Momentum across the interface is
-/// conserved to the order of the method, not to round-off.
+/// Bonds with a fine end may break after every sub-step, bonds between coarse points after every coarse step.
+/// Momentum across the interface is conserved to the order of the method, not to round-off.
 pub struct MultiTimeStep {
     name: &'static str,
     order: u32,
@@ -51,39 +52,40 @@ pub struct MultiTimeStep {
 
 struct Work {
     stage: Vec<f64>,
-    /// Velocity of a stage, where boundaries ask for it.
+    /// Velocity of a stage, if boundaries need it.
     velocity: Vec<f64>,
-    /// Accelerations of stages 2 … s; entries of coarse points belong to the coarse step, those of fine points to the sub-step.
+    /// Accelerations of stages 2 … s; entries of coarse points belong to the coarse step, those of fine points to the
+    /// sub-step.
     a: Vec<Vec<f64>>,
-    /// First accelerations of sub-steps after the first, and of the next step.
+    /// First accelerations of the second and later sub-steps, and of the next step.
     first: Vec<f64>,
     u: Vec<f64>,
     v: Vec<f64>,
 }
 
 impl MultiTimeStep {
-    /// What it needs of a system.
+    /// Requirements on the system.
     pub const REQUIREMENTS: &'static [Requirement] = &[
         Requirement {
             need: Need::NoMemory,
-            reason: "a boundary keeps a state of its own, which knows one time step only; use velocity-verlet",
+            reason: "a boundary with memory knows one time step only; use velocity-verlet",
         },
         PARTS_OF_THE_BODY,
     ];
 
-    /// The scheme for a body.
+    /// Makes the scheme for a system.
     ///
     /// # Errors
-    /// A method of another order than three or four; a ratio below one; fine regions that are empty, overlap or are thinner than a horizon; operators that cannot be
-    /// evaluated on a part of the body.
+    /// A method of another order than three or four; a ratio below one; fine regions that are empty, overlap or are
+    /// thinner than a horizon; forces that cannot be evaluated on a subset of the points.
     pub fn new(tableau: &Tableau, options: MultiTimeStepOptions, system: &System) -> Result<Self> {
         let (name, order) = match (tableau.order, tableau.len()) {
-            (3, 3) => ("rk3-mts", 3),
-            (4, 4) => ("rk4-mts", 4),
+            (3, 3) => ("multirate-rk3", 3),
+            (4, 4) => ("multirate-rk4", 4),
             _ => {
                 return Err(PericlesError::SchemeNotUsable {
                     scheme: tableau.name,
-                    reason: "predictors and interpolants for two time steps are known for rk3 and rk4 only",
+                    reason: "predictors and interpolants of multirate schemes exist for rk3 and rk4 only",
                 });
             }
         };
@@ -170,7 +172,7 @@ impl Integrator for MultiTimeStep {
         _interrupt: Interrupt<'_>,
     ) -> Result<()> {
         self.refinement.update(system, state);
-        // The predictor's earlier levels come from steps that are fine everywhere.
+        // The first levels of the predictor come from steps that are fine everywhere.
         let starting = !self.history.is_complete() && !self.refinement.zones.fine.is_empty();
         self.refinement.count(starting);
         let step = Step {
@@ -206,7 +208,7 @@ impl Integrator for MultiTimeStep {
         std::mem::swap(&mut state.u, u);
         std::mem::swap(&mut state.v, v);
         std::mem::swap(&mut state.a, first);
-        // The arrays of the old state are what the history wants.
+        // The history takes the arrays of the old state.
         match self.predictor {
             Predictor::Structured => self.history.push(first, dt),
             Predictor::BackwardDifference => self.history.push(v, dt),
@@ -217,7 +219,7 @@ impl Integrator for MultiTimeStep {
     }
 }
 
-/// One coarse step and what it needs to know.
+/// One coarse step and its data.
 struct Step<'a> {
     form: &'a StepForm,
     order: u32,
@@ -231,7 +233,7 @@ struct Step<'a> {
 }
 
 impl Step<'_> {
-    /// The step of the coarse points, into `work.u`, `work.v`.
+    /// Computes the step of the coarse points into `work.u`, `work.v`.
     fn coarse(&self, system: &mut System, state: &State, work: &mut Work) {
         let Zones {
             coarse,
@@ -292,7 +294,7 @@ impl Step<'_> {
         system.drive_on(self.t_next, &coarse.on(), &mut work.v);
     }
 
-    /// The sub-steps of the fine points, within `work.u`, `work.v`.
+    /// Computes the sub-steps of the fine points in `work.u`, `work.v`.
     fn fine(&self, system: &mut System, state: &State, work: &mut Work) {
         let Zones {
             fine,
@@ -356,7 +358,7 @@ impl Step<'_> {
                 first: opening,
                 later: a,
             };
-            // The displacement needs the old velocity.
+            // The displacement needs the old velocity, so it comes first.
             self.form.displacement(h, v, known).add_to(fine, n, u);
             self.form.velocity(h, known).add_to(fine, n, v);
             let t_next = self.time(m + 1);
@@ -391,7 +393,7 @@ impl Step<'_> {
         }
     }
 
-    /// Displacements of coarse points next to fine ones.
+    /// Interpolates the displacements of coarse points next to fine ones.
     fn interpolate(
         &self,
         theta: f64,
@@ -419,7 +421,7 @@ impl Step<'_> {
 }
 
 crate::saved! {
-    impl Saved for MultiTimeStep {
+    impl Checkpointed for MultiTimeStep {
         refinement, history: part,
         name, order, limit, form, inside, predictor, everywhere: fixed,
         work: scratch,

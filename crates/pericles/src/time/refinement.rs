@@ -1,48 +1,48 @@
-//! Which points take the fine step, from step to step.
+//! The fine region of multirate schemes and its evolution.
 
 use super::State;
 use super::fine_region::{Fine, Follow, check, mark_regions};
 use super::frequency::{HighestFrequency, highest_frequency_on};
 use super::refinement_report::RefinementReport;
 use super::zones::{Zones, grow};
-use crate::archive::{Archive, Counter, Saved, Values};
+use crate::archive::{Archive, Checkpointed, Counter, Values};
 use crate::compatibility::{Need, Requirement, require};
 use crate::error::{PericlesError, Result};
 use crate::operator::LocalForce;
 use crate::system::System;
 
-/// What a scheme is called and what it evaluates.
+/// Name of a scheme and its evaluations.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SchemeCost {
     pub(super) requirements: &'static [Requirement],
     pub(super) name: &'static str,
-    /// Evaluations of a point in each of its steps.
+    /// Evaluations per point and step.
     pub(super) stages: u32,
-    /// Whether coarse points next to fine ones are evaluated in fine steps, too.
+    /// Whether coarse points next to fine ones are also evaluated in fine steps.
     pub(super) shares_border: bool,
 }
 
-/// The fine points of a run, with their zones.
+/// The fine points of a run and the resulting zones.
 pub(super) struct Refinement {
     pub(super) ratio: u32,
     cost: SchemeCost,
     pub(super) zones: Zones,
     follow: Option<Looking>,
-    /// Zones belong to other marks than the present ones, which come from a checkpoint.
+    /// Whether the zones are outdated, because the marks come from a checkpoint.
     stale: bool,
     steps: Counter,
     starting_steps: Counter,
-    /// Σ fine points over the steps.
+    /// Sum of the number of fine points over the steps.
     fine_total: Counter,
     fine_most: u64,
-    /// Σ coarse points next to fine ones over the steps.
+    /// Sum of the number of coarse points next to fine ones over the steps.
     border_total: Counter,
 }
 
-/// The state of following.
+/// State of an adaptive fine region.
 struct Looking {
     follow: Follow,
-    /// Looks for which a point is still a start point.
+    /// Number of further checks for which each point remains a seed.
     left: Vec<u8>,
     damage: Vec<f64>,
     /// Work arrays.
@@ -50,13 +50,14 @@ struct Looking {
     marks: Vec<bool>,
 }
 
-/// What all schemes with two time steps need of a system.
+/// The requirement of all multirate schemes.
 pub(super) const PARTS_OF_THE_BODY: Requirement = Requirement {
     need: Need::FiniteReach,
-    reason: "it evaluates the force on parts of the body, which transforms and forces in single precision (rounded relative to one point of the whole body) do not allow; use bonds in double precision, or one time step",
+    reason: "it evaluates the force on parts of the body, which transforms and forces in single precision (rounded relative to one point of the whole body) do not support; use bonds in double precision, or a scheme with a single time step",
 };
 
-/// The force as one that can be evaluated on a part of the body, if the system meets the requirements of a scheme.
+/// Returns the force as one that can be evaluated on a subset of the points, if the system meets the requirement of
+/// the scheme.
 fn local<'a>(system: &'a System, scheme: &SchemeCost) -> Result<&'a dyn LocalForce> {
     require(scheme.name, scheme.requirements, system)?;
     let force = system.operator().as_local();
@@ -67,10 +68,11 @@ fn local<'a>(system: &'a System, scheme: &SchemeCost) -> Result<&'a dyn LocalFor
 }
 
 impl Refinement {
-    /// The fine points at the start.
+    /// Determines the initial fine points.
     ///
     /// # Errors
-    /// A ratio below one; regions that are empty, overlap or are thinner than a horizon; parameters of following out of range; bodies whose force knows no bonds.
+    /// A ratio below one; regions that are empty, overlap or are thinner than a horizon; parameters of an adaptive
+    /// region out of range; forces without bonds.
     pub(super) fn new(system: &System, cost: SchemeCost, ratio: u32, fine: Fine) -> Result<Self> {
         if ratio < 1 {
             return Err(PericlesError::StepRatio { ratio });
@@ -108,14 +110,14 @@ impl Refinement {
         })
     }
 
-    /// Notes damage at the start, which is not new.
+    /// Stores the initial damage, which does not count as new.
     pub(super) fn start(&mut self, system: &System) {
         if let Some(looking) = &mut self.follow {
             system.operator().damage_into(&mut looking.damage);
         }
     }
 
-    /// Before a coarse step: looks where the body is about to break, if it is time. Returns whether the zones changed.
+    /// Checks before a coarse step, when due, where bonds are about to break. Returns whether the zones changed.
     pub(super) fn update(&mut self, system: &System, state: &State) -> bool {
         let Some(force) = system.operator().as_local() else {
             return false;
@@ -179,14 +181,15 @@ impl Refinement {
         }
     }
 
-    /// The larger of the coarse points' own frequency and the body's over M: what the coarse step must resolve.
+    /// Returns the frequency that the coarse step must resolve: the larger of that of the coarse points alone and
+    /// that of the body over M.
     pub(super) fn limiting_frequency(
         &self,
         system: &System,
         u: &[f64],
         body: HighestFrequency,
     ) -> Result<HighestFrequency> {
-        // Adaptive regions come and go.
+        // Adaptive regions change during the run.
         if self.follow.is_some() || self.zones.coarse.is_empty() || self.zones.fine.is_empty() {
             let ratio = if self.zones.coarse.is_empty() {
                 f64::from(self.ratio)
@@ -198,14 +201,14 @@ impl Refinement {
         let fine = body.over(f64::from(self.ratio));
         match highest_frequency_on(system, u, self.zones.coarse.points()) {
             Ok(coarse) => Ok(fine.or_higher(coarse)),
-            // Coarse points without stiffness of their own set no limit.
+            // Coarse points without stiffness set no limit.
             Err(PericlesError::NoStiffness) => Ok(fine),
             Err(error) => Err(error),
         }
     }
 }
 
-impl Saved for Refinement {
+impl Checkpointed for Refinement {
     fn save(&self, archive: &mut Archive) {
         let Self {
             zones,
@@ -257,7 +260,7 @@ impl Saved for Refinement {
 }
 
 crate::saved! {
-    impl Saved for Looking {
+    impl Checkpointed for Looking {
         left: array("scheme/hold"),
         damage: array("scheme/damage"),
         follow: fixed,
@@ -266,7 +269,7 @@ crate::saved! {
 }
 
 impl Looking {
-    /// Leaves in `marks` the points that shall be fine.
+    /// Updates `marks`, the points that are to be fine.
     fn look(&mut self, system: &System, force: &dyn LocalForce, u: &[f64]) {
         self.marks.fill(false);
         if let Some(breaking) = system.operator().capabilities().breaking {
@@ -275,7 +278,7 @@ impl Looking {
         system.operator().damage_into(&mut self.now);
         for i in 0..self.marks.len() {
             if self.marks[i] || self.now[i] > self.damage[i] {
-                self.left[i] = self.follow.hold as u8 + 1;
+                self.left[i] = self.follow.keep_checks as u8 + 1;
             }
             self.marks[i] = self.left[i] > 0;
             self.left[i] = self.left[i].saturating_sub(1);

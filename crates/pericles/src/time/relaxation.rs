@@ -1,4 +1,4 @@
-//! Static states by dynamic relaxation.
+//! Static states by adaptive dynamic relaxation.
 
 use rayon::prelude::*;
 
@@ -6,29 +6,30 @@ use super::{InnerIterations, Integrator, State};
 use crate::compatibility::{Need, Requirement, require};
 use crate::error::{PericlesError, Result};
 use crate::interrupt::Interrupt;
-use crate::operator::On;
+use crate::operator::PointSubset;
 use crate::parallel::BLOCK;
 use crate::step_end::{Path, StepEnd};
 use crate::system::System;
 
-/// How motion is damped on the way to an equilibrium.
+/// Damping of the fictitious motion.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Damping {
-    /// c = 2 √(dᵀK d / dᵀM d) for the displacement d since the start, from what the forces have changed by: critical for the shape that d has (Underwood 1983).
+    /// Adaptive: c = 2 √(dᵀK d / dᵀM d) for the displacement d since the start, with K d from the change of the
+    /// forces; critical for the shape of d (Underwood 1983).
     #[default]
     Adaptive,
-    /// This c, per iteration; between 0 and 2.
+    /// Constant c per iteration, between 0 and 2.
     Viscous(f64),
 }
 
-/// When a state counts as static, and how it is found.
+/// Options of [`Relaxation`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RelaxationOptions {
-    /// The damping.
+    /// Damping of the fictitious motion.
     pub damping: Damping,
-    /// Norm of the forces that are out of balance over that of loads or supports, the larger; the largest so far.
+    /// Allowed relative residual: norm of the unbalanced forces over the largest norm of loads or reactions so far.
     pub tolerance: f64,
-    /// The most iterations of one equilibrium.
+    /// Largest number of iterations per equilibrium.
     pub iterations: u32,
 }
 
@@ -42,48 +43,53 @@ impl Default for RelaxationOptions {
     }
 }
 
-/// Each step goes from one static state to the next: loads and supports take their values of its end, and
+/// Adaptive dynamic relaxation: each step leads from one static state to the next. Loads and constraints take their
+/// values at the end of the step, and
 ///
 /// M v̇ + c M v = f(u) + b
 ///
-/// is followed in steps of 1 by central differences until the force F = f + b of the free points falls below the tolerance, with fictitious masses M for which a
-/// step of 1 is stable (Underwood, *Dynamic relaxation*, 1983; Kilic & Madenci, Theor. Appl. Fract. Mech. 53, 194, 2010):
+/// is integrated with unit steps by central differences until the force F = f + b on the free points is below the
+/// tolerance. The fictitious masses M make a unit step stable (Underwood, *Dynamic relaxation*, 1983; Kilic &
+/// Madenci, Theor. Appl. Fract. Mech. 53, 194, 2010):
 ///
 /// v ← ((2 − c) v + 2 F/M)/(2 + c), u ← u + v.
 ///
-/// Then bonds that are over-stretched break, all at once, and the body relaxes again at the same loads, until none does. Real masses play no part, and time only
-/// enters through what loads and supports do.
+/// Then all bonds beyond their critical stretch break at once, and the body relaxes again under the same loads,
+/// until no bond breaks. Physical masses play no role, and time enters through loads and constraints only.
 ///
-/// The energy balance: loads and supports change slowly within a load step, from their values at the last static state to those at the next. They do the work of their mean forces, which is
-/// exact for linear forces and of second order in the length of load steps otherwise. The run starts from the unloaded body: in the first load step all loads and prescribed
-/// displacements grow from zero, constant ones too, so that a dead load F does the work ½ F u that the body stores. A bond that breaks dissipates its energy
-/// at the static state before. What the body then gives up on its way to the next equilibrium, or on the way from an initial displacement that is not in equilibrium, goes into the
-/// damping, as it would go into waves; it is measured as the loss of elastic energy plus the work of loads and supports, and reported as the scheme's correction.
+/// Energy balance: loads and constraints change slowly within a load step from their values at the last static
+/// state to those at the next. They do the work of their mean forces, which is exact for linear forces and
+/// otherwise of second order in the length of load steps. The run starts from the unloaded body: in the first load
+/// step all loads and prescribed displacements grow from zero, constant ones too, so that a dead load F does the
+/// work ½ F u that the body stores. A bond that breaks dissipates its energy at the previous static state. The
+/// energy that the body then releases until the next equilibrium, or from an initial displacement out of
+/// equilibrium, goes into the damping, as it would go into waves. It is measured as the loss of elastic energy plus
+/// the work of loads and constraints, and reported as the correction of the scheme.
 #[derive(Debug, Clone)]
 pub struct Relaxation {
     options: RelaxationOptions,
-    /// 1 over the fictitious mass, times the volume: per point.
+    /// Inverse fictitious mass times volume, per point.
     mobility: f64,
-    /// 1 for free entries, 0 for held ones.
+    /// 1 for free entries, 0 for prescribed ones.
     free: Vec<f64>,
     force: Vec<f64>,
     first_force: Vec<f64>,
     velocity: Vec<f64>,
     start: Vec<f64>,
     before: Vec<f64>,
-    /// The largest norm of loads or supports at an equilibrium so far, N.
+    /// Largest norm of loads or reactions at an equilibrium so far, N.
     largest: f64,
-    /// Energy given to the damping after bonds broke, J.
+    /// Energy taken by the damping after bonds broke, J.
     damped: f64,
     inner: InnerIterations,
-    /// Iterations of the present step.
+    /// Number of iterations of the present step.
     iterations: u64,
 }
 
-const NAME: &str = "relaxation";
+const NAME: &str = "adaptive-dynamic-relaxation";
 
 impl Relaxation {
-    /// What it needs of a system.
+    /// Requirements on the system.
     pub const REQUIREMENTS: &'static [Requirement] = &[
         Requirement::IN_DOUBLES,
         Requirement {
@@ -92,10 +98,10 @@ impl Relaxation {
         },
     ];
 
-    /// The scheme for a system.
+    /// Makes the scheme for a system.
     ///
     /// # Errors
-    /// Options out of their ranges, a body whose stiffness at rest is zero or not known.
+    /// Options out of range; a body whose stiffness at rest is zero or unknown.
     pub fn new(options: RelaxationOptions, system: &System) -> Result<Self> {
         let refuse = |parameter, value, allowed| {
             Err(PericlesError::SchemeParameter {
@@ -113,15 +119,15 @@ impl Relaxation {
             return refuse("the damping", damping, "above 0 and below 2");
         }
         require(NAME, Self::REQUIREMENTS, system)?;
-        // With unit densities: the bound is that of the stiffness itself.
+        // Unit densities give the bound of the stiffness itself.
         let omega = system.operator().frequency_bound(&|_| 1.0);
         if !(omega > 0.0 && omega.is_finite()) {
             return Err(PericlesError::SchemeNotUsable {
                 scheme: NAME,
-                reason: "its bonds have no stiffness at rest, which sets the fictitious masses",
+                reason: "its bonds have no stiffness at rest, which determines the fictitious masses",
             });
         }
-        /// ω dt = 2 is the limit; bonds stiffen a little as they turn.
+        /// The stability limit is ω dt = 2; the margin covers bonds that stiffen as they rotate.
         const OMEGA_DT: f64 = 1.8;
         let entries = system.dimension() * system.points();
         let zeros = || vec![0.0; entries];
@@ -141,12 +147,12 @@ impl Relaxation {
         })
     }
 
-    /// Iterations of all equilibria so far.
+    /// Number of iterations of all equilibria so far.
     pub fn iterations(&self) -> u64 {
         self.inner.total
     }
 
-    /// Moves `u` to the equilibrium at time t with the bonds as they are; what is out of balance there, over what acts.
+    /// Moves `u` to the equilibrium at time t with the current bonds; returns the relative residual.
     fn relax(
         &mut self,
         system: &System,
@@ -159,7 +165,7 @@ impl Relaxation {
             tolerance,
             iterations,
         } = self.options;
-        system.place_on(t, &On::All, u);
+        system.place_on(t, &PointSubset::All, u);
         self.free.fill(1.0);
         system.hold_at(t, &mut self.free);
         self.start.copy_from_slice(u);
@@ -179,8 +185,8 @@ impl Relaxation {
                 self.first_force.copy_from_slice(&self.force);
             }
             let support = self.norm(system, &self.force, |free| 1.0 - free);
-            // Of a body that comes apart nothing is left in the end to compare with: what acted before counts too. Where neither loads nor supports ever
-            // acted, what was out of balance at first is all there is.
+            // When a body breaks apart, no force remains to compare with; hence the largest forces so far count
+            // too. Without any loads or reactions the initial residual is the scale.
             let acting = match load.max(support).max(self.largest) {
                 0.0 => first,
                 acting => acting,
@@ -212,7 +218,7 @@ impl Relaxation {
         })
     }
 
-    /// √Σ (V F)² over the entries that `counts` weighs with 1, N.
+    /// Returns √Σ (V F)² over the entries with `counts` = 1, N.
     fn norm(&self, system: &System, force: &[f64], counts: impl Fn(f64) -> f64 + Sync) -> f64 {
         let (n, volumes) = (system.points(), system.cloud().volumes());
         system
@@ -223,9 +229,9 @@ impl Relaxation {
             .sqrt()
     }
 
-    /// 2 √(dᵀK d / dᵀM d), with K d = F₀ − F for the displacement d since the start.
+    /// Returns 2 √(dᵀK d / dᵀM d), with K d = F₀ − F for the displacement d since the start.
     fn critical_damping(&self, system: &System, u: &[f64]) -> f64 {
-        /// From 2 on the motion would turn back at every step.
+        /// // From 2 on the motion would reverse at every step.
         const MOST: f64 = 1.9;
         let (n, volumes) = (system.points(), system.cloud().volumes());
         let d = |entry: usize| u[entry] - self.start[entry];
@@ -246,7 +252,7 @@ impl Relaxation {
         }
     }
 
-    /// One step of 1. The first starts from rest with half of one.
+    /// One unit step. The first one starts from rest with half a step.
     fn advance(&mut self, c: f64, from_rest: bool, u: &mut [f64]) {
         let (keep, push) = if from_rest {
             (0.0, 0.5 * self.mobility)
@@ -266,7 +272,8 @@ impl Relaxation {
             });
     }
 
-    /// Breaks over-stretched bonds and relaxes again until none is left; what is out of balance in the end, of a state that is as given.
+    /// Breaks bonds beyond their critical stretch and relaxes again until none is left; returns the final relative
+    /// residual.
     fn settle(
         &mut self,
         system: &mut System,
@@ -278,7 +285,7 @@ impl Relaxation {
         loop {
             let broken = system.operator().broken_bonds();
             let end = StepEnd::sub_step(t, 0.0, &state.u);
-            system.end_step_on(&end, &On::All, &mut state.a);
+            system.end_step_on(&end, &PointSubset::All, &mut state.a);
             if system.operator().broken_bonds() == broken {
                 return Ok(residual);
             }
@@ -314,17 +321,17 @@ impl Integrator for Relaxation {
         Self::REQUIREMENTS
     }
 
-    /// Of the work between static states, in the length of load steps.
+    /// Order of the work between static states in the length of load steps.
     fn order(&self) -> u32 {
         2
     }
 
-    /// Load steps of any length.
+    /// None: load steps may have any length.
     fn stability_limit(&self) -> Option<f64> {
         None
     }
 
-    /// What the damping took when bonds broke.
+    /// Energy taken by the damping when bonds broke.
     fn energy_correction(&self, _system: &System, _state: &State, _dt: f64) -> f64 {
         self.damped
     }
@@ -391,7 +398,7 @@ impl Integrator for Relaxation {
 }
 
 crate::saved! {
-    impl Saved for Relaxation {
+    impl Checkpointed for Relaxation {
         damped, largest: array("relaxation/account"),
         inner: part,
         options, mobility: fixed,

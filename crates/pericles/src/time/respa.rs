@@ -9,27 +9,30 @@ use super::{HighestFrequency, Integrator, State};
 use crate::compatibility::{Need, Requirement};
 use crate::error::Result;
 use crate::interrupt::Interrupt;
-use crate::operator::On;
+use crate::operator::PointSubset;
 use crate::step_end::{Path, StepEnd};
 use crate::step_kind::StepKind;
 use crate::system::System;
 
-/// The reversible reference system propagator (Tuckerman, Berne & Martyna 1992), split by bonds.
+/// The reversible reference system propagator algorithm (Tuckerman, Berne & Martyna 1992), split by bonds.
 ///
-/// Bonds between coarse points are slow, all others fast; loads belong to the points they act on. A step kicks the coarse points with half the slow impulse, takes M velocity
-/// Verlet steps dt/M of the fast forces on fine points and their coarse neighbours while the other coarse points drift, and kicks
-/// again. Second order; symplectic while the fine region stays; momentum is conserved to round-off. A step evaluates N_C + M (N_F + N_CB) points.
+/// Bonds between coarse points are slow, all others fast; loads act with the points they are applied to. A step
+/// applies half of the slow impulse to the coarse points, takes M velocity Verlet steps dt/M with the fast forces
+/// on fine points and their coarse neighbours while the other coarse points drift, and applies the other half.
+/// Second order; symplectic while the fine region is constant; momentum is conserved to round-off. A step evaluates
+/// N_C + M (N_F + N_CB) points.
 ///
-/// The slow impulses meet resonances with fast vibrations near ω dt = k π; the step is kept below the limit 2/ω of the coarse points.
+/// Slow impulses resonate with fast vibrations near ω dt = k π; the step is kept below the limit 2/ω of the coarse
+/// points.
 pub struct Respa {
     refinement: Refinement,
-    /// Accelerations by slow bonds on coarse points.
+    /// Accelerations of coarse points by slow bonds.
     slow: Vec<f64>,
-    /// Accelerations by fast bonds on fine points and their coarse neighbours.
+    /// Accelerations of fine points and their coarse neighbours by fast bonds.
     fast: Vec<f64>,
     /// Displacement at the start of the step, then the mean velocity over it.
     mean: Vec<f64>,
-    /// Velocities that boundaries damp.
+    /// Velocities damped by boundaries.
     damped: Vec<f64>,
     everywhere: Zone,
 }
@@ -37,23 +40,24 @@ pub struct Respa {
 const NAME: &str = "respa";
 
 impl Respa {
-    /// What it needs of a system.
+    /// Requirements on the system.
     pub const REQUIREMENTS: &'static [Requirement] = &[
         Requirement {
             need: Need::NoMemory,
-            reason: "it kicks with parts of the force at times of their own, and a boundary with a memory knows one time step only; use velocity-verlet",
+            reason: "it applies parts of the force at different times, but a boundary with memory knows one time step only; use velocity-verlet",
         },
         PARTS_OF_THE_BODY,
         Requirement {
             need: Need::SumOverBonds,
-            reason: "it takes the force apart by bonds, and here what a bond exerts depends on the other bonds of its ends; use rk3-mts or rk4-mts",
+            reason: "it splits the force by bonds, but here the force of a bond depends on the other bonds of its ends; use multirate-rk3 or multirate-rk4",
         },
     ];
 
-    /// The scheme with M fast steps in a slow one.
+    /// Makes the scheme with M fast steps per slow step.
     ///
     /// # Errors
-    /// A ratio below one; fine regions that are empty, overlap or are thinner than a horizon; operators that cannot be evaluated on a part of the body.
+    /// A ratio below one; fine regions that are empty, overlap or are thinner than a horizon; forces that cannot be
+    /// evaluated on a subset of the points.
     pub fn new(ratio: u32, fine: Fine, system: &System) -> Result<Self> {
         let array = || vec![0.0; system.dimension() * system.points()];
         let cost = SchemeCost {
@@ -73,7 +77,7 @@ impl Respa {
         })
     }
 
-    /// Both parts of the acceleration from scratch, when the zones are new.
+    /// Computes both parts of the acceleration anew after a change of the zones.
     fn evaluate(&mut self, system: &mut System, t: f64, u: &[f64]) {
         let Zones {
             coarse_inner,
@@ -94,7 +98,7 @@ impl Respa {
         }
     }
 
-    /// One fast step from t to t_next.
+    /// Performs one fast step from t to t_next.
     fn fast_step(&mut self, system: &mut System, [u, v]: [&mut [f64]; 2], t: f64, t_next: f64) {
         let Zones {
             active,
@@ -116,7 +120,7 @@ impl Respa {
         };
         system.end_step_on(&end, &fine.on(), &mut self.fast);
         if !coarse_border.is_empty() {
-            // Fast bonds were decided from their fine ends.
+            // Fast bonds were broken from their fine ends.
             let border = coarse_border.on();
             system.free_acceleration_from(t_next, u, &border, is_fine, false, &mut self.fast);
         }
@@ -236,13 +240,13 @@ impl Integrator for Respa {
         system.constrain_velocity(t_next, v);
         exchange.add(system.damp(t_next, 0.5 * dt, v, &mut self.damped));
         system.book_exchange(exchange);
-        // The sum of both parts is what observers and accounts are to see.
+        // Observers and the energy balance use the sum of both parts.
         Sum::new().onto(&self.slow, coarse, n, a);
         Sum::new().onto(&self.fast, &self.refinement.zones.fine, n, a);
         Sum::new().plus(1.0, &self.fast).add_to(coarse_border, n, a);
         system.book_heating(&end);
         system.book_step(&end, a);
-        system.finish(t_next, u, v, &On::All, a);
+        system.finish(t_next, u, v, &PointSubset::All, a);
         state.close(system, t_next);
         state.step += 1;
         Ok(())
@@ -250,7 +254,7 @@ impl Integrator for Respa {
 }
 
 crate::saved! {
-    impl Saved for Respa {
+    impl Checkpointed for Respa {
         refinement: part,
         slow: array("scheme/slow"),
         fast: array("scheme/fast"),

@@ -1,17 +1,17 @@
-//! Runge–Kutta with one step everywhere.
+//! Runge–Kutta with a single time step.
 
 use super::zone::{Sum, Zone};
 use super::{Integrator, State, Tableau};
 use crate::error::Result;
 use crate::interrupt::Interrupt;
-use crate::operator::On;
+use crate::operator::PointSubset;
 use crate::system::System;
 
-/// The coefficients of a step in displacement form.
+/// Coefficients of a step in displacement form.
 #[derive(Debug, Clone)]
 pub(super) struct StepForm {
     pub(super) nodes: Vec<f64>,
-    /// A, for the velocities of stages.
+    /// A, for stage velocities.
     stages: Vec<Vec<f64>>,
     /// Ā.
     displacement_stages: Vec<Vec<f64>>,
@@ -36,32 +36,32 @@ impl StepForm {
         self.nodes.len()
     }
 
-    /// U_i − u for a step h from (u, v), with the accelerations of the stages before.
+    /// Returns U_i − u for a step h from (u, v), from the accelerations of the previous stages.
     pub(super) fn stage<'a>(&self, i: usize, h: f64, v: &'a [f64], a: Stages<'a>) -> Sum<'a> {
         Sum::new()
             .plus(self.nodes[i] * h, v)
             .plus_all(h * h, &self.displacement_stages[i], |j| a.at(j))
     }
 
-    /// V_i − v.
+    /// Returns V_i − v.
     pub(super) fn stage_velocity<'a>(&self, i: usize, h: f64, a: Stages<'a>) -> Sum<'a> {
         Sum::new().plus_all(h, &self.stages[i], |j| a.at(j))
     }
 
-    /// u₁ − u.
+    /// Returns u₁ − u.
     pub(super) fn displacement<'a>(&self, h: f64, v: &'a [f64], a: Stages<'a>) -> Sum<'a> {
         Sum::new()
             .plus(h, v)
             .plus_all(h * h, &self.displacement, |j| a.at(j))
     }
 
-    /// v₁ − v.
+    /// Returns v₁ − v.
     pub(super) fn velocity<'a>(&self, h: f64, a: Stages<'a>) -> Sum<'a> {
         Sum::new().plus_all(h, &self.velocity, |j| a.at(j))
     }
 }
 
-/// The accelerations of the stages; the first is that of the state.
+/// Accelerations of the stages; the first one is that of the state.
 #[derive(Clone, Copy)]
 pub(super) struct Stages<'a> {
     pub(super) first: &'a [f64],
@@ -78,12 +78,13 @@ impl<'a> Stages<'a> {
     }
 }
 
-/// An explicit Runge–Kutta method on (u, v), one step everywhere.
+/// An explicit Runge–Kutta method for (u, v) with the same step for all points.
 ///
-/// The acceleration of the state is the first stage of the next step, so a step of s stages takes s force evaluations. Breaking is decided at the end of
-/// steps only: states of stages are of low order. Prescribed displacements and velocities are exact at the end of steps; stages see
-/// their accelerations. Momentum is conserved to round-off; energy decays by (ω dt)⁴/12 (order 3) or (ω dt)⁶/72 (order 4) per step for an oscillation
-/// ω, so short waves disappear.
+/// The acceleration of the state is the first stage of the next step, so that a step of s stages takes s force
+/// evaluations. Bonds break at the end of steps only, because stage values have low order. Prescribed displacements
+/// and velocities are exact at the end of steps; stages use prescribed accelerations. Momentum is conserved to
+/// round-off; the energy of an oscillation ω decays by (ω dt)⁴/12 (order 3) or (ω dt)⁶/72 (order 4) per step, so
+/// that short waves are damped out.
 pub struct RungeKutta {
     name: &'static str,
     order: u32,
@@ -96,7 +97,7 @@ pub struct RungeKutta {
 }
 
 impl RungeKutta {
-    /// The method of a tableau, for a body; embedded weights are not used.
+    /// Makes the method of a tableau for a body; embedded weights are ignored.
     pub fn new(tableau: &Tableau, system: &System) -> Self {
         let entries = system.dimension() * system.points();
         let array = || vec![0.0; entries];
@@ -139,7 +140,7 @@ impl Integrator for RungeKutta {
     ) -> Result<()> {
         let State { t, u, v, a, .. } = state;
         let (dt, n) = (t_next - *t, system.points());
-        // Boundaries, which alone look at the velocity of a stage, may have come after the scheme.
+        // Only boundaries use the stage velocity; they may be added after the scheme was made.
         if system.has_boundaries() {
             self.stage[1].resize(u.len(), 0.0);
         }
@@ -160,7 +161,7 @@ impl Integrator for RungeKutta {
                     .onto(v, &self.zone, n, velocity);
             }
             let t_stage = *t + self.form.nodes[i] * dt;
-            system.acceleration(t_stage, stage, velocity, On::All, &mut later[0]);
+            system.acceleration(t_stage, stage, velocity, PointSubset::All, &mut later[0]);
         }
         let known = Stages {
             first: a,
@@ -179,9 +180,9 @@ impl Integrator for RungeKutta {
     }
 }
 
-// The method carries nothing from step to step but the state.
+// The method has no state from step to step.
 crate::saved! {
-    impl Saved for RungeKutta {
+    impl Checkpointed for RungeKutta {
         name, order, limit, form, zone: fixed,
         stage, a, next: scratch,
     }

@@ -1,16 +1,16 @@
-//! Runge–Kutta methods as data.
+//! Butcher tableaux of Runge–Kutta methods.
 
 use crate::error::{PericlesError, Result};
 use crate::space::check_length;
 
-/// A Runge–Kutta method y₁ = y₀ + dt Σ b_i k_i, k_i = F(t + c_i dt, y₀ + dt Σ_j a_ij k_j), explicit.
+/// An explicit Runge–Kutta method y₁ = y₀ + dt Σ b_i k_i, k_i = F(t + c_i dt, y₀ + dt Σ_j a_ij k_j).
 ///
-/// For y = (u, v) and F = (v, a(u, t)) the velocities of the stages drop out: with Ā = A² and b̄ = A'b the stages are
-/// U_i = u + c_i dt v + dt² Σ ā_ij a_j, the step ends at u + dt v + dt² Σ b̄_j a_j, v + dt Σ b_j a_j. This is the same method, with half of the
-/// arrays.
+/// For y = (u, v) and F = (v, a(u, t)) the stage velocities can be eliminated: with Ā = A² and b̄ = A'b the stages
+/// are U_i = u + c_i dt v + dt² Σ ā_ij a_j, and the step ends at u + dt v + dt² Σ b̄_j a_j, v + dt Σ b_j a_j. This
+/// is the same method with half of the arrays.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tableau {
-    /// Name as in decks.
+    /// Name in decks.
     pub(super) name: &'static str,
     /// Order.
     pub(super) order: u32,
@@ -25,7 +25,8 @@ pub struct Tableau {
 }
 
 impl Tableau {
-    /// A method by its coefficients: `nodes` c, `stages` A row by row (row i has i entries), `weights` b. Its order is taken as given.
+    /// Makes a method from its coefficients: `nodes` c, `stages` A row by row (row i has i entries), `weights` b.
+    /// The order is not checked.
     ///
     /// ```
     /// use pericles::time::Tableau;
@@ -39,8 +40,8 @@ impl Tableau {
     /// ```
     ///
     /// # Errors
-    /// No stages; rows or weights of other lengths; nodes that are not the sums of their rows, from which the stages of second-order equations follow;
-    /// weights whose sum is not one.
+    /// No stages; rows or weights of wrong length; nodes that are not the sums of their rows, on which the stages
+    /// of second-order equations rely; weights that do not add up to one.
     pub fn new(
         name: &'static str,
         order: u32,
@@ -61,7 +62,7 @@ impl Tableau {
             let off = node - row.iter().sum::<f64>();
             if off.is_nan() || off.abs() > ROUNDING {
                 return Err(PericlesError::SchemeParameter {
-                    parameter: "a node of the Runge–Kutta method less the sum of its row",
+                    parameter: "a node of the Runge–Kutta method minus the sum of its row",
                     value: off,
                     allowed: "0",
                 });
@@ -85,10 +86,11 @@ impl Tableau {
         })
     }
 
-    /// Two stages at 2/3: order three for every α but zero (Ascher & Petzold 1998, the one-parameter family of three-stage methods); α = 3/4 is Heun's method.
+    /// Three stages with two nodes at 2/3: order three for every nonzero α (Ascher & Petzold 1998, the
+    /// one-parameter family of three-stage methods); α = 3/4 is Heun's method.
     ///
     /// # Errors
-    /// α = 0, or not a number.
+    /// α is zero or not finite.
     pub fn rk3(alpha: f64) -> Result<Self> {
         if !(alpha.is_finite() && alpha != 0.0) {
             return Err(PericlesError::SchemeParameter {
@@ -108,7 +110,7 @@ impl Tableau {
         })
     }
 
-    /// The classical method of order four (Kutta 1901).
+    /// The classical fourth-order method (Kutta 1901).
     pub fn rk4() -> Self {
         Self {
             name: "rk4",
@@ -120,7 +122,8 @@ impl Tableau {
         }
     }
 
-    /// Order five with an embedded method of order four (Dormand & Prince 1980). The last stage is the end of the step.
+    /// The Dormand–Prince method of order five with an embedded method of order four (1980). The last stage is the
+    /// end of the step.
     pub fn dormand_prince() -> Self {
         let weights = vec![
             35.0 / 384.0,
@@ -172,12 +175,12 @@ impl Tableau {
         self.nodes.len()
     }
 
-    /// Never true.
+    /// Returns false: every method has stages.
     pub fn is_empty(&self) -> bool {
         self.nodes.is_empty()
     }
 
-    /// x'A for a row of numbers x, one per stage.
+    /// Returns x'A for a row x with one number per stage.
     pub(super) fn times_stages(&self, row: &[f64]) -> Vec<f64> {
         (0..row.len())
             .map(|j| {
@@ -188,7 +191,7 @@ impl Tableau {
             .collect()
     }
 
-    /// Ā = A².
+    /// Returns Ā = A².
     pub(super) fn displacement_stages(&self) -> Vec<Vec<f64>> {
         self.stages
             .iter()
@@ -196,7 +199,7 @@ impl Tableau {
             .collect()
     }
 
-    /// R(z) = 1 + z b'(1 − zA)⁻¹1 as coefficients of 1, z, z² …
+    /// Coefficients of the stability polynomial R(z) = 1 + z b'(1 − zA)⁻¹1, lowest power first.
     pub fn stability_polynomial(&self) -> Vec<f64> {
         let mut coefficients = vec![1.0];
         let mut row = self.weights.clone();
@@ -207,7 +210,7 @@ impl Tableau {
         coefficients
     }
 
-    /// The largest y such that |R(ix)| ≤ 1 for all 0 ≤ x ≤ y: the limit of ω dt for undamped oscillations.
+    /// Largest y with |R(ix)| ≤ 1 for all 0 ≤ x ≤ y: the limit of ω dt for undamped oscillations.
     pub fn stability_limit(&self) -> f64 {
         let polynomial = self.stability_polynomial();
         let growth = |y: f64| {
@@ -247,7 +250,7 @@ impl Tableau {
 mod tests {
     use super::*;
 
-    /// Σ_i w_i Π … of the rooted trees up to order five, one by one (Hairer, Nørsett & Wanner, table II.2.2).
+    /// Checks the order conditions of all rooted trees up to order five (Hairer, Nørsett & Wanner, table II.2.2).
     fn order_of(tableau: &Tableau, weights: &[f64]) -> u32 {
         let s = tableau.len();
         let c = &tableau.nodes;
@@ -288,7 +291,7 @@ mod tests {
     }
 
     #[test]
-    fn order_conditions() {
+    fn methods_satisfy_the_conditions_of_their_order() {
         for alpha in [0.75, 0.25, 1.0, -2.0] {
             let rk3 = Tableau::rk3(alpha).unwrap();
             assert_eq!(order_of(&rk3, &rk3.weights), 3, "{alpha}");
@@ -306,18 +309,18 @@ mod tests {
     }
 
     #[test]
-    fn stability_on_the_imaginary_axis() {
+    fn stability_limits_on_the_imaginary_axis() {
         let rk3 = Tableau::rk3(0.75).unwrap().stability_limit();
         assert!((rk3 - 3f64.sqrt()).abs() < 1e-9, "{rk3}");
         let rk4 = Tableau::rk4().stability_limit();
         assert!((rk4 - 8f64.sqrt()).abs() < 1e-9, "{rk4}");
-        // |R(iy)|² − 1 = −y⁶/1800 + …: stable at first, and not beyond y ≈ 1.
+        // |R(iy)|² − 1 = −y⁶/1800 + …: stable for small y, unstable beyond y ≈ 1.
         let pair = Tableau::dormand_prince().stability_limit();
         assert!((0.9..1.1).contains(&pair), "{pair}");
     }
 
     #[test]
-    fn displacement_form_of_rk4() {
+    fn displacement_form_of_rk4_equals_its_closed_form() {
         let rk4 = Tableau::rk4();
         let form = rk4.displacement_stages();
         assert_eq!(form[2], [0.25, 0.0]);

@@ -8,10 +8,12 @@ use crate::step_end::{Path, StepEnd};
 use crate::step_kind::StepKind;
 use crate::system::System;
 
-/// v ← v + dt/2 a, u ← u + dt v, a ← a(u), v ← v + dt/2 a (Swope et al. 1982; the Störmer–Verlet method).
+/// Velocity Verlet: v ← v + dt/2 a, u ← u + dt v, a ← a(u), v ← v + dt/2 a (Swope et al. 1982; the Störmer–Verlet
+/// method).
 ///
-/// Second order, symplectic, one force evaluation a step; stable for ω dt ≤ 2. Without breaking it conserves momentum to round-off and the energy
-/// with the kinetic part ½ v(t−dt/2)·M v(t+dt/2) exactly for linear forces.
+/// Second order, symplectic, one force evaluation per step; stable for ω dt ≤ 2. Without breaking it conserves
+/// momentum to round-off. For linear forces it conserves the energy with the kinetic part ½ v(t−dt/2)·M v(t+dt/2)
+/// exactly.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct VelocityVerlet;
 
@@ -32,8 +34,9 @@ impl Integrator for VelocityVerlet {
         Some(2.0)
     }
 
-    /// Over a step the kinetic energy ½ v·Mv − dt²/8 a·Ma = ½ v(t−dt/2)·M v(t+dt/2) grows by exactly the trapezoidal work ½ (F + F′)·Δu, which is
-    /// the loss of elastic energy for linear forces and what the ledger books for loads.
+    /// Over a step the kinetic energy ½ v·Mv − dt²/8 a·Ma = ½ v(t−dt/2)·M v(t+dt/2) grows by exactly the
+    /// trapezoidal work ½ (F + F′)·Δu, which is the loss of elastic energy for linear forces and the work of loads
+    /// in the energy balance.
     fn energy_correction(&self, system: &System, state: &State, dt: f64) -> f64 {
         -0.25 * dt * dt * system.kinetic_energy(&state.a)
     }
@@ -76,5 +79,5 @@ fn add_scaled(y: &mut [f64], factor: f64, x: &[f64]) {
 }
 
 crate::saved! {
-    impl Saved for VelocityVerlet {}
+    impl Checkpointed for VelocityVerlet {}
 }

@@ -1,23 +1,23 @@
-//! A set of points in a form that loops over it like.
+//! Zones: point sets stored for fast parallel loops.
 
 use std::ops::Range;
 
-use crate::operator::On;
+use crate::operator::PointSubset;
 use crate::parallel::BLOCK;
 use crate::space::PointSet;
 
-/// A set of points as runs of consecutive numbers, grouped into pieces of about equal size for the cores.
+/// A point set as runs of consecutive numbers, grouped into pieces of about equal size for parallel loops.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Zone {
     points: PointSet,
     runs: Vec<Range<u32>>,
-    /// First run of each piece, and the number of runs at the end.
+    /// First run of each piece, and at the end the number of runs.
     pieces: Vec<usize>,
     whole: bool,
 }
 
 impl Zone {
-    /// The zone of some points (ascending) of a body of n.
+    /// Makes the zone of some points (in ascending order) of a body of n points.
     pub(super) fn new(points: PointSet, n: usize) -> Self {
         let mut runs: Vec<Range<u32>> = Vec::new();
         for &i in &points {
@@ -46,7 +46,7 @@ impl Zone {
         }
     }
 
-    /// All n points.
+    /// The zone of all n points.
     pub(super) fn all(n: usize) -> Self {
         Self::new((0..n as u32).collect(), n)
     }
@@ -63,16 +63,17 @@ impl Zone {
         self.points.is_empty()
     }
 
-    /// The zone as operators take it.
-    pub(super) fn on(&self) -> On<'_> {
+    /// Returns the zone as a subset for force operators.
+    pub(super) fn on(&self) -> PointSubset<'_> {
         if self.whole {
-            On::All
+            PointSubset::All
         } else {
-            On::Set(&self.points)
+            PointSubset::Set(&self.points)
         }
     }
 
-    /// Calls `work(entries, range of their place in the arrays)` for every run and component of a component-major array, on all cores.
+    /// Calls `work(entries, their range in the arrays)` in parallel for every run and component of a
+    /// component-major array.
     pub(super) fn for_each_run(
         &self,
         n: usize,
@@ -123,24 +124,25 @@ impl Zone {
     }
 }
 
-/// Where a slice lies: its first point, and the entry of point 0 of its component.
+/// Position of a slice: its first point, and the entry of point 0 of its component.
 #[derive(Clone, Copy)]
 struct Place {
     first: usize,
     offset: usize,
 }
 
-/// base + Σ factor · array, entry by entry: what every stage, predictor and interpolant is.
+/// A linear combination base + Σ factor · array, entry by entry: the form of all stages, predictors and
+/// interpolants.
 pub(super) struct Sum<'a> {
     terms: [(f64, &'a [f64]); Sum::MOST],
     len: usize,
 }
 
 impl<'a> Sum<'a> {
-    /// Stages of the largest tableau, and the velocity.
+    /// Largest number of terms: the stages of the largest tableau, and the velocity.
     const MOST: usize = 8;
 
-    /// Nothing yet.
+    /// The empty sum.
     pub(super) fn new() -> Self {
         Self {
             terms: [(0.0, &[]); Self::MOST],
@@ -148,7 +150,7 @@ impl<'a> Sum<'a> {
         }
     }
 
-    /// Adds a term; one of factor zero is left out.
+    /// Adds a term; a term with factor zero is left out.
     pub(super) fn plus(mut self, factor: f64, array: &'a [f64]) -> Self {
         if factor != 0.0 {
             self.terms[self.len] = (factor, array);
@@ -170,7 +172,7 @@ impl<'a> Sum<'a> {
             .fold(self, |sum, (k, factor)| sum.plus(scale * factor, array(k)))
     }
 
-    /// out = base + sum on the points of a zone.
+    /// Computes out = base + sum on the points of a zone.
     pub(super) fn onto(&self, base: &[f64], zone: &Zone, n: usize, out: &mut [f64]) {
         zone.for_each_run(n, out, &|out, range| {
             out.copy_from_slice(&base[range.clone()]);
@@ -178,12 +180,13 @@ impl<'a> Sum<'a> {
         });
     }
 
-    /// out = out + sum on the points of a zone.
+    /// Computes out = out + sum on the points of a zone.
     pub(super) fn add_to(&self, zone: &Zone, n: usize, out: &mut [f64]) {
         zone.for_each_run(n, out, &|out, range| self.add_run(out, range));
     }
 
-    /// Terms are added from left to right, whatever their number, so that no choice of loop changes a bit.
+    /// Terms are added from left to right for every number of terms, so that the choice of the loop does not change
+    /// a bit.
     #[inline]
     fn add_run(&self, out: &mut [f64], range: Range<usize>) {
         let term = |k: usize| (self.terms[k].0, &self.terms[k].1[range.clone()]);
@@ -229,7 +232,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn runs_cover_a_zone_once() {
+    fn runs_cover_a_zone_exactly_once() {
         let n = 5000;
         let points: PointSet = (0..n as u32)
             .filter(|i| i % 7 != 3 && !(2000..2600).contains(i))
@@ -245,13 +248,13 @@ mod tests {
             let inside = points.binary_search(&((entry % n) as u32)).is_ok();
             assert_eq!(seen[entry], if inside { 1.0 + entry as f64 } else { 0.0 });
         }
-        assert!(matches!(Zone::all(7).on(), On::All));
+        assert!(matches!(Zone::all(7).on(), PointSubset::All));
         assert!(Zone::new(vec![], 7).is_empty());
         Zone::new(vec![], 7).for_each_run(7, &mut [0.0; 7], &|_, _| panic!("no run"));
     }
 
     #[test]
-    fn the_number_of_terms_does_not_change_a_sum() {
+    fn sums_of_any_number_of_terms_add_from_left_to_right() {
         let arrays: Vec<Vec<f64>> = (0..6)
             .map(|k| (0..10).map(|i| ((i * i + k) as f64).sin()).collect())
             .collect();

@@ -1,17 +1,17 @@
-//! The parts of a body with two time steps.
+//! The zones of a body under a multirate scheme.
 
 use super::zone::Zone;
 use crate::operator::LocalForce;
 use crate::space::PointSet;
 
-/// The zones that follow from the fine points F and from who is bonded to whom.
+/// The zones that follow from the fine points F and their bonds.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Zones {
     /// C, the points with the coarse step.
     pub(super) coarse: Zone,
     /// CB: coarse points with a fine neighbour.
     pub(super) coarse_border: Zone,
-    /// C less CB.
+    /// C without CB.
     pub(super) coarse_inner: Zone,
     /// F.
     pub(super) fine: Zone,
@@ -24,7 +24,7 @@ pub(super) struct Zones {
 }
 
 impl Zones {
-    /// The zones for marked fine points. Only the neighbours of fine points are looked at.
+    /// Determines the zones from marked fine points. Only the neighbours of fine points are visited.
     pub(super) fn new(force: &dyn LocalForce, is_fine: Vec<bool>) -> Self {
         let n = is_fine.len();
         let mut on_border = vec![false; n];
@@ -64,7 +64,7 @@ impl Zones {
     }
 }
 
-/// Marks everything within `layers` families of the marked points.
+/// Marks all points within `layers` families of the marked points.
 pub(super) fn grow(force: &dyn LocalForce, marks: &mut [bool], layers: u32) {
     let mut front: Vec<u32> = (0..marks.len() as u32)
         .filter(|&i| marks[i as usize])

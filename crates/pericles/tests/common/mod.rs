@@ -1,4 +1,4 @@
-//! Bodies that several tests share.
+//! Bodies shared by several tests.
 #![allow(dead_code)] // each test uses its part
 
 use std::sync::Arc;
@@ -8,11 +8,11 @@ use pericles::kernel::Influence;
 use pericles::material::{
     BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PairLaw, StressState,
 };
-use pericles::operator::{BondForce, DamageMeasure, FastLaw, Force};
+use pericles::operator::{BondForce, DamageMeasure, Force, VectorLaw};
 use pericles::space::{Grid, PointCloud, PointSet, Shape};
 use pericles::{PointScalar, System};
 
-/// A box of cells from its lower corner.
+/// A box of cells, given by its lower corner.
 pub fn boxed(origin: [f64; 3], size: &[f64], spacing: f64, section: f64) -> Arc<PointCloud> {
     let grid = Grid {
         shape: Shape::Box {
@@ -26,7 +26,7 @@ pub fn boxed(origin: [f64; 3], size: &[f64], spacing: f64, section: f64) -> Arc<
     Arc::new(grid.points().unwrap())
 }
 
-/// A material whose modulus is the continuum's, with a constant influence function.
+/// A material with the modulus of the continuum and a constant influence function.
 pub fn material(
     density: f64,
     young: f64,
@@ -48,8 +48,8 @@ pub fn material(
     }
 }
 
-/// The bonds of a material as a list.
-pub fn listed<L: FastLaw, const D: usize>(
+/// The bonds of a material as a neighbour list.
+pub fn listed<L: VectorLaw, const D: usize>(
     cloud: &Arc<PointCloud>,
     material: &BondMaterial,
     state: StressState,
@@ -78,7 +78,7 @@ pub fn system(cloud: &Arc<PointCloud>, operator: impl Force + 'static, density: 
     System::new(cloud.clone(), Box::new(operator), density).unwrap()
 }
 
-/// The points at places for which `inside(x, y, z)` holds.
+/// The points whose positions satisfy `inside(x, y, z)`.
 pub fn points(cloud: &PointCloud, inside: impl Fn(f64, f64, f64) -> bool) -> PointSet {
     (0..cloud.len() as u32)
         .filter(|&i| {

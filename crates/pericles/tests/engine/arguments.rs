@@ -1,10 +1,10 @@
-//! Arguments that do not fit each other are refused with an error: no panic by an index or a length.
+//! Incompatible arguments return errors that name them, without panics from indices or lengths.
 
 use std::sync::Arc;
 
 use pericles::boundary::{AxisMotion, LoadDensity, MotionKind};
 use pericles::family::BondList;
-use pericles::material::{BondStretch, PairClasses};
+use pericles::material::{BondStretch, MaterialPairs};
 use pericles::observe::Probe;
 use pericles::operator::{BondForce, Breaking, DamageMeasure, GridForce};
 use pericles::prelude::*;
@@ -29,11 +29,11 @@ fn system() -> System {
 
 fn refused<T>(result: Result<T, PericlesError>, says: &str) {
     let message = result.err().expect(says).to_string();
-    assert!(message.contains(says), "{message} does not say {says}");
+    assert!(message.contains(says), "{message} does not contain {says}");
 }
 
 #[test]
-fn forces_must_be_made_for_their_body() {
+fn forces_of_another_body_are_errors() {
     let (ten, nine) = (cloud(10), cloud(9));
     let constants = material().constants(&ten, StressState::Uniaxial).unwrap();
     let new = |cloud: &Arc<PointCloud>, no_fail: &[u32]| {
@@ -47,10 +47,13 @@ fn forces_must_be_made_for_their_body() {
             measure,
         )
     };
-    refused(new(&ten, &[]), "the families of the bond list: 9 entries");
+    refused(
+        new(&ten, &[]),
+        "the families of the neighbour list: 9 entries",
+    );
     refused(
         new(&nine, &[9]),
-        "point 9 is named, the points of the body are 0 to 8",
+        "point 9 does not exist; the points of the body are 0 to 8",
     );
     let never = Breaking {
         critical_stretch: f64::INFINITY,
@@ -72,7 +75,7 @@ fn forces_must_be_made_for_their_body() {
         &[10],
         DamageMeasure::default(),
     );
-    refused(grid, "point 10 is named");
+    refused(grid, "point 10 does not exist");
     let force = Box::new(new(&nine, &[]).unwrap());
     let foreign = System::new(ten.clone(), force, PointScalar::Uniform(1.0));
     refused(foreign, "the force acts on 9 points");
@@ -94,20 +97,20 @@ fn forces_must_be_made_for_their_body() {
         material().constants_on(&[1.0, 1.0], 1.0, StressState::Uniaxial),
         "the sides of the cells: 2 entries",
     );
-    let classes = PairClasses::new(vec![0; 10], &[constants], InterfaceRule::Harmonic);
+    let classes = MaterialPairs::new(vec![0; 10], &[constants], InterfaceRule::Harmonic);
     refused(
         classes.unwrap().set_critical_stretch([0, 1], 0.1),
-        "material of a pair",
+        "the material number of an interface",
     );
 }
 
 #[test]
-fn bodies_name_what_does_not_fit() {
+fn errors_of_bodies_name_the_wrong_argument() {
     let body = || Body::new(cloud(10), material());
-    refused(body().no_fail(vec![10]).build(), "point 10 is named");
+    refused(body().no_fail(vec![10]).build(), "point 10 does not exist");
     refused(
         body().material(vec![11], material()).build(),
-        "point 11 is named",
+        "point 11 does not exist",
     );
     let wide = BondMaterial::new(ElasticModulus::Young(1.0), 1.0, 4.0);
     refused(
@@ -124,7 +127,7 @@ fn bodies_name_what_does_not_fit() {
         "give PlaneStress or PlaneStrain",
     );
     refused(Region::layer("top", 1.0), "`top` is not a face");
-    // An axis that space does not have has no layer.
+    // An axis beyond the dimension of space has no layer.
     let face = Face {
         axis: 3,
         upper: true,
@@ -149,7 +152,7 @@ fn bodies_name_what_does_not_fit() {
 }
 
 #[test]
-fn loads_and_motions_must_fit_the_body() {
+fn loads_and_motions_that_do_not_match_the_body_are_errors() {
     let constant = || TimeFunction::Constant;
     let load = |points: Vec<u32>, density: LoadDensity| {
         system().add_load(Load::new(points, density, constant()))
@@ -159,8 +162,8 @@ fn loads_and_motions_must_fit_the_body() {
         load(vec![10], unit.clone()),
         "the points of a load: point 10",
     );
-    refused(load(vec![2, 1], unit.clone()), "must be ascending");
-    refused(load(vec![1, 1], unit), "each may be named once");
+    refused(load(vec![2, 1], unit.clone()), "must be in ascending order");
+    refused(load(vec![1, 1], unit), "each at most once");
     let amplitudes = LoadDensity::PerPoint(vec![1.0]);
     refused(
         load(vec![1, 2], amplitudes),
@@ -205,7 +208,7 @@ fn loads_and_motions_must_fit_the_body() {
 }
 
 #[test]
-fn states_and_steps_must_fit_the_system() {
+fn states_and_steps_that_do_not_match_the_system_are_errors() {
     let new = |entries, dt| {
         let state = State::at_rest(entries);
         Simulation::new(system(), Box::new(VelocityVerlet), state, dt, 5)
@@ -234,7 +237,7 @@ fn states_and_steps_must_fit_the_system() {
     );
     refused(
         tableau(&[0.0, 1.0], rows(), &[0.0, 1.0]),
-        "less the sum of its row",
+        "minus the sum of its row",
     );
     refused(
         tableau(&[0.0, 0.5], rows(), &[0.5, 1.0]),
@@ -248,7 +251,7 @@ fn states_and_steps_must_fit_the_system() {
     refused(build().end(-1.0).build(), "the end of the simulation");
     refused(
         build().safety(0.0).steps(1).build(),
-        "the part of the stable step",
+        "the fraction of the stable step",
     );
     refused(
         highest_frequency(&system(), &[0.0; 9]),

@@ -1,9 +1,10 @@
-//! Bodies and simulations made by builders: the same as those put together by hand, and laws, forces and observers from outside of the engine.
+//! Bodies and simulations made by builders agree with those assembled by hand; custom pair laws, forces and
+//! observers.
 
 use std::sync::{Arc, Mutex};
 
 use pericles::family::EndRule;
-use pericles::material::{BondConstants, BondStretch, PairClasses};
+use pericles::material::{BondConstants, BondStretch, MaterialPairs};
 use pericles::operator::{BondBody, CompositeBody};
 use pericles::prelude::*;
 use pericles::time::{RungeKutta, Tableau, highest_frequency};
@@ -32,7 +33,7 @@ fn crack() -> Crack {
     }
 }
 
-/// A displacement with strains of about a thousandth.
+/// A displacement with strains of about 1e-3.
 fn uneven(cloud: &PointCloud) -> Vec<f64> {
     let mut u = vec![0.0; 2 * cloud.len()];
     for i in 0..cloud.len() {
@@ -46,11 +47,13 @@ fn uneven(cloud: &PointCloud) -> Vec<f64> {
 fn force_of(system: &System) -> Vec<f64> {
     let u = uneven(system.cloud());
     let mut force = vec![0.0; u.len()];
-    system.operator().add_force(0.0, &u, On::All, &mut force);
+    system
+        .operator()
+        .add_force(0.0, &u, PointSubset::All, &mut force);
     force
 }
 
-/// The largest difference over the largest entry.
+/// Largest difference divided by the largest entry.
 fn distance(a: &[f64], b: &[f64]) -> f64 {
     let largest = a.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
     let pairs = a.iter().zip(b);
@@ -58,7 +61,7 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
 }
 
 #[test]
-fn a_body_of_two_materials_is_that_put_together_by_hand() {
+fn a_body_of_two_materials_equals_its_assembly_by_hand() {
     let cloud = plate();
     let soft = BondMaterial::new(ElasticModulus::Young(20e9), 1000.0, 3.0 * DX);
     let right = cloud.select(&half());
@@ -77,7 +80,7 @@ fn a_body_of_two_materials_is_that_put_together_by_hand() {
         [glass(), soft].map(|m| m.constants(&cloud, StressState::PlaneStrain).unwrap());
     let mut of_point = vec![0; cloud.len()];
     right.iter().for_each(|&i| of_point[i as usize] = 1);
-    let classes = PairClasses::new(of_point, &constants, InterfaceRule::Weaker).unwrap();
+    let classes = MaterialPairs::new(of_point, &constants, InterfaceRule::Weaker).unwrap();
     let (material, cracks) = (glass(), [(crack(), EndRule::Closed)]);
     let body = BondBody {
         cracks: &cracks,
@@ -92,13 +95,13 @@ fn a_body_of_two_materials_is_that_put_together_by_hand() {
     let operator = by_hand.operator(BondForm::Fastest).unwrap().operator;
     let u = uneven(&cloud);
     let mut force = vec![0.0; u.len()];
-    operator.add_force(0.0, &u, On::All, &mut force);
+    operator.add_force(0.0, &u, PointSubset::All, &mut force);
     assert_eq!(force_of(&built), force);
     assert_eq!(built.density().at(0), 2440.0);
     assert_eq!(built.density().at(29), 1000.0);
 }
 
-/// The bond-stretch law as a program outside of the engine writes it, by its definition.
+/// The bond-stretch law written from its definition, as a program outside the engine does it.
 #[derive(Clone, Copy, Default)]
 struct Outside;
 
@@ -122,7 +125,7 @@ impl PairForce for Outside {
 }
 
 #[test]
-fn a_pair_law_from_outside_acts_as_a_built_in_one_in_every_form() {
+fn a_custom_pair_law_agrees_with_the_built_in_law_in_every_form() {
     for form in [BondForm::List, BondForm::Grid, BondForm::Fastest] {
         let body = || {
             Body::new(plate(), glass())
@@ -132,9 +135,9 @@ fn a_pair_law_from_outside_acts_as_a_built_in_one_in_every_form() {
         };
         let built_in = body().build().unwrap();
         let outside = body().pair_law::<Outside>().build().unwrap();
-        // Polynomials of small strains differ from the law's own roots in the last digits.
+        // The small-strain polynomials of the built-in law differ from its square roots in the last digits.
         assert!(distance(&force_of(&built_in), &force_of(&outside)) < 1e-11);
-        // Breaking is decided alike, bond by bond.
+        // The same bonds break.
         let broken = |system: System| {
             let mut run = Simulation::builder(system)
                 .displacement(|[x, y, _]| [0.0, 0.02 * y * (100.0 * x).sin(), 0.0])
@@ -151,7 +154,7 @@ fn a_pair_law_from_outside_acts_as_a_built_in_one_in_every_form() {
 }
 
 #[test]
-fn a_pair_law_from_outside_goes_with_several_materials_and_corrected_surfaces() {
+fn a_custom_pair_law_supports_several_materials_and_surface_corrections() {
     let body = || {
         let soft = BondMaterial::new(ElasticModulus::Young(20e9), 1000.0, 3.0 * DX);
         let right = plate().select(&half());
@@ -166,7 +169,7 @@ fn a_pair_law_from_outside_goes_with_several_materials_and_corrected_surfaces() 
 }
 
 #[test]
-fn the_default_step_is_the_stable_one_and_ends_at_the_end() {
+fn the_default_step_is_stable_and_reaches_the_end_exactly() {
     let system = || {
         Body::new(plate(), glass())
             .stress_state(StressState::PlaneStress)
@@ -181,15 +184,15 @@ fn the_default_step_is_the_stable_one_and_ends_at_the_end() {
     let (dt, steps) = (run.dt(), run.steps() as f64);
     assert!((dt * steps / 1e-5 - 1.0).abs() < 1e-14);
     assert!(dt <= stable && 1e-5 / (steps - 1.0) > stable);
-    // A whole number of given steps is left as it is.
+    // A given step of which a whole number reaches the end is unchanged.
     let run = Simulation::builder(system()).dt(1e-8).end(1e-6).build();
     assert_eq!(run.unwrap().steps(), 100);
-    // A step far above the stable one is refused, unless that is asked for.
+    // A step far above the stable one is an error unless unstable steps are allowed.
     let long = || Simulation::builder(system()).dt(2.0 * stable).steps(3);
     let refusal = long().build().err().unwrap();
     assert!(matches!(refusal, PericlesError::UnstableStep { .. }));
     assert!(long().allow_unstable().build().is_ok());
-    // The limit is that of the scheme.
+    // The limit depends on the scheme.
     let fourth = Simulation::builder(system())
         .scheme_for(|system| Ok(RungeKutta::new(&Tableau::rk4(), system)))
         .unwrap()
@@ -226,7 +229,7 @@ fn prescribed_velocities_add_to_the_initial_displacement() {
     assert!((moved / 2e-6 - 1.0).abs() < 1e-12, "{moved}");
 }
 
-/// Counts what it sees.
+/// Counts the states it receives.
 struct Counter {
     seen: u64,
 }
@@ -239,13 +242,13 @@ impl Observer for Counter {
 }
 
 saved! {
-    impl Saved for Counter {
+    impl Checkpointed for Counter {
         seen: array("counter/seen"),
     }
 }
 
 #[test]
-fn a_shared_observer_is_read_after_the_run_and_saved_with_it() {
+fn a_shared_observer_is_saved_with_the_run_and_read_after_it() {
     let counter = Arc::new(Mutex::new(Counter { seen: 0 }));
     let system = Body::new(plate(), glass()).stress_state(StressState::PlaneStress);
     let mut run = Simulation::builder(system.build().unwrap())
@@ -254,7 +257,7 @@ fn a_shared_observer_is_read_after_the_run_and_saved_with_it() {
         .build()
         .unwrap();
     run.run_to_end().unwrap();
-    // The start and five states after it.
+    // The initial state and five later states.
     assert_eq!(counter.lock().unwrap().seen, 6);
     let mut archive = pericles::Archive::default();
     run.save(&mut archive);

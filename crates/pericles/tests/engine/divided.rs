@@ -1,4 +1,5 @@
-//! A body divided among several processes, here threads that talk through mailboxes: every bit is that of one process.
+//! Results of a body divided among several processes (threads that exchange messages) are bitwise identical
+//! to those of a single process.
 
 use std::sync::Arc;
 
@@ -27,7 +28,7 @@ fn nodes() -> Vec<[f64; 2]> {
     (0..SIDES[0] * SIDES[1]).map(node).collect()
 }
 
-/// The owner of each node: stripes of unequal width that cut rows, and no stripe is a range of numbers.
+/// Owner of each node: stripes of unequal width that cut rows, so that no part is a range of numbers.
 fn owners(size: usize) -> Vec<usize> {
     nodes()
         .iter()
@@ -35,7 +36,7 @@ fn owners(size: usize) -> Vec<usize> {
         .collect()
 }
 
-/// The part of the body of one process, and the numbers of its points.
+/// The part of the body owned by a process, and the numbers of its points.
 fn part(comm: Arc<dyn Comm>) -> (System, Vec<usize>) {
     let (nodes, owners) = (nodes(), owners(comm.size()));
     let near = |a: usize, b: usize| {
@@ -96,7 +97,8 @@ fn nodes_at(k: usize, c: usize) -> f64 {
 
 type Make = fn(&System) -> Box<dyn Integrator>;
 
-/// What a run ends with: displacements and velocities by the numbers of points, energies and momentum, and the evaluations of points.
+/// Final state of a run: displacements and velocities by point number, energies and momentum, number of
+/// evaluations.
 type End = (Vec<[u64; 4]>, [u64; 3]);
 
 fn run(comm: Arc<dyn Comm>, make: Make) -> (Vec<usize>, End) {
@@ -120,12 +122,12 @@ fn run(comm: Arc<dyn Comm>, make: Make) -> (Vec<usize>, End) {
     (own, ((0..n).map(of).collect(), sums.map(f64::to_bits)))
 }
 
-/// The same by several threads, put together in the order of numbers.
+/// The final state computed by several threads, in the order of point numbers.
 fn divided(size: usize, make: Make) -> End {
     let parts = on_processes(size, |comm| run(comm, make));
     let mut whole = vec![[0; 4]; SIDES[0] * SIDES[1]];
     for (own, (values, sums)) in &parts {
-        assert_eq!(sums, &parts[0].1.1, "every process knows the same sums");
+        assert_eq!(sums, &parts[0].1.1, "all processes have the same sums");
         own.iter()
             .zip(values)
             .for_each(|(&k, values)| whole[k] = *values);
@@ -134,7 +136,7 @@ fn divided(size: usize, make: Make) -> End {
 }
 
 #[test]
-fn a_divided_body_moves_by_the_same_bits() {
+fn results_of_a_divided_body_are_bitwise_identical() {
     let schemes: [(&str, Make); 4] = [
         ("velocity Verlet", |_| Box::new(VelocityVerlet)),
         ("Dormand–Prince", |system| {

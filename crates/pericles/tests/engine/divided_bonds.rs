@@ -1,4 +1,5 @@
-//! Bodies of bonds divided among several processes, with and without periodic faces: every bit is that of one process.
+//! Results of bond-based and state-based bodies divided among several processes, with and without periodic
+//! faces, are bitwise identical to those of a single process.
 
 use std::sync::Arc;
 
@@ -9,11 +10,11 @@ use pericles::family::{Crack, EndRule, VolumeCorrection};
 use pericles::kernel::InfluenceFunction;
 use pericles::material::{
     BondFailure, BondMaterial, BondStretch, Fracture, GivenConstants, GreenBond, InterfaceRule,
-    LinearBond, LinearSolid, PairClasses, PairLaw, SolidClasses, SolidSurface, StateInfluence,
+    LinearBond, LinearSolid, MaterialPairs, PairLaw, SolidClasses, SolidSurface, StateInfluence,
     StressState, SurfaceCorrection,
 };
 use pericles::operator::{
-    BondBody, BondForm, CompositeBody, DamageMeasure, FastLaw, Force, GridForce, LinearSolidBody,
+    BondBody, BondForm, CompositeBody, DamageMeasure, Force, GridForce, LinearSolidBody, VectorLaw,
 };
 use pericles::space::{Grid, PointCloud, Region, Shape};
 use pericles::time::{
@@ -47,13 +48,13 @@ fn plate(periodic: bool) -> PointCloud {
     }
 }
 
-/// The owner of each point: oblique stripes, so that no part is a range of numbers or a box.
+/// Owner of each point: oblique stripes, so that no part is a range of numbers or a box.
 fn owner(cloud: &PointCloud, size: usize, k: usize) -> usize {
     let [x, y, _] = cloud.point(k);
     (((x + 0.4 * y) / 27.0 * size as f64) as usize).min(size - 1)
 }
 
-/// The part of the plate that a process owns, with ghosts up to three and a half cells away.
+/// The part of the plate owned by a process, with ghosts up to three and a half cells away.
 fn part(cloud: &PointCloud, comm: Arc<dyn Comm>) -> PointCloud {
     const REACH: f64 = 3.5;
     let near = |a: usize, b: usize| {
@@ -124,12 +125,12 @@ fn held(cloud: &PointCloud) -> Vec<u32> {
 
 type Make = fn(&Arc<PointCloud>) -> Box<dyn Force>;
 
-fn list<L: FastLaw>(law: PairLaw, cloud: &Arc<PointCloud>) -> Box<dyn Force> {
+fn list<L: VectorLaw>(law: PairLaw, cloud: &Arc<PointCloud>) -> Box<dyn Force> {
     let force = listed::<L, 2>(cloud, &glass(law), STATE, Some(notch()), &held(cloud));
     Box::new(force)
 }
 
-fn grid<L: FastLaw>(law: PairLaw, cloud: &Arc<PointCloud>) -> Box<dyn Force> {
+fn grid<L: VectorLaw>(law: PairLaw, cloud: &Arc<PointCloud>) -> Box<dyn Force> {
     let glass = glass(law);
     let constants = glass.constants(cloud, STATE).unwrap();
     let cracks = [(notch(), EndRule::Closed)];
@@ -158,7 +159,7 @@ fn composite(cloud: &Arc<PointCloud>, form: BondForm) -> Box<dyn Force> {
     let number = |i: usize| u8::from(cloud.point(i)[0] > 10.0);
     let numbers = (0..cloud.len()).map(number).collect();
     let both = [constants.clone(), softer];
-    let classes = PairClasses::new(numbers, &both, InterfaceRule::Harmonic).unwrap();
+    let classes = MaterialPairs::new(numbers, &both, InterfaceRule::Harmonic).unwrap();
     let share = |i: usize| if cloud.point(i)[1] < 3.0 { 1.5 } else { 1.0 };
     let stiffness: Vec<f64> = (0..cloud.len()).map(share).collect();
     let cracks = [(notch(), EndRule::Closed)];
@@ -175,7 +176,7 @@ fn composite(cloud: &Arc<PointCloud>, form: BondForm) -> Box<dyn Force> {
     body.operator(form).unwrap().operator
 }
 
-/// Two state-based materials in a form; on a list with corrected surfaces.
+/// Two state-based materials in a given form; with corrected surfaces for a neighbour list.
 fn solid(cloud: &Arc<PointCloud>, form: BondForm) -> Box<dyn Force> {
     let material = |young: f64, poisson_ratio: f64| LinearSolid {
         density: 1.0,
@@ -209,7 +210,8 @@ fn solid(cloud: &Arc<PointCloud>, form: BondForm) -> Box<dyn Force> {
 
 type MakeScheme = fn(&System) -> Box<dyn Integrator>;
 
-/// What a run ends with: displacements, velocities and damage by the numbers of points; energies, momentum, energy dissipated and bonds broken.
+/// Final state of a run: displacements, velocities and damage by point number; energies, momentum, dissipated
+/// energy and number of broken bonds.
 type End = (Vec<[u64; 5]>, [u64; 5]);
 
 fn run(cloud: PointCloud, make: Make, scheme: MakeScheme) -> End {
@@ -257,7 +259,7 @@ fn divided(whole: &PointCloud, size: usize, make: Make, scheme: MakeScheme) -> E
     });
     let mut values = vec![[0; 5]; whole.len()];
     for (numbers, (own, sums)) in &parts {
-        assert_eq!(sums, &parts[0].1.1, "every process knows the same sums");
+        assert_eq!(sums, &parts[0].1.1, "all processes have the same sums");
         for (&k, own) in numbers.iter().zip(own) {
             values[k] = *own;
         }
@@ -268,7 +270,7 @@ fn divided(whole: &PointCloud, size: usize, make: Make, scheme: MakeScheme) -> E
 const VERLET: MakeScheme = |_| Box::new(VelocityVerlet);
 
 #[test]
-fn a_divided_body_of_bonds_moves_by_the_same_bits() {
+fn results_of_a_divided_body_of_bonds_are_bitwise_identical() {
     let forces: [(&str, Make); 8] = [
         ("list", |cloud| {
             list::<BondStretch>(PairLaw::BondStretch, cloud)
@@ -312,7 +314,7 @@ fn a_divided_body_of_bonds_moves_by_the_same_bits() {
 }
 
 #[test]
-fn every_scheme_of_whole_steps_gives_the_same_bits() {
+fn results_of_single_rate_schemes_are_bitwise_identical_on_divided_bodies() {
     let schemes: [(&str, MakeScheme); 3] = [
         ("Runge–Kutta", |system| {
             Box::new(RungeKutta::new(&Tableau::rk4(), system))
@@ -345,7 +347,7 @@ fn every_scheme_of_whole_steps_gives_the_same_bits() {
     }
 }
 
-/// The bound and the estimate of the highest frequency decide the time step.
+/// The time step follows from the bound and the estimate of the highest frequency.
 #[test]
 fn the_highest_frequency_does_not_depend_on_the_division() {
     use pericles::time::highest_frequency;

@@ -1,4 +1,4 @@
-//! Runs: order, conservation, breaking, supports, restart, threads.
+//! Runs: order, conservation, breaking bonds, constraints, checkpoints, threads.
 
 use crate::common;
 use std::f64::consts::PI;
@@ -8,11 +8,13 @@ use pericles::boundary::{Load, MotionKind, PrescribedMotion, TimeFunction};
 use pericles::family::{BondList, Crack, VolumeCorrection};
 use pericles::material::{BondMaterial, BondStretch, Fracture, LinearBond, StressState};
 use pericles::observe::Energies;
-use pericles::operator::{BondBody, BondForce, Breakable, DamageMeasure, FastLaw, Force, On};
+use pericles::operator::{
+    BondBody, BondForce, Breakable, DamageMeasure, Force, PointSubset, VectorLaw,
+};
 use pericles::round_trip::check_resume;
 use pericles::space::{Face, PointCloud, Region};
 use pericles::time::{Integrator, State, VelocityVerlet, highest_frequency};
-use pericles::{Archive, Control, Saved, Simulation, SimulationError, System, Values};
+use pericles::{Archive, Checkpointed, Control, Simulation, SimulationError, System, Values};
 use pericles::{Path, StepEnd};
 
 const DENSITY: f64 = 7850.0;
@@ -32,7 +34,7 @@ fn material(horizon: f64, fracture: Fracture) -> BondMaterial {
     )
 }
 
-fn operator<L: FastLaw, const D: usize>(
+fn operator<L: VectorLaw, const D: usize>(
     cloud: &Arc<PointCloud>,
     material: &BondMaterial,
     state: StressState,
@@ -45,7 +47,7 @@ fn system(cloud: &Arc<PointCloud>, operator: impl Force + 'static) -> System {
     common::system(cloud, operator, DENSITY)
 }
 
-/// A notched plate pulled apart until it breaks, held on one side.
+/// A notched plate in tension, fixed on one side, until it breaks.
 fn breaking_plate(steps: u64) -> Simulation {
     let cloud = grid(&[0.04, 0.02], 0.5e-3);
     let crack = Crack::Segment {
@@ -85,8 +87,8 @@ fn breaking_plate(steps: u64) -> Simulation {
 }
 
 #[test]
-fn second_order_in_time() {
-    // A smooth standing wave of a nonlinear bar; errors against a run with a much smaller step.
+fn velocity_verlet_is_of_second_order_in_time() {
+    // A smooth standing wave of a nonlinear bar; errors relative to a run with a much smaller step.
     let run = |steps: u64| -> Vec<f64> {
         let cloud = grid(&[1.0], 0.02);
         let bar = operator::<BondStretch, 1>(
@@ -129,8 +131,8 @@ fn second_order_in_time() {
 }
 
 #[test]
-fn the_stable_step_is_sharp() {
-    // Growth sets in between 0.999 and 1.001 of 2/ω.
+fn runs_are_unstable_exactly_above_the_stability_limit() {
+    // Growth starts between 0.999 and 1.001 times 2/ω.
     let cloud = grid(&[0.2, 0.1], 0.01);
     let plate = || {
         operator::<LinearBond, 2>(
@@ -168,8 +170,9 @@ fn the_stable_step_is_sharp() {
 }
 
 #[test]
-fn lanczos_finds_the_exact_frequency_of_a_chain() {
-    // Horizon of one spacing without correction: a chain of n masses, ω = 2 √(k/m) cos(π/2n).
+fn lanczos_frequency_of_a_chain_is_exact() {
+    // With a horizon of one spacing and no volume correction the bar is a chain of n masses: ω = 2 √(k/m)
+    // cos(π/2n).
     let n = 64;
     let cloud = grid(&[n as f64 * 0.01], 0.01);
     let mut steel = material(0.01, Fracture::Unbreakable);
@@ -189,8 +192,9 @@ fn lanczos_finds_the_exact_frequency_of_a_chain() {
 }
 
 #[test]
-fn the_frequency_of_a_large_body_is_found_by_a_hundred_products() {
-    // The same chain, long: the upper end of its spectrum is dense, and its highest mode hard to tell from the next.
+fn one_hundred_products_suffice_for_the_highest_frequency_of_a_large_body() {
+    // The same chain with more masses: the upper end of its spectrum is dense, and its highest mode is close to the
+    // next.
     let n = 100_000;
     let cloud = grid(&[n as f64 * 0.01], 0.01);
     let mut steel = material(0.01, Fracture::Unbreakable);
@@ -205,7 +209,7 @@ fn the_frequency_of_a_large_body_is_found_by_a_hundred_products() {
 }
 
 #[test]
-fn a_free_linear_body_keeps_its_discrete_energy_and_momentum() {
+fn a_free_linear_body_conserves_discrete_energy_and_momentum() {
     let cloud = grid(&[0.1, 0.06], 0.01);
     let plate = operator::<LinearBond, 2>(
         &cloud,
@@ -227,7 +231,7 @@ fn a_free_linear_body_keeps_its_discrete_energy_and_momentum() {
         Simulation::new(system, Box::new(VelocityVerlet), start, dt, 2000).unwrap();
     simulation.run(|_| Control::Continue).unwrap();
     let energies = simulation.snapshot().energies();
-    // The plain energy oscillates by far more than the discrete one at 0.9 of the limit.
+    // At 0.9 of the limit the plain energy oscillates far more than the discrete one.
     assert!(
         energies.balance().abs() < 1e-11 * energies.initial,
         "{energies:?}"
@@ -244,7 +248,7 @@ fn a_free_linear_body_keeps_its_discrete_energy_and_momentum() {
 }
 
 #[test]
-fn energy_is_accounted_for_while_bonds_break() {
+fn the_energy_balance_closes_while_bonds_break() {
     let mut simulation = breaking_plate(1000);
     simulation.run(|_| Control::Continue).unwrap();
     let energies = simulation.snapshot().energies();
@@ -259,7 +263,7 @@ fn energy_is_accounted_for_while_bonds_break() {
         energies.balance().abs() < 1e-4 * energies.dissipated,
         "{energies:?}"
     );
-    // Momentum is what loads and supports brought in.
+    // The momentum is the impulse of loads and constraints.
     let momentum = system.momentum(&simulation.state().v);
     let impulse = system.ledger().impulse;
     let before = system.cloud().volumes()[0] * DENSITY * 80.0 * -3.0;
@@ -272,7 +276,9 @@ fn energy_is_accounted_for_while_bonds_break() {
     }
 }
 
-/// A free plate whose left half moves at 200 m/s, forty times as fast as its bonds stand, at a part of the stable step: energies after 40 µs, the least and the largest change of the dissipated energy, and the bonds that broke in a step too coarse for them.
+/// A free plate whose left half moves at 200 m/s, forty times the speed that its bonds withstand, at a
+/// fraction of the stable step. Returns the energies after 40 µs, the smallest and largest change of the
+/// dissipated energy, and the number of bonds that broke in a step too large for the half-step rule.
 fn torn_plate(part: f64, grid_form: bool) -> (Energies, [f64; 2], u64) {
     let cloud = grid(&[0.04, 0.02], 1e-3);
     let material = material(3e-3, Fracture::CriticalStretch(1e-3));
@@ -312,26 +318,27 @@ fn torn_plate(part: f64, grid_form: bool) -> (Energies, [f64; 2], u64) {
 }
 
 #[test]
-fn bonds_torn_by_coarse_steps_dissipate_as_with_fine_ones() {
+fn bonds_broken_in_coarse_steps_dissipate_as_in_fine_steps() {
     let (fine, ..) = torn_plate(0.1, true);
-    // The law is not linear: the balance closes to second order in the step.
+    // The law is nonlinear: the balance closes to second order in the step.
     assert!(fine.balance().abs() < 1e-5 * fine.initial, "{fine:?}");
     let (half, [least, largest], _) = torn_plate(0.5, true);
     assert!(half.balance().abs() < 5e-4 * half.initial, "{half:?}");
     let error = half.dissipated / fine.dissipated - 1.0;
     assert!(error.abs() < 0.15, "{error}");
     assert!(half.kinetic < half.initial);
-    // It was by half of the whole before.
+    // Without the correction it was half of the total.
     assert!(least > -0.01 * largest, "{least} {largest}");
     let (list, ..) = torn_plate(0.5, false);
     let difference = list.dissipated / half.dissipated - 1.0;
     assert!(difference.abs() < 0.05, "{difference}");
 }
 
-/// At the full stable step the ends of the bonds do not have all the energy that is missing: 0.3 % of the initial energy is made (5 % without the settlement), and the run is
-/// warned of. The bound was chosen after seeing the result.
+/// At the full stable step the relative velocity of the end points cannot supply all missing energy: the
+/// spurious energy is 0.3 % of the initial energy (5 % without the correction), and the run reports a
+/// warning. The bound was chosen after seeing the result.
 #[test]
-fn bonds_torn_at_the_full_stable_step_make_little_energy_and_are_counted() {
+fn spurious_energy_of_bonds_broken_at_the_full_stable_step_is_small_and_counted() {
     let (energies, _, coarse) = torn_plate(1.0, true);
     assert!(
         energies.balance().abs() < 5e-4 * energies.initial,
@@ -345,8 +352,8 @@ fn bonds_torn_at_the_full_stable_step_make_little_energy_and_are_counted() {
 }
 
 #[test]
-fn supports_move_exactly_and_report_their_force() {
-    // A bar pulled slowly at one end and held at the other: the reaction tends to E A u/L.
+fn constraints_move_exactly_and_report_their_reaction() {
+    // A bar in slow tension, fixed at one end: the reaction converges to E A u/L.
     let cloud = grid(&[0.5], 0.005);
     let bar = operator::<LinearBond, 1>(
         &cloud,
@@ -410,7 +417,7 @@ fn supports_move_exactly_and_report_their_force() {
         .iter()
         .map(|motion| motion.reaction(&cloud)[0])
         .collect();
-    // The free length is the bar's less the two layers, within a cell.
+    // The free length is that of the bar minus the two layers, within a cell.
     let expected = YOUNG * 1e-4 * ramp.value(state.t) / (0.5 - 0.03);
     assert!(
         (reactions[1] / expected - 1.0).abs() < 0.05,
@@ -444,7 +451,7 @@ fn stop_and_resume_equals_the_uninterrupted_run() {
 }
 
 #[test]
-fn a_state_of_another_time_is_refused() {
+fn checkpoint_with_an_inconsistent_time_is_an_error() {
     let mut first = breaking_plate(600);
     first
         .run(|s| match s.state().step {
@@ -471,19 +478,19 @@ fn a_state_of_another_time_is_refused() {
         let told = error.to_string();
         assert!(
             told.contains(&format!(
-                "step {step} at t = {t:e} s is none of the 600 steps of 2e-8 s"
+                "step {step} at t = {t:e} s does not belong to this run of 600 steps of 2e-8 s"
             )),
             "{told}"
         );
     }
-    // The end of the run is one of its times.
+    // The end of the run is a valid time.
     archive.put("state/step", Values::U64(vec![600]));
     archive.put("state/t", Values::F64(vec![600.0 * 2e-8]));
     breaking_plate(600).restore(&archive).unwrap();
 }
 
 #[test]
-fn counts_of_any_size_do_no_harm() {
+fn counters_of_any_size_in_a_checkpoint_are_accepted() {
     let mut first = breaking_plate(600);
     first
         .run(|s| match s.state().step {
@@ -501,14 +508,14 @@ fn counts_of_any_size_do_no_harm() {
             counts += 1;
         }
     }
-    // Broken bonds by blocks, evaluated points, and bonds broken by coarse steps.
+    // Broken bonds by block, evaluated points, and bonds broken in coarse steps.
     assert_eq!(counts, 3);
     let mut second = breaking_plate(600);
     second.restore(&archive).unwrap();
     second.run(|_| Control::Continue).unwrap();
     assert_eq!(second.system().evaluated_points(), u64::MAX);
     assert_eq!(second.system().operator().broken_bonds(), u64::MAX / 2);
-    // Energies are saved as sums of integers, of which not all are possible.
+    // Energies are saved as sums of integers, not all of which are valid.
     let sum = archive
         .arrays()
         .keys()
@@ -517,14 +524,14 @@ fn counts_of_any_size_do_no_harm() {
     let length = archive.u64s(&sum).unwrap().len();
     archive.put(sum, Values::U64(vec![u64::MAX / 2; length]));
     assert!(breaking_plate(600).restore(&archive).is_err());
-    // What moves knows no counts.
+    // The motion does not depend on the counters.
     let mut whole = breaking_plate(600);
     whole.run(|_| Control::Continue).unwrap();
     assert_eq!(whole.state(), second.state());
 }
 
 #[test]
-fn any_number_of_threads_gives_the_same_bits() {
+fn results_are_bitwise_identical_for_any_number_of_threads() {
     let on = |threads| {
         rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
@@ -545,7 +552,7 @@ fn any_number_of_threads_gives_the_same_bits() {
 }
 
 #[test]
-fn breaking_in_parts_equals_breaking_at_once() {
+fn breaking_on_subsets_equals_breaking_at_once() {
     let cloud = grid(&[0.02, 0.02], 1e-3);
     let material = material(3e-3, Fracture::CriticalStretch(1e-3));
     let make = || operator::<BondStretch, 2>(&cloud, &material, StressState::PlaneStrain, None);
@@ -560,28 +567,28 @@ fn breaking_in_parts_equals_breaking_at_once() {
     };
     let mut at_once = make();
     let mut force = vec![0.0; 2 * n];
-    at_once.end_step(&end, On::All, &mut force);
+    at_once.end_step(&end, PointSubset::All, &mut force);
     assert!(at_once.broken_bonds() > 100);
 
-    // A point's force is taken after all bonds are decided, as a scheme with zones does.
+    // The force on a point is evaluated after all bonds are decided, as a multirate scheme does.
     let mut in_parts = make();
     let odd: Vec<u32> = (0..n as u32).filter(|i| i % 2 == 1).collect();
     let mut unused = vec![0.0; 2 * n];
-    in_parts.end_step(&end, On::Set(&odd), &mut unused);
-    in_parts.end_step(&end, On::All, &mut unused);
+    in_parts.end_step(&end, PointSubset::Set(&odd), &mut unused);
+    in_parts.end_step(&end, PointSubset::All, &mut unused);
     let mut again = vec![0.0; 2 * n];
-    in_parts.add_force(0.0, &u, On::All, &mut again);
+    in_parts.add_force(0.0, &u, PointSubset::All, &mut again);
     assert_eq!(again, force);
     assert_eq!(in_parts.broken_bonds(), at_once.broken_bonds());
     let (a, b) = (in_parts.dissipated(), at_once.dissipated());
     assert!((a / b - 1.0).abs() < 1e-12);
 
-    // Decided without the half-step's work, a bond dissipates its whole energy.
+    // Without the work of the half step a bond dissipates its full energy.
     let mut history = make();
     let before = history.energy(0.0, &u);
     history.end_step(
         &StepEnd::sub_step(0.0, 0.0, &u),
-        On::All,
+        PointSubset::All,
         &mut vec![0.0; u.len()],
     );
     let lost = before - history.energy(0.0, &u);
@@ -590,7 +597,7 @@ fn breaking_in_parts_equals_breaking_at_once() {
 }
 
 #[test]
-fn no_fail_sets_do_not_break() {
+fn bonds_of_no_fail_points_do_not_break() {
     let cloud = grid(&[0.02, 0.02], 1e-3);
     let material = material(3e-3, Fracture::CriticalStretch(1e-3));
     let constants = material
@@ -611,13 +618,13 @@ fn no_fail_sets_do_not_break() {
     let stretched: Vec<f64> = cloud.positions().iter().map(|x| 0.01 * x).collect();
     plate.end_step(
         &StepEnd::sub_step(0.0, 0.0, &stretched),
-        On::All,
+        PointSubset::All,
         &mut vec![0.0; stretched.len()],
     );
     let mut damage = vec![0.0; n];
     plate.damage_into(&mut damage);
     assert!(damage[..200].iter().all(|&d| d == 0.0));
-    // Far from the held half every bond is over-stretched.
+    // Far from the fixed half every bond exceeds its critical stretch.
     assert!(damage[300..].iter().all(|&d| d == 1.0));
     assert!(damage[210] > 0.0 && damage[210] < 1.0);
 }

@@ -1,4 +1,4 @@
-//! Bodies whose bonds depend on their ends: the stencil against the list.
+//! Bodies whose bonds depend on their end points: the stencil compared with the neighbour list.
 
 use std::sync::Arc;
 
@@ -6,15 +6,15 @@ use crate::common::{boxed, material, points};
 use pericles::domain::Field;
 use pericles::family::{Crack, EndRule, VolumeCorrection};
 use pericles::material::{
-    BondConstants, BondMaterial, CubicLaw, Fracture, InterfaceRule, PairClasses, PairLaw,
-    StressState, SurfaceCorrection, Treatment,
+    Approximation, BondConstants, BondMaterial, CubicLaw, Fracture, InterfaceRule, MaterialPairs,
+    PairLaw, StressState, SurfaceCorrection,
 };
 use pericles::operator::{
-    AssembledBonds, BondBody, BondForm, CompositeBody, Force, InstructionSet, On,
+    AssembledBonds, BondBody, BondForm, CompositeBody, Force, InstructionSet, PointSubset,
 };
 use pericles::space::{Grid, PointCloud, Region, Shape, rectangular_cells};
 use pericles::time::{State, VelocityVerlet, highest_frequency};
-use pericles::{Archive, Control, PointScalar, Saved, Simulation, System};
+use pericles::{Archive, Checkpointed, Control, PointScalar, Simulation, System};
 
 const STRETCH: f64 = 0.02;
 
@@ -39,7 +39,7 @@ fn state(dimension: usize) -> StressState {
     }
 }
 
-/// What a body is made of beside its points.
+/// Properties of a body in addition to its points.
 #[derive(Clone, Copy)]
 struct Parts {
     law: PairLaw,
@@ -81,14 +81,15 @@ fn crack(dimension: usize) -> Option<(Crack, EndRule)> {
     Some((crack, EndRule::Closed))
 }
 
-/// Three materials with an oblique and a straight interface; one pair breaks earlier than its materials.
-fn classes(cloud: &PointCloud, all: &[BondConstants]) -> PairClasses {
+/// Three materials with an oblique and a straight interface; one pair has a lower critical stretch than its
+/// materials.
+fn classes(cloud: &PointCloud, all: &[BondConstants]) -> MaterialPairs {
     let number = |i: usize| {
         let [x, y, z] = cloud.point(i);
         u8::from(x + 0.5 * y - 0.2 * z > 9.0) + u8::from(x > 14.0)
     };
     let numbers = (0..cloud.len()).map(number).collect();
-    let mut classes = PairClasses::new(numbers, all, InterfaceRule::Harmonic).unwrap();
+    let mut classes = MaterialPairs::new(numbers, all, InterfaceRule::Harmonic).unwrap();
     classes.set_critical_stretch([1, 2], 0.4 * STRETCH).unwrap();
     classes
 }
@@ -141,7 +142,7 @@ fn round() -> Arc<PointCloud> {
     Arc::new(grid.points().unwrap())
 }
 
-/// A box of cells that are not cubic.
+/// A box of cells with anisotropic spacing.
 fn long_cells(size: &[f64], spacing: &[f64]) -> Arc<PointCloud> {
     Arc::new(rectangular_cells([0.0; 3], size, spacing, 1.0, &[]).unwrap())
 }
@@ -189,7 +190,7 @@ fn assert_close(a: &[f64], b: &[f64], tolerance: f64, what: &str) {
 
 fn force_of(force: &dyn Force, u: &[f64]) -> Vec<f64> {
     let mut out = vec![0.0; u.len()];
-    force.add_force(0.0, u, On::All, &mut out);
+    force.add_force(0.0, u, PointSubset::All, &mut out);
     out
 }
 
@@ -225,13 +226,13 @@ fn each_part(dimension: usize) -> Vec<(&'static str, Parts)> {
     all.push(("all, Green strain", green));
     if dimension == 1 {
         let literal = Parts {
-            law: PairLaw::Literal57,
+            law: PairLaw::CubicSoftening,
             ..ALL
         };
         all.push(("all, equation 57", literal));
-        for cubic in [CubicLaw::GreenStrain, CubicLaw::Literal57] {
-            for treatment in [Treatment::SecondOrder, Treatment::Trapezoidal] {
-                let law = PairLaw::Treated(cubic, treatment);
+        for cubic in [CubicLaw::GreenStrain, CubicLaw::CubicSoftening] {
+            for approximation in [Approximation::SecondOrder, Approximation::Trapezoidal] {
+                let law = PairLaw::Approximated(cubic, approximation);
                 all.push(("all, treated", Parts { law, ..ALL }));
             }
         }
@@ -248,7 +249,7 @@ fn each_part(dimension: usize) -> Vec<(&'static str, Parts)> {
 }
 
 #[test]
-fn the_stencil_equals_the_list() {
+fn the_stencil_agrees_with_the_neighbour_list() {
     for (name, cloud) in bodies() {
         for (parts, of) in each_part(cloud.dimension()) {
             let name = format!("{name}, {parts}");
@@ -261,7 +262,7 @@ fn the_stencil_equals_the_list() {
                 assert_eq!((a.bonds, &a.points), (b.bonds, &b.points), "{name}");
             }
             let (list, mut grid) = (list.operator, grid.operator);
-            // Strains of 1e-6, of some per cent, and of order one.
+            // Strains of 1e-6, of a few per cent, and of order one.
             for size in [1e-6, 0.015, 0.2] {
                 let u = noise(&cloud, size);
                 let what = format!("{name}, size {size}");
@@ -319,7 +320,7 @@ fn expanding(cloud: &Arc<PointCloud>, force: Box<dyn Force>) -> Simulation {
 }
 
 #[test]
-fn bonds_break_as_in_the_list() {
+fn the_same_bonds_break_as_in_the_neighbour_list() {
     for (name, cloud) in bodies() {
         let run = |form| {
             let mut run = expanding(&cloud, assembled(&cloud, ALL, form).operator);
@@ -333,7 +334,7 @@ fn bonds_break_as_in_the_list() {
             run.run(|_| Control::Continue).unwrap();
             let after = energy(&run);
             let dissipated = run.system().operator().dissipated();
-            // Velocity Verlet's own fluctuation at this step; the stencil's and the list's are the same.
+            // The fluctuation of velocity Verlet at this step, equal for stencil and list.
             assert!(
                 (after - before).abs() < 2e-2 * dissipated,
                 "{name}: {before} {after} {dissipated}"
@@ -361,9 +362,9 @@ fn bonds_break_as_in_the_list() {
     }
 }
 
-/// Only bonds between two materials may break: the crack follows the interface.
+/// Only bonds between two materials may break, so that the crack follows the interface.
 #[test]
-fn a_weak_interface_breaks_alone() {
+fn only_bonds_of_a_weak_interface_break() {
     let cloud = boxed([0.0; 3], &[30.0, 9.0], 1.0, 1.0);
     let glass = BondMaterial {
         fracture: Fracture::Unbreakable,
@@ -373,7 +374,7 @@ fn a_weak_interface_breaks_alone() {
     let side = |i: usize| u8::from(cloud.point(i)[0] + 0.3 * cloud.point(i)[1] > 16.0);
     let numbers: Vec<u8> = (0..cloud.len()).map(side).collect();
     let both = [constants.clone(), constants.clone()];
-    let mut classes = PairClasses::new(numbers, &both, InterfaceRule::Harmonic).unwrap();
+    let mut classes = MaterialPairs::new(numbers, &both, InterfaceRule::Harmonic).unwrap();
     classes.set_critical_stretch([0, 1], 0.01).unwrap();
     for form in [BondForm::List, BondForm::Grid, BondForm::FloatGrid] {
         let body = CompositeBody {
@@ -387,10 +388,7 @@ fn a_weak_interface_breaks_alone() {
         let mut across = 0;
         let breakable = force.capabilities().breaking.unwrap();
         breakable.for_each_intact(&mut |i, j| across += usize::from(side(i) != side(j)));
-        assert_eq!(
-            across, 0,
-            "{form:?}: every bond of the interface has broken"
-        );
+        assert_eq!(across, 0, "{form:?}: every bond of the interface is broken");
         let of_interface = force.broken_bonds();
         let mut inside = 0;
         breakable.for_each_intact(&mut |_, _| inside += 1);
@@ -403,7 +401,7 @@ fn a_weak_interface_breaks_alone() {
 }
 
 #[test]
-fn floats_are_within_their_rounding() {
+fn single_precision_agrees_within_rounding() {
     for (name, cloud) in bodies() {
         let exact = assembled(&cloud, ALL, BondForm::Grid).operator;
         let floats = assembled(&cloud, ALL, BondForm::FloatGrid).operator;
@@ -415,7 +413,7 @@ fn floats_are_within_their_rounding() {
 }
 
 #[test]
-fn parts_threads_and_resumed_runs_have_the_same_bits() {
+fn subsets_threads_and_resumed_runs_are_bitwise_identical() {
     let cloud = boxed([0.0; 3], &[45.0, 30.0], 1.0, 1.0);
     let make = || assembled(&cloud, ALL, BondForm::Grid).operator;
     let u = noise(&cloud, 0.01);
@@ -424,8 +422,8 @@ fn parts_threads_and_resumed_runs_have_the_same_bits() {
     let rest: Vec<u32> = (0..cloud.len() as u32).filter(|i| i % 3 != 1).collect();
     let mut parts = vec![0.0; u.len()];
     let force = make();
-    force.add_force(0.0, &u, On::Set(&third), &mut parts);
-    force.add_force(0.0, &u, On::Set(&rest), &mut parts);
+    force.add_force(0.0, &u, PointSubset::Set(&third), &mut parts);
+    force.add_force(0.0, &u, PointSubset::Set(&rest), &mut parts);
     assert!(parts == whole);
     let on = |threads, stop: Option<u64>| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
@@ -457,9 +455,9 @@ fn parts_threads_and_resumed_runs_have_the_same_bits() {
     }
 }
 
-/// The step follows from the highest frequency.
+/// The time step follows from the highest frequency.
 #[test]
-fn the_highest_frequency_is_that_of_the_list() {
+fn the_highest_frequency_equals_that_of_the_neighbour_list() {
     for (name, cloud) in bodies() {
         let of = |form| {
             let force = assembled(&cloud, ALL, form).operator;
@@ -467,7 +465,7 @@ fn the_highest_frequency_is_that_of_the_list() {
             highest_frequency(&system, &vec![0.0; cloud.len() * cloud.dimension()]).unwrap()
         };
         let (list, grid) = (of(BondForm::List), of(BondForm::Grid));
-        // Both come of iterations.
+        // Both are results of iterations.
         for [a, b] in [[grid.estimate, list.estimate], [grid.bound, list.bound]] {
             assert!((a / b - 1.0).abs() < 1e-6, "{name}: {a} {b}");
         }

@@ -1,4 +1,4 @@
-//! Pieces of bodies that are cut.
+//! Fragments of cut bodies.
 
 use std::sync::Arc;
 
@@ -11,7 +11,8 @@ use pericles::observe::{FragmentCount, Fragments};
 use pericles::operator::{BondBody, BondForm};
 use pericles::space::{Grid, Shape};
 
-/// A plate of 12 × 8 cells cut to the right of its fourth and its tenth column, and around the cell in its lower left corner.
+/// A plate of 12 × 8 cells cut to the right of its fourth and tenth columns, and around the cell in its lower left
+/// corner.
 fn pieces(form: BondForm) -> Fragments {
     let grid = Grid {
         shape: Shape::Box {
@@ -51,9 +52,9 @@ fn pieces(form: BondForm) -> Fragments {
 }
 
 #[test]
-fn cuts_make_pieces_in_the_grid_and_in_the_list() {
+fn cuts_give_the_same_fragments_on_stencil_and_neighbour_list() {
     let grid = pieces(BondForm::Grid);
-    // Points of grid and list may be numbered differently; their pieces are not counted differently.
+    // Stencil and list may number points differently; the counts do not depend on it.
     let (grid, list) = (
         grid.count(&[0.5; 96], 0.2),
         pieces(BondForm::List).count(&[0.5; 96], 0.2),

@@ -1,4 +1,4 @@
-//! The grid operator against the list operator, its naive twin.
+//! The stencil force compared with the neighbour-list force.
 
 use std::sync::Arc;
 
@@ -10,18 +10,20 @@ use pericles::material::{
     StressState,
 };
 use pericles::operator::{
-    BondBody, BondForce, BondForm, Breakable, DamageMeasure, FastLaw, Force, GridForce,
-    InstructionSet, On,
+    BondBody, BondForce, BondForm, Breakable, DamageMeasure, Force, GridForce, InstructionSet,
+    PointSubset, VectorLaw,
 };
 use pericles::round_trip::check_resume;
 use pericles::space::{Grid, PointCloud, Region, Shape};
 use pericles::time::{State, VelocityVerlet};
-use pericles::{Archive, Control, PericlesError, PointScalar, Saved, Simulation, System, Values};
+use pericles::{
+    Archive, Checkpointed, Control, PericlesError, PointScalar, Simulation, System, Values,
+};
 use pericles::{Path, StepEnd};
 
 const SPACING: f64 = 0.01;
 
-/// Boxes, with a hole or without: a whole number of chunks, not one, and bodies smaller than the horizon.
+/// Boxes with and without a hole: with a whole number of chunks, without, and smaller than the horizon.
 fn boxes(dimension: usize) -> Vec<(Vec<f64>, bool)> {
     match dimension {
         1 => vec![(vec![40.0], false), (vec![45.0], true), (vec![2.0], false)],
@@ -147,8 +149,8 @@ fn state(dimension: usize) -> StressState {
     ][dimension - 1]
 }
 
-/// Both operators of a body; the cuts of both are compared.
-fn pair<L: FastLaw, const D: usize>(
+/// Both forces of a body; the effects of pre-cracks are compared.
+fn pair<L: VectorLaw, const D: usize>(
     cloud: &Arc<PointCloud>,
     material: &BondMaterial,
     cracks: &[(Crack, EndRule)],
@@ -184,7 +186,7 @@ fn scaled_noise(cloud: &PointCloud, factor: f64) -> Vec<f64> {
 
 fn force(operator: &dyn Force, u: &[f64]) -> Vec<f64> {
     let mut out = vec![0.0; u.len()];
-    operator.add_force(0.0, u, On::All, &mut out);
+    operator.add_force(0.0, u, PointSubset::All, &mut out);
     out
 }
 
@@ -198,8 +200,8 @@ fn assert_close(a: &[f64], b: &[f64], tolerance: f64, what: &str) {
     }
 }
 
-/// Force, energy, tangent, bound and damage of both forms.
-fn compare<L: FastLaw, const D: usize>(
+/// Compares force, energy, tangent, frequency bound and damage of both forms.
+fn compare<L: VectorLaw, const D: usize>(
     name: &str,
     cloud: &Arc<PointCloud>,
     material: &BondMaterial,
@@ -216,7 +218,7 @@ fn compare<L: FastLaw, const D: usize>(
         },
     );
     assert_eq!(grid.directed_bonds(), list.directed_bonds(), "{name}");
-    // Strains of 1e-6, of some per cent (both forms in one body), and of order one.
+    // Strains of 1e-6, of a few per cent (both evaluation forms in one body), and of order one.
     for size in [1e-8, 1.5e-4, 2e-3] {
         let u = scaled_noise(cloud, size);
         let what = format!("{name}, size {size}");
@@ -280,21 +282,21 @@ fn table<const D: usize>() {
 }
 
 #[test]
-fn equals_the_list_in_1d() {
+fn stencil_equals_list_in_1d() {
     table::<1>();
 }
 
 #[test]
-fn equals_the_list_in_2d() {
+fn stencil_equals_list_in_2d() {
     table::<2>();
 }
 
 #[test]
-fn equals_the_list_in_3d() {
+fn stencil_equals_list_in_3d() {
     table::<3>();
 }
 
-/// A notched body pulled apart.
+/// A notched body in tension.
 fn breaking_run(cloud: &Arc<PointCloud>, operator: Box<dyn Force>, steps: u64) -> Simulation {
     let system = System::new(cloud.clone(), operator, PointScalar::Uniform(1000.0)).unwrap();
     let mut start = State::at_rest(cloud.len() * cloud.dimension());
@@ -313,7 +315,7 @@ fn archive(simulation: &Simulation) -> Archive {
     archive
 }
 
-fn breaks_alike<L: FastLaw, const D: usize>(cloud: &Arc<PointCloud>, measure: DamageMeasure) {
+fn breaks_alike<L: VectorLaw, const D: usize>(cloud: &Arc<PointCloud>, measure: DamageMeasure) {
     let material = material(
         Influence::default(),
         VolumeCorrection::Extended,
@@ -343,7 +345,7 @@ fn breaks_alike<L: FastLaw, const D: usize>(cloud: &Arc<PointCloud>, measure: Da
 }
 
 #[test]
-fn bonds_break_as_in_the_list() {
+fn the_same_bonds_break_as_in_the_neighbour_list() {
     let weighed = DamageMeasure::default();
     let counted = DamageMeasure {
         count: true,
@@ -357,7 +359,7 @@ fn bonds_break_as_in_the_list() {
     breaks_alike::<LinearBond, 3>(&body(&[9.0, 6.0, 4.0], false), counted);
 }
 
-/// A plate whose left part is strained beyond the fast form's reach.
+/// A plate whose left part is strained beyond the range of the fast form.
 fn mixed_strains(cloud: &PointCloud) -> Vec<f64> {
     let n = cloud.len();
     let mut u = scaled_noise(cloud, 1e-6);
@@ -370,7 +372,7 @@ fn mixed_strains(cloud: &PointCloud) -> Vec<f64> {
 }
 
 #[test]
-fn subsets_equal_the_whole_bit_for_bit() {
+fn evaluations_on_subsets_are_bitwise_identical_to_the_full_evaluation() {
     let cloud = body(&[21.0, 6.0, 4.0], true);
     let n = cloud.len();
     let u = mixed_strains(&cloud);
@@ -394,16 +396,16 @@ fn subsets_equal_the_whole_bit_for_bit() {
         let whole = force(&grid, &u);
         let third: Vec<u32> = (0..n as u32).filter(|i| i % 3 == 1).collect();
         let mut parts = vec![0.0; 3 * n];
-        grid.add_force(0.0, &u, On::Set(&third), &mut parts);
+        grid.add_force(0.0, &u, PointSubset::Set(&third), &mut parts);
         for i in (0..n).filter(|i| i % 3 != 1) {
-            // A fresh operator has nothing left over from other points in its padded rows.
+            // The padded rows of a new operator contain no values of other points.
             let fresh = if i % 97 == 0 { Some(make()) } else { None };
             let operator = fresh.as_ref().unwrap_or(&grid);
-            operator.add_force(0.0, &u, On::Range(i..i + 1), &mut parts);
+            operator.add_force(0.0, &u, PointSubset::Range(i..i + 1), &mut parts);
         }
         assert!(parts == whole, "{set:?}");
         let mut range = vec![0.0; 3 * n];
-        make().add_force(0.0, &u, On::Range(100..n - 37), &mut range);
+        make().add_force(0.0, &u, PointSubset::Range(100..n - 37), &mut range);
         for c in 0..3 {
             assert_eq!(
                 range[c * n + 100..(c + 1) * n - 37],
@@ -415,7 +417,7 @@ fn subsets_equal_the_whole_bit_for_bit() {
 }
 
 #[test]
-fn results_do_not_depend_on_threads() {
+fn results_do_not_depend_on_the_number_of_threads() {
     let cloud = body(&[45.0, 40.0], true);
     let material = material(
         Influence::default(),
@@ -448,7 +450,7 @@ fn results_do_not_depend_on_threads() {
 }
 
 #[test]
-fn breaking_in_parts_equals_breaking_at_once() {
+fn breaking_on_subsets_equals_breaking_at_once() {
     let cloud = body(&[21.0, 6.0, 4.0], true);
     let n = cloud.len();
     let u = mixed_strains(&cloud);
@@ -459,7 +461,7 @@ fn breaking_in_parts_equals_breaking_at_once() {
         u: &u,
         path: Path::MeanVelocity(&v),
     };
-    // Above the fast form's reach, so that both forms meet breaking.
+    // Beyond the range of the fast form, so that bonds break under both forms.
     let material = material(
         Influence::default(),
         VolumeCorrection::Linear,
@@ -468,9 +470,9 @@ fn breaking_in_parts_equals_breaking_at_once() {
     let make = || pair::<BondStretch, 3>(&cloud, &material, &[], &[], DamageMeasure::default());
     let (mut at_once, mut list) = make();
     let mut expected = vec![0.0; 3 * n];
-    at_once.end_step(&end, On::All, &mut expected);
+    at_once.end_step(&end, PointSubset::All, &mut expected);
     let mut by_list = vec![0.0; 3 * n];
-    list.end_step(&end, On::All, &mut by_list);
+    list.end_step(&end, PointSubset::All, &mut by_list);
     assert_close(&expected, &by_list, 1e-12, "force");
     assert_eq!(at_once.broken_bonds(), list.broken_bonds());
     assert!((at_once.dissipated() / list.dissipated() - 1.0).abs() < 1e-12);
@@ -479,8 +481,8 @@ fn breaking_in_parts_equals_breaking_at_once() {
     let (mut in_parts, _) = make();
     let odd: Vec<u32> = (0..n as u32).filter(|i| i % 2 == 1).collect();
     let mut unused = vec![0.0; 3 * n];
-    in_parts.end_step(&end, On::Set(&odd), &mut unused);
-    in_parts.end_step(&end, On::Range(0..n), &mut unused);
+    in_parts.end_step(&end, PointSubset::Set(&odd), &mut unused);
+    in_parts.end_step(&end, PointSubset::Range(0..n), &mut unused);
     assert!(force(&in_parts, &u) == expected);
     assert_eq!(in_parts.broken_bonds(), at_once.broken_bonds());
     assert!((in_parts.dissipated() / at_once.dissipated() - 1.0).abs() < 1e-12);
@@ -489,7 +491,7 @@ fn breaking_in_parts_equals_breaking_at_once() {
     let before = history.energy(0.0, &u);
     history.end_step(
         &StepEnd::sub_step(0.0, 0.0, &u),
-        On::All,
+        PointSubset::All,
         &mut vec![0.0; u.len()],
     );
     let lost = before - history.energy(0.0, &u);
@@ -524,7 +526,7 @@ fn stop_and_resume_equals_the_uninterrupted_run() {
     check_resume(run, [41]).unwrap();
     assert!(run().restore(&Archive::default()).is_err());
 
-    // A bond to where the body has no point, or one that a crack has cut.
+    // A bond to a position without a point, or a bond that a crack removed.
     let mut strange = archive(&first);
     let intact = strange.arrays()["operator/grid/intact"].clone();
     let Values::U8(mut intact) = intact else {
@@ -537,8 +539,9 @@ fn stop_and_resume_equals_the_uninterrupted_run() {
 }
 
 #[test]
-fn memory_per_point() {
-    // 46³ at 122 neighbours: masks 16 B, padded displacement 27 B; with u, v, a (72 B) and the cloud (36 B) some 150 B in all.
+fn memory_per_point_is_as_documented() {
+    // 46³ points with 122 neighbours: masks 16 B, padded displacement 27 B; with u, v, a (72 B) and the cloud (36
+    // B) about 150 B in total.
     let cloud = body(&[46.0, 46.0, 46.0], false);
     let mut material = material(
         Influence::default(),
@@ -562,7 +565,7 @@ fn memory_per_point() {
 }
 
 #[test]
-fn unusable_input_is_refused() {
+fn invalid_arguments_are_errors() {
     let cloud = body(&[12.0, 9.0], false);
     let material = material(
         Influence::default(),
@@ -612,7 +615,7 @@ fn unusable_input_is_refused() {
 }
 
 #[test]
-fn the_fastest_form_is_the_grid_where_there_is_one() {
+fn the_fastest_form_is_the_stencil_on_lattices() {
     let form = |cloud: &Arc<PointCloud>, form| {
         let dimension = cloud.dimension();
         let mut material = material(
@@ -638,7 +641,7 @@ fn the_fastest_form_is_the_grid_where_there_is_one() {
         let expected = force(&*list.operator, &u);
         assert_close(&force(&*fastest.operator, &u), &expected, 1e-12, "form");
     }
-    // The box of a thin ring is mostly empty.
+    // The bounding box of a thin ring is mostly empty.
     let ring = Grid {
         shape: Shape::Disc {
             centre: [0.0; 3],
@@ -658,7 +661,7 @@ fn the_fastest_form_is_the_grid_where_there_is_one() {
     assert_eq!(form(&scattered, BondForm::Fastest).form, BondForm::List);
 }
 
-/// The bonds that a stencil shows one by one are those whose forces it sums.
+/// The single bonds that a stencil lists are those whose forces it sums.
 #[test]
 fn single_bonds_add_up_to_the_force() {
     for holes in [false, true] {
@@ -687,7 +690,7 @@ fn single_bonds_add_up_to_the_force() {
         let n = cloud.len();
         let u: Vec<f64> = (0..2 * n).map(|k| 1e-5 * (k as f64 * 0.73).sin()).collect();
         let mut force = vec![0.0; 2 * n];
-        operator.add_force(0.0, &u, On::All, &mut force);
+        operator.add_force(0.0, &u, PointSubset::All, &mut force);
         let scale = force.iter().fold(0.0f64, |a, f| a.max(f.abs()));
         let (bonds, mut count) = (operator.capabilities().bonds.unwrap(), 0);
         for i in 0..n {

@@ -1,18 +1,18 @@
-//! What the guard finds in runs that go wrong, with its place, and that it lets others go on.
+//! The guard detects instabilities and their location, without false alarms.
 
 use crate::common;
 use pericles::boundary::{MotionKind, PrescribedMotion, TimeFunction};
 use pericles::family::VolumeCorrection;
 use pericles::material::{BondStretch, Fracture, GreenBond, LinearBond, StressState};
-use pericles::operator::{BondBody, FastLaw};
+use pericles::operator::{BondBody, VectorLaw};
 use pericles::space::{Face, Region};
 use pericles::time::{State, VelocityVerlet, highest_frequency};
-use pericles::{Cause, Control, Simulation, SimulationError, System};
+use pericles::{Control, InstabilityCause, Simulation, SimulationError, System};
 
 const SPACING: f64 = 0.05;
 
 /// A free bar of unit length, density and modulus.
-fn bar<L: FastLaw>() -> System {
+fn bar<L: VectorLaw>() -> System {
     let cloud = common::boxed([0.0; 3], &[1.0], SPACING, 1.0);
     let material = common::material(
         1.0,
@@ -25,7 +25,7 @@ fn bar<L: FastLaw>() -> System {
     common::system(&cloud, force, 1.0)
 }
 
-/// Runs at a part of the stable step, from velocities by place.
+/// Runs at a fraction of the stable step, with initial velocities by position.
 fn run(
     system: System,
     part: f64,
@@ -43,7 +43,7 @@ fn run(
     run.run(|_| Control::Continue).map(|_| ())
 }
 
-/// A free bar of the same kind on the grid, computed in floats.
+/// The same bar on a stencil in single precision.
 fn float_bar() -> System {
     let cloud = common::boxed([0.0; 3], &[1.0], SPACING, 1.0);
     let correction = VolumeCorrection::Extended;
@@ -54,8 +54,8 @@ fn float_bar() -> System {
     common::system(&cloud, force, 1.0)
 }
 
-/// The cause, the step and the place of a run that must fail.
-fn failure(outcome: Result<(), SimulationError>) -> (Cause, u64, f64) {
+/// Returns cause, step and location of a run that must fail.
+fn failure(outcome: Result<(), SimulationError>) -> (InstabilityCause, u64, f64) {
     match outcome {
         Err(SimulationError::Unstable {
             cause, step, place, ..
@@ -65,7 +65,7 @@ fn failure(outcome: Result<(), SimulationError>) -> (Cause, u64, f64) {
 }
 
 #[test]
-fn a_velocity_that_is_no_number_is_found_where_it_is() {
+fn a_nan_velocity_is_located() {
     let outcome = run(bar::<LinearBond>(), 0.9, 100, |x| {
         if (x - 0.525).abs() < 1e-9 {
             f64::NAN
@@ -74,20 +74,21 @@ fn a_velocity_that_is_no_number_is_found_where_it_is() {
         }
     });
     let (cause, step, _) = failure(outcome);
-    assert_eq!((cause, step), (Cause::NotANumber, 20));
+    assert_eq!((cause, step), (InstabilityCause::NotANumber, 20));
 }
 
 #[test]
-fn a_step_that_is_too_long_makes_energy() {
+fn a_step_above_the_limit_creates_energy() {
     let (cause, step, _) = failure(run(bar::<LinearBond>(), 1.05, 4000, |x| x.sin()));
     assert!(
-        matches!(cause, Cause::Growth { ratio } if ratio > 2.0),
+        matches!(cause, InstabilityCause::Growth { ratio } if ratio > 2.0),
         "{cause}"
     );
     assert!(step < 400, "{step}");
 }
 
-/// A run slightly above the stable limit: the energy that the scheme conserves stays what it was, and at full steps nearly all energy is elastic.
+/// A run slightly above the stability limit: the energy that the scheme conserves is constant, and at full steps
+/// nearly all energy is elastic.
 fn slightly_unstable() -> Simulation {
     let system = bar::<LinearBond>();
     let mut start = State::at_rest(system.points());
@@ -100,11 +101,11 @@ fn slightly_unstable() -> Simulation {
 }
 
 #[test]
-fn growth_that_the_conserved_energy_hides_is_stopped_below_ten_times_the_energy() {
+fn growth_not_visible_in_the_conserved_energy_stops_below_ten_times_the_energy() {
     let mut simulation = slightly_unstable();
     let (cause, step, _) = failure(simulation.run(|_| Control::Continue).map(|_| ()));
     assert!(
-        matches!(cause, Cause::Growth { ratio } if ratio > 1.7 && ratio <= 10.0),
+        matches!(cause, InstabilityCause::Growth { ratio } if ratio > 1.7 && ratio <= 10.0),
         "{cause} at step {step}"
     );
     let energies = simulation.snapshot().energies();
@@ -113,18 +114,18 @@ fn growth_that_the_conserved_energy_hides_is_stopped_below_ten_times_the_energy(
 }
 
 #[test]
-fn a_run_that_may_be_unstable_goes_on_and_says_so() {
+fn a_run_with_allowed_instability_continues_and_reports_it() {
     let mut simulation = slightly_unstable().allowing_instability();
     simulation.run(|_| Control::Continue).unwrap();
     let energies = simulation.snapshot().energies();
     assert!(energies.kinetic + energies.elastic > 1e3 * energies.initial);
     let found = simulation.instability().unwrap().to_string();
-    assert!(found.contains("times what was put in"), "{found}");
+    assert!(found.contains("times the supplied energy"), "{found}");
 }
 
 #[test]
-fn the_energy_of_rounding_is_no_alarm() {
-    // A plate that was turned rigidly, without stress and at rest.
+fn round_off_energy_causes_no_false_alarm() {
+    // A rigidly rotated plate, without stress and at rest.
     let cloud = common::boxed([0.0; 3], &[0.5, 0.3], SPACING, 1.0);
     let correction = VolumeCorrection::Extended;
     let material = common::material(1.0, 1.0, 3.0 * SPACING, correction, Fracture::Unbreakable);
@@ -148,25 +149,25 @@ fn the_energy_of_rounding_is_no_alarm() {
 }
 
 #[test]
-fn points_of_a_linear_bar_in_floats_may_pass() {
+fn points_of_a_linear_bar_in_single_precision_may_pass_each_other() {
     let clash = |x: f64| if x < 0.5 { 2.0 } else { -2.0 };
     assert!(run(float_bar(), 0.02, 400, clash).is_ok());
 }
 
 #[test]
-fn points_of_a_bar_that_pass_each_other_are_found() {
-    // Two halves run into each other, faster than waves could tell; small steps, so that the guard looks in time.
+fn points_of_a_nonlinear_bar_that_pass_each_other_are_detected() {
+    // Two halves collide faster than the wave speed; small steps, so that a check is due in time.
     let clash = |x: f64| if x < 0.5 { 2.0 } else { -2.0 };
     let (cause, _, place) = failure(run(bar::<BondStretch>(), 0.02, 400, clash));
-    assert!(matches!(cause, Cause::Passed { .. }), "{cause}");
+    assert!(matches!(cause, InstabilityCause::Passed { .. }), "{cause}");
     assert!((place - 0.5).abs() < 2.0 * SPACING, "{place}");
-    // A linear law does not know where points are, and its waves pass through each other.
+    // A linear law does not depend on the order of points, and its waves pass through each other.
     assert!(run(bar::<LinearBond>(), 0.02, 400, clash).is_ok());
 }
 
 #[test]
-fn a_body_that_becomes_stiffer_than_its_step_allows_is_told_so() {
-    // Bonds with the strain of Green stiffen as they are pulled: threefold at a stretch of a half.
+fn body_that_stiffens_beyond_its_stable_step_is_reported() {
+    // Bonds with the Green strain stiffen in tension: threefold at a stretch of one half.
     let mut system = bar::<GreenBond>();
     let cloud = system.cloud().clone();
     let end = |face, velocity| {
@@ -190,12 +191,12 @@ fn a_body_that_becomes_stiffer_than_its_step_allows_is_told_so() {
     let even = |x: f64| 0.1 * (x - 0.5);
     let (cause, step, _) = failure(run(system, 0.95, 4000, even));
     match cause {
-        Cause::Stiffened { dt, limit } => assert!(dt > limit, "{dt} {limit}"),
+        InstabilityCause::Stiffened { dt, limit } => assert!(dt > limit, "{dt} {limit}"),
         other => panic!("{other} at step {step}"),
     }
 }
 
 #[test]
-fn waves_that_leave_no_energy_behind_are_no_alarm() {
+fn waves_that_propagate_away_from_a_point_cause_no_false_alarm() {
     assert!(run(bar::<BondStretch>(), 0.95, 2000, |x| 1e-3 * (9.0 * x).sin()).is_ok());
 }

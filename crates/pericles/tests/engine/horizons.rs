@@ -5,11 +5,11 @@ use std::sync::Arc;
 use crate::common::{boxed, material};
 use pericles::family::{Crack, EndRule, VolumeCorrection};
 use pericles::material::{
-    BondMaterial, Fracture, InterfaceRule, PairClasses, PairLaw, StressState,
+    BondMaterial, Fracture, InterfaceRule, MaterialPairs, PairLaw, StressState,
 };
 use pericles::operator::{
     AssembledBonds, BondBody, BondForm, CompositeBody, DamageMeasure, Force, GradedBody, Materials,
-    On,
+    PointSubset,
 };
 use pericles::space::PointCloud;
 use pericles::time::{State, VelocityVerlet};
@@ -85,7 +85,7 @@ fn noise(cloud: &PointCloud, size: f64) -> Vec<f64> {
 
 fn force_of(force: &dyn Force, u: &[f64]) -> Vec<f64> {
     let mut out = vec![0.0; u.len()];
-    force.add_force(0.0, u, On::All, &mut out);
+    force.add_force(0.0, u, PointSubset::All, &mut out);
     out
 }
 
@@ -96,7 +96,8 @@ fn assert_close(a: &[f64], b: &[f64], tolerance: f64) {
     assert!(most <= tolerance * scale, "{most:e} of {scale:e}");
 }
 
-/// ½ (c_i κ_i + c_j κ_j) s n V_j over all pairs within the larger of both horizons, with c_i the constant of the two materials for the horizon of i.
+/// ½ (c_i κ_i + c_j κ_j) s n V_j over all pairs within the larger of both horizons; c_i is the constant of the pair
+/// of materials for the horizon of i.
 fn by_pairs(cloud: &PointCloud, all: &[BondMaterial], of_point: &[u8], u: &[f64]) -> Vec<f64> {
     let (n, dimension) = (cloud.len(), cloud.dimension());
     let constant = |a: usize, b: usize| {
@@ -138,7 +139,7 @@ fn by_pairs(cloud: &PointCloud, all: &[BondMaterial], of_point: &[u8], u: &[f64]
 }
 
 #[test]
-fn forces_are_the_means_of_the_laws_of_both_ends() {
+fn forces_are_means_of_the_laws_of_both_end_points() {
     for size in [vec![40.0], vec![19.0, 11.0], vec![12.0, 7.0, 6.0]] {
         let cloud = boxed([0.0; 3], &size, 1.0, 1.0);
         let of_point = layers(&cloud, size[0]);
@@ -154,7 +155,7 @@ fn check_force(cloud: &Arc<PointCloud>, all: &[BondMaterial], of_point: &[u8], f
     let u = noise(cloud, 0.02);
     let found = force_of(&*force, &u);
     assert_close(&found, &by_pairs(cloud, all, of_point, &u), 1e-12);
-    // Both ends pull alike, and the force is the gradient of the energy.
+    // Forces on both ends are opposite, and the force is the gradient of the energy.
     let total: f64 = found.iter().sum();
     let size: f64 = found.iter().map(|f| f.abs()).sum();
     assert!(total.abs() < 1e-13 * size, "{total:e} of {size:e}");
@@ -174,12 +175,12 @@ fn check_force(cloud: &Arc<PointCloud>, all: &[BondMaterial], of_point: &[u8], f
 }
 
 #[test]
-fn materials_of_one_horizon_are_the_body_of_several_materials() {
+fn materials_with_equal_horizons_equal_a_body_of_several_materials() {
     let cloud = boxed([0.0; 3], &[19.0, 11.0], 1.0, 1.0);
     let of_point = layers(&cloud, 19.0);
     let all = [of(1.0, 3.0, 0.1), of(3.0, 3.0, 0.1), of(0.5, 3.0, 0.1)];
     let constants = [0, 1, 2].map(|k: usize| all[k].constants(&cloud, state(2)).unwrap());
-    let classes = PairClasses::new(of_point.clone(), &constants, InterfaceRule::Harmonic);
+    let classes = MaterialPairs::new(of_point.clone(), &constants, InterfaceRule::Harmonic);
     let classes = classes.unwrap();
     let body = CompositeBody {
         classes: Some(&classes),
@@ -192,9 +193,10 @@ fn materials_of_one_horizon_are_the_body_of_several_materials() {
     assert_close(&force_of(&*found, &u), &force_of(&*expected, &u), 1e-14);
 }
 
-/// A section of a strained bar carries E ε A wherever all bonds across it belong to one horizon; the forces within the reach of the interface, where two horizons meet, add up to nothing.
+/// The force in a section of a strained bar is E ε A where all bonds across it have the same horizon. The
+/// forces near the interface of two horizons add up to zero.
 #[test]
-fn a_strained_bar_carries_one_force_on_both_sides_of_a_change_of_horizon() {
+fn section_force_of_a_strained_bar_is_equal_on_both_sides_of_a_change_of_horizon() {
     let cloud = boxed([0.0; 3], &[60.0], 1.0, 1.0);
     let of_point: Vec<u8> = (0..60).map(|i| u8::from(i >= 30)).collect();
     let all = [of(1.0, 5.0, 0.1), of(1.0, 2.0, 0.1)].map(|material| BondMaterial {
@@ -230,7 +232,7 @@ fn notch() -> [(Crack, EndRule); 1] {
 const THREE: [(f64, f64); 3] = [(3.0, 0.02), (4.5, 0.016), (2.0, 0.025)];
 
 #[test]
-fn the_stencil_equals_the_list() {
+fn the_stencil_agrees_with_the_neighbour_list() {
     let plate = boxed([0.0; 3], &[40.0, 24.0], 1.0, 1.0);
     let periodic = Arc::new(PointCloud::clone(&plate).with_periodic_faces().unwrap());
     for cloud in [plate, periodic] {
@@ -263,7 +265,7 @@ fn the_stencil_equals_the_list() {
 }
 
 #[test]
-fn cracks_cross_a_change_of_horizon_and_the_energy_balance_closes() {
+fn energy_balance_of_a_crack_across_a_change_of_horizon_closes() {
     let cloud = boxed([0.0; 3], &[40.0, 24.0], 1.0, 1.0);
     let of_point = layers(&cloud, 40.0);
     let all = THREE.map(|(horizon, stretch)| of(1.0, horizon, stretch));
@@ -298,7 +300,7 @@ fn cracks_cross_a_change_of_horizon_and_the_energy_balance_closes() {
     let broken = [BondForm::List, BondForm::Grid].map(|form| run(form, 0.2, 200).1);
     assert_eq!(broken[0], broken[1]);
     let errors = [(0.2, 200), (0.1, 400)].map(|(dt, steps)| run(BondForm::Grid, dt, steps).0);
-    // The error of velocity Verlet's own energy is of second order.
+    // The error of the energy of velocity Verlet is of second order.
     assert!(
         errors[1] < 5e-3 && errors[1] < 0.5 * errors[0],
         "{errors:?}"

@@ -1,4 +1,4 @@
-//! Schemes that iterate: starting from rest, and being interrupted within a step.
+//! Implicit schemes: starting from rest, and interrupts within a step.
 
 use std::cell::Cell;
 use std::sync::Arc;
@@ -12,7 +12,7 @@ use pericles::time::{
     AdaptiveRungeKutta, DiscreteGradient, Implicit, ImplicitRule, InnerSolver, Integrator, Newmark,
     NewmarkOptions, Relaxation, RelaxationOptions, State, VelocityVerlet, highest_frequency,
 };
-use pericles::{Archive, Control, Interrupt, Outcome, Saved, Simulation, System};
+use pericles::{Archive, Checkpointed, Control, Interrupt, Outcome, Simulation, System};
 
 const DX: f64 = 1e-3;
 const YOUNG: f64 = 72e9;
@@ -33,14 +33,14 @@ fn plate(fracture: Fracture) -> (Arc<PointCloud>, System) {
     (cloud, body)
 }
 
-/// What acts on a plate that is at rest at first.
+/// Action on a plate initially at rest.
 #[derive(Debug, Clone, Copy)]
 pub enum Action {
     /// A traction that grows from zero.
     Ramp,
-    /// A traction that begins after some steps.
+    /// A traction that starts after some steps.
     Late,
-    /// A support that is moved.
+    /// A prescribed motion.
     Support,
 }
 
@@ -111,7 +111,7 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
 }
 
 #[test]
-fn implicit_schemes_start_from_rest_and_follow_the_explicit_one() {
+fn implicit_schemes_start_from_rest_and_agree_with_the_explicit_scheme() {
     const END: f64 = 5e-6;
     for action in [Action::Ramp, Action::Late, Action::Support] {
         let mut exact = from_rest(
@@ -142,7 +142,7 @@ fn implicit_schemes_start_from_rest_and_follow_the_explicit_one() {
 }
 
 #[test]
-fn a_prestressed_body_at_rest_stays_at_rest() {
+fn prestressed_body_at_rest_remains_at_rest() {
     for which in [ImplicitRule::Midpoint, ImplicitRule::Trapezoidal] {
         let cloud = boxed([0.0; 3], &[0.02], DX, 1e-6);
         let steel = material(
@@ -172,7 +172,7 @@ fn a_prestressed_body_at_rest_stays_at_rest() {
         body.add_motion(hold).unwrap();
         let before = state.u.clone();
         let scheme = rule(which)(&body);
-        // Fifty times the explicit limit: rounding is amplified most.
+        // Fifty times the explicit limit, where rounding is amplified most.
         let dt = 50.0
             * highest_frequency(&body, &before)
                 .unwrap()
@@ -183,14 +183,14 @@ fn a_prestressed_body_at_rest_stays_at_rest() {
     }
 }
 
-/// Everything that a run carries from step to step.
+/// Everything that a run saves.
 fn saved(run: &Simulation) -> Archive {
     let mut archive = Archive::default();
     run.save(&mut archive);
     archive
 }
 
-/// A plate that tears while it is pulled apart slowly.
+/// A plate in slow tension until it breaks.
 pub fn torn() -> System {
     let (cloud, mut body) = plate(Fracture::CriticalStretch(1e-3));
     let still = vec![0.0; 2 * cloud.len()];
@@ -213,7 +213,8 @@ pub fn torn() -> System {
     body
 }
 
-/// Interrupts a run at some of the polls of its inner iterations, again and again; it must be as it was after the last complete step, and end as a run without interruptions.
+/// Interrupts a run at some polls of its inner iterations, repeatedly. Each interrupted run must be as after the
+/// last complete step, and the final state must be that of an uninterrupted run.
 fn interrupted_is_undone(make: &dyn Fn() -> Simulation, every: u64) {
     let mut whole = make();
     whole.run(|_| Control::Continue).unwrap();
@@ -243,17 +244,20 @@ fn interrupted_is_undone(make: &dyn Fn() -> Simulation, every: u64) {
         stops.set(stops.get() + 1);
         assert!(
             saved(&run) == last,
-            "{name}: the interrupted step left traces"
+            "{name}: the interrupted step changed the run"
         );
-        // One step undisturbed.
+        // One step without interrupts.
         armed.set(false);
     }
     assert!(stops.get() > 0, "{name} was never interrupted");
-    assert!(saved(&run) == saved(&whole), "{name}: another end");
+    assert!(
+        saved(&run) == saved(&whole),
+        "{name}: different final state"
+    );
 }
 
 #[test]
-fn an_interrupted_step_is_undone() {
+fn interrupted_steps_are_undone() {
     let schemes: [(Box<MakeScheme>, u64); 6] = [
         (rule(ImplicitRule::Midpoint), 5),
         (rule(ImplicitRule::Trapezoidal), 7),
@@ -272,7 +276,7 @@ fn an_interrupted_step_is_undone() {
 }
 
 #[test]
-fn an_interrupted_load_step_gives_broken_bonds_back() {
+fn interrupted_load_steps_restore_broken_bonds() {
     let relaxation: Box<MakeScheme> =
         Box::new(|system| Box::new(Relaxation::new(RelaxationOptions::default(), system).unwrap()));
     let make = || from_rest(torn(), &*relaxation, 0.125, 8);
@@ -280,7 +284,7 @@ fn an_interrupted_load_step_gives_broken_bonds_back() {
     whole.run(|_| Control::Continue).unwrap();
     let broken = whole.system().operator().broken_bonds();
     assert!(broken > 0);
-    // In the last step, in which bonds break, far behind its first equilibrium.
+    // In the last step, in which bonds break, well after its first equilibrium.
     interrupted_is_undone(&make, 1500);
     interrupted_is_undone(&make, 200);
 }

@@ -1,4 +1,5 @@
-//! The list operator: equal to the sum over all pairs from the definition, however its bonds' stiffness is kept.
+//! The neighbour-list force equals the sum over all pairs from the definition, for every storage of bond
+//! stiffnesses.
 
 use crate::common;
 use std::sync::Arc;
@@ -6,10 +7,11 @@ use std::sync::Arc;
 use pericles::family::{BondList, VolumeCorrection};
 use pericles::kernel::{ActsOn, Influence, InfluenceFunction};
 use pericles::material::{
-    BondMaterial, BondStretch, Fracture, GreenBond, LinearBond, LiteralBond, PairForce, StressState,
+    BondMaterial, BondStretch, CubicSofteningBond, Fracture, GreenBond, LinearBond, PairForce,
+    StressState,
 };
 use pericles::operator::{
-    BondForce, Breakable, Breaking, DamageMeasure, FastLaw, Force, InstructionSet, On,
+    BondForce, Breakable, Breaking, DamageMeasure, Force, InstructionSet, PointSubset, VectorLaw,
 };
 use pericles::space::PointCloud;
 use pericles::{Path, StepEnd};
@@ -23,7 +25,7 @@ fn noise(len: usize) -> Vec<f64> {
 
 const DX: f64 = 0.01;
 
-/// A box on a lattice, or with every point moved and every volume changed.
+/// A box on a lattice, or with all points moved and all volumes changed.
 fn body(dimension: usize, moved: bool) -> Arc<PointCloud> {
     let size = if dimension == 3 {
         [0.11, 0.09, 0.07]
@@ -61,7 +63,7 @@ fn material(correction: VolumeCorrection, influence: Influence) -> BondMaterial 
 
 fn force(operator: &dyn Force, u: &[f64]) -> Vec<f64> {
     let mut out = vec![0.0; u.len()];
-    operator.add_force(0.0, u, On::All, &mut out);
+    operator.add_force(0.0, u, PointSubset::All, &mut out);
     out
 }
 
@@ -106,8 +108,9 @@ fn assert_close(value: &[f64], expected: &[f64], what: &str) {
     }
 }
 
-/// Formulas (constant, conical), codes (Gaussian on a lattice), a number each (Gaussian on moved points); strains of 1e-6, and some beyond the fast form's reach.
-fn check<L: FastLaw, const D: usize>(state: StressState) {
+/// Stiffnesses by formula (constant, conical), by code (Gaussian on a lattice) and one per bond (Gaussian on moved
+/// points); strains of 1e-6, and some beyond the range of the fast form.
+fn check<L: VectorLaw, const D: usize>(state: StressState) {
     let influences = [
         (InfluenceFunction::Constant, ActsOn::Stretch),
         (InfluenceFunction::Constant, ActsOn::Displacement),
@@ -152,24 +155,24 @@ fn check<L: FastLaw, const D: usize>(state: StressState) {
 }
 
 #[test]
-fn bars() {
+fn bars_equal_the_definition() {
     check::<BondStretch, 1>(StressState::Uniaxial);
     check::<LinearBond, 1>(StressState::Uniaxial);
-    check::<LiteralBond, 1>(StressState::Uniaxial);
+    check::<CubicSofteningBond, 1>(StressState::Uniaxial);
 }
 
 #[test]
-fn plates() {
+fn plates_equal_the_definition() {
     check::<BondStretch, 2>(StressState::PlaneStress);
     check::<GreenBond, 2>(StressState::PlaneStrain);
 }
 
 #[test]
-fn blocks() {
+fn blocks_equal_the_definition() {
     check::<BondStretch, 3>(StressState::Spatial);
 }
 
-/// Decisions are the same bits on all sets, and what is booked agrees.
+/// The same bonds break on all instruction sets, and dissipated energies agree.
 #[test]
 fn the_same_bonds_break_on_every_instruction_set() {
     let cloud = body(3, true);
@@ -188,7 +191,7 @@ fn the_same_bonds_break_on_every_instruction_set() {
             u: &u,
             path: Path::MeanVelocity(&still),
         };
-        list.end_step(&end, On::All, &mut out);
+        list.end_step(&end, PointSubset::All, &mut out);
         let mut damage = vec![0.0; n];
         list.damage_into(&mut damage);
         (damage, list.broken_bonds(), list.dissipated())
@@ -202,9 +205,9 @@ fn the_same_bonds_break_on_every_instruction_set() {
     }
 }
 
-/// Neighbours whose numbers lie more than two bytes apart: the two halves of a bar, interleaved.
+/// Neighbours whose numbers differ by more than two bytes: two interleaved halves of a bar.
 #[test]
-fn neighbours_far_apart_in_number() {
+fn neighbours_with_distant_numbers_are_found() {
     let half = 70_000;
     let x = |k: usize| ((k % half) * 2 + k / half) as f64;
     let positions: Vec<f64> = (0..2 * half).map(x).collect();
@@ -223,7 +226,8 @@ fn neighbours_far_apart_in_number() {
         DamageMeasure::default(),
     )
     .unwrap();
-    // u = 1e-6 x²: a pair of opposite bonds gives 2e-6 |ξ|, 12e-6 in all; u of 2e4 has digits to 4e-12.
+    // u = 1e-6 x²: a pair of opposite bonds gives 2e-6 |ξ|, in total 12e-6; values of u of 2e4 have a rounding
+    // error of 4e-12.
     let u: Vec<f64> = cloud.axis(0).iter().map(|x| 1e-6 * x * x).collect();
     let f = force(&list, &u);
     for i in (0..2 * half).filter(|&i| (3.0..2.0 * half as f64 - 4.0).contains(&cloud.axis(0)[i])) {
@@ -231,9 +235,10 @@ fn neighbours_far_apart_in_number() {
     }
 }
 
-/// 46³ points at 122 neighbours: 2.5 bytes and 3 bits an entry, rows of 64 bytes; with u, v, a (72 B) and the cloud (36 B) some 520 B in all.
+/// 46³ points with 122 neighbours: 2.5 bytes and 3 bits per entry, rows of 64 bytes; with u, v, a (72 B) and the
+/// cloud (36 B) about 520 B in total.
 #[test]
-fn memory_per_point() {
+fn memory_per_point_is_as_documented() {
     let cloud = common::boxed([0.0; 3], &[0.46; 3], DX, 1.0);
     let material = BondMaterial {
         horizon: 3.015 * DX,

@@ -1,4 +1,4 @@
-//! Tests of the engine in one program: the generic loops are compiled once for all of them.
+//! Tests of the engine as one program, so that generic loops are compiled once for all of them.
 
 mod arguments;
 mod builder;

@@ -1,11 +1,11 @@
-//! Bodies whose opposite faces are one: bonds lead to images beyond the faces.
+//! Bodies with periodic faces: bonds lead to images beyond the faces.
 
 use std::sync::Arc;
 
 use crate::common::{listed, material};
 use pericles::family::{Crack, EndRule, VolumeCorrection};
 use pericles::material::{BondMaterial, BondStretch, Fracture, GreenBond, PairLaw, StressState};
-use pericles::operator::{DamageMeasure, FastLaw, Force, GridForce, On};
+use pericles::operator::{DamageMeasure, Force, GridForce, PointSubset, VectorLaw};
 use pericles::space::{Grid, PointCloud, Shape};
 use pericles::time::{State, VelocityVerlet};
 use pericles::{Control, PointScalar, Simulation, System};
@@ -42,7 +42,7 @@ fn glass(law: PairLaw, fracture: Fracture) -> BondMaterial {
     }
 }
 
-fn on_stencil<L: FastLaw, const D: usize>(
+fn on_stencil<L: VectorLaw, const D: usize>(
     cloud: &Arc<PointCloud>,
     material: &BondMaterial,
     cracks: &[(Crack, EndRule)],
@@ -54,12 +54,12 @@ fn on_stencil<L: FastLaw, const D: usize>(
 
 fn force_of(operator: &dyn Force, u: &[f64]) -> Vec<f64> {
     let mut force = vec![0.0; u.len()];
-    operator.add_force(0.0, u, On::All, &mut force);
+    operator.add_force(0.0, u, PointSubset::All, &mut force);
     force
 }
 
-/// The middle of many copies of a body side by side does not know that it is none of a periodic one.
-fn equals_copies<L: FastLaw, const D: usize>(size: [f64; D], law: PairLaw, copies: usize) {
+/// The middle copy of many copies of a body side by side has the forces of the periodic body.
+fn equals_copies<L: VectorLaw, const D: usize>(size: [f64; D], law: PairLaw, copies: usize) {
     let material = glass(law, Fracture::Unbreakable);
     let small = periodic(&size);
     let large = Arc::new(grid(&size.map(|side| side * copies as f64)));
@@ -69,7 +69,8 @@ fn equals_copies<L: FastLaw, const D: usize>(size: [f64; D], law: PairLaw, copie
     let u: Vec<f64> = (0..D * n)
         .map(|k| 0.05 * ((k * k + 3) as f64).sin())
         .collect();
-    // The point of the small body that each point of the large one is a copy of, and whether it lies in the middle copy.
+    // The point of the small body of which each point of the large one is a copy, and whether it lies in the middle
+    // copy.
     let copy = |i: usize| {
         let at = lattice.coordinates(lattice.node[i]).map(|x| x as usize);
         let [x, y, z] = std::array::from_fn(|c| at[c] % shape[c]);
@@ -110,23 +111,24 @@ fn equals_copies<L: FastLaw, const D: usize>(size: [f64; D], law: PairLaw, copie
 }
 
 #[test]
-fn a_periodic_body_is_the_middle_of_its_copies() {
+fn periodic_body_equals_the_middle_copy_of_many() {
     equals_copies::<BondStretch, 1>([12.0], PairLaw::BondStretch, 3);
     equals_copies::<GreenBond, 2>([13.0, 9.0], PairLaw::GreenStrain, 3);
     equals_copies::<BondStretch, 3>([8.0, 7.0, 9.0], PairLaw::BondStretch, 3);
-    // Bonds that lead around the body, also to the point itself.
+    // Bonds that lead around the body, including from a point to itself.
     equals_copies::<BondStretch, 2>([5.0, 2.0], PairLaw::BondStretch, 5);
 }
 
 const SIZE: [f64; 2] = [40.0, 24.0];
 
-/// A plate with a crack, torn by opposite velocities of its halves, everything moved to the right by `shift` and around; displacements by column and row, and what the run conserves.
+/// A cracked plate torn by opposite velocities of its halves, with everything moved to the right by `shift`
+/// periodically; displacements by column and row, and the conserved quantities.
 fn torn(shift: usize, stencil: bool) -> (Vec<f64>, u64, [f64; 3]) {
     let cloud = periodic(&SIZE);
     let n = cloud.len();
     let material = glass(PairLaw::BondStretch, Fracture::CriticalStretch(0.02));
     let from = shift as f64;
-    // A crack that leaves through the face comes in at the other.
+    // A crack that leaves through one face and re-enters through the opposite one.
     let crack = Crack::Segment {
         from: [from, 12.0],
         to: [from + 10.0, 12.0],
@@ -153,7 +155,7 @@ fn torn(shift: usize, stencil: bool) -> (Vec<f64>, u64, [f64; 3]) {
         let k = moved(i);
         let row = (k / columns) as f64;
         start.v[i] = 0.001 * (k as f64).sin();
-        // Continuous across the face, and steep at the crack.
+        // Continuous across the face and steep at the crack.
         start.v[n + i] = -0.03 * (std::f64::consts::TAU * (row + 0.5) / SIZE[1]).sin();
     }
     let before = system.momentum(&start.v);
@@ -175,7 +177,7 @@ fn torn(shift: usize, stencil: bool) -> (Vec<f64>, u64, [f64; 3]) {
 }
 
 #[test]
-fn a_crack_through_a_face_is_a_crack_anywhere() {
+fn results_do_not_depend_on_the_position_of_a_crack_relative_to_periodic_faces() {
     let (expected, broken, _) = torn(15, false);
     assert!(broken > 200, "{broken} bonds broken");
     let largest = expected.iter().fold(0.0, |most: f64, u| most.max(u.abs()));

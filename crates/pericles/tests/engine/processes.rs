@@ -1,16 +1,16 @@
-//! Threads that talk through mailboxes, in the place of processes.
+//! Threads that exchange messages in place of processes.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Barrier, Condvar, Mutex};
 
 use pericles::domain::Comm;
 
-/// What the threads share.
+/// Data shared by the threads.
 struct Office {
     barrier: Barrier,
-    /// Of the sums and maxima under way.
+    /// Sums and maxima in progress.
     numbers: Mutex<(Vec<i128>, Vec<f64>)>,
-    /// Letters from one thread to another.
+    /// Messages between threads.
     letters: Mutex<Vec<Vec<VecDeque<Vec<f64>>>>>,
     delivered: Condvar,
 }
@@ -22,7 +22,7 @@ pub struct Threads {
 }
 
 impl Threads {
-    /// Lets every thread combine its numbers with the shared ones, one after another, and read the result.
+    /// Lets every thread combine its numbers with the shared ones in turn and read the result.
     fn combine(
         &self,
         add: impl FnOnce(&mut (Vec<i128>, Vec<f64>)),
@@ -90,7 +90,7 @@ impl Comm for Threads {
     }
 }
 
-/// Runs `work` on several threads, each with its end of the communication; results in the order of ranks.
+/// Runs `work` on several threads, each with its communicator; results in the order of ranks.
 pub fn on_processes<T: Send>(size: usize, work: impl Fn(Arc<dyn Comm>) -> T + Sync) -> Vec<T> {
     let office = Arc::new(Office {
         barrier: Barrier::new(size),

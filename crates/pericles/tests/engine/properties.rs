@@ -1,15 +1,15 @@
-//! What every bond operator must satisfy, over one table of laws × dimensions × influence functions × volume corrections.
+//! Properties of every bond force, over a table of laws × dimensions × influence functions × volume corrections.
 
 use std::sync::Arc;
 
 use pericles::family::{BondList, VolumeCorrection};
 use pericles::kernel::{ActsOn, Influence, InfluenceFunction};
 use pericles::material::{
-    BondConstants, BondMaterial, BondStretch, Calibration, CubicLaw, ElasticModulus, Fracture,
-    GreenBond, LinearBond, LiteralBond, Modulus, PairLaw, StressState, Trapezoidal, Treated,
-    Treatment,
+    Approximated, Approximation, BondConstants, BondMaterial, BondStretch, Calibration, CubicLaw,
+    CubicSofteningBond, ElasticModulus, Fracture, GreenBond, LinearBond, Modulus, PairLaw,
+    StressState, Trapezoidal,
 };
-use pericles::operator::{BondForce, DamageMeasure, FastLaw, Force, InstructionSet, On};
+use pericles::operator::{BondForce, DamageMeasure, Force, InstructionSet, PointSubset, VectorLaw};
 use pericles::space::{Grid, PointCloud, Region, Shape};
 
 const YOUNG: f64 = 2e9;
@@ -51,7 +51,7 @@ fn influences() -> Vec<Influence> {
     all
 }
 
-/// A body with a hole, so that boundaries of all kinds are there; irregular if `jitter`.
+/// A body with a hole, so that boundaries of all kinds occur; irregular if `jitter` is not zero.
 fn body(dimension: usize, jitter: f64) -> Arc<PointCloud> {
     let cells = [40.0, 12.0, 7.0][dimension - 1];
     let grid = Grid {
@@ -107,7 +107,7 @@ fn material(law: PairLaw, influence: Influence, correction: VolumeCorrection) ->
     }
 }
 
-fn operator<L: FastLaw, const D: usize>(
+fn operator<L: VectorLaw, const D: usize>(
     cloud: &Arc<PointCloud>,
     material: &BondMaterial,
     state: StressState,
@@ -126,8 +126,8 @@ fn operator<L: FastLaw, const D: usize>(
     (Box::new(operator), constants)
 }
 
-/// One of the laws that bars alone have.
-const TREATED: PairLaw = PairLaw::Treated(CubicLaw::GreenStrain, Treatment::Trapezoidal);
+/// A law that only bars support.
+const TREATED: PairLaw = PairLaw::Approximated(CubicLaw::GreenStrain, Approximation::Trapezoidal);
 
 fn build(
     cloud: &Arc<PointCloud>,
@@ -144,15 +144,15 @@ fn build(
         (PairLaw::GreenStrain, 1) => operator::<GreenBond, 1>(cloud, material, state),
         (PairLaw::GreenStrain, 2) => operator::<GreenBond, 2>(cloud, material, state),
         (PairLaw::GreenStrain, _) => operator::<GreenBond, 3>(cloud, material, state),
-        (PairLaw::Literal57, _) => operator::<LiteralBond, 1>(cloud, material, state),
-        (TREATED, _) => operator::<Treated<GreenBond, Trapezoidal>, 1>(cloud, material, state),
+        (PairLaw::CubicSoftening, _) => operator::<CubicSofteningBond, 1>(cloud, material, state),
+        (TREATED, _) => operator::<Approximated<GreenBond, Trapezoidal>, 1>(cloud, material, state),
         (law, _) => panic!("{law:?} is not in the table"),
     }
 }
 
 fn force(operator: &dyn Force, u: &[f64]) -> Vec<f64> {
     let mut out = vec![0.0; u.len()];
-    operator.add_force(0.0, u, On::All, &mut out);
+    operator.add_force(0.0, u, PointSubset::All, &mut out);
     out
 }
 
@@ -180,7 +180,7 @@ fn rotation(dimension: usize) -> [[f64; 3]; 3] {
         1 => [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
         2 => [[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]],
         _ => {
-            // About (1, 1, 1): cyclic.
+            // About (1, 1, 1), a cyclic matrix.
             let (p, q) = ((1.0 - c) / 3.0, s / 3f64.sqrt());
             [
                 [c + p, p - q, p + q],
@@ -237,7 +237,7 @@ fn rigid_motions_cause_no_force() {
             let rotated = force(&*operator, &affine(cloud, rotation(dimension), [0.0; 3]));
             assert!(largest(&rotated) <= 1e-9 * strain, "{name}: rotation");
         } else {
-            // A linear law knows infinitesimal rotations only.
+            // A linear law is invariant only under infinitesimal rotations.
             let mut spin = unit;
             spin[0][1] -= 1e-3;
             spin[1][0] += 1e-3;
@@ -323,7 +323,7 @@ fn force_is_minus_the_gradient_of_the_energy() {
     });
 }
 
-/// Energy densities of an interior point under homogeneous strains, over the continuum's.
+/// Energy densities of an interior point under homogeneous strains, divided by those of the continuum.
 fn patch(
     state: StressState,
     m: f64,
@@ -351,7 +351,8 @@ fn patch(
     material.modulus.calibration = calibration;
     let (operator, _) = build(&cloud, &material, state);
     let centre = cloud.nearest([0.5 * cells * 0.01; 3]);
-    // Lamé's constants of the body's plane; λ = μ for ν = 1/4, and the plane-stress value λ' = E ν/(1 − ν²) = μ too for 1/3.
+    // In-plane Lamé constants: λ = μ for ν = 1/4, and also for ν = 1/3, where the plane-stress value is λ' = E ν/(1
+    // − ν²) = μ.
     let nu = state.poisson_ratio().unwrap_or(0.0);
     let mu = YOUNG / (2.0 * (1.0 + nu));
     let lambda = match state {
@@ -424,7 +425,7 @@ fn patch_test_of_the_extended_correction() {
 
 #[test]
 fn patch_test_without_correction_gives_the_lattice_sum() {
-    // Energy density of a lattice under isotropic strain e: ¼ c e² V Σ α |ξ|, counted here bond by bond.
+    // Energy density of a lattice under isotropic strain e: ¼ c e² V Σ α |ξ|, summed here bond by bond.
     for state in STATES {
         let (m, dx): (f64, f64) = (3.0, 0.01);
         let dimension = state.dimension();
@@ -486,7 +487,7 @@ fn lattice_calibration_makes_the_bulk_modulus_exact() {
 }
 
 #[test]
-fn the_predicted_stiffness_error_is_the_measured_one() {
+fn the_predicted_stiffness_error_equals_the_measured_one() {
     for state in STATES {
         let cloud = body(state.dimension(), 0.0);
         for correction in CORRECTIONS {
@@ -540,20 +541,20 @@ fn all_subsets_give_the_same_bits_and_all_instruction_sets_the_same_force() {
         }
         let odd: Vec<u32> = (0..n as u32).filter(|i| i % 2 == 1).collect();
         let mut parts = vec![0.0; 3 * n];
-        operator.add_force(0.0, &u, On::Set(&odd), &mut parts);
+        operator.add_force(0.0, &u, PointSubset::Set(&odd), &mut parts);
         for i in (0..n).step_by(2) {
-            operator.add_force(0.0, &u, On::Range(i..i + 1), &mut parts);
+            operator.add_force(0.0, &u, PointSubset::Range(i..i + 1), &mut parts);
         }
         assert_eq!(
             parts, reference,
-            "{set:?}: a point's force depends on who else is computed"
+            "{set:?}: the force on a point depends on the subset"
         );
     }
 }
 
 /// The sum over all pairs, from the definition.
 #[test]
-fn naive_twin() {
+fn forces_equal_the_definition() {
     let cloud = body(2, 0.003);
     let material = material(
         PairLaw::BondStretch,

@@ -1,4 +1,4 @@
-//! Checkpoints hold all that a run needs; one that does not is found.
+//! Checkpoints restore runs completely; incomplete checkpoints are detected.
 
 use crate::common::{boxed, listed, material, system};
 use crate::implicit::{
@@ -12,7 +12,7 @@ use pericles::time::{
     RelaxationOptions, RungeKutta, State, Tableau, VelocityVerlet,
 };
 use pericles::{
-    Archive, Interrupt, Result, Saved, Simulation, StepKind, StopCondition, StopWhen, System,
+    Archive, Checkpointed, Interrupt, Result, Simulation, StepKind, StopCondition, StopWhen, System,
 };
 
 fn resumes(scheme: &MakeScheme, dt: f64, action: Action) {
@@ -27,8 +27,8 @@ fn resumes(scheme: &MakeScheme, dt: f64, action: Action) {
 }
 
 #[test]
-fn every_scheme_resumes() {
-    // With steps in s.
+fn resumed_runs_of_every_scheme_are_bitwise_identical() {
+    // Schemes with their steps, s.
     let schemes: [(Box<MakeScheme>, f64); 8] = [
         (Box::new(|_| Box::new(VelocityVerlet)), 4e-8),
         (
@@ -49,12 +49,12 @@ fn every_scheme_resumes() {
         resumes(&**scheme, *dt, Action::Ramp);
         resumes(&**scheme, *dt, Action::Support);
     }
-    // It balances the energy of bodies without supports.
+    // Its energy balance requires bodies without constraints.
     resumes(&*discrete_gradient(), 4e-8, Action::Ramp);
 }
 
 #[test]
-fn a_factor_belongs_to_the_same_step_after_a_resume() {
+fn direct_solver_factorises_for_the_same_step_after_a_resume() {
     let make = || {
         let cloud = boxed([0.0; 3], &[0.04], 1e-3, 1e-6);
         let steel = material(
@@ -70,14 +70,14 @@ fn a_factor_belongs_to_the_same_step_after_a_resume() {
         let scheme = Implicit::with_solver(rule, LinearSolver::Direct, &body).unwrap();
         let mut state = State::at_rest(cloud.len());
         state.v[..10].fill(1.0);
-        // Differences of rounded times differ in their last digits.
+        // Differences of rounded times vary in their last digits.
         Simulation::new(body, Box::new(scheme), state, 1e-6 * (0.1 + 1.0 / 3.0), 20).unwrap()
     };
     check_resume(make, [7]).unwrap();
 }
 
 #[test]
-fn relaxation_with_conditions_to_stop_resumes() {
+fn adaptive_dynamic_relaxation_with_stop_conditions_resumes() {
     let make = || {
         let body = torn();
         let points = body.motions()[1].points.clone();
@@ -104,16 +104,16 @@ fn relaxation_with_conditions_to_stop_resumes() {
     assert!(end.u64s("operator/broken").unwrap().iter().sum::<u64>() > 0);
 }
 
-/// What a scheme does about its memory.
+/// Treatment of the state by a scheme.
 #[derive(Clone, Copy)]
 enum Memory {
     Complete,
-    /// It is saved, and not restored.
+    /// It is saved but not restored.
     SavedOnly,
     Forgotten,
 }
 
-/// Velocity Verlet with a drag that grows from step to step, from a certain one on.
+/// Velocity Verlet with a drag that grows from step to step, starting at a given step.
 struct Ageing {
     memory: Memory,
     from: u64,
@@ -157,7 +157,7 @@ impl Integrator for Ageing {
     }
 }
 
-impl Saved for Ageing {
+impl Checkpointed for Ageing {
     fn save(&self, archive: &mut Archive) {
         if !matches!(self.memory, Memory::Forgotten) {
             archive.put("ageing/drag", pericles::Values::F64(vec![self.drag]));
@@ -175,7 +175,7 @@ impl Saved for Ageing {
 }
 
 #[test]
-fn an_incomplete_checkpoint_is_found() {
+fn an_incomplete_checkpoint_is_detected() {
     let check = |memory, from| {
         let make = || {
             let scheme = move |_: &System| -> Box<dyn Integrator> {
@@ -205,7 +205,7 @@ fn an_incomplete_checkpoint_is_found() {
         matches!(&wrong, Incomplete::Resumed { arrays } if moved(arrays)),
         "{wrong}"
     );
-    // A new run has the right drag by chance; the one that is taken back has not.
+    // A new run has the right drag by chance; the run that is reset has not.
     let wrong = check(Memory::Forgotten, 15).unwrap_err();
     assert!(
         matches!(&wrong, Incomplete::TakenBack { arrays } if moved(arrays)),

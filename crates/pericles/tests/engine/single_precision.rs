@@ -1,4 +1,4 @@
-//! Forces in floats against the same in doubles.
+//! Forces in single precision compared with double precision.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use pericles::kernel::Influence;
 use pericles::material::{
     BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PairLaw, StressState,
 };
-use pericles::operator::{BondBody, BondForm, Force, InstructionSet, On};
+use pericles::operator::{BondBody, BondForm, Force, InstructionSet, PointSubset};
 use pericles::round_trip::check_resume;
 use pericles::space::{Grid, PointCloud, Region, Shape};
 use pericles::time::{State, VelocityVerlet};
@@ -16,7 +16,7 @@ use pericles::{Path, StepEnd};
 
 const SPACING: f64 = 0.01;
 
-/// A box with a round hole, of rows that are no whole number of chunks, an odd number of chunks in some blocks.
+/// A box with a round hole whose rows are not whole numbers of chunks, with an odd number of chunks in some blocks.
 fn body(cells: &[f64]) -> Arc<PointCloud> {
     let grid = Grid {
         shape: Shape::Box {
@@ -86,7 +86,7 @@ fn operator(
 
 fn force(operator: &dyn Force, u: &[f64]) -> Vec<f64> {
     let mut out = vec![0.0; u.len()];
-    operator.add_force(0.0, u, On::All, &mut out);
+    operator.add_force(0.0, u, PointSubset::All, &mut out);
     out
 }
 
@@ -99,7 +99,7 @@ fn difference(a: &[f64], b: &[f64]) -> f64 {
     largest(&difference) / largest(b)
 }
 
-/// A stretch of about `strain` in long waves, with a little noise, and a rigid flight.
+/// A stretch of about `strain` in long waves with a little noise, and a rigid translation.
 fn displacement(cloud: &PointCloud, strain: f64, flight: f64) -> Vec<f64> {
     let (n, d) = (cloud.len(), cloud.dimension());
     let mut u = vec![0.0; n * d];
@@ -128,7 +128,7 @@ fn forces_agree_to_six_digits() {
         for law in [PairLaw::BondStretch, PairLaw::Linear] {
             let exact = operator(&cloud, law, f64::INFINITY, BondForm::Grid);
             let mut floats = operator(&cloud, law, f64::INFINITY, BondForm::FloatGrid);
-            // The last one is beyond the fast form's reach for many bonds.
+            // In the last case many bonds are beyond the range of the fast form.
             for (strain, flight) in [(1e-6, 0.0), (1e-3, 0.0), (1e-3, 1e3), (0.1, 0.0)] {
                 let u = displacement(&cloud, strain, flight);
                 let expected = force(&*exact, &u);
@@ -137,7 +137,7 @@ fn forces_agree_to_six_digits() {
                     let error = difference(&force(&*floats, &u), &expected);
                     let what = format!("{cells:?} {law:?} {strain} {flight} {set:?}: {error:e}");
                     println!("{what}");
-                    // Six digits, less those that the body's displacement takes over that of a bond.
+                    // Six digits, minus those lost because the displacement of the body exceeds that of a bond.
                     assert!(error < 1e-5, "{what}");
                     assert!(error > 0.0, "{what}");
                     let reported = floats.rounding(&u).unwrap();
@@ -153,7 +153,7 @@ fn forces_agree_to_six_digits() {
 }
 
 #[test]
-fn parts_equal_the_whole_bit_for_bit_on_any_number_of_threads() {
+fn evaluations_on_subsets_are_bitwise_identical_for_any_number_of_threads() {
     for cells in BODIES {
         let cloud = body(cells);
         let n = cloud.len();
@@ -172,9 +172,9 @@ fn parts_equal_the_whole_bit_for_bit_on_any_number_of_threads() {
             let whole = force(&*make(), &u);
             let third: Vec<u32> = (0..n as u32).filter(|i| i % 3 == 1).collect();
             let (operator, mut parts) = (make(), vec![0.0; u.len()]);
-            operator.add_force(0.0, &u, On::Set(&third), &mut parts);
+            operator.add_force(0.0, &u, PointSubset::Set(&third), &mut parts);
             for i in (0..n).filter(|i| i % 3 != 1) {
-                operator.add_force(0.0, &u, On::Range(i..i + 1), &mut parts);
+                operator.add_force(0.0, &u, PointSubset::Range(i..i + 1), &mut parts);
             }
             assert!(parts == whole, "{cells:?} {set:?}");
             for threads in [1, 2, 3, 7] {
@@ -189,7 +189,7 @@ fn parts_equal_the_whole_bit_for_bit_on_any_number_of_threads() {
 }
 
 #[test]
-fn both_ends_break_a_bond_in_all_instruction_sets_alike() {
+fn both_end_points_break_the_same_bonds_on_all_instruction_sets() {
     for cells in BODIES {
         let cloud = body(cells);
         let u = displacement(&cloud, 0.02, 0.0);
@@ -200,7 +200,7 @@ fn both_ends_break_a_bond_in_all_instruction_sets_alike() {
             u: &u,
             path: Path::MeanVelocity(&v),
         };
-        let broken = |form, set, on: On<'_>| {
+        let broken = |form, set, on: PointSubset<'_>| {
             let mut operator = operator(&cloud, PairLaw::BondStretch, 0.01, form);
             operator.use_instruction_set(set);
             let mut out = vec![0.0; u.len()];
@@ -211,7 +211,7 @@ fn both_ends_break_a_bond_in_all_instruction_sets_alike() {
                 .breaking
                 .unwrap()
                 .for_each_intact(&mut |i, j| intact.push((i, j)));
-            // A force without the bonds that have just gone; bonds seen by one end only would leave a resultant.
+            // Bonds seen as broken by one end only would leave a resultant force.
             let resultant: f64 = out[..cloud.len()].iter().sum();
             (
                 operator.broken_bonds(),
@@ -221,13 +221,13 @@ fn both_ends_break_a_bond_in_all_instruction_sets_alike() {
             )
         };
         let best = InstructionSet::detect();
-        let (count, energy, ..) = broken(BondForm::Grid, best, On::All);
-        let whole = broken(BondForm::FloatGrid, best, On::All);
+        let (count, energy, ..) = broken(BondForm::Grid, best, PointSubset::All);
+        let whole = broken(BondForm::FloatGrid, best, PointSubset::All);
         assert!(count > 20 && whole.0.abs_diff(count) <= 1 + count / 1000);
         assert!((whole.1 / energy - 1.0).abs() < 1e-3, "{cells:?}");
         assert!(whole.3.abs() < 1e-4, "{cells:?}: {}", whole.3);
         for set in InstructionSet::available() {
-            let other = broken(BondForm::FloatGrid, set, On::All);
+            let other = broken(BondForm::FloatGrid, set, PointSubset::All);
             assert_eq!(
                 (other.0, &other.2),
                 (whole.0, &whole.2),
@@ -238,7 +238,7 @@ fn both_ends_break_a_bond_in_all_instruction_sets_alike() {
     }
 }
 
-/// A plate with a crack, torn apart.
+/// A cracked plate in tension.
 fn torn(form: BondForm) -> Simulation {
     let cloud = body(&[40.0, 21.0]);
     let operator = operator(&cloud, PairLaw::BondStretch, 0.004, form);
@@ -251,7 +251,7 @@ fn torn(form: BondForm) -> Simulation {
 }
 
 #[test]
-fn a_torn_plate_breaks_as_in_doubles_and_is_resumed() {
+fn crack_in_a_plate_agrees_with_double_precision_and_resumes() {
     let (mut exact, mut floats) = (torn(BondForm::Grid), torn(BondForm::FloatGrid));
     exact.run(|_| Control::Continue).unwrap();
     floats.run(|_| Control::Continue).unwrap();

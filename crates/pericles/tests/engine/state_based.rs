@@ -1,23 +1,26 @@
-//! A small state-based force and a wall, to be stepped by any scheme.
+//! A small state-based force and a wall, to be integrated by any scheme.
 
 use std::sync::Arc;
 
 use pericles::domain::{Domain, Field};
-use pericles::operator::{AtPoints, Capabilities, Force, InstructionSet, LocalForce, On, TwoPass};
+use pericles::operator::{
+    AtPoints, Capabilities, Force, InstructionSet, LocalForce, PointSubset, TwoPass,
+};
 use pericles::space::PointCloud;
 
-/// Points wanted, of n.
-fn wanted(on: &On<'_>, n: usize) -> Vec<usize> {
+/// The points of a subset of n points.
+fn wanted(on: &PointSubset<'_>, n: usize) -> Vec<usize> {
     match on {
-        On::All => (0..n).collect(),
-        On::Range(range) => range.clone().collect(),
-        On::Set(points) => points.iter().map(|&i| i as usize).collect(),
+        PointSubset::All => (0..n).collect(),
+        PointSubset::Range(range) => range.clone().collect(),
+        PointSubset::Set(points) => points.iter().map(|&i| i as usize).collect(),
     }
 }
 
-/// W_i = ½ A θ_i² + ½ B Σ_j V_j e_ij² with the elongations e_ij = |ξ + η| − |ξ| of all bonds of point i and θ_i = Σ_j V_j e_ij, in the plane.
+/// W_i = ½ A θ_i² + ½ B Σ_j V_j e_ij² with the elongations e_ij = |ξ + η| − |ξ| of all bonds of point i and θ_i =
+/// Σ_j V_j e_ij, in the plane.
 ///
-/// The force on i is Σ_j V_j (A (θ_i + θ_j) + 2 B e_ij) n_ij: the first pass leaves θ.
+/// The force on i is Σ_j V_j (A (θ_i + θ_j) + 2 B e_ij) n_ij; the first pass computes θ.
 pub struct Dilatational {
     points: usize,
     /// Of own points and ghosts.
@@ -31,7 +34,7 @@ pub struct Dilatational {
 }
 
 impl Dilatational {
-    /// On own points and the ghosts behind them, whose numbers in the whole body are given.
+    /// Makes the force for own points and ghosts with the given numbers in the whole body.
     pub fn new(
         positions: Vec<[f64; 2]>,
         volumes: Vec<f64>,
@@ -62,7 +65,7 @@ impl Dilatational {
         }
     }
 
-    /// On all points of a body.
+    /// Makes the force for all points of a body.
     pub fn whole(cloud: &PointCloud, horizon: f64) -> Self {
         let n = cloud.len();
         let positions = (0..n)
@@ -79,7 +82,7 @@ impl Dilatational {
         )
     }
 
-    /// Of a vector on own points and ghosts, the values of component c at a point.
+    /// Component c at a point of a vector on own points and ghosts.
     fn at(&self, field: Field<'_>, c: usize, i: usize) -> f64 {
         let ghosts = self.positions.len() - self.points;
         match i.checked_sub(self.points) {
@@ -102,7 +105,7 @@ impl TwoPass for Dilatational {
         1
     }
 
-    fn values_into(&self, _t: f64, u: Field<'_>, on: &On<'_>, values: &mut [f64]) {
+    fn values_into(&self, _t: f64, u: Field<'_>, on: &PointSubset<'_>, values: &mut [f64]) {
         for i in wanted(on, self.points) {
             let family = self.families[i].iter();
             values[i] = family
@@ -123,7 +126,7 @@ impl TwoPass for Dilatational {
         }
     }
 
-    fn add_bond_force(&self, _t: f64, at: AtPoints<'_>, on: &On<'_>, out: &mut [f64]) {
+    fn add_bond_force(&self, _t: f64, at: AtPoints<'_>, on: &PointSubset<'_>, out: &mut [f64]) {
         for i in wanted(on, self.points) {
             for &j in &self.families[i] {
                 let (elongation, normal, _) = self.bond(at.u, i, j);
@@ -200,12 +203,13 @@ impl TwoPass for Dilatational {
 }
 
 pericles::saved! {
-    impl Saved for Dilatational {
+    impl Checkpointed for Dilatational {
         points, positions, volumes, families, domain, bulk, bond: fixed,
     }
 }
 
-/// A wall at y = 0 that pushes points below it back by k times their depth: a force beside the body's own, N/m³.
+/// A wall at y = 0 that pushes points below it up with k times their depth: a force in addition to that of the
+/// body, N/m³.
 pub struct Wall {
     pub heights: Vec<f64>,
     pub volumes: Vec<f64>,
@@ -214,7 +218,7 @@ pub struct Wall {
 }
 
 impl Wall {
-    /// Under a body in the plane.
+    /// Makes a wall below a body in the plane.
     pub fn below(cloud: &Arc<PointCloud>, stiffness: f64) -> Self {
         Self {
             heights: cloud.axis(1).to_vec(),
@@ -238,7 +242,7 @@ impl Force for Wall {
         2
     }
 
-    fn add_force(&self, _t: f64, u: &[f64], on: On<'_>, out: &mut [f64]) {
+    fn add_force(&self, _t: f64, u: &[f64], on: PointSubset<'_>, out: &mut [f64]) {
         let n = self.points();
         for i in wanted(&on, n) {
             out[n + i] += self.stiffness * self.depth(u, i);
@@ -295,7 +299,7 @@ impl LocalForce for Wall {
 }
 
 pericles::saved! {
-    impl Saved for Wall {
+    impl Checkpointed for Wall {
         heights, volumes, stiffness, domain: fixed,
     }
 }

@@ -1,4 +1,4 @@
-//! Static states by relaxation, bodies of several materials, corrected surfaces.
+//! Static states by adaptive dynamic relaxation, bodies of several materials, surface corrections.
 
 use std::sync::Arc;
 
@@ -6,10 +6,10 @@ use crate::common::{boxed, material, points};
 use pericles::boundary::{Load, MotionKind, PrescribedMotion, TimeFunction};
 use pericles::family::{BondList, VolumeCorrection};
 use pericles::material::{
-    BondConstants, BondMaterial, ElasticModulus, Fracture, InterfaceRule, Modulus, PairClasses,
+    BondConstants, BondMaterial, ElasticModulus, Fracture, InterfaceRule, MaterialPairs, Modulus,
     StressState, SurfaceCorrection, SurfaceFactors,
 };
-use pericles::operator::{BondBody, BondForm, CompositeBody, Force, On};
+use pericles::operator::{BondBody, BondForm, CompositeBody, Force, PointSubset};
 use pericles::space::PointCloud;
 use pericles::time::{Damping, Relaxation, RelaxationOptions, State, VelocityVerlet};
 use pericles::{
@@ -23,7 +23,7 @@ const AREA: f64 = 0.01;
 const YOUNG: f64 = 200e9;
 const FORCE: f64 = 2e6;
 
-/// A bar from 0 to 1 with a layer of three cells before 0.
+/// A bar from 0 to 1 with a layer of three cells below 0.
 fn bar() -> Arc<PointCloud> {
     boxed([-0.03, 0.0, 0.0], &[1.03], DX, AREA)
 }
@@ -45,7 +45,7 @@ fn constants(material: &BondMaterial, cloud: &PointCloud) -> BondConstants {
 fn operator(
     cloud: &Arc<PointCloud>,
     material: &BondMaterial,
-    classes: Option<&PairClasses>,
+    classes: Option<&MaterialPairs>,
     correction: SurfaceCorrection,
 ) -> Box<dyn Force> {
     let constants = constants(material, cloud);
@@ -54,11 +54,12 @@ fn operator(
         body,
         classes,
         correction,
+        softening: None,
     };
     composite.operator(BondForm::List).unwrap().operator
 }
 
-/// Holds the layer before 0; the other end is pulled by a force, or moved.
+/// Fixes the layer below 0; the other end is pulled by a force or a prescribed displacement.
 enum Pull {
     Force,
     Move(f64),
@@ -119,7 +120,7 @@ fn fine() -> RelaxationOptions {
     }
 }
 
-/// Mean displacement of the last cell, and of the middle half the strain.
+/// Mean displacement of the last cell, and mean strain of the middle half.
 fn end_and_strain(u: &[f64]) -> (f64, f64) {
     let (from, to) = (CELLS / 4, 3 * CELLS / 4);
     let strain = (u[to] - u[from]) / ((to - from) as f64 * DX);
@@ -127,7 +128,7 @@ fn end_and_strain(u: &[f64]) -> (f64, f64) {
 }
 
 #[test]
-fn a_bar_in_tension() {
+fn strain_of_a_bar_in_tension_is_exact() {
     let cloud = bar();
     let unbreakable = steel(Fracture::Unbreakable);
     let exact = FORCE / (YOUNG * AREA);
@@ -139,7 +140,7 @@ fn a_bar_in_tension() {
         let force = operator(&cloud, &unbreakable, None, correction);
         let run = relaxed(held(&cloud, force, &Pull::Force), fine(), 1).unwrap();
         let (end, strain) = end_and_strain(&run.state().u);
-        // Inside the bond-stretch law of a bar is linear: the strain is exact.
+        // Inside the bar the bond-stretch law is linear: the strain is exact.
         assert!(
             (strain / exact - 1.0).abs() < 1e-5,
             "{correction:?}: {strain}"
@@ -154,7 +155,7 @@ fn a_bar_in_tension() {
 }
 
 #[test]
-fn dampings_and_load_steps_lead_to_one_state() {
+fn static_state_does_not_depend_on_damping_and_load_steps() {
     let cloud = bar();
     let unbreakable = steel(Fracture::Unbreakable);
     let run = |damping, steps| {
@@ -177,7 +178,7 @@ fn dampings_and_load_steps_lead_to_one_state() {
 }
 
 #[test]
-fn a_load_without_support_has_no_equilibrium() {
+fn unbalanced_load_on_a_free_body_is_an_error() {
     let cloud = bar();
     let force = operator(
         &cloud,
@@ -205,13 +206,13 @@ fn a_load_without_support_has_no_equilibrium() {
             assert!(found, "{source}");
         }
         Err(other) => panic!("{other}"),
-        Ok(_) => panic!("a free body cannot rest"),
+        Ok(_) => panic!("a free body has no equilibrium"),
     }
 }
 
 #[test]
-fn a_bar_that_is_torn_apart_dissipates_what_was_put_in() {
-    // The right third is softer and so stretched more: it breaks.
+fn breaking_bar_dissipates_the_work_done() {
+    // The right third is softer, so that it is stretched more and breaks.
     let cloud = bar();
     let brittle = steel(Fracture::CriticalStretch(1e-3));
     let soft = BondMaterial {
@@ -225,7 +226,7 @@ fn a_bar_that_is_torn_apart_dissipates_what_was_put_in() {
         .map(|i| u8::from(cloud.point(i)[0] > 0.66))
         .collect();
     let both = [constants(&brittle, &cloud), constants(&soft, &cloud)];
-    let classes = PairClasses::new(of_point, &both, InterfaceRule::Harmonic).unwrap();
+    let classes = MaterialPairs::new(of_point, &both, InterfaceRule::Harmonic).unwrap();
     let force = operator(&cloud, &brittle, Some(&classes), SurfaceCorrection::None);
     let system = held(&cloud, force, &Pull::Move(1.2e-3));
     let run = relaxed(system, fine(), 12).unwrap();
@@ -233,12 +234,13 @@ fn a_bar_that_is_torn_apart_dissipates_what_was_put_in() {
     assert!(operator.broken_bonds() > 0);
     let energies = run.snapshot().energies();
     assert!(energies.dissipated > 0.0 && energies.scheme >= 0.0);
-    // Only what the damping took is found from the energies themselves; before bonds break the account is free.
+    // The damped energy is computed from the energies themselves; the energy balance is an independent check
+    // only before bonds break.
     assert!(
         energies.balance().abs() < 1e-5 * energies.work,
         "{energies:?}"
     );
-    // Torn apart, nothing holds: the reactions of both ends are nothing beside what they were.
+    // After the bar has broken, the reactions of both ends are negligible compared with their peak.
     let peak = 1e-3 * YOUNG * AREA;
     for motion in run.system().motions() {
         let reaction = motion.reaction(&cloud)[0];
@@ -247,22 +249,23 @@ fn a_bar_that_is_torn_apart_dissipates_what_was_put_in() {
 }
 
 #[test]
-fn equal_materials_are_one() {
+fn equal_materials_equal_a_single_material() {
     let cloud = boxed([0.0; 3], &[0.12, 0.08], DX, 0.01);
     let steel = steel(Fracture::CriticalStretch(0.01));
     let constants = steel.constants(&cloud, StressState::PlaneStress).unwrap();
-    let classes = PairClasses::new(
+    let classes = MaterialPairs::new(
         (0..cloud.len()).map(|i| (i % 3) as u8).collect(),
         &[constants.clone(), constants.clone(), constants.clone()],
         InterfaceRule::Harmonic,
     )
     .unwrap();
     let body = BondBody::new(&cloud, &steel, &constants);
-    let forces = |classes: Option<&PairClasses>| {
+    let forces = |classes: Option<&MaterialPairs>| {
         let composite = CompositeBody {
             body: body.clone(),
             classes,
             correction: SurfaceCorrection::None,
+            softening: None,
         };
         let mut operator = composite.operator(BondForm::List).unwrap().operator;
         let entries = 2 * cloud.len();
@@ -271,11 +274,11 @@ fn equal_materials_are_one() {
             .collect();
         operator.end_step(
             &StepEnd::sub_step(0.0, 0.0, &u),
-            On::All,
+            PointSubset::All,
             &mut vec![0.0; u.len()],
         );
         let mut force = vec![0.0; entries];
-        operator.add_force(0.0, &u, On::All, &mut force);
+        operator.add_force(0.0, &u, PointSubset::All, &mut force);
         (force, operator.broken_bonds(), operator.dissipated())
     };
     let (plain, mixed) = (forces(None), forces(Some(&classes)));
@@ -284,7 +287,7 @@ fn equal_materials_are_one() {
 }
 
 #[test]
-fn two_materials_in_a_row_are_two_springs_and_part_where_their_bond_is_weak() {
+fn two_materials_in_series_act_as_springs_and_break_at_the_weak_interface() {
     let cloud = bar();
     let hard = steel(Fracture::Unbreakable);
     let soft = BondMaterial {
@@ -302,7 +305,7 @@ fn two_materials_in_a_row_are_two_springs_and_part_where_their_bond_is_weak() {
         InterfaceRule::Weaker,
     ] {
         let of_point = (0..cloud.len()).map(half).collect();
-        let mut classes = PairClasses::new(of_point, &both, rule).unwrap();
+        let mut classes = MaterialPairs::new(of_point, &both, rule).unwrap();
         let force = operator(&cloud, &hard, Some(&classes), SurfaceCorrection::None);
         let run = relaxed(held(&cloud, force, &Pull::Force), fine(), 1).unwrap();
         let strain = |from: usize, to: usize| {
@@ -314,7 +317,7 @@ fn two_materials_in_a_row_are_two_springs_and_part_where_their_bond_is_weak() {
             (strain(65, 90) / (3.0 * unit) - 1.0).abs() < 1e-5,
             "{rule:?}"
         );
-        // Unbreakable halves that are hardly glued: only mixed bonds break, in all three times two of them.
+        // Unbreakable halves with a weak interface: only mixed bonds break, three times two of them.
         classes.set_critical_stretch([0, 1], 1e-5).unwrap();
         let force = operator(&cloud, &hard, Some(&classes), SurfaceCorrection::None);
         let torn = relaxed(held(&cloud, force, &Pull::Move(1e-3)), fine(), 4).unwrap();
@@ -323,7 +326,7 @@ fn two_materials_in_a_row_are_two_springs_and_part_where_their_bond_is_weak() {
 }
 
 #[test]
-fn corrected_surfaces_keep_the_interior_and_the_momentum() {
+fn surface_corrections_preserve_interior_and_momentum() {
     let (width, height) = (0.32, 0.26);
     let cloud = boxed([0.0; 3], &[width, height], DX, 0.01);
     let steel = steel(Fracture::Unbreakable);
@@ -335,7 +338,7 @@ fn corrected_surfaces_keep_the_interior_and_the_momentum() {
     );
     for (correction, margin) in [
         (SurfaceCorrection::Volume, 0.08),
-        // Its condition is iterated: what is corrected reaches as many families further.
+        // Each iteration of the condition extends the correction by a horizon.
         (SurfaceCorrection::Energy, 0.12),
     ] {
         let factors = correction.factors(&bonds, &steel);
@@ -360,13 +363,14 @@ fn corrected_surfaces_keep_the_interior_and_the_momentum() {
                 body: body.clone(),
                 classes: None,
                 correction,
+                softening: None,
             };
             let operator = composite.operator(BondForm::List).unwrap().operator;
             let n = cloud.len();
             // Uniform dilation.
             let u: Vec<f64> = (0..2 * n).map(|k| 1e-6 * cloud.positions()[k]).collect();
             let mut force = vec![0.0; 2 * n];
-            operator.add_force(0.0, &u, On::All, &mut force);
+            operator.add_force(0.0, &u, PointSubset::All, &mut force);
             for c in 0..2 {
                 let total: f64 = force[c * n..(c + 1) * n].iter().sum();
                 let scale: f64 = force[c * n..(c + 1) * n].iter().map(|f| f.abs()).sum();
@@ -374,7 +378,7 @@ fn corrected_surfaces_keep_the_interior_and_the_momentum() {
             }
             operator.energy(0.0, &u)
         };
-        // In plane stress with nu = 1/3: W = E/(1 - nu) strain² per volume.
+        // In plane stress with ν = 1/3: W = E/(1 − ν) strain² per volume.
         let exact = YOUNG / (2.0 / 3.0) * 1e-12 * width * height * 0.01;
         let error = |correction| (energy(correction) / exact - 1.0).abs();
         assert!(
@@ -384,9 +388,9 @@ fn corrected_surfaces_keep_the_interior_and_the_momentum() {
     }
 }
 
-/// On lists and on stencils.
+/// On neighbour lists and on stencils.
 #[test]
-fn stress_and_strain_of_a_uniform_state() {
+fn stress_and_strain_of_a_uniform_state_are_exact() {
     for form in [BondForm::List, BondForm::Grid] {
         uniform_state(form);
     }
@@ -403,7 +407,7 @@ fn uniform_state(form: BondForm) {
     let system = System::new(cloud.clone(), operator, PointScalar::Uniform(1.0)).unwrap();
     let n = cloud.len();
     let mut state = State::at_rest(2 * n);
-    // Stretched alike along both axes, and turned by a little.
+    // Stretched equally along both axes and rotated slightly.
     let (stretch, turn) = (1e-6, 3e-7);
     for i in 0..n {
         let [x, y, _] = cloud.point(i);
@@ -413,7 +417,7 @@ fn uniform_state(form: BondForm) {
     let snapshot = Snapshot::new(&system, &state, StartEnergy::default(), 0.0);
     let (stress, strain) = (snapshot.field(Field::Stress), snapshot.field(Field::Strain));
     snapshot.check(Field::Stress).unwrap();
-    // Strain everywhere, stress where no bond is missing: E/(1 - nu) strain.
+    // Strain everywhere, stress where no bond is missing: E/(1 − ν) strain.
     let exact = YOUNG / (2.0 / 3.0) * stretch;
     for i in 0..n {
         for (c, expected) in [stretch, stretch, 0.0].into_iter().enumerate() {
@@ -428,7 +432,7 @@ fn uniform_state(form: BondForm) {
     }
 }
 
-/// A bar whose right third is softer and breaks, pulled apart in so many load steps.
+/// A bar in tension whose softer right third breaks.
 fn torn_bar() -> System {
     let cloud = bar();
     let brittle = steel(Fracture::CriticalStretch(1e-3));
@@ -443,7 +447,7 @@ fn torn_bar() -> System {
         .map(|i| u8::from(cloud.point(i)[0] > 0.66))
         .collect();
     let both = [constants(&brittle, &cloud), constants(&soft, &cloud)];
-    let classes = PairClasses::new(of_point, &both, InterfaceRule::Harmonic).unwrap();
+    let classes = MaterialPairs::new(of_point, &both, InterfaceRule::Harmonic).unwrap();
     let force = operator(&cloud, &brittle, Some(&classes), SurfaceCorrection::None);
     held(&cloud, force, &Pull::Move(2e-3))
 }
@@ -476,15 +480,16 @@ fn stop_conditions_end_static_and_dynamic_runs() {
             Control::Continue
         });
         assert_eq!(ended.unwrap(), Outcome::Finished);
-        let reason = run.stop_reason().expect("a condition is met");
+        let reason = run.stop_reason().expect("a stop condition is met");
         assert_eq!((reason.step, reason.t), (run.state().step, run.state().t));
         assert!(run.state().step < STEPS && run.state().step == states + 1);
-        // The bar has just torn, and in no load step before.
+        // The bar has just broken, in no earlier load step.
         assert!(run.system().operator().broken_bonds() > 0, "{reason}");
         match (&condition, reason.found) {
             (StopCondition::ReactionBelow { .. }, Found::Reaction { now, peak }) => {
                 assert!(now < 0.02 * peak, "{reason}");
-                // No more than the soft part bears; bonds of the held layer are stretched more than the mean and break earlier.
+                // At most the strength of the soft part; bonds of the fixed layer are stretched more than the mean
+                // and break earlier.
                 let strength = 1e-3 * 0.5 * YOUNG * AREA;
                 assert!(peak > 0.5 * strength && peak < strength, "{peak}");
             }
@@ -494,7 +499,7 @@ fn stop_conditions_end_static_and_dynamic_runs() {
             other => panic!("{other:?}"),
         }
     }
-    // Pulled apart within some wave transits.
+    // Loaded within a few wave transits.
     let system = torn_bar();
     let n = system.points();
     let dt = 1e-6;
@@ -516,8 +521,8 @@ fn stop_conditions_end_static_and_dynamic_runs() {
 }
 
 #[test]
-fn a_body_that_fails_under_its_load_is_said_to_have_no_static_state() {
-    // A dead load beyond the strength: once the bar is torn nothing holds its end.
+fn failure_under_a_load_is_reported_as_no_static_state() {
+    // A dead load beyond the strength: once the bar is broken nothing constrains its end.
     let cloud = bar();
     let brittle = steel(Fracture::CriticalStretch(0.5 * FORCE / (YOUNG * AREA)));
     let force = operator(&cloud, &brittle, None, SurfaceCorrection::None);
@@ -531,7 +536,7 @@ fn a_body_that_fails_under_its_load_is_said_to_have_no_static_state() {
     for part in [
         "no static state was found for the load step that follows step",
         "bonds broke in this load step",
-        "can probably not bear this load any more",
+        "has probably lost its load-bearing capacity",
         "reaction_below or damage_above",
     ] {
         assert!(message.contains(part), "{message}");

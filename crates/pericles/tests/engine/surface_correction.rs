@@ -1,17 +1,17 @@
-//! Thin bodies with corrected surfaces against the modulus of their material.
+//! Thin bodies with surface corrections compared with the modulus of their material.
 
 use std::sync::Arc;
 
 use crate::common::{boxed, material};
 use pericles::family::VolumeCorrection;
 use pericles::material::{Calibration, Fracture, PairLaw, StressState, SurfaceCorrection};
-use pericles::operator::{BondBody, BondForm, CompositeBody, Force, On};
+use pericles::operator::{BondBody, BondForm, CompositeBody, Force, PointSubset};
 use pericles::space::PointCloud;
 
 const DX: f64 = 1e-3;
 const YOUNG: f64 = 72e9;
 
-/// The operator of a body with corrected surfaces.
+/// The force of a body with a surface correction.
 fn corrected(
     cloud: &Arc<PointCloud>,
     state: StressState,
@@ -31,11 +31,13 @@ fn corrected(
         body: BondBody::new(cloud, &material, &constants),
         classes: None,
         correction,
+        softening: None,
     };
     composite.operator(BondForm::List).unwrap().operator
 }
 
-/// Young's modulus in a tension test along an axis: the three outermost layers of cells at each end are moved along it.
+/// Young's modulus in a tension test along an axis; the three outermost layers of cells at each end have a
+/// prescribed displacement.
 fn tension(size: &[f64], state: StressState, axis: usize, correction: SurfaceCorrection) -> f64 {
     let cloud = boxed([0.0; 3], size, DX, 1.0);
     let operator = corrected(&cloud, state, correction);
@@ -52,7 +54,7 @@ fn tension(size: &[f64], state: StressState, axis: usize, correction: SurfaceCor
     }
     let force = |u: &[f64]| {
         let mut force = vec![0.0; u.len()];
-        operator.add_force(0.0, u, On::All, &mut force);
+        operator.add_force(0.0, u, PointSubset::All, &mut force);
         force
     };
     relax(&mut u, &free, &force);
@@ -61,7 +63,7 @@ fn tension(size: &[f64], state: StressState, axis: usize, correction: SurfaceCor
         .filter(|&i| lower(i))
         .map(|i| force(&u)[axis * n..][i] * cell)
         .sum();
-    // The strain of the middle third.
+    // Strain of the middle third.
     let section_of = |place: f64| {
         let near: Vec<f64> = (0..n)
             .filter(|&i| (along[i] - place).abs() < 0.6 * DX)
@@ -128,7 +130,7 @@ fn thin_bars_and_plates_have_the_modulus_of_their_material() {
         );
         println!("{state:?} {size:?}: {none:+.3} {energy:+.3}");
         assert!(none < -0.2, "{size:?}: {none}");
-        // With two points across all of a bar is edge.
+        // With two points across, the whole bar is close to a surface.
         let allowed = if size.contains(&(2.0 * DX)) {
             0.08
         } else {
@@ -138,11 +140,11 @@ fn thin_bars_and_plates_have_the_modulus_of_their_material() {
     }
 }
 
-/// Young's modulus of a strip along the diagonal of the grid, between its points.
+/// Young's modulus of a strip along the diagonal of the grid.
 fn oblique_tension(correction: SurfaceCorrection) -> f64 {
     let (length, rows) = (30.0 * 2.0f64.sqrt() * DX, 5);
     let half = 0.5f64.sqrt();
-    // Along the strip and across it, m.
+    // Coordinates along and across the strip, m.
     let place = |x: f64, y: f64| [half * (x + y), half * (y - x)];
     let (mut xs, mut ys) = (Vec::new(), Vec::new());
     for x in -4..40 {
@@ -161,7 +163,7 @@ fn oblique_tension(correction: SurfaceCorrection) -> f64 {
     let operator = corrected(&cloud, StressState::PlaneStress, correction);
     let along: Vec<f64> = (0..n).map(|i| place(xs[i], ys[i])[0]).collect();
     let (lower, upper) = (4.0 * DX, length - 4.0 * DX);
-    // Both ends are stretched uniformly, free to contract.
+    // Both ends are stretched uniformly and free to contract.
     let strain = 1e-6;
     let mut u = vec![0.0; 2 * n];
     for i in 0..n {
@@ -174,7 +176,7 @@ fn oblique_tension(correction: SurfaceCorrection) -> f64 {
         .collect();
     let force = |u: &[f64]| {
         let mut force = vec![0.0; u.len()];
-        operator.add_force(0.0, u, On::All, &mut force);
+        operator.add_force(0.0, u, PointSubset::All, &mut force);
         force
     };
     relax(&mut u, &free, &force);
@@ -215,10 +217,10 @@ fn corrected_bonds_exert_opposite_forces() {
     let cloud = boxed([0.0; 3], &[9e-3, 4e-3, 3e-3], DX, 1.0);
     let operator = corrected(&cloud, StressState::Spatial, SurfaceCorrection::Energy);
     let n = cloud.len();
-    // Anything but smooth.
+    // A displacement that is not smooth.
     let u: Vec<f64> = (0..3 * n).map(|k| 1e-6 * (k as f64 * 1.7).sin()).collect();
     let mut force = vec![0.0; 3 * n];
-    operator.add_force(0.0, &u, On::All, &mut force);
+    operator.add_force(0.0, &u, PointSubset::All, &mut force);
     for c in 0..3 {
         let component = &force[c * n..(c + 1) * n];
         let (sum, size) = (

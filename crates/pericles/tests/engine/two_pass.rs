@@ -1,11 +1,11 @@
-//! A force in two passes and a second force in one system, under every scheme.
+//! A force with two passes and a second force in one system, with every scheme.
 
 use std::sync::Arc;
 
 use crate::common::boxed;
 use crate::state_based::{Dilatational, Wall};
 use pericles::boundary::{Load, TimeFunction};
-use pericles::operator::{Force, On, TwoPassForce};
+use pericles::operator::{Force, PointSubset, TwoPassForce};
 use pericles::space::PointCloud;
 use pericles::time::{
     AdaptiveRungeKutta, DiscreteGradient, Fine, Implicit, ImplicitRule, InnerSolver, Integrator,
@@ -13,7 +13,7 @@ use pericles::time::{
     Relaxation, RelaxationOptions, Respa, RungeKutta, State, Tableau, VelocityVerlet,
     frequency_from_below,
 };
-use pericles::{Archive, Control, PericlesError, PointScalar, Saved, Simulation, System};
+use pericles::{Archive, Checkpointed, Control, PericlesError, PointScalar, Simulation, System};
 
 const HORIZON: f64 = 2.1;
 const END: f64 = 8.0;
@@ -38,7 +38,7 @@ fn above_the_wall(cloud: &Arc<PointCloud>) -> System {
     system
 }
 
-/// Thrown down, and sheared.
+/// Moving downwards, and sheared.
 fn thrown(cloud: &PointCloud) -> State {
     let n = cloud.len();
     let mut state = State::at_rest(2 * n);
@@ -57,7 +57,7 @@ fn noise(entries: usize, size: f64) -> Vec<f64> {
 }
 
 #[test]
-fn forces_are_the_derivative_of_the_energy_and_tangents_that_of_forces() {
+fn forces_are_energy_gradients_and_tangents_are_force_derivatives() {
     let cloud = block();
     let system = above_the_wall(&cloud);
     let operator = system.operator();
@@ -67,7 +67,7 @@ fn forces_are_the_derivative_of_the_energy_and_tangents_that_of_forces() {
     let moved = |h: f64| -> Vec<f64> { u.iter().zip(&direction).map(|(u, d)| u + h * d).collect() };
     let force_at = |u: &[f64]| {
         let mut force = vec![0.0; 2 * n];
-        operator.add_force(0.0, u, On::All, &mut force);
+        operator.add_force(0.0, u, PointSubset::All, &mut force);
         force
     };
     let force = force_at(&u);
@@ -89,7 +89,7 @@ fn forces_are_the_derivative_of_the_energy_and_tangents_that_of_forces() {
             tangent[k]
         );
     }
-    // The parts add up, and each is there.
+    // The energies of the forces add up, and none is zero.
     let parts: Vec<f64> = system.forces().map(|force| force.energy(0.0, &u)).collect();
     assert!(parts.len() == 2 && parts.iter().all(|energy| *energy > 0.0));
     assert_eq!(operator.energy(0.0, &u), parts[0] + parts[1]);
@@ -100,24 +100,29 @@ fn forces_are_the_derivative_of_the_energy_and_tangents_that_of_forces() {
 }
 
 #[test]
-fn the_force_on_a_point_does_not_depend_on_what_is_evaluated_with_it() {
+fn the_force_on_a_point_does_not_depend_on_the_subset() {
     let cloud = block();
     let system = above_the_wall(&cloud);
     let operator = system.operator();
     let n = cloud.len();
     let u = noise(2 * n, 0.3);
     let mut whole = vec![0.0; 2 * n];
-    operator.add_force(0.0, &u, On::All, &mut whole);
+    operator.add_force(0.0, &u, PointSubset::All, &mut whole);
     let odd: Vec<u32> = (0..n as u32).filter(|i| i % 3 == 1).collect();
-    for on in [On::Set(&odd), On::Range(17..31)] {
+    for on in [PointSubset::Set(&odd), PointSubset::Range(17..31)] {
         let mut part = vec![0.0; 2 * n];
-        // Values of an evaluation before must not be read.
-        operator.add_force(0.0, &noise(2 * n, 0.1), On::All, &mut vec![0.0; 2 * n]);
+        // Values of a previous evaluation must not be used.
+        operator.add_force(
+            0.0,
+            &noise(2 * n, 0.1),
+            PointSubset::All,
+            &mut vec![0.0; 2 * n],
+        );
         operator.add_force(0.0, &u, on.clone(), &mut part);
         let is_wanted = |i: usize| match &on {
-            On::Set(set) => set.contains(&(i as u32)),
-            On::Range(range) => range.contains(&i),
-            On::All => true,
+            PointSubset::Set(set) => set.contains(&(i as u32)),
+            PointSubset::Range(range) => range.contains(&i),
+            PointSubset::All => true,
         };
         for k in 0..2 * n {
             let expected = if is_wanted(k % n) { whole[k] } else { 0.0 };
@@ -127,7 +132,7 @@ fn the_force_on_a_point_does_not_depend_on_what_is_evaluated_with_it() {
 }
 
 #[test]
-fn the_bound_of_the_frequency_holds() {
+fn the_frequency_bound_is_an_upper_bound() {
     let cloud = block();
     let rest = vec![0.0; 2 * cloud.len()];
     for system in [free(&cloud), above_the_wall(&cloud)] {
@@ -161,7 +166,8 @@ fn two_steps(tableau: &Tableau, system: &System) -> Box<dyn Integrator> {
 
 type Make = fn(&System) -> Box<dyn Integrator>;
 
-/// Schemes with the step, the error at the end and the error of the energy that they may have, and whether they keep momentum to rounding.
+/// Schemes with their step, the allowed errors of state and energy at the end, and whether they conserve momentum
+/// to rounding.
 const SCHEMES: [(&str, Make, f64, f64, f64, bool); 10] = [
     (
         "velocity Verlet",
@@ -188,7 +194,7 @@ const SCHEMES: [(&str, Make, f64, f64, f64, bool); 10] = [
         true,
     ),
     (
-        "rk3-mts",
+        "multirate-rk3",
         |system| two_steps(&Tableau::rk3(0.75).unwrap(), system),
         0.05,
         1e-3,
@@ -196,7 +202,7 @@ const SCHEMES: [(&str, Make, f64, f64, f64, bool); 10] = [
         false,
     ),
     (
-        "rk4-mts",
+        "multirate-rk4",
         |system| two_steps(&Tableau::rk4(), system),
         0.05,
         1e-4,
@@ -259,7 +265,7 @@ fn reference(system: &System) -> Box<dyn Integrator> {
 }
 
 #[test]
-fn every_scheme_steps_two_forces_one_of_them_in_two_passes() {
+fn every_scheme_integrates_a_two_pass_force_and_a_second_force() {
     let cloud = block();
     let n = cloud.len();
     for (walled, system) in [(true, above_the_wall as fn(&_) -> System), (false, free)] {
@@ -269,7 +275,7 @@ fn every_scheme_steps_two_forces_one_of_them_in_two_passes() {
             .u
             .iter()
             .fold(0.0_f64, |most, u| most.max(u.abs()));
-        // It hits the wall, and does not go through.
+        // The block hits the wall and does not pass through it.
         assert!(!walled || exact.system().momentum(&exact.state().v)[1] > 0.0);
         let started = exact.system().momentum(&thrown(&cloud).v);
         for (name, make, dt, error, loss, keeps) in SCHEMES {
@@ -281,7 +287,7 @@ fn every_scheme_steps_two_forces_one_of_them_in_two_passes() {
             let lost = energies.balance().abs() / energies.initial;
             assert!(lost < loss, "{name}, wall {walled}: energy {lost:e}");
             let ended = run.system().momentum(&run.state().v);
-            // The wall pushes up only.
+            // The wall exerts vertical forces only.
             for c in 0..if walled { 1 } else { 2 } {
                 let limit = if keeps { 1e-11 } else { error };
                 let off = (ended[c] - started[c]).abs() / n as f64;
@@ -295,7 +301,7 @@ fn every_scheme_steps_two_forces_one_of_them_in_two_passes() {
 }
 
 #[test]
-fn a_run_with_two_forces_resumes_exactly() {
+fn resumed_run_with_two_forces_is_bitwise_identical() {
     let cloud = block();
     let whole = run(above_the_wall(&cloud), |_| Box::new(VelocityVerlet), 0.02);
     let new = || {
@@ -326,7 +332,7 @@ fn a_run_with_two_forces_resumes_exactly() {
 }
 
 #[test]
-fn a_block_rests_on_the_wall_with_its_weight() {
+fn block_under_its_weight_is_in_equilibrium_on_the_wall() {
     let cloud = block();
     let mut system = above_the_wall(&cloud);
     let all: Vec<u32> = (0..cloud.len() as u32).collect();
@@ -350,17 +356,17 @@ fn a_block_rests_on_the_wall_with_its_weight() {
     run.run(|_| Control::Continue).unwrap();
     let wall = run.system().forces().nth(1).unwrap();
     let mut push = vec![0.0; 2 * cloud.len()];
-    wall.add_force(1.0, &run.state().u, On::All, &mut push);
+    wall.add_force(1.0, &run.state().u, PointSubset::All, &mut push);
     let total: f64 = push[cloud.len()..].iter().sum();
     let expected = weight * cloud.len() as f64;
     assert!((total / expected - 1.0).abs() < 1e-7, "{total} {expected}");
     let energies = run.snapshot().energies();
-    // Forces are linear but for strains of some 1e-3, over which loads do the work of their means.
+    // Forces are linear up to strains of about 1e-3, over which loads do the work of their means.
     assert!(energies.balance().abs() < 5e-3 * energies.work.abs());
 }
 
 #[test]
-fn what_two_passes_cannot_do_is_refused() {
+fn unsupported_combinations_with_two_passes_are_errors() {
     let cloud = block();
     let system = free(&cloud);
     let left: Vec<u32> = (0..cloud.len() as u32)
@@ -370,9 +376,7 @@ fn what_two_passes_cannot_do_is_refused() {
         .err()
         .unwrap();
     assert!(
-        refused
-            .to_string()
-            .contains("takes the force apart by bonds"),
+        refused.to_string().contains("splits the force by bonds"),
         "{refused}"
     );
     let other = boxed([0.0; 3], &[3.0, 3.0], 1.0, 1.0);

@@ -1,7 +1,7 @@
-//! Tests of linear peridynamic solids whose shear is viscous or plastic.
+//! Tests of linear peridynamic solids with viscous or plastic shear.
 
 #[path = "../state_based/bodies.rs"]
-#[allow(dead_code)] // a part of it is used here
+#[allow(dead_code)] // only a part of it is used here
 mod bodies;
 mod forces;
 mod paths;

@@ -1,4 +1,4 @@
-//! Plastic paths: the yield surface, closed forms of uniform strains.
+//! Plastic paths: the yield surface, and closed forms for uniform strains.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use pericles::operator::{
 };
 use pericles::space::{Grid, PointCloud, Shape};
 
-/// Bond by bond of a point: ω r², w and the entry, from the definitions.
+/// Bonds of a point from the definitions: ω r², w and the entry.
 fn bonds(
     force: &pericles::family::BondList,
     cloud: &PointCloud,
@@ -32,7 +32,7 @@ fn bonds(
         .collect()
 }
 
-/// |t| of a point over its strength, from stretches and inelastic stretches.
+/// |t| of a point divided by its strength, from stretches and inelastic stretches.
 fn load(
     constants: &LinearSolidConstants,
     bonds: &[(f64, f64, usize, usize)],
@@ -100,7 +100,7 @@ fn force_states_return_to_the_yield_surface_and_flow_dissipates() {
 }
 
 #[test]
-fn nothing_flows_where_a_body_changes_its_volume_only() {
+fn pure_dilatation_causes_no_plastic_flow() {
     let cloud = jittered(&[5, 5, 5]);
     let constants = solid(0.3, 2.3, InfluenceFunction::Conical);
     let constants = constants.constants(&cloud, StressState::Spatial).unwrap();
@@ -119,7 +119,7 @@ fn nothing_flows_where_a_body_changes_its_volume_only() {
 
 type Lattice<const D: usize> = TwoPassForce<InelasticSolidForce<SmallStrain, D>>;
 
-/// A lattice of 9 cells along each axis with its middle point, for small strains.
+/// A lattice of 9 cells along each axis and its middle point, for small strains.
 fn lattice<const D: usize>(
     function: InfluenceFunction,
     spacings: f64,
@@ -164,7 +164,7 @@ fn uniform(cloud: &PointCloud, gradient: [[f64; 3]; 3]) -> Vec<f64> {
     (0..dimension * n).map(of).collect()
 }
 
-/// Stretches of the bonds of a point less their weighted mean under u = H x.
+/// Stretches of the bonds of a point minus their weighted mean, for u = H x.
 fn deviators(
     list: &pericles::family::BondList,
     family: &[(f64, f64, usize, usize)],
@@ -194,7 +194,8 @@ fn deviators(
 const SHEAR: [[f64; 3]; 3] = [[0.0, 1.0, 0.0], [0.0; 3], [0.0; 3]];
 const STRETCH: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, -0.3, 0.0], [0.0, 0.0, -0.3]];
 
-/// Along a proportional path the deviatoric state keeps its direction: its flow follows from numbers. Loading, unloading and yielding the other way, in steps of any number.
+/// Along a proportional path the deviatoric state keeps its direction, so that its flow follows from scalars:
+/// loading, unloading and reverse yielding, in any number of steps.
 #[test]
 fn proportional_paths_follow_their_closed_form() {
     for gradient in [SHEAR, STRETCH] {
@@ -256,10 +257,11 @@ fn proportional_paths_follow_their_closed_form() {
     }
 }
 
-/// G γ √3/σ_y at yield in simple shear, and the equivalent strain over γ/√3: an independent implementation found 0.988 to 1.016 in three dimensions and 0.997 to 1.003 in the plane for 200 directions, with horizons that are longer by
-/// 0.015 spacings; hence bounds that are wider by 0.003.
+/// G γ √3/σ_y at yield in simple shear, and the equivalent strain over γ/√3. An independent implementation found
+/// 0.988 to 1.016 in three dimensions and 0.997 to 1.003 in the plane for 200 directions, with horizons longer by
+/// 0.015 spacings; hence bounds wider by 0.003.
 #[test]
-fn lattices_yield_at_the_stress_given() {
+fn lattices_yield_at_the_given_stress() {
     let law = plastic(0.2, 0.0);
     let turned = |gradient: [[f64; 3]; 3], [c, s]: [f64; 2]| {
         // R H Rᵀ with a rotation about z.

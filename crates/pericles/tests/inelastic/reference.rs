@@ -1,4 +1,5 @@
-//! Values of an independent implementation in Python: a cloud of 3³ cells that are moved from their places, δ = 2.3, E = 10, ν = 0.3.
+//! Reference values of an independent implementation in Python: a cloud of 3³ displaced cells, δ = 2.3, E = 10, ν =
+//! 0.3.
 
 use crate::bodies::{jittered, solid, wave};
 use crate::setup::{Operator, difference, force_at, operator, plastic, scaled, step, viscous};
@@ -9,7 +10,8 @@ use pericles::operator::{Force, InstructionSet};
 /// The middle point of the cloud.
 const POINT: usize = 13;
 
-/// The force density after steps of the lengths given to multiples of a wave. The force within a step is that at its end.
+/// The force density after steps of the given lengths to multiples of a wave. The force within a step is that at
+/// its end.
 fn after(
     law: &Inelasticity,
     function: InfluenceFunction,
@@ -42,7 +44,7 @@ fn close(found: f64, expected: f64) {
 }
 
 #[test]
-fn a_viscous_cloud() {
+fn a_viscous_cloud_equals_the_reference() {
     let law = viscous(&[[0.5, 1.0]]);
     let expected = [0.07701228774449795, 0.1269351162965556, 0.0280197783249457];
     for set in InstructionSet::available() {
@@ -55,7 +57,7 @@ fn a_viscous_cloud() {
 }
 
 #[test]
-fn plastic_clouds() {
+fn plastic_clouds_equal_the_reference() {
     let law = plastic(0.2, 0.0);
     let constant = [
         -0.03772934434609326,

@@ -1,4 +1,4 @@
-//! Runs: energy balance, momentum, other schemes, resuming, threads.
+//! Runs of inelastic bodies: energy balance, momentum, other schemes, resume, threads.
 
 use crate::bodies::{jittered, solid};
 use crate::setup::{difference, plastic, viscous};
@@ -13,9 +13,10 @@ use pericles::time::{
 };
 use pericles::{Control, PointScalar, Simulation, System};
 
-/// A plate whose parts are thrown against each other.
+/// A plate whose parts move towards each other.
 fn plate(
     law: &Inelasticity,
+    function: InfluenceFunction,
     strains: Strains,
     limits: BondLimits,
     scheme: Make,
@@ -23,7 +24,7 @@ fn plate(
     dt: f64,
 ) -> Simulation {
     let cloud = jittered(&[14, 10]);
-    let mut constants = solid(0.4, 2.5, InfluenceFunction::Constant)
+    let mut constants = solid(0.4, 2.5, function)
         .constants(&cloud, StressState::PlaneStrain)
         .unwrap();
     constants.limits = limits;
@@ -67,26 +68,34 @@ const BREAKING: BondLimits = BondLimits {
     ..BondLimits::NONE
 };
 
-/// A step dissipates the mean driving force times the change of inelastic stretches: the balance closes to rounding where forces are linear in displacements and inelastic stretches.
+const BOTH: [BondLimits; 2] = [BondLimits::NONE, BREAKING];
+
+/// A step dissipates the mean driving force times the change of inelastic stretches: the balance closes to rounding
+/// for forces linear in displacements and inelastic stretches.
 #[test]
-fn small_strains_balance_their_energy_to_rounding() {
-    for law in laws() {
-        for limits in [BondLimits::NONE, BREAKING] {
-            let mut run = plate(&law, Strains::Small, limits, verlet, 0.15, 0.05);
+fn energy_balance_with_small_strains_closes_to_round_off() {
+    for function in [InfluenceFunction::Constant, InfluenceFunction::Conical] {
+        for (law, limits) in laws()
+            .iter()
+            .flat_map(|law| BOTH.map(|limits| (law, limits)))
+        {
+            let make = function.clone();
+            let mut run = plate(law, make, Strains::Small, limits, verlet, 0.15, 0.05);
             run.run(|_| Control::Continue).unwrap();
             let energies = run.snapshot().energies();
             assert!(energies.dissipated > 0.05 * energies.initial, "{law:?}");
             let broken = run.system().operator().broken_bonds();
             assert_eq!(broken > 50, limits.can_break(), "{broken}");
             let error = energies.balance().abs() / energies.dissipated;
-            assert!(error < 1e-11, "{law:?}: {error:e}");
+            assert!(error < 1e-11, "{law:?}, {function:?}: {error:e}");
         }
     }
 }
 
-/// Slow motion, so that the nonlinearity of finite strains, which is all that is left of the balance, is small; bounds chosen before the first run.
+/// Slow motion keeps the nonlinearity of finite strains, the only error of the balance, small; bounds chosen before
+/// the first run.
 #[test]
-fn finite_strains_balance_their_energy_to_second_order() {
+fn energy_balance_with_finite_strains_converges_with_second_order() {
     let slow = [
         viscous(&[[0.4, 0.3], [0.2, 2.0]]),
         plastic(0.01, 0.0),
@@ -94,7 +103,15 @@ fn finite_strains_balance_their_energy_to_second_order() {
     ];
     for law in slow {
         let errors = [0.08, 0.04, 0.02].map(|dt| {
-            let mut run = plate(&law, Strains::Finite, BondLimits::NONE, verlet, 0.005, dt);
+            let mut run = plate(
+                &law,
+                InfluenceFunction::Constant,
+                Strains::Finite,
+                BondLimits::NONE,
+                verlet,
+                0.005,
+                dt,
+            );
             run.run(|_| Control::Continue).unwrap();
             let energies = run.snapshot().energies();
             assert!(energies.dissipated > 0.02 * energies.initial, "{law:?}");
@@ -108,9 +125,17 @@ fn finite_strains_balance_their_energy_to_second_order() {
 }
 
 #[test]
-fn momentum_and_angular_momentum_stay() {
+fn momentum_and_angular_momentum_are_conserved() {
     for law in laws() {
-        let mut run = plate(&law, Strains::Finite, BREAKING, verlet, 0.15, 0.05);
+        let mut run = plate(
+            &law,
+            InfluenceFunction::Constant,
+            Strains::Finite,
+            BREAKING,
+            verlet,
+            0.15,
+            0.05,
+        );
         let momenta = |run: &Simulation| {
             let (system, state) = (run.system(), run.state());
             let (cloud, n) = (system.cloud(), system.points());
@@ -136,9 +161,19 @@ fn momentum_and_angular_momentum_stay() {
 }
 
 #[test]
-fn runs_resume_and_have_the_same_bits_with_any_threads() {
+fn runs_resume_and_are_bitwise_identical_for_any_number_of_threads() {
     for law in laws() {
-        let make = || plate(&law, Strains::Finite, BREAKING, verlet, 0.15, 0.05);
+        let make = || {
+            plate(
+                &law,
+                InfluenceFunction::Constant,
+                Strains::Finite,
+                BREAKING,
+                verlet,
+                0.15,
+                0.05,
+            )
+        };
         let middle = make().steps() / 2;
         let end = check_resume(make, [middle]).unwrap_or_else(|e| panic!("{law:?}: {e}"));
         for threads in [1, 2, 3] {
@@ -147,7 +182,7 @@ fn runs_resume_and_have_the_same_bits_with_any_threads() {
                 let mut run = make();
                 run.run(|_| Control::Continue).unwrap();
                 let mut archive = pericles::Archive::default();
-                pericles::Saved::save(&run, &mut archive);
+                pericles::Checkpointed::save(&run, &mut archive);
                 archive
             });
             assert_eq!(end.differences(&stored), Vec::<String>::new(), "{threads}");
@@ -168,7 +203,8 @@ fn two_steps(system: &System) -> Box<dyn Integrator> {
     Box::new(MultiTimeStep::new(&Tableau::rk4(), options, system).unwrap())
 }
 
-/// Within a step schemes see the viscosity and the plasticity of the step. The bounds are those of these steps, chosen after seeing the results.
+/// Within a step schemes use the viscosity and plasticity of the step. The bounds are for these steps and were
+/// chosen after seeing the results.
 #[test]
 fn schemes_agree_with_small_steps() {
     let schemes: [(Make, f64); 4] = [
@@ -185,7 +221,15 @@ fn schemes_agree_with_small_steps() {
     ];
     for law in laws() {
         let run = |scheme, dt| {
-            let mut run = plate(&law, Strains::Finite, BondLimits::NONE, scheme, 0.05, dt);
+            let mut run = plate(
+                &law,
+                InfluenceFunction::Constant,
+                Strains::Finite,
+                BondLimits::NONE,
+                scheme,
+                0.05,
+                dt,
+            );
             run.run(|_| Control::Continue).unwrap();
             let energies = run.snapshot().energies();
             let lost = energies.balance().abs() / energies.initial;

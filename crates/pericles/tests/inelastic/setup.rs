@@ -1,4 +1,4 @@
-//! Bodies with history, and steps that are given to them.
+//! Inelastic bodies and prescribed steps.
 
 use std::sync::Arc;
 
@@ -7,7 +7,8 @@ use pericles::StepEnd;
 use pericles::family::VolumeCorrection;
 use pericles::material::{Inelasticity, LinearSolidConstants, ViscousTerm, Yield};
 use pericles::operator::{
-    FiniteStrain, Force, InelasticSolidBody, InelasticSolidForce, LinearSolidBody, On, TwoPassForce,
+    FiniteStrain, Force, InelasticSolidBody, InelasticSolidForce, LinearSolidBody, PointSubset,
+    TwoPassForce,
 };
 use pericles::space::PointCloud;
 
@@ -26,7 +27,7 @@ pub fn plastic(stress: f64, hardening: f64) -> Inelasticity {
     Inelasticity::Plastic(Yield { stress, hardening })
 }
 
-/// The operator of a body of one material with whole volumes.
+/// The force of a body of one material without volume correction.
 pub fn operator<const D: usize>(
     cloud: &Arc<PointCloud>,
     constants: &LinearSolidConstants,
@@ -41,7 +42,7 @@ pub fn operator<const D: usize>(
     TwoPassForce::new(cloud.clone(), force)
 }
 
-/// Ends a step from `before` to `u`, along which forces act as under velocity Verlet; returns the force density.
+/// Ends a step from `before` to `u` with forces acting as under velocity Verlet; returns the force density.
 pub fn step(force: &mut dyn Force, [t, dt]: [f64; 2], before: &[f64], u: &[f64]) -> Vec<f64> {
     let mean: Vec<f64> = before
         .iter()
@@ -55,14 +56,14 @@ pub fn step(force: &mut dyn Force, [t, dt]: [f64; 2], before: &[f64], u: &[f64])
         path: Path::MeanVelocity(&mean),
     };
     let mut out = vec![0.0; u.len()];
-    force.end_step(&end, On::All, &mut out);
+    force.end_step(&end, PointSubset::All, &mut out);
     out
 }
 
 /// The force density at a time.
 pub fn force_at(force: &dyn Force, t: f64, u: &[f64]) -> Vec<f64> {
     let mut out = vec![0.0; u.len()];
-    force.add_force(t, u, On::All, &mut out);
+    force.add_force(t, u, PointSubset::All, &mut out);
     out
 }
 
@@ -70,7 +71,7 @@ pub fn scaled(u: &[f64], factor: f64) -> Vec<f64> {
     u.iter().map(|u| factor * u).collect()
 }
 
-/// The largest difference of two vectors over the largest number of the second.
+/// Largest difference of two vectors divided by the largest entry of the second.
 pub fn difference(a: &[f64], b: &[f64]) -> f64 {
     let size = b.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
     let pairs = a.iter().zip(b);

@@ -1,4 +1,4 @@
-//! Bodies that several tests share.
+//! Bodies shared by several tests.
 
 use std::sync::Arc;
 
@@ -25,7 +25,8 @@ pub fn solid(poisson_ratio: f64, horizon: f64, function: InfluenceFunction) -> L
     }
 }
 
-/// Cells of size one that are moved from their places, with different volumes: x = k + 1/2 + 0.1 sin(1.7 n + 0.3 c), V = 1 + 0.1 sin n for the n-th cell in the order of C arrays.
+/// Displaced cells of size one with different volumes: x = k + 1/2 + 0.1 sin(1.7 n + 0.3 c), V = 1 + 0.1 sin n for
+/// the n-th cell in the order of C arrays.
 pub fn jittered(sides: &[usize]) -> Arc<PointCloud> {
     let (dimension, n) = (sides.len(), sides.iter().product::<usize>());
     let mut positions = vec![0.0; dimension * n];
@@ -52,7 +53,7 @@ pub fn wave(cloud: &PointCloud, size: f64) -> Vec<f64> {
     (0..cloud.dimension() * n).map(of).collect()
 }
 
-/// Numbers without a pattern, at most one in size.
+/// Irregular numbers of absolute value up to one.
 pub fn noise(entries: usize, seed: f64) -> Vec<f64> {
     (0..entries)
         .map(|k| ((k as f64 + seed) * 12.9898).sin() * ((k as f64) * 0.37 + seed).cos())
@@ -76,7 +77,7 @@ pub fn bodies(function: &InfluenceFunction) -> Vec<(Arc<PointCloud>, LinearSolid
     .collect()
 }
 
-/// The bonds of a body within its horizon, with whole volumes.
+/// The bonds of a body within its horizon, without volume correction.
 pub fn families(cloud: &Arc<PointCloud>, constants: &LinearSolidConstants) -> BondList {
     BondList::new(cloud, constants.horizon, VolumeCorrection::None).unwrap()
 }

@@ -1,4 +1,4 @@
-//! Constants of solids on lattices against tables computed independently.
+//! Constants of solids on lattices compared with tables computed independently.
 
 use std::f64::consts::PI;
 
@@ -18,9 +18,10 @@ fn influence(function: InfluenceFunction) -> Influence {
     }
 }
 
-/// Shear stiffness along axes and diagonals over G at δ = (N + 0.015) Δx, to the four digits of the table; the dilatation is exact.
+/// Shear stiffness along axes and diagonals divided by G at δ = (N + 0.015) Δx, to the four digits of the table;
+/// the dilatation is exact.
 #[test]
-fn shear_of_lattices() {
+fn shear_stiffness_of_lattices_equals_the_table() {
     let (none, linear) = (VolumeCorrection::None, VolumeCorrection::Linear);
     let cases = [
         (3, 3, InfluenceFunction::Constant, none, [1.1102, 0.8347]),
@@ -63,9 +64,9 @@ fn shear_of_lattices() {
     }
 }
 
-/// c at δ = N Δx, to the six digits of the table; shear stiffnesses are then those of the solid.
+/// c at δ = N Δx, to the six digits of the table; shear stiffnesses then equal those of the solid.
 #[test]
-fn the_isotropic_function_of_every_lattice() {
+fn the_isotropic_influence_function_equals_the_table() {
     let (none, linear) = (VolumeCorrection::None, VolumeCorrection::Linear);
     let cases = [
         (2, none, [0.972200, 0.840501, 0.899245, 1.003997, 1.061526]),
@@ -103,7 +104,7 @@ fn cubes(dimension: usize) -> Vec<f64> {
 }
 
 #[test]
-fn an_isotropic_function_is_refused_where_it_cannot_be() {
+fn lattices_without_an_isotropic_function_are_errors() {
     let (dx, state) = (1e-3, StressState::PlaneStrain);
     let make = |spacings: f64, correction, failure| LinearSolid {
         influence: StateInfluence::Isotropic,
@@ -173,9 +174,9 @@ fn bond_energy(calibration: FractureCalibration) -> BondFailure {
     }
 }
 
-/// The closed forms of the continuum, with the numbers of w = 1/r in three dimensions: P₁ = δ/5, P₂ = 26 δ/405.
+/// Closed forms of the continuum, with the numbers for w = 1/r in three dimensions: P₁ = δ/5, P₂ = 26 δ/405.
 #[test]
-fn limits_of_the_continuum() {
+fn failure_limits_equal_the_continuum() {
     let horizon = 3e-3 * (1.0 + 1e-6);
     let limits = |nu: f64, failure| {
         let function = InfluenceFunction::Inverse;
@@ -210,15 +211,16 @@ fn limits_of_the_continuum() {
         let expected = 4.0 * ENERGY / (PI * horizon.powi(4));
         assert!((found / expected - 1.0).abs() < 1e-12);
     }
-    // Where A = 0: G₀ = 3 G δ s₀².
+    // For A = 0: G₀ = 3 G δ s₀².
     let found = limits(0.25, stretch(StretchDefinition::Closing, continuum)).stretch;
     let expected = (ENERGY / (3.0 * 4.0 * horizon)).sqrt();
     assert!((found / expected - 1.0).abs() < 1e-12);
 }
 
-/// Energy of a crack along (100) with the limits of the continuum over the energy asked for, for ν = 1/4 (A = 0) where definitions agree: to the three digits of an independent computation.
+/// Energy of a crack along (100) with the limits of the continuum, relative to the given fracture energy, for ν =
+/// 1/4 (A = 0), where the definitions agree: to the three digits of an independent computation.
 #[test]
-fn cracks_along_planes_of_the_lattice() {
+fn fracture_energies_along_lattice_planes_equal_the_reference() {
     let closing = stretch(StretchDefinition::Closing, FractureCalibration::Continuum);
     let energy = bond_energy(FractureCalibration::Continuum);
     let (none, linear) = (VolumeCorrection::None, VolumeCorrection::Linear);
@@ -251,7 +253,7 @@ fn cracks_along_planes_of_the_lattice() {
 }
 
 #[test]
-fn the_mean_over_planes_is_the_fracture_energy_asked_for() {
+fn the_mean_over_planes_equals_the_fracture_energy() {
     let lattice = FractureCalibration::Lattice;
     let failures = [
         stretch(StretchDefinition::Closing, lattice),
@@ -267,7 +269,7 @@ fn the_mean_over_planes_is_the_fracture_energy_asked_for() {
                 (2, StressState::PlaneStrain),
                 (3, StressState::Spatial),
             ] {
-                // The limits belong to a section of 1; those of bonds are per section.
+                // The limits refer to a section of 1; those of bonds are per section.
                 for section in [1.0, 0.2] {
                     let function = InfluenceFunction::Conical;
                     let correction = VolumeCorrection::Extended;
@@ -284,9 +286,10 @@ fn the_mean_over_planes_is_the_fracture_energy_asked_for() {
     }
 }
 
-/// The conical function vanishes at the horizon, where bonds of three spacings are: they never break and do not count. The bonds that are left are those of a shorter horizon.
+/// The conical function vanishes at the horizon of three spacings: bonds of that length never break and are
+/// not counted. The remaining bonds are those of a shorter horizon.
 #[test]
-fn bonds_without_force_do_not_count_for_the_bond_energy() {
+fn bonds_without_force_are_not_counted_for_the_bond_energy() {
     let failure = bond_energy(FractureCalibration::Lattice);
     let critical = |function: &InfluenceFunction, spacings: f64| {
         let none = VolumeCorrection::None;
@@ -298,14 +301,14 @@ fn bonds_without_force_do_not_count_for_the_bond_energy() {
     let shorter = critical(&constant, 2.9);
     assert!((critical(&conical, 3.0) / shorter - 1.0).abs() < 1e-13);
     assert!(critical(&constant, 3.0) < 0.99 * shorter);
-    // A little beyond three spacings they carry force.
+    // Slightly beyond three spacings they carry force.
     let longer = critical(&conical, 3.01);
     assert!((longer / critical(&constant, 3.01) - 1.0).abs() < 1e-13);
 }
 
 #[test]
-fn limits_that_do_not_exist_are_refused() {
-    // At ν = −0.9 the dilatational part outweighs the rest in the isotropic definition.
+fn failure_criteria_without_a_critical_stretch_are_errors() {
+    // At ν = −0.9 the dilatational part exceeds the rest in the isotropic definition.
     let failure = stretch(StretchDefinition::Isotropic, FractureCalibration::Continuum);
     let function = InfluenceFunction::Constant;
     let material = with_failure(function, 3.0, VolumeCorrection::None, -0.9, failure);

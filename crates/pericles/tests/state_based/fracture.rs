@@ -1,4 +1,4 @@
-//! Bonds that break: what they dissipate, and when.
+//! Breaking bonds: dissipated energy and criteria.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use pericles::material::{
     BondFailure, BondLimits, FractureCalibration, LinearSolid, LinearSolidConstants, SolidClasses,
     Strains, StressState, StretchDefinition,
 };
-use pericles::operator::{BondForm, Force, LinearSolidBody, On};
+use pericles::operator::{BondForm, Force, LinearSolidBody, PointSubset};
 use pericles::round_trip::check_resume;
 use pericles::space::PointCloud;
 use pericles::time::{Integrator, RungeKutta, State, Tableau, VelocityVerlet, highest_frequency};
@@ -34,7 +34,7 @@ fn bond_energy() -> BondFailure {
     }
 }
 
-/// The two kinds of criteria, in the forms that represent them.
+/// The two kinds of failure criteria, in the forms that support them.
 fn criteria() -> [(BondFailure, BondForm); 3] {
     [
         (stretch(StretchDefinition::Closing), BondForm::List),
@@ -81,7 +81,7 @@ fn plate(
     (cloud, operator)
 }
 
-/// A plate that flies apart: upper and lower part move away from each other.
+/// A plate whose upper and lower parts move apart.
 fn torn(
     failure: (BondFailure, BondForm),
     strains: Strains,
@@ -112,9 +112,10 @@ fn rk4(system: &System) -> Box<dyn Integrator> {
     Box::new(RungeKutta::new(&Tableau::rk4(), system))
 }
 
-/// Velocity Verlet balances the energy of a linear solid exactly; one with large displacements to second order in the step, which is the bound chosen after seeing the result (found: 2e-5).
+/// Velocity Verlet balances the energy of a linear solid exactly, that of one with large displacements to second
+/// order in the step; the bound was chosen after seeing the result (2e-5).
 #[test]
-fn energy_and_momentum_are_accounted_for_while_bonds_break() {
+fn energy_balance_closes_and_momentum_is_conserved_while_bonds_break() {
     for failure in criteria() {
         for (strains, bound) in [(Strains::Small, 1e-11), (Strains::Finite, 1e-4)] {
             let mut run = torn(failure, strains, verlet, 0.5);
@@ -136,9 +137,9 @@ fn energy_and_momentum_are_accounted_for_while_bonds_break() {
     }
 }
 
-/// With displacements of any size: the forces of single bonds run through both ends of the deformed bond.
+/// For displacements of any size: the forces of single bonds act along the deformed bond.
 #[test]
-fn angular_momentum_is_kept_while_bonds_break() {
+fn angular_momentum_is_conserved_while_bonds_break() {
     let angular = |run: &Simulation| -> f64 {
         let (cloud, state) = (run.system().cloud(), run.state());
         let n = cloud.len();
@@ -160,9 +161,9 @@ fn angular_momentum_is_kept_while_bonds_break() {
     }
 }
 
-/// Forces act all the way there: the whole energy of what breaks is dissipated.
+/// Forces act throughout the step: the whole energy of broken bonds is dissipated.
 #[test]
-fn energy_is_accounted_for_by_runge_kutta() {
+fn energy_balance_of_runge_kutta_closes_while_bonds_break() {
     for failure in criteria() {
         let mut run = torn(failure, Strains::Finite, rk4, 0.1);
         run.run(|_| Control::Continue).unwrap();
@@ -174,7 +175,7 @@ fn energy_is_accounted_for_by_runge_kutta() {
 }
 
 #[test]
-fn runs_with_breaking_bonds_resume_and_have_the_same_bits_with_any_threads() {
+fn runs_with_breaking_bonds_resume_and_are_bitwise_identical_for_any_number_of_threads() {
     for failure in criteria() {
         let make = || torn(failure, Strains::Finite, verlet, 0.5);
         let middle = make().steps() / 2;
@@ -185,7 +186,7 @@ fn runs_with_breaking_bonds_resume_and_have_the_same_bits_with_any_threads() {
                 let mut run = make();
                 run.run(|_| Control::Continue).unwrap();
                 let mut archive = pericles::Archive::default();
-                pericles::Saved::save(&run, &mut archive);
+                pericles::Checkpointed::save(&run, &mut archive);
                 archive
             });
             assert_eq!(end.differences(&stored), Vec::<String>::new(), "{threads}");
@@ -193,7 +194,7 @@ fn runs_with_breaking_bonds_resume_and_have_the_same_bits_with_any_threads() {
     }
 }
 
-/// A cloud with different volumes whose bonds break, with its state after that.
+/// A cloud with different volumes in which bonds broke, with its state.
 fn shaken(limits: BondLimits, size: f64) -> (Arc<PointCloud>, Box<dyn Force>, Vec<f64>) {
     let cloud = jittered(&[30, 30]);
     let mut constants = solid(0.4, 2.7, InfluenceFunction::Conical)
@@ -222,50 +223,58 @@ const LIMITS: [BondLimits; 3] = [
 ];
 
 #[test]
-fn breaking_without_the_work_of_half_a_step_dissipates_the_energy_lost() {
+fn bonds_that_break_without_the_work_of_half_a_step_dissipate_the_lost_energy() {
     for limits in LIMITS {
         let (_, mut operator, u) = shaken(limits, 0.06);
         let before = operator.energy(0.0, &u);
         let mut force = vec![0.0; u.len()];
-        operator.end_step(&StepEnd::sub_step(0.0, 0.0, &u), On::All, &mut force);
+        operator.end_step(
+            &StepEnd::sub_step(0.0, 0.0, &u),
+            PointSubset::All,
+            &mut force,
+        );
         let lost = before - operator.energy(0.0, &u);
         assert!(operator.broken_bonds() > 100, "{limits:?}");
         let error = (operator.dissipated() / lost - 1.0).abs();
         assert!(error < 1e-12, "{limits:?}: {error:e}");
-        // The force is that of the bonds left.
+        // The force is that of the remaining bonds.
         let mut again = vec![0.0; u.len()];
-        operator.add_force(0.0, &u, On::All, &mut again);
+        operator.add_force(0.0, &u, PointSubset::All, &mut again);
         assert_eq!(force, again, "{limits:?}");
-        // What is broken stays so, and costs nothing more.
+        // Broken bonds remain broken and dissipate nothing more.
         let dissipated = operator.dissipated();
-        operator.end_step(&StepEnd::sub_step(0.0, 0.0, &u), On::All, &mut force);
+        operator.end_step(
+            &StepEnd::sub_step(0.0, 0.0, &u),
+            PointSubset::All,
+            &mut force,
+        );
         assert_eq!(operator.dissipated(), dissipated);
     }
 }
 
 #[test]
-fn steps_that_end_for_parts_of_a_body_break_the_same_bonds() {
+fn ending_a_step_on_subsets_breaks_the_same_bonds() {
     for limits in LIMITS {
         let (_, mut at_once, u) = shaken(limits, 0.06);
         let (cloud, mut in_parts, _) = shaken(limits, 0.06);
         let step = StepEnd::sub_step(0.0, 0.0, &u);
         let mut force = vec![0.0; u.len()];
-        at_once.end_step(&step, On::All, &mut force);
+        at_once.end_step(&step, PointSubset::All, &mut force);
         let odd: Vec<u32> = (0..cloud.len() as u32).filter(|i| i % 2 == 1).collect();
         let mut part = vec![0.0; u.len()];
-        in_parts.end_step(&step, On::Set(&odd), &mut part);
+        in_parts.end_step(&step, PointSubset::Set(&odd), &mut part);
         assert!(in_parts.broken_bonds() > 50);
-        // The force on these points is that of the bonds that are left.
+        // The force on these points is that of the remaining bonds.
         let mut again = vec![0.0; u.len()];
-        in_parts.add_force(0.0, &u, On::Set(&odd), &mut again);
+        in_parts.add_force(0.0, &u, PointSubset::Set(&odd), &mut again);
         assert_eq!(part, again);
         if limits.energy.is_infinite() {
-            in_parts.end_step(&step, On::All, &mut part);
+            in_parts.end_step(&step, PointSubset::All, &mut part);
             assert_eq!(in_parts.broken_bonds(), at_once.broken_bonds());
             let error = (in_parts.dissipated() / at_once.dissipated() - 1.0).abs();
             assert!(error < 1e-12, "{error:e}");
             let mut again = vec![0.0; u.len()];
-            in_parts.add_force(0.0, &u, On::All, &mut again);
+            in_parts.add_force(0.0, &u, PointSubset::All, &mut again);
             assert_eq!(again, force);
         }
     }
@@ -284,7 +293,7 @@ fn bonds_of_no_fail_points_and_compressed_bonds_never_break() {
             .iter()
             .map(|u| 0.2 * u)
             .collect();
-        // Everything comes closer by a third.
+        // All distances shrink by a third.
         let n = cloud.len();
         let closer: Vec<f64> = (0..2 * n)
             .map(|k| -0.3 * cloud.axis(k / n)[k % n])
@@ -297,7 +306,7 @@ fn bonds_of_no_fail_points_and_compressed_bonds_never_break() {
             let mut operator = body.operator(BondForm::Fastest).unwrap().operator;
             operator.end_step(
                 &StepEnd::sub_step(0.0, 0.0, u),
-                On::All,
+                PointSubset::All,
                 &mut vec![0.0; u.len()],
             );
             assert_eq!(operator.broken_bonds(), 0, "{limits:?}");
@@ -305,10 +314,11 @@ fn bonds_of_no_fail_points_and_compressed_bonds_never_break() {
     }
 }
 
-/// Energy spent over G₀ where two halves of a lattice are pulled apart rigidly, measured by the force on one column of points of a wide body.
+/// Energy relative to G₀ dissipated when two halves of a lattice are pulled apart rigidly, computed from the force
+/// on one column of points of a wide body.
 fn separation(dimension: usize, spacings: usize, nu: f64, failure: BondFailure) -> f64 {
     let layers = 2 * spacings;
-    // A column whose neighbours have whole families of points that have whole families.
+    // A column whose neighbours have full families, and their neighbours too.
     let width = 4 * spacings + 1;
     let mut size = vec![width as f64; dimension];
     size[0] = 2.0 * layers as f64;
@@ -346,7 +356,7 @@ fn separation(dimension: usize, spacings: usize, nu: f64, failure: BondFailure) 
     };
     let pull = |operator: &dyn Force, opened: f64| {
         let mut force = vec![0.0; n];
-        operator.add_force(0.0, &apart(opened), On::All, &mut force);
+        operator.add_force(0.0, &apart(opened), PointSubset::All, &mut force);
         -column.iter().map(|&i| force[i]).sum::<f64>()
     };
     let openings = match failure {
@@ -358,17 +368,18 @@ fn separation(dimension: usize, spacings: usize, nu: f64, failure: BondFailure) 
         let [(from, decided), (to, _)] = [ends[0], ends[1]];
         let at = apart(decided);
         let end = StepEnd::sub_step(0.0, 0.0, &at);
-        operator.end_step(&end, On::All, &mut vec![0.0; n]);
+        operator.end_step(&end, PointSubset::All, &mut vec![0.0; n]);
         let mean = 0.5 * (pull(&*operator, from) + pull(&*operator, to));
         if mean.abs() < 1e-12 {
             return work / G0;
         }
         work += mean * (to - from);
     }
-    panic!("still joined");
+    panic!("not separated");
 }
 
-/// Openings at which bonds break by stretch, s₀ r²/ξ_x for small strains, and just above each: the force is linear in between.
+/// Openings at which bonds break by stretch, s₀ r²/ξ_x for small strains, and just above each: between them the
+/// force is linear.
 fn thresholds(dimension: usize, spacings: i32, stretch: f64) -> Vec<(f64, f64)> {
     let across = |c: usize| {
         if c < dimension {
@@ -394,16 +405,17 @@ fn thresholds(dimension: usize, spacings: i32, stretch: f64) -> Vec<(f64, f64)> 
     openings.iter().map(|&at| (at, at * (1.0 + 1e-6))).collect()
 }
 
-/// Openings that grow by 3 %; bonds that break within a step break at its start or its end, half of them each.
+/// Openings that grow by 3 %; bonds that break within a step break at its start or end, half of them each.
 fn growing(first: f64) -> Vec<(f64, f64)> {
     let growth = 1.03f64;
     let at = |k: i32| first * growth.powi(k);
     (0..300).map(|k| (at(k), at(k) * growth.sqrt())).collect()
 }
 
-/// What an independent implementation found, to the two digits of its table: w = 1, whole volumes, limits of the continuum, N = 6.
+/// Results of an independent implementation, to the two digits of its table: w = 1, no volume correction, limits of
+/// the continuum, N = 6.
 #[test]
-fn halves_of_a_plate_that_are_pulled_apart_spend_what_is_expected() {
+fn separating_halves_of_a_plate_dissipates_the_reference_energy() {
     let [bond, closing, isotropic, energy] = definitions();
     for (nu, failure, expected) in [
         (0.1, bond, 0.90),
@@ -435,9 +447,9 @@ fn definitions() -> [BondFailure; 4] {
     ]
 }
 
-/// The same in three dimensions with N = 3.
+/// Three-dimensional counterpart with N = 3.
 #[test]
-fn halves_of_a_block_that_are_pulled_apart_spend_what_is_expected() {
+fn separating_halves_of_a_block_dissipates_the_reference_energy() {
     let [bond, closing, isotropic, _] = definitions();
     for (nu, failure, expected) in [
         (0.1, bond, 0.92),
@@ -455,15 +467,15 @@ fn halves_of_a_block_that_are_pulled_apart_spend_what_is_expected() {
     }
 }
 
-/// The bond energy is independent of Poisson's ratio: found are 1.104 and 1.105 with N = 3, and what the sum over the lattice is.
+/// The bond energy does not depend on Poisson's ratio: 1.104 and 1.105 with N = 3, as the sum over the lattice.
 #[test]
-fn halves_of_a_block_that_are_pulled_apart_spend_the_bond_energy() {
+fn separating_halves_of_a_block_dissipates_the_bond_energy() {
     let spent = separation(3, 3, 0.4, bond_energy());
     assert!((spent / 1.105 - 1.0).abs() < 0.02, "{spent}");
 }
 
 #[test]
-fn supports_balance_the_energy_of_a_plate_that_is_pulled_apart() {
+fn energy_balance_of_a_plate_in_tension_closes() {
     let (cloud, operator) = plate(criteria()[0], Strains::Small);
     let mut system = System::new(cloud.clone(), operator, PointScalar::Uniform(1.0)).unwrap();
     for (name, top) in [("top", true), ("bottom", false)] {

@@ -1,4 +1,4 @@
-//! What holds for every linear peridynamic solid, whatever its points.
+//! Properties of every linear peridynamic solid on arbitrary points.
 
 use std::sync::Arc;
 
@@ -13,13 +13,14 @@ use pericles::material::{
     LinearSolidConstants, Modulus, SolidClasses, StateInfluence, Strains, StressState,
 };
 use pericles::operator::{
-    AssembledBonds, BondForce, BondForm, DamageMeasure, Force, InstructionSet, LinearSolidBody, On,
+    AssembledBonds, BondForce, BondForm, DamageMeasure, Force, InstructionSet, LinearSolidBody,
+    PointSubset,
 };
 use pericles::space::PointCloud;
 use pericles::time::frequency_from_below;
 use pericles::{PointScalar, StepEnd, System};
 
-/// Functions of first degree, by codes and by numbers.
+/// Influence functions evaluated by formula, stored by code, and stored as one number per bond.
 fn functions() -> Vec<InfluenceFunction> {
     vec![
         InfluenceFunction::Constant,
@@ -43,7 +44,7 @@ fn operator(cloud: &Arc<PointCloud>, constants: &LinearSolidConstants) -> Box<dy
 
 fn force_of(operator: &dyn Force, u: &[f64]) -> Vec<f64> {
     let mut force = vec![0.0; u.len()];
-    operator.add_force(0.0, u, On::All, &mut force);
+    operator.add_force(0.0, u, PointSubset::All, &mut force);
     force
 }
 
@@ -57,9 +58,9 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
         .fold(0.0, |most, (a, b)| most.max((a - b).abs()))
 }
 
-/// Strains of a hundredth take the polynomials, those of a fifth the exact forms.
+/// Strains of 0.01 use the polynomials, strains of 0.2 the exact forms.
 #[test]
-fn every_instruction_set_computes_the_definition() {
+fn every_instruction_set_equals_the_definition() {
     for function in functions() {
         for (cloud, constants) in bodies(&function) {
             let bonds = families(&cloud, &constants);
@@ -91,7 +92,7 @@ fn every_instruction_set_computes_the_definition() {
 }
 
 #[test]
-fn rigid_motion_costs_nothing_and_momentum_and_angular_momentum_are_kept() {
+fn rigid_motions_cause_no_force_and_momenta_are_conserved() {
     for function in functions() {
         for (cloud, constants) in bodies(&function) {
             let operator = operator(&cloud, &constants);
@@ -128,9 +129,9 @@ fn rigid_motion_costs_nothing_and_momentum_and_angular_momentum_are_kept() {
     }
 }
 
-/// Also with a pre-crack, several materials, and bonds that broke since: m is kept.
+/// Also with a pre-crack, several materials and broken bonds: m does not change.
 #[test]
-fn forces_are_derivatives_of_the_energy_and_tangents_of_forces_and_symmetric() {
+fn forces_are_energy_gradients_and_tangents_are_symmetric_force_derivatives() {
     for strains in [Strains::Finite, Strains::Small] {
         let cloud = jittered(&[9, 9]);
         let function = InfluenceFunction::Conical;
@@ -163,7 +164,7 @@ fn forces_are_derivatives_of_the_energy_and_tangents_of_forces_and_symmetric() {
         assert!(cuts[0].bonds > 10);
         let u = wave(&cloud, 0.06);
         let step = StepEnd::sub_step(0.0, 0.0, &u);
-        operator.end_step(&step, On::All, &mut vec![0.0; u.len()]);
+        operator.end_step(&step, PointSubset::All, &mut vec![0.0; u.len()]);
         assert!(operator.broken_bonds() > 10);
         let (a, b) = (noise(u.len(), 0.2), noise(u.len(), 5.1));
         let h = 1e-5;
@@ -223,7 +224,8 @@ fn small_strains_are_the_linearisation() {
     }
 }
 
-/// Dilatation, and energy density of a uniform strain, whatever the points; of a shear only the mean over all points' directions, so that a lattice is taken with its isotropic function.
+/// Dilatation and energy density of a uniform strain, for any points; for shear only the mean over all directions,
+/// so that a lattice with its isotropic function is used.
 #[test]
 fn uniform_strains_of_a_lattice_have_the_energy_of_elasticity() {
     let cases = [
@@ -274,7 +276,7 @@ fn uniform_strains_of_a_lattice_have_the_energy_of_elasticity() {
             let exact = 0.5 * kappa * trace * trace + shear * deviator;
             let error = (density[middle] / exact - 1.0).abs();
             assert!(error < 1e-12, "{state:?}, {nu}: {error:e}");
-            // The interior is in balance.
+            // The interior is in equilibrium.
             let force = force_of(&*linear, &u);
             let inside =
                 (0..dimension).fold(0.0f64, |most, c| most.max(force[c * n + middle].abs()));
@@ -284,9 +286,10 @@ fn uniform_strains_of_a_lattice_have_the_energy_of_elasticity() {
     }
 }
 
-/// ν = 1/4, and 1/3 in plane stress: A = 0. A bond-based material of the stiffness (B/m_i + B/m_j) w r has the same forces.
+/// ν = 1/4, and 1/3 in plane stress: A = 0. A bond-based material with the stiffness (B/m_i + B/m_j) w r has the
+/// same forces.
 #[test]
-fn solids_without_a_dilatational_part_are_bond_based() {
+fn solids_without_a_dilatational_part_equal_bond_based_materials() {
     let cloud = boxed([0.0; 3], &[7.0, 6.0, 5.0], 1.0, 1.0);
     let constants = solid(0.25, 2.0, InfluenceFunction::Conical)
         .constants(&cloud, StressState::Spatial)
@@ -328,9 +331,10 @@ fn solids_without_a_dilatational_part_are_bond_based() {
     assert!((energies[0] / energies[1] - 1.0).abs() < 1e-13);
 }
 
-/// In the interior of a lattice the bond-based material with the same modulus, calibrated on the lattice, has twice the stiffness B/m: both are one material.
+/// In the interior of a lattice the bond-based material with the same modulus, calibrated on the lattice, has twice
+/// the stiffness B/m: both materials are equal.
 #[test]
-fn a_solid_with_poissons_ratio_a_quarter_is_the_bond_based_material_inside() {
+fn solid_with_poisson_ratio_one_quarter_equals_the_bond_based_material_in_the_interior() {
     let cloud = boxed([0.0; 3], &[9.0, 9.0], 1.0, 1.0);
     let horizon = 2.0;
     let constants = solid(0.25, horizon, InfluenceFunction::Inverse)
@@ -375,7 +379,7 @@ fn a_solid_with_poissons_ratio_a_quarter_is_the_bond_based_material_inside() {
 }
 
 #[test]
-fn the_bound_of_the_frequency_holds() {
+fn the_frequency_bound_is_an_upper_bound() {
     for (cloud, constants) in bodies(&InfluenceFunction::Conical) {
         let operator = operator(&cloud, &constants);
         let bound = operator.frequency_bound(&|_| 1.0);
@@ -387,7 +391,7 @@ fn the_bound_of_the_frequency_holds() {
 }
 
 #[test]
-fn the_force_on_a_point_does_not_depend_on_what_is_evaluated_with_it_or_on_threads() {
+fn the_force_on_a_point_does_not_depend_on_subsets_or_threads() {
     let cloud = boxed([0.0; 3], &[12.0, 11.0, 10.0], 1.0, 1.0);
     let constants = solid(0.4, 2.5, InfluenceFunction::Conical)
         .constants(&cloud, StressState::Spatial)
@@ -402,13 +406,13 @@ fn the_force_on_a_point_does_not_depend_on_what_is_evaluated_with_it_or_on_threa
     }
     let n = cloud.len();
     let third: Vec<u32> = (0..n as u32).filter(|i| i % 3 == 1).collect();
-    for on in [On::Set(&third), On::Range(500..700)] {
+    for on in [PointSubset::Set(&third), PointSubset::Range(500..700)] {
         let wanted = |i: usize| match &on {
-            On::Set(set) => set.contains(&(i as u32)),
-            On::Range(range) => range.contains(&i),
-            On::All => true,
+            PointSubset::Set(set) => set.contains(&(i as u32)),
+            PointSubset::Range(range) => range.contains(&i),
+            PointSubset::All => true,
         };
-        // Dilatations of an evaluation before must not be read.
+        // Dilatations of a previous evaluation must not be used.
         force_of(&*operator, &noise(u.len(), 0.1));
         let mut part = vec![0.0; u.len()];
         operator.add_force(0.0, &u, on.clone(), &mut part);
@@ -421,7 +425,7 @@ fn the_force_on_a_point_does_not_depend_on_what_is_evaluated_with_it_or_on_threa
 
 /// σ = κ tr ε + 2 G dev ε inside a lattice with its isotropic function.
 #[test]
-fn the_virial_stress_of_a_uniform_strain_is_that_of_elasticity() {
+fn the_virial_stress_of_a_uniform_strain_equals_elasticity() {
     let cloud = boxed([0.0; 3], &[13.0, 13.0], 1.0, 1.0);
     let state = StressState::PlaneStress;
     let material = LinearSolid {

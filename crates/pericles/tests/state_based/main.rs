@@ -7,6 +7,7 @@ mod clock;
 mod common;
 mod constants;
 mod fracture;
+mod ghosts;
 mod identities;
 mod reference;
 mod schemes;

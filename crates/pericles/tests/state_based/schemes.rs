@@ -1,4 +1,4 @@
-//! Linear peridynamic solids under other schemes than velocity Verlet.
+//! Linear peridynamic solids with schemes other than velocity Verlet.
 
 use crate::bodies::{jittered, solid};
 use pericles::family::VolumeCorrection;
@@ -61,9 +61,9 @@ fn two_steps(system: &System) -> Box<dyn Integrator> {
 
 type Make = fn(&System) -> Box<dyn Integrator>;
 
-/// The bounds are those of the orders of the schemes at these steps, chosen after seeing the results.
+/// The bounds follow the orders of the schemes at these steps and were chosen after seeing the results.
 #[test]
-fn schemes_agree_with_small_steps_and_balance_the_energy() {
+fn schemes_agree_with_small_steps_and_balance_energy() {
     let schemes: [(Make, f64, f64, f64); 5] = [
         (|_| Box::new(VelocityVerlet), 0.02, 2e-3, 1e-4),
         (
@@ -110,9 +110,9 @@ fn schemes_agree_with_small_steps_and_balance_the_energy() {
     }
 }
 
-/// Bonds of fine and coarse points, and between them, break; the sum of momenta stays to the order of the scheme.
+/// Bonds of fine points, of coarse points and between them break; momentum is conserved to the order of the scheme.
 #[test]
-fn bonds_break_under_two_time_steps() {
+fn bonds_break_under_a_multirate_scheme() {
     for limits in [
         BondLimits {
             stretch: 0.03,
@@ -142,9 +142,10 @@ fn bonds_break_under_two_time_steps() {
     }
 }
 
-/// A linear solid is stepped exactly in energy by velocity Verlet, with corrected surfaces too: the factors are part of the energy.
+/// Velocity Verlet conserves the energy of a linear solid exactly, with surface correction too: the factors are
+/// part of the energy.
 #[test]
-fn velocity_verlet_keeps_the_energy_of_corrected_linear_solids() {
+fn velocity_verlet_conserves_the_energy_of_corrected_linear_solids() {
     let limits = BondLimits {
         stretch: 0.03,
         ..BondLimits::NONE

@@ -1,4 +1,4 @@
-//! The loops of state-based materials are as fast as those of bond-based ones: a check that does not depend on the machine's speed.
+//! Speed of the loops of state-based materials relative to those of bond-based materials.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use crate::common::{boxed, material as bond_based};
 use pericles::family::VolumeCorrection;
 use pericles::kernel::InfluenceFunction;
 use pericles::material::{Fracture, LinearSolid, StressState};
-use pericles::operator::{BondBody, BondForm, Force, InstructionSet, LinearSolidBody, On};
+use pericles::operator::{BondBody, BondForm, Force, InstructionSet, LinearSolidBody, PointSubset};
 use pericles::space::PointCloud;
 
 const HORIZON: f64 = 3.015;
@@ -27,10 +27,11 @@ fn state_based(
     body.operator(form).unwrap().operator
 }
 
-/// An evaluation takes two passes over the bonds, in place of one. The bound of lists is one and a half times what is measured with AVX2; that of the stencil is the goal.
+/// An evaluation takes two passes over the bonds in place of one. The bound for lists is one and a half times the
+/// measured value with AVX2; the bound for the stencil is a target.
 #[test]
 #[cfg_attr(debug_assertions, ignore = "measures optimised loops: --release")]
-fn two_passes_take_about_the_time_of_two_passes() {
+fn a_state_based_evaluation_costs_about_two_bond_based_ones() {
     let cloud = boxed([0.0; 3], &[32.0; 3], 1.0, 1.0);
     let plain = bond_based(
         1.0,
@@ -69,12 +70,12 @@ fn two_passes_take_about_the_time_of_two_passes() {
             for (_, force) in &mut forces {
                 force.use_instruction_set(set);
             }
-            // In turn, and medians: other programs slow all of them alike, and a lucky moment is longer than a short evaluation.
+            // Alternating evaluations with medians, so that other programs affect all kinds equally.
             for round in 0..60 {
                 let first = if round % 8 == 0 { 0 } else { 4 };
                 for ((_, force), times) in forces.iter().zip(&mut times).skip(first) {
                     let start = cpu_seconds();
-                    force.add_force(0.0, &u, On::All, &mut out);
+                    force.add_force(0.0, &u, PointSubset::All, &mut out);
                     let ns = 1e9 * (cpu_seconds() - start) / force.directed_bonds() as f64;
                     times.push(ns);
                 }

@@ -1,4 +1,4 @@
-//! Solids on a lattice by one stencil: the same as by a list of bonds.
+//! Solids on a lattice: the stencil compared with the neighbour list.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use pericles::material::{
     BondLimits, LinearSolid, LinearSolidConstants, SolidClasses, SolidSurface, StateInfluence,
     Strains, StressState,
 };
-use pericles::operator::{BondForm, Feature, Force, InstructionSet, LinearSolidBody, On};
+use pericles::operator::{BondForm, Feature, Force, InstructionSet, LinearSolidBody, PointSubset};
 use pericles::space::{Grid, PointCloud, Region, Shape};
 use pericles::time::{State, VelocityVerlet, highest_frequency};
 use pericles::{Control, PointScalar, Simulation, StepEnd, System};
@@ -38,7 +38,8 @@ fn boxed(size: &[f64], holes: Vec<Region>) -> PointCloud {
     grid.points().unwrap()
 }
 
-/// A bar, a plate with a hole and a notch, a periodic plate with a crack through a face, a block, a thin periodic block whose bonds lead through it more than once.
+/// A bar, a plate with a hole and a notch, a periodic plate with a crack through a face, a block, and a thin
+/// periodic block with bonds that span several periods.
 fn bodies(limits: BondLimits) -> Vec<Body> {
     let hole = Region::Ball {
         centre: [13.0, 4.0, 0.0],
@@ -142,7 +143,7 @@ impl Body {
         [BondForm::List, BondForm::Grid].map(|form| self.operator(strains, form))
     }
 
-    /// Displacements without a pattern; larger ones of a bar, most of whose bonds are long.
+    /// Irregular displacements; larger ones for a bar, most of whose bonds are long.
     fn shaken(&self, size: f64) -> Vec<f64> {
         let entries = self.cloud.dimension() * self.cloud.len();
         let size = if self.cloud.dimension() == 1 {
@@ -161,13 +162,13 @@ fn largest(vector: &[f64]) -> f64 {
     vector.iter().fold(0.0, |most, x| most.max(x.abs()))
 }
 
-/// The largest difference over the largest entry.
+/// Largest difference divided by the largest entry.
 fn difference(a: &[f64], b: &[f64]) -> f64 {
     let pairs = a.iter().zip(b);
     pairs.fold(0.0, |most: f64, (a, b)| most.max((a - b).abs())) / largest(b).max(1e-300)
 }
 
-fn force_of(operator: &dyn Force, u: &[f64], on: On<'_>) -> Vec<f64> {
+fn force_of(operator: &dyn Force, u: &[f64], on: PointSubset<'_>) -> Vec<f64> {
     let mut force = vec![0.0; u.len()];
     operator.add_force(0.0, u, on, &mut force);
     force
@@ -198,7 +199,7 @@ fn computed(operator: &dyn Force, u: &[f64]) -> Vec<(&'static str, Vec<f64>)> {
     let mut damage = vec![0.0; n];
     operator.damage_into(&mut damage);
     vec![
-        ("force", force_of(operator, u, On::All)),
+        ("force", force_of(operator, u, PointSubset::All)),
         ("forces of single bonds", of_bonds),
         ("energy density", density),
         ("energy", vec![operator.energy(0.0, u)]),
@@ -219,7 +220,7 @@ fn check_alike([list, grid]: [&dyn Force; 2], u: &[f64], case: &str) {
     }
 }
 
-/// Strains of a hundredth take the polynomials, those of a fifth the exact forms.
+/// Strains of 0.01 use the polynomials, strains of 0.2 the exact forms.
 #[test]
 fn stencil_and_list_agree() {
     for body in bodies(BondLimits::NONE) {
@@ -259,9 +260,9 @@ const BRITTLE: BondLimits = BondLimits {
     energy: f64::INFINITY,
 };
 
-/// Two ends of steps: the second one begins with the bonds that the first one left.
+/// Two ends of steps; the second starts with the bonds that remain after the first.
 #[test]
-fn the_same_bonds_break_and_dissipate_the_same() {
+fn the_same_bonds_break_and_dissipate_the_same_energy() {
     for body in bodies(BRITTLE) {
         for strains in STRAINS {
             let mut forms = body.both(strains);
@@ -270,8 +271,8 @@ fn the_same_bonds_break_and_dissipate_the_same() {
                 let step = StepEnd::sub_step(0.0, 0.0, &u);
                 let [list, grid] = forms.each_mut().map(|form| {
                     let mut force = vec![0.0; u.len()];
-                    form.end_step(&step, On::All, &mut force);
-                    assert_eq!(force, force_of(&**form, &u, On::All));
+                    form.end_step(&step, PointSubset::All, &mut force);
+                    assert_eq!(force, force_of(&**form, &u, PointSubset::All));
                     force
                 });
                 assert!(difference(&grid, &list) < 1e-12, "{}", body.name);
@@ -294,7 +295,7 @@ fn the_same_bonds_break_and_dissipate_the_same() {
     }
 }
 
-/// A run of velocity Verlet, whose breaking bonds take off the work of half a step.
+/// A velocity Verlet run, in which breaking bonds dissipate their energy less half a step's work.
 #[test]
 fn runs_with_breaking_bonds_agree() {
     for body in bodies(BRITTLE) {
@@ -323,18 +324,18 @@ fn runs_with_breaking_bonds_agree() {
 }
 
 #[test]
-fn evaluations_of_parts_have_the_bits_of_the_whole() {
+fn evaluations_on_subsets_have_the_bits_of_the_whole() {
     for body in bodies(BondLimits::NONE) {
         let grid = body.operator(Strains::Finite, BondForm::Grid);
         let n = body.cloud.len();
         for size in [0.001, 0.1] {
             let u = body.shaken(size);
-            let whole = force_of(&*grid, &u, On::All);
-            // Rows that another evaluation has left behind.
-            force_of(&*grid, &body.shaken(0.5), On::All);
+            let whole = force_of(&*grid, &u, PointSubset::All);
+            // Values left in the rows by another evaluation.
+            force_of(&*grid, &body.shaken(0.5), PointSubset::All);
             let odd: Vec<u32> = (0..n as u32).filter(|i| i % 3 == 1).collect();
-            let part = force_of(&*grid, &u, On::Set(&odd));
-            let range = force_of(&*grid, &u, On::Range(n / 3..n / 2));
+            let part = force_of(&*grid, &u, PointSubset::Set(&odd));
+            let range = force_of(&*grid, &u, PointSubset::Range(n / 3..n / 2));
             for k in 0..u.len() {
                 let i = k % n;
                 let of = |wanted: bool| if wanted { whole[k] } else { 0.0 };
@@ -346,31 +347,36 @@ fn evaluations_of_parts_have_the_bits_of_the_whole() {
 }
 
 #[test]
-fn steps_that_end_for_parts_of_a_body_break_the_same_bonds() {
+fn ending_a_step_on_subsets_breaks_the_same_bonds() {
     for body in bodies(BRITTLE) {
         let [mut whole, mut parts] = [0, 1].map(|_| body.operator(Strains::Finite, BondForm::Grid));
         let u = body.shaken(0.05);
         let step = StepEnd::sub_step(0.0, 0.0, &u);
         let mut force = vec![0.0; u.len()];
-        whole.end_step(&step, On::All, &mut force);
+        whole.end_step(&step, PointSubset::All, &mut force);
         let odd: Vec<u32> = (0..body.cloud.len() as u32)
             .filter(|i| i % 4 == 1)
             .collect();
         let mut part = vec![0.0; u.len()];
-        parts.end_step(&step, On::Set(&odd), &mut part);
+        parts.end_step(&step, PointSubset::Set(&odd), &mut part);
         let [some, all] = [&parts, &whole].map(|form| form.broken_bonds());
         assert!(some > 0 && some < all, "{}: {some} of {all}", body.name);
-        assert_eq!(part, force_of(&*parts, &u, On::Set(&odd)), "{}", body.name);
-        parts.end_step(&step, On::All, &mut part);
+        assert_eq!(
+            part,
+            force_of(&*parts, &u, PointSubset::Set(&odd)),
+            "{}",
+            body.name
+        );
+        parts.end_step(&step, PointSubset::All, &mut part);
         assert_eq!(parts.broken_bonds(), whole.broken_bonds(), "{}", body.name);
         let error = (parts.dissipated() / whole.dissipated() - 1.0).abs();
         assert!(error < 1e-12, "{}: {error:e}", body.name);
-        assert_eq!(force_of(&*parts, &u, On::All), force);
+        assert_eq!(force_of(&*parts, &u, PointSubset::All), force);
     }
 }
 
 #[test]
-fn the_stencil_is_the_fastest_form_where_it_is_possible() {
+fn the_stencil_is_the_fastest_form_where_it_is_available() {
     let form = |body: &LinearSolidBody<'_>| body.operator(BondForm::Fastest).unwrap().form;
     for case in bodies(BRITTLE) {
         let body = LinearSolidBody::new(&case.cloud, &case.materials[0], case.correction);

@@ -1,13 +1,14 @@
-//! Bodies of which much is surface, against the modulus of their material.
+//! Bodies with a large fraction of surface, compared with the modulus of their material.
 
 use crate::bodies::solid;
 use crate::common::boxed;
 use pericles::family::VolumeCorrection;
 use pericles::kernel::InfluenceFunction;
 use pericles::material::{LinearSolid, SolidSurface, StateInfluence, Strains, StressState};
-use pericles::operator::{BondForm, Force, LinearSolidBody, On};
+use pericles::operator::{BondForm, Force, LinearSolidBody, PointSubset};
 
-/// Young's modulus over that of its material of a plate under plane stress, twice as long as wide, pulled at its end rows, from the strain of its middle half.
+/// Young's modulus relative to that of the material of a plate in plane stress, twice as long as wide, pulled at
+/// its end rows, from the strain of its middle half.
 fn measured(cells: usize, material: &LinearSolid, surface: SolidSurface) -> f64 {
     let (length, width) = (cells as f64, 0.5 * cells as f64);
     let cloud = boxed([0.0; 3], &[length, width], 1.0, 1.0);
@@ -43,7 +44,7 @@ fn measured(cells: usize, material: &LinearSolid, surface: SolidSurface) -> f64 
     1.0 / strain / constants.elastic.young()
 }
 
-/// The same of the interior of the lattice: 4/E = 1/κ + 1/G of the diagonals.
+/// The same for the interior of the lattice: 4/E = 1/κ + 1/G of the diagonals.
 fn interior(material: &LinearSolid) -> f64 {
     let state = StressState::PlaneStress;
     let constants = material.constants_on(&[1.0; 2], 1.0, state).unwrap();
@@ -53,7 +54,7 @@ fn interior(material: &LinearSolid) -> f64 {
     4.0 / (1.0 / kappa + 1.0 / shear) / solid.young()
 }
 
-/// −K u = load; rigid motions stay zero.
+/// Solves −K u = load; rigid motions stay zero.
 fn solve(operator: &dyn Force, load: &[f64], u: &mut [f64]) {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let mut r = load.to_vec();
@@ -65,7 +66,7 @@ fn solve(operator: &dyn Force, load: &[f64], u: &mut [f64]) {
             return;
         }
         q.fill(0.0);
-        operator.add_force(0.0, &p, On::All, &mut q);
+        operator.add_force(0.0, &p, PointSubset::All, &mut q);
         let step = -square / dot(&p, &q);
         for k in 0..u.len() {
             u[k] += step * p[k];
@@ -91,10 +92,11 @@ fn plate(nu: f64, spacings: f64, influence: StateInfluence, whole: bool) -> Line
     }
 }
 
-/// Uncorrected, as an independent implementation found it to 0.002. With corrected surfaces the modulus is that of the interior of the lattice, exactly so where the solid is bond-based; the bound of the others
-/// was chosen after seeing the result.
+/// Without correction, an independent implementation found the value to 0.002. With surface correction the modulus
+/// is that of the interior of the lattice, exactly for bond-based solids; the bound for others was chosen after
+/// seeing the result.
 #[test]
-fn plates_with_corrected_surfaces_have_the_modulus_of_their_material() {
+fn plates_with_surface_correction_have_the_modulus_of_their_material() {
     let function = |function| StateInfluence::Function(function);
     let constant = || function(InfluenceFunction::Constant);
     let cases = [

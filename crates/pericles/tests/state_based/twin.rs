@@ -1,4 +1,4 @@
-//! A linear peridynamic solid by its definition, bond by bond in plain numbers.
+//! A linear peridynamic solid computed from its definition, bond by bond in scalar arithmetic.
 
 use pericles::family::BondList;
 use pericles::kernel::Influence;
@@ -12,7 +12,7 @@ pub struct Twin<'a> {
     pub horizon: f64,
     pub dilatational: f64,
     pub deviatoric: f64,
-    /// Whether the bond between two points is left.
+    /// Returns whether the bond between two points is unbroken.
     pub intact: &'a dyn Fn(usize, usize) -> bool,
 }
 
@@ -49,7 +49,7 @@ impl Twin<'_> {
         present.map(|(_, j)| j)
     }
 
-    /// m of a point, of all bonds that exist at the start.
+    /// m of a point over all bonds that exist at the start.
     pub fn weighted_volume(&self, i: usize) -> f64 {
         let rest = vec![0.0; self.cloud.dimension() * self.cloud.len()];
         self.family(i)

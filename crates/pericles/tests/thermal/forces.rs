@@ -1,4 +1,4 @@
-//! The force of heated bodies: free expansion, prevented expansion, derivatives.
+//! Forces of heated bodies: free and constrained expansion, derivatives.
 
 use std::sync::Arc;
 
@@ -7,13 +7,13 @@ use crate::setup::{ALPHA, Model, expansion, models, operator, plate};
 use pericles::family::VolumeCorrection;
 use pericles::kernel::InfluenceFunction;
 use pericles::material::{Inelasticity, Strains, StressState};
-use pericles::operator::{BondForm, Force, LinearSolidBody, On};
+use pericles::operator::{BondForm, Force, LinearSolidBody, PointSubset};
 use pericles::space::{Grid, PointCloud};
 use pericles::{Path, StepEnd};
 
 fn force_at(force: &dyn Force, t: f64, u: &[f64]) -> Vec<f64> {
     let mut out = vec![0.0; u.len()];
-    force.add_force(t, u, On::All, &mut out);
+    force.add_force(t, u, PointSubset::All, &mut out);
     out
 }
 
@@ -30,7 +30,7 @@ fn expanded(cloud: &PointCloud, stretch: f64) -> Vec<f64> {
 
 /// E α ΔT over the spacing is 0.1 N/m³.
 #[test]
-fn free_expansion_is_without_force_and_energy() {
+fn free_expansion_causes_no_force_or_energy() {
     for model in models() {
         for sides in [&[12, 8][..], &[5, 5, 5], &[20]] {
             if sides.len() == 1 && !matches!(model, Model::Bonds(_)) {
@@ -48,9 +48,10 @@ fn free_expansion_is_without_force_and_energy() {
     }
 }
 
-/// σ = −3 K α ΔT in space, −E α ΔT/(1 − ν) in plane stress: the dilatation of state-based solids is exact on any lattice.
+/// σ = −3 K α ΔT in three dimensions, −E α ΔT/(1 − ν) in plane stress: the dilatation of state-based solids is
+/// exact on any lattice.
 #[test]
-fn prevented_expansion_has_the_stress_of_linear_elasticity() {
+fn constrained_expansion_has_the_stress_of_linear_elasticity() {
     let (young, nu) = (10.0, 0.35);
     let stretch = 100.0 * ALPHA;
     let cases = [
@@ -105,7 +106,7 @@ fn prevented_expansion_has_the_stress_of_linear_elasticity() {
     }
 }
 
-/// Histories of a step of 0.4 s; with a limit some bonds break in it.
+/// Applies a step of 0.4 s; with a critical stretch some bonds break in it.
 fn moved(force: &mut dyn Force, cloud: &PointCloud) -> Vec<f64> {
     let start = vec![0.0; 2 * cloud.len()];
     let u = wave(cloud, 0.05);
@@ -118,7 +119,7 @@ fn moved(force: &mut dyn Force, cloud: &PointCloud) -> Vec<f64> {
             u: to,
             path: Path::MeanVelocity(&mean),
         };
-        force.end_step(&end, On::All, &mut vec![0.0; u.len()]);
+        force.end_step(&end, PointSubset::All, &mut vec![0.0; u.len()]);
     }
     let noise = noise(u.len(), 1.0);
     u.iter()
@@ -135,10 +136,10 @@ fn the_force_is_the_gradient_of_the_energy() {
             let u = moved(&mut *force, &cloud);
             let broken = force.broken_bonds();
             assert_eq!(broken > 0, limit.is_finite(), "{model:?}: {broken}");
-            // At the end of the last step, so that inelastic stretches are those of the energy.
+            // At the end of the last step, so that inelastic stretches belong to the energy.
             let t = 0.4;
             if matches!(&model, Model::Solid(_, Inelasticity::Plastic(_))) {
-                // The force within a plastic step is that of its own flow.
+                // The force within a plastic step contains its own flow.
                 continue;
             }
             let found = force_at(&*force, t, &u);
@@ -184,7 +185,8 @@ fn the_tangent_is_the_derivative_of_the_force() {
     }
 }
 
-/// Two points that are kept in place: a bond breaks where its length over that without stress exceeds the critical stretch.
+/// Two fixed points: the bond breaks where its length relative to the stress-free length exceeds the critical
+/// stretch.
 #[test]
 fn cooling_breaks_bonds_at_the_critical_stretch() {
     let limit = 0.01;
@@ -201,7 +203,7 @@ fn cooling_breaks_bonds_at_the_critical_stretch() {
             force.expand(heat).unwrap();
             let u = vec![0.0; 2 * cloud.len()];
             let end = StepEnd::start(0.0, &u, &u);
-            force.end_step(&end, On::All, &mut vec![0.0; u.len()]);
+            force.end_step(&end, PointSubset::All, &mut vec![0.0; u.len()]);
             assert_eq!(force.broken_bonds() > 0, breaks, "{model:?}, {margin}");
         }
     }
@@ -209,7 +211,7 @@ fn cooling_breaks_bonds_at_the_critical_stretch() {
 
 /// Stencils store no thermal stretch.
 #[test]
-fn forces_without_thermal_expansion_refuse_it() {
+fn forces_without_support_for_thermal_expansion_return_an_error() {
     use pericles::material::{BondMaterial, ElasticModulus};
     use pericles::operator::BondBody;
     let cloud = Arc::new(Grid::plate([12.0, 8.0], 1.0, 1.0).points().unwrap());
@@ -222,5 +224,5 @@ fn forces_without_thermal_expansion_refuse_it() {
     let error = force
         .expand(expansion(&cloud, [1.0, 0.0, 0.0]))
         .unwrap_err();
-    assert!(error.to_string().contains("list of bonds"), "{error}");
+    assert!(error.to_string().contains("neighbour list"), "{error}");
 }

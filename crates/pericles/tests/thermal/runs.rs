@@ -1,4 +1,4 @@
-//! Runs of heated bodies: energy balance, resuming, threads.
+//! Runs of heated bodies: energy balance, resume, threads.
 
 use crate::setup::{Model, models, plate};
 use pericles::boundary::{PrescribedMotion, TimeFunction};
@@ -7,7 +7,7 @@ use pericles::round_trip::check_resume;
 use pericles::time::{Relaxation, RelaxationOptions, State, VelocityVerlet};
 use pericles::{Control, PointScalar, Simulation, System};
 
-/// A plate that is heated over time, more at its right side.
+/// A plate heated over time, more at its right side.
 fn heated(model: &Model, limit: f64, dt: f64) -> Simulation {
     let (cloud, force) = plate(model, [0.5, 1.0, 0.8], limit);
     let mut system = System::new(cloud.clone(), force, PointScalar::Uniform(1.0)).unwrap();
@@ -37,9 +37,10 @@ fn is_small(model: &Model) -> bool {
     )
 }
 
-/// The work of temperatures is exact where the energy is quadratic in displacements and temperatures, also in steps in which bonds break.
+/// The work of temperature changes is exact where the energy is quadratic in displacements and temperatures,
+/// including steps in which bonds break.
 #[test]
-fn small_strains_balance_their_energy_to_rounding() {
+fn energy_balance_with_small_strains_closes_to_round_off() {
     for model in models().iter().filter(|model| is_small(model)) {
         for limit in [f64::INFINITY, 0.012] {
             let mut run = heated(model, limit, 0.05);
@@ -55,7 +56,7 @@ fn small_strains_balance_their_energy_to_rounding() {
 }
 
 #[test]
-fn finite_strains_balance_their_energy_to_second_order() {
+fn energy_balance_with_finite_strains_converges_with_second_order() {
     for model in models().iter().filter(|model| !is_small(model)) {
         let errors = [0.08, 0.04, 0.02].map(|dt| {
             let mut run = heated(model, f64::INFINITY, dt);
@@ -72,7 +73,7 @@ fn finite_strains_balance_their_energy_to_second_order() {
 }
 
 #[test]
-fn runs_resume_and_have_the_same_bits_with_any_threads() {
+fn runs_resume_and_are_bitwise_identical_for_any_number_of_threads() {
     for model in models() {
         let make = || heated(&model, 0.012, 0.05);
         let middle = make().steps() / 2;
@@ -83,7 +84,7 @@ fn runs_resume_and_have_the_same_bits_with_any_threads() {
                 let mut run = make();
                 run.run(|_| Control::Continue).unwrap();
                 let mut archive = pericles::Archive::default();
-                pericles::Saved::save(&run, &mut archive);
+                pericles::Checkpointed::save(&run, &mut archive);
                 archive
             });
             assert_eq!(end.differences(&stored), Vec::<String>::new(), "{threads}");
@@ -91,7 +92,8 @@ fn runs_resume_and_have_the_same_bits_with_any_threads() {
     }
 }
 
-/// A body that may expand is without stress at rest: the first load step heats it from its stress-free temperature, and what it gives back in relaxing is not lost.
+/// A body that expands freely is stress-free in equilibrium: the first load step heats it from its
+/// stress-free temperature, and the energy balance includes the energy released by relaxation.
 #[test]
 fn static_states_of_a_free_body_have_no_stress() {
     for model in models() {
@@ -110,7 +112,8 @@ fn static_states_of_a_free_body_have_no_stress() {
         let before = energies.initial;
         assert!(energies.elastic < 1e-10 * before, "{model:?}: {energies:?}");
         let balance = energies.balance().abs();
-        // One load step of a quadratic energy is exact; the others are off by their nonlinearity at one per cent of strain.
+        // One load step of a quadratic energy is exact; the others deviate by their nonlinearity at one per cent of
+        // strain.
         let bound = if is_small(&model) { 1e-6 } else { 0.02 };
         assert!(balance < bound * before, "{model:?}: {energies:?}");
     }

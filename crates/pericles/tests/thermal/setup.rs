@@ -38,7 +38,7 @@ impl Temperature for Ramp {
 /// α of all tests: 100 K stretch a bond by one per cent.
 pub const ALPHA: f64 = 1e-4;
 
-/// The expansion of a body whose thermal stretch is `base` + `slope` x/10 + `rate` t per cent.
+/// The expansion of a body with the thermal stretch `base` + `slope` x/10 + `rate` t, in per cent.
 pub fn expansion(cloud: &Arc<PointCloud>, [base, slope, rate]: [f64; 3]) -> ThermalExpansion {
     let ramp = Ramp {
         cloud: cloud.clone(),
@@ -50,14 +50,14 @@ pub fn expansion(cloud: &Arc<PointCloud>, [base, slope, rate]: [f64; 3]) -> Ther
     ThermalExpansion::new(cloud.clone(), Arc::new(ramp), 20.0, coefficient).unwrap()
 }
 
-/// The model of a body's material.
+/// The model of the material of a body.
 #[derive(Debug, Clone)]
 pub enum Model {
     Bonds(PairLaw),
     Solid(Strains, Inelasticity),
 }
 
-/// Every model, small and finite strains.
+/// All models, with small and finite strains.
 pub fn models() -> Vec<Model> {
     let viscous = Inelasticity::Viscous(vec![ViscousTerm {
         share: 0.4,
@@ -79,7 +79,8 @@ pub fn models() -> Vec<Model> {
     ]
 }
 
-/// The force of a jittered body with E = 10 and a cut from its left side, not heated; bonds break at the stretch given.
+/// The force of a body of displaced cells with E = 10 and a cut from its left side, not heated; bonds break at the
+/// given stretch.
 pub fn operator(cloud: &Arc<PointCloud>, model: &Model, limit: f64) -> Box<dyn Force> {
     let state = match cloud.dimension() {
         1 => StressState::Uniaxial,

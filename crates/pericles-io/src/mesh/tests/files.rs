@@ -1,4 +1,4 @@
-//! The files of the tetrahedron.
+//! Files of a tetrahedron in all formats.
 
 pub(super) const X: [[f64; 3]; 4] = [
     [1.0, 1.0, 1.0],
@@ -77,7 +77,7 @@ pub(super) fn stl(binary: bool) -> Vec<u8> {
         };
         return format!("solid vertex\n{}endsolid vertex\n", T.map(facet).concat()).into_bytes();
     }
-    // A header that looks like a text.
+    // A header that looks like text.
     let mut file = b"solid".to_vec();
     file.resize(80, b' ');
     file.extend(4u32.to_le_bytes());

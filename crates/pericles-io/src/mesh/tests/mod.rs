@@ -1,4 +1,4 @@
-//! The same tetrahedron in every format; files cut short, changed and with huge counts.
+//! The same tetrahedron in every format; truncated and corrupted files, and huge counts.
 
 use super::*;
 use crate::{VtkField, VtuFile};
@@ -14,7 +14,7 @@ fn read(ending: &str, content: &[u8]) -> Result<Surface, MeshError> {
 }
 
 #[test]
-fn the_same_surface_in_every_format() {
+fn every_format_gives_the_same_surface() {
     let sorted = |surface: &Surface| {
         let mut triangles: Vec<_> = surface
             .triangles()
@@ -35,7 +35,7 @@ fn the_same_surface_in_every_format() {
 }
 
 #[test]
-fn polygons_become_fans() {
+fn polygons_are_split_into_triangle_fans() {
     let cube = "OFF\n8 6 12\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n4 0 3 2 1\n4 4 5 6 7\n4 0 1 5 4 255 0 0\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n";
     let (cube, report) = read("off", cube.as_bytes())
         .unwrap()
@@ -45,11 +45,12 @@ fn polygons_become_fans() {
 }
 
 #[test]
-fn a_file_that_ends_early_is_refused() {
+fn a_truncated_file_is_rejected() {
     for (number, (ending, content)) in files().iter().enumerate() {
         for length in 0..content.len() {
             match read(ending, &content[..length]) {
-                // Formats without counts end at any line: then triangles are missing, and the surface is open.
+                // Formats without counts may end at any line: then triangles are missing, and the surface is
+                // open.
                 Ok(surface) => {
                     let whole = surface.triangles().len() == 4 && surface.positions().len() == 4;
                     let rest = content.len() - length;
@@ -65,19 +66,19 @@ fn a_file_that_ends_early_is_refused() {
 }
 
 #[test]
-fn huge_counts_and_wrong_words_are_refused_with_their_place() {
+fn huge_counts_and_wrong_words_are_rejected_with_their_location() {
     let text =
         |ending: &str, content: &str| read(ending, content.as_bytes()).unwrap_err().to_string();
     for (ending, content, parts) in [
         (
             "off",
             "OFF\n4000000000 4 6\n0 0 0\n",
-            vec![":2: 4000000000 vertices are announced", "hold"],
+            vec![":2: 4000000000 vertices are declared", "hold"],
         ),
         (
             "off",
             "OFF\n1 18446744073709551615 0\n0 0 0\n",
-            vec![":2: ", "faces are announced"],
+            vec![":2: ", "faces are declared"],
         ),
         (
             "off",
@@ -93,17 +94,17 @@ fn huge_counts_and_wrong_words_are_refused_with_their_place() {
         (
             "obj",
             "v 0 0 0\nf 1 2 0\n",
-            vec![":2: \"0\" is no corner", "from 1 on"],
+            vec![":2: \"0\" is not a valid corner", "from 1"],
         ),
         (
             "obj",
             "v 0 0 0\nv 1 0 0\nf 1 2\n",
-            vec![":3: a face of 2 corner(s)", "at least 3"],
+            vec![":3: the face has 2 corner(s)", "at least 3"],
         ),
         (
             "obj",
             "v 0 0 0\nf 1 2 3\n",
-            vec!["triangle 0 has the corner 1", "vertices 0 to 0 only"],
+            vec!["triangle 0 refers to vertex 1", "vertices 0 to 0 only"],
         ),
         ("obj", "hello", vec!["no triangles"]),
         (
@@ -114,47 +115,47 @@ fn huge_counts_and_wrong_words_are_refused_with_their_place() {
         (
             "ply",
             "ply\nformat binary 1.0\n",
-            vec![":2: the format \"binary\"; allowed: ascii"],
+            vec![":2: unknown format \"binary\"; allowed: ascii"],
         ),
         (
             "ply",
             "ply\nformat ascii 1.0\nelement vertex 1\nproperty half x\n",
-            vec![":4: the type \"half\"; allowed: char"],
+            vec![":4: unknown type \"half\"; allowed: char"],
         ),
-        (
-            "stl",
-            "solid a\nfacet\n",
-            vec!["where endsolid should follow"],
-        ),
+        ("stl", "solid a\nfacet\n", vec!["expected endsolid"]),
         (
             "stl",
             "short",
-            vec!["byte 0", "80 more byte(s) are needed, 5 are left"],
+            vec!["byte 0", "80 more byte(s) expected, 5 left"],
         ),
         (
             "msh",
             "$MeshFormat\n3.0 0 8\n$EndMeshFormat\n",
-            vec![":2: version 3.0; allowed: 2.2 and 4.1"],
+            vec![":2: unsupported version 3.0; allowed: 2.2 and 4.1"],
         ),
-        ("msh", "$Nodes\n1\n", vec![":1: $Nodes before $MeshFormat"]),
+        (
+            "msh",
+            "$Nodes\n1\n",
+            vec![":1: $Nodes appears before $MeshFormat"],
+        ),
         (
             "msh",
             "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n777777777\n",
-            vec![":5: 777777777 nodes are announced"],
+            vec![":5: 777777777 nodes are declared"],
         ),
         (
             "msh",
             "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Elements\n1\n1 2 0 1 2 3\n$EndElements",
-            vec![":6: an element has the node 1"],
+            vec![":6: an element refers to node 1"],
         ),
         (
             "vtu",
             "<VTKFile><UnstructuredGrid></UnstructuredGrid></VTKFile>",
-            vec!["there is no array Points"],
+            vec!["the array Points is missing"],
         ),
-        ("vtp", "</VTKFile>", vec!["no element VTKFile"]),
-        ("vtp", "nothing", vec!["where </VTKFile> should follow"]),
-        ("stp", "", vec!["files that end in .obj, .ply"]),
+        ("vtp", "</VTKFile>", vec!["the element VTKFile is missing"]),
+        ("vtp", "nothing", vec!["expected </VTKFile>"]),
+        ("stp", "", vec!["allowed file extensions: .obj, .ply"]),
     ] {
         let message = text(ending, content);
         assert!(parts.iter().all(|part| message.contains(part)), "{message}");
@@ -163,8 +164,7 @@ fn huge_counts_and_wrong_words_are_refused_with_their_place() {
     many[80..84].copy_from_slice(&u32::MAX.to_le_bytes());
     let message = read("stl", &many).unwrap_err().to_string();
     assert!(
-        message.contains("4294967295 triangles are announced")
-            && message.contains("hold 4 at most"),
+        message.contains("4294967295 triangles are declared") && message.contains("hold at most 4"),
         "{message}"
     );
     assert!(matches!(
@@ -174,8 +174,8 @@ fn huge_counts_and_wrong_words_are_refused_with_their_place() {
 }
 
 #[test]
-fn points_written_by_our_own_writer_are_read_back() {
-    // More than one packed block, 64-bit headers; the cells are single points, so that no triangle is found.
+fn written_points_are_read_back() {
+    // More than one compressed block, 64-bit headers; the cells are single points, so that no triangle is found.
     let n = 3000;
     let x: Vec<f64> = (0..3 * n).map(|k| (0.37 * k as f64).sin()).collect();
     let folder = tempfile::tempdir().unwrap();
@@ -194,7 +194,7 @@ fn points_written_by_our_own_writer_are_read_back() {
 }
 
 #[test]
-fn a_surface_written_by_our_own_writer_is_read_back() {
+fn a_written_surface_is_read_back() {
     let sphere = Surface::icosphere(3, 0.7).unwrap();
     let x = sphere.positions();
     let positions: Vec<f64> = (0..3).flat_map(|c| x.iter().map(move |x| x[c])).collect();
@@ -211,7 +211,7 @@ fn a_surface_written_by_our_own_writer_is_read_back() {
 }
 
 #[test]
-fn meshes_are_read_with_the_files_that_they_include() {
+fn meshes_are_read_with_included_files() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("bar.inp");
     std::fs::write(
@@ -231,7 +231,7 @@ fn meshes_are_read_with_the_files_that_they_include() {
         (mesh.nodes.len(), mesh.cells.len(), mesh.groups.len()),
         (4, 1, 1)
     );
-    // A fault in an included file names that file.
+    // An error in an included file names that file.
     std::fs::write(&nodes, "*NODE\n1, zero\n").unwrap();
     let message = read_mesh(&path, u64::MAX).unwrap_err().to_string();
     assert!(
@@ -243,14 +243,14 @@ fn meshes_are_read_with_the_files_that_they_include() {
         .to_string();
     assert_eq!(
         message,
-        "bar.stp: meshes are read from files that end in .obj, .ply, .stl, .off, .msh, .vtu, .vtp, .inp, .e, .exo, .ex2, .g, .gen"
+        "bar.stp: unknown mesh format; allowed file extensions: .obj, .ply, .stl, .off, .msh, .vtu, .vtp, .inp, .e, .exo, .ex2, .g, .gen"
     );
 }
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
     #[test]
-    fn changed_bytes_never_panic(file in 0usize..20, changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
+    fn corrupted_files_never_cause_a_panic(file in 0usize..20, changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
                                  cut in any::<prop::sample::Index>()) {
         let files = files();
         let (ending, content) = &files[file % files.len()];

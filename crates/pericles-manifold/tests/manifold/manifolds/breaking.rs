@@ -1,7 +1,7 @@
-//! Bonds of a surface that break.
+//! Bond breaking on surfaces.
 
 use pericles::time::VelocityVerlet;
-use pericles::{Archive, Control, Saved, Simulation};
+use pericles::{Archive, Checkpointed, Control, Simulation};
 use pericles_manifold::PowerMaterial;
 
 use super::sphere::*;
@@ -47,7 +47,7 @@ fn bonds_break_once_and_dissipate_their_energy() {
     for c in 0..3 {
         assert!((momentum[c] - before[c]).abs() < 1e-11);
     }
-    // Stop and go on, in a run that has broken other bonds in between.
+    // Save and resume into a run in which other bonds have broken.
     let mut archive = Archive::default();
     run(60).save(&mut archive);
     let mut resumed = run(120);

@@ -1,4 +1,4 @@
-//! Peridynamics on surfaces, and the implicit schemes.
+//! Peridynamics on surfaces, with implicit schemes.
 
 mod breaking;
 mod modes;

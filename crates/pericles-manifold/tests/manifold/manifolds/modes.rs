@@ -1,4 +1,4 @@
-//! The solution for p = 2 in all its vibrations, against schemes that know nothing of them.
+//! Schemes compared with the modal solution for p = 2.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 use pericles::time::{InnerSolver, Integrator, Newmark, State, VelocityVerlet};
@@ -7,7 +7,8 @@ use pericles_waves::{Trigonometric, TrigonometricOptions};
 
 use super::sphere::*;
 
-/// All vibrations of one component of the displacement, from a dense eigenproblem: the shapes are orthonormal under areas.
+/// All natural modes of one displacement component, from a dense eigenproblem; the shapes are orthonormal with
+/// respect to areas.
 struct Modes {
     omega: Vec<f64>,
     shapes: Vec<Vec<f64>>,
@@ -45,7 +46,7 @@ impl Modes {
         }
     }
 
-    /// Σ shape · evolve(ω, share of u, share of v) over all vibrations and the three components.
+    /// Σ shape · evolve(ω, modal displacement, modal velocity) over all modes and the three components.
     fn evolved(
         &self,
         sphere: &Sphere,
@@ -70,7 +71,7 @@ impl Modes {
     }
 }
 
-/// sin(x t)/x, and t where x vanishes.
+/// sin(x t)/x, and t for x = 0.
 fn sine_over(x: f64, t: f64) -> f64 {
     if x * t < 1e-6 { t } else { (x * t).sin() / x }
 }
@@ -80,7 +81,7 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).fold(0.0, largest)
 }
 
-/// A sphere of 162 vertices that is displaced and thrown: all vibrations, and the body as a whole, take part.
+/// Sphere of 162 vertices with initial displacement and velocity that excite all modes and rigid translation.
 fn start(sphere: &Sphere) -> State {
     let mut state = sphere.thrown(1.0);
     let noise = noise(state.u.len(), 3);
@@ -107,7 +108,7 @@ fn implicit(solver: InnerSolver) -> impl Fn(&System) -> Box<dyn Integrator> {
 }
 
 #[test]
-fn every_vibration_turns_as_the_scheme_says() {
+fn each_mode_has_the_numerical_frequency_of_the_scheme() {
     let sphere = Sphere::new(2, arcs);
     for alpha in [0.0001, 0.5, 0.999] {
         let modes = Modes::of(&sphere.system(&material(2.0, alpha)));
@@ -124,7 +125,8 @@ fn every_vibration_turns_as_the_scheme_says() {
         let start = start(&sphere);
         let steps = 40;
 
-        // The trapezoidal rule: tan(θ/2) = ω dt/2. By iteration below the limit of explicit schemes, by Newton and Krylov ten times above it.
+        // Trapezoidal rule: tan(θ/2) = ω dt/2. By fixed-point iteration below the explicit limit, by
+        // Newton–Krylov ten times above it.
         for (solver, part) in [
             (InnerSolver::FixedPoint, 0.5),
             (InnerSolver::Anderson { depth: 4 }, 0.5),
@@ -157,7 +159,7 @@ fn every_vibration_turns_as_the_scheme_says() {
         let found = end(&sphere, alpha, &|_| Box::new(VelocityVerlet), dt, steps);
         assert!(distance(&found, &expected) < 1e-9, "α = {alpha}");
 
-        // The trigonometric scheme is exact at any step.
+        // The trigonometric scheme is exact for any time step.
         let dt = 7.0 / highest;
         let t = steps as f64 * dt;
         let expected = modes.evolved(&sphere, &start, |omega, u, v| {
@@ -172,7 +174,7 @@ fn every_vibration_turns_as_the_scheme_says() {
 }
 
 #[test]
-fn time_stepping_tends_to_the_solution_with_the_square_of_the_step() {
+fn time_stepping_converges_with_second_order() {
     let sphere = Sphere::new(2, arcs);
     let alpha = 0.5;
     let modes = Modes::of(&sphere.system(&material(2.0, alpha)));

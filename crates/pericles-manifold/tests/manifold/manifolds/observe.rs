@@ -1,4 +1,4 @@
-//! What is measured on a surface.
+//! Measured quantities of surfaces.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use pericles_manifold::{EnergyBound, SurfaceMeasure};
 use super::sphere::*;
 
 #[test]
-fn a_surface_is_measured() {
+fn stretch_inversion_and_energy_concentration_are_measured() {
     let sphere = Sphere::standard();
     let n = sphere.cloud.len();
     let measure = SurfaceMeasure::new(Arc::new(sphere.surface.clone()));
@@ -48,7 +48,7 @@ fn a_surface_is_measured() {
 }
 
 #[test]
-fn the_energy_bound_is_met_with_equality_by_a_uniform_load() {
+fn energy_bound_is_sharp_for_a_uniform_load() {
     // The body moves as a whole: √E = ∫‖b‖/√(2ρ).
     let sphere = Sphere::standard();
     let n = sphere.cloud.len();

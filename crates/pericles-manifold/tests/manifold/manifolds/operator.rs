@@ -1,9 +1,9 @@
-//! The operator of a surface: energy, tangent, symmetries, spectrum.
+//! Force operator of a surface: energy, tangent, symmetries, spectrum.
 
 use std::f64::consts::TAU;
 
 use pericles::cache::NoCache;
-use pericles::operator::{Force, InstructionSet, On};
+use pericles::operator::{Force, InstructionSet, PointSubset};
 use pericles::time::highest_frequency;
 use pericles_manifold::force::{DisplacementBond, HalfInteger};
 use pericles_manifold::geodesic::{Ball, GeodesicMethod};
@@ -22,13 +22,14 @@ fn materials() -> Vec<PowerMaterial> {
         }
     }
     all.push(PowerMaterial {
-        self_cell: true,
+        self_interaction: true,
         ..material(2.0, 0.75)
     });
     all
 }
 
-/// A displacement and two directions. Chords are all stretched: neither length nor elongation comes near to zero, where difference quotients fail.
+/// A displacement and two directions. All chords are stretched: length and elongation stay away from zero,
+/// where difference quotients fail.
 fn states(sphere: &Sphere, bond: SurfaceBond) -> [Vec<f64>; 3] {
     let x = sphere.cloud.positions();
     [1, 2, 3].map(|seed| {
@@ -65,7 +66,7 @@ fn forces_are_minus_the_gradient_of_the_energy() {
 }
 
 #[test]
-fn tangents_are_derivatives_symmetric_and_dissipate_nothing() {
+fn tangents_are_symmetric_derivatives_of_the_force() {
     let sphere = Sphere::standard();
     let n = 3 * sphere.cloud.len();
     for material in materials() {
@@ -91,7 +92,7 @@ fn tangents_are_derivatives_symmetric_and_dissipate_nothing() {
 }
 
 #[test]
-fn rigid_translations_are_free_and_rotations_only_for_chords() {
+fn translations_cost_no_energy_and_rotations_none_for_chords() {
     let sphere = Sphere::standard();
     let n = sphere.cloud.len();
     let x = sphere.cloud.positions();
@@ -131,7 +132,7 @@ fn rigid_translations_are_free_and_rotations_only_for_chords() {
 }
 
 #[test]
-fn instruction_sets_and_parts_of_the_body_agree() {
+fn instruction_sets_and_subdomains_give_equal_forces() {
     let sphere = Sphere::standard();
     let n = sphere.cloud.len();
     let u = noise(3 * n, 4);
@@ -151,9 +152,9 @@ fn instruction_sets_and_parts_of_the_body_agree() {
         }
         let some: Vec<u32> = (0..n as u32).filter(|i| i % 5 == 2).collect();
         let mut part = vec![0.0; 3 * n];
-        operator.add_force(0.0, &u, On::Set(&some), &mut part);
+        operator.add_force(0.0, &u, PointSubset::Set(&some), &mut part);
         let mut range = vec![0.0; 3 * n];
-        operator.add_force(0.0, &u, On::Range(100..600), &mut range);
+        operator.add_force(0.0, &u, PointSubset::Range(100..600), &mut range);
         for k in 0..3 * n {
             let i = k % n;
             assert_eq!(part[k], if i % 5 == 2 { whole[k] } else { 0.0 });
@@ -170,9 +171,9 @@ fn instruction_sets_and_parts_of_the_body_agree() {
 }
 
 #[test]
-fn breathing_periods_and_highest_frequencies() {
-    // Recomputed from the scalar eigenproblem by an independent code: distances along edges, great-circle arcs, and distances along edges in
-    // the ball of space.
+fn breathing_periods_and_highest_frequencies_match_reference_values() {
+    // Computed from the scalar eigenproblem by an independent code: distances along edges, great-circle arcs,
+    // and distances along edges within the Euclidean ball.
     let sphere = Sphere::standard();
     let exact = Sphere::new(3, arcs);
     let euclid = Sphere::new(3, |surface| {
@@ -201,7 +202,7 @@ fn breathing_periods_and_highest_frequencies() {
 }
 
 #[test]
-fn the_self_cell_brings_the_continuum() {
+fn self_interaction_converges_to_the_continuum() {
     // 2π ∫ (1 − cos t) sin t t^−(2+2α) dt up to 0.5.
     let continuum = [
         (0.25, 0.72096),
@@ -211,9 +212,9 @@ fn the_self_cell_brings_the_continuum() {
     ];
     let spheres = [Sphere::new(2, arcs), Sphere::new(3, arcs)];
     for (alpha, expected) in continuum {
-        let error = |sphere: &Sphere, self_cell| {
+        let error = |sphere: &Sphere, self_interaction| {
             let material = PowerMaterial {
-                self_cell,
+                self_interaction,
                 ..material(2.0, alpha)
             };
             (breathing(sphere, &material).0 / expected - 1.0).abs()

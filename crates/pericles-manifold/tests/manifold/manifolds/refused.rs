@@ -1,4 +1,4 @@
-//! Numbers out of range.
+//! Invalid parameters.
 
 use pericles::time::{DiscreteGradient, InnerSolver, Newmark, NewmarkOptions};
 use pericles_manifold::PowerMaterial;
@@ -6,7 +6,7 @@ use pericles_manifold::PowerMaterial;
 use super::sphere::*;
 
 #[test]
-fn materials_and_parameters_out_of_range_are_refused() {
+fn materials_and_parameters_out_of_range_are_errors() {
     let good = material(2.0, 0.5);
     let wrong = [
         PowerMaterial { alpha: 1.0, ..good },
@@ -35,7 +35,7 @@ fn materials_and_parameters_out_of_range_are_refused() {
         },
         PowerMaterial {
             p: 3.0,
-            self_cell: true,
+            self_interaction: true,
             ..good
         },
     ];

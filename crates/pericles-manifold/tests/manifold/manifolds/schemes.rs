@@ -1,4 +1,4 @@
-//! Implicit schemes.
+//! Implicit schemes on surfaces.
 
 use pericles::round_trip::check_resume;
 use pericles::time::{
@@ -10,8 +10,8 @@ use pericles::{Control, PericlesError, Simulation, SimulationError, System};
 use super::sphere::*;
 
 #[test]
-fn newmark_oscillates_as_its_dispersion_says() {
-    // In an eigenvector the trapezoidal rule is a rotation with tan(ω̃ dt/2) = ω dt/2.
+fn newmark_has_its_theoretical_numerical_frequency() {
+    // For an eigenvector the trapezoidal rule is a rotation with tan(ω̃ dt/2) = ω dt/2.
     let sphere = Sphere::standard();
     let material = material(2.0, 0.5);
     let (value, vector) = breathing(&sphere, &material);
@@ -36,7 +36,7 @@ fn newmark_oscillates_as_its_dispersion_says() {
 }
 
 #[test]
-fn energy_of_cubic_bonds_spreads_with_the_square_of_the_step() {
+fn energy_error_of_cubic_bonds_is_second_order_in_the_step() {
     let sphere = Sphere::standard();
     let material = material(3.0, 0.999);
     let spreads: Vec<f64> = [1000, 2000]
@@ -52,7 +52,7 @@ fn energy_of_cubic_bonds_spreads_with_the_square_of_the_step() {
 }
 
 #[test]
-fn implicit_schemes_stand_ten_times_the_explicit_limit() {
+fn implicit_schemes_are_stable_at_ten_times_the_explicit_limit() {
     let sphere = Sphere::standard();
     let linear = material(2.0, 0.5);
     let dt = 10.0 * 2.0 / 8.007;
@@ -64,7 +64,7 @@ fn implicit_schemes_stand_ten_times_the_explicit_limit() {
     assert!(run.integrator().inner_iterations().unwrap().most < 20);
     for p in [2.0, 3.0, 5.0] {
         let material = material(p, 0.5);
-        // The explicit limit at a state the body comes to: the highest frequency after a time unit.
+        // Explicit limit at a state that the body reaches: the highest frequency after one time unit.
         let scout = VelocityVerlet;
         let (run, _) = spread(
             sphere.system(&material),
@@ -90,7 +90,7 @@ fn implicit_schemes_stand_ten_times_the_explicit_limit() {
 }
 
 #[test]
-fn discrete_gradients_are_of_second_order() {
+fn discrete_gradient_scheme_is_second_order() {
     let sphere = Sphere::standard();
     let material = material(4.0, 0.5);
     let end = |integrator: &dyn Fn(&System) -> Box<dyn Integrator>, steps: u64| {
@@ -114,7 +114,7 @@ fn discrete_gradients_are_of_second_order() {
 }
 
 #[test]
-fn the_inner_iteration_ends_where_explicit_schemes_do() {
+fn fixed_point_iteration_converges_only_below_the_explicit_limit() {
     let sphere = Sphere::standard();
     let material = material(2.0, 0.999);
     let most = |part: f64, solver| {
@@ -149,7 +149,7 @@ fn the_inner_iteration_ends_where_explicit_schemes_do() {
 }
 
 #[test]
-fn one_inner_iteration_is_not_answered_with_a_smaller_step() {
+fn too_few_iterations_advise_more_iterations_not_a_smaller_step() {
     let sphere = Sphere::standard();
     let message = |dt: f64, iterations| {
         let system = sphere.system(&material(2.0, 0.999));
@@ -176,7 +176,7 @@ fn one_inner_iteration_is_not_answered_with_a_smaller_step() {
 }
 
 #[test]
-fn implicit_schemes_go_on_from_a_checkpoint() {
+fn implicit_schemes_resume_from_a_checkpoint() {
     let sphere = Sphere::standard();
     let material = material(3.0, 0.5);
     type Make<'a> = &'a dyn Fn(&System) -> Box<dyn Integrator>;

@@ -1,9 +1,9 @@
-//! A sphere with its bonds, and what tests ask of it.
+//! Sphere with bonds, and helpers for tests.
 
 use std::sync::Arc;
 
 use pericles::noise::{SplitMix64, uniform_in_ball};
-use pericles::operator::{Force, On};
+use pericles::operator::{Force, PointSubset};
 use pericles::solve::{SolveLimits, Work, conjugate_gradient};
 use pericles::space::PointCloud;
 use pericles::time::{InnerSolver, Integrator, NewmarkOptions, State};
@@ -63,7 +63,7 @@ impl Sphere {
             .sum()
     }
 
-    /// At rest with velocities in a ball.
+    /// Undeformed, with initial velocities within a ball.
     pub fn thrown(&self, radius: f64) -> State {
         let n = self.cloud.len();
         let mut state = State::at_rest(3 * n);
@@ -104,7 +104,7 @@ pub fn material(p: f64, alpha: f64) -> PowerMaterial {
         p,
         horizon: 0.5,
         bond: SurfaceBond::Displacement,
-        self_cell: false,
+        self_interaction: false,
         critical_stretch: f64::INFINITY,
     }
 }
@@ -116,7 +116,7 @@ pub fn noise(len: usize, seed: u64) -> Vec<f64> {
 
 pub fn force(operator: &dyn Force, u: &[f64]) -> Vec<f64> {
     let mut out = vec![0.0; u.len()];
-    operator.add_force(0.0, u, On::All, &mut out);
+    operator.add_force(0.0, u, PointSubset::All, &mut out);
     out
 }
 
@@ -124,20 +124,21 @@ pub fn sum_of(u: &[f64], factor: f64, q: &[f64]) -> Vec<f64> {
     u.iter().zip(q).map(|(u, q)| u + factor * q).collect()
 }
 
-/// The derivative at 0 by the six-point rule.
+/// Derivative at 0 by the six-point difference formula.
 pub fn derivative(h: f64, f: impl Fn(f64) -> f64) -> f64 {
     let d = |k: f64| f(k * h) - f(-k * h);
     (45.0 * d(1.0) - 9.0 * d(2.0) + d(3.0)) / (60.0 * h)
 }
 
-/// The lowest eigenvalue of −K for p = 2 on one component without its mean, from the coordinate x, and its vector.
+/// Lowest eigenvalue of −K for p = 2 on one component without its mean, starting from the coordinate x, and its
+/// eigenvector.
 pub fn breathing(sphere: &Sphere, material: &PowerMaterial) -> (f64, Vec<f64>) {
     let operator = sphere.operator(material);
     let linear = operator.as_linear().expect("p = 2");
     let n = sphere.cloud.len();
     let areas = sphere.cloud.volumes();
     let total: f64 = areas.iter().sum();
-    // Constants are lifted above the spectrum.
+    // Shifts constants above the spectrum.
     let lift = operator.frequency_bound(&|_| 1.0).powi(2);
     let mut apply = |x: &[f64], out: &mut [f64]| {
         let mut u = vec![0.0; 3 * n];
@@ -178,7 +179,7 @@ pub fn newmark(solver: InnerSolver) -> NewmarkOptions {
     }
 }
 
-/// Runs and returns the simulation with the relative spread of kinetic + elastic energy.
+/// Runs, and returns the simulation with the relative spread of kinetic + elastic energy.
 pub fn spread(
     system: System,
     integrator: Box<dyn Integrator>,

@@ -1,6 +1,6 @@
-//! Forces of a surface taken apart by zones, and two time steps in one surface.
+//! Zone decomposition of surface forces, and multirate schemes on one surface.
 
-use pericles::operator::On;
+use pericles::operator::PointSubset;
 use pericles::time::{Fine, Follow, Integrator, Respa};
 use pericles::{Path, StepEnd};
 use pericles_manifold::{PowerMaterial, SurfaceBond};
@@ -28,7 +28,7 @@ fn brittle(bond: SurfaceBond, critical_stretch: f64) -> PowerMaterial {
 const BONDS: [SurfaceBond; 2] = [SurfaceBond::Displacement, SurfaceBond::Chord];
 
 #[test]
-fn forces_of_partners_add_up_and_are_opposite() {
+fn partial_forces_sum_to_the_total_and_are_opposite() {
     let sphere = Sphere::standard();
     let n = sphere.cloud.len();
     let u = noise(3 * n, 7);
@@ -45,15 +45,15 @@ fn forces_of_partners_add_up_and_are_opposite() {
         let whole = force(&*operator, &u);
         let scale = whole.iter().fold(0.0_f64, |max, f| max.max(f.abs()));
         let mut parts = vec![0.0; 3 * n];
-        split.add_force_from(0.0, &u, On::All, &inside, &mut parts);
-        split.add_force_from(0.0, &u, On::All, &outside, &mut parts);
+        split.add_force_from(0.0, &u, PointSubset::All, &inside, &mut parts);
+        split.add_force_from(0.0, &u, PointSubset::All, &outside, &mut parts);
         for k in 0..3 * n {
             assert!((parts[k] - whole[k]).abs() < 1e-12 * scale);
         }
         let mut exchange = vec![0.0; 3 * n];
-        split.add_force_from(0.0, &u, On::Set(&inner), &outside, &mut exchange);
+        split.add_force_from(0.0, &u, PointSubset::Set(&inner), &outside, &mut exchange);
         assert!((0..3 * n).all(|k| inside[k % n] || exchange[k] == 0.0));
-        split.add_force_from(0.0, &u, On::Set(&outer), &inside, &mut exchange);
+        split.add_force_from(0.0, &u, PointSubset::Set(&outer), &inside, &mut exchange);
         for component in exchange.chunks(n) {
             let terms = component.iter().zip(sphere.cloud.volumes());
             let sum: f64 = terms.map(|(f, area)| f * area).sum();
@@ -63,7 +63,7 @@ fn forces_of_partners_add_up_and_are_opposite() {
 }
 
 #[test]
-fn breaking_by_partners_decides_their_bonds_only() {
+fn breaking_by_partners_affects_only_their_bonds() {
     let sphere = Sphere::standard();
     let n = sphere.cloud.len();
     let (u, v) = (noise(3 * n, 8), noise(3 * n, 9));
@@ -78,7 +78,7 @@ fn breaking_by_partners_decides_their_bonds_only() {
         let material = brittle(bond, 6.0);
         let mut at_once = sphere.operator(&material);
         let mut expected = vec![0.0; 3 * n];
-        at_once.end_step(&end, On::All, &mut expected);
+        at_once.end_step(&end, PointSubset::All, &mut expected);
         let mut parts = sphere.operator(&material);
         let mut sum = vec![0.0; 3 * n];
         let pairs = [
@@ -89,7 +89,7 @@ fn breaking_by_partners_decides_their_bonds_only() {
         ];
         let counts = pairs.map(|(rows, partners)| {
             let split = parts.split_mut().unwrap();
-            split.end_step_from(&end, On::Set(rows), partners, &mut sum);
+            split.end_step_from(&end, PointSubset::Set(rows), partners, &mut sum);
             parts.broken_bonds()
         });
         assert!(counts[0] > 5 && counts[0] < counts[1] && counts[1] < counts[2]);
@@ -103,7 +103,7 @@ fn breaking_by_partners_decides_their_bonds_only() {
 }
 
 #[test]
-fn endangered_points_are_those_whose_bonds_would_break_at_a_lower_limit() {
+fn endangered_points_have_bonds_that_would_break_at_a_lower_limit() {
     let sphere = Sphere::standard();
     let n = sphere.cloud.len();
     let u: Vec<f64> = noise(3 * n, 8).iter().map(|u| u.powi(3)).collect();
@@ -111,7 +111,7 @@ fn endangered_points_are_those_whose_bonds_would_break_at_a_lower_limit() {
     let mut weak = sphere.operator(&brittle(SurfaceBond::Displacement, fraction * critical));
     weak.end_step(
         &StepEnd::sub_step(0.0, 0.0, &u),
-        On::All,
+        PointSubset::All,
         &mut vec![0.0; u.len()],
     );
     let mut damage = vec![0.0; n];
@@ -126,7 +126,7 @@ fn endangered_points_are_those_whose_bonds_would_break_at_a_lower_limit() {
 }
 
 #[test]
-fn two_time_steps_conserve_momentum_and_energy() {
+fn multirate_scheme_conserves_momentum_and_energy() {
     let sphere = Sphere::standard();
     let north: Vec<u32> = (0..sphere.cloud.len() as u32)
         .filter(|&i| sphere.cloud.point(i as usize)[2] > 0.3)

@@ -1,4 +1,4 @@
-//! Distances along surfaces.
+//! Geodesic distances.
 
 use std::f64::consts::PI;
 
@@ -11,7 +11,8 @@ fn exact(surface: &Surface, delta: f64) -> GeodesicPairs {
     geodesic_pairs(surface, delta, GeodesicMethod::Exact).unwrap()
 }
 
-/// Vertices moved at random by up to `amount` along each axis: saddles, obtuse and skewed triangles.
+/// Moves vertices at random by up to `amount` along each axis, which creates saddles and obtuse and skewed
+/// triangles.
 fn shaken(surface: &Surface, amount: f64, seed: u64) -> Surface {
     let mut state = seed;
     let mut random = || {
@@ -28,7 +29,7 @@ fn shaken(surface: &Surface, amount: f64, seed: u64) -> Surface {
     Surface::new(positions, surface.triangles().to_vec()).unwrap()
 }
 
-/// A solid whose faces are cut into squares of two triangles: the cube (−1, 1)³ with `cells` along each side, scaled.
+/// Box with faces divided into squares of two triangles: the cube (−1, 1)³ with `cells` per side, scaled.
 fn cut_box(cells: u32, half: [f64; 3]) -> Surface {
     let mut numbers = std::collections::HashMap::new();
     let (mut positions, mut triangles) = (Vec::new(), Vec::new());
@@ -74,7 +75,7 @@ fn vertex_at(surface: &Surface, place: [f64; 3]) -> usize {
 }
 
 #[test]
-fn exact_distances_are_those_of_all_rays() {
+fn exact_distances_equal_exhaustive_ray_search() {
     let spike = {
         let ball = Surface::icosphere(2, 1.0).unwrap();
         let x = ball
@@ -130,7 +131,7 @@ fn exact_distances_are_those_of_all_rays() {
 }
 
 #[test]
-fn a_cube_has_the_known_shortest_paths() {
+fn cube_has_the_known_shortest_paths() {
     let cube = cut_box(4, [1.0; 3]);
     let pairs = exact(&cube, 4.6);
     let between = |a: [f64; 3], b: [f64; 3]| {
@@ -142,11 +143,11 @@ fn a_cube_has_the_known_shortest_paths() {
         // Opposite corners: over two faces, 2 by 4.
         ([-1.0, -1.0, -1.0], [1.0, 1.0, 1.0], 20.0),
         ([-1.0, -1.0, -1.0], [1.0, 1.0, -1.0], 8.0),
-        // Middles of opposite and of neighbouring faces, of opposite edges.
+        // Midpoints of opposite and of neighbouring faces, of opposite edges.
         ([0.0, 0.0, -1.0], [0.0, 0.0, 1.0], 16.0),
         ([0.0, 0.0, -1.0], [1.0, 0.0, 0.0], 4.0),
         ([1.0, 1.0, 0.0], [-1.0, -1.0, 0.0], 16.0),
-        // Middle of a face to a corner of the opposite one: 3 by 3 and 1, 1.
+        // Midpoint of a face to a corner of the opposite one: 3 by 3 and 1, 1.
         ([0.0, 0.0, -1.0], [1.0, 1.0, 1.0], 10.0),
     ] {
         assert!(
@@ -157,9 +158,10 @@ fn a_cube_has_the_known_shortest_paths() {
 }
 
 #[test]
-fn the_spider_and_the_fly() {
-    // Dudeney's room of 30 by 12 by 12: spider 1 below the ceiling in the middle of an end wall, fly 1 above the floor in the middle of the other;
-    // 40, over five of the six walls.
+fn dudeneys_spider_and_fly_path_has_length_40() {
+    // Dudeney's room of 30 by 12 by 12: the spider is 1 below the ceiling in the middle of an end wall, the fly
+    // 1 above the floor in the middle of the opposite wall; the shortest path is 40, over five of the six
+    // walls.
     let room = cut_box(12, [15.0, 6.0, 6.0]);
     let pairs = exact(&room, 40.5);
     let (spider, fly) = (
@@ -170,7 +172,7 @@ fn the_spider_and_the_fly() {
 }
 
 #[test]
-fn the_tube_of_a_capsule_is_flat() {
+fn distances_on_the_tube_of_a_capsule_equal_those_on_the_unrolled_tube() {
     let (radius, length, segments) = (0.5, 2.0, 16u32);
     let capsule = Surface::capsule(radius, length, segments).unwrap();
     let delta = 0.9;
@@ -202,7 +204,8 @@ fn the_tube_of_a_capsule_is_flat() {
 
 #[test]
 fn exact_distances_converge_to_those_of_the_sphere() {
-    // Coclite, Coclite, Maddalena, Politi (2022), recomputed: .25, .07 and (level 5, by the study) .02 % at most.
+    // Computed for Coclite, Coclite, Maddalena, Politi (2022): largest errors .25, .07 and (level 5, by the
+    // study) .02 %.
     for (level, entries, limit) in [(3, 23580, 0.00255), (4, 399600, 0.0007)] {
         let sphere = Surface::icosphere(level, 1.0).unwrap();
         let pairs = exact(&sphere, 0.5);
@@ -220,7 +223,7 @@ fn exact_distances_converge_to_those_of_the_sphere() {
 }
 
 #[test]
-fn a_shorter_horizon_leaves_out_and_changes_nothing() {
+fn shorter_horizon_removes_pairs_and_keeps_distances() {
     for surface in [
         Surface::icosphere(2, 1.0).unwrap(),
         Surface::torus(1.0, 0.4, 24, 12).unwrap(),
@@ -247,7 +250,7 @@ fn a_shorter_horizon_leaves_out_and_changes_nothing() {
 }
 
 #[test]
-fn methods_approach_the_truth_from_above() {
+fn approximate_distances_are_upper_bounds() {
     let surface = shaken(&Surface::torus(1.0, 0.4, 30, 16).unwrap(), 0.01, 5);
     let delta = 0.6;
     let truth = exact(&surface, delta);
@@ -301,8 +304,9 @@ fn every_method_is_symmetric_and_the_same_on_any_number_of_threads() {
 }
 
 #[test]
-fn open_surfaces_have_distances_around_their_holes() {
-    // The cube without its top: from the middle of one upper edge to the middle of the opposite one, down a side or along the rim.
+fn distances_on_open_surfaces_go_around_holes() {
+    // Cube without its top: from the midpoint of one upper edge to that of the opposite one, over a side or
+    // along the rim.
     let cube = cut_box(4, [1.0; 3]);
     let open = cube.triangles().iter().copied();
     let open: Vec<[u32; 3]> = open
@@ -331,7 +335,7 @@ fn open_surfaces_have_distances_around_their_holes() {
 }
 
 #[test]
-fn a_horizon_below_the_edges_is_refused() {
+fn horizon_below_the_edge_length_is_an_error() {
     let sphere = Surface::icosphere(2, 1.0).unwrap();
     for delta in [0.0, -1.0, f64::NAN, 0.1] {
         assert!(geodesic_pairs(&sphere, delta, GeodesicMethod::Edge).is_err());

@@ -1,4 +1,4 @@
-//! Surfaces and distances along them: closed forms, independent routes, convergence.
+//! Surfaces and geodesic distances: closed forms, independent implementations, convergence.
 
 mod geodesics;
 mod oracle;

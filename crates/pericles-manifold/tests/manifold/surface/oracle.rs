@@ -1,7 +1,9 @@
-//! Shortest paths on a polyhedron by trying everything: straight rays from a vertex are followed through all triangles they can meet, without any rule
-//! that drops some, and the straight lines found between vertices are joined by Floyd's algorithm.
+//! Reference implementation of shortest paths on a polyhedron by exhaustive search: straight rays from a vertex
+//! are followed through all triangles they can meet, without pruning, and the straight lines found between
+//! vertices are joined by the Floyd–Warshall algorithm.
 //!
-//! Nothing is shared with the library but the surface itself. Right because a shortest path is straight but for bends at vertices.
+//! It shares only the surface type with the library. It is correct because a shortest path is straight except
+//! for bends at vertices.
 
 use std::collections::HashMap;
 
@@ -12,12 +14,12 @@ type Plane = [f64; 2];
 struct Rays<'a> {
     surface: &'a Surface,
     reach: f64,
-    /// The triangle on the left of a directed edge.
+    /// Triangle on the left of a directed edge.
     left: HashMap<[u32; 2], [u32; 3]>,
     found: Vec<f64>,
 }
 
-/// Distances of all pairs that are nearer than `reach`; infinite beyond.
+/// Distances of all pairs closer than `reach`; infinite beyond.
 pub fn distances(surface: &Surface, reach: f64) -> Vec<Vec<f64>> {
     let mut left = HashMap::new();
     for &[a, b, c] in surface.triangles() {
@@ -74,7 +76,8 @@ impl Rays<'_> {
         }
     }
 
-    /// Follows the rays between two directions (the first clockwise of the second) through the directed edge p → q into the triangle on its left.
+    /// Follows the rays between two directions (the first clockwise of the second) through the directed edge p
+    /// → q into the triangle on its left.
     fn through(&mut self, p: u32, q: u32, at_p: Plane, at_q: Plane, cone: [Plane; 2]) {
         if nearest_on(at_p, at_q, cone) >= self.reach {
             return;
@@ -110,7 +113,7 @@ impl Rays<'_> {
         self.surface.chord(a as usize, b as usize)
     }
 
-    /// The third corner of a triangle on the left of p → q.
+    /// Third corner of a triangle on the left of p → q.
     fn apex(&self, p: Plane, q: Plane, to_p: f64, to_q: f64) -> Plane {
         let [x, y] = [q[0] - p[0], q[1] - p[1]];
         let base = x.hypot(y);
@@ -127,7 +130,7 @@ fn cross(a: Plane, b: Plane) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
 
-/// The distance of the origin from the part of a segment within a cone.
+/// Distance of the origin from the part of a segment within a cone.
 fn nearest_on(p: Plane, q: Plane, [low, high]: [Plane; 2]) -> f64 {
     let along = [q[0] - p[0], q[1] - p[1]];
     let hit = |direction: Plane| {

@@ -1,4 +1,4 @@
-//! Shapes, their measures, and what is refused.
+//! Shapes, their measures, and invalid surfaces.
 
 use std::f64::consts::PI;
 
@@ -15,7 +15,7 @@ fn refused(surface: Surface, checks: SurfaceChecks) -> SurfaceError {
 
 #[test]
 fn the_icosphere_has_the_published_measures() {
-    // Recomputed for Coclite, Coclite, Maddalena, Politi (2022), section 5.
+    // Computed for Coclite, Coclite, Maddalena, Politi (2022), section 5.
     let (sphere, report) = checked(Surface::icosphere(3, 1.0).unwrap());
     assert_eq!(
         (sphere.len(), report.edges, sphere.triangles().len()),
@@ -48,7 +48,7 @@ fn the_icosphere_has_the_published_measures() {
 }
 
 #[test]
-fn shapes_are_closed_and_tend_to_their_area_and_volume() {
+fn shapes_are_closed_and_converge_in_area_and_volume() {
     let (r, l) = (0.3, 1.1);
     let shapes: [(Surface, i64, f64, f64); 5] = [
         (
@@ -148,7 +148,7 @@ fn tetrahedron() -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
     )
 }
 
-/// Two tetrahedra with `shared` corners in common, the second pointing away along (a, a, a).
+/// Two tetrahedra with `shared` common corners, the second pointing away along (a, a, a).
 fn two(shared: usize) -> Surface {
     let (mut x, mut t) = tetrahedron();
     let (y, s) = tetrahedron();
@@ -167,7 +167,7 @@ fn two(shared: usize) -> Surface {
 }
 
 #[test]
-fn each_fault_has_its_own_message() {
+fn each_invalid_surface_has_its_own_message() {
     let strict = SurfaceChecks::default();
     let build = |x: Vec<[f64; 3]>, t: Vec<[u32; 3]>| Surface::new(x, t).unwrap();
     let (x, t) = tetrahedron();

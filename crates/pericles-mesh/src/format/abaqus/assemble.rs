@@ -1,4 +1,4 @@
-//! One mesh from the model and its instances.
+//! Assembly of the mesh from the model and its instances.
 
 use std::collections::HashMap;
 
@@ -11,7 +11,7 @@ use crate::raw::{Cells, FaceSet, NamedList, RawMesh};
 use crate::scan::Numbering;
 
 impl Model {
-    /// The mesh of the model itself and of all instances, or of all parts where there are no instances.
+    /// Returns the mesh of the model and all instances, or of all parts if there are no instances.
     pub(super) fn assemble(mut self) -> Result<RawMesh, Fault> {
         let mut mesh = RawMesh {
             left_out: std::mem::take(&mut self.left_out),
@@ -38,7 +38,7 @@ impl Model {
                 scopes.push((Some(name), prefix(&shown, count), self.copy(instance)?));
             }
         }
-        // Numbers of elements are those of the file where they are unique.
+        // Element numbers are those of the file if they are unique.
         let with_elements = scopes.iter().filter(|s| !s.2.elements.kinds.is_empty());
         let own_numbers = with_elements.count() <= 1;
         let mut placed = Vec::new();
@@ -56,12 +56,12 @@ impl Model {
         Ok(mesh)
     }
 
-    /// A copy of the part of an instance and what the instance itself holds, moved and turned.
+    /// Returns a translated and rotated copy of the part of an instance and the instance's own content.
     fn copy(&self, instance: Instance) -> Result<Scope, Fault> {
         let part = self.parts.iter().find(|(name, ..)| *name == instance.part);
         let Some((_, _, part)) = part else {
             return Err(Fault::of_file(format!(
-                "the instance {:?} is of a part that is not there",
+                "the instance {:?} refers to a part that is not defined",
                 instance.shown
             )));
         };
@@ -79,7 +79,7 @@ impl Model {
     }
 }
 
-/// A point turned about the axis from a to b by an angle in degrees (Rodrigues' formula).
+/// Rotates a point about the axis from a to b by an angle in degrees (Rodrigues' formula).
 fn rotated(x: [f64; 3], a: [f64; 3], b: [f64; 3], angle: f64) -> [f64; 3] {
     let axis: [f64; 3] = std::array::from_fn(|c| b[c] - a[c]);
     let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -105,7 +105,7 @@ fn fault_at(position: Position, files: &[String], reason: String) -> Fault {
     }
 }
 
-/// Adds nodes and elements of a scope to the mesh.
+/// Adds the nodes and elements of a scope to the mesh.
 fn place(
     mesh: &mut RawMesh,
     scope: Scope,
@@ -115,7 +115,7 @@ fn place(
     let (mut nodes, mut elements) = (Numbering::default(), Numbering::default());
     for &(number, x, position) in &scope.nodes {
         if !nodes.insert(number, mesh.nodes.len() as u32) {
-            let reason = format!("node {number} is there twice");
+            let reason = format!("node {number} is defined twice");
             return Err(fault_at(position, files, reason));
         }
         mesh.nodes.push(x);
@@ -131,13 +131,13 @@ fn place(
         for &corner in corners.by_ref().take(kind.corners()) {
             cell.push(nodes.get(corner).ok_or_else(|| {
                 let reason =
-                    format!("element {number} has the node {corner}, which is not among the nodes");
+                    format!("element {number} refers to node {corner}, which is not defined");
                 fault_at(position, files, reason)
             })?);
         }
         let next = mesh.cells.len() as u32;
         if !elements.insert(number, next) {
-            let reason = format!("element {number} is there twice");
+            let reason = format!("element {number} is defined twice");
             return Err(fault_at(position, files, reason));
         }
         match own_numbers {
@@ -154,7 +154,7 @@ fn place(
     })
 }
 
-/// Sets and surfaces of all scopes.
+/// Adds the sets and surfaces of all scopes.
 fn add_sets(mesh: &mut RawMesh, placed: &[Placed], cells: &Cells) -> Result<(), Fault> {
     let mut resolver = Resolver::new(placed, cells);
     for (scope, place) in placed.iter().enumerate() {
@@ -210,7 +210,7 @@ fn add_faces(
         (kind, nodes)
     };
     if label == FaceLabel::Free {
-        // Faces that two elements of the mesh share are inside.
+        // Faces shared by two elements of the mesh are interior.
         let all = (0..cells.len() as u32).filter(|&cell| {
             let dimension = cells.kind(cell as usize).dimension();
             Some(dimension) == cells.dimension()
@@ -242,7 +242,7 @@ fn add_faces(
                 let Some(facet) = facet_of(kind, number) else {
                     let number_in_file = cells.number(cell as usize);
                     return Err(Fault::of_file(format!(
-                        "a surface names the face S{number} of element {number_in_file} ({kind}), which has {} faces",
+                        "a surface refers to face S{number} of element {number_in_file} ({kind}), which has only {} faces",
                         kind.facets().len()
                     )));
                 };

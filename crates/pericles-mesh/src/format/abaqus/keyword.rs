@@ -1,15 +1,15 @@
-//! Lines of keywords and of data.
+//! Keyword lines and data lines.
 
 use crate::fault::Fault;
 
-/// A name, compared without regard to case unless it was quoted.
+/// A name, compared case-insensitively unless it was quoted.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(super) struct Name {
     key: String,
 }
 
 impl Name {
-    /// The name in a word of the file, and as it is shown.
+    /// Returns the name in a word of the file, and its displayed form.
     pub(super) fn of(word: &str) -> (Self, String) {
         let word = word.trim();
         let quoted = word
@@ -31,7 +31,7 @@ impl Name {
         }
     }
 
-    /// Instance and set of a name with a point between them.
+    /// Splits `instance.set` into instance and set.
     pub(super) fn parts(&self) -> Option<(Self, Self)> {
         let (instance, set) = self.key.split_once('.')?;
         let name = |key: &str| Self {
@@ -44,13 +44,13 @@ impl Name {
 /// `*KEY, PARAMETER=VALUE, PARAMETER`.
 #[derive(Debug)]
 pub(super) struct Keyword {
-    /// In capitals, with one blank between words.
+    /// In upper case, words separated by one blank.
     pub(super) key: String,
     parameters: Vec<(String, Option<String>)>,
 }
 
 impl Keyword {
-    /// The keyword in a line, without its star.
+    /// Parses the keyword of a line, without its star.
     pub(super) fn of(text: &str) -> Self {
         let mut words = text.split(',');
         let upper = |word: &str| {
@@ -77,23 +77,23 @@ impl Keyword {
         found?.1.as_deref()
     }
 
-    /// The value of a parameter that must be there.
+    /// Returns the value of a required parameter.
     pub(super) fn needed(&self, name: &str, line: usize) -> Result<&str, Fault> {
         self.value(name).ok_or_else(|| {
             let key = &self.key;
-            Fault::at_line(line, format!("*{key} has no {name}; it is needed"))
+            Fault::at_line(line, format!("*{key} has no {name}, which is required"))
         })
     }
 }
 
-/// The words of a line of data.
+/// Returns the words of a data line.
 pub(super) fn words(text: &str) -> impl Iterator<Item = &str> {
     let text = text.trim();
     let text = text.strip_suffix(',').unwrap_or(text);
     text.split(',').map(str::trim)
 }
 
-/// A number with the exponent of Fortran or of C.
+/// Parses a number with a Fortran or C exponent.
 pub(super) fn real(word: &str, line: usize) -> Result<f64, Fault> {
     let number = match word.contains(['d', 'D']) {
         true => word.replace(['d', 'D'], "e").parse(),
@@ -102,7 +102,7 @@ pub(super) fn real(word: &str, line: usize) -> Result<f64, Fault> {
     number.map_err(|_| Fault::at_line(line, format!("{word:?} is not a number")))
 }
 
-/// A number of a node or an element.
+/// Parses the number of a node or an element.
 pub(super) fn whole(word: &str, line: usize) -> Result<i64, Fault> {
     word.parse()
         .map_err(|_| Fault::at_line(line, format!("{word:?} is not a whole number")))

@@ -1,7 +1,8 @@
-//! Abaqus input files: nodes, elements, node and element sets, surfaces, parts and instances, up to the first step. Other keywords are not used.
+//! Abaqus input files: nodes, elements, node and element sets, surfaces, parts and instances, up to the first
+//! step. Other keywords are ignored.
 //!
-//! An instance is a copy of its part and what stands within the instance itself. Sets of a part become `instance.set`, or `set` where there is one instance
-//! only. Names are compared without regard to case unless they are quoted.
+//! An instance is a copy of its part plus its own content. Sets of a part are named `instance.set`, or `set`
+//! if there is only one instance. Names are compared case-insensitively unless they are quoted.
 
 mod assemble;
 mod keyword;

@@ -1,4 +1,4 @@
-//! The keywords that are read, line by line.
+//! Line-by-line reading of the supported keywords.
 
 use super::super::Include;
 use super::keyword::{Keyword, Name, real, whole, words};
@@ -6,18 +6,18 @@ use super::scope::{FaceLabel, Instance, Member, Model, Position, Scope, SurfaceD
 use super::types::{ElementType, element_type};
 use crate::fault::Fault;
 
-/// How deep files may include each other.
+/// Maximum depth of included files.
 const DEPTH: usize = 8;
 
-/// The largest number of numbers of an element: 27 nodes of a brick, and more than any type has.
+/// Maximum number of values of an element: 27 nodes of a hexahedron, and more than any type has.
 const MOST_NUMBERS: usize = 64;
 
-/// Keywords that make nodes or elements from others.
+/// Keywords that generate nodes or elements.
 const GENERATORS: [&str; 8] = [
     "NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SYSTEM", "SUBMODEL",
 ];
 
-/// Where keywords stand.
+/// Level of a keyword.
 #[derive(Debug, Clone, Copy, Default)]
 enum Level {
     #[default]
@@ -26,7 +26,7 @@ enum Level {
     Instance(usize),
 }
 
-/// What lines of data mean.
+/// Meaning of data lines.
 #[derive(Debug, Default)]
 enum Section {
     #[default]
@@ -38,7 +38,7 @@ enum Section {
         element: Option<ElementType>,
         name: String,
         set: Option<String>,
-        /// Numbers of an element that goes on in the next line, and the line of the first.
+        /// Numbers of an element that continues in the next line, and the line of the first.
         pending: Vec<i64>,
         begin: u32,
     },
@@ -62,13 +62,13 @@ pub(super) struct Reading {
     pub(super) model: Model,
     level: Level,
     section: Section,
-    /// The included file that is read, from 1.
+    /// The included file being read, from 1.
     file: u32,
     has_ended: bool,
 }
 
 impl Reading {
-    /// Reads a file, and those that it includes.
+    /// Reads a file and the files it includes.
     pub(super) fn read(
         &mut self,
         content: &[u8],
@@ -126,7 +126,8 @@ impl Reading {
         depth: usize,
     ) -> Result<(), Fault> {
         if depth >= DEPTH {
-            let reason = format!("{name} is included at a depth of more than {DEPTH} files");
+            let reason =
+                format!("{name} exceeds the include depth; allowed: at most {DEPTH} nested files");
             return Err(Fault::at_line(line, reason));
         }
         let content = include(name).map_err(|reason| Fault::at_line(line, reason))?;
@@ -168,7 +169,7 @@ impl Reading {
                     .filter(|s| !s.eq_ignore_ascii_case("R"))
                 {
                     return fault(format!(
-                        "nodes in the system {system}; allowed: R (rectangular). Write the mesh in rectangular coordinates"
+                        "the nodes are given in the coordinate system {system}; allowed: R (rectangular). Write the mesh in rectangular coordinates"
                     ));
                 }
                 self.section = Section::Nodes { set: owned("NSET") };
@@ -196,13 +197,13 @@ impl Reading {
                         self.section = Section::Surface;
                     }
                     "NODE" => self.section = Section::NodeSurface { name },
-                    // Analytical surfaces, sections and the like.
+                    // Analytical surfaces, sections and similar keywords.
                     _ => {}
                 }
             }
             key if GENERATORS.contains(&key) => {
                 return fault(format!(
-                    "*{key} makes nodes or elements from others, which is not read: write the mesh out, for example from Abaqus/CAE"
+                    "*{key} generates nodes or elements, which is not supported; write the complete mesh, for example from Abaqus/CAE"
                 ));
             }
             _ => {}
@@ -212,7 +213,7 @@ impl Reading {
 
     fn begin_instance(&mut self, keyword: &Keyword, line: usize) -> Result<(), Fault> {
         if keyword.has("LIBRARY") {
-            let reason = "an instance from a library; allowed: instances of parts of this file";
+            let reason = "instances from a library are not supported; allowed: instances of parts in this file";
             return Err(Fault::at_line(line, reason));
         }
         let (name, shown) = Name::of(keyword.needed("NAME", line)?);
@@ -308,7 +309,8 @@ impl Reading {
         Ok(())
     }
 
-    /// A line of an element, which goes on until its nodes are there, or while lines that hold more than these end with a comma.
+    /// Reads a line of an element, which continues until its nodes are complete, or while longer lines end
+    /// with a comma.
     fn element_line(
         &mut self,
         text: &str,
@@ -328,7 +330,7 @@ impl Reading {
         let line = position.line as usize;
         let goes_on = text.ends_with(',');
         let Some(element) = *element else {
-            // The mark of an element of an unknown type that goes on.
+            // Marks an element of an unknown type that continues.
             let continues = std::mem::replace(begin, u32::from(goes_on)) == 1;
             if !continues {
                 *self.model.left_out.entry(name.clone()).or_default() += 1;
@@ -343,7 +345,7 @@ impl Reading {
         }
         let needed = 1 + element.nodes;
         if pending.len() > MOST_NUMBERS {
-            let reason = format!("an element of more than {} nodes", MOST_NUMBERS - 1);
+            let reason = format!("the element has more than {} nodes", MOST_NUMBERS - 1);
             return Err(Fault::at_line(line, reason));
         }
         if pending.len() < needed || (pending.len() > needed && goes_on) {
@@ -366,7 +368,7 @@ impl Reading {
         Ok(())
     }
 
-    /// The end of a section: an element must be whole.
+    /// Ends a section: an element must be complete.
     fn finish_section(&mut self, line: usize) -> Result<(), Fault> {
         if let Section::Elements {
             element: Some(element),
@@ -378,7 +380,7 @@ impl Reading {
             && pending.len() <= element.nodes
         {
             let (number, found, needed) = (pending[0], pending.len() - 1, element.nodes);
-            let reason = format!("element {number} ({name}) has {found} nodes; it needs {needed}");
+            let reason = format!("element {number} ({name}) has {found} nodes; expected {needed}");
             return Err(Fault::at_line(line, reason));
         }
         let section = std::mem::take(&mut self.section);
@@ -401,7 +403,7 @@ impl Reading {
             _ => {
                 let number = label.strip_prefix(['S', 'E', 'P', 'F']).unwrap_or(&label);
                 let number = number.parse().map_err(|_| {
-                    let reason = format!("the face {label:?}; allowed: S1 to S6, SPOS, SNEG");
+                    let reason = format!("unknown face {label:?}; allowed: S1 to S6, SPOS, SNEG");
                     Fault::at_line(line, reason)
                 })?;
                 FaceLabel::Number(number)
@@ -437,7 +439,7 @@ impl Reading {
             }
             _ => {
                 let reason = format!(
-                    "line {lines} of the placement of an instance has {} numbers; allowed: 3 of a translation, then 7 of a rotation",
+                    "line {lines} of the instance placement has {} numbers; allowed: 3 for the translation, then 7 for the rotation",
                     numbers.len()
                 );
                 return Err(Fault::at_line(line, reason));
@@ -447,7 +449,7 @@ impl Reading {
     }
 }
 
-/// Adds a number, to a range where it follows one.
+/// Adds a number, extending a range of consecutive numbers.
 fn push_number(members: &mut Vec<(Option<Name>, Member)>, number: i64) {
     match members.last_mut() {
         Some((None, Member::Range(_, last, 1))) if last.checked_add(1) == Some(number) => {
@@ -464,7 +466,7 @@ fn member(word: &str) -> Member {
     }
 }
 
-/// The members of a set in a line.
+/// Parses the members of a set in a line.
 fn members(text: &str, line: usize, generate: bool) -> Result<Vec<Member>, Fault> {
     if !generate {
         let words = words(text).filter(|word| !word.is_empty());
@@ -479,7 +481,9 @@ fn members(text: &str, line: usize, generate: bool) -> Result<Vec<Member>, Fault
         [first, last, step] if step > 0 => Ok(vec![Member::Range(first, last, step)]),
         _ => Err(Fault::at_line(
             line,
-            format!("{text:?} for GENERATE; allowed: first, last and a positive step"),
+            format!(
+                "invalid range {text:?} for GENERATE; allowed: first, last and a positive step"
+            ),
         )),
     }
 }

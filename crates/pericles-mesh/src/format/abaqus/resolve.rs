@@ -1,4 +1,4 @@
-//! Members of sets, whatever sets they refer to.
+//! Resolution of nested sets to their members.
 
 use std::collections::HashMap;
 
@@ -8,21 +8,21 @@ use crate::fault::Fault;
 use crate::raw::Cells;
 use crate::scan::Numbering;
 
-/// How deep sets may refer to sets.
+/// Maximum depth of nested sets.
 const DEPTH: usize = 32;
 
-/// A scope in its place in the mesh.
+/// A scope with its position in the mesh.
 pub(super) struct Placed {
-    /// The instance; none of the model itself.
+    /// The instance; `None` for the model itself.
     pub(super) name: Option<Name>,
-    /// What stands before the names of its sets.
+    /// Prefix of the names of its sets.
     pub(super) prefix: String,
     pub(super) scope: Scope,
     pub(super) nodes: Numbering,
     pub(super) elements: Numbering,
 }
 
-/// Sets by the scope, whether they are of nodes, and their place in it.
+/// Identifies a set by scope, whether it is a node set, and its index in the scope.
 type SetKey = (usize, bool, usize);
 
 pub(super) struct Resolver<'a> {
@@ -40,7 +40,7 @@ impl<'a> Resolver<'a> {
         }
     }
 
-    /// The members of a set, ascending: numbers of nodes or cells of the whole mesh.
+    /// Returns the members of a set, ascending: numbers of nodes or cells of the whole mesh.
     pub(super) fn set(&mut self, key: SetKey, depth: usize) -> Result<Vec<u32>, Fault> {
         if let Some(members) = self.known.get(&key) {
             return Ok(members.clone());
@@ -50,7 +50,7 @@ impl<'a> Resolver<'a> {
         let definition = &sets_of(&placed[scope].scope, of_nodes)[place];
         if depth > DEPTH {
             return Err(Fault::of_file(format!(
-                "the set {:?} refers to itself, or to sets in more than {DEPTH} steps",
+                "the set {:?} refers to itself or nests sets deeper than {DEPTH} levels",
                 definition.shown
             )));
         }
@@ -62,7 +62,7 @@ impl<'a> Resolver<'a> {
                     Some(scope) => scope,
                     None => {
                         return Err(Fault::of_file(format!(
-                            "the set {:?} names an instance that is not there",
+                            "the set {:?} refers to an instance that is not defined",
                             definition.shown
                         )));
                     }
@@ -81,7 +81,7 @@ impl<'a> Resolver<'a> {
         scopes.position(|placed| placed.name.as_ref() == Some(instance))
     }
 
-    /// The nodes or cells that a member of a set stands for. Numbers that are not there stand for nothing.
+    /// Returns the nodes or cells of a set member. Numbers that do not exist are ignored.
     pub(super) fn member(
         &mut self,
         scope: usize,
@@ -118,7 +118,7 @@ impl<'a> Resolver<'a> {
         }
     }
 
-    /// The set of this name in a scope, or `instance.set` in another one.
+    /// Finds the set of this name in a scope, or `instance.set` in another one.
     fn find(&self, scope: usize, of_nodes: bool, name: &Name) -> Option<SetKey> {
         let place = |scope: usize, name| self.placed[scope].scope.place(of_nodes, name);
         if let Some(place) = place(scope, name) {
@@ -137,7 +137,7 @@ fn sets_of(scope: &Scope, of_nodes: bool) -> &[super::scope::SetDefinition] {
     }
 }
 
-/// What is there of the numbers first, first + step, … up to last.
+/// Returns the existing numbers among first, first + step, … up to last.
 fn in_range(placed: &Placed, of_nodes: bool, first: i64, last: i64, step: i64) -> Vec<u32> {
     let (numbering, count) = match of_nodes {
         true => (&placed.nodes, placed.scope.nodes.len()),
@@ -151,7 +151,7 @@ fn in_range(placed: &Placed, of_nodes: bool, first: i64, last: i64, step: i64) -
         let numbers = (0..=width / step).filter_map(|k| first.checked_add(k * step));
         return numbers.filter_map(|number| numbering.get(number)).collect();
     }
-    // A range much longer than the list: the list is searched instead.
+    // If the range is much longer than the list, the list is searched instead.
     let within = |number: &i64| {
         (first..=last).contains(number) && (*number as i128 - first as i128) % step as i128 == 0
     };

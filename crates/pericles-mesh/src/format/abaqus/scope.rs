@@ -1,19 +1,19 @@
-//! What a part, an instance or the model itself holds.
+//! Content of a part, an instance or the model.
 
 use std::collections::{BTreeMap, HashMap};
 
 use super::keyword::Name;
 use crate::cell::CellKind;
 
-/// A line of one of the files that were read.
+/// A line in one of the files.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Position {
-    /// The included file, from 1; 0 of the file itself.
+    /// The included file, from 1; 0 for the main file.
     pub(super) file: u32,
     pub(super) line: u32,
 }
 
-/// Elements, with the numbers of their corners in the file.
+/// Elements with corners by node numbers of the file.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Elements {
     pub(super) kinds: Vec<CellKind>,
@@ -22,7 +22,7 @@ pub(super) struct Elements {
     pub(super) positions: Vec<Position>,
 }
 
-/// A member of a set.
+/// Member of a set.
 #[derive(Debug, Clone)]
 pub(super) enum Member {
     Number(i64),
@@ -39,18 +39,18 @@ pub(super) enum Member {
 pub(super) struct SetDefinition {
     pub(super) name: Name,
     pub(super) shown: String,
-    /// Made by a program for its own use.
+    /// Whether it is internal, created by a program.
     pub(super) is_internal: bool,
-    /// Members, and the instance to which they belong where it is named.
+    /// Members, each with the instance it belongs to if that is specified.
     pub(super) members: Vec<(Option<Name>, Member)>,
 }
 
-/// Which face of an element.
+/// Specification of an element face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum FaceLabel {
     /// S1, S2, …
     Number(usize),
-    /// The element itself, of shells.
+    /// The element itself, for shells.
     Itself,
     /// All faces that belong to one element only.
     Free,
@@ -63,7 +63,7 @@ pub(super) struct SurfaceDefinition {
     pub(super) faces: Vec<(Member, FaceLabel)>,
 }
 
-/// Nodes, elements, sets and surfaces that are numbered together.
+/// Nodes, elements, sets and surfaces with a common numbering.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Scope {
     pub(super) nodes: Vec<(i64, [f64; 3], Position)>,
@@ -71,12 +71,12 @@ pub(super) struct Scope {
     pub(super) node_sets: Vec<SetDefinition>,
     pub(super) element_sets: Vec<SetDefinition>,
     pub(super) surfaces: Vec<SurfaceDefinition>,
-    /// Places of the sets, by whether they are of nodes and by name.
+    /// Indices of the sets, by whether they are node sets and by name.
     places: HashMap<(bool, Name), usize>,
 }
 
 impl Scope {
-    /// The set of this name, made if there is none.
+    /// Returns the set of this name, created if it does not exist.
     pub(super) fn set(&mut self, of_nodes: bool, word: &str) -> &mut SetDefinition {
         let (name, shown) = Name::of(word);
         self.named(of_nodes, name, shown)
@@ -102,12 +102,12 @@ impl Scope {
         &mut sets[place]
     }
 
-    /// The place of the set of this name.
+    /// Returns the index of the set of this name.
     pub(super) fn place(&self, of_nodes: bool, name: &Name) -> Option<usize> {
         self.places.get(&(of_nodes, name.clone())).copied()
     }
 
-    /// Adds all of another scope behind what is here.
+    /// Appends the content of another scope.
     pub(super) fn append(&mut self, other: Self) {
         self.nodes.extend(other.nodes);
         self.elements.kinds.extend(other.elements.kinds);
@@ -125,7 +125,7 @@ impl Scope {
     }
 }
 
-/// A copy of a part, moved and turned.
+/// A translated and rotated copy of a part.
 #[derive(Debug, Clone)]
 pub(super) struct Instance {
     pub(super) name: Name,
@@ -133,19 +133,19 @@ pub(super) struct Instance {
     pub(super) part: Name,
     pub(super) scope: Scope,
     pub(super) translation: [f64; 3],
-    /// Two points of the axis and an angle in degrees, applied after the translation.
+    /// Two points of the axis and an angle in degrees; the rotation follows the translation.
     pub(super) rotation: Option<([f64; 3], [f64; 3], f64)>,
 }
 
-/// All that is read.
+/// Everything read from the files.
 #[derive(Debug, Default)]
 pub(super) struct Model {
-    /// The model itself, or its assembly.
+    /// Content of the model or its assembly.
     pub(super) root: Scope,
     pub(super) parts: Vec<(Name, String, Scope)>,
     pub(super) instances: Vec<Instance>,
     /// Names of included files.
     pub(super) files: Vec<String>,
-    /// Elements of types that are not used.
+    /// Number of elements of unsupported types.
     pub(super) left_out: BTreeMap<String, usize>,
 }

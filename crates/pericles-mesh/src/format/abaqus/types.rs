@@ -1,29 +1,30 @@
-//! Types of elements and their faces.
+//! Element types and their faces.
 
 use crate::cell::CellKind;
 
-/// What an element type is.
+/// Properties of an element type.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct ElementType {
     pub(super) kind: CellKind,
-    /// The number of its nodes.
+    /// Number of nodes.
     pub(super) nodes: usize,
 }
 
-/// Beginnings of the names of solids, of plane elements and shells, of trusses and of beams.
+/// Name prefixes of solids, plane elements and shells, trusses and beams.
 const SOLIDS: [&str; 8] = ["C3D", "AC3D", "DC3D", "COH3D", "CSS", "SC", "EC3D", "DCC3D"];
 const PLANE: [&str; 16] = [
     "CPS", "CPE", "CPEG", "CAX", "CGAX", "AC2D", "ACAX", "DC2D", "DCAX", "M3D", "R3D", "SFM3D",
     "STRI", "DS", "S", "R2D",
 ];
 const TRUSSES: [&str; 4] = ["T2D", "T3D", "RB2D", "RB3D"];
-/// The number after these is the order of the interpolation: 1 and 3 have two nodes, 2 has three.
+/// The number after these prefixes is the interpolation order: 1 and 3 have two nodes, 2 has three.
 const BEAMS: [&str; 5] = ["B2", "B3", "PIPE2", "PIPE3", "SAX"];
 
-/// The type of this name; none of types that are not used. A name is a beginning, the number of nodes and letters: C3D8R.
+/// Returns the type with this name; `None` for unsupported types. A name consists of a prefix, the number of
+/// nodes and letters: C3D8R.
 pub(super) fn element_type(name: &str) -> Option<ElementType> {
     let name = name.to_ascii_uppercase();
-    // The number of nodes follows the longest beginning that fits.
+    // The number of nodes follows the longest matching prefix.
     let number_after = |beginnings: &[&str]| {
         let fits = beginnings.iter().filter_map(|b| name.strip_prefix(b));
         let rest = fits.min_by_key(|rest| rest.len())?;
@@ -61,7 +62,7 @@ pub(super) fn element_type(name: &str) -> Option<ElementType> {
     Some(ElementType { kind, nodes })
 }
 
-/// The facet that a face of Abaqus, from 1, is among the sides of the kind.
+/// Returns the index among the sides of the cell type of an Abaqus face, numbered from 1.
 pub(super) fn facet_of(kind: CellKind, face: usize) -> Option<usize> {
     let order: &[usize] = match kind {
         CellKind::Hexahedron => &[4, 5, 0, 1, 2, 3],
@@ -80,7 +81,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn types_are_known_by_their_beginning_and_number() {
+    fn types_are_recognised_by_prefix_and_number_of_nodes() {
         for (name, kind, nodes) in [
             ("C3D8R", CellKind::Hexahedron, 8),
             ("c3d10m", CellKind::Tetrahedron, 10),

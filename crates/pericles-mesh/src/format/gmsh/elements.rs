@@ -10,18 +10,18 @@ use crate::fault::Fault;
 use crate::raw::RawMesh;
 use crate::scan::{Numbering, Words};
 
-/// Nodes of each type of element, from type 1 on (Gmsh reference manual, MSH file format).
+/// Number of nodes of each element type, from type 1 (Gmsh reference manual, MSH file format).
 const NODES: [usize; 31] = [
     2, 3, 4, 4, 8, 6, 5, 3, 6, 9, 10, 27, 18, 14, 1, 8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4, 5, 6,
     20, 35, 56,
 ];
 
-/// How many nodes an element of this type has; none of a type that is not known.
+/// Returns the number of nodes of an element type; `None` for an unknown type.
 fn nodes_of(kind: i64) -> Option<usize> {
     NODES.get(usize::try_from(kind - 1).ok()?).copied()
 }
 
-/// The kind of an element of this type, by its corners, which are its first nodes.
+/// Returns the cell type of an element type; its corners are its first nodes.
 fn kind_of(kind: i64) -> CellKind {
     match kind {
         15 => CellKind::Point,
@@ -35,20 +35,21 @@ fn kind_of(kind: i64) -> CellKind {
     }
 }
 
-/// Kind and corners of a cell, the corners sorted; what is not used is the largest number.
+/// Cell type and sorted corners of a cell; unused entries have the maximum value.
 type Key = (CellKind, [u32; 8]);
 
-/// What is read, and what is needed to read on.
+/// State of reading nodes and elements.
 #[derive(Default)]
 pub(super) struct Reading {
     pub(super) mesh: RawMesh,
     pub(super) groups: Groups,
     nodes: Numbering,
-    /// The place of each cell of version 2, where an element of several groups stands once for each, under different numbers.
+    /// Index of each cell of version 2, in which an element of several groups is repeated for each with
+    /// different numbers.
     seen: HashMap<Key, u32>,
 }
 
-/// The number of nodes or elements of version 2, which is text in binary files too.
+/// Reads the number of nodes or elements of version 2, which is text also in binary files.
 fn count_of_two(
     numbers: &mut Numbers<'_>,
     content: &[u8],
@@ -75,7 +76,7 @@ impl Reading {
         let (nodes, positions) = (&mut self.nodes, &mut self.mesh.nodes);
         let mut add = |numbers: &Numbers<'_>, tag: i64, point: [f64; 3]| {
             if !nodes.insert(tag, positions.len() as u32) {
-                return Err(numbers.fault(format!("node {tag} is there twice")));
+                return Err(numbers.fault(format!("node {tag} is defined twice")));
             }
             positions.push(point);
             Ok(())
@@ -88,7 +89,7 @@ impl Reading {
             }
             return Ok(());
         }
-        let blocks = numbers.count(Version::Four, "blocks of nodes", 4)?;
+        let blocks = numbers.count(Version::Four, "node blocks", 4)?;
         for _ in 0..3 {
             numbers.tag(Version::Four)?;
         }
@@ -125,7 +126,7 @@ impl Reading {
     }
 
     fn read_elements_of_four(&mut self, numbers: &mut Numbers<'_>) -> Result<(), Fault> {
-        let blocks = numbers.count(Version::Four, "blocks of elements", 4)?;
+        let blocks = numbers.count(Version::Four, "element blocks", 4)?;
         for _ in 0..3 {
             numbers.tag(Version::Four)?;
         }
@@ -151,7 +152,8 @@ impl Reading {
     ) -> Result<(), Fault> {
         let mut left = count_of_two(numbers, content, "elements", 3)?;
         while left > 0 {
-            // As text every element has its own head; in binary files several of one type follow a common one.
+            // In text files every element has its own header; in binary files several elements of one type
+            // share one.
             let (first, kind, count, tags) = match numbers {
                 Numbers::Text(_) => (numbers.int()?, numbers.int()?, 1, numbers.int()?),
                 Numbers::Binary(_) => {
@@ -160,7 +162,9 @@ impl Reading {
                         .ok()
                         .filter(|&count| (1..=left).contains(&count));
                     let count = count.ok_or_else(|| {
-                        numbers.fault(format!("a block of more elements than the {left} left"))
+                        numbers.fault(format!(
+                            "the block has more elements than the {left} that remain"
+                        ))
                     })?;
                     (0, kind, count, tags)
                 }
@@ -186,7 +190,7 @@ impl Reading {
         Ok(())
     }
 
-    /// The nodes of an element: its kind and its corners.
+    /// Reads the nodes of an element; returns its cell type and corners.
     fn element(
         &self,
         numbers: &mut Numbers<'_>,
@@ -194,9 +198,7 @@ impl Reading {
         kind: i64,
     ) -> Result<(CellKind, [u32; 8]), Fault> {
         let Some(count) = nodes_of(kind) else {
-            return Err(numbers.fault(format!(
-                "elements of type {kind} are not known; allowed: 1 to 31"
-            )));
+            return Err(numbers.fault(format!("unknown element type {kind}; allowed: 1 to 31")));
         };
         let kind = kind_of(kind);
         let mut corners = [u32::MAX; 8];
@@ -205,7 +207,7 @@ impl Reading {
             if place < kind.corners() {
                 corners[place] = self.nodes.get(tag).ok_or_else(|| {
                     numbers.fault(format!(
-                        "an element has the node {tag}, which is not among the nodes"
+                        "an element refers to node {tag}, which is not defined"
                     ))
                 })?;
             }
@@ -223,7 +225,7 @@ impl Reading {
         }
     }
 
-    /// Adds an element, or the groups of one that is there already.
+    /// Adds an element, or adds groups to an existing one.
     fn add_once(&mut self, number: i64, kind: CellKind, corners: [u32; 8], groups: &[u64]) {
         let mut sorted = corners;
         sorted.sort_unstable();

@@ -1,4 +1,4 @@
-//! Physical groups: their names, the entities that belong to them, and the elements in them.
+//! Physical groups: names, entities and elements.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -7,11 +7,11 @@ use crate::fault::Fault;
 use crate::raw::NamedList;
 use crate::scan::Words;
 
-/// What a file says of its groups. A group is a dimension and a positive tag.
+/// Physical groups of a file, each identified by a dimension and a positive tag.
 #[derive(Debug, Default)]
 pub(super) struct Groups {
     names: HashMap<(i64, u64), String>,
-    /// Tags of the groups of each entity, by dimension and tag of the entity.
+    /// Group tags of each entity, by dimension and tag of the entity.
     entities: HashMap<(i64, i64), Vec<u64>>,
     members: BTreeMap<(i64, u64), Vec<u32>>,
 }
@@ -19,10 +19,10 @@ pub(super) struct Groups {
 impl Groups {
     /// Reads `$PhysicalNames`: dimension, tag and quoted name on each line.
     pub(super) fn read_names(&mut self, words: &mut Words<'_>) -> Result<(), Fault> {
-        let count = words.count("names of groups", 3)?;
+        let count = words.count("group names", 3)?;
         for _ in 0..count {
             let dimension = words.number("a dimension")?;
-            let tag: i64 = words.number("a tag of a group")?;
+            let tag: i64 = words.number("a group tag")?;
             let rest: Vec<&str> = words.rest_of_line().collect();
             let name = rest.join(" ");
             let name = name.trim_matches('"').to_owned();
@@ -31,7 +31,7 @@ impl Groups {
         Ok(())
     }
 
-    /// Reads `$Entities`: the groups of each.
+    /// Reads `$Entities`: the groups of each entity.
     pub(super) fn read_entities(&mut self, numbers: &mut Numbers<'_>) -> Result<(), Fault> {
         let mut counts = [0; 4];
         for count in &mut counts {
@@ -40,7 +40,8 @@ impl Groups {
         self.read_blocks(numbers, counts, false)
     }
 
-    /// Reads `$PartitionedEntities`: entities with the dimension and tag of a parent entity and a list of partitions in addition.
+    /// Reads `$PartitionedEntities`: entities with additional dimension and tag of a parent entity and a list
+    /// of partitions.
     pub(super) fn read_partitioned(&mut self, numbers: &mut Numbers<'_>) -> Result<(), Fault> {
         numbers.length("partitions")?;
         for _ in 0..numbers.length("ghost entities")? {
@@ -76,7 +77,7 @@ impl Groups {
                 }
                 let mut tags = Vec::new();
                 for _ in 0..numbers.length("groups")? {
-                    // The sign of a tag is the orientation.
+                    // The sign of a tag gives the orientation.
                     tags.push(numbers.int()?.unsigned_abs());
                 }
                 if !tags.is_empty() {
@@ -92,7 +93,7 @@ impl Groups {
         Ok(())
     }
 
-    /// The tags of the groups of an entity.
+    /// Returns the group tags of an entity.
     pub(super) fn of_entity(&self, dimension: i64, tag: i64) -> Vec<u64> {
         let tags = self.entities.get(&(dimension, tag));
         tags.cloned().unwrap_or_default()
@@ -106,7 +107,7 @@ impl Groups {
         }
     }
 
-    /// The groups that have members, by dimension and tag.
+    /// Returns the groups with members, by dimension and tag.
     pub(super) fn lists(self) -> Vec<NamedList> {
         let Self { names, members, .. } = self;
         let list = |(key, members): ((i64, u64), Vec<u32>)| NamedList {

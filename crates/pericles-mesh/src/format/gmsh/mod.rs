@@ -1,7 +1,7 @@
-//! Gmsh 2.2 and 4.1, as text or binary: elements of any type and order with their corners, and physical groups.
+//! Gmsh 2.2 and 4.1, as text or binary: elements of any type and order by their corners, and physical groups.
 //!
-//! In version 2.2 an element of several groups stands once for each, under different numbers: these are merged. In version 4.1 the groups of an element are
-//! those of its entity.
+//! In version 2.2 an element of several groups is repeated for each group with different numbers: these are
+//! merged. In version 4.1 an element belongs to the groups of its entity.
 
 mod elements;
 mod groups;
@@ -16,7 +16,7 @@ use numbers::{Numbers, Version};
 #[derive(Debug, Clone, Copy)]
 struct Format {
     version: Version,
-    /// Byte order, if the file is binary.
+    /// Byte order of a binary file.
     binary: Option<bool>,
 }
 
@@ -26,9 +26,7 @@ pub(crate) fn parse(content: &[u8]) -> Result<RawMesh, Fault> {
     let mut reading = Reading::default();
     while let Some(word) = words.next() {
         let Some(section) = word.strip_prefix('$') else {
-            return Err(words.fault(format!(
-                "{word:?} where a section such as $Nodes should begin"
-            )));
+            return Err(words.fault(format!("found {word:?}, expected a section such as $Nodes")));
         };
         let reader = format.map(|format: Format| {
             let numbers = match format.binary {
@@ -37,7 +35,8 @@ pub(crate) fn parse(content: &[u8]) -> Result<RawMesh, Fault> {
                     inside.skip_to(words.position());
                     Numbers::Text(inside)
                 }
-                // Binary data begin after the line's end; what version 2 writes as text before them is read there.
+                // Binary data begin after the end of the line; text of version 2 before them is read by the
+                // section.
                 Some(little) => Numbers::Binary(Bytes::new(
                     content,
                     line_end(content, words.position()),
@@ -49,7 +48,7 @@ pub(crate) fn parse(content: &[u8]) -> Result<RawMesh, Fault> {
         match (section, reader) {
             ("MeshFormat", _) => format = Some(mesh_format(&mut words, content)?),
             ("Nodes" | "Elements", None) => {
-                return Err(words.fault(format!("${section} before $MeshFormat")));
+                return Err(words.fault(format!("${section} appears before $MeshFormat")));
             }
             ("PhysicalNames", _) => reading.groups.read_names(&mut words)?,
             ("Entities", Some((mut numbers, format))) if format.version == Version::Four => {
@@ -77,11 +76,11 @@ pub(crate) fn parse(content: &[u8]) -> Result<RawMesh, Fault> {
             .position(|window| window == end.as_bytes())
         {
             Some(place) => words.skip_to(words.position() + place + end.len()),
-            None => return Err(words.fault(format!("the file ends where {end} should follow"))),
+            None => return Err(words.fault(format!("unexpected end of file; expected {end}"))),
         }
     }
     if format.is_none() {
-        return Err(Fault::of_file("there is no section $MeshFormat"));
+        return Err(Fault::of_file("the section $MeshFormat is missing"));
     }
     let Reading {
         mut mesh, groups, ..
@@ -90,7 +89,7 @@ pub(crate) fn parse(content: &[u8]) -> Result<RawMesh, Fault> {
     Ok(mesh)
 }
 
-/// The place after the end of a line.
+/// Returns the position after the end of a line.
 fn line_end(content: &[u8], position: usize) -> usize {
     let rest = &content[position.min(content.len())..];
     position
@@ -104,7 +103,9 @@ fn mesh_format(words: &mut Words<'_>, content: &[u8]) -> Result<Format, Fault> {
     let version = match words.word("a version")? {
         "2" | "2.1" | "2.2" => Version::Two,
         "4.1" => Version::Four,
-        other => return Err(words.fault(format!("version {other}; allowed: 2.2 and 4.1"))),
+        other => {
+            return Err(words.fault(format!("unsupported version {other}; allowed: 2.2 and 4.1")));
+        }
     };
     let binary = match words.word("0 or 1")? {
         "0" => None,
@@ -115,10 +116,14 @@ fn mesh_format(words: &mut Words<'_>, content: &[u8]) -> Result<Format, Fault> {
             match one {
                 Some([1, 0, 0, 0]) => Some(true),
                 Some([0, 0, 0, 1]) => Some(false),
-                _ => return Err(words.fault("the number one that tells the byte order is missing")),
+                _ => return Err(words.fault("the integer 1 that marks the byte order is missing")),
             }
         }
-        other => return Err(words.fault(format!("{other:?} for text or binary; allowed: 0 and 1"))),
+        other => {
+            return Err(words.fault(format!(
+                "the file type is {other:?}; allowed: 0 (text) and 1 (binary)"
+            )));
+        }
     };
     Ok(Format { version, binary })
 }

@@ -1,9 +1,9 @@
-//! Numbers of Gmsh files, as text or binary.
+//! Numbers in Gmsh files, as text or binary.
 
 use crate::fault::Fault;
 use crate::scan::{Bytes, Scalar, Words};
 
-/// Numbers of a text or of bytes; both forms have the same numbers in the same order, but for elements of version 2.
+/// Numbers in text or binary form; both have the same order, except for elements of version 2.
 pub(super) enum Numbers<'a> {
     Text(Words<'a>),
     Binary(Bytes<'a>),
@@ -24,7 +24,7 @@ impl Numbers<'_> {
         }
     }
 
-    /// A count of things in a list, which has eight bytes in binary files.
+    /// Reads the length of a list, which has eight bytes in binary files.
     pub(super) fn length(&mut self, what: &str) -> Result<usize, Fault> {
         self.count(Version::Four, what, 1)
     }
@@ -40,7 +40,7 @@ impl Numbers<'_> {
         Ok([self.real()?, self.real()?, self.real()?])
     }
 
-    /// A number of things that take so many numbers each.
+    /// Reads the number of items that take `numbers_each` numbers each.
     pub(super) fn count(
         &mut self,
         version: Version,
@@ -55,7 +55,7 @@ impl Numbers<'_> {
                     Version::Four => bytes.integer(Scalar::U64)?,
                 };
                 let count = u64::try_from(count)
-                    .map_err(|_| bytes.fault(format!("{count} {what} are announced")))?;
+                    .map_err(|_| bytes.fault(format!("{count} {what} are declared")))?;
                 // The smallest numbers have four bytes.
                 bytes.room(count, 4 * numbers_each, what)
             }

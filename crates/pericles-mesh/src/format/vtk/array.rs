@@ -1,4 +1,4 @@
-//! Arrays of VTK XML files: as text, in base64, or appended; packed in blocks or not.
+//! Arrays of VTK XML files: text, base64 or appended data, compressed or not.
 
 use std::borrow::Cow;
 use std::io::Read;
@@ -10,19 +10,19 @@ use crate::fault::Fault;
 use crate::scan::Words;
 use crate::scan::{Bytes, Scalar};
 
-/// Deflate makes at most 1032 bytes of one.
+/// Maximum compression ratio of Deflate.
 const MOST_PACKED: u64 = 1032;
 
-/// How binary arrays are written in a file.
+/// Encoding of binary arrays in a file.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Encoding {
     pub(crate) little: bool,
-    /// Type of the numbers before the data.
+    /// Integer type of the numbers before the data.
     pub(crate) header: Scalar,
     pub(crate) packed: bool,
 }
 
-/// Where the numbers of an array are.
+/// Location of the numbers of an array.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Source<'a> {
     Text(&'a [u8]),
@@ -30,7 +30,7 @@ pub(crate) enum Source<'a> {
     Raw(&'a [u8]),
 }
 
-/// The numbers of an array.
+/// Numbers of an array.
 pub(crate) enum Numbers {
     Real(Vec<f64>),
     Whole(Vec<i64>),
@@ -48,13 +48,13 @@ impl Numbers {
         match self {
             Self::Whole(numbers) => Ok(numbers),
             Self::Real(_) => Err(Fault::of_file(format!(
-                "{what} are real numbers; they must be whole ones"
+                "{what} are real numbers; expected integers"
             ))),
         }
     }
 }
 
-/// Reads an array that may take `room` bytes; tells how many its numbers take.
+/// Reads an array of up to `room` bytes; also returns the memory of its numbers in bytes.
 pub(crate) fn read(
     source: Source<'_>,
     scalar: Scalar,
@@ -64,7 +64,8 @@ pub(crate) fn read(
 ) -> Result<(Numbers, u64), Fault> {
     let real = matches!(scalar, Scalar::F32 | Scalar::F64);
     if let Source::Text(text) = source {
-        // A number has a character and a blank at least, and takes eight bytes; a list that grows has room for twice its length.
+        // A number has at least one character and a blank, and takes eight bytes; a growing list has capacity
+        // for up to twice its length.
         let taken = 8 * text.len() as u64;
         if taken > room {
             return Err(Fault::too_large(taken));
@@ -76,7 +77,7 @@ pub(crate) fn read(
         };
         return Ok((numbers, taken));
     }
-    // The bytes, and the numbers of eight bytes made of them.
+    // The bytes, and the numbers of eight bytes converted from them.
     let taken_of =
         |bytes: u64| bytes.saturating_add((bytes / scalar.bytes() as u64).saturating_mul(8));
     let fits = |bytes: u64| match taken_of(bytes) {
@@ -109,22 +110,22 @@ pub(crate) fn read(
     Ok((numbers, taken_of(data.len() as u64)))
 }
 
-/// All words of a text as numbers.
+/// Parses all words of a text as numbers.
 fn words<T: FromStr>(text: &[u8], what: &str) -> Result<Vec<T>, Fault> {
     let mut words = Words::new(text, None);
     let mut numbers = Vec::new();
     while let Some(word) = words.next() {
         let number = word.parse();
-        numbers.push(
-            number.map_err(|_| {
-                Fault::of_file(format!("{what}: {word:?} is no number of its type"))
-            })?,
-        );
+        numbers.push(number.map_err(|_| {
+            Fault::of_file(format!(
+                "{what}: {word:?} is not a number of the declared type"
+            ))
+        })?);
     }
     Ok(numbers)
 }
 
-/// The bytes of a source from its beginning, in base64 at most so many characters.
+/// Returns the first bytes of a source, from at most `characters` characters of base64.
 fn begun(source: Source<'_>, characters: usize) -> Result<Cow<'_, [u8]>, Fault> {
     match source {
         Source::Base64(text) => decoded(&text[..characters.min(text.len())]).map(Cow::Owned),
@@ -132,7 +133,7 @@ fn begun(source: Source<'_>, characters: usize) -> Result<Cow<'_, [u8]>, Fault> 
     }
 }
 
-/// The number of bytes, then the bytes; `fits` refuses too many.
+/// Reads the number of bytes, then the bytes; `fits` rejects excessive sizes.
 fn plain(
     source: Source<'_>,
     encoding: Encoding,
@@ -146,15 +147,15 @@ fn plain(
     Ok(bytes.take(length)?.to_vec())
 }
 
-/// The number of blocks, the bytes in a block, those in the last one if it is not full, the packed bytes of every block; then the blocks.
-/// `fits` refuses too many bytes.
+/// Reads the number of blocks, the size of a block, the size of the last one if it is not full, and the
+/// compressed size of every block; then the blocks. `fits` rejects excessive sizes.
 fn unpacked(
     source: Source<'_>,
     encoding: Encoding,
     fits: impl Fn(u64) -> Result<(), Fault>,
 ) -> Result<Vec<u8>, Fault> {
     let size = encoding.header.bytes();
-    // In base64 the table is a group of its own: its length must be known before the rest can be decoded.
+    // In base64 the table is encoded separately: its length must be known before the rest can be decoded.
     let head = begun(source, group(size))?;
     let mut head = Bytes::new(&head, 0, encoding.little);
     let blocks = head.integer(encoding.header)? as u64;
@@ -164,7 +165,7 @@ fn unpacked(
     // The table has three numbers more than there are blocks.
     if blocks > (length / size) as u64 {
         return Err(head.fault(format!(
-            "{blocks} blocks are announced, but only {length} bytes follow"
+            "{blocks} blocks are declared, but only {length} bytes follow"
         )));
     }
     let blocks = blocks as usize;
@@ -188,20 +189,22 @@ fn unpacked(
     let mut all = Vec::new();
     for block in 0..blocks {
         let length = table.integer(encoding.header)? as u64;
-        let length = packed.room(length, 1, "packed bytes")?;
+        let length = packed.room(length, 1, "compressed bytes")?;
         let expected = if block + 1 == blocks && last > 0 {
             last
         } else {
             full
         };
         if expected > MOST_PACKED * (length as u64 + 1) {
-            return Err(packed.fault(format!("{expected} bytes cannot be packed into {length}")));
+            return Err(packed.fault(format!(
+                "{expected} bytes cannot be compressed into {length}"
+            )));
         }
         let before = all.len();
         ZlibDecoder::new(packed.take(length)?)
             .take(expected + 1)
             .read_to_end(&mut all)
-            .map_err(|error| packed.fault(format!("packed data are damaged ({error})")))?;
+            .map_err(|error| packed.fault(format!("the compressed data are damaged ({error})")))?;
         if (all.len() - before) as u64 != expected {
             return Err(packed.fault(format!(
                 "a block has {} bytes instead of {expected}",
@@ -212,12 +215,12 @@ fn unpacked(
     Ok(all)
 }
 
-/// Characters that so many bytes take in base64.
+/// Returns the number of base64 characters of some bytes.
 fn group(bytes: usize) -> usize {
     bytes.div_ceil(3) * 4
 }
 
-/// The bytes of a text in base64 (RFC 4648), up to the first group that is not full.
+/// Decodes base64 text (RFC 4648) up to the first incomplete group.
 fn decoded(text: &[u8]) -> Result<Vec<u8>, Fault> {
     let mut bytes = Vec::with_capacity(text.len() / 4 * 3);
     let mut group = 0u32;
@@ -229,12 +232,12 @@ fn decoded(text: &[u8]) -> Result<Vec<u8>, Fault> {
             b'0'..=b'9' => character - b'0' + 52,
             b'+' => 62,
             b'/' => 63,
-            // The end of a group, or of the data.
+            // End of a group or of the data.
             b'=' | b'<' => break,
             character if character.is_ascii_whitespace() => continue,
             character => {
                 return Err(Fault::of_file(format!(
-                    "{:?} is no digit of base64",
+                    "{:?} is not a base64 digit",
                     char::from(character)
                 )));
             }

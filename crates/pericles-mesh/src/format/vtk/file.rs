@@ -1,4 +1,4 @@
-//! The XML of a VTK file: its elements, and the arrays in them.
+//! XML structure of a VTK file: elements and arrays.
 
 use std::cell::Cell;
 use std::ops::Range;
@@ -7,13 +7,13 @@ use super::array::{Encoding, Numbers, Source, read};
 use crate::fault::Fault;
 use crate::scan::Scalar;
 
-/// A file in its parts: elements, and data appended to them.
+/// A parsed file: elements and appended data.
 pub(crate) struct File<'a> {
     content: &'a [u8],
     elements: Vec<Element<'a>>,
     encoding: Encoding,
     appended: Option<(Appended, &'a [u8])>,
-    /// Bytes that arrays may still take.
+    /// Remaining memory for arrays, bytes.
     room: Cell<u64>,
     memory: u64,
 }
@@ -24,7 +24,7 @@ enum Appended {
     Base64,
 }
 
-/// A start or end tag of the XML, with the place of the text behind it.
+/// A start or end tag of the XML, with the position of the text after it.
 struct Element<'a> {
     tag: &'a str,
     text: usize,
@@ -62,7 +62,7 @@ impl<'a> Element<'a> {
 }
 
 impl<'a> File<'a> {
-    /// A file whose content and arrays may take `memory` bytes together.
+    /// Parses a file whose content and arrays may take up to `memory` bytes together.
     pub(crate) fn new(content: &'a [u8], memory: u64) -> Result<Self, Fault> {
         let last = b"</VTKFile>";
         if !content
@@ -71,7 +71,7 @@ impl<'a> File<'a> {
             .any(|window| window == last)
         {
             return Err(Fault::of_file(
-                "the file ends where </VTKFile> should follow",
+                "unexpected end of file; expected </VTKFile>",
             ));
         }
         let mark = b"<AppendedData";
@@ -103,7 +103,7 @@ impl<'a> File<'a> {
             }
         };
         let Some(file) = elements.iter().find(|element| element.starts("VTKFile")) else {
-            return Err(Fault::of_file("there is no element VTKFile"));
+            return Err(Fault::of_file("the element VTKFile is missing"));
         };
         let encoding = Encoding {
             little: file.attribute("byte_order") != Some("BigEndian"),
@@ -116,7 +116,7 @@ impl<'a> File<'a> {
                 Some("vtkZLibDataCompressor") => true,
                 Some(other) => {
                     return Err(Fault::of_file(format!(
-                        "the compressor {other}; allowed: vtkZLibDataCompressor, or none"
+                        "unsupported compressor {other}; allowed: vtkZLibDataCompressor, or none"
                     )));
                 }
             },
@@ -135,7 +135,7 @@ impl<'a> File<'a> {
         self.elements.iter().any(|element| element.starts(name))
     }
 
-    /// The elements of each piece; all elements where there are no pieces.
+    /// Returns the elements of each piece; all elements if there are no pieces.
     pub(crate) fn pieces(&self) -> Vec<Range<usize>> {
         let mut pieces = Vec::new();
         let mut begin = None;
@@ -152,7 +152,7 @@ impl<'a> File<'a> {
         pieces
     }
 
-    /// The arrays in the first section of this name among some elements.
+    /// Returns the arrays in the first section of this name in a range of elements.
     fn arrays(&self, within: Range<usize>, section: &str) -> impl Iterator<Item = &Element<'a>> {
         let inside = self.elements[within]
             .iter()
@@ -162,12 +162,12 @@ impl<'a> File<'a> {
             .filter(|element| element.starts("DataArray"))
     }
 
-    /// Names and numbers of components of the arrays in the first section of this name.
+    /// Returns names and numbers of components of the arrays in the first section of this name.
     pub(crate) fn columns(&self, section: &str) -> impl Iterator<Item = (&'a str, usize)> {
         self.columns_in(0..self.elements.len(), section)
     }
 
-    /// The same among some elements.
+    /// Like [`File::columns`], in a range of elements.
     pub(crate) fn columns_in(
         &self,
         within: Range<usize>,
@@ -183,12 +183,12 @@ impl<'a> File<'a> {
         })
     }
 
-    /// The first array of this name, or of any, in the first section of this name.
+    /// Returns the first array with the given name, or any array, in the first section of this name.
     pub(crate) fn array(&self, section: &str, name: Option<&str>) -> Result<Numbers, Fault> {
         self.array_in(0..self.elements.len(), section, name)
     }
 
-    /// The same among some elements.
+    /// Like [`File::array`], in a range of elements.
     pub(crate) fn array_in(
         &self,
         within: Range<usize>,
@@ -201,7 +201,7 @@ impl<'a> File<'a> {
             .find(|element| name.is_none() || element.attribute("Name") == name);
         let Some(array) = array else {
             return Err(Fault::of_file(format!(
-                "there is no array {what} in {section}"
+                "the array {what} is missing in {section}"
             )));
         };
         let scalar = match array.attribute("type") {
@@ -217,8 +217,8 @@ impl<'a> File<'a> {
             Some("UInt64") => Scalar::U64,
             other => {
                 return Err(Fault::of_file(format!(
-                    "{what}: the type {}",
-                    other.unwrap_or("is missing")
+                    "{what}: unsupported type {}",
+                    other.unwrap_or("(none)")
                 )));
             }
         };
@@ -245,21 +245,21 @@ impl<'a> File<'a> {
                     Some((Appended::Base64, data)) => Source::Base64(data),
                     None => {
                         return Err(Fault::of_file(format!(
-                            "{what}: its offset leads beyond the appended data"
+                            "{what}: the offset exceeds the appended data"
                         )));
                     }
                 }
             }
             other => {
                 return Err(Fault::of_file(format!(
-                    "{what}: the format {:?}; allowed: ascii, binary, appended",
+                    "{what}: unknown format {:?}; allowed: ascii, binary, appended",
                     other.unwrap_or_default()
                 )));
             }
         };
         let (numbers, taken) =
             read(source, scalar, self.encoding, what, self.room.get()).map_err(|fault| Fault {
-                // Of the file as a whole: what arrays before have taken is needed as well.
+                // Relative to the whole file: memory taken by previous arrays is needed as well.
                 needed: fault
                     .needed
                     .map(|needed| needed + (self.memory - self.room.get())),
@@ -270,7 +270,7 @@ impl<'a> File<'a> {
     }
 }
 
-/// All tags of an XML text, comments and declarations left out.
+/// Returns all tags of an XML text, without comments and declarations.
 fn tags(xml: &[u8]) -> Result<Vec<Element<'_>>, Fault> {
     let mut tags = Vec::new();
     let mut at = 0;
@@ -281,7 +281,7 @@ fn tags(xml: &[u8]) -> Result<Vec<Element<'_>>, Fault> {
         };
         at = start + length + 1;
         let Ok(tag) = std::str::from_utf8(&xml[start..start + length]) else {
-            return Err(Fault::at_byte(start, "a tag that is no text"));
+            return Err(Fault::at_byte(start, "the tag is not UTF-8 text"));
         };
         if !tag.starts_with(['?', '!']) {
             tags.push(Element { tag, text: at });

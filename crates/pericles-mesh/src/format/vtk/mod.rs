@@ -1,6 +1,7 @@
-//! VTK XML files: `UnstructuredGrid` with its cells, `PolyData` with its polygons, in one piece or several.
+//! VTK XML files: `UnstructuredGrid` with cells, `PolyData` with polygons, in one or several pieces.
 //!
-//! Integer data on cells whose name contains block, material, region, group or physical give groups, one for each number.
+//! Integer cell data whose name contains block, material, region, group or physical define groups, one for
+//! each value.
 
 mod array;
 mod fields;
@@ -17,12 +18,12 @@ use array::Numbers;
 pub use fields::{FieldColumn, FieldData, parse_fields};
 use file::File;
 
-/// Words in the names of data on cells that divide them into groups.
+/// Words in the names of cell data that define groups.
 const GROUPING: [&str; 5] = ["block", "material", "region", "group", "physical"];
 
-/// How the corners of a cell type are given.
+/// Ordering of the corners of a cell type.
 enum Corners {
-    /// In our order, nodes of higher order after them.
+    /// In the order of Pericles, followed by higher-order nodes.
     InOrder(CellKind),
     /// Row by row, as in pixels and voxels.
     ByRows(CellKind),
@@ -30,7 +31,7 @@ enum Corners {
     Polygon,
 }
 
-/// What a cell type of VTK is (vtkCellType.h); none of types that are not used.
+/// Returns the properties of a VTK cell type (vtkCellType.h); `None` for unsupported types.
 fn cell_type(number: i64) -> Option<Corners> {
     use CellKind::{Hexahedron, Line, Point, Pyramid, Quadrilateral, Tetrahedron, Triangle, Wedge};
     Some(match number {
@@ -66,7 +67,7 @@ pub(super) fn parse(content: &[u8], memory: u64) -> Result<RawMesh, Fault> {
     Ok(mesh)
 }
 
-/// Cells of each group, by the name of the data and the number.
+/// Cells of each group, by name of the data and value.
 type Groups = BTreeMap<(String, i64), Vec<u32>>;
 
 fn read_piece(
@@ -78,7 +79,7 @@ fn read_piece(
     let points = file.array_in(piece.clone(), "Points", None)?.real();
     if !points.len().is_multiple_of(3) {
         return Err(Fault::of_file(format!(
-            "{} coordinates of points; three each are needed",
+            "the points have {} coordinates; each point needs three",
             points.len()
         )));
     }
@@ -88,7 +89,7 @@ fn read_piece(
     let section = if unstructured { "Cells" } else { "Polys" };
     if !unstructured && !file.has("PolyData") {
         return Err(Fault::of_file(
-            "the file holds neither an UnstructuredGrid nor PolyData",
+            "the file contains neither an UnstructuredGrid nor PolyData",
         ));
     }
     let array = |name| file.array_in(piece.clone(), section, Some(name));
@@ -100,13 +101,13 @@ fn read_piece(
     };
     if let Some(types) = types.as_ref().filter(|types| types.len() != offsets.len()) {
         return Err(Fault::of_file(format!(
-            "{} types for {} cells",
+            "{} cell types are given for {} cells",
             types.len(),
             offsets.len()
         )));
     }
     let mut begin = 0;
-    // Where the cells that each cell of the file becomes begin.
+    // First cell of the mesh for each cell of the file.
     let mut places = vec![mesh.cells.len() as u32];
     for (cell, &end) in offsets.iter().enumerate() {
         let range = usize::try_from(end)
@@ -114,7 +115,7 @@ fn read_piece(
             .and_then(|end| connectivity.get(begin..end));
         let Some(corners) = range else {
             return Err(Fault::of_file(format!(
-                "cell {cell} ends at {end}; allowed: {begin} to {}",
+                "the corners of cell {cell} end at {end}; allowed: {begin} to {}",
                 connectivity.len()
             )));
         };
@@ -162,7 +163,7 @@ fn add_cell(
     };
     if corners.len() < least {
         return Err(Fault::of_file(format!(
-            "cell {cell} has {} corner(s); at least {least} are needed",
+            "cell {cell} has {} corner(s); at least {least} are required",
             corners.len()
         )));
     }
@@ -191,7 +192,7 @@ fn add_cell(
     };
     if nodes.len() < kind.corners() {
         return Err(Fault::of_file(format!(
-            "cell {cell} ({kind}) has {} corners; {} are needed",
+            "cell {cell} ({kind}) has {} corners; expected {}",
             nodes.len(),
             kind.corners()
         )));

@@ -1,4 +1,4 @@
-//! Dimensions and variables of a file, and the values that do not change.
+//! Dimensions and variables of an Exodus file, and constant values.
 
 use std::fs::File;
 use std::io::{Seek, SeekFrom, Write};
@@ -8,7 +8,7 @@ use super::{ExodusLayout, PointList};
 use crate::results::cdf::{Attribute, Header, Type};
 use crate::results::{Numbers, WriteError};
 
-/// Values of a variable that do not change.
+/// Constant values of a variable.
 pub(super) enum Fixed<'a> {
     Int(Vec<i32>),
     Texts(Vec<String>),
@@ -17,11 +17,11 @@ pub(super) enum Fixed<'a> {
     Spheres(&'a [u32]),
 }
 
-/// The variables of a file with the values that do not change.
+/// The variables of a file with constant values.
 pub(super) struct Description<'a> {
     pub(super) header: Header,
     pub(super) fixed: Vec<(usize, Fixed<'a>)>,
-    /// Dimensions: the length of names, the points, the records.
+    /// Dimensions: name length, points, records.
     name: usize,
     nodes: usize,
     time: usize,
@@ -84,7 +84,7 @@ impl<'a> Description<'a> {
         self.add(name, Type::Character, &dimensions, Fixed::Texts(texts));
     }
 
-    /// Status, identities and names of blocks or sets.
+    /// Adds status, IDs and names of blocks or sets.
     fn add_lists(&mut self, word: &str, dimension: usize, lists: &[&PointList]) {
         let count = lists.len();
         let status = Fixed::Int(vec![1; count]);
@@ -143,7 +143,7 @@ impl<'a> Description<'a> {
         Ok(())
     }
 
-    /// The time, numbers of the whole body, then a variable for each column, in this order.
+    /// Adds the time, the global values, then a variable for each column, in this order.
     fn records(&mut self, layout: &ExodusLayout<'_>) -> Result<(), WriteError> {
         let columns = column_names(&layout.fields);
         let count = columns.len();
@@ -178,7 +178,7 @@ impl<'a> Description<'a> {
     }
 }
 
-/// Writes the values of a variable at its place.
+/// Writes the values of a variable at its offset.
 pub(super) fn write_fixed(
     file: &mut File,
     place: u64,

@@ -1,7 +1,8 @@
-//! Exodus II, output by output.
+//! Writer of Exodus II files, one output at a time.
 //!
-//! The file is CDF-2: a header, values that do not change, then one record for each output. A record is appended first, then the number of records is
-//! written: a run that is killed leaves a whole file. To resume, the file is cut after a number of records.
+//! The file is CDF-2: a header, constant values, then one record per output. A record is appended before the
+//! number of records is updated, so that a killed run leaves a valid file. To resume, the file is truncated
+//! after a number of records.
 
 mod description;
 mod names;
@@ -17,32 +18,32 @@ use super::{FieldSpec, Numbers, WriteError, check_fields, check_values, unsuitab
 /// A named list of points.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PointList {
-    /// The name.
+    /// Name.
     pub name: String,
     /// The points, from 0.
     pub points: Vec<u32>,
 }
 
-/// What a file holds.
+/// Content of an Exodus file.
 #[derive(Debug, Clone)]
 pub struct ExodusLayout<'a> {
-    /// A title of at most 80 characters.
+    /// Title of at most 80 characters.
     pub title: String,
-    /// Number of coordinates of a point.
+    /// Number of coordinates per point.
     pub dimension: usize,
     /// Positions, component-major, m.
     pub positions: &'a [f64],
     /// Volumes of the points, m³.
     pub volumes: &'a [f64],
-    /// Blocks, such as materials: every point is in exactly one.
+    /// Blocks, such as materials; every point belongs to exactly one.
     pub blocks: Vec<PointList>,
     /// Node sets.
     pub sets: Vec<PointList>,
-    /// Names of numbers of the whole body.
+    /// Names of global values.
     pub globals: Vec<String>,
     /// Fields on the points.
     pub fields: Vec<FieldSpec>,
-    /// Whether fields are written with four bytes a number in place of eight.
+    /// Whether fields are written in single precision.
     pub is_single: bool,
 }
 
@@ -69,7 +70,11 @@ impl ExodusLayout<'_> {
             match seen.get_mut(point as usize) {
                 Some(seen) if !*seen => *seen = true,
                 Some(_) => return unsuitable(format!("point {point} is in two blocks")),
-                None => return unsuitable(format!("a block has the point {point} of {points}")),
+                None => {
+                    return unsuitable(format!(
+                        "a block refers to point {point}, but there are only {points} points"
+                    ));
+                }
             }
         }
         if let Some(point) = seen.iter().position(|seen| !seen) {
@@ -78,7 +83,7 @@ impl ExodusLayout<'_> {
         for set in &self.sets {
             if let Some(point) = set.points.iter().find(|&&p| p as usize >= points) {
                 return unsuitable(format!(
-                    "the set {:?} has the point {point} of {points}",
+                    "the set {:?} refers to point {point}, but there are only {points} points",
                     set.name
                 ));
             }
@@ -87,7 +92,7 @@ impl ExodusLayout<'_> {
     }
 }
 
-/// A file that grows by one record for each output.
+/// A file that grows by one record per output.
 #[derive(Debug)]
 pub struct ExodusWriter {
     file: File,
@@ -100,10 +105,11 @@ pub struct ExodusWriter {
 }
 
 impl ExodusWriter {
-    /// Makes a file without outputs.
+    /// Creates a file without outputs.
     ///
     /// # Errors
-    /// A file that cannot be written, arrays that do not fit together, a point that is not in exactly one block, more points than the format can hold.
+    /// Returns an error if the file cannot be written, the array lengths are inconsistent, a point does not
+    /// belong to exactly one block, or there are more points than the format allows.
     pub fn create(path: impl AsRef<Path>, layout: &ExodusLayout<'_>) -> Result<Self, WriteError> {
         layout.check()?;
         let Description { header, fixed, .. } = Description::new(layout)?;
@@ -137,10 +143,10 @@ impl ExodusWriter {
         }
     }
 
-    /// Continues a file after a number of outputs; what it holds beyond these is cut off.
+    /// Continues a file after a number of outputs; later content is removed.
     ///
     /// # Errors
-    /// A file that cannot be written, is of another layout, or holds fewer outputs.
+    /// Returns an error if the file cannot be written, has another layout, or contains fewer outputs.
     pub fn resume(
         path: impl AsRef<Path>,
         layout: &ExodusLayout<'_>,
@@ -150,7 +156,7 @@ impl ExodusWriter {
         let places = Description::new(layout)?.header.places()?;
         let mut file = OpenOptions::new().read(true).write(true).open(path)?;
         let mut begin = vec![0; places.header.len()];
-        let other = || WriteError::NotContinued("its header is that of another run".into());
+        let other = || WriteError::NotContinued("its header belongs to another run".into());
         file.read_exact(&mut begin).map_err(|_| other())?;
         if begin[..4] != places.header[..4] || begin[8..] != places.header[8..] {
             return Err(other());
@@ -160,7 +166,7 @@ impl ExodusWriter {
         let end = places.first_record + u64::from(needed) * places.record_bytes;
         if found < needed || file.metadata()?.len() < end {
             return Err(WriteError::NotContinued(format!(
-                "it holds {found} outputs; {needed} are needed"
+                "it contains {found} outputs; expected at least {needed}"
             )));
         }
         let mut writer = Self::of(file, places, layout, needed);
@@ -169,23 +175,23 @@ impl ExodusWriter {
         Ok(writer)
     }
 
-    /// Brings what was written to the disk.
+    /// Syncs the file to disk.
     ///
     /// # Errors
-    /// The system's refusal.
+    /// Returns the error of the operating system.
     pub fn sync(&self) -> std::io::Result<()> {
         self.file.sync_data()
     }
 
-    /// The number of outputs.
+    /// Returns the number of outputs.
     pub fn outputs(&self) -> usize {
         self.records as usize
     }
 
-    /// Writes an output: the time (s), numbers of the whole body, and a component-major array for each field.
+    /// Writes an output: the time (s), global values, and a component-major array for each field.
     ///
     /// # Errors
-    /// A file that cannot be written, arrays that do not fit together.
+    /// Returns an error if the file cannot be written or the array lengths are inconsistent.
     pub fn append(
         &mut self,
         time: f64,
@@ -195,7 +201,7 @@ impl ExodusWriter {
         check_values(&self.fields, values, self.points)?;
         if globals.len() != self.globals {
             return unsuitable(format!(
-                "{} global numbers are given; {} are needed",
+                "{} global values are given; expected {}",
                 globals.len(),
                 self.globals
             ));
@@ -226,7 +232,7 @@ impl ExodusWriter {
         self.publish()
     }
 
-    /// Writes the number of records into the header.
+    /// Updates the number of records in the header.
     fn publish(&mut self) -> Result<(), WriteError> {
         self.file.seek(SeekFrom::Start(4))?;
         self.file.write_all(&self.records.to_be_bytes())?;

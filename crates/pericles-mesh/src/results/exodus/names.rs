@@ -1,13 +1,13 @@
-//! Names of at most 32 bytes that differ from each other.
+//! Unique names of at most 32 bytes.
 
 use std::collections::BTreeSet;
 
 use crate::results::FieldSpec;
 
-/// The longest name; one byte more ends it.
+/// Maximum length of a name, without its terminating byte.
 pub(super) const NAME: usize = 32;
 
-/// The beginning of a name with at most so many bytes.
+/// Returns the longest prefix of a name with at most `most` bytes.
 fn cut(name: &str, most: usize) -> &str {
     let mut end = name.len().min(most);
     while !name.is_char_boundary(end) {
@@ -16,7 +16,7 @@ fn cut(name: &str, most: usize) -> &str {
     &name[..end]
 }
 
-/// Names that differ, each with at most so many bytes.
+/// Makes names unique, each with a maximum number of bytes.
 fn unique<'a>(given: impl Iterator<Item = (&'a str, usize)>) -> Vec<String> {
     let mut taken = BTreeSet::new();
     let one = |(name, most): (&str, usize)| {
@@ -32,12 +32,12 @@ fn unique<'a>(given: impl Iterator<Item = (&'a str, usize)>) -> Vec<String> {
     given.map(one).collect()
 }
 
-/// Names of blocks, sets and numbers.
+/// Returns unique names of blocks, sets and global values.
 pub(super) fn names<'a>(given: impl Iterator<Item = &'a str>) -> Vec<String> {
     unique(given.map(|name| (name, NAME)))
 }
 
-/// The endings of the names of components, which viewers join to vectors and tensors.
+/// Returns the suffixes of component names, which viewers combine to vectors and tensors.
 fn endings(columns: usize) -> Vec<String> {
     let words: &[&str] = match columns {
         1 => &[""],
@@ -48,7 +48,7 @@ fn endings(columns: usize) -> Vec<String> {
     words.iter().map(|word| (*word).to_owned()).collect()
 }
 
-/// Names of all columns of all fields. Fields are shortened so that their endings stay.
+/// Returns the names of all columns of all fields. Field names are shortened so that the suffixes are kept.
 pub(super) fn column_names(fields: &[FieldSpec]) -> Vec<String> {
     let rooms = fields.iter().map(|field| {
         let endings = endings(field.columns());
@@ -62,7 +62,7 @@ pub(super) fn column_names(fields: &[FieldSpec]) -> Vec<String> {
             let endings = endings(field.columns()).into_iter();
             endings.map(move |ending| format!("{name}{ending}"))
         });
-    // One field may be named as the column of another.
+    // A field name may equal a column name of another field.
     let columns: Vec<String> = columns.collect();
     names(columns.iter().map(String::as_str))
 }

@@ -1,12 +1,13 @@
-//! A reader of HDF5 files as far as the tests need it, written from the format's specification: superblock 0, symbol tables, contiguous datasets.
+//! Minimal HDF5 reader for the tests, written from the format specification: superblock 0, symbol tables,
+//! contiguous datasets.
 
 use std::collections::BTreeMap;
 
 pub(super) struct Hdf5 {
     bytes: Vec<u8>,
-    /// Datasets by path: size of a number, lengths, place of the data.
+    /// Datasets by path: size of a number, shape, offset of the data.
     pub(super) datasets: BTreeMap<String, (usize, Vec<usize>, usize)>,
-    /// The last eight bytes of the values of attributes, by path and name.
+    /// Last eight bytes of attribute values, by path and name.
     pub(super) attributes: BTreeMap<String, Vec<u8>>,
 }
 
@@ -91,7 +92,7 @@ impl Hdf5 {
         }
     }
 
-    /// The numbers of a dataset of four- or eight-byte floating-point numbers.
+    /// Returns the values of a dataset of four- or eight-byte floating-point numbers.
     pub(super) fn real(&self, path: &str) -> Vec<f64> {
         let (size, lengths, place) = &self.datasets[path];
         let bytes = &self.bytes[*place..*place + size * lengths.iter().product::<usize>()];
@@ -111,7 +112,7 @@ impl Hdf5 {
         }
     }
 
-    /// The numbers of a dataset of whole numbers.
+    /// Returns the values of a dataset of integers.
     pub(super) fn whole(&self, path: &str) -> Vec<i64> {
         let (size, lengths, place) = &self.datasets[path];
         let count = lengths.iter().product::<usize>();

@@ -1,4 +1,4 @@
-//! Result files read back: by our reader of Exodus II, by a small reader of HDF5; runs that are killed and resumed.
+//! Result files read back by the Exodus II reader of this crate and a small HDF5 reader; killed and resumed runs.
 
 use std::path::Path;
 
@@ -136,14 +136,14 @@ fn exodus_files_are_read_back_as_written() {
     }
 }
 
-/// What a killed run leaves: the file as it is after so many bytes of the last output were written.
+/// Truncates a file as a killed run would, with `bytes` bytes of the last output written.
 fn cut(path: &Path, bytes: usize) {
     let file = std::fs::OpenOptions::new().write(true).open(path).unwrap();
     file.set_len(bytes as u64).unwrap();
 }
 
 #[test]
-fn a_killed_run_leaves_a_whole_exodus_file_and_resumes_byte_for_byte() {
+fn a_killed_run_leaves_a_valid_exodus_file_and_resumes_byte_for_byte() {
     let place = tempfile::tempdir().unwrap();
     let (x, v) = (positions(3), volumes());
     let layout = exodus_layout(&x, &v, 3, false);
@@ -161,7 +161,7 @@ fn a_killed_run_leaves_a_whole_exodus_file_and_resumes_byte_for_byte() {
     }
     let expected = std::fs::read(&whole).unwrap();
     for killed_in in 0..4 {
-        // Within a record the number of records is still the one before.
+        // While a record is written, the number of records is still the previous one.
         for part in 1..lengths[1] - lengths[0] {
             let mut bytes = states[killed_in].clone();
             bytes.extend_from_slice(
@@ -185,26 +185,26 @@ fn a_killed_run_leaves_a_whole_exodus_file_and_resumes_byte_for_byte() {
             }
         }
     }
-    // More outputs than there are, a file of another run, a file that was cut.
+    // More outputs than the file contains, a file of another run, a truncated file.
     let refused = |path: &Path, layout: &ExodusLayout<'_>, outputs: usize| {
         ExodusWriter::resume(path, layout, outputs)
             .unwrap_err()
             .to_string()
     };
-    assert!(refused(&whole, &layout, 5).contains("it holds 4 outputs; 5 are needed"));
+    assert!(refused(&whole, &layout, 5).contains("it contains 4 outputs; expected at least 5"));
     let renamed = ExodusLayout {
         title: "another".into(),
         ..layout.clone()
     };
     assert!(refused(&whole, &renamed, 1).contains("another run"));
     cut(&whole, lengths[3]);
-    assert!(refused(&whole, &layout, 4).contains("4 are needed"));
+    assert!(refused(&whole, &layout, 4).contains("expected at least 4"));
     cut(&whole, 20);
     assert!(refused(&whole, &layout, 1).contains("another run"));
 }
 
 #[test]
-fn names_in_exodus_files_are_short_and_differ() {
+fn names_in_exodus_files_are_short_and_unique() {
     let place = tempfile::tempdir().unwrap();
     let (x, v) = (positions(1), volumes());
     let long = "a name that is longer than what Exodus holds";
@@ -226,7 +226,7 @@ fn names_in_exodus_files_are_short_and_differ() {
     unique.dedup();
     assert_eq!(unique.len(), 16);
     assert!(names.iter().all(|name| name.len() <= 32));
-    // 31 bytes and the ending of a component; the second field is numbered, so that its components belong together.
+    // 31 bytes and the suffix of a component; the second field is numbered, so that its components stay together.
     assert_eq!(names[0], "a name that is longer than whatX");
     assert_eq!(
         names[3..6].join(" "),
@@ -242,7 +242,7 @@ fn names_in_exodus_files_are_short_and_differ() {
 }
 
 #[test]
-fn layouts_that_do_not_fit_are_refused() {
+fn inconsistent_layouts_are_rejected() {
     let place = tempfile::tempdir().unwrap();
     let (x, v) = (positions(3), volumes());
     let good = exodus_layout(&x, &v, 3, false);
@@ -254,8 +254,12 @@ fn layouts_that_do_not_fit_are_refused() {
     };
     assert!(refused(&|l| l.blocks[0].points.push(1)).contains("point 1 is in two blocks"));
     assert!(refused(&|l| l.blocks[2].points.clear()).contains("point 1 is in no block"));
-    assert!(refused(&|l| l.blocks[0].points.push(9)).contains("point 9 of 5"));
-    assert!(refused(&|l| l.sets[0].points.push(9)).contains("point 9 of 5"));
+    assert!(
+        refused(&|l| l.blocks[0].points.push(9)).contains("point 9, but there are only 5 points")
+    );
+    assert!(
+        refused(&|l| l.sets[0].points.push(9)).contains("point 9, but there are only 5 points")
+    );
     assert!(refused(&|l| l.dimension = 2).contains("15 coordinates"));
     assert!(refused(&|l| l.volumes = &[]).contains("no points"));
     assert!(refused(&|l| l.fields[0].components = 0).contains("no components"));
@@ -365,14 +369,14 @@ fn check_vtkhdf(content: Vec<u8>, dimension: usize, outputs: usize) {
 }
 
 #[test]
-fn vtkhdf_files_are_whole_after_every_output() {
+fn vtkhdf_files_are_valid_after_every_output() {
     let place = tempfile::tempdir().unwrap();
     for (dimension, is_single) in [(1, false), (2, true), (3, false), (3, true)] {
         let path = place.path().join(format!("{dimension}-{is_single}.vtkhdf"));
         let (x, v) = (positions(dimension), volumes());
         let layout = vtkhdf_layout(&x, &v, dimension, is_single);
         let mut writer = VtkHdfWriter::create(&path, &layout).unwrap();
-        // A file without steps has no name that a reader would find.
+        // A file without steps does not have the name that a reader expects.
         assert!(!path.exists());
         for output in 0..4 {
             append_vtkhdf(&mut writer, dimension, output);
@@ -380,14 +384,14 @@ fn vtkhdf_files_are_whole_after_every_output() {
         }
         let (damage, displacement) = values(dimension, 4);
         let error = writer.append(2.0, &[&damage, &displacement]).unwrap_err();
-        assert!(error.to_string().contains("room for 4 outputs"), "{error}");
+        assert!(error.to_string().contains("space for 4 outputs"), "{error}");
         assert_eq!(std::fs::read_dir(place.path()).unwrap().count(), 1);
         std::fs::remove_file(path).unwrap();
     }
 }
 
 #[test]
-fn a_killed_run_leaves_a_whole_vtkhdf_file_and_resumes_byte_for_byte() {
+fn a_killed_run_leaves_a_valid_vtkhdf_file_and_resumes_byte_for_byte() {
     let place = tempfile::tempdir().unwrap();
     let (x, v) = (positions(3), volumes());
     let layout = vtkhdf_layout(&x, &v, 3, false);
@@ -399,7 +403,7 @@ fn a_killed_run_leaves_a_whole_vtkhdf_file_and_resumes_byte_for_byte() {
         states.push(std::fs::read(&path).unwrap());
     }
     for killed_in in 1..4 {
-        // The values of an output are written before the page that counts it: any part of them may be there.
+        // The values of an output are written before the page that counts it: any number of them may be present.
         let mut bytes = states[killed_in].clone();
         let page = 4096..8192;
         bytes[page.clone()].copy_from_slice(&states[killed_in - 1][page]);
@@ -422,7 +426,7 @@ fn a_killed_run_leaves_a_whole_vtkhdf_file_and_resumes_byte_for_byte() {
         error.to_string()
     };
     std::fs::write(&path, &states[1]).unwrap();
-    assert!(refused(&layout, 3).contains("it holds 2 outputs; 3 are needed"));
+    assert!(refused(&layout, 3).contains("it contains 2 outputs; expected at least 3"));
     let mut other = layout.clone();
     other.fields[0].name = "Hamage".into();
     assert!(refused(&other, 1).contains("another run"));
@@ -431,7 +435,7 @@ fn a_killed_run_leaves_a_whole_vtkhdf_file_and_resumes_byte_for_byte() {
 }
 
 #[test]
-fn vtkhdf_layouts_that_do_not_fit_are_refused() {
+fn inconsistent_vtkhdf_layouts_are_rejected() {
     let place = tempfile::tempdir().unwrap();
     let (x, v) = (positions(3), volumes());
     let refused = |change: &dyn Fn(&mut VtkHdfLayout<'_>)| {
@@ -445,7 +449,7 @@ fn vtkhdf_layouts_that_do_not_fit_are_refused() {
     };
     assert!(refused(&|l| l.outputs = 0).contains("allowed: 1 to 16777216"));
     assert!(refused(&|l| l.dimension = 4).contains("4 dimensions"));
-    assert!(refused(&|l| l.fields[0].name = "a/b".into()).contains("cannot be the name"));
+    assert!(refused(&|l| l.fields[0].name = "a/b".into()).contains("is not a valid field name"));
     assert!(refused(&|l| l.fields[0].name = "Volume".into()).contains("two fields"));
     assert!(refused(&|l| l.fields[1].components = 0).contains("no components"));
     assert!(

@@ -1,4 +1,4 @@
-//! The exact convolution by blocks with Fourier transforms.
+//! Exact history convolution by blocks of Fourier transforms.
 
 use realfft::num_complex::Complex;
 
@@ -11,16 +11,16 @@ use pericles::{Archive, Result};
 
 /// Online convolution in O(K N log² N + K² N log N) for N steps, equal to direct sums to round-off.
 ///
-/// Memory: (inputs + K) N numbers of history and results, and 4 N per kernel for the spectra.
+/// Memory: (inputs + K) N numbers for history and results, and 4 N per kernel for the spectra.
 pub struct BlockedHistory {
     kernels: GhostKernels,
-    /// The first lags of each kernel, for the direct sums.
+    /// First lags of each kernel, for direct sums.
     near: Vec<Vec<f64>>,
     levels: Levels,
     /// Spectra of the first lags of each kernel, by level.
     heads: Vec<Vec<Spectrum>>,
     past: Record,
-    /// Ghosts of all steps, as far as they follow from what was pushed.
+    /// Ghosts of all steps, as far as they follow from the history so far.
     results: Vec<Vec<f64>>,
     blocks: Vec<LineWork>,
     products: Vec<LineWork>,
@@ -28,7 +28,7 @@ pub struct BlockedHistory {
 }
 
 impl BlockedHistory {
-    /// For the kernels' number of steps.
+    /// Creates a history for the number of steps of the kernels.
     pub fn new(kernels: GhostKernels) -> Self {
         let length = kernels.steps() + 1;
         let levels = Levels::new(length);
@@ -48,14 +48,14 @@ impl BlockedHistory {
         }
     }
 
-    /// Takes the displacements of the kept sites that are in `now`.
+    /// Appends the displacements of the recorded sites from `now`.
     fn push_now(&mut self) {
         let step = self.past.steps;
         self.past.push(&self.now);
         let end = (step - step % BLOCK + BLOCK).min(self.kernels.steps() + 1);
         for (n, result) in self.results.iter_mut().enumerate() {
             for (input, kernel) in self.kernels.terms(n) {
-                // Lag 0 has the coefficient 0: a step does not act on itself.
+                // The coefficient at lag 0 is zero: a step does not act on itself.
                 add_scaled(&mut result[step..end], self.now[input], &self.near[kernel]);
             }
         }
@@ -121,7 +121,7 @@ impl SavedUnder for BlockedHistory {
     fn save_under(&self, name: &str, archive: &mut Archive) {
         let Self {
             past,
-            // Convolved again.
+            // Recomputed from the history.
             results: _,
             kernels: _,
             near: _,
@@ -134,7 +134,7 @@ impl SavedUnder for BlockedHistory {
         past.save(name, archive);
     }
 
-    /// Convolves the stored past again: the same operations in the same order.
+    /// Repeats the convolution of the stored history: the same operations in the same order.
     fn restore_under(&mut self, name: &str, archive: &Archive) -> Result<()> {
         let (stored, steps) = self.past.stored(name, archive)?;
         self.reset();

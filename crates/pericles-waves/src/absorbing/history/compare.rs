@@ -1,10 +1,11 @@
-//! How far two histories are apart.
+//! Difference between two histories.
 
 use super::History;
 
-/// The largest `Σ_m Σ_j |F_n^m[j] − F′_n^m[j]|` over ghosts n: the error of a ghost's displacement when no outer point ever moves farther than 1.
+/// Returns the largest `Σ_m Σ_j |F_n^m[j] − F′_n^m[j]|` over ghosts n: the error of a ghost displacement if no
+/// outer point moves by more than 1.
 ///
-/// Both are pushed a unit displacement of each of the K outer points in turn, and reset.
+/// Both histories are given a unit displacement of each of the K outer points in turn, and are reset.
 pub fn history_distance(mut histories: [&mut dyn History; 2], reach: usize, steps: usize) -> f64 {
     let mut sums = vec![0.0; reach];
     let mut ghosts = [vec![0.0; reach], vec![0.0; reach]];

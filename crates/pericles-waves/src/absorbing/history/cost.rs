@@ -1,10 +1,10 @@
-//! Which form of a history is the cheapest.
+//! Cost estimates that select the cheapest form of the history.
 
 use crate::absorbing::blocks::BLOCK;
 use crate::absorbing::fit::sample_count;
 use crate::absorbing::{LatticeStencil, LatticeStep};
 
-/// Estimated cost of one end over a run, in multiply–adds, kernels included.
+/// Estimated cost of one absorbing boundary over a run, in multiply–adds, including the kernels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HistoryCost {
     /// K² N² sums, and the kernels.
@@ -15,7 +15,7 @@ pub struct HistoryCost {
     pub exponentials: f64,
 }
 
-/// Forms that the estimate chooses from.
+/// Forms of the history.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum HistoryForm {
     /// [`super::DirectHistory`]
@@ -26,20 +26,20 @@ pub enum HistoryForm {
     Exponentials,
 }
 
-/// Multiply–adds that one entry of a transform takes per halving: 2.5 floating-point operations and their memory traffic.
+/// Multiply–adds per entry of a transform and halving: 2.5 floating-point operations and their memory traffic.
 const TRANSFORM: f64 = 3.0;
-/// Multiply–adds of a product of two complex numbers that come from memory.
+/// Multiply–adds of a complex product with operands from memory.
 const PRODUCT: f64 = 4.0;
 
-/// Fits that keep more singular values take tens of seconds.
+/// Limit on retained singular values; larger fits take tens of seconds.
 const MOST_VALUES: f64 = 700.0;
 
 impl HistoryCost {
-    /// Of N steps with kernels K apart.
+    /// Estimates the cost for N steps with kernels of reach K.
     pub fn estimate(stencil: &LatticeStencil, step: LatticeStep, steps: usize) -> Self {
         let (reach, n) = (stencil.reach() as f64, steps as f64);
         let square = reach * reach;
-        // Block sizes of a run, each of which touches every step once, with lines of twice its length.
+        // Every block size of a run processes each step once, in lines of twice its length.
         let online = |near: f64, lines: f64, products: f64| {
             let mut cost = near * n * BLOCK as f64 / 2.0;
             let mut size = BLOCK as f64;
@@ -54,7 +54,8 @@ impl HistoryCost {
         let kernels = 3.0 * n * PRODUCT * elimination;
         let points = sample_count(stencil, step, steps) as f64;
         let branches = stencil.stationary_frequencies().len() as f64;
-        // Singular values that are kept, as measured from one to twenty branches; half of them are exponentials, the others their conjugates.
+        // Retained singular values, measured for one to twenty branches; half of them are exponentials, the others
+        // their conjugates.
         let rank = 0.3 * points * branches.sqrt();
         let exponentials = if rank > MOST_VALUES {
             f64::INFINITY
@@ -70,7 +71,7 @@ impl HistoryCost {
         }
     }
 
-    /// The cheapest exact form; exponentials too if an error is allowed.
+    /// Returns the cheapest form; exponentials only if an error is allowed.
     pub fn cheapest(&self, exact: bool) -> HistoryForm {
         if !exact && self.exponentials < self.direct.min(self.blocked) {
             HistoryForm::Exponentials

@@ -1,4 +1,4 @@
-//! The convolution as it is written: quadratic in the number of steps.
+//! History convolution by direct sums: quadratic in the number of steps.
 
 use super::History;
 use super::record::Record;
@@ -6,7 +6,7 @@ use crate::absorbing::GhostKernels;
 use pericles::archive::SavedUnder;
 use pericles::{Archive, Result};
 
-/// Direct sums: 2 K² N²/2 operations for N steps. The twin of the fast forms.
+/// Direct sums: 2 K² N²/2 operations for N steps. Reference for the fast forms.
 pub struct DirectHistory {
     kernels: GhostKernels,
     past: Record,
@@ -14,7 +14,7 @@ pub struct DirectHistory {
 }
 
 impl DirectHistory {
-    /// For the kernels' number of steps.
+    /// Creates a history for the number of steps of the kernels.
     pub fn new(kernels: GhostKernels) -> Self {
         Self {
             past: Record::new(kernels.inputs(), kernels.steps() + 1),

@@ -1,4 +1,4 @@
-//! The convolution with sums of exponentials.
+//! History convolution by sums of exponentials.
 
 use realfft::num_complex::Complex;
 
@@ -7,15 +7,15 @@ use crate::absorbing::fit::ExponentialKernels;
 use pericles::archive::SavedUnder;
 use pericles::{Archive, Result, Values};
 
-/// One state per exponential, S ← λ S + Σ_m b_m u_m, and ghosts Re Σ a_n S: 8 K p operations a step and O(K p) memory for p exponentials, for any number of
-/// steps.
+/// One state per exponential, S ← λ S + Σ_m b_m u_m, and ghosts Re Σ a_n S: 8 K p operations per step and O(K p)
+/// memory for p exponentials and any number of steps.
 pub struct ExponentialHistory {
     kernels: ExponentialKernels,
     states: Vec<Complex<f64>>,
 }
 
 impl ExponentialHistory {
-    /// With nothing remembered.
+    /// Creates an empty history.
     pub fn new(kernels: ExponentialKernels) -> Self {
         Self {
             states: vec![Complex::default(); kernels.terms.len()],

@@ -1,4 +1,4 @@
-//! What the exterior remembers: histories of the outer sites, convolved with the ghosts' kernels.
+//! Histories of the outer sites, convolved with the kernels of the ghosts.
 
 mod blocked;
 mod compare;
@@ -15,26 +15,28 @@ pub use exponential::ExponentialHistory;
 
 use pericles::archive::SavedUnder;
 
-/// A convolution in time that gives the ghosts of the next step from all steps before, and what of them hangs on the present one.
+/// Convolution in time that gives the ghosts of the next step from all previous ones, and the part of them that
+/// depends on the current step.
 pub trait History: SavedUnder + Send + Sync {
-    /// Name as in decks.
+    /// Name in decks.
     fn name(&self) -> &'static str;
 
-    /// Steps that it is made for; none if any number.
+    /// Number of steps for which it was created; `None` for any number.
     fn steps(&self) -> Option<u64>;
 
     /// Memory, bytes.
     fn bytes(&self) -> usize;
 
-    /// u_0, u_{−1} … u_{−(K−1)} at the step after those pushed, m.
+    /// Writes u_0, u_{−1} … u_{−(K−1)} (m) of the step after the last one pushed.
     fn ghosts_into(&self, ghosts: &mut [f64]);
 
-    /// Adds to these ghosts what they owe to displacements `own` of the body's outer points in the same step; nothing where kernels start with the first lag.
+    /// Adds to the ghosts their dependence on the displacements `own` of the body's outer points in the same step;
+    /// zero for kernels that start at lag one.
     fn settle(&self, own: &[f64], ghosts: &mut [f64]);
 
-    /// Takes the displacements of a step: of the body's outer points 1 … K and of the ghosts. Allocates nothing.
+    /// Appends the displacements of a step: of the body's outer points 1 … K and of the ghosts. Does not allocate.
     fn push(&mut self, own: &[f64], ghosts: &[f64]);
 
-    /// Forgets all.
+    /// Clears the history.
     fn reset(&mut self);
 }

@@ -1,9 +1,9 @@
-//! The past displacements of the kept sites.
+//! Stored displacements of the recorded sites.
 
 use pericles::{Archive, Values};
 use pericles::{PericlesError, Result};
 
-/// One series per site, of which the first `steps` numbers are known.
+/// One series per site; the first `steps` values are known.
 pub(super) struct Record {
     pub(super) sites: Vec<Vec<f64>>,
     pub(super) steps: usize,
@@ -37,7 +37,8 @@ impl Record {
         );
     }
 
-    /// The stored series, one after the other, and their length: the steps of the archive's state, and for some ends the one at the start.
+    /// Returns the stored series, concatenated, and their length: the number of steps of the archived state, plus
+    /// one for boundaries that also record the start.
     pub(super) fn stored(&self, name: &str, archive: &Archive) -> Result<(Vec<f64>, usize)> {
         let past = archive.f64s(&format!("{name}/past"))?;
         let (sites, length) = (self.sites.len(), self.sites[0].len());
@@ -50,7 +51,8 @@ impl Record {
         if past.len() != steps * sites || steps > length || !is_of_state {
             return Err(PericlesError::BadArchive {
                 reason: format!(
-                    "the history \"{name}\" has {} numbers; after step {} this run needs {sites} for each, of at most {length} steps",
+                    "the history \"{name}\" has {} values; after step {} this run needs {sites} for each, of at most \
+                    {length} steps",
                     past.len(),
                     taken[0]
                 ),

@@ -1,4 +1,4 @@
-//! The end of a strip that lets waves leave.
+//! Absorbing boundary of a strip.
 
 use realfft::num_complex::Complex;
 
@@ -13,27 +13,29 @@ use pericles::boundary::{Boundary, Exchange, Stage};
 /// Weight of the initial displacement in the history, as for bars.
 const FIRST: f64 = 0.5;
 
-/// An absorbing end of a strip: one history of 2K × 2K kernels for each Fourier mode along y, for real and imaginary parts.
+/// Absorbing boundary of a strip: one history of 2K × 2K kernels for each Fourier mode along y, for real and
+/// imaginary parts.
 pub struct StripEnd {
     side: Side,
     lattice: StripLattice,
     entries: usize,
     modes: Vec<Mode>,
-    /// What a point of each outer column owes to its bonds to the ghosts.
+    /// Diagonal stiffness of a point of each outer column due to its bonds to ghosts.
     beyond: Vec<[f64; 2]>,
     transform: LineTransform,
     line: Vec<f64>,
     spectrum: Vec<Complex<f64>>,
     scratch: Vec<Complex<f64>>,
-    /// Accelerations of the outer columns by the ghosts' bonds, by depth, component and row; and those of the step before.
+    /// Accelerations of the outer columns by bonds to ghosts, by depth, component and row; in the current and the
+    /// previous step.
     pull: Vec<f64>,
     pull_before: Vec<f64>,
     started: bool,
 }
 
-/// A Fourier mode; parts are real and imaginary, entries 2 · place + component.
+/// Fourier mode; parts are real and imaginary, entries 2 · place + component.
 struct Mode {
-    /// C_1 … C_K
+    /// C_1 … C_K.
     couplings: Vec<Matrix>,
     histories: [BlockedHistory; 2],
     own: [Vec<f64>; 2],
@@ -42,7 +44,8 @@ struct Mode {
 }
 
 impl StripEnd {
-    /// An end of a body at rest at the start in its K outermost columns, which must be free of loads and supports, for a number of steps of velocity Verlet; `entries` is the number of unknowns of the body.
+    /// Creates the boundary of a body at rest initially in its K outermost columns, which must be free of loads and
+    /// constraints, for a number of steps of velocity Verlet; `entries` is the number of unknowns of the body.
     pub fn new(
         lattice: StripLattice,
         side: Side,
@@ -89,7 +92,7 @@ impl StripEnd {
         component * (self.entries / 2) + point
     }
 
-    /// The displacements of the outer columns, by modes.
+    /// Transforms the displacements of the outer columns to modes.
     fn transform_in(&mut self, u: &[f64]) {
         for depth in 0..self.lattice.reach() {
             for component in 0..2 {
@@ -110,7 +113,7 @@ impl StripEnd {
         }
     }
 
-    /// The accelerations of the outer columns from those of the modes.
+    /// Transforms the accelerations of the modes to the outer columns.
     fn transform_out(&mut self) {
         let rows = self.line.len();
         for place in 0..2 * self.lattice.reach() {
@@ -126,7 +129,7 @@ impl StripEnd {
 }
 
 impl Mode {
-    /// Takes the ghosts of the present from the histories, and the present, with a weight, into them.
+    /// Computes the current ghosts from the histories, and appends the current state to them with a weight.
     fn advance(&mut self, beyond: &[[f64; 2]], weight: f64) {
         for part in 0..2 {
             let (own, pull) = (&mut self.own[part], &mut self.pull[part]);
@@ -187,7 +190,7 @@ impl Boundary for StripEnd {
 }
 
 pericles::saved! {
-    impl Saved for StripEnd {
+    impl Checkpointed for StripEnd {
         pull: array("strip/{}/pull", side.name()),
         modes: under("strip/{}", side.name()),
         started: set(true),

@@ -1,4 +1,4 @@
-//! The plate beyond a strip's end: bonds of a lattice that is the same in all rows.
+//! Lattice beyond the boundary of a strip: bonds that are the same in all rows.
 
 use std::f64::consts::TAU;
 
@@ -6,10 +6,10 @@ use crate::absorbing::{AbsorbingError, Side};
 use pericles::System;
 use pericles::sum::max_norm;
 
-/// A 2 × 2 matrix.
+/// 2 × 2 matrix.
 pub(super) type Matrix = [[f64; 2]; 2];
 
-/// The lattice beyond an end, read off the outermost points of a body.
+/// Lattice beyond a boundary, derived from the outermost points of a body.
 ///
 /// Offsets d count columns outwards, l rows along +y (less than half the rows in size).
 #[derive(Debug, Clone)]
@@ -18,15 +18,16 @@ pub struct StripLattice {
     pub(super) points: Vec<Vec<usize>>,
     /// Mass of a point, kg.
     pub(super) mass: f64,
-    /// A_{d,l}, 1/s², for d = 0 … K and l = 0 … rows − 1, those above rows/2 standing for negative ones.
+    /// A_{d,l}, 1/s², for d = 0 … K and l = 0 … rows − 1; indices above rows/2 stand for negative offsets.
     bonds: Vec<Vec<Matrix>>,
 }
 
-/// Bonds whose matrices differ by less, relative to the largest, are alike.
+/// Relative difference (to the largest) below which bond matrices are considered equal.
 const ALIKE: f64 = 1e-11;
 
 impl StripLattice {
-    /// Of a body: a plate on a square grid, full rows, periodic along y. Bonds are read off the tangent of its outermost point, and compared with those of all columns of the outer layer.
+    /// Derives the lattice from a body: a plate on a square grid, full rows, periodic along y. The bonds are those
+    /// of the tangent of its outermost point, and are compared with those of all columns of the outer layer.
     ///
     /// # Errors
     /// [`AbsorbingError::NotAStrip`] with the reason.
@@ -34,10 +35,10 @@ impl StripLattice {
         let not = |reason| Err(AbsorbingError::NotAStrip { reason });
         let cloud = system.cloud();
         if cloud.dimension() != 2 {
-            return not("the body is no plate");
+            return not("the body is not a plate");
         }
         let Some(columns) = columns(system, side) else {
-            return not("its points are no full rectangle of equal cells");
+            return not("its points are not a full rectangle of equal cells");
         };
         let rows = columns[0].len();
         let n = cloud.len();
@@ -54,7 +55,7 @@ impl StripLattice {
                 out
             })
         };
-        // Of the bond from point i to point j.
+        // Matrix of the bond from point i to point j.
         let matrix = |from: &[Vec<f64>; 2], j: usize| -> Matrix {
             std::array::from_fn(|a| std::array::from_fn(|b| from[b][a * n + j]))
         };
@@ -69,9 +70,9 @@ impl StripLattice {
         };
         let reach = columns.iter().rposition(reaches).unwrap_or(0);
         if reach == 0 || columns.len() < 2 * reach {
-            return not("it is less than two horizons long");
+            return not("it is shorter than two horizons");
         }
-        // A bond inwards and upwards is one outwards and downwards from its other end.
+        // A bond inwards and upwards is a bond outwards and downwards from its other end.
         let bond = |d: usize, l: usize| match (d, l) {
             (0, 0) => Matrix::default(),
             _ => matrix(&own, columns[d][(rows - l) % rows]),
@@ -86,7 +87,7 @@ impl StripLattice {
         };
         lattice.check_mirror(strongest)?;
         for depth in 0..reach {
-            // Another row each time.
+            // A different row for each depth.
             let row = (7 * depth + 1) % rows;
             let from = response(columns[depth][row]);
             for (other, column) in columns[..reach].iter().enumerate() {
@@ -112,7 +113,7 @@ impl StripLattice {
         Ok(lattice)
     }
 
-    /// Bonds along +y and −y are mirror images: else the modes' matrices are not real.
+    /// Checks that bonds along +y and −y are mirror images; otherwise the matrices of the modes are not real.
     fn check_mirror(&self, strongest: f64) -> Result<(), AbsorbingError> {
         let rows = self.rows();
         for column in &self.bonds {
@@ -124,10 +125,10 @@ impl StripLattice {
                     one[0][1] + other[0][1],
                     one[1][0] + other[1][0],
                 ];
-                // A bond across half of the rows is both.
+                // A bond across half of the rows belongs to both directions.
                 let is_half = 2 * l == rows;
                 if !is_half && gaps.iter().any(|gap| gap.abs() > ALIKE * strongest) {
-                    let reason = "its bonds are not the same upwards and downwards";
+                    let reason = "its bonds upwards and downwards differ";
                     return Err(AbsorbingError::NotAStrip { reason });
                 }
             }
@@ -135,17 +136,18 @@ impl StripLattice {
         Ok(())
     }
 
-    /// K, columns.
+    /// Reach K, columns.
     pub fn reach(&self) -> usize {
         self.points.len()
     }
 
-    /// Points along y.
+    /// Number of points along y.
     pub fn rows(&self) -> usize {
         self.points[0].len()
     }
 
-    /// C_d of a mode for d = 0 … K outwards, without what a point owes to itself; inwards it is the transpose.
+    /// C_d of a mode for d = 0 … K outwards, without the diagonal stiffness of a point; the matrix inwards is the
+    /// transpose.
     pub(super) fn couplings(&self, mode: usize) -> Vec<Matrix> {
         let rows = self.rows();
         let of_column = |column: &Vec<Matrix>| {
@@ -163,19 +165,19 @@ impl StripLattice {
         self.bonds.iter().map(of_column).collect()
     }
 
-    /// Σ A over the bonds to columns d = `nearest` … K, on both components.
+    /// Σ A over the bonds to columns d = `nearest` … K, for both components.
     pub(super) fn stiffness_beyond(&self, nearest: usize) -> [f64; 2] {
         let bonds = self.bonds[nearest..].iter().flatten();
         bonds.fold([0.0; 2], |sum, a| [sum[0] + a[0][0], sum[1] + a[1][1]])
     }
 
-    /// Σ A over all bonds of a point of the lattice, on both components.
+    /// Σ A over all bonds of a point of the lattice, for both components.
     pub(super) fn stiffness_of_point(&self) -> [f64; 2] {
         let (all, beyond) = (self.stiffness_beyond(0), self.stiffness_beyond(1));
         [all[0] + beyond[0], all[1] + beyond[1]]
     }
 
-    /// A bound of the fastest group velocity along x, columns per second: (Σ d² A)^½, of either component.
+    /// Upper bound of the group velocity along x, columns per second: (Σ d² A)^½, of either component.
     pub fn fastest(&self) -> f64 {
         let mut square = [0.0; 2];
         for d in 1..=self.reach() {
@@ -188,7 +190,7 @@ impl StripLattice {
     }
 }
 
-/// The points by column from an end inwards, and by row upwards; none if they are no full rectangle.
+/// Points by column from the end inwards, and by row upwards; `None` if they are not a full rectangle.
 fn columns(system: &System, side: Side) -> Option<Vec<Vec<usize>>> {
     let cloud = system.cloud();
     let number = |axis: usize, i: usize| {

@@ -1,4 +1,4 @@
-//! Kernels of a strip's modes, by marching.
+//! Kernels of the modes of a strip by time marching.
 
 use rayon::prelude::*;
 
@@ -9,9 +9,11 @@ use crate::absorbing::GhostKernels;
 const MARGIN: usize = 60;
 
 impl StripLattice {
-    /// The kernels of each mode q = 0 … rows/2 for N steps of velocity Verlet: 2K × 2K, entry (2n + a, 2m + b) the component a of ghost −n after a unit displacement b of the body's outer column m + 1.
+    /// Computes the kernels of each mode q = 0 … rows/2 for N steps of velocity Verlet: 2K × 2K, entry (2n + a,
+    /// 2m + b) the component a of ghost −n after a unit displacement b of the body's outer column m + 1.
     ///
-    /// Each input is marched through an exterior that is too long for its far end to be felt, in increments d += dt² A v, v += d: the plain form 2 v − v_before would lose digits.
+    /// Each input is marched through an exterior long enough that its far end has no influence, in increments d +=
+    /// dt² A v, v += d: the form 2 v − v_before would lose digits.
     pub fn kernels(&self, dt: f64, steps: usize) -> Vec<GhostKernels> {
         let modes: Vec<usize> = (0..=self.rows() / 2).collect();
         let one = |&mode: &usize| self.kernels_of(mode, dt, steps);
@@ -26,7 +28,7 @@ impl StripLattice {
         let mut series = vec![vec![0.0; steps + 1]; count * count];
         for input in 0..count {
             let mut state = vec![[0.0; 2]; sites + 2 * reach];
-            // Outer columns lie before the exterior's sites, the outermost next to them.
+            // Outer columns precede the exterior sites, the outermost one next to them.
             state[reach - 1 - input / 2][input % 2] = 1.0;
             let mut increment = chain.accelerated(&state);
             for (v, d) in state.iter_mut().zip(&increment) {
@@ -51,12 +53,12 @@ impl StripLattice {
     }
 }
 
-/// The chain of a mode, between K columns of the body and K beyond its far end that stay at rest.
+/// Chain of a mode, between K columns of the body and K columns beyond its far end that stay at rest.
 struct Chain {
     sites: usize,
-    /// dt² C_d
+    /// dt² C_d.
     couplings: Vec<Matrix>,
-    /// dt² of what a point owes to itself.
+    /// dt² times the diagonal stiffness of a point.
     own: [f64; 2],
 }
 
@@ -83,7 +85,7 @@ impl Chain {
             let mut sum = [self.own[0] * state[s][0], self.own[1] * state[s][1]];
             for d in 1..=reach {
                 let (c, outer, inner) = (&self.couplings[d], state[s + d], state[s - d]);
-                // Inwards the transpose.
+                // The matrix inwards is the transpose.
                 sum[0] += c[0][0] * (outer[0] + inner[0]) + c[0][1] * outer[1] + c[1][0] * inner[1];
                 sum[1] += c[1][1] * (outer[1] + inner[1]) + c[1][0] * outer[0] + c[0][1] * inner[0];
             }

@@ -6,8 +6,8 @@ use rustfft::num_complex::Complex;
 use super::super::fourier::{AxisTransform, LineTransform, stride};
 use pericles::operator::pool::Pool;
 
-/// Transforms of real fields with x fastest. Modes of x: 0 … n/2. In the spectrum the last axis of more than one node is fastest, then x, then the middle axis
-/// (that of a bar is x alone).
+/// Transforms of real fields with x fastest. Modes of x: 0 … n/2. In the spectrum the last axis of more than one
+/// node is fastest, then x, then the middle axis (for a bar x alone).
 pub(super) struct BoxTransform {
     along_x: LineTransform,
     middle: AxisTransform,
@@ -23,7 +23,7 @@ struct Work {
 }
 
 impl BoxTransform {
-    /// For boxes of D axes with so many nodes.
+    /// Creates the transforms for boxes of D axes with the given numbers of nodes.
     pub fn new(dimension: usize, shape: [usize; 3]) -> Self {
         let (middle, last) = match dimension {
             1 => (1, 1),
@@ -62,12 +62,12 @@ impl BoxTransform {
         [self.along_x.modes(), self.middle.length, self.last.length]
     }
 
-    /// Numbers of a spectrum.
+    /// Number of entries of a spectrum.
     pub fn len(&self) -> usize {
         self.modes().iter().product()
     }
 
-    /// The spectrum of `value(i) − shift`.
+    /// Computes the spectrum of `value(i) − shift`.
     pub fn forward(&self, value: &(impl Fn(usize) -> f64 + Sync), spectrum: &mut [Complex<f64>]) {
         let [nodes, middle, last] = self.nodes();
         let modes = self.along_x.modes();
@@ -101,7 +101,7 @@ impl BoxTransform {
         );
     }
 
-    /// Calls `set(i, value)` for the field of a spectrum, which is used up; `out` has one entry for every node.
+    /// Calls `set(i, value)` for the field of a spectrum, which is overwritten; `out` has one entry per node.
     pub fn inverse(
         &self,
         spectrum: &mut [Complex<f64>],

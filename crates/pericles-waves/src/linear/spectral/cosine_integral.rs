@@ -1,10 +1,10 @@
-//! The entire cosine integral.
+//! Entire cosine integral.
 
-/// Cin(x) = ∫₀^x (1 − cos t)/t dt = γ + ln x − Ci(x), for x ≥ 0 (DLMF 6.2.12): to some 1e-15 (1 + Cin).
+/// Computes Cin(x) = ∫₀^x (1 − cos t)/t dt = γ + ln x − Ci(x) for x ≥ 0 (DLMF 6.2.12), to some 1e-15 (1 + Cin).
 pub(super) fn cin(x: f64) -> f64 {
     /// Euler's constant (DLMF 5.2.3).
     const GAMMA: f64 = 0.577_215_664_901_532_9;
-    /// Where the series loses a digit and the fraction needs some fifty terms.
+    /// Argument at which the series loses a digit and the continued fraction needs about fifty terms.
     const SWITCH: f64 = 4.0;
     if x <= SWITCH {
         // Σ (−1)^{k+1} x^{2k} / (2k (2k)!), DLMF 6.6.6
@@ -51,7 +51,7 @@ mod tests {
     use gauss_quad::GaussLegendre;
 
     #[test]
-    fn equals_the_integral() {
+    fn cosine_integral_equals_its_quadrature() {
         let rule = GaussLegendre::new(std::num::NonZeroUsize::new(32).unwrap());
         for x in [1e-6, 0.3, 3.999, 4.001, 7.0, 30.0, 200.0] {
             let pieces = 1 + x as usize;

@@ -1,4 +1,4 @@
-//! The Green-strain law on a ring, pseudo-spectral.
+//! Green-strain law on a ring by a pseudo-spectral method.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -15,18 +15,21 @@ use pericles::Result;
 use pericles::kernel::ActsOn;
 use pericles::material::{BondConstants, BondMaterial, PairLaw};
 use pericles::operator::pool::Pool;
-use pericles::operator::{Capabilities, Force, InstructionSet, On};
+use pericles::operator::{Capabilities, Force, InstructionSet, PointSubset};
 use pericles::space::PointCloud;
 use pericles::sum::sum;
 
-/// f = ∫ a (2ξ²η + 3ξη² + η³) dξ, a = cα/(2|ξ|³): the force density (N/m³) of [`GreenBond`](pericles::material::GreenBond) on a bar whose ends are one.
+/// Force density (N/m³) f = ∫ a (2ξ²η + 3ξη² + η³) dξ, a = cα/(2|ξ|³), of
+/// [`GreenBond`](pericles::material::GreenBond) on a periodic bar.
 ///
-/// With the convolutions L, B, D of symbols −M(k), 3ic ∫ α/r² sin kr dr and −c ∫ α/r³ (1 − cos kr) dr (times the area, over 0 … δ) the force is
-/// Lu + [B u² − 2u Bu] + [D u³ − 3u D u² + 3u² D u]: transforms and products, O(n log n) for any horizon. Products are formed on twice as many points and cut back, so that
-/// no wave of the result is an alias; the operator is then the gradient of an energy, −Σ V u (½ f₁ + ⅓ f₂ + ¼ f₃). The highest wave number of an even number of points takes
-/// no part in the nonlinear terms.
+/// With the convolutions L, B, D of symbols −M(k), 3ic ∫ α/r² sin kr dr and −c ∫ α/r³ (1 − cos kr) dr (times the
+/// area, over 0 … δ) the force is Lu + [B u² − 2u Bu] + [D u³ − 3u D u² + 3u² D u]: transforms and products, O(n
+/// log n) for any horizon. Products are formed on twice as many points and truncated, so that the result has no
+/// aliases; the operator is then the gradient of an energy, −Σ V u (½ f₁ + ⅓ f₂ + ¼ f₃). The highest wavenumber of
+/// an even number of points does not enter the nonlinear terms.
 ///
-/// The integrals exist for functions that act on the displacement; energy densities are those of the sum above, which are the bonds' only in total.
+/// The integrals exist for influence functions that act on the displacement. Energy densities are those of the sum
+/// above; only their total equals that of the bonds.
 pub struct SpectralCubicForce {
     cloud: Arc<PointCloud>,
     coarse: LineTransform,
@@ -62,10 +65,10 @@ const EVEN_DIRECTION: usize = 6;
 const EVEN_CROSS: usize = 7;
 
 impl SpectralCubicForce {
-    /// The operator of a material on a ring.
+    /// Creates the operator of a material on a ring.
     ///
     /// # Errors
-    /// What it cannot do, with the reason: other bodies, another law, functions that act on the stretch, breaking.
+    /// Unsupported cases, with the reason: other bodies, another law, functions that act on the stretch, breaking.
     pub fn new(
         cloud: Arc<PointCloud>,
         material: &BondMaterial,
@@ -73,12 +76,13 @@ impl SpectralCubicForce {
     ) -> Result<Self> {
         if material.law != PairLaw::GreenStrain || cloud.dimension() != 1 || !cloud.is_periodic() {
             return refuse(
-                "nonlinear forces by Fourier series are those of model = \"green-strain\" on a periodic bar",
+                "nonlinear forces by Fourier series are available for model = \"green-strain\" on a periodic bar only",
             );
         }
         if material.influence.acts_on != ActsOn::Displacement {
             return refuse(
-                "the terms of a force whose influence function acts on the stretch have no Fourier series of their own; use acts_on = \"displacement\"",
+                "an influence function that acts on the stretch is not available with Fourier series of nonlinear \
+                forces; use acts_on = \"displacement\"",
             );
         }
         require(ForceForm::Spectral, features_of(material, constants, 1))?;
@@ -135,12 +139,12 @@ impl SpectralCubicForce {
         })
     }
 
-    /// Modes below the highest of an even number.
+    /// Number of modes below the highest one of an even number.
     fn resolved(&self) -> usize {
         self.coarse.len().div_ceil(2)
     }
 
-    /// Replaces `work.line` by the spectrum of the line, in `work.coarse`, divided by the number of points.
+    /// Replaces `work.line` by its spectrum, in `work.coarse`, divided by the number of points.
     fn analyse(&self, work: &mut Work) {
         self.coarse
             .forward(&mut work.line, &mut work.coarse, &mut work.scratch);
@@ -148,7 +152,7 @@ impl SpectralCubicForce {
         work.coarse.iter_mut().for_each(|mode| *mode *= factor);
     }
 
-    /// A field of the fine points from `work.coarse` and a factor for every mode.
+    /// Computes a field on the fine points from `work.coarse` and a factor for every mode.
     fn refine(&self, place: usize, symbol: impl Fn(usize) -> Complex<f64>, work: &mut Work) {
         work.spectrum.fill(Complex::default());
         for m in 0..self.resolved() {
@@ -161,7 +165,7 @@ impl SpectralCubicForce {
         );
     }
 
-    /// The spectrum of `work.product`, in `work.spectrum`, divided by the number of points.
+    /// Computes the spectrum of `work.product`, in `work.spectrum`, divided by the number of points.
     fn analyse_product(&self, work: &mut Work) {
         self.fine
             .forward(&mut work.product, &mut work.spectrum, &mut work.scratch);
@@ -169,7 +173,8 @@ impl SpectralCubicForce {
         work.spectrum.iter_mut().for_each(|mode| *mode *= factor);
     }
 
-    /// Adds weight · symbol · the spectrum of the product `value(i, fields)` to `work.sum`, and, if asked, D of it to a field.
+    /// Adds weight · symbol · the spectrum of the product `value(i, fields)` to `work.sum` and, if requested, D of
+    /// it to a field.
     fn gather(
         &self,
         value: impl Fn(usize, &[Vec<f64>; 8]) -> f64,
@@ -196,7 +201,7 @@ impl SpectralCubicForce {
         }
     }
 
-    /// Fills the fields of u, and `work.sum` with weight · M û.
+    /// Computes the fields of u, and `work.sum` with weight · M û.
     fn load(&self, u: &[f64], weight: f64, work: &mut Work) {
         let origin = u[u.len() / 2];
         for (line, u) in work.line.iter_mut().zip(u) {
@@ -212,7 +217,7 @@ impl SpectralCubicForce {
         self.refine(EVEN_U, |m| Complex::new(self.even[m], 0.0), work);
     }
 
-    /// The line of `work.sum`, in `work.force`; linear terms keep the highest mode, products lose it.
+    /// Computes the line of `work.sum`, in `work.force`; linear terms include the highest mode, products do not.
     fn collect(&self, top: Complex<f64>, work: &mut Work) {
         let modes = self.coarse.modes();
         work.coarse.copy_from_slice(&work.sum[..modes]);
@@ -223,7 +228,7 @@ impl SpectralCubicForce {
             .inverse(&mut work.coarse, &mut work.force, &mut work.scratch);
     }
 
-    /// w₁ f₁ + w₂ f₂ + w₃ f₃, in `work.force`.
+    /// Computes w₁ f₁ + w₂ f₂ + w₃ f₃, in `work.force`.
     fn terms(&self, u: &[f64], [one, two, three]: [f64; 3], work: &mut Work) {
         self.load(u, one, work);
         let top = work.sum[self.coarse.modes() - 1];
@@ -245,7 +250,7 @@ impl SpectralCubicForce {
         self.collect(top, work);
     }
 
-    /// The derivative in a direction, in `work.force`.
+    /// Computes the directional derivative, in `work.force`.
     fn derivative(&self, u: &[f64], direction: &[f64], work: &mut Work) {
         self.load(u, 0.0, work);
         let origin = direction[direction.len() / 2];
@@ -281,7 +286,7 @@ impl SpectralCubicForce {
     }
 }
 
-/// Weights of the parts of an energy.
+/// Weights of the three terms in the energy.
 const ENERGY: [f64; 3] = [1.0 / 2.0, 1.0 / 3.0, 1.0 / 4.0];
 
 impl Force for SpectralCubicForce {
@@ -293,7 +298,7 @@ impl Force for SpectralCubicForce {
         1
     }
 
-    fn add_force(&self, _t: f64, u: &[f64], on: On<'_>, out: &mut [f64]) {
+    fn add_force(&self, _t: f64, u: &[f64], on: PointSubset<'_>, out: &mut [f64]) {
         let mut work = self.work.take();
         self.terms(u, [1.0; 3], &mut work);
         for_each_wanted(&on, 0..u.len(), |points| {
@@ -320,7 +325,7 @@ impl Force for SpectralCubicForce {
         -sum(u.len(), |i| volumes[i] * force[i] * (u[i] - origin))
     }
 
-    /// The largest ω of all plane waves about the reference, for the smallest density.
+    /// Largest ω of all plane waves about the reference configuration, for the smallest density.
     fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {
         let least = (0..self.points())
             .map(density)
@@ -335,7 +340,7 @@ impl Force for SpectralCubicForce {
         out.copy_from_slice(&work.force);
     }
 
-    /// Cells within the horizon of all points, about; no loop runs over them.
+    /// Approximate number of cells within the horizon of all points; no loop runs over them.
     fn directed_bonds(&self) -> u64 {
         (self.family * self.points() as f64) as u64
     }
@@ -355,7 +360,7 @@ impl Force for SpectralCubicForce {
 }
 
 pericles::saved! {
-    impl Saved for SpectralCubicForce {
+    impl Checkpointed for SpectralCubicForce {
         cloud, coarse, fine, linear, odd, even, family: fixed,
         work: scratch,
     }

@@ -1,4 +1,4 @@
-//! The force operator of a linear body on a periodic box.
+//! Force operator of a linear body on a periodic box.
 
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
@@ -17,20 +17,23 @@ use crate::form::{ForceForm, LINEAR_ONLY};
 use pericles::material::{BondConstants, BondMaterial, PairLaw};
 use pericles::operator::pool::Pool;
 use pericles::operator::{
-    Capabilities, Diagonal, Force, FunctionOf, InstructionSet, LinearOperator, Linearity, On,
+    Capabilities, Diagonal, Force, FunctionOf, InstructionSet, LinearOperator, Linearity,
+    PointSubset,
 };
 use pericles::parallel::{components, components_mut};
 use pericles::space::PointCloud;
 use pericles::{PericlesError, Result};
 
-/// f(x) = Σ_k −M(k) û(k) exp(ik·x): the force density (N/m³) of the linear bond-based law on a box whose opposite faces are one, with the continuum's symbol M.
+/// Force density (N/m³) f(x) = Σ_k −M(k) û(k) exp(ik·x) of the linear bond-based law on a periodic box, with the
+/// symbol M of the continuum.
 ///
-/// The period along each axis is the number of cells times the spacing. At the highest wave number of an even number of cells, where exp(ikx) and exp(−ikx) are the
-/// same on the grid, M is the mean of both. All points are computed whatever subset is asked for; a rigid translation gives exactly zero.
+/// The period along each axis is the number of cells times the spacing. At the highest wavenumber of an even number
+/// of cells, where exp(ikx) and exp(−ikx) are equal on the grid, M is the mean of both. All points are computed for
+/// any requested subset; a rigid translation gives exactly zero.
 pub struct SpectralForce<const D: usize> {
     cloud: Arc<PointCloud>,
     transform: BoxTransform,
-    /// 2π over the period of each axis, rad/m.
+    /// 2π divided by the period of each axis, rad/m.
     unit: [f64; D],
     /// M_p and M_s for each wave vector.
     symbol: Vec<[f64; 2]>,
@@ -41,11 +44,11 @@ pub struct SpectralForce<const D: usize> {
 }
 
 impl<const D: usize> SpectralForce<D> {
-    /// The operator of a material on a box of cells.
+    /// Creates the operator of a material on a box of cells.
     ///
     /// # Errors
-    /// What a Fourier series cannot do, with the reason: points that are no full box, another law than the linear one, breaking; an influence function that
-    /// belongs to a grid.
+    /// Unsupported cases, with the reason: points that are not a full box, a nonlinear pair law, breaking, an
+    /// influence function that belongs to a grid.
     pub fn new(
         cloud: Arc<PointCloud>,
         material: &BondMaterial,
@@ -62,7 +65,7 @@ impl<const D: usize> SpectralForce<D> {
             &material.influence,
             material.horizon,
         )?;
-        // The number of cells in a horizon, for reports.
+        // Number of cells in a horizon, for reports.
         let ball = [2.0, PI, 4.0 / 3.0 * PI][D - 1];
         let family = ball * (material.horizon / cloud.spacing()).powi(D as i32);
         let mut force = Self::with_symbol(cloud, |k| symbol.at(k))?;
@@ -70,17 +73,17 @@ impl<const D: usize> SpectralForce<D> {
         Ok(force)
     }
 
-    /// An operator with M_p and M_s (N/m⁴) given as functions of |k| (rad/m); bars use M_p.
+    /// Creates an operator with M_p and M_s (N/m⁴) given as functions of |k| (rad/m); bars use M_p.
     ///
     /// # Errors
-    /// Points that are no full box of cells, or of another dimension; values that are not finite.
+    /// Points that are not a full box of cells, or of another dimension; values that are not finite.
     pub fn with_symbol(
         cloud: Arc<PointCloud>,
         symbol_of: impl Fn(f64) -> [f64; 2] + Sync,
     ) -> Result<Self> {
         if cloud.dimension() != D {
             return Err(PericlesError::WrongDimension {
-                what: "a spectral operator of this kind",
+                what: "a spectral operator of this type",
                 needed: ["1", "2", "3"][D - 1],
                 dimension: cloud.dimension(),
             });
@@ -112,7 +115,7 @@ impl<const D: usize> SpectralForce<D> {
         Ok(force)
     }
 
-    /// Computes the symbol once for every length of a wave vector.
+    /// Evaluates the symbol once for every length of a wave vector.
     fn tabulate(&mut self, symbol_of: impl Fn(f64) -> [f64; 2] + Sync) -> Result<()> {
         let size = |mode: usize| {
             let (k, _) = self.wave(mode);
@@ -138,7 +141,8 @@ impl<const D: usize> SpectralForce<D> {
         Ok(())
     }
 
-    /// The wave vector of an entry of a spectrum, rad/m, and which of its components are at the highest wave number of an even number of cells.
+    /// Returns the wave vector of an entry of a spectrum, rad/m, and which of its components are at the highest
+    /// wavenumber of an even number of cells.
     fn wave(&self, mode: usize) -> ([f64; D], [bool; D]) {
         let nodes = self.transform.nodes();
         let [along_x, _, last] = self.transform.modes();
@@ -159,7 +163,7 @@ impl<const D: usize> SpectralForce<D> {
         (k, top)
     }
 
-    /// g(M) û at one wave vector.
+    /// Applies g(M) to û at one wave vector.
     fn act(&self, mode: usize, g: &impl Fn(f64) -> f64, u: [Complex<f64>; D]) -> [Complex<f64>; D] {
         let [pressure, shear] = self.symbol[mode];
         if D == 1 {
@@ -172,7 +176,8 @@ impl<const D: usize> SpectralForce<D> {
             let factor = g(0.0);
             return u.map(|u| u * factor);
         }
-        // Axes at the top do not couple, for ±k cancel; the others have one direction along k and the rest across.
+        // Axes at the highest wavenumber do not couple, because ±k cancel; the others have one longitudinal
+        // direction and the rest are transverse.
         let value = |part: f64| shear + (pressure - shear) * part / square;
         let free = |axis: usize| if top[axis] { 0.0 } else { k[axis] };
         let part: f64 = (0..D).map(|axis| free(axis).powi(2)).sum();
@@ -192,14 +197,14 @@ impl<const D: usize> SpectralForce<D> {
         })
     }
 
-    /// The element M_ab at one wave vector.
+    /// Returns the element M_ab at one wave vector.
     fn element(&self, mode: usize, a: usize, b: usize) -> f64 {
         let unit: [Complex<f64>; D] =
             std::array::from_fn(|axis| Complex::new(f64::from(u8::from(axis == b)), 0.0));
         self.act(mode, &|value| value, unit)[a].re
     }
 
-    /// The spectra of u less a constant, in the first D arrays.
+    /// Computes the spectra of u minus a constant, in the first D arrays.
     fn forward(&self, u: &[f64], origin: [f64; D], spectra: &mut [Vec<Complex<f64>>]) {
         let u = components::<D>(u, self.cloud.len());
         for c in 0..D {
@@ -208,7 +213,7 @@ impl<const D: usize> SpectralForce<D> {
         }
     }
 
-    /// Calls `set(i, [g(M) u]_c, out_c)` with g(M) applied to what the first D spectra hold.
+    /// Calls `set(i, [g(M) u]_c, out_c)` with g(M) applied to the first D spectra.
     fn backward(
         &self,
         g: &(impl Fn(f64) -> f64 + Sync),
@@ -278,7 +283,7 @@ impl<const D: usize> Diagonal for SpectralForce<D> {
         self.forward(x, origin, &mut spectra);
         for function in functions {
             let g = |value: f64| (function.value)(value / density + shift);
-            // The constant is a wave of its own.
+            // The constant is a separate wave.
             let constant = origin.map(|origin| g(0.0) * origin);
             self.backward(&g, &mut spectra, function.out, &|c, _, value, out| {
                 *out += value + constant[c];
@@ -296,7 +301,7 @@ impl<const D: usize> Force for SpectralForce<D> {
         D
     }
 
-    fn add_force(&self, _t: f64, u: &[f64], on: On<'_>, out: &mut [f64]) {
+    fn add_force(&self, _t: f64, u: &[f64], on: PointSubset<'_>, out: &mut [f64]) {
         let n = self.points();
         let mut force = self.fields.take();
         self.force_into(u, &mut force);
@@ -310,8 +315,9 @@ impl<const D: usize> Force for SpectralForce<D> {
         }
     }
 
-    /// w = ¼ Σ_ab L_ab(u_a u_b) − ½ f·u with L = −M, relative to a common origin: what the bonds of a point store, half of each. The products carry waves of twice the wave
-    /// number, so that fields should be smooth on the scale of two spacings.
+    /// Energy density w = ¼ Σ_ab L_ab(u_a u_b) − ½ f·u with L = −M, relative to a common origin: half of the energy
+    /// of each bond of a point. The products contain waves of twice the wavenumber, so fields should be smooth on
+    /// the scale of two spacings.
     fn add_energy_density(&self, _t: f64, u: &[f64], out: &mut [f64]) {
         let n = self.points();
         let origin = origin::<D>(u);
@@ -322,7 +328,7 @@ impl<const D: usize> Force for SpectralForce<D> {
         add_density(u, &force, origin, &squares, out);
     }
 
-    /// −½ Σ V f·u.
+    /// Energy −½ Σ V f·u.
     fn energy(&self, _t: f64, u: &[f64]) -> f64 {
         let origin = origin::<D>(u);
         let mut force = self.fields.take();
@@ -330,7 +336,7 @@ impl<const D: usize> Force for SpectralForce<D> {
         elastic_energy(self.cloud.volumes(), u, &force, origin)
     }
 
-    /// The largest ω of all plane waves, for the smallest density.
+    /// Largest ω of all plane waves, for the smallest density.
     fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {
         let least = (0..self.points())
             .map(density)
@@ -342,9 +348,9 @@ impl<const D: usize> Force for SpectralForce<D> {
         self.force_into(direction, out);
     }
 
-    /// Cells within the horizon of all points, about; no loop runs over them.
+    /// Approximate number of cells within the horizon of all points; no loop runs over them.
     fn directed_bonds(&self) -> u64 {
-        // Whole bonds, each seen from both of its ends.
+        // Whole bonds, each counted from both ends.
         2 * (0.5 * self.family * self.points() as f64).round() as u64
     }
 
@@ -366,7 +372,7 @@ impl<const D: usize> Force for SpectralForce<D> {
 }
 
 pericles::saved! {
-    impl<const D: usize> Saved for SpectralForce<D> {
+    impl<const D: usize> Checkpointed for SpectralForce<D> {
         cloud, transform, unit, symbol, largest, family: fixed,
         spectra, fields: scratch,
     }

@@ -1,4 +1,4 @@
-//! The symbol of the linear bond-based operator.
+//! Symbol of the linear bond-based operator.
 
 use std::f64::consts::PI;
 
@@ -9,9 +9,10 @@ use crate::function::bessel_into;
 use pericles::kernel::{ActsOn, Influence, InfluenceFunction};
 use pericles::{PericlesError, Result};
 
-/// M_p(k) and M_s(k) of an isotropic linear bond-based medium, N/m⁴: ρω² of pressure and shear waves of wave number k.
+/// M_p(k) and M_s(k) of an isotropic linear bond-based medium, N/m⁴: ρω² of pressure and shear waves of wavenumber
+/// k.
 ///
-/// With z = kr, A the bar's area and t the plate's thickness:
+/// With z = kr, A the area of the bar and t the thickness of the plate:
 ///
 /// | | M_p | M_s |
 /// |---|---|---|
@@ -19,8 +20,9 @@ use pericles::{PericlesError, Result};
 /// | 2D | 2πct ∫ α [½ − J₀ + J₁/z] dr | 2πct ∫ α [½ − J₁/z] dr |
 /// | 3D | 4πc ∫ α r [⅓ − sin z/z − 2 cos z/z² + 2 sin z/z³] dr | 4πc ∫ α r [⅓ + cos z/z² − sin z/z³] dr |
 ///
-/// over 0 … δ. In one dimension closed forms are used for the micromodulus C = cα/r of the forms Gaussian (horizon of at least six lengths), constant, conical and inverse; all else is
-/// Gauss–Legendre quadrature, exact to some 1e-14 of the largest value.
+/// over 0 … δ. In one dimension closed forms are used if the micromodulus C = cα/r is Gaussian (horizon of at least
+/// six lengths), constant, conical or inverse; all other cases use Gauss–Legendre quadrature, exact to some 1e-14
+/// of the largest value.
 #[derive(Debug, Clone)]
 pub struct Symbol {
     dimension: usize,
@@ -32,7 +34,7 @@ pub struct Symbol {
     pieces: Vec<f64>,
 }
 
-/// The one-dimensional micromoduli whose symbol has a closed form.
+/// One-dimensional micromoduli whose symbol has a closed form.
 enum Closed {
     Gaussian(f64),
     Constant,
@@ -41,10 +43,10 @@ enum Closed {
 }
 
 impl Symbol {
-    /// The symbol of bonds c α, `section` the bar's area, the plate's thickness, or 1.
+    /// Creates the symbol of bonds c α; `section` is the area of the bar, the thickness of the plate, or 1.
     ///
     /// # Errors
-    /// An influence function that belongs to a grid, or is not usable in this dimension.
+    /// An influence function that belongs to a grid or is not usable in this dimension.
     pub fn new(
         dimension: usize,
         section: f64,
@@ -54,7 +56,8 @@ impl Symbol {
     ) -> Result<Self> {
         if matches!(influence.function, InfluenceFunction::Classes(_)) {
             return Err(PericlesError::BadInfluence {
-                reason: "a table per class belongs to a grid and has no integral over the horizon; use bonds = \"convolution\""
+                reason: "a table per bond class belongs to a grid and has no integral over the horizon; use bonds = \
+                    \"convolution\""
                     .into(),
             });
         }
@@ -74,7 +77,7 @@ impl Symbol {
         let displacement = self.influence.acts_on == ActsOn::Displacement;
         match &self.influence.function {
             InfluenceFunction::Gaussian { length, cutoff } if displacement => {
-                /// Lengths beyond which e^(−r²/l²) is below 1e-16.
+                /// Number of lengths beyond which e^(−r²/l²) is below 1e-16.
                 const ALL: f64 = 6.1;
                 let end = cutoff.unwrap_or(self.horizon);
                 (end >= ALL * length).then_some(Closed::Gaussian(*length))
@@ -87,7 +90,7 @@ impl Symbol {
         }
     }
 
-    /// M_p and M_s at wave number k ≥ 0; in one dimension both are M_p.
+    /// Returns M_p and M_s at wavenumber k ≥ 0; in one dimension both are M_p.
     pub fn at(&self, k: f64) -> [f64; 2] {
         if k == 0.0 {
             return [0.0; 2];
@@ -101,7 +104,7 @@ impl Symbol {
         self.integral(k)
     }
 
-    /// The same by quadrature.
+    /// As [`Symbol::at`], by quadrature.
     fn integral(&self, k: f64) -> [f64; 2] {
         let mut sums = [0.0; 2];
         self.nodes(k, |r, weighed| {
@@ -117,16 +120,16 @@ impl Symbol {
         sums.map(|sum| self.factor * sum)
     }
 
-    /// c A ∫ g(r, α) dr over 0 … δ for a g that is proportional to α and waves with kr.
+    /// Computes c A ∫ g(r, α) dr over 0 … δ for a g that is proportional to α and oscillates with kr.
     pub(super) fn radial(&self, k: f64, g: impl Fn(f64, f64) -> f64) -> f64 {
         let mut sum = 0.0;
         self.nodes(k, |r, weighed| sum += g(r, weighed));
         self.factor * sum
     }
 
-    /// Calls `visit(r, weight · α)` for the nodes of a quadrature of integrands that wave with kr.
+    /// Calls `visit(r, weight · α)` for the nodes of a quadrature of integrands that oscillate with kr.
     fn nodes(&self, k: f64, mut visit: impl FnMut(f64, f64)) {
-        /// Of kr in a piece: 32 nodes integrate twenty radians of a wave to round-off.
+        /// Range of kr in one panel: 32 nodes integrate twenty radians of a wave to round-off.
         const RADIANS: f64 = 20.0;
         for piece in self.pieces.windows(2) {
             let parts = (k * (piece[1] - piece[0]) / RADIANS).ceil().max(1.0);
@@ -148,7 +151,7 @@ fn closed_form(form: &Closed, k: f64, horizon: f64) -> f64 {
     match form {
         // √π l (1 − e^(−k²l²/4))
         Closed::Gaussian(length) => -PI.sqrt() * length * (-0.25 * (k * length).powi(2)).exp_m1(),
-        // 2 (δ − sin(kδ)/k); small z by series, for the difference loses digits
+        // 2 (δ − sin(kδ)/k); by series for small z, where the difference loses digits.
         Closed::Constant => 2.0 * horizon * one_less_sinc(z),
         // 2 (δ/2 − (1 − cos kδ)/(k²δ)) = δ (1 − sinc²(kδ/2))
         Closed::Conical => {
@@ -174,7 +177,7 @@ fn one_less_sinc(z: f64) -> f64 {
     }
 }
 
-/// ∫ n_a² (1 − cos(z n·k̂)) over directions n, along k̂ and across.
+/// ∫ n_a² (1 − cos(z n·k̂)) over directions n, longitudinal and transverse.
 fn angular(dimension: usize, z: f64) -> [f64; 2] {
     match dimension {
         1 => {
@@ -219,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn closed_forms_are_the_integrals() {
+    fn closed_forms_equal_the_quadrature() {
         let gaussian = InfluenceFunction::Gaussian {
             length: 0.1,
             cutoff: None,
@@ -238,14 +241,14 @@ mod tests {
             for k in [1e-3, 0.5, 3.0, 20.0, 150.0, 1e3] {
                 let (closed, sum) = (symbol.at(k)[0], symbol.integral(k)[0]);
                 let error = (closed - sum).abs() / largest;
-                // kδ = 700 is known to 1e-13, and both sides sum several such terms.
+                // kδ = 700 is accurate to 1e-13, and both sides sum several such terms.
                 assert!(error < 1e-14, "{case:?} {k}: {closed} {sum}");
             }
         }
     }
 
     #[test]
-    fn long_waves_have_the_moduli_of_the_medium() {
+    fn long_waves_have_the_speeds_of_the_elastic_medium() {
         // ω² ρ/k² = c ∫ α r^D dr × ½ ∫ n_x² n_a² over directions: c m₃ × (3π/8, π/8) and (2π/5, 2π/15).
         let constant = Influence::default();
         for (dimension, parts) in [

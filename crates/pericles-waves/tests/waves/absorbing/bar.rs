@@ -1,4 +1,4 @@
-//! The paper's bar, and ends for it.
+//! Bar of the paper, and absorbing boundaries for it.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -28,12 +28,12 @@ pub(crate) fn weights() -> Vec<f64> {
     (1..=REACH).map(|k| gaussian(k as f64 * DX) * DX).collect()
 }
 
-/// A bar of nodes −half … half, x = 0 in the middle, whose inner part |x| < 4 is softer by β.
+/// Bar of nodes −half … half, x = 0 in the middle, whose inner part |x| < 4 is softer by β.
 pub(crate) fn bar(half: usize, beta: f64) -> System {
     bar_with(half, beta, f64::INFINITY)
 }
 
-/// The plain bar, whose bonds with both ends beyond |x| = 2 never break.
+/// Homogeneous bar whose bonds with both ends beyond |x| = 2 never break.
 pub(crate) fn breaking_bar(half: usize) -> System {
     bar_with(half, 1.0, 0.6)
 }
@@ -110,7 +110,7 @@ pub(crate) fn run(system: System, state: State, dt: f64, steps: u64) -> Simulati
     simulation
 }
 
-/// The largest difference of displacement and velocity between the middle of a large body and a truncated one.
+/// Largest difference of displacement and velocity between the middle of a large body and a truncated one.
 pub(crate) fn difference(large: &State, small: &State) -> f64 {
     let margin = (large.u.len() - small.u.len()) / 2;
     let fields = [(&large.u, &small.u), (&large.v, &small.v)];

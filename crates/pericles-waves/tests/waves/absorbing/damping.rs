@@ -1,4 +1,4 @@
-//! Layers in which motion dies away.
+//! Damping layers.
 
 use pericles::boundary::{DampedSteps, DampingLayer, DampingProfile};
 use pericles::round_trip::check_resume;
@@ -19,7 +19,7 @@ fn layer(thickness: f64, reflection: f64) -> DampingProfile {
     DampingProfile::of_reflection(thickness, reflection, 2.0, 1.0)
 }
 
-/// With the layer at the right of a bar −20 … 20.
+/// Bar −20 … 20 with a damping layer at the right end.
 fn damped(profile: DampingProfile) -> System {
     damped_for(StepKind::EndOfStep, profile, DT)
 }
@@ -37,11 +37,12 @@ fn damped_for(kind: StepKind, profile: DampingProfile, dt: f64) -> System {
     system
 }
 
-/// What comes back into −10 … 10 of a bell that left it, over what would without a layer.
+/// Amplitude reflected into −10 … 10 after a bell has left, relative to that without a layer.
 fn reflected(profile: DampingProfile) -> f64 {
     let system = damped(profile);
     let state = pulse(&system, 0.0);
-    // The half that ran to the right is back in the middle; the one to the left was reflected by the free end, and is at the left.
+    // Without a layer the right half is back in the middle; the left half was reflected by the free end and is at
+    // the left.
     let steps = 350;
     let end = run(system, state, DT, steps);
     let energies = end.snapshot().energies();
@@ -57,19 +58,19 @@ fn reflected(profile: DampingProfile) -> f64 {
 }
 
 #[test]
-fn the_layer_returns_what_it_is_asked_to() {
-    // Less than that: the layer delays the long waves of the bell, which spread.
+fn damping_layer_reflects_at_most_the_requested_fraction() {
+    // Less than requested: the layer delays the long waves of the bell, which spread.
     for asked in [0.3, 0.1] {
         let found = reflected(layer(10.0, asked));
         assert!(found < asked && found > 0.4 * asked, "{asked}: {found}");
     }
-    // Waves as long as the layer do not notice that it is graded: a deeper one returns less.
+    // Long waves, comparable to the layer thickness, are reflected less by a thicker layer.
     let [thin, thick] = [3.0, 12.0].map(|thickness| reflected(layer(thickness, 1e-4)));
     assert!(thick < 0.05 && thin > 3.0 * thick, "{thin:e}, {thick:e}");
 }
 
 #[test]
-fn damping_is_resumed() {
+fn damped_run_resumes_bit_for_bit() {
     let make = || {
         let system = damped(layer(10.0, 0.01));
         let state = pulse(&system, 12.0);
@@ -79,7 +80,7 @@ fn damping_is_resumed() {
 }
 
 #[test]
-fn layers_that_cannot_be_are_refused() {
+fn invalid_damping_layers_are_errors() {
     let system = bar(50, 1.0);
     let refusal = |face: &str, profile, frequency| {
         let face = Face::named(face).unwrap();
@@ -95,19 +96,19 @@ fn layers_that_cannot_be_are_refused() {
             .unwrap_or_default()
     };
     assert!(refusal("+y", layer(1.0, 0.1), 8.0).contains("has no side +y"));
-    assert!(refusal("+x", layer(0.05, 0.1), 8.0).contains("allowed: from a cell"));
+    assert!(refusal("+x", layer(0.05, 0.1), 8.0).contains("allowed: from one cell"));
     assert!(refusal("+x", layer(11.0, 0.1), 8.0).contains("less than the body"));
-    assert!(refusal("+x", layer(0.3, 1e-6), 19.0).contains("ω dt is 1.9000"));
+    assert!(refusal("+x", layer(0.3, 1e-6), 19.0).contains("ω dt is 1.900"));
 }
 
 type Make = fn(&System) -> Box<dyn Integrator>;
 
-/// A scheme whose layers damp the velocities of its own stages or of the middle of its steps.
+/// Scheme whose damping layers act on the velocities of its stages or of the middle of its steps.
 struct Case {
     name: &'static str,
     kind: StepKind,
     make: Make,
-    /// The order of displacements and of the energy balance; zero where the error is that of a tolerance.
+    /// Order of displacements and of the energy balance; zero where the error is determined by a tolerance.
     order: i32,
 }
 
@@ -125,7 +126,8 @@ fn newmark(solver: InnerSolver, system: &System) -> Box<dyn Integrator> {
     Box::new(Newmark::new(options, system).unwrap())
 }
 
-/// The smaller step where the layer begins, in half of the layer and half of the plain bar.
+/// Multirate scheme with the smaller step where the layer begins, in half of the layer and half of the remaining
+/// bar.
 fn two_steps(tableau: &Tableau, system: &System) -> Box<dyn Integrator> {
     let inside = |x: f64| (5.0..15.0).contains(&x);
     let axis = system.cloud().axis(0).iter();
@@ -159,13 +161,13 @@ const CASES: [Case; 13] = [
         order: 0,
     },
     Case {
-        name: "rk3-mts",
+        name: "multirate-rk3",
         kind: StepKind::Stages,
         make: |system| two_steps(&Tableau::rk3(0.5).unwrap(), system),
         order: 3,
     },
     Case {
-        name: "rk4-mts",
+        name: "multirate-rk4",
         kind: StepKind::Stages,
         make: |system| two_steps(&Tableau::rk4(), system),
         order: 4,
@@ -233,7 +235,7 @@ const CASES: [Case; 13] = [
     },
 ];
 
-/// A bell that runs into the layer and out again, moving as it starts.
+/// Bell that travels into the layer and back, with initial velocity.
 fn bell(case: &Case, dt: f64) -> Simulation {
     let system = damped_for(case.kind, layer(10.0, 0.1), dt);
     let scheme = (case.make)(&system);
@@ -244,7 +246,8 @@ fn bell(case: &Case, dt: f64) -> Simulation {
     Simulation::new(system, scheme, state, dt, (15.0 / dt).round() as u64).unwrap()
 }
 
-/// Displacements at the end, the energy balance over the energy at the start, and what the momentum is off by from the impulse of the layer, over the impulse.
+/// Displacements at the end, the energy imbalance relative to the initial energy, and the difference of the
+/// momentum from the impulse of the layer relative to the impulse.
 fn ended(case: &Case, dt: f64) -> (Vec<f64>, f64, f64) {
     let mut run = bell(case, dt);
     let before = run.system().momentum(&run.state().v)[0];
@@ -259,7 +262,7 @@ fn ended(case: &Case, dt: f64) -> (Vec<f64>, f64, f64) {
 }
 
 #[test]
-fn every_scheme_damps_the_same_waves_to_its_order() {
+fn damping_layers_converge_with_the_order_of_every_scheme() {
     let (reference, ..) = ended(&CASES[1], DT / 16.0);
     let distance = |u: &[f64]| {
         let each = u.iter().zip(&reference).map(|(a, b)| (a - b).abs());
@@ -273,13 +276,13 @@ fn every_scheme_damps_the_same_waves_to_its_order() {
         if case.order == 0 {
             assert!(fine < 1e-6 && narrow < 1e-6, "{name}: {fine:e}, {narrow:e}");
         } else {
-            // Waves of a few spacings are not resolved in time: half an order is left to them.
+            // Waves of a few spacings are not resolved in time: half an order is allowed for them.
             let least = 2f64.powf(f64::from(case.order) - 0.5);
             assert!(coarse > least * fine, "{name}: {coarse:e}, {fine:e}");
             assert!(coarse < 0.05, "{name}: {coarse:e}");
         }
-        // Both ends of the interface between two steps take the force at stages of their own.
-        let two_steps = name.ends_with("-mts");
+        // Points on both sides of the multirate interface evaluate the force at stages of their own.
+        let two_steps = name.starts_with("multirate-");
         let exact = if two_steps { 1e-4 } else { 1e-11 };
         assert!(
             first < exact && second < exact,
@@ -289,7 +292,7 @@ fn every_scheme_damps_the_same_waves_to_its_order() {
             StepKind::Middle | StepKind::Flow => {
                 assert!(wide < 1e-11 && narrow < 1e-11, "{name}: {wide:e}")
             }
-            // The mean of the work at both ends is that of the velocity in between.
+            // The mean of the work at both ends equals that of the velocity in between.
             _ if name == "newmark" => assert!(wide < 1e-9, "{name}: {wide:e}"),
             _ if case.order == 0 => {}
             _ => assert!(
@@ -301,7 +304,7 @@ fn every_scheme_damps_the_same_waves_to_its_order() {
 }
 
 #[test]
-fn layers_of_every_kind_are_resumed() {
+fn damping_layers_resume_with_every_scheme() {
     for case in &CASES {
         check_resume(|| bell(case, DT), [40, 90]).unwrap_or_else(|error| {
             panic!("{}: {error}", case.name);
@@ -310,7 +313,7 @@ fn layers_of_every_kind_are_resumed() {
 }
 
 #[test]
-fn schemes_without_a_velocity_to_damp_are_refused() {
+fn schemes_without_velocities_reject_damping_layers() {
     let remembering = damped(layer(10.0, 0.1));
     let respa = Respa::new(2, Fine::Fixed(vec![(150..250).collect()]), &remembering);
     let respa = respa.err().unwrap().to_string();
@@ -322,7 +325,7 @@ fn schemes_without_a_velocity_to_damp_are_refused() {
     let newton = Newmark::new(newton, &remembering).err().unwrap();
     assert!(newton.to_string().contains("memory"), "{newton}");
     let system = damped_for(StepKind::Stages, layer(10.0, 0.1), DT);
-    // A layer made for other steps is found when the run begins.
+    // A layer created for another step is detected at the start of the run.
     let state = pulse(&system, 0.0);
     let mut run = Simulation::new(system, Box::new(VelocityVerlet), state, DT, 10).unwrap();
     let refused = run.run(|_| Control::Continue).err().unwrap().to_string();

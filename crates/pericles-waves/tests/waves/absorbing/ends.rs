@@ -1,4 +1,4 @@
-//! The truncated body moves as the infinite one.
+//! A truncated body with absorbing boundaries moves as the infinite one.
 
 use std::sync::Arc;
 
@@ -10,8 +10,8 @@ use pericles::round_trip::check_resume;
 use pericles::space::{Grid, Shape};
 use pericles::time::{State, VelocityVerlet};
 use pericles::{
-    Archive, Control, PericlesError, PointScalar, Saved, Simulation, SimulationError, System,
-    Values,
+    Archive, Checkpointed, Control, PericlesError, PointScalar, Simulation, SimulationError,
+    System, Values,
 };
 use pericles_waves::absorbing::history::{DirectHistory, ExponentialHistory, History};
 use pericles_waves::absorbing::{
@@ -23,7 +23,7 @@ use crate::absorbing::bar::{
 };
 
 #[test]
-fn the_truncated_bar_equals_the_large_one() {
+fn truncated_bar_equals_the_large_bar() {
     for (dt, steps, beta) in [
         (0.01, 4000, 1.0),
         (0.1, 700, 0.5),
@@ -31,7 +31,8 @@ fn the_truncated_bar_equals_the_large_one() {
         (0.249, 300, 1.0),
     ] {
         let half = 100;
-        // Nothing is faster than ten nodes per unit of time; beyond the front fields decay within some tens of nodes.
+        // The largest wave speed is ten nodes per unit of time; beyond the front, fields decay within some tens of
+        // nodes.
         let margin = (5.0 * dt * steps as f64) as usize + 120;
         let large = bar(half + margin, beta);
         let state = pulse(&large, 2.0);
@@ -43,7 +44,7 @@ fn the_truncated_bar_equals_the_large_one() {
         let small = run(small, state, dt, steps);
         let error = difference(large.state(), small.state());
         assert!(error < 1e-12, "dt = {dt}, beta = {beta}: {error:e}");
-        // The account closes: what left is the work of the ends.
+        // The energy balance closes: the energy that left is the work of the boundaries.
         let energies = small.snapshot().energies();
         let balance = energies.balance().abs() / energies.initial;
         assert!(balance < 1e-12, "{balance:e}");
@@ -51,10 +52,10 @@ fn the_truncated_bar_equals_the_large_one() {
     }
 }
 
-/// Some minutes: `cargo test -p pericles --release --test absorbing -- --ignored`.
+/// Takes some minutes: `cargo test -p pericles-waves --release -- --ignored`.
 #[test]
 #[ignore = "long"]
-fn the_truncated_bar_equals_the_large_one_for_long() {
+fn truncated_bar_equals_the_large_bar_in_a_long_run() {
     let steps = 10_000;
     for (dt, beta) in [
         (0.01, 1.0),
@@ -78,7 +79,7 @@ fn the_truncated_bar_equals_the_large_one_for_long() {
 }
 
 #[test]
-fn one_free_end_doubles_and_reflects() {
+fn absorbing_boundary_opposite_a_free_end_equals_a_large_bar() {
     let (dt, steps, half) = (0.1, 300, 100);
     let right = |margin: usize| {
         // The right end is free in both; the left one is absorbing, or far away.
@@ -107,7 +108,7 @@ fn one_free_end_doubles_and_reflects() {
         )
         .unwrap();
         let mut system = System::new(cloud, Box::new(force), PointScalar::Uniform(1.0)).unwrap();
-        // A push in the middle instead of an initial field.
+        // A force in the middle instead of an initial field.
         system
             .add_load(Load::new(
                 vec![(half + margin) as u32],
@@ -141,7 +142,7 @@ fn direct(kernels: GhostKernels) -> Box<dyn History> {
     Box::new(DirectHistory::new(kernels))
 }
 
-/// A history of exponentials in place of the kernels.
+/// Exponential history in place of the kernels.
 fn exponentials(_: GhostKernels) -> Box<dyn History> {
     let stencil = LatticeStencil::new(&weights()).unwrap();
     Box::new(ExponentialHistory::new(
@@ -150,7 +151,7 @@ fn exponentials(_: GhostKernels) -> Box<dyn History> {
 }
 
 #[test]
-fn stop_and_resume_gives_the_same_bits() {
+fn resumed_run_is_bit_for_bit_equal() {
     for history in [blocked, direct, exponentials] {
         stopped_and_resumed(history);
     }
@@ -168,7 +169,7 @@ fn stopped_and_resumed(history: fn(GhostKernels) -> Box<dyn History>) {
 }
 
 #[test]
-fn a_history_of_another_time_is_refused() {
+fn history_of_another_step_is_an_error() {
     let (dt, steps) = (0.1, 333);
     let make = || {
         let mut system = bar(60, 0.5);
@@ -192,7 +193,7 @@ fn a_history_of_another_time_is_refused() {
         .map(|(name, _)| (name.clone(), archive.f64s(name).unwrap().to_vec()))
         .collect();
     assert_eq!(histories.len(), 2);
-    // As many steps as fit the run, but not this state: to go on would leave their room.
+    // As many steps as fit the run, but not this state: continuing would exceed their arrays.
     for (name, past) in histories {
         let sites = past.len() / 151;
         for known in [0, 149, 152, 334] {
@@ -205,7 +206,7 @@ fn a_history_of_another_time_is_refused() {
 }
 
 #[test]
-fn what_cannot_be_continued_is_refused() {
+fn bodies_that_the_exterior_cannot_continue_are_errors() {
     use AbsorbingError as E;
     assert_eq!(LatticeStencil::new(&[]), Err(E::EmptyStencil));
     assert_eq!(
@@ -223,7 +224,7 @@ fn what_cannot_be_continued_is_refused() {
     );
 
     let layer = |system: &System, state: &State| OuterLayer::of(system, Side::Right, state, &[]);
-    // The soft part reaches the layer: the first wrong bond is named.
+    // The soft part extends into the layer: the error names the first deviating bond.
     let soft = bar(43, 0.5);
     let rest = State::at_rest(soft.points());
     let error = layer(&soft, &rest).unwrap_err();

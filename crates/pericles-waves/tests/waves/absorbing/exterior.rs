@@ -1,4 +1,4 @@
-//! Fields that go on beyond the end at the start.
+//! Initial fields that extend beyond the absorbing boundary.
 
 use pericles::round_trip::check_resume;
 use pericles::time::{State, VelocityVerlet};
@@ -13,7 +13,7 @@ use crate::absorbing::bar::{DX, bar, difference, run};
 const DT: f64 = 0.2;
 const STEPS: u64 = 300;
 
-/// A bell around the right end of a bar with 201 nodes, moving as well.
+/// Bell around the right end of a bar with 201 nodes, with initial velocity.
 fn bell(x: f64) -> [f64; 2] {
     let bell = (-(x - 9.0).powi(2)).exp();
     [bell, 0.5 * (x - 9.0) * bell]
@@ -48,7 +48,7 @@ fn with_ends() -> Simulation {
 }
 
 #[test]
-fn a_field_beyond_the_end_comes_in_and_leaves() {
+fn initial_field_beyond_the_boundary_enters_and_leaves() {
     let large = bar(100 + 500, 0.5);
     let state = start(&large);
     let large = run(large, state, DT, STEPS);
@@ -59,19 +59,19 @@ fn a_field_beyond_the_end_comes_in_and_leaves() {
 }
 
 #[test]
-fn the_field_beyond_is_resumed() {
+fn exterior_field_resumes_bit_for_bit() {
     check_resume(with_ends, [120]).unwrap();
 }
 
 #[test]
-fn a_field_without_end_is_refused() {
+fn exterior_field_that_does_not_decay_is_an_error() {
     let layer = OuterLayer::with_motion_beyond(&bar(60, 1.0), Side::Left, &[]).unwrap();
     let kernels = GhostKernels::shift(factor_kernels(&layer.stencil, DT, 10));
     let history = || -> Box<dyn History> { Box::new(BlockedHistory::new(kernels.clone())) };
     let (u, v) = (vec![1.0; 30], vec![0.0; 30]);
     let wave =
         |u: &[f64], body| FreeWave::new(&layer.stencil, DT, [u, &v], body, [history(), history()]);
-    // What is negligible beside the body is no reason to refuse, however little it decays.
+    // A field that is negligible compared with that of the body is accepted, even if it does not decay.
     assert!(wave(&[8e-21; 30], [1.0, 0.0]).is_ok());
     assert!(matches!(
         wave(&u, [1.0, 0.0]).err(),

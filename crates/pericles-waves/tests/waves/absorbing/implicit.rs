@@ -1,4 +1,4 @@
-//! Ends that are part of implicit steps.
+//! Absorbing boundaries of implicit schemes.
 
 use pericles::cache::NoCache;
 use pericles::round_trip::check_resume;
@@ -8,8 +8,8 @@ use pericles::time::{
 use pericles::{Control, PericlesError, Simulation, SimulationError, System};
 use pericles_waves::absorbing::history::{BlockedHistory, DirectHistory, History, HistoryForm};
 use pericles_waves::absorbing::{
-    AbsorbingError, EndPlan, GhostKernels, KernelMethod, LatticeStencil, LatticeStep, MidpointEnd,
-    OuterLayer, contour_kernels,
+    AbsorbingBoundaryPlan, AbsorbingError, GhostKernels, KernelMethod, LatticeStencil, LatticeStep,
+    MidpointEnd, OuterLayer, contour_kernels,
 };
 
 use crate::absorbing::bar::{BOTH, bar, breaking_bar, difference, pulse, weights};
@@ -18,10 +18,10 @@ fn add_ends(system: &mut System, state: &State, dt: f64, steps: u64, form: Histo
     for side in BOTH {
         let no_fail: Vec<u32> = (0..system.points() as u32).collect();
         let layer = OuterLayer::of(system, side, state, &no_fail).unwrap();
-        let plan = EndPlan {
+        let plan = AbsorbingBoundaryPlan {
             form: Some(form),
             tolerance: Some(1e-10),
-            ..EndPlan::default()
+            ..AbsorbingBoundaryPlan::default()
         };
         let step = LatticeStep::midpoint(dt);
         let made = plan.history(&layer.stencil, step, steps as usize, &NoCache);
@@ -44,14 +44,14 @@ fn implicit(
     simulation
 }
 
-/// The difference of a truncated body from one that is large enough, and the unbalanced share of its energy.
+/// Difference between a truncated body and one that is large enough, and the relative energy imbalance.
 fn error(
     make: fn(usize) -> System,
     [dt, steps]: [f64; 2],
     rule: ImplicitRule,
     solver: LinearSolver,
 ) -> [f64; 2] {
-    // An implicit step reaches everywhere; it decays as exp(−2 n/(10 dt)) and slower than waves travel.
+    // An implicit step has unlimited range; it decays as exp(−2 n/(10 dt)), more slowly than waves travel.
     let margin = (5.0 * dt * steps + 150.0 * dt.max(1.0)) as usize + 200;
     let large = make(100 + margin);
     let state = pulse(&large, 2.0);
@@ -68,9 +68,9 @@ fn error(
     ]
 }
 
-/// For linear forces the discrete gradient is the midpoint rule, for which its ends are made.
+/// For linear forces the discrete gradient scheme equals the midpoint rule, for which its boundaries are made.
 #[test]
-fn discrete_gradients_leave_through_the_ends_of_the_midpoint_rule() {
+fn discrete_gradient_scheme_uses_the_boundaries_of_the_midpoint_rule() {
     let (dt, steps) = (0.5, 120);
     let run = |system: System, state: State| {
         let scheme = DiscreteGradient::new(1e-13, &system).unwrap();
@@ -94,7 +94,7 @@ fn discrete_gradients_leave_through_the_ends_of_the_midpoint_rule() {
 }
 
 #[test]
-fn the_truncated_bar_equals_the_large_one_at_any_step() {
+fn truncated_bar_equals_the_large_bar_at_any_time_step() {
     use LinearSolver::{ConjugateGradients, Direct};
     type Make = fn(usize) -> System;
     let soft: Make = |half| bar(half, 0.5);
@@ -112,7 +112,7 @@ fn the_truncated_bar_equals_the_large_one_at_any_step() {
 }
 
 #[test]
-fn a_body_that_breaks_within_equals_the_large_one() {
+fn truncated_bar_with_interior_breaking_equals_the_large_bar() {
     for rule in [ImplicitRule::Midpoint, ImplicitRule::Trapezoidal] {
         let [error, _] = error(breaking_bar, [0.2, 150.0], rule, LinearSolver::Fastest);
         assert!(error < 1e-12, "{rule:?}: {error:e}");
@@ -120,7 +120,7 @@ fn a_body_that_breaks_within_equals_the_large_one() {
 }
 
 #[test]
-fn stop_and_resume_gives_the_same_bits() {
+fn resumed_run_is_bit_for_bit_equal() {
     let (dt, steps) = (0.4, 200);
     for form in [HistoryForm::Blocked, HistoryForm::Exponentials] {
         let make = || {
@@ -135,15 +135,15 @@ fn stop_and_resume_gives_the_same_bits() {
 }
 
 #[test]
-fn kernels_of_the_midpoint_rule_agree_in_all_forms() {
+fn midpoint_kernels_agree_in_all_forms() {
     let stencil = LatticeStencil::new(&weights()).unwrap();
     let (dt, steps) = (0.5, 600);
     let step = LatticeStep::midpoint(dt);
     let kernels = GhostKernels::shift(contour_kernels(&stencil, step, steps));
-    // Σ_j of all kernels at zero frequency passes a rigid motion on.
+    // The sum Σ_j of all kernels (zero frequency) transmits a rigid motion.
     let sum: f64 = kernels.series().iter().flatten().sum();
     assert!((sum - 1.0).abs() < 0.05, "{sum}");
-    // The static factor: what ghosts owe to the present step is no small part.
+    // Instantaneous part: the dependence of the ghosts on the current step is not small.
     assert!(kernels.series().iter().any(|h| h[0].abs() > 0.1));
     let full = kernels.expanded();
     let mut histories: [Box<dyn History>; 3] = [
@@ -170,19 +170,19 @@ fn kernels_of_the_midpoint_rule_agree_in_all_forms() {
 }
 
 #[test]
-fn what_does_not_fit_is_refused() {
+fn mismatched_schemes_and_boundaries_are_errors() {
     let stencil = LatticeStencil::new(&weights()).unwrap();
     let step = LatticeStep::midpoint(0.5);
     assert!(step.check(&stencil).is_ok());
     assert!(LatticeStep::midpoint(0.0).check(&stencil).is_err());
-    let paper = EndPlan {
+    let paper = AbsorbingBoundaryPlan {
         method: KernelMethod::SemiDiscrete,
-        ..EndPlan::default()
+        ..AbsorbingBoundaryPlan::default()
     };
     let refused = paper.history(&stencil, step, 10, &NoCache).err();
     let what = "semi-discrete";
     assert_eq!(refused, Some(AbsorbingError::VerletOnly { what }));
-    // Ends of the one scheme in a run of the other.
+    // Boundaries of one scheme in a run of the other.
     let mut system = bar(60, 1.0);
     let rest = State::at_rest(system.points());
     add_ends(&mut system, &rest, 0.1, 10, HistoryForm::Direct);

@@ -1,4 +1,4 @@
-//! Kernels and histories by several routes.
+//! Kernels and histories by several methods.
 
 use pericles::cache::NoCache;
 use pericles_waves::absorbing::history::{
@@ -6,23 +6,23 @@ use pericles_waves::absorbing::history::{
     history_distance,
 };
 use pericles_waves::absorbing::{
-    AbsorbingError, EndPlan, ExponentialKernels, GhostKernels, LatticeStencil, LatticeStep,
-    contour_kernels, factor_kernels, green_functions, green_functions_closed,
+    AbsorbingBoundaryPlan, AbsorbingError, ExponentialKernels, GhostKernels, LatticeStencil,
+    LatticeStep, contour_kernels, factor_kernels, green_functions, green_functions_closed,
     semi_discrete_kernels,
 };
 
 use crate::absorbing::bar::{REACH, weights};
 
 #[test]
-fn kernels_have_their_closed_forms() {
+fn kernels_equal_closed_forms() {
     let steps = 3000;
-    // The harmonic chain at dt = 2/ω: the pulse moves by one site per two steps; h is the arrival of 2 J₂-like waves. At the limit dt ω = 2 the chain is
-    // exact d'Alembert motion: u_0^{j+1} = u_1^j.
+    // Harmonic chain at dt = 2/ω: the pulse moves by one site per two steps; h is the arrival of 2 J₂-like waves.
+    // At the limit dt ω = 2 the chain is the exact d'Alembert motion: u_0^{j+1} = u_1^j.
     let chain = LatticeStencil::new(&[1.0]).unwrap();
     let h = factor_kernels(&chain, 1.0, steps);
     assert!((h[0][1] - 1.0).abs() < 1e-15);
     assert!(h[0][2..].iter().all(|x| x.abs() < 1e-15));
-    // Σ_j h_m[j] is the factor at zero frequency: 1 − Σ h_m = 0, a rigid motion is passed on.
+    // Σ_j h_m[j] is the factor at zero frequency: 1 − Σ h_m = 0, so a rigid motion is transmitted.
     let bar = LatticeStencil::new(&weights()).unwrap();
     let h = factor_kernels(&bar, 0.05, 1 << 14);
     let sum: f64 = h.iter().flatten().sum();
@@ -30,14 +30,14 @@ fn kernels_have_their_closed_forms() {
         (sum - 1.0).abs() < 1e-2 && (sum - 1.0).abs() > 1e-6,
         "{sum}"
     );
-    // The first coefficients are the bonds themselves.
+    // The first coefficients are the bond weights.
     for (k, a) in weights().iter().enumerate() {
         assert_eq!((h[k][0], h[k][1]), (0.0, 0.05 * 0.05 * a));
     }
 }
 
 #[test]
-fn histories_agree() {
+fn all_forms_of_the_history_agree() {
     let stencil = LatticeStencil::new(&[4.0, -1.0]).unwrap();
     let steps = 1500;
     let kernels = GhostKernels::shift(factor_kernels(&stencil, 0.3, steps));
@@ -62,7 +62,7 @@ fn histories_agree() {
 }
 
 #[test]
-fn routes_to_the_kernels_agree() {
+fn kernels_of_all_methods_agree() {
     for (weights, dt) in [
         (weights(), 0.05),
         (vec![4.0, -1.0], 0.03),
@@ -76,7 +76,7 @@ fn routes_to_the_kernels_agree() {
         for (a, b) in series.iter().flatten().zip(contour.iter().flatten()) {
             assert!((a - b).abs() < 1e-14, "{a:e} {b:e}");
         }
-        // The semi-discrete kernels are those of the scheme to second order: equal in the limit, per step.
+        // The semi-discrete kernels agree with those of the scheme to second order: equal in the limit, per step.
         let fine = semi_discrete_kernels(&stencil, dt, steps);
         let exact = GhostKernels::shift(series).expanded();
         let sum = |series: &[Vec<f64>]| -> f64 { series.iter().flatten().sum() };
@@ -86,8 +86,8 @@ fn routes_to_the_kernels_agree() {
 }
 
 #[test]
-fn green_functions_obey_their_identity() {
-    // Σ k a_k (g_{m+k} − g_{m−k}) = −(2m/t) g_m', the derivative by central differences.
+fn green_functions_satisfy_their_identity() {
+    // Σ k a_k (g_{m+k} − g_{m−k}) = −(2m/t) g_m', with the derivative by central differences.
     let stencil = LatticeStencil::new(&weights()).unwrap();
     let (dt, steps) = (1e-3, 4000);
     let g = green_functions(&stencil, dt, steps, 2 * REACH + 2);
@@ -103,7 +103,7 @@ fn green_functions_obey_their_identity() {
         let right = -2.0 * m as f64 / t * slope;
         assert!((left - right).abs() < 1e-8, "{m}: {left} {right}");
     }
-    // The paper's closure is exact, and its errors grow: quiet at t = 4 still.
+    // The closure of the paper is exact, but its errors grow; still small at t = 4.
     let closed = green_functions_closed(&stencil, dt, steps);
     for (a, b) in g.iter().zip(&closed) {
         assert!((a[steps] - b[steps]).abs() < 1e-9);
@@ -111,8 +111,8 @@ fn green_functions_obey_their_identity() {
 }
 
 #[test]
-fn sums_of_exponentials_hold_their_tolerance() {
-    // The last step is close to the stability limit, where the branch points of the kernels meet.
+fn sums_of_exponentials_meet_their_tolerance() {
+    // The second step is close to the stability limit, where the branch points of the kernels merge.
     for (dt, steps) in [(0.05, 1000), (0.2499, 600)] {
         let stencil = LatticeStencil::new(&weights()).unwrap();
         let kernels = GhostKernels::shift(factor_kernels(&stencil, dt, steps));
@@ -127,7 +127,7 @@ fn sums_of_exponentials_hold_their_tolerance() {
             let pairs = pairs.iter().flatten().zip(exact.series().iter().flatten());
             let largest = pairs.fold(0.0, |worst: f64, (a, b)| worst.max((a - b).abs()));
             assert!(largest < tolerance, "{largest:e}");
-            // In sum over time and sites; an error of this size in all steps would give a thousand times as much.
+            // Summed over time and sites; an error of this size in every step would give a thousand times as much.
             let mut histories = (
                 ExponentialHistory::new(fit),
                 BlockedHistory::new(kernels.clone()),
@@ -144,9 +144,9 @@ fn sums_of_exponentials_hold_their_tolerance() {
 }
 
 #[test]
-fn every_tolerance_between_two_that_hold_holds() {
-    // A Gaussian micromodulus with nine neighbours. Of seven fits for 1e-7 the best used to miss it (4e-7), while 1e-6 and 1e-8 held: an eigenvalue that rounding puts on
-    // the wrong side of the unit circle was left out.
+fn fits_succeed_at_intermediate_tolerances() {
+    // Gaussian micromodulus with nine neighbours. Of seven fits for 1e-7 the best used to fail (4e-7), while 1e-6
+    // and 1e-8 succeeded: an eigenvalue on the wrong side of the unit circle by round-off was dropped.
     let (delta, spacing) = (0.3, 0.1);
     let weight = |k: usize| {
         let xi = k as f64 * spacing;
@@ -177,14 +177,14 @@ fn several_branches_need_more_exponentials() {
 }
 
 #[test]
-fn the_cheapest_history_is_chosen() {
+fn cheapest_history_is_selected() {
     let stencil = LatticeStencil::new(&weights()).unwrap();
-    let plan = |tolerance| EndPlan {
+    let plan = |tolerance| AbsorbingBoundaryPlan {
         tolerance,
         verify: true,
-        ..EndPlan::default()
+        ..AbsorbingBoundaryPlan::default()
     };
-    let name = |plan: EndPlan, steps| {
+    let name = |plan: AbsorbingBoundaryPlan, steps| {
         let (_, report) = plan
             .history(&stencil, LatticeStep::verlet(0.1), steps, &NoCache)
             .unwrap();
@@ -197,7 +197,7 @@ fn the_cheapest_history_is_chosen() {
     assert_eq!(name(plan(None), 3000), "blocked");
     assert_eq!(name(plan(Some(1e-8)), 30), "direct");
     assert_eq!(name(plan(Some(1e-8)), 20_000), "exponentials");
-    // Exact forms grow faster than the one with few states, so that there is one crossing each.
+    // The cost of exact forms grows faster than that of the form with few states, so there is one crossing each.
     let forms: Vec<HistoryForm> = (4..24)
         .map(|k| HistoryCost::estimate(&stencil, LatticeStep::verlet(0.1), 1 << k).cheapest(false))
         .collect();

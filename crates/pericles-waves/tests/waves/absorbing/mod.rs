@@ -1,4 +1,4 @@
-//! Absorbing ends and damping layers.
+//! Absorbing boundaries and damping layers.
 
 mod bar;
 mod damping;

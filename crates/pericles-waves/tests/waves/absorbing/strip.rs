@@ -1,4 +1,4 @@
-//! Strips that are periodic across and go on for ever along.
+//! Strips that are periodic across and semi-infinite along their length.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -43,7 +43,7 @@ fn strip(half: usize) -> System {
     System::new(cloud, Box::new(force.unwrap()), PointScalar::Uniform(1.0)).unwrap()
 }
 
-/// A bell that is neither in the middle nor symmetric, moved along a slope.
+/// Asymmetric, off-centre bell with an oblique displacement.
 fn start(system: &System) -> State {
     let mut state = State::at_rest(2 * system.points());
     let n = system.points();
@@ -71,7 +71,7 @@ fn with_ends(half: usize, steps: usize) -> Simulation {
 }
 
 #[test]
-fn the_strip_equals_a_large_one() {
+fn truncated_strip_equals_a_large_strip() {
     let (half, steps) = (20, 160);
     let mut small = with_ends(half, steps);
     small.run(|_| Control::Continue).unwrap();
@@ -79,7 +79,7 @@ fn the_strip_equals_a_large_one() {
     assert!(energies.work < -0.5 * energies.initial, "{energies:?}");
     assert!(energies.balance().abs() < 1e-11 * energies.initial);
 
-    // Nothing is faster than two columns per unit of time.
+    // The largest wave speed is two columns per unit of time.
     let large = strip(half + steps * 2 * 35 / 200 + 60);
     let state = start(&large);
     let mut large =
@@ -108,11 +108,11 @@ fn the_strip_equals_a_large_one() {
 }
 
 #[test]
-fn without_waves_across_each_component_is_a_bar() {
+fn zeroth_mode_of_a_strip_decouples_into_bars() {
     let lattice = StripLattice::of(&strip(10), Side::Right).unwrap();
     let steps = 120;
     let kernels = &lattice.kernels(DT, steps)[0];
-    // Both components part; each has the weights that bonds to whole columns add up to.
+    // The components decouple; the weights of each are sums of the bonds to whole columns.
     let system = strip(10);
     let n = system.points();
     for (c, size) in [(0, 0.15), (1, 0.15)] {
@@ -125,12 +125,12 @@ fn without_waves_across_each_component_is_a_bar() {
         let mut force = vec![0.0; 2 * n];
         system
             .operator()
-            .add_force(0.0, &unit, pericles::operator::On::All, &mut force);
+            .add_force(0.0, &unit, pericles::operator::PointSubset::All, &mut force);
         let weight = |d: usize| {
             let at = |i: &usize| (system.cloud().axis(0)[*i] - d as f64).abs() < 0.1;
             force[c * n + (0..n).find(at).unwrap()] / size
         };
-        // Across, the bonds of three columns along have no stiffness.
+        // For transverse motion the bonds along three columns have no stiffness.
         let reach = REACH - c;
         let weights: Vec<f64> = (1..=reach).map(weight).collect();
         let stencil = LatticeStencil::new(&weights).unwrap();
@@ -149,13 +149,13 @@ fn without_waves_across_each_component_is_a_bar() {
 }
 
 #[test]
-fn stop_and_resume_gives_the_same_bits() {
+fn resumed_run_is_bit_for_bit_equal() {
     let steps = 100;
     check_resume(|| with_ends(14, steps), [70]).unwrap();
 }
 
 #[test]
-fn what_is_no_strip_is_refused() {
+fn bodies_that_are_not_strips_are_errors() {
     let error = StripLattice::of(&bar(20, 1.0), Side::Left).unwrap_err();
     assert!(matches!(error, AbsorbingError::NotAStrip { .. }));
     let error = StripLattice::of(&strip(2), Side::Left).unwrap_err();

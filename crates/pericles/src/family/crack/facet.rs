@@ -1,10 +1,10 @@
-//! Plane surfaces that cut bonds.
+//! Plane parts of cracks and their intersection with bonds.
 
 use super::EndRule;
 use crate::error::{PericlesError, Result};
 use crate::space::Point;
 
-/// Orthonormal axes on a crack.
+/// A coordinate system with two axes in the crack plane.
 #[derive(Debug, Clone)]
 pub(super) struct Frame {
     pub(super) origin: Point,
@@ -41,7 +41,7 @@ impl Frame {
         })
     }
 
-    /// The plane of a polygon, its normal by Newell's sum, which does not depend on a lucky choice of three corners.
+    /// The plane of a polygon. The normal is Newell's sum, which does not depend on the choice of three corners.
     pub(super) fn through(corners: &[Point]) -> Result<Self> {
         let Some(&first) = corners.first() else {
             return Err(PericlesError::BadCrack {
@@ -66,7 +66,7 @@ impl Frame {
         let spans_area = norm(normal) > 1e-12 * size * size;
         if corners.len() < 3 || !spans_area {
             return Err(PericlesError::BadCrack {
-                reason: "a polygon needs at least three corners that span an area",
+                reason: "a polygon needs at least three corners that are not on one line",
             });
         }
         Self::normal_to(first, normal)
@@ -100,7 +100,7 @@ pub(super) struct Facet {
 }
 
 impl Facet {
-    /// Whether the bond between two points meets it.
+    /// Returns whether the bond between two points meets the facet.
     pub(super) fn cuts(&self, p: Point, q: Point) -> bool {
         let (a, b) = (self.frame.height(p), self.frame.height(q));
         let on = |height: f64| height.abs() <= self.tolerance;
@@ -122,13 +122,13 @@ impl Facet {
         }
     }
 
-    /// Distance of a point from the surface.
+    /// Distance of a point from the facet.
     pub(super) fn distance(&self, point: Point) -> f64 {
         let beside = (-self.depth(self.frame.place(point))).max(0.0);
         self.frame.height(point).hypot(beside)
     }
 
-    /// Distance of a place of the crack's plane from the border, positive on the crack.
+    /// Signed distance of a point of the crack plane from the edge, positive on the crack.
     fn depth(&self, place: [f64; 2]) -> f64 {
         match &self.outline {
             Outline::Everything => f64::INFINITY,
@@ -138,7 +138,7 @@ impl Facet {
         }
     }
 
-    /// Whether a place of the crack's plane belongs to the crack.
+    /// Returns whether a point of the crack plane belongs to the crack.
     fn covers(&self, place: [f64; 2]) -> bool {
         let depth = self.depth(place);
         match self.rule {
@@ -147,7 +147,7 @@ impl Facet {
         }
     }
 
-    /// A bond that lies in the crack's plane: whether any of it is covered.
+    /// Returns whether any part of a bond in the crack plane is on the crack.
     fn meets_in_plane(&self, p: [f64; 2], q: [f64; 2]) -> bool {
         if self.covers(p) || self.covers(q) {
             return true;
@@ -155,7 +155,7 @@ impl Facet {
         let at = |t: f64| [p[0] + t * (q[0] - p[0]), p[1] + t * (q[1] - p[1])];
         match &self.outline {
             Outline::Everything => true,
-            // Neither end is on the crack: it is covered only if the crack lies between them.
+            // Neither end is on the crack: the bond meets it only if the crack lies between them.
             Outline::Interval(length) => (p[0] < 0.5 * length) != (q[0] < 0.5 * length),
             Outline::Disc(_) => {
                 let d = [q[0] - p[0], q[1] - p[1]];
@@ -171,7 +171,7 @@ impl Facet {
     }
 }
 
-/// Distance to the polygon's border, positive inside.
+/// Signed distance to the edge of the polygon, positive inside.
 fn polygon_depth(place: [f64; 2], corners: &[[f64; 2]]) -> f64 {
     let mut inside = false;
     let mut distance = f64::INFINITY;

@@ -1,11 +1,11 @@
-//! Triangles by the cells of a grid, so that a bond is tested against few of them.
+//! A grid of cells over triangles, so that a bond is tested against few of them.
 
 use crate::space::Point;
 
 /// The largest number of cells along an axis.
 const MOST_CELLS: f64 = 64.0;
 
-/// Triangles by the cells that their boxes meet.
+/// Triangles sorted into the cells that their bounding boxes meet.
 #[derive(Debug, Clone)]
 pub(super) struct FacetGrid {
     low: Point,
@@ -16,7 +16,7 @@ pub(super) struct FacetGrid {
 }
 
 impl FacetGrid {
-    /// The grid of triangles whose boxes are widened by a tolerance, m.
+    /// Makes the grid of triangles whose bounding boxes are widened by a tolerance, m.
     pub(super) fn new(triangles: &[[Point; 3]], tolerance: f64) -> Self {
         let mut low = [f64::INFINITY; 3];
         let mut high = [f64::NEG_INFINITY; 3];
@@ -30,7 +30,7 @@ impl FacetGrid {
             }
         }
         let longest = (0..3).map(|c| high[c] - low[c]).fold(0.0, f64::max);
-        // Positive: a triangle has an area.
+        // Positive, because every triangle has an area.
         let side = extent.max(longest / MOST_CELLS);
         let counts = std::array::from_fn(|c| ((high[c] - low[c]) / side).ceil().max(1.0) as usize);
         let mut grid = Self {
@@ -48,7 +48,7 @@ impl FacetGrid {
         grid
     }
 
-    /// The triangles that the line between two points may meet; some of them several times.
+    /// Returns the triangles that the segment between two points may meet; some of them several times.
     pub(super) fn near(&self, p: Point, q: Point) -> impl Iterator<Item = u32> + '_ {
         let low: Point = std::array::from_fn(|c| p[c].min(q[c]));
         let high: Point = std::array::from_fn(|c| p[c].max(q[c]));
@@ -58,11 +58,11 @@ impl FacetGrid {
         cells.flat_map(|cell| self.cells[cell].iter().copied())
     }
 
-    /// The cells that a box meets.
+    /// Returns the cells that a box meets.
     fn cells_of(&self, [low, high]: [Point; 2]) -> impl Iterator<Item = usize> + use<> {
         let counts = self.counts;
         let place = |c: usize, x: f64| {
-            // Casts keep what lies outside within the grid.
+            // The casts clamp cells outside to the grid.
             (((x - self.low[c]) / self.side).max(0.0) as usize).min(counts[c] - 1)
         };
         let range = |c: usize| place(c, low[c])..=place(c, high[c]);

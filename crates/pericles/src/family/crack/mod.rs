@@ -1,4 +1,4 @@
-//! Pre-cracks: surfaces that cut bonds before the run starts.
+//! Pre-cracks: surfaces whose bonds are removed before the run starts.
 
 mod facet;
 mod grid;
@@ -9,12 +9,12 @@ use crate::space::{Point, Sites};
 use facet::{Facet, Frame, Outline, norm, scaled, sub};
 use grid::FacetGrid;
 
-/// A surface no bond may cross.
+/// A surface that no bond may cross.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Crack {
-    /// A cut bar (1D).
+    /// A cut through a bar (1D).
     Section {
-        /// Where the bar is cut, m.
+        /// Coordinate of the cut, m.
         x: f64,
     },
     /// A straight crack in a plate (2D).
@@ -24,39 +24,39 @@ pub enum Crack {
         /// The other end, m.
         to: [f64; 2],
     },
-    /// A plane convex or concave polygon in space (3D).
+    /// A plane polygon, convex or concave (3D).
     Polygon {
-        /// Corners in order, m; the last joins the first.
+        /// Corners in order, m; the last one connects to the first.
         corners: Vec<Point>,
     },
-    /// A penny-shaped crack in space (3D).
+    /// A circular (penny-shaped) crack (3D).
     Disc {
         /// Centre, m.
         centre: Point,
-        /// Normal of its plane, any length.
+        /// Normal of its plane, of any length.
         normal: Point,
         /// Radius, m.
         radius: f64,
     },
-    /// A surface of triangles in space (3D). Its border belongs to it.
+    /// A triangulated surface, edges included (3D).
     Triangles {
-        /// Corners of the triangles, m; triangles without area are left out.
+        /// Corners of the triangles, m; triangles without area are ignored.
         triangles: Vec<[Point; 3]>,
     },
 }
 
-/// What happens to bonds that pass exactly through the border of a crack.
+/// Treatment of bonds that pass exactly through the edge of a crack.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum EndRule {
-    /// They are cut: the surface contains its border.
+    /// They are removed: the crack includes its edge.
     #[default]
     Closed,
-    /// They are kept.
+    /// They remain.
     Open,
 }
 
 impl Crack {
-    /// The dimension of the bodies it can cut.
+    /// Dimension of the bodies to which the crack applies.
     pub fn dimension(&self) -> usize {
         match self {
             Self::Section { .. } => 1,
@@ -65,7 +65,7 @@ impl Crack {
         }
     }
 
-    /// Distance of a point from the crack's surface, m; that to infinity for a crack without extent.
+    /// Distance of a point from the crack, m; infinite for a crack without extent.
     pub fn distance(&self, point: Point) -> f64 {
         match self.cutter(EndRule::Closed, 0.0) {
             Ok(cutter) => cutter.distance(point),
@@ -73,10 +73,10 @@ impl Crack {
         }
     }
 
-    /// A test whether the bond from `p` to `q` meets the crack.
+    /// Returns a test whether the bond from `p` to `q` meets the crack.
     ///
-    /// Points within `tolerance` (m) of the surface count as on it; a bond with an end on the surface meets it, so points on a crack
-    /// lose their bonds.
+    /// Points within `tolerance` (m) of the crack count as on it. A bond with an end on the crack meets it, so that
+    /// points on a crack lose all their bonds.
     ///
     /// # Errors
     /// A crack without extent, or a polygon that is not plane.
@@ -88,7 +88,7 @@ impl Crack {
             let triangle = Self::Polygon {
                 corners: corners.to_vec(),
             };
-            // Neighbouring triangles share their edges: all of them belong to the surface.
+            // Edges shared by neighbouring triangles belong to the surface.
             let facet = triangle.facet(EndRule::Closed, tolerance).ok()?;
             Some((*corners, facet))
         };
@@ -96,7 +96,7 @@ impl Crack {
             triangles.iter().filter_map(facet).unzip();
         if facets.is_empty() {
             return Err(PericlesError::BadCrack {
-                reason: "none of its triangles spans an area",
+                reason: "all of its triangles have zero area",
             });
         }
         let grid = FacetGrid::new(&corners, tolerance);
@@ -128,7 +128,7 @@ impl Crack {
                 let length = norm(along);
                 if !length.is_finite() || length <= tolerance {
                     return Err(PericlesError::BadCrack {
-                        reason: "its two ends must be finite and apart",
+                        reason: "its two ends must be finite and distinct",
                     });
                 }
                 let along = scaled(along, 1.0 / length);
@@ -172,7 +172,7 @@ impl Crack {
             }
             Self::Triangles { .. } => {
                 return Err(PericlesError::BadCrack {
-                    reason: "a surface of triangles is not plane",
+                    reason: "a surface of triangles is not supported here",
                 });
             }
         };
@@ -185,7 +185,7 @@ impl Crack {
     }
 }
 
-/// Decides which bonds a crack cuts; made by [`Crack::cutter`].
+/// The test which bonds a crack removes; made by [`Crack::cutter`].
 #[derive(Debug, Clone)]
 pub struct Cutter(Facets);
 
@@ -196,7 +196,7 @@ enum Facets {
 }
 
 impl Cutter {
-    /// Whether the bond between two points meets the crack.
+    /// Returns whether the bond between two points meets the crack.
     pub fn cuts(&self, p: Point, q: Point) -> bool {
         match &self.0 {
             Facets::One(facet) => facet.cuts(p, q),
@@ -207,7 +207,8 @@ impl Cutter {
         }
     }
 
-    /// Whether the bond between two sites, or one of its images beyond periodic faces, meets the crack. Both ends of a bond compute it from the same numbers.
+    /// Returns whether the bond between two sites, or one of its images beyond periodic faces, meets the crack.
+    /// Both ends of a bond compute it from the same numbers.
     pub fn cuts_bond(&self, sites: &Sites, here: usize, there: usize) -> bool {
         let places = sites.places();
         if !sites.cloud().is_periodic() {
@@ -220,7 +221,7 @@ impl Cutter {
         let moved = |x: Point, by: [i16; 3]| -> Point {
             std::array::from_fn(|c| x[c] + f64::from(by[c]) * periods[c])
         };
-        // A crack may leave through a face and come in at the other.
+        // A crack may leave through one face and re-enter through the opposite one.
         let steps = |c: usize| match c < places.dimension() {
             true => shift[c].min(0) - 1..=shift[c].max(0) + 1,
             false => 0..=0,
@@ -235,7 +236,7 @@ impl Cutter {
         })
     }
 
-    /// Distance of a point from the surface.
+    /// Distance of a point from the crack.
     fn distance(&self, point: Point) -> f64 {
         match &self.0 {
             Facets::One(facet) => facet.distance(point),
@@ -264,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn a_segment_cuts_what_crosses_it() {
+    fn a_segment_cuts_the_bonds_that_cross_it() {
         let notch = Crack::Segment {
             from: [0.0, 0.0],
             to: [5.0, 0.0],
@@ -283,10 +284,10 @@ mod tests {
         assert!(closed([1.0, -0.5], [2.0, 0.5]) && open([1.0, -0.5], [2.0, 0.5]));
         assert!(!closed([5.5, -0.5], [5.5, 0.5]));
         assert!(!closed([1.0, 0.5], [2.0, 0.6]));
-        // Exactly through the end.
+        // Exactly through the end of the crack.
         assert!(closed([4.5, -0.5], [5.5, 0.5]));
         assert!(!open([4.5, -0.5], [5.5, 0.5]));
-        // A point on the crack loses its bonds by either rule.
+        // A point on the crack loses its bonds under either rule.
         assert!(closed([2.0, 0.0], [2.0, 1.0]) && open([2.0, 0.0], [2.0, 1.0]));
         // Bonds along the line of the crack.
         assert!(closed([2.0, 0.0], [3.0, 0.0]) && closed([4.5, 0.0], [5.5, 0.0]));
@@ -346,8 +347,8 @@ mod tests {
     }
 
     #[test]
-    fn triangles_cut_what_their_plane_cuts() {
-        // A square of 2 × n × n triangles in a tilted plane, against the polygon with its border.
+    fn triangles_cut_the_same_bonds_as_their_polygon() {
+        // A square of 2 × n × n triangles in a tilted plane, compared with the polygon including its edge.
         let n = 7;
         let at = |i: usize, j: usize| -> Point {
             let (x, y) = (i as f64 / n as f64, j as f64 / n as f64);
@@ -360,7 +361,7 @@ mod tests {
                 triangles.extend([[a, b, c], [a, c, d]]);
             }
         }
-        // Without area: left out.
+        // A triangle without area is ignored.
         triangles.push([at(0, 0); 3]);
         let triangles = Crack::Triangles { triangles };
         let polygon = Crack::Polygon {

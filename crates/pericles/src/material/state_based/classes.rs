@@ -6,24 +6,25 @@ use crate::error::{PericlesError, Result};
 use crate::material::{Factors, check_materials};
 use crate::space::Sites;
 
-/// The material of every point, and what bonds between each pair of materials can bear.
+/// Material of every point, and failure limits of bonds for every pair of materials.
 ///
-/// The force state of a point has the constants of the point's own material: there is nothing to average at an interface. Horizon and influence function are those of the body, so that both ends of a bond
-/// see the same bond. A bond between two materials bears what the weaker of them does, unless [`SolidClasses::set_limits`] says otherwise.
+/// The force state of a point has the constants of its own material, so that interfaces need no mixing rule.
+/// All materials share horizon and influence function, so that families are symmetric. A bond between two
+/// materials has the limits of the weaker one, unless [`SolidClasses::set_limits`] sets others.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SolidClasses {
-    /// Empty if there is one material.
+    /// Empty for a single material.
     of_point: Vec<u8>,
     /// A and B, Pa, by material.
     constants: Vec<[f64; 2]>,
-    /// By pairs of materials.
+    /// Limits by pair of materials.
     limits: Vec<BondLimits>,
-    /// Factors of the critical stretch by points.
+    /// Factor of the critical stretch of each point.
     strength: Factors,
 }
 
 impl SolidClasses {
-    /// One material everywhere.
+    /// Creates the classes of a body of one material.
     pub fn uniform(constants: &LinearSolidConstants) -> Self {
         Self {
             of_point: Vec::new(),
@@ -33,10 +34,11 @@ impl SolidClasses {
         }
     }
 
-    /// Several materials; `of_point` gives the number of each point's material.
+    /// Creates the classes of several materials; `of_point` gives the material number of each point.
     ///
     /// # Errors
-    /// More than 256 materials, a number without a material, materials of different horizons or influence functions.
+    /// More than 256 materials, a material number out of range, materials with different horizons or
+    /// influence functions.
     pub fn new(of_point: Vec<u8>, materials: &[LinearSolidConstants]) -> Result<Self> {
         check_materials(&of_point, materials.len())?;
         let same = |pair: &[LinearSolidConstants]| {
@@ -44,7 +46,7 @@ impl SolidClasses {
         };
         if !materials.windows(2).all(same) {
             return Err(PericlesError::BadInfluence {
-                reason: "the materials of a body must have one horizon and one influence function"
+                reason: "the materials of a body must have the same horizon and influence function"
                     .into(),
             });
         }
@@ -62,8 +64,9 @@ impl SolidClasses {
         })
     }
 
-    /// The same with a factor of the critical stretch for every point, such as [`StrengthScatter::factors`](crate::material::StrengthScatter::factors): a bond has the mean of its ends. Critical bond energies have the
-    /// square of it.
+    /// Sets a factor of the critical stretch for every point, for example
+    /// [`StrengthScatter::factors`](crate::material::StrengthScatter::factors). A bond has the mean factor of
+    /// its end points; its critical bond energy is multiplied by the square.
     pub fn with_strengths(self, factors: Vec<f64>) -> Self {
         Self {
             strength: Factors::new(factors),
@@ -71,18 +74,21 @@ impl SolidClasses {
         }
     }
 
-    /// Gives bonds between two materials limits of their own.
+    /// Sets the limits of bonds between two materials.
     ///
     /// # Panics
-    /// If a material is not one of those given.
+    /// If a material number is out of range.
     pub fn set_limits(&mut self, [a, b]: [u8; 2], limits: BondLimits) {
         let (count, a, b) = (self.constants.len(), usize::from(a), usize::from(b));
-        assert!(a < count && b < count, "a pair of materials given");
+        assert!(
+            a < count && b < count,
+            "material numbers of the pair are in range"
+        );
         self.limits[a * count + b] = limits;
         self.limits[b * count + a] = limits;
     }
 
-    /// The same by the sites that bonds lead to.
+    /// Returns the classes by sites, the end points of bonds.
     pub(crate) fn on_sites(&self, sites: &Sites) -> Self {
         Self {
             of_point: sites.spread_numbers(&self.of_point),
@@ -91,36 +97,70 @@ impl SolidClasses {
         }
     }
 
-    /// Whether there is a material for each of so many points.
+    /// Returns the classes of a larger set of points, in which the points of this body have the given
+    /// positions. The other points have A = B = 0, so that their states store no energy, and unbreakable
+    /// bonds.
+    ///
+    /// # Errors
+    /// A body that already has 256 materials.
+    pub(crate) fn among(&self, places: &[u32], points: usize) -> Result<Self> {
+        let count = self.constants.len();
+        let void = count.min(255) as u8;
+        let mut of_point = vec![void; points];
+        let mut strengths = match self.strength.is_uniform() {
+            true => Vec::new(),
+            false => vec![1.0; points],
+        };
+        for (i, &place) in places.iter().enumerate() {
+            of_point[place as usize] = self.of_point(i) as u8;
+            if let Some(strength) = self.strength.as_slice().get(i) {
+                strengths[place as usize] = *strength;
+            }
+        }
+        check_materials(&of_point, count + 1)?;
+        let pair = |a: usize, b: usize| match a < count && b < count {
+            true => self.limits[a * count + b],
+            false => BondLimits::NONE,
+        };
+        let pairs = (0..=count).flat_map(|a| (0..=count).map(move |b| (a, b)));
+        Ok(Self {
+            of_point,
+            constants: [&self.constants[..], &[[0.0; 2]]].concat(),
+            limits: pairs.map(|(a, b)| pair(a, b)).collect(),
+            strength: Factors::new(strengths),
+        })
+    }
+
+    /// Returns whether materials and strengths cover this number of points.
     pub fn covers(&self, points: usize) -> bool {
         let has = |count: usize| count == 0 || count == points;
         has(self.of_point.len()) && has(self.strength.as_slice().len())
     }
 
-    /// How many materials there are.
+    /// Returns the number of materials.
     pub fn materials(&self) -> usize {
         self.constants.len()
     }
 
-    /// The number of a point's material.
+    /// Returns the material number of a point.
     pub fn of_point(&self, i: usize) -> usize {
         self.of_point
             .get(i)
             .map_or(0, |&material| usize::from(material))
     }
 
-    /// A and B of a point's material, Pa.
+    /// Returns A and B of the material of a point, Pa.
     pub fn constants(&self, i: usize) -> [f64; 2] {
         self.constants[self.of_point(i)]
     }
 
-    /// What a bond between two points can bear.
+    /// Returns the limits of the bond between two points.
     pub fn limits(&self, i: usize, j: usize) -> BondLimits {
         let pair = self.of_point(i) * self.constants.len() + self.of_point(j);
         self.limits[pair].scaled(self.strength.of_bond(i, j))
     }
 
-    /// The lowest limits of all pairs.
+    /// Returns the lowest limits of all bonds.
     pub fn weakest(&self) -> BondLimits {
         let limits = self.limits.iter();
         let weakest = limits.fold(BondLimits::NONE, |weakest, pair| weakest.weaker(*pair));

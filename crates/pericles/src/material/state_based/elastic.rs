@@ -1,16 +1,17 @@
-//! The two elastic constants of an isotropic solid, from any two of E, ν, K and G.
+//! Elastic constants of an isotropic solid from any two of E, ν, K and G.
 
 use crate::error::{PericlesError, Result, positive};
 use crate::material::StressState;
+use crate::units::quantity;
 
-/// The constants of an isotropic linear elastic solid.
+/// Elastic constants of an isotropic linear elastic solid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ElasticConstants {
     bulk: f64,
     shear: f64,
 }
 
-/// The elastic constants that a user gives, two of the four; of a bar Young's modulus is enough.
+/// Given elastic constants: two of the four, or Young's modulus for a bar.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct GivenConstants {
     /// Young's modulus E, Pa.
@@ -23,11 +24,12 @@ pub struct GivenConstants {
     pub shear: Option<f64>,
 }
 
-/// Relative difference of constants given beyond the second that counts as rounding: 0.33 and 0.333 mean one third.
+/// Relative tolerance of redundant constants, which allows for rounding: 0.33 and 0.333 are accepted for one third.
 const ROUNDING: f64 = 0.02;
 
 impl ElasticConstants {
-    /// The constants of a solid with Young's modulus E (Pa) and Poisson's ratio ν: K = E/(3 (1 − 2ν)), G = E/(2 (1 + ν)).
+    /// Returns the constants of a solid with Young's modulus E (Pa) and Poisson's ratio ν: K = E/(3 (1 −
+    /// 2ν)), G = E/(2 (1 + ν)).
     ///
     /// # Errors
     /// E that is not positive; ν outside −1 < ν < 1/2, where K or G is not positive.
@@ -40,7 +42,7 @@ impl ElasticConstants {
         })
     }
 
-    /// The constants of a solid with the bulk modulus K and the shear modulus G, Pa.
+    /// Returns the constants of a solid with the bulk modulus K and the shear modulus G, Pa.
     ///
     /// # Errors
     /// Moduli that are not positive.
@@ -51,27 +53,28 @@ impl ElasticConstants {
         })
     }
 
-    /// Bulk modulus K, Pa.
+    /// Returns the bulk modulus K, Pa.
     pub fn bulk(&self) -> f64 {
         self.bulk
     }
 
-    /// Shear modulus G, Pa.
+    /// Returns the shear modulus G, Pa.
     pub fn shear(&self) -> f64 {
         self.shear
     }
 
-    /// Young's modulus E = 9 K G/(3 K + G), Pa.
+    /// Returns Young's modulus E = 9 K G/(3 K + G), Pa.
     pub fn young(&self) -> f64 {
         9.0 * self.bulk * self.shear / (3.0 * self.bulk + self.shear)
     }
 
-    /// Poisson's ratio ν = (3 K − 2 G)/(2 (3 K + G)).
+    /// Returns Poisson's ratio ν = (3 K − 2 G)/(2 (3 K + G)).
     pub fn poisson_ratio(&self) -> f64 {
         (3.0 * self.bulk - 2.0 * self.shear) / (2.0 * (3.0 * self.bulk + self.shear))
     }
 
-    /// The modulus κ of a dilatation in the body's own dimensions, Pa: K in three dimensions, K + G/3 in plane strain, 9 K G/(3 K + 4 G) = E/(2 (1 − ν)) in plane stress, E in a bar.
+    /// Returns the dilatation modulus κ in the dimension of the body, Pa: K in three dimensions, K + G/3 in
+    /// plane strain, 9 K G/(3 K + 4 G) = E/(2 (1 − ν)) in plane stress, E in a bar.
     pub fn dilatation_modulus(&self, state: StressState) -> f64 {
         let Self { bulk, shear } = *self;
         match state {
@@ -82,7 +85,7 @@ impl ElasticConstants {
         }
     }
 
-    /// ρ c² of longitudinal waves, Pa: E in a bar, E/(1 − ν²) in plane stress, K + 4 G/3 otherwise.
+    /// Returns ρ c² of longitudinal waves, Pa: E in a bar, E/(1 − ν²) in plane stress, K + 4 G/3 otherwise.
     pub fn longitudinal_modulus(&self, state: StressState) -> f64 {
         match state {
             StressState::Uniaxial => self.young(),
@@ -104,10 +107,12 @@ fn check_poisson_ratio(ratio: f64) -> Result<()> {
 }
 
 impl GivenConstants {
-    /// The constants of the solid. A third and fourth constant must agree with the first two to 2 %, and change nothing.
+    /// Returns the constants of the solid. A third and fourth constant must agree with the first two to 2 %
+    /// and are otherwise ignored.
     ///
     /// # Errors
-    /// Fewer than two constants, of a bar none; constants that are not positive; constants that exclude each other; ν outside −1 < ν < 1/2.
+    /// Fewer than two constants (for a bar, none); constants that are not positive; inconsistent constants; ν
+    /// outside −1 < ν < 1/2.
     pub fn resolve(&self, state: StressState) -> Result<ElasticConstants> {
         let refuse = |reason: String| Err(PericlesError::ElasticConstants { reason });
         for (name, value) in [
@@ -130,12 +135,16 @@ impl GivenConstants {
             }
             (Some(young), _, Some(bulk), _) => {
                 return refuse(format!(
-                    "Young's modulus {young:.4e} Pa must be below nine times the bulk modulus {bulk:.4e} Pa: no shear modulus belongs to both"
+                    "Young's modulus {} must be below nine times the bulk modulus {}; otherwise the shear modulus is not positive",
+                    quantity(young, "Pa"),
+                    quantity(bulk, "Pa")
                 ));
             }
             (Some(young), _, _, Some(shear)) => {
                 return refuse(format!(
-                    "Young's modulus {young:.4e} Pa must be below three times the shear modulus {shear:.4e} Pa: no bulk modulus belongs to both"
+                    "Young's modulus {} must be below three times the shear modulus {}; otherwise the bulk modulus is not positive",
+                    quantity(young, "Pa"),
+                    quantity(shear, "Pa")
                 ));
             }
             (_, Some(ratio), Some(bulk), _) => {
@@ -146,16 +155,16 @@ impl GivenConstants {
                 check_poisson_ratio(ratio)?;
                 ElasticConstants::of_young(2.0 * shear * (1.0 + ratio), ratio)?
             }
-            // No other constant of a bar enters.
+            // A bar depends on Young's modulus only.
             (Some(young), ..) if state == StressState::Uniaxial => {
                 ElasticConstants::of_young(young, 0.0)?
             }
             _ if state == StressState::Uniaxial => {
-                return refuse("a bar needs Young's modulus".into());
+                return refuse("a bar requires Young's modulus".into());
             }
             _ => {
                 return refuse(
-                    "two of Young's modulus, Poisson's ratio, bulk modulus and shear modulus are needed".into(),
+                    "two of Young's modulus, Poisson's ratio, bulk modulus and shear modulus are required".into(),
                 );
             }
         };
@@ -163,7 +172,7 @@ impl GivenConstants {
         Ok(constants)
     }
 
-    /// Refuses constants that do not belong to the solid.
+    /// Returns an error if a given constant contradicts the solid.
     fn check_agreement(&self, solid: &ElasticConstants) -> Result<()> {
         for (name, given, found) in [
             ("Young's modulus", self.young, solid.young()),
@@ -173,7 +182,9 @@ impl GivenConstants {
             if let Some(given) = given.filter(|given| (given / found - 1.0).abs() > ROUNDING) {
                 return Err(PericlesError::ElasticConstants {
                     reason: format!(
-                        "{name} is {given:.4e} Pa, but {found:.4e} Pa follows from the other constants: give two constants"
+                        "{name} is {}, but {} follows from the other constants; give two constants only",
+                        quantity(given, "Pa"),
+                        quantity(found, "Pa")
                     ),
                 });
             }
@@ -183,7 +194,7 @@ impl GivenConstants {
             Some(given) if (given - found).abs() > ROUNDING => {
                 Err(PericlesError::ElasticConstants {
                     reason: format!(
-                        "Poisson's ratio is {given}, but {found:.4} follows from the other constants: give two constants"
+                        "Poisson's ratio is {given}, but {found:.4} follows from the other constants; give two constants only"
                     ),
                 })
             }
@@ -197,7 +208,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn any_two_constants_give_the_same_solid() {
+    fn any_two_elastic_constants_give_the_same_solid() {
         let solid = ElasticConstants::of_young(10.0, 0.3).unwrap();
         let all = [
             solid.young(),
@@ -229,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn moduli_of_plane_states_are_those_of_elasticity() {
+    fn moduli_in_plane_states_match_linear_elasticity() {
         let (young, nu) = (10.0, 0.3);
         let solid = ElasticConstants::of_young(young, nu).unwrap();
         let close = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-14, "{a} {b}");
@@ -248,7 +259,7 @@ mod tests {
     }
 
     #[test]
-    fn constants_without_a_solid_are_refused() {
+    fn inconsistent_or_missing_elastic_constants_are_errors() {
         let resolve = |given: GivenConstants| given.resolve(StressState::PlaneStrain);
         let young = GivenConstants {
             young: Some(10.0),

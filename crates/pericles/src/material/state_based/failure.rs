@@ -1,4 +1,4 @@
-//! When the bonds of a linear peridynamic solid break: criteria, and their limits from the fracture energy.
+//! Failure criteria of bonds of a linear peridynamic solid, and their calibration from the fracture energy.
 
 use crate::error::{PericlesError, Result, positive};
 use crate::family::VolumeCorrection;
@@ -7,10 +7,12 @@ use crate::material::FractureCalibration;
 use crate::material::crack_planes::CrackPlane;
 use crate::material::lattice::{Cells, for_each_offset};
 
-/// The deformation at which the energy of a unit area of crack is counted. In a state-based solid the energy of a bond depends on the dilatation of its ends, so that a critical stretch s₀ does not follow
-/// from the fracture energy G₀ alone.
+/// Deformation at which the fracture energy G₀ is evaluated. In a state-based solid the energy of a bond
+/// depends on the dilatation of its end points, so that the critical stretch s₀ does not follow from G₀
+/// alone.
 ///
-/// With the constants A and B of the solid ([`LinearSolidConstants`](super::LinearSolidConstants)) and the integrals P₁ = ∫ p dz and P₂ = ∫ p² dz over caps ([`CapIntegrals`](crate::kernel::CapIntegrals)):
+/// With the constants A and B of the solid ([`LinearSolidConstants`](super::LinearSolidConstants)) and the
+/// integrals P₁ = ∫ p dz and P₂ = ∫ p² dz over caps ([`CapIntegrals`](crate::kernel::CapIntegrals)):
 ///
 /// | definition | G₀/s₀² |
 /// |---|---|
@@ -18,45 +20,46 @@ use crate::material::lattice::{Cells, for_each_offset};
 /// | bond | B P₁ |
 /// | isotropic | B P₁ + A D (2 P₁ − P₂) |
 ///
-/// All are equal where A = 0, for ν = 1/4 (1/3 in plane stress), where the solid is bond-based.
+/// All definitions agree for A = 0 (ν = 1/4, in plane stress 1/3), where the solid is bond-based.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum StretchDefinition {
-    /// Only the bonds that cross the crack are stretched, by s₀: two halves of a body pulled apart rigidly.
+    /// Only bonds across the crack are stretched, by s₀: two rigid halves of a body are pulled apart.
     #[default]
     Closing,
-    /// The part of the energy that depends on the bond's own stretch.
+    /// Only the part of the energy that depends on the stretch of the bond itself.
     Bond,
-    /// The whole body is stretched by s₀ in all directions, then cut. Such a stretch need not exist where ν is low.
+    /// The whole body is stretched by s₀ in all directions, then cut. For low ν such a critical stretch may not exist.
     Isotropic,
 }
 
-/// When bonds break.
+/// Failure criterion of bonds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum BondFailure {
-    /// Never.
+    /// Bonds never break.
     Unbreakable,
-    /// Beyond this stretch.
+    /// Bonds break beyond this stretch.
     CriticalStretch(f64),
-    /// Beyond the stretch for which a unit area of crack costs a given energy.
+    /// Bonds break beyond the stretch that corresponds to a fracture energy.
     Stretch {
         /// The fracture energy G₀, J/m².
         fracture_energy: f64,
-        /// The deformation at which it is counted.
+        /// Deformation at which the fracture energy is evaluated.
         definition: StretchDefinition,
-        /// How the critical stretch follows from it.
+        /// Calibration of the critical stretch.
         calibration: FractureCalibration,
     },
-    /// Beyond the bond energy w_c for which a unit area of crack costs a given energy (Foster, Silling & Chen, Int. J. Multiscale Comput. Eng. 9, 2011): a bond breaks where it is elongated and the work
-    /// ∫ (t_ij + t_ji) de of its force states since the start exceeds w_c.
+    /// Bonds break beyond the bond energy w_c that corresponds to a fracture energy (Foster, Silling & Chen,
+    /// Int. J. Multiscale Comput. Eng. 9, 2011): an elongated bond breaks when the work ∫ (t_ij + t_ji) de of
+    /// its force states since the start exceeds w_c.
     BondEnergy {
         /// The fracture energy G₀, J/m².
         fracture_energy: f64,
-        /// How w_c follows from it.
+        /// Calibration of w_c.
         calibration: FractureCalibration,
     },
 }
 
-/// What a bond can bear; infinite where a criterion does not apply. A bond breaks when one of the limits is exceeded.
+/// Failure limits of a bond; infinite if a criterion does not apply. A bond breaks when one of the limits is exceeded.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BondLimits {
     /// Critical stretch s₀.
@@ -66,18 +69,18 @@ pub struct BondLimits {
 }
 
 impl BondLimits {
-    /// Of bonds that never break.
+    /// Limits of unbreakable bonds.
     pub const NONE: Self = Self {
         stretch: f64::INFINITY,
         energy: f64::INFINITY,
     };
 
-    /// Whether the bond can break.
+    /// Returns whether the bond can break.
     pub fn can_break(&self) -> bool {
         self.stretch.is_finite() || self.energy.is_finite()
     }
 
-    /// The limits of a bond whose critical stretch is so many times as large.
+    /// Multiplies the critical stretch by a factor and the critical energy by its square.
     #[must_use]
     pub fn scaled(self, factor: f64) -> Self {
         Self {
@@ -86,7 +89,7 @@ impl BondLimits {
         }
     }
 
-    /// The lower one of each limit: what the weaker of two materials can bear.
+    /// Returns the lower one of each limit.
     #[must_use]
     pub fn weaker(self, other: Self) -> Self {
         Self {
@@ -96,7 +99,7 @@ impl BondLimits {
     }
 }
 
-/// The lattice and family on which limits are calibrated.
+/// Lattice and family for which limits are calibrated.
 #[derive(Clone, Copy)]
 pub(super) struct Crossing<'a> {
     pub cells: Cells<'a>,
@@ -109,7 +112,7 @@ pub(super) struct Crossing<'a> {
     pub deviatoric: f64,
 }
 
-/// Integrals or sums over the bonds that cross a plane: ∫ p dz, ∫ p² dz (m) and ∫∫_cap dV dz (m⁴).
+/// Integrals or sums over the bonds across a plane: ∫ p dz, ∫ p² dz (m) and ∫∫_cap dV dz (m⁴).
 #[derive(Debug, Clone, Copy)]
 struct Caps {
     share: f64,
@@ -117,20 +120,20 @@ struct Caps {
     volume: f64,
 }
 
-/// Limits with the fracture energy that they stand for.
+/// Limits and the fracture energy that corresponds to them.
 pub(super) struct Calibrated {
     pub limits: BondLimits,
-    /// J/m²; infinite if bonds never break.
+    /// Fracture energy, J/m²; infinite for unbreakable bonds.
     pub fracture_energy: f64,
     pub calibration: Option<FractureCalibration>,
     pub crack_planes: Vec<CrackPlane>,
 }
 
-/// The influence function over its largest value below which a bond counts as one without force: a function that vanishes at the horizon does so to within the rounding of lengths, and the margin of 1e-6 that some horizons
-/// have.
+/// Ratio of the influence function to its largest value below which a bond carries no force. Functions that
+/// vanish at the horizon do so only to within the rounding of lengths and a margin of 1e-6 of some horizons.
 const WITHOUT_FORCE: f64 = 1e-5;
 
-/// What the limit of a criterion is measured in.
+/// Quantity that a criterion limits.
 #[derive(Clone, Copy)]
 enum Measure {
     Stretch(StretchDefinition),
@@ -138,7 +141,8 @@ enum Measure {
 }
 
 impl BondFailure {
-    /// The limits of a material's bonds. On points without a lattice the integrals of the continuum take the place of sums over the lattice.
+    /// Returns the calibrated limits of bonds. For points without a lattice, integrals of the continuum
+    /// replace lattice sums.
     pub(super) fn calibrated(
         self,
         crossing: &Crossing<'_>,
@@ -180,7 +184,7 @@ impl BondFailure {
             Some(FractureCalibration::Lattice) => CrackPlane::mean(&planes),
             _ => crossing.unit_energy(measure, crossing.of_the_continuum()),
         };
-        // The limit, and its square where the energy is quadratic in it.
+        // The limit and the factor of the unit energy: the square of a stretch, or the bond energy.
         let (limit, scale) = match (self, energy) {
             (Self::CriticalStretch(stretch), _) => {
                 let stretch = positive("the critical stretch", stretch)?;
@@ -221,14 +225,15 @@ impl BondFailure {
 fn no_stretch(unit: f64) -> PericlesError {
     PericlesError::ElasticConstants {
         reason: format!(
-            "no critical stretch belongs to the fracture energy with this stretch definition and Poisson's ratio: a unit area of crack would cost {unit:.3e} J/m² at unit stretch; use the closing \
+            "no critical stretch corresponds to the fracture energy with this stretch definition and Poisson's ratio: \
+             the energy of a crack would be {unit:.3e} J/m² at unit stretch, but must be positive; use the closing \
              definition or the bond energy"
         ),
     }
 }
 
 impl Crossing<'_> {
-    /// Energy of a unit area of crack at s₀ = 1 or w_c = 1, J/m².
+    /// Returns the fracture energy at s₀ = 1 or w_c = 1, J/m².
     fn unit_energy(&self, measure: Measure, caps: Caps) -> f64 {
         let dimension = self.cells.sides().len() as f64;
         let dilatational = self.dilatational * dimension;
@@ -255,7 +260,7 @@ impl Crossing<'_> {
         }
     }
 
-    /// The largest value of the influence function on the bonds of a point.
+    /// Returns the largest value of the influence function on the bonds of a point.
     fn largest_influence(&self) -> f64 {
         let mut largest: f64 = 0.0;
         for_each_offset(self.cells, self.horizon, self.correction, |_, xi, _| {
@@ -264,13 +269,16 @@ impl Crossing<'_> {
         largest
     }
 
-    /// The planes of the lattice with the energy of a unit area of crack along each. The bond energy is counted for bonds that carry force.
+    /// Returns the planes of the lattice with the energy per area of a crack along each. For bond energies,
+    /// only bonds that carry force are counted.
     ///
-    /// The points beside a crack lie in layers, the k-th of which has the share p_k of its family beyond k planes of the lattice and more; a layer has 1/(planes per length) of volume for each area.
+    /// Points beside a crack form layers. The points of the k-th layer have the share p_k of their family at
+    /// least k lattice planes away; the volume of a layer per area is the reciprocal of the number of planes
+    /// per length.
     fn planes(&self, measure: Measure) -> Vec<CrackPlane> {
         let (cells, size) = (self.cells, self.cells.size());
         let planes = CrackPlane::all(cells);
-        // Weighted volume and volume of the bonds of a point by the number of planes that they cross.
+        // Weighted volume and volume of the bonds of a point by the number of crossed planes.
         let mut by_number: Vec<Vec<[f64; 2]>> = vec![Vec::new(); planes.len()];
         let mut whole = 0.0;
         let largest = self.largest_influence();
@@ -278,7 +286,7 @@ impl Crossing<'_> {
             let influence = self.influence.alpha_of(xi, self.horizon);
             let factor = self.correction.factor(r, self.horizon, size);
             let weighted = factor * influence * r * r;
-            // A bond without force does no work and never breaks by it.
+            // A bond without force does no work and does not reach an energy limit.
             let carries = influence > WITHOUT_FORCE * largest;
             let volume = if carries { factor } else { 0.0 };
             whole += weighted;
@@ -300,7 +308,7 @@ impl Crossing<'_> {
                 volume: 0.0,
             };
             let (mut share, mut volume) = (0.0, 0.0);
-            // From the layer that is farthest from the crack.
+            // From the layer farthest from the crack.
             for [weighted, bonds] in sums[1..].iter().rev() {
                 share += weighted / whole;
                 volume += bonds * cell;

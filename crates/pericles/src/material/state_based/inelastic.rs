@@ -3,23 +3,25 @@
 use crate::error::{PericlesError, Result, positive};
 use crate::material::StressState;
 
-/// How the deviatoric part of a linear peridynamic solid departs from elasticity; its dilatation stays elastic.
+/// Inelastic law of the deviatoric part of a linear peridynamic solid; its dilatation is elastic.
 ///
-/// With the extension e of a bond, the deviatoric extension is e_d = e − θ r/D, with the dilatation θ of the point whose force state it belongs to. Each directed bond keeps an inelastic extension e_x, and the force
-/// state is t = (w/m)(A θ r + B (e − e_x)).
+/// The deviatoric extension of a bond with extension e is e_d = e − θ r/D, with the dilatation θ of the point
+/// that owns the force state. Each directed bond stores an inelastic extension e_x, and the force state is
+/// t = (w/m)(A θ r + B (e − e_x)).
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Inelasticity {
-    /// None: the solid is elastic.
+    /// The solid is elastic.
     #[default]
     Elastic,
-    /// Shear that relaxes: e_x = Σ λ_k e_k with back-extensions that follow de_k/dt = (e_d − e_k)/τ_k (Mitchell, Sandia report SAND2011-8064, 2011). Under a constant shear strain the shear modulus falls as
-    /// G(t)/G = 1 − Σ λ_k + Σ λ_k exp(−t/τ_k).
+    /// Viscoelastic shear: e_x = Σ λ_k e_k with back-extensions de_k/dt = (e_d − e_k)/τ_k (Mitchell, Sandia
+    /// report SAND2011-8064, 2011). The relaxation function of the shear modulus is G(t)/G = 1 − Σ λ_k + Σ
+    /// λ_k exp(−t/τ_k).
     Viscous(Vec<ViscousTerm>),
-    /// Shear that yields: e_x is a plastic extension (Mitchell, Sandia report SAND2011-3166, 2011).
+    /// Elastoplastic shear: e_x is a plastic extension (Mitchell, Sandia report SAND2011-3166, 2011).
     Plastic(Yield),
 }
 
-/// A term of a relaxation function: a share λ of the shear modulus relaxes with the time τ.
+/// A term of a relaxation function: the share λ of the shear modulus relaxes with the time τ.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ViscousTerm {
     /// λ, between 0 and 1.
@@ -28,11 +30,13 @@ pub struct ViscousTerm {
     pub time: f64,
 }
 
-/// When shear yields: where the norm |t| = (Σ t² b V)^½ of the deviatoric force state reaches that of a uniform strain at which the material yields, √(2 ψ₀) = σ_y (c M₂)^½/m with M₂ = Σ w² r², c = 5 in three dimensions
-/// and 8/3 in the plane.
+/// Yield criterion and hardening. A point yields when the norm |t| = (Σ t² b V)^½ of the deviatoric force
+/// state reaches its value for a uniform strain at the yield point, √(2 ψ₀) = σ_y (c M₂)^½/m with M₂ = Σ w²
+/// r², c = 5 in three dimensions and 8/3 in the plane.
 ///
-/// In three dimensions this is von Mises' criterion for uniform strains, exact in the mean over all directions. In the plane a bond sees the deviator within the plane only: the body yields where the largest shear stress
-/// in the plane reaches σ_y/√3.
+/// In three dimensions this is the von Mises criterion for uniform strains, exact in the mean over all
+/// directions. In the plane, bonds depend only on the in-plane deviator: the body yields where the largest
+/// in-plane shear stress reaches σ_y/√3.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Yield {
     /// Yield stress σ_y in uniaxial tension, Pa.
@@ -41,16 +45,16 @@ pub struct Yield {
     pub hardening: f64,
 }
 
-/// The largest number of terms of a relaxation function.
+/// Largest number of terms of a relaxation function.
 pub const MOST_TERMS: usize = 8;
 
 impl Inelasticity {
-    /// Whether the solid is elastic.
+    /// Returns whether the solid is elastic.
     pub fn is_elastic(&self) -> bool {
         *self == Self::Elastic
     }
 
-    /// The terms of the relaxation function.
+    /// Returns the terms of the relaxation function.
     pub fn terms(&self) -> &[ViscousTerm] {
         match self {
             Self::Viscous(terms) => terms,
@@ -58,10 +62,12 @@ impl Inelasticity {
         }
     }
 
-    /// Refuses constants that are not usable.
+    /// Returns an error if a constant is out of range.
     ///
     /// # Errors
-    /// Shares that are not positive or whose sum is not below one, times and yield stresses that are not positive, negative hardening, no term or more than [`MOST_TERMS`]; a bar, which has no deviatoric strain.
+    /// Shares that are not positive or whose sum is not below one; times or yield stresses that are not
+    /// positive; negative hardening; no terms, or more than [`MOST_TERMS`]; a bar, which has no deviatoric
+    /// strain.
     pub fn check(&self, state: StressState) -> Result<()> {
         if !self.is_elastic() && state == StressState::Uniaxial {
             return Err(PericlesError::WrongDimension {
@@ -81,7 +87,7 @@ impl Inelasticity {
                 Err(PericlesError::OutOfRange {
                     quantity: "the hardening modulus",
                     value: law.hardening,
-                    allowed: "a number that is not negative",
+                    allowed: "0 or a positive number",
                 })
             }
         }
@@ -107,7 +113,7 @@ fn check_terms(terms: &[ViscousTerm]) -> Result<()> {
     Err(PericlesError::OutOfRange {
         quantity: "the sum of the shares of all viscous terms",
         value: sum,
-        allowed: "a number below 1, so that a part of the shear modulus is left",
+        allowed: "a number below 1, so that the long-term shear modulus is positive",
     })
 }
 
@@ -116,7 +122,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn constants_that_cannot_be_used_are_refused_with_the_value() {
+    fn errors_of_inelastic_constants_contain_the_value() {
         let viscous = |terms: &[[f64; 2]]| {
             let terms = terms
                 .iter()

@@ -1,4 +1,4 @@
-//! Interfaces between state-based materials: what the bonds across can bear.
+//! Interfaces between state-based materials: failure limits of bonds across the interface.
 
 use super::elastic::GivenConstants;
 use super::failure::{BondFailure, BondLimits};
@@ -8,11 +8,13 @@ use crate::material::StressState;
 use crate::space::PointCloud;
 
 impl LinearSolid {
-    /// What bonds between this material and another one can bear, for a failure criterion of the interface.
+    /// Returns the limits of bonds between this material and another one, for a failure criterion of the interface.
     ///
-    /// Each end of a bond has the force state of its own material. The energy of a unit area of crack is linear in the constants A and B
-    /// ([`LinearSolidConstants`](super::LinearSolidConstants)), and half of it belongs to the points on each side of the interface: a crack along a plane between two half-spaces costs what it costs in a solid with
-    /// the mean of both A and of both B, whose limits these are. Horizon, influence function and partial volumes are those of this material.
+    /// Each end point of a bond has the force state of its own material. The fracture energy is linear in the
+    /// constants A and B ([`LinearSolidConstants`](super::LinearSolidConstants)), and each side of the
+    /// interface contributes half of it. A crack between two half-spaces therefore takes the energy of a
+    /// crack in a solid with the mean A and the mean B, whose limits are returned. Horizon, influence
+    /// function and partial volumes are those of this material.
     ///
     /// # Errors
     /// Those of [`LinearSolid::constants`].
@@ -31,7 +33,7 @@ impl LinearSolid {
         Ok(across.constants(cloud, state)?.limits)
     }
 
-    /// The elastic constants of the solid with the mean of both A and of both B.
+    /// Returns the elastic constants of the solid with the mean A and the mean B of both materials.
     fn mean_elastic(&self, other: &Self, state: StressState) -> Result<GivenConstants> {
         let [a, b] = [self.elastic.resolve(state)?, other.elastic.resolve(state)?];
         let mean = |a: f64, b: f64| 0.5 * (a + b);
@@ -42,7 +44,7 @@ impl LinearSolid {
                 ..GivenConstants::default()
             });
         }
-        // A and B are linear in the modulus of dilatation κ and the shear modulus G.
+        // A and B are linear in the dilatation modulus κ and the shear modulus G.
         let shear = mean(a.shear(), b.shear());
         let bulk = match state {
             StressState::PlaneStress => 4.0 * shear * kappa / (9.0 * shear - 3.0 * kappa),
@@ -80,9 +82,9 @@ mod tests {
         }
     }
 
-    /// The energy of a crack at a given critical stretch is the mean of what it costs in both materials.
+    /// The energy of an interface crack at a given critical stretch is the mean of the energies in both materials.
     #[test]
-    fn a_fracture_energy_between_two_solids_is_the_mean_of_both() {
+    fn interface_fracture_energy_is_the_mean_of_both_solids() {
         for (state, dimension) in [
             (StressState::PlaneStress, 2),
             (StressState::PlaneStrain, 2),
@@ -103,7 +105,7 @@ mod tests {
                 definition: StretchDefinition::Closing,
                 calibration: FractureCalibration::Lattice,
             };
-            // 1/s₀² is the energy of a crack at unit stretch over the fracture energy.
+            // 1/s₀² is the crack energy at unit stretch over the fracture energy.
             let per_stretch = |limits: BondLimits| 1.0 / (limits.stretch * limits.stretch);
             let own = |solid: &LinearSolid| {
                 let solid = LinearSolid {

@@ -1,19 +1,21 @@
-//! Shear of the lattice: how far a family of bonds on a square or cubic lattice is from isotropic, and the influence function that makes it isotropic.
+//! Shear stiffness of square and cubic lattices: their anisotropy, and the influence function that makes them
+//! isotropic.
 
 use crate::error::{PericlesError, Result};
 use crate::family::VolumeCorrection;
 use crate::kernel::{Influence, InfluenceFunction};
 use crate::material::lattice::{Cells, for_each_offset};
 
-/// The two shear stiffnesses of an interior point of a square or cubic lattice over the shear modulus G.
+/// Both shear stiffnesses of an interior point of a square or cubic lattice, relative to the shear modulus G.
 ///
-/// The dilatation is exact on every lattice. So is the mean of the deviators, (3 G_axes + 2 G_diagonals)/5 = G in three dimensions and (G_axes + G_diagonals)/2 = G in two; what is left is the
-/// cubic anisotropy of the lattice.
+/// The dilatational stiffness is exact on every lattice, and so is the mean deviatoric stiffness, (3 G_axes +
+/// 2 G_diagonals)/5 = G in three dimensions and (G_axes + G_diagonals)/2 = G in two. The remaining error is
+/// the cubic anisotropy of the lattice.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LatticeShear {
-    /// For a shear along the axes, such as ε_xy, over G.
+    /// Stiffness against shear along the axes, for example ε_xy, over G.
     pub axes: f64,
-    /// For a shear along the diagonals, such as ε_xx = −ε_yy, over G.
+    /// Stiffness against shear along the diagonals, for example ε_xx = −ε_yy, over G.
     pub diagonals: f64,
 }
 
@@ -21,14 +23,15 @@ pub struct LatticeShear {
 struct Sums {
     /// Σ w b r²
     weighted_volume: f64,
-    /// Σ w b ξ_x² ξ_y²/r², the mean of all pairs of axes.
+    /// Σ w b ξ_x² ξ_y²/r², averaged over pairs of axes.
     axes: f64,
-    /// ¼ Σ w b (ξ_x² − ξ_y²)²/r², likewise.
+    /// ¼ Σ w b (ξ_x² − ξ_y²)²/r², averaged over pairs of axes.
     diagonals: f64,
 }
 
 impl LatticeShear {
-    /// Of an influence function on a lattice with cells of these sides (m); none of bars, and of cells that are not squares or cubes.
+    /// Returns the stiffnesses for an influence function on a lattice whose cells have these sides (m);
+    /// `None` for bars and for cells that are not square or cubic.
     pub fn of(
         sides: &[f64],
         influence: &Influence,
@@ -49,7 +52,7 @@ impl LatticeShear {
         })
     }
 
-    /// The larger deviation from G, relative.
+    /// Returns the larger relative deviation from G.
     pub fn anisotropy(&self) -> f64 {
         (self.axes - 1.0).abs().max((self.diagonals - 1.0).abs())
     }
@@ -84,23 +87,25 @@ fn sums(
     sums
 }
 
-/// The influence function w = 1 − c r/δ whose constant c makes a lattice isotropic: its shear stiffness is G along axes and diagonals alike.
+/// Influence function w = 1 − c r/δ whose constant c makes a lattice isotropic: the shear stiffness is G
+/// along axes and diagonals.
 ///
-/// The cubic part of the stiffness is proportional to Σ w b h over the bonds of a point, with h = (Σ_a ξ_a⁴ − 3 r⁴/(D + 2))/r² and the partial volume b, so that c = Σ b h/Σ b h r/δ. It depends on the
-/// horizon in spacings and on the volume correction only.
+/// The cubic part of the stiffness is proportional to Σ w b h over the bonds of a point, with h = (Σ_a ξ_a⁴ −
+/// 3 r⁴/(D + 2))/r² and the partial volume b, so that c = Σ b h/Σ b h r/δ. It depends only on the ratio of
+/// horizon and spacing and on the volume correction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct IsotropicInfluence {
     coefficient: f64,
     horizon: f64,
-    /// The smallest weight of a bond of the lattice.
+    /// Smallest weight of the bonds of the lattice.
     least: f64,
 }
 
 impl IsotropicInfluence {
-    /// Of a lattice with cells of these sides, m.
+    /// Returns the function for a lattice whose cells have these sides, m.
     ///
     /// # Errors
-    /// Bars; cells that are not squares or cubes; a horizon so short that no such function exists.
+    /// Bars; cells that are not square or cubic; horizons so short that no such function exists.
     pub fn of_lattice(sides: &[f64], horizon: f64, correction: VolumeCorrection) -> Result<Self> {
         let refuse = |reason: &str| {
             Err(PericlesError::BadInfluence {
@@ -111,12 +116,12 @@ impl IsotropicInfluence {
         let dimension = sides.len();
         if dimension == 1 {
             return refuse(
-                "an isotropic function needs a body in two or three dimensions: a bar has no shear",
+                "an isotropic function requires a body in two or three dimensions, because a bar has no shear",
             );
         }
         if !cells.is_cubic() {
             return refuse(
-                "an isotropic function is computed for square or cubic cells; use equal spacings or another function",
+                "an isotropic function requires square or cubic cells; use equal spacings or another function",
             );
         }
         let (mut constant, mut slope, mut longest) = (0.0, 0.0, 0.0f64);
@@ -125,7 +130,7 @@ impl IsotropicInfluence {
             let h = (fourth - 3.0 * r.powi(4) / (dimension + 2) as f64) / (r * r);
             let weighted = correction.factor(r, horizon, cells.size()) * h;
             constant += weighted;
-            // Cells beyond the horizon that reach into it take the value at the horizon.
+            // Bonds to cells with centres beyond the horizon have the value at the horizon.
             slope += weighted * r.min(horizon) / horizon;
             longest = longest.max(r.min(horizon));
         });
@@ -141,23 +146,24 @@ impl IsotropicInfluence {
             || sums(cells, horizon, correction, weight).weighted_volume <= 0.0
         {
             return refuse(
-                "no function of first degree makes this lattice isotropic; use a horizon of two spacings or more, or another function",
+                "no linear function makes this lattice isotropic; use a horizon of two spacings or more, or another function",
             );
         }
         Ok(shape)
     }
 
-    /// The constant c.
+    /// Returns the constant c.
     pub fn coefficient(&self) -> f64 {
         self.coefficient
     }
 
-    /// Whether bonds of the lattice have a negative weight: such bonds store energy with the wrong sign and must not break.
+    /// Returns whether some bonds of the lattice have a negative weight. Such bonds store negative energy and
+    /// must not break.
     pub fn is_signed(&self) -> bool {
         self.least < 0.0
     }
 
-    /// The function.
+    /// Returns the influence function.
     pub fn influence(&self) -> Influence {
         Influence {
             function: InfluenceFunction::Tabulated {

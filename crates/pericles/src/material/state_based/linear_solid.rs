@@ -1,4 +1,4 @@
-//! The linear peridynamic solid as a user describes it, and the constants of its kernel.
+//! Linear peridynamic solid: material parameters and the constants of its force states.
 
 use super::elastic::{ElasticConstants, GivenConstants};
 use super::failure::{BondFailure, BondLimits, Crossing};
@@ -11,26 +11,27 @@ use crate::material::lattice::{Cells, check_reach, for_each_offset};
 use crate::material::{FractureCalibration, StressState};
 use crate::space::PointCloud;
 
-/// The influence function w(r) of a state-based material.
+/// Influence function w(r) of a state-based material.
 #[derive(Debug, Clone, PartialEq)]
 pub enum StateInfluence {
-    /// A function of the bond's length.
+    /// A function of the bond length.
     Function(InfluenceFunction),
-    /// The function of first degree that makes the lattice isotropic ([`IsotropicInfluence`]).
+    /// The linear function that makes the lattice isotropic ([`IsotropicInfluence`]).
     Isotropic,
 }
 
-/// How elongations follow from displacements.
+/// Strain measure: the extension e of a bond as a function of the displacements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Strains {
-    /// e = |ξ + η| − |ξ|, forces along ξ + η: for displacements of any size.
+    /// e = |ξ + η| − |ξ|, forces along ξ + η; valid for displacements of any size.
     #[default]
     Finite,
-    /// e = ξ·η/|ξ|, forces along ξ: linear in the displacement.
+    /// e = ξ·η/|ξ|, forces along ξ; linear in the displacement.
     Small,
 }
 
-/// A linear peridynamic solid (Silling, Epton, Weckner, Xu & Askari, J. Elasticity 88, 2007; in the plane Le, Chan & Schwartz, Int. J. Numer. Meth. Eng. 98, 2014).
+/// A linear peridynamic solid (Silling, Epton, Weckner, Xu & Askari, J. Elasticity 88, 2007; in the plane Le,
+/// Chan & Schwartz, Int. J. Numer. Meth. Eng. 98, 2014).
 #[derive(Debug, Clone, PartialEq)]
 pub struct LinearSolid {
     /// Mass density ρ, kg/m³.
@@ -43,15 +44,18 @@ pub struct LinearSolid {
     pub influence: StateInfluence,
     /// Partial volumes at the horizon.
     pub volume_correction: VolumeCorrection,
-    /// Breaking.
+    /// Failure criterion.
     pub failure: BondFailure,
 }
 
-/// The constants of a linear peridynamic solid on a given body.
+/// Constants of a linear peridynamic solid on a given body.
 ///
-/// With the extension e of a bond of length r, the weighted volume m = Σ w r² and the dilatation θ = (D/m) Σ w r e of a point in D dimensions, sums over its bonds weighted by their volumes, the force state
-/// is t = (w/m)(A θ r + B e) and the energy density W = A θ²/(2 D) + B/(2 m) Σ w e². The constants A = D κ − (D + 2) G and B = D (D + 2) G follow from the modulus of dilatation κ
-/// ([`ElasticConstants::dilatation_modulus`]) and the shear modulus G; a bar has A = 0, B = E. A solid with A = 0 is bond-based.
+/// With the extension e and the length r of a bond, the weighted volume m = Σ w r² and the dilatation
+/// θ = (D/m) Σ w r e of a point in D dimensions (sums over its bonds weighted by volume), the force state is
+/// t = (w/m)(A θ r + B e) and the energy density is W = A θ²/(2 D) + B/(2 m) Σ w e². The constants
+/// A = D κ − (D + 2) G and B = D (D + 2) G follow from the dilatation modulus κ
+/// ([`ElasticConstants::dilatation_modulus`]) and the shear modulus G; a bar has A = 0 and B = E. A solid with
+/// A = 0 is bond-based.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LinearSolidConstants {
     /// A, Pa.
@@ -64,24 +68,27 @@ pub struct LinearSolidConstants {
     pub influence: Influence,
     /// Horizon δ, m.
     pub horizon: f64,
-    /// What bonds can bear.
+    /// Failure limits of bonds.
     pub limits: BondLimits,
-    /// Fracture energy that belongs to the limits, J/m²: the energy asked for; where the critical stretch is given, that of the continuum by the closing definition. Infinite if bonds never break.
+    /// Fracture energy that corresponds to the limits, J/m²: the given fracture energy, or for a given
+    /// critical stretch the continuum value by the closing definition. Infinite for unbreakable bonds.
     pub fracture_energy: f64,
-    /// How the limits follow from the fracture energy; none if no fracture energy is given. A body without a lattice always has the continuum's.
+    /// Calibration of the limits from the fracture energy; `None` if no fracture energy is given. Always
+    /// continuum calibration for bodies without a lattice.
     pub fracture_calibration: Option<FractureCalibration>,
-    /// What cracks along planes of the lattice cost; empty if bonds never break, and for bodies without a lattice.
+    /// Energies of cracks along planes of the lattice; empty for unbreakable bonds and for bodies without a lattice.
     pub crack_planes: Vec<CrackPlane>,
-    /// The shear stiffness of the lattice; none of bars and bodies that are not on a square or cubic lattice.
+    /// Shear stiffness of the lattice; `None` for bars and for bodies that are not on a square or cubic lattice.
     pub lattice_shear: Option<LatticeShear>,
 }
 
 impl LinearSolid {
-    /// The constants for bonds of `cloud`.
+    /// Returns the constants for bonds of `cloud`.
     ///
     /// # Errors
-    /// Constants that are not positive or exclude each other; an influence function that cannot be used; a stress state of another dimension than the cloud's; a signed influence function together with
-    /// breaking; the isotropic function on points that are no lattice of squares or cubes.
+    /// Constants that are not positive or are inconsistent; an invalid influence function; a stress state
+    /// whose dimension differs from that of the cloud; a signed influence function together with a failure
+    /// criterion; the isotropic function on points that are not a square or cubic lattice.
     pub fn constants(
         &self,
         cloud: &PointCloud,
@@ -103,13 +110,14 @@ impl LinearSolid {
         }
     }
 
-    /// The constants for bonds of a lattice whose cells have these sides (m, one per axis) and section (m² in 1D, m in 2D, 1 in 3D).
+    /// Returns the constants for bonds of a lattice whose cells have these sides (m, one per axis) and
+    /// section (m² in 1D, m in 2D, 1 in 3D).
     ///
     /// # Errors
     /// Those of [`LinearSolid::constants`].
     ///
     /// # Panics
-    /// If there is not one side for each axis.
+    /// If the number of sides is not the dimension.
     pub fn constants_on(
         &self,
         sides: &[f64],
@@ -161,7 +169,7 @@ impl LinearSolid {
         })
     }
 
-    /// The influence function, if it can be used.
+    /// Returns the influence function, or an error if it is invalid for the lattice.
     fn influence_on(&self, cells: Cells<'_>, on_lattice: bool) -> Result<Influence> {
         let refuse = |reason: &str| {
             Err(PericlesError::BadInfluence {
@@ -175,7 +183,7 @@ impl LinearSolid {
             },
             StateInfluence::Isotropic if !on_lattice => {
                 return refuse(
-                    "an isotropic function is computed from the sums over a lattice, which these points are not; use the conical function",
+                    "an isotropic function requires points on a regular lattice; use the conical function",
                 );
             }
             StateInfluence::Isotropic => {
@@ -205,27 +213,30 @@ impl LinearSolid {
         if signed && self.failure != BondFailure::Unbreakable {
             return refuse(match isotropic {
                 true => {
-                    "the isotropic function of this lattice is negative near the horizon, where a bond gains energy as it stretches, so that bonds must not break; use another horizon in spacings \
-                     (2D: 3 or 4, 3D: 3), another volume correction or the conical function"
+                    "the isotropic function of this lattice is negative near the horizon and cannot be used with bonds that \
+                     break, because a bond with negative weight gains energy as it stretches; use another ratio of horizon and \
+                     spacing (2D: 3 or 4, 3D: 3), another volume correction or the conical function"
                 }
                 false => {
-                    "a function with negative values cannot be used with bonds that break: a negative bond gains energy as it stretches; leave out the failure criterion, or use a positive function"
+                    "a function with negative values cannot be used with bonds that break, because a bond with negative weight gains energy as it stretches; remove the failure criterion, or use a positive function"
                 }
             });
         }
         if weighted_volume > 0.0 {
             return Ok(influence);
         }
-        refuse("its weighted volume, the sum of w |ξ|² over the lattice's bonds, must be positive")
+        refuse(
+            "its weighted volume, the sum of w |ξ|² over the bonds of the lattice, must be positive",
+        )
     }
 }
 
-/// A and B, Pa.
+/// Returns A and B, Pa.
 fn kernel_constants(elastic: &ElasticConstants, state: StressState) -> (f64, f64) {
     let dimension = state.dimension() as f64;
     let kappa = elastic.dilatation_modulus(state);
     match state {
-        // A bar has no deviator: all of its stiffness is that of single bonds.
+        // A bar has no deviatoric strain.
         StressState::Uniaxial => (0.0, kappa),
         _ => {
             let shear = elastic.shear();

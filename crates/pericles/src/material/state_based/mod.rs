@@ -1,4 +1,4 @@
-//! State-based materials: a bond's force depends on all bonds of its two ends, so that Poisson's ratio is free.
+//! State-based materials: the force of a bond depends on all bonds of both end points, so that Poisson's ratio is free.
 
 mod classes;
 mod elastic;

@@ -1,4 +1,4 @@
-//! Correction of the deviatoric stiffness of points near a surface.
+//! Surface correction of the deviatoric stiffness of state-based solids.
 
 use super::classes::SolidClasses;
 use crate::family::BondList;
@@ -10,32 +10,44 @@ use crate::material::surface_correction::{
 use crate::parallel::for_each_point;
 use crate::space::PointCloud;
 
-/// What is kept the same near surfaces as inside a body of state-based material.
+/// Method of surface correction of a state-based material, by the quantity that points near a surface share
+/// with interior points.
 ///
-/// The dilatation of a uniform strain is exact at every point, for the weighted volume m shrinks with the family; so is the energy of the dilatation. The deviatoric part is not: families that are cut off are
-/// too stiff in some directions and too soft in others, by some per cent in all.
+/// The dilatation of a uniform strain and its energy are exact at every point, because the weighted volume m
+/// accounts for the incomplete family. The deviatoric part is not exact: incomplete families are too stiff in
+/// some directions and too soft in others, by a few per cent.
 ///
-/// The volume method of bond-based materials ([`SurfaceCorrection::Volume`](crate::material::SurfaceCorrection)) does not apply: m accounts for the missing volume already, and bodies would be 6 to 15 %
-/// too stiff.
+/// The volume method of bond-based materials
+/// ([`SurfaceCorrection::Volume`](crate::material::SurfaceCorrection)) does not apply: m already accounts for
+/// the missing volume, and bodies would be 6 to 15 % too stiff.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum SolidSurface {
-    /// Bodies are up to a few per cent too stiff.
+    /// No correction: bodies are up to a few per cent too stiff.
     #[default]
     None,
-    /// A factor g of each bond, with which the energy of its extension, B/(2 m) Σ g ω e², is at every point that of the interior for uniaxial tension along each of three directions: a strain of 1 along
-    /// and of −ν across it, with the solid's own contraction ν in the body's dimensions, (κ − G)/(κ + G) in the plane.
+    /// A factor g of each bond such that the energy of extensions, B/(2 m) Σ g ω e², equals that of an
+    /// interior point for uniaxial tension along each of three directions. The strain is 1 along the
+    /// direction and −ν in the others, where ν is the transverse contraction of the solid in the dimension of
+    /// the body, in the plane (κ − G)/(κ + G).
     ///
-    /// g = 1/|G⁻¹ n| for a bond along n, with the mean G of tensors at both ends that have the factors g_c along the principal axes c of Σ ω r² n⊗n, as for bond-based materials (Madenci & Oterkus,
-    /// Peridynamic Theory and Its Applications, 2014, chapter 4), iterated three times from g = 1. The factor is part of the energy, not of the forces alone, so that the balance of energy stays exact.
-    /// Inside a body it is 1. Bonds that pre-cracks cut count as there: cracks are not corrected.
+    /// g = 1/|G⁻¹ n| for a bond along n, where G is the mean of tensors at both end points with the factors
+    /// g_c along the principal axes c of Σ ω r² n⊗n, as for bond-based materials (Madenci & Oterkus,
+    /// Peridynamic Theory and Its Applications, 2014, chapter 4), iterated three times from g = 1. The factor
+    /// is part of the energy, not only of the forces, so that the energy balance remains exact. In the
+    /// interior it is 1. Bonds cut by pre-cracks are counted as present: crack faces are not corrected.
     Energy,
+    /// Families completed by ghost points in free cells of the lattice, with displacements extrapolated from
+    /// the body; forces are the exact gradient of the energy of the body
+    /// ([`GhostForce`](crate::operator::GhostForce)). For outer surfaces without fracture: bonds cannot
+    /// break, and pre-cracks are not corrected.
+    Ghosts,
 }
 
-/// Passes from g = 1; see [`SurfaceCorrection::Energy`](crate::material::SurfaceCorrection::Energy).
+/// Number of passes from g = 1; see [`SurfaceCorrection::Energy`](crate::material::SurfaceCorrection::Energy).
 const PASSES: usize = 3;
 
 impl SolidSurface {
-    /// The factors of a body.
+    /// Returns the factors of a body.
     pub(crate) fn factors(
         self,
         bonds: &BondList,
@@ -43,7 +55,8 @@ impl SolidSurface {
         classes: &SolidClasses,
     ) -> SurfaceFactors {
         match self {
-            Self::None => SurfaceFactors::None,
+            // Ghosts are points, not factors.
+            Self::None | Self::Ghosts => SurfaceFactors::None,
             Self::Energy => {
                 let body = Body {
                     cloud: bonds.sites().cloud(),
@@ -61,7 +74,7 @@ impl SolidSurface {
     }
 }
 
-/// What factors are found for.
+/// The body whose factors are computed.
 struct Body<'a> {
     cloud: &'a PointCloud,
     bonds: &'a BondList,
@@ -69,7 +82,7 @@ struct Body<'a> {
     classes: &'a SolidClasses,
 }
 
-/// The squared stretch of a bond under uniaxial tension along each axis.
+/// Returns the squared stretch of a bond under uniaxial tension along each axis.
 fn stretches(axes: &[[f64; 3]; 3], contraction: f64, xi: [f64; 3]) -> [f64; 3] {
     axes.map(|axis| {
         let along = axis[0] * xi[0] + axis[1] * xi[1] + axis[2] * xi[2];
@@ -83,7 +96,7 @@ fn square(xi: [f64; 3]) -> f64 {
 }
 
 impl Body<'_> {
-    /// The strain across a uniaxial tension over that along it, with the sign changed.
+    /// Returns the transverse contraction ν of a point under uniaxial tension.
     fn contraction(&self, i: usize) -> f64 {
         let dimension = self.cloud.dimension() as f64;
         let [dilatational, deviatoric] = self.classes.constants(self.bonds.site(i));
@@ -96,7 +109,8 @@ impl Body<'_> {
         }
     }
 
-    /// The directions of every point with the factors 1, and what is to be reached: the mean squared stretch of an interior point, weighted by ω r².
+    /// Returns the directions of every point with the factors 1 and the target values: the mean squared
+    /// stretch of an interior point, weighted by ω r².
     fn uncorrected(&self) -> Vec<Directions> {
         let dimension = self.cloud.dimension() as f64;
         let horizon = self.bonds.horizon();
@@ -114,7 +128,7 @@ impl Body<'_> {
         for_each_point(self.cloud.len(), &|i| {
             let axes = self.axes(i);
             let nu = self.contraction(i);
-            // The mean over all directions, where there is no lattice: n² and n⁴ have the means 1/D and 3/(D (D + 2)).
+            // Without a lattice, the mean over all directions: n² and n⁴ have the means 1/D and 3/(D (D + 2)).
             let (second, fourth) = (1.0 / dimension, 3.0 / (dimension * (dimension + 2.0)));
             let mean = (1.0 + nu).powi(2) * fourth - 2.0 * nu * (1.0 + nu) * second + nu * nu;
             let mut interior = [mean; 3];
@@ -133,14 +147,14 @@ impl Body<'_> {
         })
     }
 
-    /// ω r² of the bond between two sites.
+    /// Returns ω r² of the bond between two sites, times its volume.
     fn weight(&self, a: usize, b: usize, xi: [f64; 3]) -> f64 {
         let influence = self.influence.alpha_of(xi, self.bonds.horizon());
         let volume = self.bonds.volume_factor(a, b) * self.bonds.volume(b);
         influence * volume * square(xi)
     }
 
-    /// The principal axes of a family; those of the coordinates where they are principal.
+    /// Returns the principal axes of a family; the coordinate axes if they are principal.
     fn axes(&self, i: usize) -> [[f64; 3]; 3] {
         let mut moment = [[0.0; 3]; 3];
         let here = self.bonds.site(i);
@@ -156,7 +170,7 @@ impl Body<'_> {
         axes_of(moment)
     }
 
-    /// Takes factors under which the energies of corrected bonds are nearer those of the interior.
+    /// Performs one pass of the iteration of the factors.
     fn improve(&self, points: &mut [Directions]) {
         let tensors = tensors_of_sites(self.bonds, points);
         let improved: Vec<[f64; 3]> = for_each_point(points.len(), &|i| {
@@ -171,7 +185,7 @@ impl Body<'_> {
                 let terms = stretches(&own.axes, nu, xi);
                 (0..3).for_each(|c| sums[c] += factor * weight * terms[c]);
             }
-            // A point without bonds, or without bonds along an axis, has nothing to be corrected there.
+            // Points without bonds along an axis keep their factors.
             std::array::from_fn(|c| match sums[c] {
                 sum if sum > 1e-6 * whole => own.factors[c] * own.interior[c] * whole / sum,
                 _ => own.factors[c],

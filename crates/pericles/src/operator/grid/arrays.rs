@@ -1,4 +1,4 @@
-//! Arrays of a lattice body as the loops see them.
+//! Arrays of a lattice body read by the loops.
 
 use super::factors::Factors;
 use super::layout::Chunk;
@@ -7,16 +7,16 @@ use super::stencil::Offset;
 use crate::lanes::LANES;
 use crate::operator::fast_law::FixedBond;
 
-/// Read-only arrays as the loops see them.
+/// Read-only arrays of the loops.
 pub(super) struct Grid<'a, N, const D: usize> {
     pub offsets: &'a [Offset<N, D>],
-    /// The stiffness of bonds over the offsets', where it depends on their ends.
+    /// Stiffness of bonds relative to their offset, if it depends on their ends.
     pub factors: Option<&'a Factors<N>>,
     /// Displacement (or another vector) in padded rows.
     pub u: [&'a [N]; D],
-    /// Unused places before the first row.
+    /// Number of unused places before the first row.
     pub margin: usize,
-    /// The length that is one in these numbers, m.
+    /// Unit of length, m.
     pub unit: f64,
 }
 
@@ -26,7 +26,7 @@ impl<N: GridNumber, const D: usize> Grid<'_, N, D> {
         self.margin + chunk.place as usize * LANES
     }
 
-    /// Where the chunks lie that are taken together; at least one.
+    /// Returns the places of the chunks computed together; at least one.
     #[inline(always)]
     pub(super) fn places<T: ChunkLanes<Number = N>>(&self, chunks: &[Chunk]) -> T::Places {
         T::places(
@@ -35,7 +35,8 @@ impl<N: GridNumber, const D: usize> Grid<'_, N, D> {
         )
     }
 
-    /// Where the factors of chunks taken together begin; none if all their bonds have the offsets' stiffness.
+    /// Returns the first entries of the factors of chunks computed together; `None` if all their bonds have
+    /// the stiffness of the offset.
     #[inline(always)]
     pub(super) fn factors_of<T: ChunkLanes<Number = N>>(
         &self,
@@ -46,7 +47,7 @@ impl<N: GridNumber, const D: usize> Grid<'_, N, D> {
         Some(T::places(first, last))
     }
 
-    /// The bonds of an offset, with the factors that begin there.
+    /// Returns the bonds of an offset with the factors at the given entries.
     #[inline(always)]
     pub(super) fn bonds<T: ChunkLanes<Number = N>>(
         &self,
@@ -62,7 +63,7 @@ impl<N: GridNumber, const D: usize> Grid<'_, N, D> {
         bonds
     }
 
-    /// The stiffness of a chunk's bond of one offset, N/m³.
+    /// Returns the stiffness of the bond of an offset and lane of a chunk, N/m³.
     pub(super) fn stiffness(&self, chunk: usize, offset: usize, lane: usize) -> f64 {
         let stiffness: f64 = self.offsets[offset].stiffness.into();
         match self.factors {
@@ -80,7 +81,7 @@ impl<N: GridNumber, const D: usize> Grid<'_, N, D> {
         here
     }
 
-    /// η of the bonds of an offset.
+    /// Returns η of the bonds of an offset.
     #[inline(always)]
     pub(super) fn eta<T: ChunkLanes<Number = N>>(
         &self,

@@ -1,4 +1,4 @@
-//! Blocks of chunks and those of their points that are wanted.
+//! Blocks of chunks and their requested points.
 
 use super::layout::{Chunk, GridLayout};
 use crate::lanes::LANES;
@@ -6,15 +6,15 @@ use crate::lanes::LANES;
 /// A block of chunks.
 pub(in crate::operator) struct ChunkBlock<'a> {
     pub chunks: &'a [Chunk],
-    /// Number of the first chunk.
+    /// Index of the first chunk.
     pub first_chunk: usize,
     pub first_point: usize,
-    /// The wanted lanes of each chunk; none if all points are wanted.
+    /// Requested lanes of each chunk; `None` if all points are requested.
     pub lanes: Option<&'a [u8]>,
 }
 
 impl<'a> ChunkBlock<'a> {
-    /// A block of a layout; none if none of its points are wanted.
+    /// Returns a block of a layout; `None` if none of its points are requested.
     pub fn of(layout: &'a GridLayout, lanes: Option<&'a [u8]>, block: usize) -> Option<Self> {
         let range = layout.chunks_of(block);
         let lanes = lanes.map(|lanes| &lanes[range.clone()]);
@@ -29,7 +29,7 @@ impl<'a> ChunkBlock<'a> {
         })
     }
 
-    /// The lanes of the k-th chunk that are wanted.
+    /// Returns the requested lanes of the k-th chunk.
     #[inline(always)]
     pub(in crate::operator) fn wanted(&self, k: usize) -> u8 {
         match self.lanes {
@@ -39,7 +39,7 @@ impl<'a> ChunkBlock<'a> {
     }
 }
 
-/// Adds the numbers of the wanted lanes to their points.
+/// Adds the values of the requested lanes to their points.
 #[inline(always)]
 pub(in crate::operator) fn scatter(
     numbers: [f64; LANES],

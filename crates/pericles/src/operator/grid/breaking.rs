@@ -1,4 +1,4 @@
-//! Breaking of a chunk's bonds, decided where the force sweep has seen a large strain.
+//! Bond failure, evaluated for chunks with large strains in the force sweep.
 
 use super::arrays::Grid;
 use super::layout::Chunk;
@@ -8,33 +8,33 @@ use crate::domain::Field;
 use crate::lanes::LANES;
 use crate::lanes::Lanes;
 use crate::operator::damage::{BreakEvent, Tally};
-use crate::operator::fast_law::FastLaw;
+use crate::operator::fast_law::VectorLaw;
 use crate::step_end::{BreakingBond, StepEnd, relative_velocity};
 
-/// Breaking as the loops see it.
+/// Failure criterion read by the loops.
 pub(super) struct GridBreaking<'a> {
-    /// Bonds with measure > threshold |ξ|² are over-stretched.
+    /// A bond is over-stretched if measure > threshold |ξ|².
     pub threshold: f64,
-    /// The critical stretch, where all bonds have the same.
+    /// Critical stretch, if it is the same for all bonds.
     pub critical_stretch: f64,
-    /// Thresholds that depend on the ends of a bond, in place of the one, which is then the smallest of them.
+    /// Thresholds that depend on the ends of a bond; `threshold` is then the smallest of them.
     pub pairs: Option<&'a PlaceThresholds>,
     /// Volume of a point, m³.
     pub volume: f64,
-    /// Which bonds of a chunk and offset may break.
+    /// Bits of the bonds of a chunk and offset that may break.
     pub breakable: &'a (dyn Fn(&Chunk, usize) -> u8 + Sync),
-    /// The point at a place of the padded rows.
+    /// Point at a place of the padded rows.
     pub point_at: &'a (dyn Fn(usize) -> usize + Sync),
-    /// The step that ended.
+    /// The step that ends.
     pub step: &'a StepEnd<'a>,
-    /// Mean velocities over the step, where it has any.
+    /// Mean velocities over the step, if it has any.
     pub velocity: Option<Field<'a>>,
-    /// Note what breaks, so that the other end can be told.
+    /// Whether breaking bonds are recorded for the update of their other end.
     pub note_events: bool,
 }
 
 impl GridBreaking<'_> {
-    /// The smallest threshold of the bonds of so many chunks from `first` on.
+    /// Returns the smallest threshold of the bonds of `count` chunks from `first` on.
     #[inline(always)]
     pub(super) fn smallest_threshold(&self, first: usize, count: usize) -> f64 {
         match self.pairs {
@@ -44,23 +44,25 @@ impl GridBreaking<'_> {
     }
 }
 
-/// A chunk whose bonds are looked at one by one.
+/// A chunk whose bonds are checked individually.
 pub(super) struct ChunkBonds<'a> {
     pub chunk: &'a Chunk,
-    /// Its wanted lanes.
+    /// Requested lanes.
     pub lanes: u8,
-    /// Its bonds left, a byte per offset.
+    /// Intact bonds, one byte per offset.
     pub intact: &'a mut [u8],
-    /// Number of the first byte, of all there are.
+    /// Index of the first byte among all bytes.
     pub entry: usize,
 }
 
-/// Breaks the over-stretched bonds of a chunk's wanted lanes and books their energy; says whether there were any.
+/// Breaks the over-stretched bonds of the requested lanes of a chunk and records their energy. Returns
+/// whether a bond broke.
 ///
-/// Decided with [`crate::material::PairForce::stretch_measure`] in doubles, whose rounding is the same at both ends and for all instruction sets. (The measure and
-/// its threshold grow alike with the unit of length.)
+/// The criterion uses [`crate::material::PairForce::stretch_measure`] in double precision, which is bitwise
+/// identical at both ends and for all instruction sets. (The measure and its threshold scale alike with the
+/// unit of length.)
 #[inline(always)]
-pub(super) fn break_chunk<T: Lanes, L: FastLaw, N: GridNumber, const D: usize>(
+pub(super) fn break_chunk<T: Lanes, L: VectorLaw, N: GridNumber, const D: usize>(
     grid: &Grid<'_, N, D>,
     rule: &GridBreaking<'_>,
     bonds: ChunkBonds<'_>,
@@ -102,10 +104,11 @@ pub(super) fn break_chunk<T: Lanes, L: FastLaw, N: GridNumber, const D: usize>(
     any
 }
 
-/// Books the energy of bonds of one offset that have just broken. Each end books half.
+/// Records half of the energy of the bonds of an offset that have just broken; the other end records the
+/// other half.
 #[cold]
 #[inline(never)]
-fn book<L: FastLaw, N: GridNumber, const D: usize>(
+fn book<L: VectorLaw, N: GridNumber, const D: usize>(
     grid: &Grid<'_, N, D>,
     rule: &GridBreaking<'_>,
     bonds: &ChunkBonds<'_>,

@@ -1,4 +1,4 @@
-//! Which bonds of a lattice body exist: geometry, pre-cracks, points that never fail.
+//! Construction of the bonds of a lattice body: geometry, pre-cracks, points without bond failure.
 
 use std::sync::Arc;
 
@@ -7,35 +7,37 @@ use rayon::prelude::*;
 use super::layout::GridLayout;
 use super::stencil::{BondRule, Stencil};
 use crate::error::{PericlesError, Result};
-use crate::family::{Crack, Cut, EndRule, VolumeCorrection};
+use crate::family::{BondCut, Crack, EndRule, VolumeCorrection};
 use crate::lanes::LANES;
 use crate::operator::damage::{BlockDamage, bonds_left};
 use crate::operator::{BondForm, Feature, Features};
 use crate::space::{PointCloud, Sites, check_points};
 
-/// The bonds of a lattice body as they are at the start.
+/// Initial bonds of a lattice body.
 pub(in crate::operator) struct LatticeBonds<const D: usize> {
     pub sites: Sites,
     pub layout: GridLayout,
     pub stencil: Stencil<D>,
-    /// Bonds left: one byte per chunk and offset, offsets fastest.
+    /// Intact bonds: one byte per chunk and offset, offsets fastest.
     pub blocks: Vec<BlockDamage>,
-    /// All bonds before cracks cut some, as in `blocks`, where points have families of different horizons.
+    /// All bonds before pre-cracks, as in `blocks`, if points have different horizons.
     pub geometric: Option<Vec<Vec<u8>>>,
-    /// Sites whose bonds never break, one byte for each place (in chunks).
+    /// Sites whose bonds never break, one byte per place (in chunks).
     pub held: Option<Vec<u8>>,
-    /// What each pre-crack removed.
-    pub cuts: Vec<Cut>,
-    /// Bonds lost to pre-cracks: groups, ascending, and which of their bonds.
+    /// Bonds removed by each pre-crack.
+    pub cuts: Vec<BondCut>,
+    /// Bonds cut by pre-cracks: groups in ascending order with bits of their bonds.
     pub precut: Vec<(u64, u8)>,
 }
 
 impl<const D: usize> LatticeBonds<D> {
-    /// The bonds within a horizon, whose `stiffness` (times κ V of the neighbour) the stencil holds for every vector ξ, without those that cracks cut. Where `horizons` gives one for each point, none larger
-    /// than the first, a bond exists within the larger horizon of its ends.
+    /// Creates the bonds within a horizon without those cut by cracks. The stencil stores `stiffness` times
+    /// κ V of the neighbour for each vector ξ. If `horizons` gives a horizon for each point, none larger than
+    /// the first argument, a bond exists within the larger horizon of its ends.
     ///
     /// # Errors
-    /// A cloud without a lattice or of another dimension, a horizon that reaches no neighbour, an unusable crack, points `no_fail` that the cloud does not have.
+    /// A cloud without a lattice or of another dimension, a horizon without neighbours, an invalid crack,
+    /// points `no_fail` that do not exist in the cloud.
     pub fn new(
         cloud: &Arc<PointCloud>,
         (horizon, horizons): (f64, Option<&[f64]>),
@@ -50,7 +52,7 @@ impl<const D: usize> LatticeBonds<D> {
             Some(lattice) if cloud.dimension() == D => lattice,
             _ => {
                 return Err(PericlesError::WrongDimension {
-                    what: "the grid operator",
+                    what: "this stencil kernel",
                     needed: ["1", "2", "3"][D - 1],
                     dimension: cloud.dimension(),
                 });
@@ -103,7 +105,8 @@ impl<const D: usize> LatticeBonds<D> {
     }
 }
 
-/// The sites whose bonds never break, one byte for each place (in chunks); none if there are no such points.
+/// Returns the sites whose bonds never break, one byte per place (in chunks); `None` if there are no such
+/// points.
 fn held_sites(cloud: &PointCloud, layout: &GridLayout, no_fail: &[u32]) -> Option<Vec<u8>> {
     let domain = cloud.domain();
     if domain.all(no_fail.is_empty()) {
@@ -117,7 +120,7 @@ fn held_sites(cloud: &PointCloud, layout: &GridLayout, no_fail: &[u32]) -> Optio
     Some(layout.marked(|point| held[point]))
 }
 
-/// All bonds of the geometric families.
+/// Returns all bonds of the geometric families.
 fn geometric_blocks<const D: usize>(layout: &GridLayout, stencil: &Stencil<D>) -> Vec<BlockDamage> {
     (0..layout.blocks())
         .into_par_iter()
@@ -133,7 +136,7 @@ fn geometric_blocks<const D: usize>(layout: &GridLayout, stencil: &Stencil<D>) -
         .collect()
 }
 
-/// Removes the bonds that are longer than what two sites reach.
+/// Removes bonds longer than the horizons of both sites.
 fn keep_within<const D: usize>(
     sites: &Sites,
     layout: &GridLayout,
@@ -164,20 +167,20 @@ fn keep_within<const D: usize>(
         });
 }
 
-/// Removes the bonds that meet a crack.
+/// Removes the bonds that intersect a crack.
 ///
 /// # Errors
-/// A crack of another dimension than the cloud's, or without extent.
+/// A crack without extent or of another dimension than the cloud.
 fn cut<const D: usize>(
     sites: &Sites,
     layout: &GridLayout,
     stencil: &Stencil<D>,
     (crack, rule): &(Crack, EndRule),
     blocks: &mut [BlockDamage],
-) -> Result<Cut> {
+) -> Result<BondCut> {
     if crack.dimension() != D {
         return Err(PericlesError::WrongDimension {
-            what: "a crack of this kind",
+            what: "this crack",
             needed: ["1", "2", "3"][crack.dimension() - 1],
             dimension: D,
         });
@@ -196,7 +199,7 @@ fn cut<const D: usize>(
                 for (lane, i) in chunk.points() {
                     let here = sites.of_point(i);
                     let place = chunk.place as usize * LANES + lane;
-                    // Beyond a periodic face the crack has images.
+                    // The crack has images beyond periodic faces.
                     let alone = sites.are_points();
                     if alone && crack.distance(sites.places().point(here)) > near {
                         continue;
@@ -221,7 +224,7 @@ fn cut<const D: usize>(
         })
         .collect();
     let directed = removed.iter().flatten().map(|&(_, count)| count).sum();
-    let mut cut = Cut {
+    let mut cut = BondCut {
         bonds: sites.cloud().domain().count(directed) / 2,
         points: removed.iter().flatten().map(|&(i, _)| i).collect(),
     };
@@ -229,7 +232,8 @@ fn cut<const D: usize>(
     Ok(cut)
 }
 
-/// The groups (chunk · offsets + offset) that lost bonds to cracks, ascending, with the bonds lost.
+/// Returns the groups (chunk · offsets + offset) with bonds cut by cracks in ascending order, with these
+/// bonds.
 fn precut_bonds<const D: usize>(
     layout: &GridLayout,
     stencil: &Stencil<D>,

@@ -6,10 +6,10 @@ use super::force::GridForce;
 use super::layout::Chunk;
 use crate::lanes::LANES;
 use crate::lanes::{Lanes, for_each_instruction_set};
-use crate::operator::fast_law::FastLaw;
-use crate::operator::{Breakable, CoarseBreak, Force, On, damage};
+use crate::operator::fast_law::VectorLaw;
+use crate::operator::{Breakable, CoarseBreak, Force, PointSubset, damage};
 
-impl<L: FastLaw, const D: usize> Breakable for GridForce<L, D> {
+impl<L: VectorLaw, const D: usize> Breakable for GridForce<L, D> {
     fn dissipated(&self) -> f64 {
         damage::dissipated(self.cloud.domain(), &self.blocks)
     }
@@ -58,7 +58,7 @@ impl<L: FastLaw, const D: usize> Breakable for GridForce<L, D> {
         self.sweep::<f64, 1>(
             &self.doubles,
             u,
-            &On::All,
+            &PointSubset::All,
             &mut found,
             |grid, block, intact, out| {
                 endangered_chunks::<L, D>(
@@ -77,18 +77,18 @@ impl<L: FastLaw, const D: usize> Breakable for GridForce<L, D> {
     }
 }
 
-/// Which bonds are near their critical stretch.
+/// Criterion for bonds close to their critical stretch.
 struct Endangered<'a> {
-    /// The smallest threshold of all bonds.
+    /// Smallest threshold of all bonds.
     threshold: f64,
-    /// Those of eight bonds from a place on, by the shift to their other ends.
+    /// Thresholds of eight bonds from a place on, by the shift to their other ends.
     of_lanes: &'a (dyn Fn(usize, isize) -> [f64; LANES] + Sync),
-    /// Which bonds of a chunk and offset may break.
+    /// Bits of the bonds of a chunk and offset that may break.
     breakable: &'a (dyn Fn(&Chunk, usize) -> u8 + Sync),
 }
 
 #[inline(always)]
-fn endangered_chunks_body<T: Lanes, L: FastLaw, const D: usize>(
+fn endangered_chunks_body<T: Lanes, L: VectorLaw, const D: usize>(
     grid: &Grid<'_, f64, D>,
     rule: &Endangered<'_>,
     block: &ChunkBlock<'_>,
@@ -97,7 +97,7 @@ fn endangered_chunks_body<T: Lanes, L: FastLaw, const D: usize>(
 ) {
     let m = grid.offsets.len();
     let threshold = T::splat(rule.threshold);
-    // Asked for few bonds only: behind pointers, so that no part of it is compiled into the vector loop.
+    // Called for few bonds only: function pointers keep the code out of the vector loop.
     let breakable = std::hint::black_box(rule.breakable);
     let of_lanes = std::hint::black_box(rule.of_lanes);
     for (number, chunk) in block.chunks.iter().enumerate() {
@@ -126,8 +126,8 @@ fn endangered_chunks_body<T: Lanes, L: FastLaw, const D: usize>(
 }
 
 for_each_instruction_set! {
-    /// Adds one to the points with a bond that may break and is strained beyond the threshold.
-    fn endangered_chunks [L: FastLaw, const D: usize] <L, D> (
+    /// Adds one for points with a breakable bond whose strain exceeds the threshold.
+    fn endangered_chunks [L: VectorLaw, const D: usize] <L, D> (
         grid: &Grid<'_, f64, D>,
         rule: &Endangered<'_>,
         block: &ChunkBlock<'_>,

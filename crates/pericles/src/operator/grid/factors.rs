@@ -1,4 +1,4 @@
-//! Bonds whose stiffness depends on their two ends: several materials, inclusions, corrected surfaces.
+//! Stiffness of bonds that depends on both ends: several materials, inclusions, surface correction.
 
 use std::collections::HashMap;
 
@@ -11,33 +11,34 @@ use crate::lanes::LANES;
 use crate::operator::damage::BlockDamage;
 use crate::space::Sites;
 
-/// The stiffness of bonds over that of the stencil, chunk by chunk.
+/// Stiffness of bonds relative to the stencil, per chunk.
 ///
-/// A row holds one factor for each offset and lane, offsets slowest. Row 0 is one everywhere, and equal rows are kept once: inside of each material all chunks share a row, and so
-/// do chunks that lie alike along a straight interface or surface.
+/// A row has one factor per offset and lane, offsets slowest. Row 0 is one everywhere. Equal rows are stored
+/// once: all chunks in the interior of a material share a row, and so do chunks at the same position relative
+/// to a straight interface or surface.
 #[derive(Debug, Clone)]
 pub(super) struct Factors<N> {
-    /// The row of each chunk.
+    /// Row of each chunk.
     rows: Vec<u32>,
     /// All rows.
     values: Vec<N>,
-    /// The largest factor of each offset's bonds in the whole body.
+    /// Largest factor of the bonds of each offset in the body.
     largest: Vec<f64>,
 }
 
-/// The factor of the bond from an own point's site to another site, with its vector ξ, m.
+/// Factor of the bond from the site of an own point to another site, with its vector ξ, m.
 pub(in crate::operator) type OfBond<'a> = dyn Fn(usize, usize, [f64; 3]) -> f64 + Sync + 'a;
 
-/// Rows of a block: each once, and the number of each chunk's.
+/// Distinct rows of a block, and the row of each chunk.
 struct BlockRows {
     rows: Vec<Vec<f64>>,
     of_chunk: Vec<usize>,
-    /// The largest factor of each offset.
+    /// Largest factor of each offset.
     largest: Vec<f64>,
 }
 
 impl Factors<f64> {
-    /// The factors of the bonds left in each block.
+    /// Creates the factors of the intact bonds of each block.
     pub fn new<const D: usize>(
         sites: &Sites,
         layout: &GridLayout,
@@ -79,7 +80,7 @@ impl Factors<f64> {
         }
     }
 
-    /// The same rounded to floats.
+    /// Returns the factors in single precision.
     pub fn in_floats(&self) -> Factors<f32> {
         Factors {
             rows: self.rows.clone(),
@@ -92,38 +93,39 @@ impl Factors<f64> {
         }
     }
 
-    /// The largest factor of an offset.
+    /// Returns the largest factor of an offset.
     pub fn largest(&self, offset: usize) -> f64 {
         self.largest[offset]
     }
 }
 
 impl<N: GridNumber> Factors<N> {
-    /// Where the factors of so many chunks from `first` on begin, the first one's and the last one's; none if all their bonds have the stencil's stiffness.
+    /// Returns the first entries of the factors of the first and last of `count` chunks from `first` on;
+    /// `None` if all their bonds have the stiffness of the stencil.
     #[inline(always)]
     pub fn places(&self, first: usize, count: usize) -> Option<[usize; 2]> {
         let length = self.largest.len() * LANES;
         let (low, high) = (self.rows[first], self.rows[first + count - 1]);
-        // Written out: an adapter that is not inlined would pass all registers through memory.
+        // No iterator adapter here: without inlining it would pass all registers through memory.
         match low | high {
             0 => None,
             _ => Some([low as usize * length, high as usize * length]),
         }
     }
 
-    /// Factors, eight for each offset of a row.
+    /// Returns the factors, eight per offset of a row.
     #[inline(always)]
     pub fn values(&self) -> &[N] {
         &self.values
     }
 
-    /// The factor of a chunk's bond of one offset.
+    /// Returns the factor of the bond of an offset and lane of a chunk.
     pub fn of_bond(&self, chunk: usize, offset: usize, lane: usize) -> f64 {
         let length = self.largest.len() * LANES;
         self.values[self.rows[chunk] as usize * length + offset * LANES + lane].into()
     }
 
-    /// Memory, bytes.
+    /// Returns the memory use, bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.rows[..]) + size_of_val(&self.values[..])
     }
@@ -160,7 +162,7 @@ fn block_rows<const D: usize>(
                 }
             }
         }
-        // Where all bonds have one factor, the row does not depend on which bonds there are.
+        // If all bonds have the same factor, the row does not depend on which bonds exist.
         if let Some(factor) = common(&row, intact) {
             row.fill(factor);
         }
@@ -174,7 +176,7 @@ fn block_rows<const D: usize>(
     block_rows
 }
 
-/// The factor that all bonds of a row have; none if they differ.
+/// Returns the common factor of all bonds of a row; `None` if they differ.
 fn common(row: &[f64], intact: &[u8]) -> Option<f64> {
     let mut bonds = row.chunks(LANES).zip(intact).flat_map(|(lanes, &bits)| {
         (0..LANES)
@@ -185,7 +187,7 @@ fn common(row: &[f64], intact: &[u8]) -> Option<f64> {
     bonds.all(|factor| factor == first).then_some(first)
 }
 
-/// Numbers as a key.
+/// Returns the bits of numbers as a key.
 fn bits(row: &[f64]) -> Vec<u64> {
     row.iter().map(|factor| factor.to_bits()).collect()
 }

@@ -1,4 +1,4 @@
-//! The families of a lattice body bond by bond: what every force on a stencil asks of them beside its loops.
+//! Queries of individual bonds and families of a lattice body, shared by all stencil kernels.
 
 use super::layout::{Chunk, GridLayout};
 use super::stencil::Stencil;
@@ -9,25 +9,25 @@ use crate::operator::damage::BlockDamage;
 use crate::parallel::{components_mut, for_each_part};
 use crate::space::PointCloud;
 
-/// The bonds of a lattice body, those that are left and those that pre-cracks cut.
+/// The intact bonds of a lattice body and those cut by pre-cracks.
 #[derive(Clone, Copy)]
 pub(in crate::operator) struct Families<'a, const D: usize> {
     pub cloud: &'a PointCloud,
     pub layout: &'a GridLayout,
     pub stencil: &'a Stencil<D>,
-    /// Bonds left: one byte per chunk and offset, offsets fastest.
+    /// Intact bonds: one byte per chunk and offset, offsets fastest.
     pub blocks: &'a [BlockDamage],
-    /// All bonds before cracks cut some, as in `blocks`; none if they are those of the layout.
+    /// All bonds before pre-cracks, as in `blocks`; `None` if they follow from the layout.
     pub geometric: Option<&'a [Vec<u8>]>,
-    /// Sites whose bonds never break, one byte for each place (in chunks).
+    /// Sites whose bonds never break, one byte per place (in chunks).
     pub held: Option<&'a [u8]>,
-    /// Bonds lost to pre-cracks: groups, ascending, and which of their bonds.
+    /// Bonds cut by pre-cracks: groups in ascending order with bits of their bonds.
     pub precut: &'a [(u64, u8)],
     pub damage: DamageMeasure,
 }
 
 impl<const D: usize> Families<'_, D> {
-    /// Which of a chunk's points have a bond of one offset, before cracks cut some.
+    /// Returns the points of a chunk with a bond of an offset before pre-cracks.
     pub fn family(&self, number: usize, offset: usize) -> u8 {
         match self.geometric {
             None => {
@@ -42,7 +42,7 @@ impl<const D: usize> Families<'_, D> {
         }
     }
 
-    /// Which of a chunk's bonds of one offset may break.
+    /// Returns the bonds of a chunk and offset that may break.
     pub fn breakable(&self, chunk: &Chunk, offset: usize) -> u8 {
         let Some(held) = self.held else { return 0xFF };
         let cell = self.stencil.cells()[offset];
@@ -50,7 +50,7 @@ impl<const D: usize> Families<'_, D> {
         !(held[chunk.place as usize] | there)
     }
 
-    /// Wants every bond that is left to be one that the body has: others would lead beyond its points.
+    /// Checks that all intact bonds are bonds of the body: others would lead beyond its points.
     pub fn check_bonds(&self) -> Result<()> {
         let m = self.stencil.len();
         let mut precut = self.precut.iter().peekable();
@@ -65,7 +65,7 @@ impl<const D: usize> Families<'_, D> {
                     if intact[offset] & !family != 0 {
                         let point = self.cloud.user_number(chunk.point as usize);
                         let reason =
-                            format!("it has bonds near point {point} that the body does not have");
+                            format!("its bonds near point {point} are not bonds of the body");
                         return Err(PericlesError::BadArchive { reason });
                     }
                 }
@@ -74,7 +74,8 @@ impl<const D: usize> Families<'_, D> {
         Ok(())
     }
 
-    /// Calls `visit(first point of the block, chunk, its bonds left, the block's part of values)` for every chunk, on all cores.
+    /// Calls `visit(first point of the block, chunk, its intact bonds, values of the block)` for each chunk,
+    /// in parallel.
     pub fn for_each_block(
         &self,
         values: &mut [f64],
@@ -96,7 +97,8 @@ impl<const D: usize> Families<'_, D> {
         );
     }
 
-    /// Calls `visit((lane, point), offset, intact)` for all bonds of a chunk's geometric families that damage counts, point by point.
+    /// Calls `visit((lane, point), offset, intact)` for all bonds of the geometric families of a chunk that
+    /// count in the damage, point by point.
     pub fn for_each_counted(
         &self,
         number: usize,
@@ -125,7 +127,7 @@ impl<const D: usize> Families<'_, D> {
         }
     }
 
-    /// Damage of each point, 0 … 1.
+    /// Sets the damage of each point, 0 … 1.
     pub fn damage_into(&self, out: &mut [f64]) {
         let volumes = self.stencil.volumes();
         let mut whole = vec![0.0; self.cloud.len()];
@@ -153,14 +155,14 @@ impl<const D: usize> Families<'_, D> {
         }
     }
 
-    /// Calls `visit` with the two ends of every bond that is left, once or twice for each.
+    /// Calls `visit` with both ends of each intact bond, once or twice per bond.
     pub fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
         let (n, offsets) = (self.cloud.len(), self.stencil.offsets());
         for (number, block) in self.blocks.iter().enumerate() {
             let chunks = self.layout.chunks_of(number);
             for (chunk, intact) in chunks.zip(block.intact.chunks(offsets.len())) {
                 let chunk = &self.layout.chunks()[chunk];
-                // The other end of a bond tells of it otherwise.
+                // Other bonds are visited from their other end.
                 let forward = intact.iter().zip(offsets).filter(|(_, o)| o.shift > 0);
                 for (mask, offset) in forward {
                     for (lane, i) in chunk.points().filter(|(lane, _)| mask >> lane & 1 == 1) {
@@ -176,7 +178,7 @@ impl<const D: usize> Families<'_, D> {
         }
     }
 
-    /// Calls `visit` for every own point that point i is bonded to at the start, once each.
+    /// Calls `visit` once for each own point that is initially bonded to point i.
     pub fn for_each_neighbour(&self, i: usize, visit: &mut dyn FnMut(usize)) {
         let place = self.layout.place_of(i);
         let (number, lane) = self.layout.chunk_at(place);
@@ -197,7 +199,7 @@ impl<const D: usize> Families<'_, D> {
             }
         }
         if !self.layout.is_of_points() {
-            // A point may be a neighbour more than once, and its own.
+            // A point can be a neighbour several times, and its own neighbour.
             near.retain(|&j| j < n && j != i);
             near.sort_unstable();
             near.dedup();
@@ -207,7 +209,7 @@ impl<const D: usize> Families<'_, D> {
 }
 
 impl<'a, const D: usize> Families<'a, D> {
-    /// The place of an own point, and the offsets of its bonds that are left.
+    /// Returns the place of an own point and the offsets of its intact bonds.
     pub fn bonds_of(self, i: usize) -> (usize, impl Iterator<Item = usize> + use<'a, D>) {
         let place = self.layout.place_of(i);
         let (chunk, lane) = self.layout.chunk_at(place);

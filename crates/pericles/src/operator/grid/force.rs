@@ -1,4 +1,4 @@
-//! The force operator of a lattice body.
+//! Stencil force kernel for lattice bodies.
 
 use std::sync::{Arc, Mutex};
 
@@ -17,30 +17,33 @@ use super::thresholds::PlaceThresholds;
 use super::working::Working;
 use crate::domain::{Field, Letter};
 use crate::error::Result;
-use crate::family::{Crack, Cut, EndRule};
+use crate::family::{BondCut, Crack, EndRule};
 use crate::lanes::LANES;
-use crate::material::{BondConstants, BondMaterial, PairClasses};
+use crate::material::{BondConstants, BondMaterial, MaterialPairs};
 use crate::operator::damage::{BlockDamage, Tally, bonds_left};
-use crate::operator::fast_law::FastLaw;
-use crate::operator::{DamageMeasure, Force, InstructionSet, On};
+use crate::operator::fast_law::VectorLaw;
+use crate::operator::{DamageMeasure, Force, InstructionSet, PointSubset};
 use crate::parallel::{components_mut, for_each_part};
 use crate::space::{PointCloud, Sites};
 use crate::step_end::StepEnd;
 
-/// f(x_i) = Σ_j c α κ V_j s n on a lattice: the same force density (N/m³) as [`BondForce`](crate::operator::BondForce), several times faster.
+/// Force density f(x_i) = Σ_j c α κ V_j s n on a lattice, N/m³: that of
+/// [`BondForce`](crate::operator::BondForce), several times faster.
 ///
-/// All nodes share one stencil. Rows along x are taken eight nodes at a time, all offsets in turn, without roots and
-/// divisions while strains are small (see [`FastLaw`]). Holes, boundaries, pre-cracks and damage are one byte per eight nodes and offset.
-/// A point's force depends on nothing but its neighbours: not on threads, not on which points are wanted.
+/// All nodes share one stencil. Eight nodes of a row along x are computed together, without roots and
+/// divisions for small strains (see [`VectorLaw`]). Holes, boundaries, pre-cracks and damage are one byte per
+/// eight nodes and offset. The force on a point depends on its neighbours only, not on threads or on other
+/// requested points.
 ///
-/// Memory: per point one byte per eight bonds, a copy of the displacement, and 4 bytes; row ends are padded to eight nodes.
+/// Memory: per point one byte per eight bonds, a copy of the displacement, and 4 bytes; rows are padded to a
+/// multiple of eight nodes.
 ///
 /// ```
 /// use std::sync::Arc;
 /// use pericles::family::VolumeCorrection;
 /// use pericles::kernel::Influence;
 /// use pericles::material::*;
-/// use pericles::operator::{DamageMeasure, Force, GridForce, On};
+/// use pericles::operator::{DamageMeasure, Force, GridForce, PointSubset};
 /// use pericles::space::{Grid, Shape};
 ///
 /// # fn main() -> pericles::Result<()> {
@@ -63,48 +66,51 @@ use crate::step_end::StepEnd;
 /// let constants = steel.constants(&cloud, StressState::Uniaxial)?;
 /// let operator =
 ///     GridForce::<LinearBond, 1>::new(cloud.clone(), &steel, &constants, &[], &[], DamageMeasure::default())?;
-/// // Uniform strain: no force inside.
+/// // A uniform strain causes no force in the interior.
 /// let u: Vec<f64> = cloud.axis(0).iter().map(|x| 1e-3 * x).collect();
 /// let mut force = vec![0.0; cloud.len()];
-/// operator.add_force(0.0, &u, On::All, &mut force);
+/// operator.add_force(0.0, &u, PointSubset::All, &mut force);
 /// assert!(force[50].abs() < 1e-9 * force[0]);
 /// # Ok(())
 /// # }
 /// ```
-pub struct GridForce<L: FastLaw, const D: usize> {
+pub struct GridForce<L: VectorLaw, const D: usize> {
     pub(super) cloud: Arc<PointCloud>,
-    /// What bonds lead to.
+    /// Sites: end points of bonds.
     pub(super) sites: Sites,
     pub(super) layout: GridLayout,
     pub(super) stencil: Stencil<D>,
-    /// Bonds left: one byte per chunk and offset, offsets fastest.
+    /// Intact bonds: one byte per chunk and offset, offsets fastest.
     pub(super) blocks: Vec<BlockDamage>,
-    /// Sites whose bonds never break, one byte for each place (in chunks).
+    /// Sites whose bonds never break, one byte per place (in chunks).
     pub(super) held: Option<Vec<u8>>,
-    /// All bonds before cracks cut some, where points have families of different horizons.
+    /// All bonds before pre-cracks, if points have different horizons.
     pub(super) geometric: Option<Vec<Vec<u8>>>,
-    pub(super) cuts: Vec<Cut>,
-    /// Bonds lost to pre-cracks: groups, ascending, and which of their bonds.
+    pub(super) cuts: Vec<BondCut>,
+    /// Bonds cut by pre-cracks: groups in ascending order with bits of their bonds.
     pub(super) precut: Vec<(u64, u8)>,
     pub(super) directed_bonds: u64,
     pub(super) critical_stretch: f64,
-    /// Critical stretches by the materials of a bond's ends, in place of the one, which is then the smallest.
+    /// Critical stretches by the materials of the ends of a bond; the common value is then the smallest of
+    /// them.
     pub(super) pairs: Option<PlaceThresholds>,
     pub(super) damage: DamageMeasure,
     pub(super) doubles: Working<f64, D>,
-    /// Forces and breaking are computed in floats, everything else in doubles.
+    /// Work arrays for forces and bond failure in single precision; everything else uses double precision.
     pub(super) floats: Option<Working<f32, D>>,
-    /// A second vector in padded rows, made by the first tangent.
+    /// A second vector in padded rows, allocated by the first tangent.
     pub(super) direction: Mutex<Option<Padded<f64, D>>>,
     pub(super) instruction_set: InstructionSet,
     pub(super) law: std::marker::PhantomData<L>,
 }
 
-impl<L: FastLaw, const D: usize> GridForce<L, D> {
-    /// The operator of a material on a lattice body with pre-cracks; bonds of the points `no_fail` never break.
+impl<L: VectorLaw, const D: usize> GridForce<L, D> {
+    /// Creates the operator of a material on a lattice body with pre-cracks; bonds of the points `no_fail`
+    /// never break.
     ///
     /// # Errors
-    /// A cloud without a lattice or of another dimension, a horizon that reaches no neighbour, an unusable crack, points `no_fail` that the cloud does not have.
+    /// A cloud without a lattice or of another dimension, a horizon without neighbours, an invalid crack,
+    /// points `no_fail` that do not exist in the cloud.
     pub fn new(
         cloud: Arc<PointCloud>,
         material: &BondMaterial,
@@ -126,7 +132,7 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
         Ok(Self::of(cloud, bonds, constants.critical_stretch, damage))
     }
 
-    /// The operator of the bonds of a lattice body.
+    /// Creates the operator from the bonds of a lattice body.
     pub(in crate::operator) fn of(
         cloud: Arc<PointCloud>,
         bonds: LatticeBonds<D>,
@@ -170,15 +176,17 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
         }
     }
 
-    /// Runs the loops with another instruction set; for tests and benchmarks.
+    /// Selects another instruction set for the loops; for tests and benchmarks.
     pub fn with_instruction_set(mut self, set: InstructionSet) -> Self {
         self.use_instruction_set(set);
         self
     }
 
-    /// Computes forces and breaking in floats: half the memory of the work array and about twice the speed, at an error of 1e-6 to 1e-4 of the largest force
-    /// (see [`Force::rounding`]). Displacements are rounded as differences from one point's in units of the spacing; states, energies and tangents stay
-    /// in doubles. Breaking is decided from the rounded displacements, by both ends of a bond alike.
+    /// Computes forces and bond failure in single precision: half the memory of the work array and about
+    /// twice the speed, with an error of 1e-6 to 1e-4 of the largest force (see [`Force::rounding`]).
+    /// Displacements are rounded relative to that of one point, in units of the spacing. States, energies and
+    /// tangents use double precision. Bond failure follows from the rounded displacements, at both ends of a
+    /// bond alike.
     pub fn in_floats(mut self) -> Self {
         let spacing = self.cloud.spacing();
         let lattice = self.cloud.lattice();
@@ -193,8 +201,8 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
         self
     }
 
-    /// The same with a stiffness of bonds that depends on their ends: the material's times a factor given for the sites of both ends, the first one an own point's, and the
-    /// vector ξ of the bond, m. It must be the same from both ends.
+    /// Multiplies the stiffness of bonds by a factor of the sites of both ends, the first of which belongs to
+    /// an own point, and of the vector ξ of the bond, m. It must be the same from both ends.
     pub(in crate::operator) fn with_factors(mut self, of: &OfBond<'_>) -> Self {
         let (sites, layout) = (&self.sites, &self.layout);
         let factors = Factors::new(sites, layout, &self.stencil, &self.blocks, of);
@@ -211,8 +219,8 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
             .map(|floats| floats.with_factors(factors));
     }
 
-    /// The same with critical stretches that depend on the materials of a bond's ends.
-    pub(in crate::operator) fn with_critical_stretches(mut self, classes: &PairClasses) -> Self {
+    /// Sets critical stretches that depend on the materials of both ends of a bond.
+    pub(in crate::operator) fn with_critical_stretches(mut self, classes: &MaterialPairs) -> Self {
         self.critical_stretch = classes.smallest_critical_stretch();
         self.pairs = (!classes.has_one_critical_stretch()).then(|| {
             let on_sites = classes.on_sites(&self.sites);
@@ -221,30 +229,30 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
         self
     }
 
-    /// The stiffness of a chunk's bond of one offset, N/m³.
+    /// Returns the stiffness of the bond of an offset and lane of a chunk, N/m³.
     pub(super) fn stiffness_of(&self, chunk: usize, offset: usize, lane: usize) -> f64 {
         let factors = self.doubles.factors();
         let factor = factors.map_or(1.0, |factors| factors.of_bond(chunk, offset, lane));
         self.stencil.offsets()[offset].stiffness * factor
     }
 
-    /// The stiffness of an offset's stiffest bond, N/m³.
+    /// Returns the stiffness of the stiffest bond of an offset, N/m³.
     pub(super) fn largest_stiffness(&self, offset: usize) -> f64 {
         let largest = (self.doubles.factors()).map_or(1.0, |factors| factors.largest(offset));
         self.stencil.offsets()[offset].stiffness * largest
     }
 
-    /// What bonds lead to.
+    /// Returns the sites: end points of bonds.
     pub fn sites(&self) -> &Sites {
         &self.sites
     }
 
-    /// What each pre-crack removed.
-    pub fn cuts(&self) -> &[Cut] {
+    /// Returns the bonds removed by each pre-crack.
+    pub fn cuts(&self) -> &[BondCut] {
         &self.cuts
     }
 
-    /// A block of chunks with those of its points that are wanted; none if there are none.
+    /// Returns a block of chunks with its requested points; `None` if there are none.
     pub(super) fn chunk_block<'a>(
         &'a self,
         lanes: Option<&'a [u8]>,
@@ -258,13 +266,13 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
         &self,
         working: &Working<N, D>,
         u: &[f64],
-        on: &On<'_>,
+        on: &PointSubset<'_>,
         out: &mut [f64],
         chunks: impl Fn(&Grid<'_, N, D>, &ChunkBlock<'_>, &[u8], &mut [&mut [f64]; C]) + Sync,
     ) {
         let ghosts = self.cloud.domain().ghosts(u);
         working.with(&self.layout, Field::new(u, &ghosts), on, |grid, lanes| {
-            // A vector of nothing: the blocks' state is only read, and no memory is taken.
+            // A vector of units takes no memory: the state of blocks is only read.
             let mut nothing = vec![(); self.blocks.len()];
             for_each_part(
                 components_mut::<C>(out, self.points()),
@@ -279,15 +287,15 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
         });
     }
 
-    /// Breaks over-stretched bonds of the wanted points and adds the force density of those that are left.
+    /// Breaks over-stretched bonds of the requested points and adds the force density of the intact bonds.
     pub(super) fn decide(
         &mut self,
         step: &StepEnd<'_>,
-        on: &On<'_>,
+        on: &PointSubset<'_>,
         partners: Option<&Partners>,
         out: &mut [f64],
     ) {
-        let whole = matches!(on, On::All) && partners.is_none();
+        let whole = matches!(on, PointSubset::All) && partners.is_none();
         let mut blocks = std::mem::take(&mut self.blocks);
         let set = self.instruction_set;
         let domain = self.cloud.domain();
@@ -336,7 +344,7 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
         }
     }
 
-    /// Decides breaking in all blocks, of bonds to partners only if there are any.
+    /// Applies the failure criterion in all blocks, only to bonds to partners if given.
     fn decide_blocks(
         &self,
         lanes: Option<&[u8]>,
@@ -370,7 +378,7 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
         );
     }
 
-    /// The families.
+    /// Returns the families.
     pub(super) fn families(&self) -> Families<'_, D> {
         Families {
             cloud: &self.cloud,
@@ -384,7 +392,8 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
         }
     }
 
-    /// Clears the second copy of bonds that broke in a sweep over some of the points only, and books its half of the energy.
+    /// Breaks the other end of bonds that broke in a sweep over a subset of points, and records its half of
+    /// the energy.
     fn tell_the_other_ends(&mut self) {
         let m = self.stencil.len();
         let mut letters = Vec::new();

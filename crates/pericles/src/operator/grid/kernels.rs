@@ -1,8 +1,9 @@
-//! The loops of the grid operator, one text for every law, dimension and instruction set.
+//! Loops of the stencil kernel, generic over law, dimension and instruction set.
 //!
-//! Eight nodes of a row are computed side by side, in floats sixteen of two rows: all offsets of the stencil in turn, the forces staying in registers. A byte per chunk
-//! and offset says which of the eight bonds are there; it stands for holes, boundaries, pre-cracks and damage alike. Bonds that are not there
-//! are computed from whatever lies at their place and masked out.
+//! Eight nodes of a row are computed together, in single precision sixteen of two rows: all offsets of the
+//! stencil in turn, with forces in registers. A byte per chunk and offset marks the existing bonds of eight
+//! nodes; it covers holes, boundaries, pre-cracks and damage. Missing bonds are computed from arbitrary data
+//! at their place and masked out.
 
 use super::arrays::Grid;
 use super::block::{ChunkBlock, scatter};
@@ -11,9 +12,9 @@ use super::layout::Chunk;
 use super::numbers::ChunkLanes;
 use crate::lanes::{Lanes, for_each_instruction_set};
 use crate::operator::damage::Tally;
-use crate::operator::fast_law::FastLaw;
+use crate::operator::fast_law::VectorLaw;
 
-/// Forces of chunks in the fast form, and the range of the strains t they were computed from.
+/// Forces of chunks in the fast form, and the range of their strains t.
 struct Fast<T, const D: usize> {
     sum: [T; D],
     largest: T,
@@ -21,7 +22,7 @@ struct Fast<T, const D: usize> {
 }
 
 #[inline(always)]
-fn fast_force<T: ChunkLanes, L: FastLaw, const D: usize>(
+fn fast_force<T: ChunkLanes, L: VectorLaw, const D: usize>(
     grid: &Grid<'_, T::Number, D>,
     places: T::Places,
     factors: Option<T::Places>,
@@ -35,7 +36,7 @@ fn fast_force<T: ChunkLanes, L: FastLaw, const D: usize>(
         smallest: zero,
     };
     let bonds = T::bonds(intact, grid.offsets.len());
-    // No adapter here: one that is not inlined would pass all registers through memory.
+    // No iterator adapter here: without inlining it would pass all registers through memory.
     for k in 0..grid.offsets.len() {
         let (offset, mask) = (&grid.offsets[k], T::present(bonds, k));
         if T::none(mask) {
@@ -51,9 +52,9 @@ fn fast_force<T: ChunkLanes, L: FastLaw, const D: usize>(
     fast
 }
 
-/// Forces of chunks by the law itself, however large the strains.
+/// Returns the forces of chunks by the exact law, for any strains.
 #[inline(always)]
-fn exact_force<T: ChunkLanes, L: FastLaw, const D: usize>(
+fn exact_force<T: ChunkLanes, L: VectorLaw, const D: usize>(
     grid: &Grid<'_, T::Number, D>,
     places: T::Places,
     factors: Option<T::Places>,
@@ -74,10 +75,11 @@ fn exact_force<T: ChunkLanes, L: FastLaw, const D: usize>(
     sum
 }
 
-/// Forces of chunks. A lane takes the exact form if one of its own bonds is strained beyond the fast form's reach, so that a point's force
-/// does not depend on which other points are computed beside it.
+/// Returns the forces of chunks. A lane uses the exact law if the strain of one of its own bonds exceeds the
+/// range of the fast form, so that the force on a point does not depend on which other points are computed
+/// with it.
 #[inline(always)]
-fn chunk_force<T: ChunkLanes, L: FastLaw, const D: usize>(
+fn chunk_force<T: ChunkLanes, L: VectorLaw, const D: usize>(
     grid: &Grid<'_, T::Number, D>,
     places: T::Places,
     factors: Option<T::Places>,
@@ -92,13 +94,13 @@ fn chunk_force<T: ChunkLanes, L: FastLaw, const D: usize>(
     let exact = exact_force::<T, L, D>(grid, places, factors, intact);
     let mut sum = fast.sum;
     for c in 0..D {
-        // One of the two is zero in every lane.
+        // One of both terms is zero in each lane.
         sum[c] = exact[c].masked(beyond) + fast.sum[c].masked(T::others(beyond));
     }
     sum
 }
 
-/// Which lanes of the chunks taken together are wanted, and whether any is.
+/// Returns the requested lanes of chunks computed together, and whether there are any.
 #[inline(always)]
 fn wanted<T: ChunkLanes>(block: &ChunkBlock<'_>, first: usize, count: usize) -> ([u8; 2], bool) {
     let mut lanes = [0; 2];
@@ -108,7 +110,7 @@ fn wanted<T: ChunkLanes>(block: &ChunkBlock<'_>, first: usize, count: usize) -> 
     (lanes, lanes != [0; 2])
 }
 
-/// Adds the forces of chunks taken together to their points.
+/// Adds the forces of chunks computed together to their points.
 #[inline(always)]
 fn add_to_points<T: ChunkLanes, const D: usize>(
     sum: [T; D],
@@ -128,7 +130,7 @@ fn add_to_points<T: ChunkLanes, const D: usize>(
 }
 
 #[inline(always)]
-fn force_chunks_body<T: ChunkLanes, L: FastLaw, const D: usize>(
+fn force_chunks_body<T: ChunkLanes, L: VectorLaw, const D: usize>(
     grid: &Grid<'_, T::Number, D>,
     block: &ChunkBlock<'_>,
     intact: &[u8],
@@ -151,11 +153,12 @@ fn force_chunks_body<T: ChunkLanes, L: FastLaw, const D: usize>(
     }
 }
 
-/// t above which a chunk is looked at bond by bond: below the threshold by more than the fast form's rounding.
+/// Fraction of the threshold above which bonds of a chunk are checked individually; the margin exceeds the
+/// rounding error of the fast form.
 const WATCH: f64 = 1.0 - 1e-9;
 
 #[inline(always)]
-fn accept_chunks_body<T: ChunkLanes, L: FastLaw, const D: usize>(
+fn accept_chunks_body<T: ChunkLanes, L: VectorLaw, const D: usize>(
     grid: &Grid<'_, T::Number, D>,
     rule: &GridBreaking<'_>,
     block: &ChunkBlock<'_>,
@@ -201,7 +204,7 @@ fn accept_chunks_body<T: ChunkLanes, L: FastLaw, const D: usize>(
 }
 
 #[inline(always)]
-fn energy_chunks_body<T: Lanes, L: FastLaw, const D: usize>(
+fn energy_chunks_body<T: Lanes, L: VectorLaw, const D: usize>(
     grid: &Grid<'_, f64, D>,
     block: &ChunkBlock<'_>,
     intact: &[u8],
@@ -232,7 +235,7 @@ fn energy_chunks_body<T: Lanes, L: FastLaw, const D: usize>(
 }
 
 #[inline(always)]
-fn tangent_chunks_body<T: Lanes, L: FastLaw, const D: usize>(
+fn tangent_chunks_body<T: Lanes, L: VectorLaw, const D: usize>(
     grid: &Grid<'_, f64, D>,
     direction: &Grid<'_, f64, D>,
     block: &ChunkBlock<'_>,
@@ -269,8 +272,8 @@ fn tangent_chunks_body<T: Lanes, L: FastLaw, const D: usize>(
 }
 
 for_each_instruction_set! {
-    /// Adds the force density of the wanted points to `out` (indexed from the block's first point).
-    pub(super) fn force_chunks [L: FastLaw, const D: usize] <L, D> (
+    /// Adds the force density of the requested points to `out` (indexed from the first point of the block).
+    pub(super) fn force_chunks [L: VectorLaw, const D: usize] <L, D> (
         grid: &Grid<'_, f64, D>,
         block: &ChunkBlock<'_>,
         intact: &[u8],
@@ -279,8 +282,8 @@ for_each_instruction_set! {
 }
 
 for_each_instruction_set! {
-    /// [`force_chunks`] in floats.
-    pub(super) fn force_chunks_in_floats [L: FastLaw, const D: usize] <L, D> (
+    /// Runs [`force_chunks`] in single precision.
+    pub(super) fn force_chunks_in_floats [L: VectorLaw, const D: usize] <L, D> (
         grid: &Grid<'_, f32, D>,
         block: &ChunkBlock<'_>,
         intact: &[u8],
@@ -289,8 +292,8 @@ for_each_instruction_set! {
 }
 
 for_each_instruction_set! {
-    /// Breaks over-stretched bonds of the wanted points and adds the force density of those that are left.
-    pub(super) fn accept_chunks [L: FastLaw, const D: usize] <L, D> (
+    /// Breaks over-stretched bonds of the requested points and adds the force density of the intact bonds.
+    pub(super) fn accept_chunks [L: VectorLaw, const D: usize] <L, D> (
         grid: &Grid<'_, f64, D>,
         rule: &GridBreaking<'_>,
         block: &ChunkBlock<'_>,
@@ -301,8 +304,8 @@ for_each_instruction_set! {
 }
 
 for_each_instruction_set! {
-    /// [`accept_chunks`] in floats.
-    pub(super) fn accept_chunks_in_floats [L: FastLaw, const D: usize] <L, D> (
+    /// Runs [`accept_chunks`] in single precision.
+    pub(super) fn accept_chunks_in_floats [L: VectorLaw, const D: usize] <L, D> (
         grid: &Grid<'_, f32, D>,
         rule: &GridBreaking<'_>,
         block: &ChunkBlock<'_>,
@@ -314,7 +317,7 @@ for_each_instruction_set! {
 
 for_each_instruction_set! {
     /// Adds the energy density of all points to `out`.
-    pub(super) fn energy_chunks [L: FastLaw, const D: usize] <L, D> (
+    pub(super) fn energy_chunks [L: VectorLaw, const D: usize] <L, D> (
         grid: &Grid<'_, f64, D>,
         block: &ChunkBlock<'_>,
         intact: &[u8],
@@ -324,7 +327,7 @@ for_each_instruction_set! {
 
 for_each_instruction_set! {
     /// Adds the derivative of the force density in a direction to `out`.
-    pub(super) fn tangent_chunks [L: FastLaw, const D: usize] <L, D> (
+    pub(super) fn tangent_chunks [L: VectorLaw, const D: usize] <L, D> (
         grid: &Grid<'_, f64, D>,
         direction: &Grid<'_, f64, D>,
         block: &ChunkBlock<'_>,

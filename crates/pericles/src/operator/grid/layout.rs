@@ -1,10 +1,13 @@
-//! How a lattice body lies in memory while the grid operator works on it.
+//! Memory layout of a lattice body for the stencil kernel.
 //!
-//! The rows of the lattice's bounding box along x are padded to whole chunks of eight nodes and follow each other, x fastest. So a
-//! neighbour is a fixed number of places away; what lies beyond the end of a row is another row's, and masked out. Before the first and behind
-//! the last row lie as many unused places as the farthest neighbour is away. Points keep their compact order outside.
+//! The rows along x of the bounding box of the lattice are padded to whole chunks of eight nodes and stored
+//! consecutively, x fastest, so that a neighbour is a fixed number of places away. Neighbours beyond the end
+//! of a row are places of another row, which are masked out. Before the first and after the last row there
+//! are as many unused places as the distance of the farthest neighbour. Vectors on points outside of the
+//! kernel are compact.
 //!
-//! Ghosts of other processes and images beyond periodic faces ([`Sites`]) have places like points, in a larger box; no force is computed for them.
+//! Ghosts of other processes and images beyond periodic faces ([`Sites`]) have places in a larger box; no
+//! force is computed for them.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -17,19 +20,19 @@ use crate::lanes::LANES;
 use crate::parallel::BLOCK;
 use crate::space::{Lattice, Sites};
 
-/// Eight nodes in a row, at least one of which is an own point.
+/// Eight nodes of a row, at least one of which is an own point.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::operator) struct Chunk {
     /// Place of the first node in the padded rows, in chunks.
     pub place: u32,
-    /// The first own point in it.
+    /// First own point of the chunk.
     pub point: u32,
-    /// Which of its nodes are own points.
+    /// Bits of the nodes that are own points.
     pub lanes: u8,
 }
 
 impl Chunk {
-    /// Its lanes that are points, with the points.
+    /// Returns the lanes that are points, with their points.
     pub fn points(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
         let lanes = self.lanes;
         (0..LANES)
@@ -38,7 +41,7 @@ impl Chunk {
     }
 }
 
-/// Consecutive chunks that one thread computes; their points are consecutive too.
+/// Consecutive chunks computed by one thread; their points are also consecutive.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Block {
     pub first_chunk: usize,
@@ -49,41 +52,41 @@ pub(super) struct Block {
 #[derive(Debug, Clone)]
 pub(in crate::operator) struct GridLayout {
     shape: [usize; 3],
-    /// Places of a padded row.
+    /// Number of places of a padded row.
     stride: usize,
     chunks: Vec<Chunk>,
     blocks: Vec<Block>,
-    /// The chunk at each place (in chunks), or `NONE`.
+    /// Chunk at each place (in chunks), or `NONE`.
     chunk_at: Vec<u32>,
     /// Own points by row.
     own: NodeRows,
-    /// Ghosts and images too, where there are any.
+    /// Own points, ghosts and images, if there are ghosts or images.
     seen: Option<Seen>,
 }
 
-/// The nodes of all sites.
+/// Nodes of all sites.
 #[derive(Debug, Clone)]
 struct Seen {
     rows: NodeRows,
-    /// The site of each node, in their order.
+    /// Site of each node, in the order of nodes.
     site: Vec<u32>,
-    /// Its point; ghosts are counted behind own points.
+    /// Point of each node; ghosts are numbered after own points.
     point: Vec<u32>,
-    /// Which nodes are sites, a byte for each place (in chunks).
+    /// Nodes that are sites, one byte per place (in chunks).
     present: Vec<u8>,
 }
 
 const NONE: u32 = u32::MAX;
 
-/// Rows taken together, so that neighbouring rows are loaded once for all of them; the working set of a stencil of radius three fits the
-/// first-level cache.
+/// Number of rows computed together, so that neighbouring rows are loaded once for all of them; the working
+/// set of a stencil of radius three fits the first-level cache.
 const ROWS: usize = 8;
 
-/// The longest piece of a row in a block, in chunks: rows of a bar are shared among threads.
+/// Largest part of a row in a block, in chunks: long rows of bars are divided among threads.
 const LONGEST: usize = 256;
 
 impl GridLayout {
-    /// The layout of a lattice's sites.
+    /// Creates the layout of the sites of a lattice.
     pub fn new(sites: &Sites, lattice: &Lattice) -> Self {
         if sites.are_points() {
             return Self::of_rows(NodeRows::new(lattice.shape, &lattice.node), lattice.shape);
@@ -116,11 +119,11 @@ impl GridLayout {
         layout
     }
 
-    /// The layout of own points.
+    /// Creates the layout of own points.
     fn of_rows(own: NodeRows, shape: [usize; 3]) -> Self {
         let rows = shape[1] * shape[2];
         let mut row_chunks = shape[0].div_ceil(LANES);
-        // Rows a multiple of 1024 numbers apart would all compete for the same lines of a cache.
+        // Rows at distances of a multiple of 1024 numbers would compete for the same cache lines.
         if rows > 1 && row_chunks.is_multiple_of(16) {
             row_chunks += 1;
         }
@@ -149,7 +152,8 @@ impl GridLayout {
         layout
     }
 
-    /// Adds the points of a piece of some rows. Chunks above each other follow each other, because they share most neighbours.
+    /// Adds the points of some columns of some rows. Chunks of the same columns are consecutive, because they
+    /// share most neighbours.
     fn add_block(&mut self, rows: Range<usize>, columns: Range<usize>) {
         let first_chunk = self.chunks.len();
         let mut first_point = usize::MAX;
@@ -176,17 +180,17 @@ impl GridLayout {
         }
     }
 
-    /// All chunks, block by block.
+    /// Returns all chunks, block by block.
     pub fn chunks(&self) -> &[Chunk] {
         &self.chunks
     }
 
-    /// Number of blocks.
+    /// Returns the number of blocks.
     pub fn blocks(&self) -> usize {
         self.blocks.len()
     }
 
-    /// Numbers of a block's chunks.
+    /// Returns the indices of the chunks of a block.
     pub fn chunks_of(&self, block: usize) -> Range<usize> {
         let end = self
             .blocks
@@ -195,7 +199,7 @@ impl GridLayout {
         self.blocks[block].first_chunk..end
     }
 
-    /// The first point of a block; behind the last block, the number of points.
+    /// Returns the first point of a block; after the last block, the number of points.
     pub fn first_point(&self, block: usize) -> usize {
         match self.blocks.get(block) {
             Some(block) => block.first_point,
@@ -203,29 +207,29 @@ impl GridLayout {
         }
     }
 
-    /// The block of a chunk.
+    /// Returns the block of a chunk.
     pub fn block_of(&self, chunk: usize) -> usize {
         self.blocks
             .partition_point(|block| block.first_chunk <= chunk)
             - 1
     }
 
-    /// Places per step along each axis.
+    /// Returns the strides along each axis, in places.
     pub fn strides(&self) -> [usize; 3] {
         [1, self.stride, self.stride * self.shape[1]]
     }
 
-    /// Places of all rows.
+    /// Returns the number of places of all rows.
     pub fn places(&self) -> usize {
         self.chunk_at.len() * LANES
     }
 
-    /// The chunk and lane of a place.
+    /// Returns the chunk and lane of a place.
     pub fn chunk_at(&self, place: usize) -> (usize, usize) {
         (self.chunk_at[place / LANES] as usize, place % LANES)
     }
 
-    /// Integer coordinates of a place; x may lie beyond the body.
+    /// Returns the integer coordinates of a place; x may lie beyond the body.
     pub fn coordinates(&self, place: usize) -> [usize; 3] {
         let row = place / self.stride;
         [
@@ -235,7 +239,7 @@ impl GridLayout {
         ]
     }
 
-    /// Which of the nodes a step `cell` away from a chunk's points are sites themselves.
+    /// Returns which of the nodes at the offset `cell` from the points of a chunk are sites.
     pub fn neighbours(&self, chunk: &Chunk, cell: [i32; 3]) -> u8 {
         let there = match &self.seen {
             None => self.neighbour_bits(chunk, cell, |place| match self.chunk_at[place] {
@@ -247,7 +251,8 @@ impl GridLayout {
         there & chunk.lanes
     }
 
-    /// One bit for each node a step `cell` away from a chunk's nodes, out of one byte for each place (in chunks); zero outside the box.
+    /// Returns one bit for each node at the offset `cell` from the nodes of a chunk, from `bits`, one byte
+    /// per place (in chunks); zero outside the box.
     pub fn neighbour_bits(&self, chunk: &Chunk, cell: [i32; 3], bits: impl Fn(usize) -> u8) -> u8 {
         let [x, y, z] = self.coordinates(chunk.place as usize * LANES);
         let y = y as i64 + i64::from(cell[1]);
@@ -268,7 +273,8 @@ impl GridLayout {
         ((byte(column) | byte(column + 1) << LANES) >> x.rem_euclid(LANES as i64)) as u8
     }
 
-    /// One byte for each place (in chunks): which of its sites are marked. `marks` are those of all points, ghosts behind own ones.
+    /// Returns one byte per place (in chunks) with the marked sites. `marks` are those of all points, ghosts
+    /// after own points.
     pub fn marked(&self, marks: impl Fn(usize) -> bool) -> Vec<u8> {
         let mut bytes = vec![0; self.chunk_at.len()];
         match &self.seen {
@@ -292,7 +298,7 @@ impl GridLayout {
         bytes
     }
 
-    /// A number for each place: that of its site, or zero where there is none.
+    /// Returns a value per place: that of its site, or the default without a site.
     pub fn at_places<T: Clone + Default>(&self, of_site: impl Fn(usize) -> T) -> Vec<T> {
         let mut numbers = vec![T::default(); self.places()];
         let nodes = self.nodes();
@@ -308,7 +314,7 @@ impl GridLayout {
         numbers
     }
 
-    /// The site at a place that has one.
+    /// Returns the site at a place that has one.
     pub fn site_at(&self, place: usize) -> usize {
         match &self.seen {
             None => self.point_at(place),
@@ -318,7 +324,7 @@ impl GridLayout {
         }
     }
 
-    /// The point at a place that has a site; ghosts are counted behind own points.
+    /// Returns the point at a place that has a site; ghosts are numbered after own points.
     pub fn point_at(&self, place: usize) -> usize {
         if let Some(seen) = &self.seen {
             return seen.point[seen.rows.node(place / self.stride, place % self.stride)] as usize;
@@ -329,18 +335,18 @@ impl GridLayout {
         chunk.point as usize + before.count_ones() as usize
     }
 
-    /// The place of an own point.
+    /// Returns the place of an own point.
     pub fn place_of(&self, point: usize) -> usize {
         let row = self.own.row_of(point);
         row * self.stride + self.own.column(row, point)
     }
 
-    /// Whether all sites are points.
+    /// Returns whether all sites are points.
     pub fn is_of_points(&self) -> bool {
         self.seen.is_none()
     }
 
-    /// The values of all sites of one component of a vector on points, in the order of their nodes.
+    /// Returns one component of a vector on points for all sites, in the order of their nodes.
     pub fn of_sites<'a>(&self, field: Field<'a>, c: usize, components: usize) -> Cow<'a, [f64]> {
         let n = field.owned.len() / components;
         let Some(seen) = &self.seen else {
@@ -356,13 +362,14 @@ impl GridLayout {
         )
     }
 
-    /// The rows of all nodes that have values.
+    /// Returns the rows of all nodes with values.
     pub fn nodes(&self) -> &NodeRows {
         self.seen.as_ref().map_or(&self.own, |seen| &seen.rows)
     }
 
-    /// Calls `visit(row, [first column, end], chunk, lanes)` for every chunk with points of a run of consecutive ones. Runs must come in ascending order:
-    /// `row` is where the search for the first one's row begins, and ends up at the last one's.
+    /// Calls `visit(row, [first column, end], chunk, lanes)` for each chunk with points of a range. Ranges
+    /// must come in ascending order: the search for the row of the first point starts at `row`, which is set
+    /// to the row of the last point.
     pub fn for_each_chunk_of(
         &self,
         run: Range<usize>,
@@ -407,7 +414,7 @@ impl GridLayout {
         }
     }
 
-    /// Calls `visit` for a row and those within `radius` of it along y and z, in rows.
+    /// Calls `visit` for a row and all rows within `radius` along y and z, in rows.
     pub fn for_each_row_around(
         &self,
         row: usize,
@@ -422,17 +429,17 @@ impl GridLayout {
         }
     }
 
-    /// Places of a padded row.
+    /// Returns the number of places of a padded row.
     pub fn row_length(&self) -> usize {
         self.stride
     }
 
-    /// Number of rows.
+    /// Returns the number of rows.
     pub fn rows(&self) -> usize {
         self.own.rows()
     }
 
-    /// Memory, bytes.
+    /// Returns the memory use, bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.chunks[..])
             + size_of_val(&self.blocks[..])
@@ -444,7 +451,7 @@ impl GridLayout {
     }
 }
 
-/// The box of all nodes of a lattice: its corner, and nodes along each axis.
+/// Returns the bounding box of a lattice: its corner, and the number of nodes along each axis.
 fn bounding_box(lattice: &Lattice) -> ([i32; 3], [usize; 3]) {
     let (mut low, mut high) = ([i32::MAX; 3], [i32::MIN; 3]);
     for &node in &lattice.node {
@@ -457,5 +464,5 @@ fn bounding_box(lattice: &Lattice) -> ([i32; 3], [usize; 3]) {
     (low, std::array::from_fn(side))
 }
 
-/// Which sites exert a force, one byte for each place (in chunks).
+/// Sites that exert a force, one byte per place (in chunks).
 pub(super) struct Partners(pub(super) Vec<u8>);

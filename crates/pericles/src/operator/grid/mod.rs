@@ -1,4 +1,4 @@
-//! The force of a lattice body by one stencil for all nodes.
+//! Stencil force kernel for lattice bodies.
 
 mod arrays;
 pub(in crate::operator) mod block;

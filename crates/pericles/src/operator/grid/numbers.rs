@@ -1,7 +1,8 @@
-//! The numbers a lattice body's loops compute in: doubles, one chunk at a time, or floats, two.
+//! Number types of the stencil loops: doubles, one chunk at a time, or floats, two chunks at a time.
 //!
-//! Floats are displacements in spacings, relative to one point's: bond vectors are then small integers, which floats hold exactly, and
-//! neither a far flight nor a tiny body costs digits or range.
+//! Displacements in floats are relative to one point and in units of the spacing. Bond vectors are then small
+//! integers, which floats represent exactly, and neither large rigid displacements nor small bodies cost
+//! digits or range.
 
 use crate::lanes::LANES;
 #[cfg(target_arch = "x86_64")]
@@ -9,15 +10,15 @@ use crate::lanes::floats_x86::{Avx2x16, Avx512x16};
 use crate::lanes::{F32x16, FloatLanes};
 use crate::lanes::{Lanes, Vector};
 
-/// What memory holds.
+/// Number type in memory.
 pub(in crate::operator) trait GridNumber:
     Copy + Default + Send + Sync + Into<f64>
 {
-    /// A displacement in m, of which floats keep the difference from `origin`, in units.
+    /// Converts a displacement in m; floats store the difference from `origin` in units of length.
     fn of(displacement: f64, origin: f64, per_unit: f64) -> Self;
-    /// A number of the stencil.
+    /// Converts a number of the stencil.
     fn rounded(value: f64) -> Self;
-    /// Eight of them as doubles.
+    /// Loads eight numbers as doubles.
     fn load<T: Lanes>(numbers: &[Self], at: usize) -> T;
 }
 
@@ -51,40 +52,40 @@ impl GridNumber for f32 {
     }
 }
 
-/// Lanes that take one chunk or two.
+/// Lanes of one or two chunks.
 pub(super) trait ChunkLanes: Vector {
-    /// What memory holds.
+    /// Number type in memory.
     type Number: GridNumber;
-    /// Doubles of the same instruction set, for what must not be rounded twice.
+    /// Doubles of the same instruction set, for data that must not be rounded twice.
     type Wide: Lanes;
-    /// Places of the chunks' first nodes.
+    /// Places of the first nodes of the chunks.
     type Places: Copy;
-    /// Which bonds of the chunks are there, a byte per chunk and offset.
+    /// Existing bonds of the chunks, one byte per chunk and offset.
     type Bonds<'a>: Copy;
-    /// Chunks taken together.
+    /// Number of chunks computed together.
     const CHUNKS: usize;
-    /// Relative error that the strain of a bond may have beside a rotation of order one.
+    /// Error of the strain of a bond under a rotation of order one.
     const STRAIN_ERROR: f64;
 
-    /// The same number in every lane.
+    /// Returns the same number in all lanes.
     fn broadcast(number: Self::Number) -> Self;
-    /// The places of the first chunk and of the last one.
+    /// Returns the places of the first and last chunk.
     fn places(first: usize, last: usize) -> Self::Places;
-    /// The numbers of the nodes `shift` places away.
+    /// Loads the numbers of the nodes at a distance of `shift` places.
     fn at(numbers: &[Self::Number], places: Self::Places, shift: isize) -> Self;
-    /// The rows of as many bytes as there are offsets, one or two of them.
+    /// Splits bytes into one or two rows of `offsets` bytes.
     fn bonds(intact: &[u8], offsets: usize) -> Self::Bonds<'_>;
-    /// The bonds of an offset.
+    /// Returns the mask of the bonds of an offset.
     fn present(bonds: Self::Bonds<'_>, offset: usize) -> Self::Mask;
-    /// Whether there are none.
+    /// Returns whether the mask is empty.
     fn none(mask: Self::Mask) -> bool;
-    /// Those in either.
+    /// Returns the union of two masks.
     fn either(a: Self::Mask, b: Self::Mask) -> Self::Mask;
-    /// The other lanes.
+    /// Returns the complement of a mask.
     fn others(mask: Self::Mask) -> Self::Mask;
-    /// The bits of a chunk.
+    /// Returns the bits of a chunk.
     fn of_chunk(mask: Self::Mask, chunk: usize) -> u8;
-    /// The numbers of a chunk, in order.
+    /// Returns the numbers of a chunk in order.
     fn numbers(self, chunk: usize) -> [f64; LANES];
 }
 
@@ -138,7 +139,7 @@ impl<T: Lanes> ChunkLanes for T {
     }
 }
 
-/// The bonds of two chunks; the second may be none, and is then the first with no bond kept.
+/// The bonds of two chunks. A missing second chunk is the first one without bonds.
 #[derive(Clone, Copy)]
 pub(super) struct TwoRows<'a> {
     low: &'a [u8],

@@ -7,14 +7,14 @@ use super::kernels::{energy_chunks, force_chunks, force_chunks_in_floats, tangen
 use super::padded::Frame;
 use super::thresholds::PlaceThresholds;
 use crate::domain::Field;
-use crate::operator::fast_law::FastLaw;
+use crate::operator::fast_law::VectorLaw;
 use crate::operator::{
     Breakable, Capabilities, Force, InstructionSet, LatticeSpring, LatticeSprings, LinearOperator,
-    Linearity, On, SplitForce,
+    Linearity, PointSubset, SplitForce,
 };
 use crate::step_end::StepEnd;
 
-impl<L: FastLaw, const D: usize> Force for GridForce<L, D> {
+impl<L: VectorLaw, const D: usize> Force for GridForce<L, D> {
     fn points(&self) -> usize {
         self.cloud.len()
     }
@@ -23,7 +23,7 @@ impl<L: FastLaw, const D: usize> Force for GridForce<L, D> {
         D
     }
 
-    fn add_force(&self, _t: f64, u: &[f64], on: On<'_>, out: &mut [f64]) {
+    fn add_force(&self, _t: f64, u: &[f64], on: PointSubset<'_>, out: &mut [f64]) {
         match &self.floats {
             Some(floats) => {
                 self.sweep::<f32, D>(floats, u, &on, out, |grid, block, intact, out| {
@@ -38,7 +38,7 @@ impl<L: FastLaw, const D: usize> Force for GridForce<L, D> {
         self.sweep::<f64, 1>(
             &self.doubles,
             u,
-            &On::All,
+            &PointSubset::All,
             out,
             |grid, block, intact, out| {
                 energy_chunks::<L, D>(self.instruction_set, grid, block, intact, out);
@@ -54,7 +54,7 @@ impl<L: FastLaw, const D: usize> Force for GridForce<L, D> {
         self.cloud.domain().sum(self.points(), energy)
     }
 
-    /// ω² ≤ max_i (2/ρ_i) Σ_j k_ij/|ξ|, by Gershgorin's discs of D×D blocks.
+    /// ω² ≤ max_i (2/ρ_i) Σ_j k_ij/|ξ| by Gershgorin discs of D×D blocks.
     fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {
         let lengths = self.stencil.lengths();
         let mut rows = vec![0.0; self.points()];
@@ -72,7 +72,7 @@ impl<L: FastLaw, const D: usize> Force for GridForce<L, D> {
         self.cloud.domain().max(own).sqrt()
     }
 
-    fn end_step(&mut self, step: &StepEnd<'_>, on: On<'_>, out: &mut [f64]) {
+    fn end_step(&mut self, step: &StepEnd<'_>, on: PointSubset<'_>, out: &mut [f64]) {
         if self.can_break() {
             self.decide(step, &on, None, out);
         } else {
@@ -96,7 +96,7 @@ impl<L: FastLaw, const D: usize> Force for GridForce<L, D> {
         self.sweep::<f64, D>(
             &self.doubles,
             u,
-            &On::All,
+            &PointSubset::All,
             out,
             |grid, block, intact, out| {
                 tangent_chunks::<L, D>(self.instruction_set, grid, &direction, block, intact, out);
@@ -150,8 +150,8 @@ impl<L: FastLaw, const D: usize> Force for GridForce<L, D> {
     fn rounding(&self, u: &[f64]) -> Option<f64> {
         self.floats.as_ref()?;
         let (mut rounded, mut exact) = (vec![0.0; u.len()], vec![0.0; u.len()]);
-        self.add_force(0.0, u, On::All, &mut rounded);
-        self.add_force_in_doubles(u, &On::All, &mut exact);
+        self.add_force(0.0, u, PointSubset::All, &mut rounded);
+        self.add_force_in_doubles(u, &PointSubset::All, &mut exact);
         let largest = |of: &dyn Fn(usize) -> f64| (0..u.len()).map(of).fold(0.0, f64::max);
         let difference = largest(&|k| (rounded[k] - exact[k]).abs());
         let scale = largest(&|k| exact[k].abs());
@@ -191,18 +191,18 @@ impl<L: FastLaw, const D: usize> Force for GridForce<L, D> {
     }
 }
 
-impl<L: FastLaw, const D: usize> GridForce<L, D> {
-    fn add_force_in_doubles(&self, u: &[f64], on: &On<'_>, out: &mut [f64]) {
+impl<L: VectorLaw, const D: usize> GridForce<L, D> {
+    fn add_force_in_doubles(&self, u: &[f64], on: &PointSubset<'_>, out: &mut [f64]) {
         self.sweep::<f64, D>(&self.doubles, u, on, out, |grid, block, intact, out| {
             force_chunks::<L, D>(self.instruction_set, grid, block, intact, out);
         });
     }
 }
 
-impl<L: FastLaw, const D: usize> LinearOperator for GridForce<L, D> {
+impl<L: VectorLaw, const D: usize> LinearOperator for GridForce<L, D> {
     fn apply_into(&self, u: &[f64], out: &mut [f64]) {
         out.fill(0.0);
-        self.add_force(0.0, u, On::All, out);
+        self.add_force(0.0, u, PointSubset::All, out);
     }
 
     fn half_bandwidth(&self) -> Option<usize> {
@@ -212,7 +212,7 @@ impl<L: FastLaw, const D: usize> LinearOperator for GridForce<L, D> {
 }
 
 crate::saved! {
-    impl<L: FastLaw, const D: usize> Saved for GridForce<L, D> {
+    impl<L: VectorLaw, const D: usize> Checkpointed for GridForce<L, D> {
         blocks: under("operator/grid"),
         cloud, sites, layout, stencil, held, geometric, cuts, precut, directed_bonds, critical_stretch, pairs, damage: fixed,
         instruction_set, law: fixed,

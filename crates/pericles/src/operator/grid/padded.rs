@@ -1,4 +1,4 @@
-//! Vectors on points, copied to padded rows for one evaluation.
+//! Vectors on points copied to padded rows for an evaluation.
 
 use std::ops::Range;
 
@@ -7,17 +7,18 @@ use super::numbers::GridNumber;
 use super::wanted::WantedPoints;
 use crate::domain::Field;
 
-/// Bytes of a cache line; numbers loaded across two lines cost twice.
+/// Size of a cache line, bytes; loads across two lines cost twice.
 const LINE: usize = 64;
 
-/// What floats keep of a vector: its difference from one point's, in units. Not from that of a point that is wanted, for results do not depend on which are.
+/// Origin and unit of a vector in floats. The origin is that of a fixed point, so that results do not depend
+/// on the requested points.
 pub(in crate::operator) struct Frame<const D: usize> {
     origin: [f64; D],
     per_unit: f64,
 }
 
 impl<const D: usize> Frame<D> {
-    /// The frame of a field in which `unit` is one.
+    /// Returns the frame of a field with the unit of length `unit`.
     pub fn of(field: Field<'_>, unit: f64) -> Self {
         let field = field.owned;
         let n = field.len() / D;
@@ -28,18 +29,18 @@ impl<const D: usize> Frame<D> {
     }
 }
 
-/// One vector field in padded rows (see [`GridLayout`]), made once and filled at each evaluation.
+/// A vector field in padded rows (see [`GridLayout`]), allocated once and filled at each evaluation.
 pub(in crate::operator) struct Padded<N, const D: usize> {
     values: Vec<N>,
-    /// First number used, so that rows start on cache lines.
+    /// First used entry: rows start at cache lines.
     start: usize,
     places: usize,
-    /// Unused places between the components and at both ends.
+    /// Number of unused places between the components and at both ends.
     margin: usize,
 }
 
 impl<N: GridNumber, const D: usize> Padded<N, D> {
-    /// Room for a vector field; neighbours are at most `farthest` places away.
+    /// Allocates a vector field; neighbours are at most `farthest` places away.
     pub fn new(layout: &GridLayout, farthest: usize) -> Self {
         let per_line = LINE / size_of::<N>();
         let margin = farthest.next_multiple_of(per_line);
@@ -60,7 +61,7 @@ impl<N: GridNumber, const D: usize> Padded<N, D> {
         self.copy(layout, field, frame, |_| whole.clone());
     }
 
-    /// Copies at least the wanted points and their neighbours.
+    /// Copies at least the requested points and their neighbours.
     pub fn fill_around(
         &mut self,
         layout: &GridLayout,
@@ -90,7 +91,7 @@ impl<N: GridNumber, const D: usize> Padded<N, D> {
         }
     }
 
-    /// The components, each with the margins around it.
+    /// Returns the components, each with the margins around it.
     pub fn components(&self) -> [&[N]; D] {
         std::array::from_fn(|c| {
             let from = self.start + c * (self.places + self.margin);
@@ -98,12 +99,12 @@ impl<N: GridNumber, const D: usize> Padded<N, D> {
         })
     }
 
-    /// Places before the first row of each component.
+    /// Returns the number of places before the first row of each component.
     pub fn margin(&self) -> usize {
         self.margin
     }
 
-    /// Memory of one field, bytes.
+    /// Returns the memory use of a field, bytes.
     pub fn bytes_for(layout: &GridLayout, farthest: usize) -> usize {
         let per_line = LINE / size_of::<N>();
         let margin = farthest.next_multiple_of(per_line);

@@ -1,4 +1,4 @@
-//! The nodes of a lattice row by row.
+//! Nodes of a lattice row by row.
 
 use std::ops::Range;
 
@@ -6,22 +6,22 @@ use rayon::prelude::*;
 
 use crate::lanes::LANES;
 
-/// Numbers copied by one task.
+/// Number of entries copied by a task.
 const PIECE: usize = 4096;
 
-/// Some nodes of a box in ascending order, x fastest.
+/// A subset of the nodes of a box in ascending order, x fastest.
 #[derive(Debug, Clone)]
 pub(in crate::operator) struct NodeRows {
-    /// Nodes of a row of the box.
+    /// Number of nodes of a row of the box.
     length: usize,
-    /// The first node of each row, and the number of nodes at the end.
+    /// First node of each row, followed by the number of nodes.
     start: Vec<u32>,
-    /// Place of each node along x, only where some row has gaps.
+    /// Column of each node along x, only if a row has gaps.
     columns: Option<Vec<u32>>,
 }
 
 impl NodeRows {
-    /// The rows of nodes `x + shape[0] (y + shape[1] z)`, ascending.
+    /// Creates the rows of nodes `x + shape[0] (y + shape[1] z)`, ascending.
     pub fn new(shape: [usize; 3], nodes: &[u32]) -> Self {
         let (length, rows) = (shape[0], shape[1] * shape[2]);
         let mut start = Vec::with_capacity(rows + 1);
@@ -42,32 +42,32 @@ impl NodeRows {
         }
     }
 
-    /// Number of nodes.
+    /// Returns the number of nodes.
     pub fn len(&self) -> usize {
         self.start[self.start.len() - 1] as usize
     }
 
-    /// Number of rows.
+    /// Returns the number of rows.
     pub fn rows(&self) -> usize {
         self.start.len() - 1
     }
 
-    /// The nodes of a row.
+    /// Returns the nodes of a row.
     pub fn row(&self, row: usize) -> Range<usize> {
         self.start[row] as usize..self.start[row + 1] as usize
     }
 
-    /// Places along x, only where some row has gaps.
+    /// Returns the columns along x, only if a row has gaps.
     pub fn columns(&self) -> Option<&[u32]> {
         self.columns.as_deref()
     }
 
-    /// The row of a node.
+    /// Returns the row of a node.
     pub fn row_of(&self, node: usize) -> usize {
         self.start.partition_point(|&start| start as usize <= node) - 1
     }
 
-    /// The place of a node of this row along x.
+    /// Returns the column of a node of this row.
     pub fn column(&self, row: usize, node: usize) -> usize {
         match &self.columns {
             None => node - self.start[row] as usize,
@@ -75,7 +75,7 @@ impl NodeRows {
         }
     }
 
-    /// The node of a row at a place along x that has one.
+    /// Returns the node of a row at a column that has one.
     pub fn node(&self, row: usize, x: usize) -> usize {
         let Range { start, end } = self.row(row);
         match &self.columns {
@@ -86,7 +86,7 @@ impl NodeRows {
         }
     }
 
-    /// The first node of eight places in a row, and which of them are nodes.
+    /// Returns the first node of eight columns of a row, and which columns have nodes.
     pub fn chunk(&self, row: usize, chunk: usize) -> (usize, u8) {
         let Range { start, end } = self.row(row);
         if start == end {
@@ -110,7 +110,9 @@ impl NodeRows {
         }
     }
 
-    /// Copies the named columns of each row of one component of a vector on sites (see [`GridLayout::of_sites`](super::layout::GridLayout::of_sites)) to padded rows of `stride` places, as the numbers they become there; other places keep what they have.
+    /// Copies the given columns of each row of one component of a vector on sites (see
+    /// [`GridLayout::of_sites`](super::layout::GridLayout::of_sites)) to padded rows of `stride` places and
+    /// converts the numbers; other places are unchanged.
     pub fn pad<N: Send>(
         &self,
         stride: usize,
@@ -119,7 +121,7 @@ impl NodeRows {
         number: &(impl Fn(f64) -> N + Sync),
         padded: &mut [N],
     ) {
-        // Whole rows to a task, or pieces of a very long one.
+        // A task copies whole rows, or a part of a very long row.
         if stride <= PIECE {
             let rows = PIECE / stride;
             padded
@@ -189,7 +191,7 @@ impl NodeRows {
         }
     }
 
-    /// Memory, bytes.
+    /// Returns the memory use, bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.start[..]) + self.columns.as_deref().map_or(0, size_of_val)
     }

@@ -1,18 +1,18 @@
-//! The family of a lattice's node, once for all nodes.
+//! Stencil: the family of a lattice node, the same for all nodes.
 
 use super::numbers::{ChunkLanes, GridNumber};
 use crate::lanes::vector;
 use crate::operator::fast_law::FixedBond;
 use crate::space::Lattice;
 
-/// One bond of the stencil, with everything the loops need of it.
+/// A bond of the stencil with the data read by the loops.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::operator) struct Offset<N, const D: usize> {
-    /// From a node's place in a padded array to that of its neighbour.
+    /// Distance in places of a padded array from a node to its neighbour.
     pub shift: isize,
-    /// ξ, in units of length: m, or spacings.
+    /// ξ in units of length: m or spacings.
     pub xi: [N; D],
-    /// 1/|ξ|², per square of the unit.
+    /// 1/|ξ|² per unit squared.
     pub inverse_square: N,
     /// c α κ V, N/m³.
     pub stiffness: N,
@@ -21,7 +21,7 @@ pub(in crate::operator) struct Offset<N, const D: usize> {
 }
 
 impl<N: GridNumber, const D: usize> Offset<N, D> {
-    /// The bond in all lanes.
+    /// Returns the bond in all lanes.
     #[inline(always)]
     pub(super) fn lanes<T: ChunkLanes<Number = N>>(&self) -> FixedBond<T, D> {
         FixedBond {
@@ -33,12 +33,13 @@ impl<N: GridNumber, const D: usize> Offset<N, D> {
     }
 }
 
-/// The bonds of a node within reach, in ascending order of the neighbour's number; with offset k also its opposite, offset `len() − 1 − k`.
+/// The bonds of a node within reach, in ascending order of the index of the neighbour. The opposite of offset
+/// k is offset `len() − 1 − k`.
 ///
-/// Offsets that no two nodes of the lattice's box are apart are left out, so that small bodies have small stencils.
+/// Offsets that exceed the bounding box of the lattice are omitted, so that small bodies have small stencils.
 #[derive(Debug, Clone)]
 pub(in crate::operator) struct Stencil<const D: usize> {
-    /// Neighbour less node, in spacings.
+    /// Offset of the neighbour, in spacings.
     cells: Vec<[i32; 3]>,
     /// |ξ|, m.
     lengths: Vec<f64>,
@@ -47,7 +48,7 @@ pub(in crate::operator) struct Stencil<const D: usize> {
     offsets: Vec<Offset<f64, D>>,
 }
 
-/// What the stencil's entries are made of.
+/// Rule for the entries of a stencil.
 pub(in crate::operator) struct BondRule<'a> {
     /// Largest length of a bond, m.
     pub reach: f64,
@@ -58,7 +59,7 @@ pub(in crate::operator) struct BondRule<'a> {
 }
 
 impl<const D: usize> Stencil<D> {
-    /// The stencil of a lattice whose nodes are stored with the given strides (per axis).
+    /// Creates the stencil of a lattice whose nodes are stored with the given strides per axis.
     pub fn new(lattice: &Lattice, strides: [usize; 3], rule: &BondRule<'_>) -> Self {
         let mut stencil = Self {
             cells: Vec::new(),
@@ -109,37 +110,38 @@ impl<const D: usize> Stencil<D> {
         });
     }
 
-    /// Number of offsets.
+    /// Returns the number of offsets.
     pub fn len(&self) -> usize {
         self.offsets.len()
     }
 
-    /// The offset from the neighbour back to the node.
+    /// Returns the opposite offset, from the neighbour to the node.
     pub fn opposite(&self, k: usize) -> usize {
         self.len() - 1 - k
     }
 
-    /// Neighbour less node, in spacings.
+    /// Returns the offsets of the neighbours, in spacings.
     pub fn cells(&self) -> &[[i32; 3]] {
         &self.cells
     }
 
-    /// Reference lengths, m.
+    /// Returns the reference lengths, m.
     pub fn lengths(&self) -> &[f64] {
         &self.lengths
     }
 
-    /// κ V of the neighbours, m³.
+    /// Returns κ V of the neighbours, m³.
     pub fn volumes(&self) -> &[f64] {
         &self.volumes
     }
 
-    /// What the loops need.
+    /// Returns the data read by the loops.
     pub fn offsets(&self) -> &[Offset<f64, D>] {
         &self.offsets
     }
 
-    /// The offsets rounded to floats, with lengths in units in which cells have these sides. Where they are one, ξ is made of integers, which floats hold exactly.
+    /// Returns the offsets in floats, with cells of the given sides in units of length. If the sides are one,
+    /// ξ consists of integers, which floats represent exactly.
     pub fn offsets_in_floats(&self, sides: [f64; 3]) -> Vec<Offset<f32, D>> {
         let rounded = |(offset, cell): (&Offset<f64, D>, &[i32; 3])| {
             let xi: [f64; D] = std::array::from_fn(|c| f64::from(cell[c]) * sides[c]);
@@ -155,18 +157,18 @@ impl<const D: usize> Stencil<D> {
         self.offsets.iter().zip(&self.cells).map(rounded).collect()
     }
 
-    /// The farthest a neighbour's place is from the node's.
+    /// Returns the largest distance of a neighbour, in places.
     pub fn farthest_shift(&self) -> usize {
         let shift = |offset: &Offset<f64, D>| offset.shift.unsigned_abs();
         self.offsets.iter().map(shift).max().unwrap_or(0)
     }
 
-    /// The farthest a neighbour is along each axis, in spacings.
+    /// Returns the largest distance of a neighbour along each axis, in spacings.
     pub fn radius(&self) -> [usize; 3] {
         std::array::from_fn(|axis| self.farthest(axis))
     }
 
-    /// The farthest a neighbour is along an axis, in spacings.
+    /// Returns the largest distance of a neighbour along an axis, in spacings.
     pub fn farthest(&self, axis: usize) -> usize {
         let steps = |cell: &[i32; 3]| cell[axis].unsigned_abs() as usize;
         self.cells.iter().map(steps).max().unwrap_or(0)
@@ -193,17 +195,17 @@ mod tests {
     }
 
     #[test]
-    fn counts_and_opposites() {
+    fn stencils_have_all_offsets_in_the_box_with_their_opposites() {
         assert_eq!(stencil([9, 9, 9], 3.015).len(), 122);
         assert_eq!(stencil([9, 9, 1], 3.015).len(), 28);
-        // Two by two by two: the seven others, seen from either side.
+        // 2 × 2 × 2 nodes: all offsets of at most one node along each axis.
         assert_eq!(stencil([2, 2, 2], 3.015).len(), 26);
         let stencil = stencil([9, 8, 7], 3.3);
         for k in 0..stencil.len() {
             let back = stencil.cells()[stencil.opposite(k)];
             assert_eq!(stencil.cells()[k].map(|steps| -steps), back);
         }
-        // To (0, 1, 3), as (0, 0, 3) and (1, 0, 3) are nearer in memory.
+        // Offset (0, 1, 3); (0, 0, 3) and (1, 0, 3) are closer in memory.
         assert_eq!(stencil.farthest_shift(), 3 * 72 + 9);
         assert_eq!(stencil.farthest(2), 3);
     }

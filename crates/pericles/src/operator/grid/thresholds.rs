@@ -1,23 +1,23 @@
-//! Critical stretches of a lattice body's bonds by the materials of their ends.
+//! Critical stretches of bonds of a lattice body by the materials of their ends.
 
 use super::layout::GridLayout;
 use super::stencil::Stencil;
 use crate::lanes::LANES;
-use crate::material::{PairClasses, PairForce};
+use crate::material::{MaterialPairs, PairForce};
 use crate::operator::thresholds::PairThresholds;
 
 /// Thresholds by the materials at the places of the padded rows.
 pub(super) struct PlaceThresholds {
     pairs: PairThresholds,
     places: usize,
-    /// The smallest threshold of each chunk's bonds.
+    /// Smallest threshold of the bonds of each chunk.
     smallest: Vec<f64>,
 }
 
 impl PlaceThresholds {
-    /// From the materials of the sites.
+    /// Creates thresholds from the materials of the sites.
     pub fn new<L: PairForce, const D: usize>(
-        classes: &PairClasses,
+        classes: &MaterialPairs,
         layout: &GridLayout,
         stencil: &Stencil<D>,
     ) -> Self {
@@ -47,32 +47,34 @@ impl PlaceThresholds {
         }
     }
 
-    /// The smallest threshold of the bonds of so many chunks.
+    /// Returns the smallest threshold of the bonds of `count` chunks from `first` on.
     #[inline(always)]
     pub fn smallest(&self, first: usize, count: usize) -> f64 {
         self.smallest[first].min(self.smallest[first + count - 1])
     }
 
-    /// Thresholds of eight bonds from a place on, by the shift to their other ends; where there is no site, that of another bond.
+    /// Returns the thresholds of eight bonds from a place on with the shift to their other ends; arbitrary
+    /// for places without a site.
     #[inline(never)]
     pub fn of_lanes(&self, place: usize, shift: isize) -> [f64; LANES] {
         self.ends(place, shift)
             .map(|[a, b]| self.pairs.threshold(a, b))
     }
 
-    /// The same of a part of the critical stretches.
+    /// Returns the thresholds for a fraction of the critical stretches.
     #[inline(never)]
     pub fn of_part<L: PairForce>(&self, part: f64, place: usize, shift: isize) -> [f64; LANES] {
         self.ends(place, shift)
             .map(|[a, b]| L::threshold(part * self.pairs.critical_stretch(a, b)))
     }
 
-    /// The critical stretch of a bond between two places.
+    /// Returns the critical stretch of a bond between two places.
     pub fn critical_stretch(&self, [a, b]: [usize; 2]) -> f64 {
         self.pairs.critical_stretch(a, b)
     }
 
-    /// The places of both ends of eight bonds; beyond the rows, where no bond leads, the place itself.
+    /// Returns the places of both ends of eight bonds; for ends beyond the rows, which have no bonds, the
+    /// place itself.
     fn ends(&self, place: usize, shift: isize) -> [[usize; 2]; LANES] {
         std::array::from_fn(|lane| {
             let here = place + lane;
@@ -84,7 +86,7 @@ impl PlaceThresholds {
         })
     }
 
-    /// Memory, bytes.
+    /// Returns the memory use, bytes.
     pub fn bytes(&self) -> usize {
         self.places + size_of_val(&self.smallest[..])
     }

@@ -1,11 +1,11 @@
-//! The bonds of a lattice body one by one.
+//! Access to individual bonds of a lattice body.
 
 use super::force::GridForce;
 use crate::domain::Field;
-use crate::operator::fast_law::FastLaw;
+use crate::operator::fast_law::VectorLaw;
 use crate::operator::view::{BondAt, BondView};
 
-impl<L: FastLaw, const D: usize> BondView for GridForce<L, D> {
+impl<L: VectorLaw, const D: usize> BondView for GridForce<L, D> {
     fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt)) {
         let (place, left) = self.families().bonds_of(i);
         let (chunk, lane) = self.layout.chunk_at(place);

@@ -1,20 +1,20 @@
-//! For which points of a lattice body an evaluation is wanted, as its loops need it.
+//! Requested points of an evaluation on a lattice body.
 
 use super::layout::GridLayout;
-use crate::operator::On;
+use crate::operator::PointSubset;
 use crate::parallel::runs;
 
-/// The wanted points of an evaluation on a part of the body; made once, set at each evaluation.
+/// Requested points of an evaluation on a part of the body; allocated once, set at each evaluation.
 pub(in crate::operator) struct WantedPoints {
-    /// The wanted lanes of each chunk.
+    /// Requested lanes of each chunk.
     lanes: Vec<u8>,
-    /// The columns, first and end, of the wanted points of each row.
+    /// Range of columns of the requested points of each row.
     own: Vec<[u32; 2]>,
-    /// The same of what they and their neighbours take of each row.
+    /// Range of columns of the requested points and their neighbours in each row.
     seen: Vec<[u32; 2]>,
 }
 
-/// No column.
+/// Empty range.
 const NONE: [u32; 2] = [u32::MAX, 0];
 
 impl WantedPoints {
@@ -26,11 +26,12 @@ impl WantedPoints {
         }
     }
 
-    /// Takes the points named by `on`; their neighbours are at most `radius` cells away along each axis. Cost: the rows, and the chunks of the points.
+    /// Sets the points `on`, whose neighbours are at most `radius` cells away along each axis. The cost is
+    /// proportional to the number of rows plus chunks of these points.
     pub(in crate::operator) fn set(
         &mut self,
         layout: &GridLayout,
-        on: &On<'_>,
+        on: &PointSubset<'_>,
         radius: [usize; 3],
     ) {
         self.lanes.fill(0);
@@ -44,9 +45,9 @@ impl WantedPoints {
             });
         };
         match on {
-            On::All => take(0..layout.first_point(layout.blocks())),
-            On::Range(range) => take(range.clone()),
-            On::Set(points) => runs(points).for_each(take),
+            PointSubset::All => take(0..layout.first_point(layout.blocks())),
+            PointSubset::Range(range) => take(range.clone()),
+            PointSubset::Set(points) => runs(points).for_each(take),
         }
         self.look_around(layout, radius);
     }
@@ -67,18 +68,18 @@ impl WantedPoints {
         }
     }
 
-    /// The wanted lanes of each chunk.
+    /// Returns the requested lanes of each chunk.
     pub(in crate::operator) fn lanes(&self) -> &[u8] {
         &self.lanes
     }
 
-    /// The columns of a row that the wanted points and their neighbours take.
+    /// Returns the columns of the requested points and their neighbours in a row.
     pub(in crate::operator) fn columns(&self, row: usize) -> std::ops::Range<usize> {
         let [from, to] = self.seen[row];
         from as usize..(to as usize).max(from as usize)
     }
 
-    /// Memory for a layout, bytes.
+    /// Returns the memory use for a layout, bytes.
     pub(in crate::operator) fn bytes_for(layout: &GridLayout) -> usize {
         layout.chunks().len() + 2 * layout.rows() * size_of::<[u32; 2]>()
     }

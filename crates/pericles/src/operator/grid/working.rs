@@ -1,4 +1,4 @@
-//! What an evaluation works on, in one kind of numbers.
+//! Stencil and work arrays of an evaluation for one number type.
 
 use std::sync::{Mutex, PoisonError, TryLockError};
 
@@ -10,20 +10,20 @@ use super::padded::{Frame, Padded};
 use super::stencil::Offset;
 use super::wanted::WantedPoints;
 use crate::domain::Field;
-use crate::operator::On;
+use crate::operator::PointSubset;
 
 /// The stencil and the work arrays in doubles or in floats.
 pub(super) struct Working<N, const D: usize> {
     offsets: Vec<Offset<N, D>>,
-    /// The stiffness of bonds over the stencil's, where it depends on their ends.
+    /// Stiffness of bonds relative to the stencil, if it depends on their ends.
     factors: Option<Factors<N>>,
-    /// The length that is one in these numbers, m.
+    /// Unit of length, m.
     unit: f64,
-    /// The farthest a neighbour's place is from a node's.
+    /// Largest distance of a neighbour, in places.
     farthest: usize,
-    /// The farthest a neighbour is along each axis, in spacings.
+    /// Largest distance of a neighbour along each axis, in spacings.
     radius: [usize; 3],
-    /// Made by the first evaluation, locked for the length of one.
+    /// Allocated by the first evaluation, locked during each one.
     scratch: Mutex<Option<Scratch<N, D>>>,
 }
 
@@ -34,7 +34,8 @@ struct Scratch<N, const D: usize> {
 }
 
 impl<N: GridNumber, const D: usize> Working<N, D> {
-    /// Work arrays for a stencil whose neighbours are at most `farthest` places and, along each axis, `radius` spacings away.
+    /// Creates work arrays for a stencil whose neighbours are at most `farthest` places and, along each axis,
+    /// `radius` spacings away.
     pub fn new(offsets: Vec<Offset<N, D>>, unit: f64, farthest: usize, radius: [usize; 3]) -> Self {
         Self {
             offsets,
@@ -46,25 +47,26 @@ impl<N: GridNumber, const D: usize> Working<N, D> {
         }
     }
 
-    /// The same for bonds whose stiffness depends on their ends.
+    /// Sets the factors of bonds whose stiffness depends on their ends.
     pub fn with_factors(self, factors: Option<Factors<N>>) -> Self {
         Self { factors, ..self }
     }
 
-    /// The stiffness of bonds over the stencil's, where it depends on their ends.
+    /// Returns the stiffness of bonds relative to the stencil, if it depends on their ends.
     pub fn factors(&self) -> Option<&Factors<N>> {
         self.factors.as_ref()
     }
 
-    /// Copies to padded rows what the wanted points need of u and hands it on, with the wanted lanes of each chunk or none if all points are wanted.
+    /// Copies the values of u for the requested points and their neighbours to padded rows and passes them
+    /// on, with the requested lanes of each chunk (`None` if all points are requested).
     pub fn with<R>(
         &self,
         layout: &GridLayout,
         u: Field<'_>,
-        on: &On<'_>,
+        on: &PointSubset<'_>,
         work: impl FnOnce(&Grid<'_, N, D>, Option<&[u8]>) -> R,
     ) -> R {
-        // Another evaluation may run at the same time, on this very thread if it waits for others to finish their part.
+        // Another evaluation may run at the same time, even on this thread while it waits for other threads.
         let mut own = None;
         let mut locked;
         let scratch = match self.scratch.try_lock() {
@@ -84,7 +86,7 @@ impl<N: GridNumber, const D: usize> Working<N, D> {
         });
         let frame = Frame::of(u, self.unit);
         let lanes = match on {
-            On::All => {
+            PointSubset::All => {
                 padded.fill(layout, u, &frame);
                 None
             }
@@ -101,7 +103,7 @@ impl<N: GridNumber, const D: usize> Working<N, D> {
         work(&self.grid(padded), lanes)
     }
 
-    /// Another vector in padded rows, as the loops see it.
+    /// Returns the arrays of the loops for another vector in padded rows.
     pub fn grid<'a>(&'a self, padded: &'a Padded<N, D>) -> Grid<'a, N, D> {
         Grid {
             offsets: &self.offsets,
@@ -112,12 +114,12 @@ impl<N: GridNumber, const D: usize> Working<N, D> {
         }
     }
 
-    /// Room for another vector.
+    /// Allocates padded rows for another vector.
     pub fn room(&self, layout: &GridLayout) -> Padded<N, D> {
         Padded::new(layout, self.farthest)
     }
 
-    /// Memory of the work arrays, bytes.
+    /// Returns the memory use of the work arrays, bytes.
     pub fn bytes(&self, layout: &GridLayout) -> usize {
         Padded::<N, D>::bytes_for(layout, self.farthest)
             + WantedPoints::bytes_for(layout)

@@ -4,17 +4,18 @@ use super::block::ChunkBlock;
 use super::force::GridForce;
 use super::kernels::force_chunks;
 use super::layout::Partners;
-use crate::operator::fast_law::FastLaw;
-use crate::operator::{Breakable, LocalForce, On, SplitForce};
+use crate::operator::fast_law::VectorLaw;
+use crate::operator::{Breakable, LocalForce, PointSubset, SplitForce};
 use crate::step_end::StepEnd;
 
-impl<L: FastLaw, const D: usize> GridForce<L, D> {
+impl<L: VectorLaw, const D: usize> GridForce<L, D> {
     fn partners(&self, marks: &[bool]) -> Partners {
         let marks = self.cloud.domain().marks_with_ghosts(marks);
         Partners(self.layout.marked(|point| marks[point]))
     }
 
-    /// The bonds of a block's wanted chunks that are left and lead to partners; none of the other chunks'.
+    /// Returns the intact bonds of the requested chunks of a block that lead to partners; no bonds for other
+    /// chunks.
     pub(super) fn bonds_to(
         &self,
         partners: &Partners,
@@ -40,9 +41,16 @@ impl<L: FastLaw, const D: usize> GridForce<L, D> {
     }
 }
 
-impl<L: FastLaw, const D: usize> SplitForce for GridForce<L, D> {
-    /// Takes a work array of one byte per bond group of the blocks concerned.
-    fn add_force_from(&self, _t: f64, u: &[f64], on: On<'_>, partners: &[bool], out: &mut [f64]) {
+impl<L: VectorLaw, const D: usize> SplitForce for GridForce<L, D> {
+    /// Needs a work array of one byte per bond group of the affected blocks.
+    fn add_force_from(
+        &self,
+        _t: f64,
+        u: &[f64],
+        on: PointSubset<'_>,
+        partners: &[bool],
+        out: &mut [f64],
+    ) {
         let partners = self.partners(partners);
         self.sweep::<f64, D>(&self.doubles, u, &on, out, |grid, block, intact, out| {
             let left = self.bonds_to(&partners, block, intact);
@@ -53,7 +61,7 @@ impl<L: FastLaw, const D: usize> SplitForce for GridForce<L, D> {
     fn end_step_from(
         &mut self,
         step: &StepEnd<'_>,
-        on: On<'_>,
+        on: PointSubset<'_>,
         partners: &[bool],
         out: &mut [f64],
     ) {
@@ -66,7 +74,7 @@ impl<L: FastLaw, const D: usize> SplitForce for GridForce<L, D> {
     }
 }
 
-impl<L: FastLaw, const D: usize> LocalForce for GridForce<L, D> {
+impl<L: VectorLaw, const D: usize> LocalForce for GridForce<L, D> {
     fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize)) {
         self.families().for_each_neighbour(i, visit);
     }

@@ -1,4 +1,4 @@
-//! A bond list as the loops see it.
+//! Arrays of a neighbour list read by the loops.
 
 use super::stiffness::Stiffness;
 use crate::family::BondList;
@@ -7,32 +7,32 @@ use crate::lanes::{Lanes, dot, vector};
 use crate::operator::fast_law::FixedBond;
 use crate::operator::records::Records;
 
-/// A bond list as the loops see it.
+/// Arrays of a neighbour list read by the loops.
 pub(super) struct Bonds<'a> {
     pub(super) list: &'a BondList,
-    /// Reference coordinates in units of `unit`; behind them the volume of the point, m³.
+    /// Reference coordinates in units of `unit`, followed by the volume of the point, m³.
     reference: &'a Records,
     /// Length of one unit along each axis, m.
     unit: [f64; 3],
     stiffness: &'a Stiffness,
-    /// Marks of the sites whose bonds count; all of them if none.
+    /// Marks of the sites whose bonds are included; `None`: all.
     pub(super) partners: Option<&'a [bool]>,
-    /// Rows that begin with the thermal stretch τ of a site; none of a body that is not heated.
+    /// Rows that begin with the thermal stretch τ of a site; `None` for a body without thermal expansion.
     heat: Option<&'a Records>,
 }
 
-/// What all bonds of a point share.
+/// Data shared by all bonds of a point.
 pub(super) struct Here<T, const D: usize> {
     reference: [T; D],
     u: [T; D],
     cell: T,
-    /// τ
+    /// Thermal stretch τ.
     heat: T,
 }
 
 impl<'a> Bonds<'a> {
     /// # Panics
-    /// If there are not as many rows as sites.
+    /// If the numbers of rows and sites differ.
     pub fn new(
         list: &'a BondList,
         reference: &'a Records,
@@ -50,17 +50,18 @@ impl<'a> Bonds<'a> {
         }
     }
 
-    /// The same bonds, as far as they lead to marked sites.
+    /// Restricts the bonds to those that lead to marked sites.
     pub fn leading_to(self, partners: Option<&'a [bool]>) -> Self {
         Self { partners, ..self }
     }
 
-    /// The same bonds with the thermal stretches of sites given.
+    /// Sets the thermal stretches of sites.
     pub fn heated(self, heat: Option<&'a Records>) -> Self {
         Self { heat, ..self }
     }
 
-    /// ξ and η of a bond between two sites as its law sees them, (1 + τ) ξ and η − τ ξ, and the factor 1 + τ of its stiffness.
+    /// Returns the vectors (1 + τ) ξ and η − τ ξ of a bond between two sites, to which its law is applied,
+    /// and the factor 1 + τ of its stiffness.
     pub fn expanded<const D: usize>(
         &self,
         [i, j]: [usize; 2],
@@ -80,12 +81,12 @@ impl<'a> Bonds<'a> {
         self.list
     }
 
-    /// ξ of the bond between two sites, m.
+    /// Returns ξ of the bond between two sites, m.
     pub fn vector<const D: usize>(&self, i: usize, j: usize) -> [f64; D] {
         std::array::from_fn(|c| (self.reference[j][c] - self.reference[i][c]) * self.unit[c])
     }
 
-    /// What all bonds of point i share.
+    /// Returns the data shared by all bonds of point i.
     #[inline(always)]
     pub(super) fn here<T: Lanes, const D: usize>(&self, i: usize, u: &Records) -> Here<T, D> {
         let i = self.list.site(i);
@@ -97,16 +98,17 @@ impl<'a> Bonds<'a> {
         }
     }
 
-    /// The rows of the neighbours of a group.
+    /// Returns the rows of the neighbours of a group.
     #[inline(always)]
     pub(super) fn there<T: Lanes>(&self, group: usize, field: &Records) -> [T; 4] {
         assert!(field.len() == self.reference.len(), "a row for every site");
         let indices = self.list.group(group);
-        // SAFETY: neighbours are below the number of sites, which `BondList` guarantees, and the field has as many rows.
+        // SAFETY: `BondList` guarantees that neighbours are below the number of sites, which is the number of
+        // rows of the field.
         unsafe { T::gather(field, indices) }
     }
 
-    /// The eight bonds of a group, and their η.
+    /// Returns the eight bonds of a group and their η.
     #[inline(always)]
     pub(super) fn group<T: Lanes, const D: usize>(
         &self,
@@ -140,7 +142,7 @@ impl<'a> Bonds<'a> {
         (bond, eta)
     }
 
-    /// Stiffness c α κ V of an entry that leads from site i to site j, whose cells have the sizes given, m.
+    /// Returns the stiffness c α κ V of an entry from site i to site j, whose cells have the given sizes, m.
     pub fn stiffness_of<const D: usize>(
         &self,
         entry: usize,
@@ -153,7 +155,7 @@ impl<'a> Bonds<'a> {
             .of_entry(entry, dot(xi, xi).sqrt(), volume, cells)
     }
 
-    /// Bits of the bonds of a group that count.
+    /// Returns the bits of the included bonds of a group.
     #[inline(always)]
     pub fn wanted(&self, group: usize) -> u8 {
         let Some(marks) = self.partners else {

@@ -1,4 +1,4 @@
-//! Breaking of a point's bonds, decided where the force sweep has seen a large strain.
+//! Bond failure, evaluated for points with large strains in the force sweep.
 
 use super::arrays::Bonds;
 use crate::domain::Field;
@@ -9,22 +9,22 @@ use crate::operator::records::Records;
 use crate::operator::thresholds::PairThresholds;
 use crate::step_end::{BreakingBond, StepEnd, relative_velocity};
 
-/// Breaking as the loops see it.
+/// Failure criterion read by the loops.
 pub(super) struct BreakRule<'a> {
-    /// Bonds with measure > threshold |ξ|² are over-stretched.
+    /// A bond is over-stretched if measure > threshold |ξ|².
     pub threshold: f64,
-    /// The critical stretch, where all bonds have the same.
+    /// Critical stretch, if it is the same for all bonds.
     pub critical_stretch: f64,
-    /// Thresholds that depend on the ends of a bond, in place of the one, which is then the smallest of them.
+    /// Thresholds that depend on the ends of a bond; `threshold` is then the smallest of them.
     pub pairs: Option<&'a PairThresholds>,
-    /// Bits of the bonds that may break; all of them if none.
+    /// Bits of the bonds that may break; `None`: all.
     pub breakable: Option<&'a [u8]>,
     pub volumes: &'a [f64],
-    /// The step that ended.
+    /// The step that ends.
     pub step: &'a StepEnd<'a>,
-    /// Mean velocities over the step, where it has any.
+    /// Mean velocities over the step, if it has any.
     pub velocity: Option<Field<'a>>,
-    /// Note what breaks, so that the other end can be told.
+    /// Whether breaking bonds are recorded for the update of their other end.
     pub note_events: bool,
 }
 
@@ -44,9 +44,11 @@ impl BreakRule<'_> {
     }
 }
 
-/// Breaks the over-stretched bonds of a point and books their energy, each end half; says whether there were any.
+/// Breaks the over-stretched bonds of a point and records half of their energy for this end. Returns whether
+/// a bond broke.
 ///
-/// Decided with [`PairForce::stretch_measure`], whose rounding is the same at both ends and for all instruction sets.
+/// The criterion uses [`PairForce::stretch_measure`], which is bitwise identical at both ends and for all
+/// instruction sets.
 #[cold]
 #[inline(never)]
 pub(super) fn break_row<L: PairForce, const D: usize>(

@@ -1,13 +1,13 @@
-//! [`Breakable`] for bond lists.
+//! [`Breakable`] for neighbour lists.
 
 use super::force::BondForce;
 use crate::domain::Field;
 use crate::lanes::LANES;
-use crate::operator::fast_law::FastLaw;
+use crate::operator::fast_law::VectorLaw;
 use crate::operator::{Breakable, CoarseBreak, Force, damage};
 use crate::parallel::for_each_chunk;
 
-impl<L: FastLaw, const D: usize> Breakable for BondForce<L, D> {
+impl<L: VectorLaw, const D: usize> Breakable for BondForce<L, D> {
     fn dissipated(&self) -> f64 {
         damage::dissipated(self.cloud.domain(), &self.blocks)
     }

@@ -1,4 +1,4 @@
-//! The force operator of a bond list: any body, any family.
+//! Neighbour-list force kernel for any body.
 
 use std::sync::Arc;
 
@@ -14,26 +14,28 @@ use crate::error::{PericlesError, Result};
 use crate::family::BondList;
 use crate::lanes::LANES;
 use crate::lanes::Row;
-use crate::material::{BondConstants, BondMaterial, PairClasses};
+use crate::material::{BondConstants, BondMaterial, MaterialPairs};
 use crate::operator::damage::{BlockDamage, Breaking, DamageMeasure};
-use crate::operator::fast_law::FastLaw;
+use crate::operator::fast_law::VectorLaw;
 use crate::operator::pool::Pool;
 use crate::operator::records::Records;
 use crate::operator::rows::Rows;
 use crate::operator::thresholds::PairThresholds;
-use crate::operator::{Force, InstructionSet, On};
+use crate::operator::{Force, InstructionSet, PointSubset};
 use crate::parallel::{BLOCK, components_mut, for_each_block};
 use crate::space::{PointCloud, check_length, check_points};
 use crate::step_end::StepEnd;
 
-/// f(x_i) = Σ_j c α κ V_j s n over the bonds of a list: force density, N/m³.
+/// Force density f(x_i) = Σ_j c α κ V_j s n over the bonds of a neighbour list, N/m³.
 ///
-/// A gather per point over [`BondList`], in parallel blocks; every bond is computed at both ends. ξ, |ξ|, partial volumes and influence functions of first degree are
-/// computed from the points' positions, without roots and divisions (see [`FastLaw`]); other bonds of lattices keep a byte each that names their stiffness, and only bonds that are all
-/// different keep a number.
+/// The loop gathers over the bonds of each point in parallel blocks; each bond is computed at both ends. ξ,
+/// |ξ|, partial volumes and influence functions of first degree are computed from positions, without roots
+/// and divisions (see [`VectorLaw`]). Other bonds of lattices store one byte, an index into a table of
+/// stiffnesses, and only bonds that all differ store a number.
 ///
-/// Memory: 2.5 bytes per family entry and three bits, rows padded to eight; a byte or eight more where the stiffness is kept; 64 bytes per point.
-pub struct BondForce<L: FastLaw, const D: usize> {
+/// Memory: 2.5 bytes and three bits per family entry, with rows padded to eight; one or eight more bytes if
+/// the stiffness is stored; 64 bytes per point.
+pub struct BondForce<L: VectorLaw, const D: usize> {
     pub(super) cloud: Arc<PointCloud>,
     pub(super) bonds: BondList,
     /// Coordinates and volumes, see [`Bonds`].
@@ -42,11 +44,12 @@ pub struct BondForce<L: FastLaw, const D: usize> {
     stiffness: Stiffness,
     pub(super) breakable: Option<Vec<u8>>,
     pub(super) critical_stretch: f64,
-    /// Critical stretches by the materials of a bond's ends, in place of the one, which is then the smallest.
+    /// Critical stretches by the materials of the ends of a bond; the common value is then the smallest of
+    /// them.
     pub(super) pairs: Option<PairThresholds>,
     pub(super) damage: DamageMeasure,
     pub(super) blocks: Vec<BlockDamage>,
-    /// Thermal stretches, if the body is heated.
+    /// Thermal stretches, if the material expands.
     pub(super) heat: Option<Heat>,
     reach: Reach,
     packed: Pool<Packed>,
@@ -55,7 +58,7 @@ pub struct BondForce<L: FastLaw, const D: usize> {
 }
 
 crate::saved! {
-    impl<L: FastLaw, const D: usize> Saved for BondForce<L, D> {
+    impl<L: VectorLaw, const D: usize> Checkpointed for BondForce<L, D> {
         blocks: under("operator"),
         cloud, bonds, reference, unit, stiffness, breakable, critical_stretch, pairs, damage: fixed,
         heat, reach, instruction_set, law: fixed,
@@ -63,11 +66,12 @@ crate::saved! {
     }
 }
 
-impl<L: FastLaw, const D: usize> BondForce<L, D> {
-    /// The operator of a material on a body.
+impl<L: VectorLaw, const D: usize> BondForce<L, D> {
+    /// Creates the operator of a material on a body.
     ///
     /// # Errors
-    /// As of the other constructors: a cloud of another dimension than D, bonds of another cloud, points whose bonds never break that the cloud does not have.
+    /// As for the other constructors: a cloud whose dimension is not D, bonds of another cloud, points
+    /// without bond failure that do not exist in the cloud.
     pub fn new(
         cloud: Arc<PointCloud>,
         bonds: BondList,
@@ -93,8 +97,8 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
         Self::with_stiffness(cloud, bonds, &stiffness, breaking, damage)
     }
 
-    /// An operator whose bonds have the stiffness c α given as a function of their reference vector ξ, m; missing components are zero.
-    /// It must be the same for ξ and −ξ.
+    /// Creates an operator with the stiffness c α as a function of the reference vector ξ, m; missing
+    /// components are zero. It must be the same for ξ and −ξ.
     pub fn with_stiffness(
         cloud: Arc<PointCloud>,
         bonds: BondList,
@@ -106,8 +110,8 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
         Self::with_pair_stiffness(cloud, bonds, &of_pair, breaking, damage)
     }
 
-    /// An operator whose bonds have the stiffness c α(i, j, ξ) given for each pair of points and the vector ξ from one to the other; it must be the same from both
-    /// ends. Ghosts are counted behind own points.
+    /// Creates an operator with the stiffness c α(i, j, ξ) as a function of both points and the vector ξ from
+    /// i to j; it must be the same from both ends. Ghosts are numbered after own points.
     pub fn with_pair_stiffness(
         cloud: Arc<PointCloud>,
         bonds: BondList,
@@ -122,7 +126,8 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
         Self::with_weighted_stiffness(cloud, bonds, &weighted, breaking, damage)
     }
 
-    /// An operator whose bonds have the stiffness c α κ(a, b), partial volumes included, given for each pair of sites; it must be the same from both ends.
+    /// Creates an operator with the stiffness c α κ(a, b), including partial volumes, as a function of both
+    /// sites; it must be the same from both ends.
     pub fn with_weighted_stiffness(
         cloud: Arc<PointCloud>,
         bonds: BondList,
@@ -130,7 +135,11 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
         breaking: Breaking<'_>,
         damage: DamageMeasure,
     ) -> Result<Self> {
-        check_length("the families of the bond list", bonds.len(), cloud.len())?;
+        check_length(
+            "the families of the neighbour list",
+            bonds.len(),
+            cloud.len(),
+        )?;
         let stiffness = Stiffness::of_pairs(&bonds, &|i, b| {
             stiffness_of_pair(&bonds, bonds.site(i), b) * bonds.volume(b)
         });
@@ -147,12 +156,12 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
         let n = cloud.len();
         if cloud.dimension() != D {
             return Err(PericlesError::WrongDimension {
-                what: "this list of bonds",
+                what: "this neighbour list",
                 needed: ["1", "2", "3"][D - 1],
                 dimension: cloud.dimension(),
             });
         }
-        check_length("the families of the bond list", bonds.len(), n)?;
+        check_length("the families of the neighbour list", bonds.len(), n)?;
         check_points("the points whose bonds never break", breaking.no_fail, n)?;
         let (reference, unit) = reference_rows(bonds.sites().places());
         let blocks = (0..n.div_ceil(BLOCK))
@@ -186,11 +195,11 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
         })
     }
 
-    /// The same with critical stretches that depend on the materials of a bond's ends.
+    /// Sets critical stretches that depend on the materials of both ends of a bond.
     ///
     /// # Errors
-    /// Materials that are not one for each point.
-    pub fn with_critical_stretches(self, classes: PairClasses) -> Result<Self> {
+    /// A number of materials that is not the number of points.
+    pub fn with_critical_stretches(self, classes: MaterialPairs) -> Result<Self> {
         check_length(
             "the materials of the points",
             classes.of_point().len(),
@@ -205,18 +214,18 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
         })
     }
 
-    /// Runs the loops with another instruction set; for tests and benchmarks.
+    /// Selects another instruction set for the loops; for tests and benchmarks.
     pub fn with_instruction_set(mut self, set: InstructionSet) -> Self {
         self.use_instruction_set(set);
         self
     }
 
-    /// The families.
+    /// Returns the families.
     pub fn bonds(&self) -> &BondList {
         &self.bonds
     }
 
-    /// Whether an entry's bond is still there.
+    /// Returns whether the bond of an entry is intact.
     pub fn is_intact(&self, i: usize, entry: usize) -> bool {
         let block = i / BLOCK;
         let group = entry / LANES - self.bonds.start()[block * BLOCK];
@@ -227,8 +236,13 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
         Bonds::new(&self.bonds, &self.reference, self.unit, &self.stiffness)
     }
 
-    /// Calls `work` with a vector on points packed as far as the wanted points need it.
-    pub(super) fn with_packed(&self, owned: &[f64], on: &On<'_>, work: impl FnOnce(&Records)) {
+    /// Calls `work` with a vector packed for the requested points and their neighbours.
+    pub(super) fn with_packed(
+        &self,
+        owned: &[f64],
+        on: &PointSubset<'_>,
+        work: impl FnOnce(&Records),
+    ) {
         let ghosts = self.cloud.domain().ghosts(owned);
         let mut packed = self.packed.take();
         let field = Field::new(owned, &ghosts);
@@ -238,12 +252,12 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
     /// Runs a read-only loop over all blocks.
     pub(super) fn sweep<const C: usize>(
         &self,
-        on: &On<'_>,
+        on: &PointSubset<'_>,
         out: &mut [f64],
         rows: impl Fn(&[u8], &Rows<'_>, &mut [&mut [f64]; C]) + Sync,
     ) {
         let n = self.cloud.len();
-        // A vector of nothing: the blocks' state is only read, and no memory is taken.
+        // A vector of units takes no memory: the state of blocks is only read.
         let mut nothing = vec![(); self.blocks.len()];
         for_each_block(
             components_mut::<C>(out, n),
@@ -256,16 +270,17 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
         );
     }
 
-    /// Decides breaking of the wanted points' bonds, those that lead to `partners` if there are any, and adds the force of those that are left.
+    /// Applies the failure criterion to the bonds of the requested points, only those to `partners` if given,
+    /// and adds the force of the intact bonds.
     pub(super) fn decide(
         &mut self,
         step: &StepEnd<'_>,
-        on: &On<'_>,
+        on: &PointSubset<'_>,
         partners: Option<&[bool]>,
         out: &mut [f64],
     ) {
         let n = self.cloud.len();
-        let whole = matches!(on, On::All) && partners.is_none();
+        let whole = matches!(on, PointSubset::All) && partners.is_none();
         let mut blocks = std::mem::take(&mut self.blocks);
         let partners = partners.map(|marks| self.bonds.sites().spread_marks(marks));
         let heat = self.heat_at(step.t);
@@ -310,7 +325,8 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
         }
     }
 
-    /// Clears the second copy of bonds that broke in a sweep over some of the points only, and books its half of the energy.
+    /// Breaks the other end of bonds that broke in a sweep over a subset of points, and records its half of
+    /// the energy.
     fn tell_the_other_ends(&mut self) {
         for (j, back, dissipated) in other_ends(&self.bonds, &mut self.blocks) {
             let block = j / BLOCK;
@@ -319,21 +335,22 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
         }
     }
 
-    /// Stiffness c α κ V of an entry of point i that leads to site b.
+    /// Returns the stiffness c α κ V of an entry from point i to site b.
     pub(super) fn stiffness_of(&self, entry: usize, i: usize, b: usize) -> f64 {
         let ends = [self.bonds.site(i), b];
         let cells = ends.map(|site| self.bonds.sites().places().cell_size(site));
         self.view().stiffness_of::<D>(entry, ends, cells)
     }
 
-    /// Memory of what the loops read beside the list, bytes.
+    /// Returns the memory use of the arrays of the loops without the list, bytes.
     pub(super) fn own_bytes(&self) -> usize {
         let rows = 2 * size_of_val(&self.reference[..]);
         rows + self.stiffness.bytes() + self.reach.bytes()
     }
 }
 
-/// Coordinates with the points' volumes behind them, and the length of one unit along each axis. Integer coordinates make bonds of equal offset equal to the last bit.
+/// Returns the coordinates followed by the volumes of the points, and the length of one unit along each axis.
+/// Integer coordinates make bonds of equal offset bitwise identical.
 fn reference_rows(cloud: &PointCloud) -> (Vec<Row>, [f64; 3]) {
     let row = |i: usize| {
         let [x, y, z] = match cloud.lattice() {

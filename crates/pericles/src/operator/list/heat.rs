@@ -1,7 +1,9 @@
-//! Thermal stretch of listed bonds.
+//! Thermal stretch of bonds of a neighbour list.
 //!
-//! A heated bond is a bond whose length without stress is (1 + τ)|ξ| with the mean τ of its ends: its force is c α κ V (1 + τ) times the pair force of the vectors (1 + τ) ξ and η − τ ξ, the gradient of (1 + τ) times
-//! their energy. For the stretch s of a bond this is c α κ V (s − τ) n. It breaks where its length over that without stress exceeds the critical stretch.
+//! A heated bond has the stress-free length (1 + τ)|ξ| with the mean τ of its ends. Its force is c α κ V
+//! (1 + τ) times the pair force of the vectors (1 + τ) ξ and η − τ ξ, the gradient of (1 + τ) times their
+//! energy. For the bond-stretch law this is c α κ V (s − τ) n. The bond breaks when its stretch relative to
+//! the stress-free length exceeds the critical stretch.
 
 use crate::lanes::Row;
 use crate::operator::pool::{Lent, Pool};
@@ -15,7 +17,7 @@ pub(super) struct Heat {
 }
 
 impl Heat {
-    /// Those of so many sites.
+    /// Creates the thermal stretches of `sites` sites.
     pub fn new(expansion: ThermalExpansion, sites: usize) -> Self {
         Self {
             expansion,
@@ -23,7 +25,7 @@ impl Heat {
         }
     }
 
-    /// Rows that begin with τ of a site.
+    /// Returns rows that begin with τ of a site.
     pub fn rows(&self, stretches: &[f64], sites: &Sites) -> Lent<'_, Vec<Row>> {
         let mut rows = self.rows.take();
         for (site, row) in rows.iter_mut().enumerate() {

@@ -1,19 +1,20 @@
-//! The loops over listed bonds, one text for every law, dimension and instruction set.
+//! Loops over the bonds of a neighbour list, generic over law, dimension and instruction set.
 //!
-//! A point's bonds are taken eight at a time. Neighbours are read as rows of four numbers and turned into lanes in registers. Nothing is read of
-//! a bond but its neighbour's number and one bit: ξ and with it |ξ|, weight and volume follow from the positions. The lanes of the sum are added in a fixed order, so a
-//! point's force depends on nothing but its neighbours.
+//! The bonds of a point are processed in groups of eight. Neighbours are read as rows of four numbers and
+//! transposed to lanes in registers. The only data read per bond are the index of the neighbour and one bit:
+//! ξ, |ξ|, weight and volume follow from positions. The lanes of the sum are added in a fixed order, so that
+//! the force on a point depends on its neighbours only.
 
 use super::arrays::Bonds;
 use super::breaking::{BreakRule, break_row};
 use crate::family::BondList;
 use crate::lanes::{F64x8, Lanes, for_each_instruction_set, vector};
 use crate::operator::damage::Tally;
-use crate::operator::fast_law::FastLaw;
+use crate::operator::fast_law::VectorLaw;
 use crate::operator::records::Records;
 use crate::operator::rows::Rows;
 
-/// The force of a point in the fast form, and the range of the strains t it was computed from.
+/// Force on a point in the fast form, and the range of its strains t.
 struct Fast<T, const D: usize> {
     sum: [T; D],
     largest: T,
@@ -21,7 +22,7 @@ struct Fast<T, const D: usize> {
 }
 
 #[inline(always)]
-fn fast_force<T: Lanes, L: FastLaw, const D: usize>(
+fn fast_force<T: Lanes, L: VectorLaw, const D: usize>(
     bonds: &Bonds<'_>,
     u: &Records,
     i: usize,
@@ -35,7 +36,7 @@ fn fast_force<T: Lanes, L: FastLaw, const D: usize>(
         smallest: zero,
     };
     let first = bonds.list.start()[i];
-    // No closure and no adapter here: one that is not inlined would take the baseline's instructions.
+    // No closure or adapter here: without inlining it would use baseline instructions.
     for k in 0..intact.len() {
         let group = first + k;
         let mask = intact[k] & bonds.wanted(group);
@@ -51,9 +52,9 @@ fn fast_force<T: Lanes, L: FastLaw, const D: usize>(
     fast
 }
 
-/// The force of a point by the law itself, however large the strains.
+/// Returns the force on a point by the exact law, for any strains.
 #[inline(always)]
-fn exact_force<T: Lanes, L: FastLaw, const D: usize>(
+fn exact_force<T: Lanes, L: VectorLaw, const D: usize>(
     bonds: &Bonds<'_>,
     u: &Records,
     i: usize,
@@ -77,16 +78,16 @@ fn exact_force<T: Lanes, L: FastLaw, const D: usize>(
     sum
 }
 
-/// The sum of the lanes, in a fixed order.
+/// Returns the sum of the lanes in a fixed order.
 #[inline(always)]
 fn sum<T: Lanes>(lanes: T) -> f64 {
     F64x8(lanes.to_array()).sum()
 }
 
-/// Adds the force of a point. It takes the exact form if one of its own bonds is strained beyond the fast form's reach, so that a point's force does not depend on
-/// which other points are computed beside it.
+/// Adds the force on a point. The exact law is used if the strain of one of its own bonds exceeds the range
+/// of the fast form, so that the force does not depend on which other points are computed with it.
 #[inline(always)]
-fn add_point_force<T: Lanes, L: FastLaw, const D: usize>(
+fn add_point_force<T: Lanes, L: VectorLaw, const D: usize>(
     bonds: &Bonds<'_>,
     u: &Records,
     i: usize,
@@ -107,7 +108,7 @@ fn add_point_force<T: Lanes, L: FastLaw, const D: usize>(
     }
 }
 
-/// The groups of a point among those of its block.
+/// Returns the groups of a point relative to its block.
 #[inline(always)]
 fn groups_of(list: &BondList, i: usize, first_point: usize) -> std::ops::Range<usize> {
     let start = list.start();
@@ -115,7 +116,7 @@ fn groups_of(list: &BondList, i: usize, first_point: usize) -> std::ops::Range<u
 }
 
 #[inline(always)]
-fn force_rows_body<T: Lanes, L: FastLaw, const D: usize>(
+fn force_rows_body<T: Lanes, L: VectorLaw, const D: usize>(
     bonds: &Bonds<'_>,
     u: &Records,
     intact: &[u8],
@@ -130,11 +131,12 @@ fn force_rows_body<T: Lanes, L: FastLaw, const D: usize>(
     }
 }
 
-/// t above which a row is looked at bond by bond: below the threshold by more than the fast form's rounding.
+/// Fraction of the threshold above which bonds of a row are checked individually; the margin exceeds the
+/// rounding error of the fast form.
 const WATCH: f64 = 1.0 - 1e-9;
 
 #[inline(always)]
-fn accept_rows_body<T: Lanes, L: FastLaw, const D: usize>(
+fn accept_rows_body<T: Lanes, L: VectorLaw, const D: usize>(
     bonds: &Bonds<'_>,
     rule: &BreakRule<'_>,
     u: &Records,
@@ -147,7 +149,7 @@ fn accept_rows_body<T: Lanes, L: FastLaw, const D: usize>(
     for k in 0..rows.count() {
         let i = rows.at(k);
         let intact = &mut intact[groups_of(bonds.list, i, rows.first)];
-        // Once more if bonds have broken: a loop, so that the compiler has one copy of its body.
+        // Repeated if bonds have broken. A loop gives the compiler a single copy of the body.
         let fast = loop {
             let fast = fast_force::<T, L, D>(bonds, u, i, intact);
             let endangered = fast.largest.greater(watch) != 0;
@@ -160,7 +162,7 @@ fn accept_rows_body<T: Lanes, L: FastLaw, const D: usize>(
 }
 
 #[inline(always)]
-fn energy_rows_body<T: Lanes, L: FastLaw, const D: usize>(
+fn energy_rows_body<T: Lanes, L: VectorLaw, const D: usize>(
     bonds: &Bonds<'_>,
     u: &Records,
     intact: &[u8],
@@ -183,7 +185,7 @@ fn energy_rows_body<T: Lanes, L: FastLaw, const D: usize>(
 }
 
 #[inline(always)]
-fn tangent_rows_body<T: Lanes, L: FastLaw, const D: usize>(
+fn tangent_rows_body<T: Lanes, L: VectorLaw, const D: usize>(
     bonds: &Bonds<'_>,
     u: &Records,
     direction: &Records,
@@ -215,8 +217,8 @@ fn tangent_rows_body<T: Lanes, L: FastLaw, const D: usize>(
 }
 
 for_each_instruction_set! {
-    /// Adds the force density of the rows to `out` (indexed from the block's first point).
-    pub(super) fn force_rows [L: FastLaw, const D: usize] <L, D> (
+    /// Adds the force density of the rows to `out` (indexed from the first point of the block).
+    pub(super) fn force_rows [L: VectorLaw, const D: usize] <L, D> (
         bonds: &Bonds<'_>,
         u: &Records,
         intact: &[u8],
@@ -226,8 +228,8 @@ for_each_instruction_set! {
 }
 
 for_each_instruction_set! {
-    /// Breaks over-stretched bonds of the rows and adds the force density of those that are left.
-    pub(super) fn accept_rows [L: FastLaw, const D: usize] <L, D> (
+    /// Breaks over-stretched bonds of the rows and adds the force density of the intact bonds.
+    pub(super) fn accept_rows [L: VectorLaw, const D: usize] <L, D> (
         bonds: &Bonds<'_>,
         rule: &BreakRule<'_>,
         u: &Records,
@@ -240,7 +242,7 @@ for_each_instruction_set! {
 
 for_each_instruction_set! {
     /// Adds the energy density of the rows to `out`.
-    pub(super) fn energy_rows [L: FastLaw, const D: usize] <L, D> (
+    pub(super) fn energy_rows [L: VectorLaw, const D: usize] <L, D> (
         bonds: &Bonds<'_>,
         u: &Records,
         intact: &[u8],
@@ -250,8 +252,8 @@ for_each_instruction_set! {
 }
 
 for_each_instruction_set! {
-    /// The derivative of the force density in a direction.
-    pub(super) fn tangent_rows [L: FastLaw, const D: usize] <L, D> (
+    /// Adds the derivative of the force density in a direction to `out`.
+    pub(super) fn tangent_rows [L: VectorLaw, const D: usize] <L, D> (
         bonds: &Bonds<'_>,
         u: &Records,
         direction: &Records,

@@ -1,4 +1,4 @@
-//! The force of any body by a list of every point's bonds.
+//! Neighbour-list force kernel for any body.
 
 mod arrays;
 mod breaking;
@@ -10,8 +10,10 @@ mod kernels;
 mod operator;
 pub(super) mod other_ends;
 mod packed;
+mod softening;
 mod springs;
 pub(super) mod stiffness;
 mod zoned;
 
 pub use force::BondForce;
+pub use softening::SofteningForce;

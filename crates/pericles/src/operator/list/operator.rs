@@ -1,17 +1,17 @@
-//! [`Force`] for bond lists.
+//! [`Force`] for neighbour lists.
 
 use super::force::BondForce;
 use super::kernels::{energy_rows, force_rows, tangent_rows};
 use crate::domain::Field;
-use crate::operator::fast_law::FastLaw;
+use crate::operator::fast_law::VectorLaw;
 use crate::operator::{
     BondAt, BondView, Breakable, Capabilities, Force, InstructionSet, LatticeSprings,
-    LinearOperator, Linearity, On, SplitForce,
+    LinearOperator, Linearity, PointSubset, SplitForce,
 };
 use crate::step_end::StepEnd;
 use crate::thermal::Expandable;
 
-impl<L: FastLaw, const D: usize> Force for BondForce<L, D> {
+impl<L: VectorLaw, const D: usize> Force for BondForce<L, D> {
     fn points(&self) -> usize {
         self.cloud.len()
     }
@@ -20,7 +20,7 @@ impl<L: FastLaw, const D: usize> Force for BondForce<L, D> {
         D
     }
 
-    fn add_force(&self, t: f64, u: &[f64], on: On<'_>, out: &mut [f64]) {
+    fn add_force(&self, t: f64, u: &[f64], on: PointSubset<'_>, out: &mut [f64]) {
         let heat = self.heat_at(t);
         let bonds = self.view().heated(heat.as_deref().map(Vec::as_slice));
         self.with_packed(u, &on, |u| {
@@ -33,8 +33,8 @@ impl<L: FastLaw, const D: usize> Force for BondForce<L, D> {
     fn add_energy_density(&self, t: f64, u: &[f64], out: &mut [f64]) {
         let heat = self.heat_at(t);
         let bonds = self.view().heated(heat.as_deref().map(Vec::as_slice));
-        self.with_packed(u, &On::All, |u| {
-            self.sweep::<1>(&On::All, out, |intact, rows, out| {
+        self.with_packed(u, &PointSubset::All, |u| {
+            self.sweep::<1>(&PointSubset::All, out, |intact, rows, out| {
                 energy_rows::<L, D>(self.instruction_set, &bonds, u, intact, rows, out);
             });
         });
@@ -48,7 +48,7 @@ impl<L: FastLaw, const D: usize> Force for BondForce<L, D> {
         self.cloud.domain().sum(self.points(), energy)
     }
 
-    /// ω² ≤ max_i (2/ρ_i) Σ_j k_ij/|ξ|, by Gershgorin's discs of 3×3 blocks.
+    /// ω² ≤ max_i (2/ρ_i) Σ_j k_ij/|ξ| by Gershgorin discs of D×D blocks.
     fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {
         let mut largest: f64 = 0.0;
         for i in 0..self.points() {
@@ -65,7 +65,7 @@ impl<L: FastLaw, const D: usize> Force for BondForce<L, D> {
         self.cloud.domain().max(largest).sqrt()
     }
 
-    fn end_step(&mut self, step: &StepEnd<'_>, on: On<'_>, out: &mut [f64]) {
+    fn end_step(&mut self, step: &StepEnd<'_>, on: PointSubset<'_>, out: &mut [f64]) {
         if self.can_break() {
             self.decide(step, &on, None, out);
         } else {
@@ -76,9 +76,9 @@ impl<L: FastLaw, const D: usize> Force for BondForce<L, D> {
     fn tangent_into(&self, t: f64, u: &[f64], direction: &[f64], out: &mut [f64]) {
         let heat = self.heat_at(t);
         let bonds = self.view().heated(heat.as_deref().map(Vec::as_slice));
-        self.with_packed(u, &On::All, |u| {
-            self.with_packed(direction, &On::All, |direction| {
-                self.sweep::<D>(&On::All, out, |intact, rows, out| {
+        self.with_packed(u, &PointSubset::All, |u| {
+            self.with_packed(direction, &PointSubset::All, |direction| {
+                self.sweep::<D>(&PointSubset::All, out, |intact, rows, out| {
                     let set = self.instruction_set;
                     tangent_rows::<L, D>(set, &bonds, u, direction, intact, rows, out);
                 });
@@ -113,7 +113,7 @@ impl<L: FastLaw, const D: usize> Force for BondForce<L, D> {
 
     fn capabilities(&self) -> Capabilities<'_> {
         Capabilities {
-            // With thermal stretch it is linear but for a force at rest.
+            // With thermal stretch the force is affine: it does not vanish at rest.
             linear: match L::LINEAR && self.heat.is_none() {
                 true => Linearity::Exact(self),
                 false => Linearity::Nonlinear,
@@ -143,7 +143,7 @@ impl<L: FastLaw, const D: usize> Force for BondForce<L, D> {
     }
 }
 
-impl<L: FastLaw, const D: usize> BondView for BondForce<L, D> {
+impl<L: VectorLaw, const D: usize> BondView for BondForce<L, D> {
     fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt)) {
         let (heat, sites) = (self.latest_heat(), self.bonds.sites());
         let bonds = self.view().heated(heat.as_deref().map(Vec::as_slice));
@@ -162,10 +162,10 @@ impl<L: FastLaw, const D: usize> BondView for BondForce<L, D> {
     }
 }
 
-impl<L: FastLaw, const D: usize> LinearOperator for BondForce<L, D> {
+impl<L: VectorLaw, const D: usize> LinearOperator for BondForce<L, D> {
     fn apply_into(&self, u: &[f64], out: &mut [f64]) {
         out.fill(0.0);
-        self.add_force(0.0, u, On::All, out);
+        self.add_force(0.0, u, PointSubset::All, out);
     }
 
     fn half_bandwidth(&self) -> Option<usize> {

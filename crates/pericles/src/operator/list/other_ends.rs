@@ -1,11 +1,12 @@
-//! The other ends of bonds that broke in a sweep over some of the points only.
+//! Other ends of bonds that broke in a sweep over a subset of points.
 
 use crate::domain::Letter;
 use crate::family::BondList;
 use crate::operator::damage::BlockDamage;
 
-/// Takes the bonds that blocks have noted as broken, and returns for the other end of each its point, the entry that leads back, and the energy that the first end has booked, J. Bonds whose other end belongs to another
-/// process are reported to that process, and returned there.
+/// Clears the recorded broken bonds of blocks and returns, for the other end of each, its point, the reverse
+/// entry and the energy recorded for the first end, J. A bond whose other end belongs to another process is
+/// sent to that process and returned there.
 pub fn other_ends(bonds: &BondList, blocks: &mut [BlockDamage]) -> Vec<(usize, usize, f64)> {
     let sites = bonds.sites();
     let mut letters = Vec::new();

@@ -1,17 +1,18 @@
-//! Displacements as rows, packed once an evaluation.
+//! Displacements packed as rows once per evaluation.
 
 use rayon::prelude::*;
 
 use crate::domain::Field;
 use crate::family::BondList;
 use crate::lanes::Row;
-use crate::operator::On;
+use crate::operator::PointSubset;
 use crate::operator::records::{Records, pack, pack_part, pack_sites};
 use crate::operator::rows::Rows;
 use crate::parallel::BLOCK;
 use crate::space::Sites;
 
-/// Which blocks of points the bonds of each block lead to, its own among them; nothing where bonds lead to ghosts or images.
+/// Blocks of points that the bonds of each block lead to, including itself; empty if bonds lead to ghosts or
+/// images.
 #[derive(Debug, Clone)]
 pub(super) struct Reach {
     start: Vec<usize>,
@@ -64,14 +65,14 @@ impl Reach {
 
 /// A work array of rows.
 pub(super) struct Packed {
-    /// Components of a vector field; behind them the size of the point's cell.
+    /// Components of a vector field, followed by the cell size of the point.
     rows: Vec<Row>,
-    /// Blocks packed in this evaluation.
+    /// Whether each block is packed in this evaluation.
     done: Vec<bool>,
 }
 
 impl Packed {
-    /// Rows with the sizes of the cells.
+    /// Creates rows with the sizes of cells.
     pub fn new(cells: impl Iterator<Item = f64>) -> Self {
         let rows: Vec<Row> = cells.map(|cell| Row([0.0, 0.0, 0.0, cell])).collect();
         Self {
@@ -80,11 +81,11 @@ impl Packed {
         }
     }
 
-    /// Packs a field, as far as the wanted points and their neighbours need it.
+    /// Packs a field for the requested points and their neighbours.
     pub fn fill<const D: usize>(
         &mut self,
         field: Field<'_>,
-        on: &On<'_>,
+        on: &PointSubset<'_>,
         sites: &Sites,
         reach: &Reach,
     ) -> &Records {
@@ -93,7 +94,7 @@ impl Packed {
             return &self.rows;
         }
         let field = field.owned;
-        if let On::All = on {
+        if let PointSubset::All = on {
             pack::<D>(field, &mut self.rows);
             return &self.rows;
         }

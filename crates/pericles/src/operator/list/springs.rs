@@ -1,16 +1,17 @@
-//! The bonds of a list on a lattice by their offset.
+//! Bonds of a list on a lattice by their offset.
 
 use std::ops::Range;
 
 use rayon::prelude::*;
 
 use super::force::BondForce;
-use crate::operator::fast_law::FastLaw;
+use crate::operator::fast_law::VectorLaw;
 use crate::operator::{LatticeSpring, LatticeSprings};
 use crate::parallel::BLOCK;
 
-impl<L: FastLaw, const D: usize> BondForce<L, D> {
-    /// The stiffest intact bond of every offset; none of points that are no lattice of cubic cells, or of different volumes or horizons.
+impl<L: VectorLaw, const D: usize> BondForce<L, D> {
+    /// Returns the stiffest intact bond of each offset; `None` for points that are not a lattice of cubic
+    /// cells or have different volumes or horizons.
     pub(super) fn springs_of_offsets(&self) -> Option<LatticeSprings> {
         let (sites, domain) = (self.bonds.sites(), self.cloud.domain());
         let lattice = sites.places().lattice().filter(|one| one.is_cubic(D))?;
@@ -25,7 +26,7 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
             .correction()
             .reach(self.bonds.uniform_horizon()?, spacing);
         let cells = (reach / spacing).floor();
-        // Bonds reach no farther than the body and its images; beyond that size plane waves are dear.
+        // Bonds do not exceed the body and its images; for larger reaches plane waves are expensive.
         let most = cells.min(lattice.shape.iter().copied().max()? as f64) as usize;
         let width = 2 * most + 1;
         let places = width.checked_pow(D as u32).filter(|&p| p <= 1 << 20)?;
@@ -48,7 +49,7 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
                         let length = self.bonds.length(here, b);
                         let stiffness = self.stiffness_of(entry, i, b) / length;
                         let largest = &mut stiffest[place(offset(here, b))];
-                        // NaN and negative numbers are refused by the caller.
+                        // The caller rejects NaN and negative values.
                         *largest = if stiffness >= 0.0 && !largest.is_nan() {
                             largest.max(stiffness)
                         } else {
@@ -75,7 +76,7 @@ impl<L: FastLaw, const D: usize> BondForce<L, D> {
                 }
                 a
             })?;
-        // No maximum of processes is NaN.
+        // A maximum over processes must not contain NaN.
         let usable = domain.all(stiffest.iter().all(|stiffness| !stiffness.is_nan()));
         if usable {
             domain.max_each(&mut stiffest);

@@ -1,4 +1,4 @@
-//! The stiffness of listed bonds, kept without a number per bond where that is possible.
+//! Stiffness of the bonds of a neighbour list, without a number per bond where possible.
 
 use std::collections::HashMap;
 
@@ -9,18 +9,18 @@ use crate::lanes::{F64x8, Lanes, Real};
 use crate::parallel::for_each_point;
 use crate::space::PointCloud;
 
-/// c α κ V of the neighbour, for every entry of a list.
+/// c α κ V of the neighbour for each entry of a list.
 #[derive(Debug, Clone)]
 pub(in crate::operator) enum Stiffness {
-    /// Computed from the bond's length and the volume of the neighbour.
+    /// Computed from the length of the bond and the volume of the neighbour.
     Formula(Formula),
-    /// One of a few values: the bonds of a lattice.
+    /// One of at most 256 values, as for the bonds of a lattice.
     Coded { codes: Vec<u8>, values: Vec<f64> },
-    /// One number per entry: 8 bytes where the others take none or one.
+    /// One number of 8 bytes per entry.
     Each(Vec<f64>),
 }
 
-/// c (a₀ + a₁ min(r, δ)) κ(r) V.
+/// The formula c (a₀ + a₁ min(r, δ)) κ(r) V.
 #[derive(Debug, Clone)]
 pub(in crate::operator) struct Formula {
     constant: f64,
@@ -29,17 +29,18 @@ pub(in crate::operator) struct Formula {
     correction: Option<Cells>,
 }
 
-/// Sizes of the cells that a horizon cuts.
+/// Cell sizes, for partial volumes at the horizon.
 #[derive(Debug, Clone, Copy)]
 enum Cells {
-    /// All of one size; one over it, m⁻¹.
+    /// All cells have the same size; its inverse, m⁻¹.
     Equal { inverse: f64 },
-    /// One for each point; they come with its displacement.
+    /// One size per point, stored with its displacement.
     Own,
 }
 
 impl Formula {
-    /// The formula of a material with constant c on a list of one horizon, if its influence function is of first degree.
+    /// Returns the formula of a material with constant c on a list of one horizon, if its influence function
+    /// is of first degree.
     pub fn new(
         cloud: &PointCloud,
         correction: VolumeCorrection,
@@ -62,7 +63,7 @@ impl Formula {
         ))
     }
 
-    /// The formula with the coefficients a₀ and a₁ given.
+    /// Creates the formula with given coefficients a₀ and a₁.
     pub fn of_first_degree(
         cloud: &PointCloud,
         correction: VolumeCorrection,
@@ -87,7 +88,8 @@ impl Formula {
         }
     }
 
-    /// Of eight bonds of length r; `cells` are the sizes of the cells of the point and of its neighbours.
+    /// Returns the stiffness of eight bonds of length r; `cells` are the cell sizes of the point and of its
+    /// neighbours.
     #[inline(always)]
     fn of<T: Lanes>(&self, r: T, volume: T, cells: [T; 2]) -> T {
         let horizon = T::splat(self.horizon);
@@ -96,7 +98,7 @@ impl Formula {
         let half = T::splat(0.5);
         let kappa = match self.correction {
             None => return shape * volume,
-            // No bond is so long that its factor is below zero.
+            // No bond is long enough for a negative factor.
             Some(Cells::Equal { inverse }) => (horizon - r).mul_add(T::splat(inverse), half),
             Some(Cells::Own) => {
                 let kappa = (horizon - r) / (half * (cells[0] + cells[1])) + half;
@@ -108,7 +110,7 @@ impl Formula {
 }
 
 impl Stiffness {
-    /// Few values as codes, many as they are.
+    /// Stores up to 256 distinct values as codes, otherwise all values.
     pub fn of_values(values: Vec<f64>) -> Self {
         let mut codes = HashMap::new();
         let mut coded = Vec::with_capacity(values.len());
@@ -134,7 +136,7 @@ impl Stiffness {
         }
     }
 
-    /// The values of a function of the point and the site of each entry, on all cores.
+    /// Evaluates a function of the point and the site of each entry, in parallel.
     pub fn of_pairs(bonds: &BondList, of: &(dyn Fn(usize, usize) -> f64 + Sync)) -> Self {
         let rows = for_each_point(bonds.len(), &|i| {
             let first = bonds.start()[i] * LANES;
@@ -147,7 +149,7 @@ impl Stiffness {
         Self::of_values(rows.concat())
     }
 
-    /// Of the eight bonds of a group; see [`Formula`].
+    /// Returns the stiffness of the eight bonds of a group; see [`Formula`].
     #[inline(always)]
     pub fn of_group<T: Lanes>(&self, group: usize, r: T, volume: T, cells: [T; 2]) -> T {
         match self {
@@ -164,7 +166,7 @@ impl Stiffness {
         }
     }
 
-    /// Of one entry.
+    /// Returns the stiffness of an entry.
     pub fn of_entry(&self, entry: usize, r: f64, volume: f64, cells: [f64; 2]) -> f64 {
         match self {
             Self::Formula(formula) => {
@@ -176,7 +178,7 @@ impl Stiffness {
         }
     }
 
-    /// Memory, bytes.
+    /// Returns the memory use, bytes.
     pub fn bytes(&self) -> usize {
         match self {
             Self::Formula(_) => 0,
@@ -191,7 +193,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn few_values_are_coded_and_many_kept() {
+    fn at_most_256_values_are_stored_as_codes() {
         let few: Vec<f64> = (0..5000).map(|k| f64::from(k % 256)).collect();
         let many: Vec<f64> = (0..5000).map(|k| f64::from(k % 257)).collect();
         let Stiffness::Coded { codes, values } = Stiffness::of_values(few.clone()) else {

@@ -1,13 +1,20 @@
-//! [`SplitForce`] and [`LocalForce`] for bond lists.
+//! [`SplitForce`] and [`LocalForce`] for neighbour lists.
 
 use super::force::BondForce;
 use super::kernels::force_rows;
-use crate::operator::fast_law::FastLaw;
-use crate::operator::{Breakable, LocalForce, On, SplitForce};
+use crate::operator::fast_law::VectorLaw;
+use crate::operator::{Breakable, LocalForce, PointSubset, SplitForce};
 use crate::step_end::StepEnd;
 
-impl<L: FastLaw, const D: usize> SplitForce for BondForce<L, D> {
-    fn add_force_from(&self, t: f64, u: &[f64], on: On<'_>, partners: &[bool], out: &mut [f64]) {
+impl<L: VectorLaw, const D: usize> SplitForce for BondForce<L, D> {
+    fn add_force_from(
+        &self,
+        t: f64,
+        u: &[f64],
+        on: PointSubset<'_>,
+        partners: &[bool],
+        out: &mut [f64],
+    ) {
         let partners = self.bonds.sites().spread_marks(partners);
         let heat = self.heat_at(t);
         let bonds = self.view().leading_to(Some(&partners));
@@ -22,7 +29,7 @@ impl<L: FastLaw, const D: usize> SplitForce for BondForce<L, D> {
     fn end_step_from(
         &mut self,
         step: &StepEnd<'_>,
-        on: On<'_>,
+        on: PointSubset<'_>,
         partners: &[bool],
         out: &mut [f64],
     ) {
@@ -34,7 +41,7 @@ impl<L: FastLaw, const D: usize> SplitForce for BondForce<L, D> {
     }
 }
 
-impl<L: FastLaw, const D: usize> LocalForce for BondForce<L, D> {
+impl<L: VectorLaw, const D: usize> LocalForce for BondForce<L, D> {
     fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize)) {
         self.bonds.for_each_neighbour(i, visit);
     }

@@ -1,4 +1,4 @@
-//! Bodies of linear peridynamic solids.
+//! Bodies of linear peridynamic solids and the choice between list and stencil kernels.
 
 use std::sync::Arc;
 
@@ -6,7 +6,7 @@ use super::force::LinearSolidForce;
 use super::grid::LinearSolidGrid;
 use super::kinematics::{FiniteStrain, Kinematics, SmallStrain};
 use crate::error::{PericlesError, Result};
-use crate::family::{BondList, Crack, Cut, EndRule, VolumeCorrection};
+use crate::family::{BondCut, BondList, Crack, EndRule, VolumeCorrection};
 use crate::material::{LinearSolidConstants, SolidClasses, SolidSurface, Strains};
 use crate::operator::assemble::fills_lattice;
 use crate::operator::{
@@ -14,66 +14,67 @@ use crate::operator::{
 };
 use crate::space::PointCloud;
 
-/// A body of linear peridynamic solids: all that its operator is made of.
+/// A body of linear peridynamic solids: the input of its force operator.
 #[derive(Debug, Clone)]
 pub struct LinearSolidBody<'a> {
     /// The points.
     pub cloud: &'a Arc<PointCloud>,
-    /// The constants of the body's material, whose horizon and influence function are those of the body.
+    /// Constants of the material; its horizon and influence function are those of the body.
     pub constants: &'a LinearSolidConstants,
-    /// The materials of the points and of the bonds between them, if there are several.
+    /// Materials of points and of bonds between them, if there are several.
     pub classes: Option<&'a SolidClasses>,
     /// Partial volumes at the horizon.
     pub volume_correction: VolumeCorrection,
-    /// How extensions follow from displacements.
+    /// Kinematics: bond extensions as functions of displacements.
     pub strains: Strains,
-    /// Correction of surfaces.
+    /// Surface correction.
     pub surface: SolidSurface,
-    /// Pre-cracks, cut before weighted volumes are computed.
+    /// Pre-cracks, applied before weighted volumes are computed.
     pub cracks: &'a [(Crack, EndRule)],
     /// Points whose bonds never break.
     pub no_fail: &'a [u32],
-    /// How damage weighs bonds.
+    /// Definition of damage.
     pub damage: DamageMeasure,
 }
 
-/// What state-based bodies do not represent.
+/// Features that state-based bodies do not support.
 const LIMITS: &[Limit] = &[
     Limit::new(
         Feature::Inclusions,
-        "inclusions scale the stiffness of bonds, which state-based materials do not have; assign a material with elastic constants of its own",
+        "inclusions scale the stiffness of bonds, which state-based materials do not have; assign a second material to a set of points instead",
     ),
     Limit::new(
         Feature::SeveralSpacings,
-        "state-based materials need cells of one size; leave `body.refine` out or use a bond-based model",
+        "state-based materials need cells of one size; omit `body.refine` or use a bond-based model",
     ),
     Limit::new(
         Feature::GaussNodes,
-        "Gauss nodes belong to linear bond-based bars; leave `quadrature` out",
+        "Gauss nodes are available for linear bond-based bars only; omit `quadrature`",
     ),
 ];
 
-/// What the form on a lattice does not represent.
+/// Features that the stencil kernel does not support.
 const ON_GRID: &[Limit] = &[
     Limit::new(
         Feature::SurfaceCorrection,
-        "corrected surfaces of state-based materials are kept as a list; use \"list\" or leave `bonds` out",
+        "the surface correction of state-based materials needs a neighbour list; use bonds = \"list\" or omit `bonds`",
     ),
     Limit::BOND_ENERGY,
     Limit::THERMAL_EXPANSION,
     Limit::new(
         Feature::NoLattice,
-        "its points lie on no regular grid; use \"list\"",
+        "the points do not lie on a regular grid; use bonds = \"list\"",
     ),
 ];
 
 impl<'a> LinearSolidBody<'a> {
-    /// Why a body with these features cannot be state-based; none if it can.
+    /// Returns why a body with these features cannot be state-based; `None` if it can.
     pub fn refusal(features: Features) -> Option<&'static str> {
         Limit::refusal(LIMITS, features)
     }
 
-    /// A body of one material without pre-cracks, all of whose bonds may break, for displacements of any size.
+    /// Creates a body of one material without pre-cracks, in which all bonds may break, for finite
+    /// displacements.
     pub fn new(
         cloud: &'a Arc<PointCloud>,
         constants: &'a LinearSolidConstants,
@@ -92,7 +93,7 @@ impl<'a> LinearSolidBody<'a> {
         }
     }
 
-    /// What the body has that not every form represents.
+    /// Returns the features of the body that not every kernel supports.
     pub fn features(&self) -> Features {
         let limits = match self.classes {
             Some(classes) => classes.weakest(),
@@ -107,7 +108,8 @@ impl<'a> LinearSolidBody<'a> {
             .with(Feature::NoLattice, self.cloud.lattice().is_none())
     }
 
-    /// What a form of state-based bodies does not represent. The fastest form is a list where a stencil is not possible.
+    /// Returns the features of state-based bodies that a kernel does not support. The fastest kernel is a
+    /// list if a stencil is not possible.
     pub fn limits(form: BondForm) -> &'static [Limit] {
         match form {
             BondForm::Fastest | BondForm::List => &[],
@@ -116,7 +118,7 @@ impl<'a> LinearSolidBody<'a> {
         }
     }
 
-    /// The faster of stencil and list.
+    /// Returns the faster of stencil and list.
     pub fn fastest_form(&self) -> BondForm {
         let refused = Limit::refusal(ON_GRID, self.features()).is_some();
         match !refused && fills_lattice(self.cloud) {
@@ -125,11 +127,15 @@ impl<'a> LinearSolidBody<'a> {
         }
     }
 
-    /// The operator.
+    /// Returns the force operator.
     ///
     /// # Errors
-    /// A form that does not represent the body, a horizon that reaches no neighbour, an unusable crack, materials of another number of points.
+    /// A kernel that does not support the body, a horizon without neighbours, an invalid crack, materials of
+    /// a different number of points.
     pub fn operator(&self, form: BondForm) -> Result<AssembledBonds> {
+        if self.surface == SolidSurface::Ghosts {
+            return self.with_ghosts(form);
+        }
         match (self.strains, self.cloud.dimension()) {
             (Strains::Finite, 1) => self.of_form::<FiniteStrain, 1>(form),
             (Strains::Finite, 2) => self.of_form::<FiniteStrain, 2>(form),
@@ -154,7 +160,7 @@ impl<'a> LinearSolidBody<'a> {
 
     fn assembled<F: TwoPass + 'static>(
         &self,
-        (force, cuts): (F, Vec<Cut>),
+        (force, cuts): (F, Vec<BondCut>),
         form: BondForm,
     ) -> AssembledBonds {
         AssembledBonds {
@@ -164,8 +170,8 @@ impl<'a> LinearSolidBody<'a> {
         }
     }
 
-    /// The materials of the points.
-    fn classes(&self) -> Result<SolidClasses> {
+    /// Returns the materials of the points.
+    pub(in crate::operator) fn classes(&self) -> Result<SolidClasses> {
         let classes = match self.classes {
             Some(classes) => classes.clone(),
             None => SolidClasses::uniform(self.constants),
@@ -175,16 +181,18 @@ impl<'a> LinearSolidBody<'a> {
             false => Err(PericlesError::OutOfRange {
                 quantity: "the number of points of the body",
                 value: self.cloud.len() as f64,
-                allowed: "as many points as have a material",
+                allowed: "the number of points with a material",
             }),
         }
     }
 
-    /// The force in two passes on a stencil, and what each pre-crack removed.
+    /// Returns the two-pass force on a stencil and the bonds removed by each pre-crack.
     ///
     /// # Errors
-    /// Those of [`LinearSolidBody::operator`].
-    pub fn grid<L: Kinematics, const D: usize>(&self) -> Result<(LinearSolidGrid<L, D>, Vec<Cut>)> {
+    /// Errors of [`LinearSolidBody::operator`].
+    pub fn grid<L: Kinematics, const D: usize>(
+        &self,
+    ) -> Result<(LinearSolidGrid<L, D>, Vec<BondCut>)> {
         Limit::check(ON_GRID, BondForm::Grid.name(), self.features())?;
         LinearSolidGrid::new(
             self.cloud,
@@ -197,20 +205,31 @@ impl<'a> LinearSolidBody<'a> {
         )
     }
 
-    /// The force in two passes on a list of bonds, and what each pre-crack removed.
-    ///
-    /// # Errors
-    /// Those of [`LinearSolidBody::operator`].
-    ///
-    /// # Panics
-    /// If the body has another dimension than D.
-    pub fn list<L: Kinematics, const D: usize>(
-        &self,
-    ) -> Result<(LinearSolidForce<L, D>, Vec<Cut>)> {
-        let classes = self.classes()?;
+    /// Returns the families without bonds cut by pre-cracks, and the bonds removed by each crack.
+    pub(in crate::operator) fn families(&self) -> Result<(BondList, Vec<BondCut>)> {
         let mut bonds = BondList::new(self.cloud, self.constants.horizon, self.volume_correction)?;
         let cut = |(crack, rule): &(Crack, EndRule)| bonds.cut(crack, *rule);
-        let cuts = self.cracks.iter().map(cut).collect::<Result<Vec<_>>>()?;
+        let cuts = self.cracks.iter().map(cut).collect::<Result<_>>()?;
+        Ok((bonds, cuts))
+    }
+
+    /// Returns the two-pass force on a neighbour list and the bonds removed by each pre-crack.
+    ///
+    /// # Errors
+    /// Errors of [`LinearSolidBody::operator`].
+    ///
+    /// # Panics
+    /// If the dimension of the body is not D.
+    pub fn list<L: Kinematics, const D: usize>(
+        &self,
+    ) -> Result<(LinearSolidForce<L, D>, Vec<BondCut>)> {
+        if self.surface == SolidSurface::Ghosts {
+            return Err(PericlesError::NoGhostLayer {
+                reason: "a force of the body alone has no ghost points; build it with `LinearSolidBody::operator`".into(),
+            });
+        }
+        let classes = self.classes()?;
+        let (bonds, cuts) = self.families()?;
         let force = LinearSolidForce::new(
             self.cloud.clone(),
             bonds,

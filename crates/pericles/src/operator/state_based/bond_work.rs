@@ -1,4 +1,4 @@
-//! Breaking by bond energy: the work of the force states of a bond since the start.
+//! Bond failure by energy: the accumulated work of the force states of a bond.
 
 use super::bonds::SolidBonds;
 use super::breaking::{BreakRule, take_bonds};
@@ -10,15 +10,17 @@ use crate::operator::damage::{BlockDamage, Tally};
 use crate::operator::records::Records;
 use crate::operator::rows::Rows;
 
-/// Numbers kept of a group of eight bonds: of each the work ∫ (p + ψ s) dψ since the start, and p + ψ s and ψ at the end of the last step.
+/// Number of values stored per group of eight bonds: for each bond the accumulated work ∫ (p + ψ s) dψ, and
+/// p + ψ s and ψ at the end of the last step.
 ///
-/// The bond energy is w r² times the work. Both ends keep their own, so that a step may end for a part of the body alone.
+/// The bond energy is w r² times the work. Both ends store their own values, so that a step can end for a
+/// subset of points.
 pub(super) const KEPT: usize = 3 * LANES;
 
-/// The bonds with what is kept of them.
+/// Bonds with their stored values.
 pub(super) struct Worked<'a> {
     pub bonds: SolidBonds<'a>,
-    /// The influence function w alone.
+    /// Influence function w.
     pub influence: &'a Weight,
 }
 
@@ -35,7 +37,7 @@ fn work_rows_body<T: Lanes, L: Kinematics, const D: usize>(
     let BlockDamage { intact, tally } = block;
     let (bonds, zero) = (&worked.bonds, T::splat(0.0));
     let (half, one) = (T::splat(0.5), T::splat(1.0));
-    // By more than the rounding of the sums below the limit.
+    // The margin below the limit exceeds the rounding error of the sums.
     let limit = T::splat(rule.energy * (1.0 - 1e-9));
     for row in 0..rows.count() {
         let i = rows.at(row);
@@ -63,7 +65,7 @@ fn work_rows_body<T: Lanes, L: Kinematics, const D: usize>(
                 .influence
                 .of_group(first + k, r, inverse, one, [zero, zero]);
             let energy = influence * bond.square * work;
-            // Bonds that are shorter than at the start never break.
+            // Compressed bonds never break.
             let over = energy.greater(limit) & stretch.greater(zero);
             endangered |= over & rule.candidates(first + k, intact[group]);
         }
@@ -78,7 +80,7 @@ fn work_rows_body<T: Lanes, L: Kinematics, const D: usize>(
     }
 }
 
-/// Breaks the bonds of a point whose energy is above that of their pair of materials.
+/// Breaks the bonds of a point whose energy exceeds the limit of their pair of materials.
 #[cold]
 #[inline(never)]
 fn break_by_work<L: Kinematics, const D: usize>(
@@ -110,7 +112,7 @@ fn break_by_work<L: Kinematics, const D: usize>(
 }
 
 impl Worked<'_> {
-    /// w r² times the work of an entry, J/m⁶.
+    /// Returns the bond energy of an entry, w r² times its work, J/m⁶.
     pub fn bond_energy<const D: usize>(&self, entry: usize, xi: [f64; D], work: f64) -> f64 {
         let square = crate::lanes::dot(xi, xi);
         let influence = self
@@ -121,7 +123,8 @@ impl Worked<'_> {
 }
 
 for_each_instruction_set! {
-    /// Advances the work of the bonds of the rows, breaks those whose energy is above their limit, and sets the dilatation of points that lost bonds; the fourth number of the rows of `u` is p.
+    /// Updates the work of the bonds of the rows, breaks bonds whose energy exceeds their limit, and sets the
+    /// dilatation of points that lost bonds. The fourth entry of the rows of `u` is p.
     pub(super) fn work_rows [L: Kinematics, const D: usize] <L, D> (
         worked: &Worked<'_>,
         rule: &BreakRule<'_>,

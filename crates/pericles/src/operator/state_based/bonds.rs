@@ -1,4 +1,4 @@
-//! The bonds of a state-based material as the loops see them.
+//! Arrays of the bonds of a state-based material read by the loops.
 
 use rayon::prelude::*;
 
@@ -11,11 +11,12 @@ use crate::operator::records::Records;
 use crate::parallel::BLOCK;
 use crate::space::Sites;
 
-/// What the loops read of the sites, in rows of four numbers, and of their bonds.
+/// Data of sites, in rows of four numbers, and of their bonds, read by the loops.
 pub(super) struct Layout {
-    /// Reference coordinates in units of `unit`; behind them the stiffness s = B/m of the point's own force state, N/m⁴ per weighted volume, or the volume of the point where volumes or cells differ.
+    /// Reference coordinates in units of `unit`, followed by the stiffness s = B/m of the force state of the
+    /// point, N/m⁴ per weighted volume, or by the volume of the point if volumes or cells differ.
     reference: Vec<Row>,
-    /// s and the size of the cell where volumes or cells differ.
+    /// s and the cell size, if volumes or cells differ.
     own: Option<Vec<Row>>,
     unit: [f64; 3],
     volume: f64,
@@ -23,7 +24,7 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// The layout of sites that have the stiffness s.
+    /// Creates the layout of sites with the stiffness s.
     pub fn new(sites: &Sites, stiffness: &[f64]) -> Self {
         let cloud = sites.places();
         let volumes = cloud.volumes();
@@ -47,7 +48,7 @@ impl Layout {
         }
     }
 
-    /// Memory, bytes.
+    /// Returns the memory use, bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.reference[..]) + self.own.as_ref().map_or(0, |own| size_of_val(&own[..]))
     }
@@ -60,7 +61,7 @@ impl Layout {
     }
 }
 
-/// Writes a vector on points and, behind its components, a number for each site to the rows of all sites.
+/// Writes a vector on points, followed by a number per site, to the rows of all sites.
 pub(super) fn pack<const D: usize>(
     u: Field<'_>,
     sites: &Sites,
@@ -81,28 +82,28 @@ pub(super) fn pack<const D: usize>(
         });
 }
 
-/// A bond list with layout and weights.
+/// A neighbour list with layout and weights.
 #[derive(Clone, Copy)]
 pub(super) struct SolidBonds<'a> {
     pub list: &'a BondList,
     pub layout: &'a Layout,
     pub weight: &'a Weight,
-    /// Factors of the stiffness of bonds near surfaces, where they are corrected.
+    /// Factors of the stiffness of bonds near surfaces, with surface correction.
     pub factor: Option<&'a Stiffness>,
 }
 
-/// What all bonds of a point share.
+/// Data shared by all bonds of a point.
 pub(super) struct Here<T, const D: usize> {
     reference: [T; D],
     u: [T; D],
     /// s of the point.
     stiffness: T,
     cell: T,
-    /// The fourth number of the point's row.
+    /// Fourth entry of the row of the point.
     last: T,
 }
 
-/// Eight bonds side by side.
+/// Eight bonds in lanes.
 pub(super) struct Bond<T, const D: usize> {
     pub xi: [T; D],
     pub eta: [T; D],
@@ -111,11 +112,11 @@ pub(super) struct Bond<T, const D: usize> {
     pub inverse_square: T,
     /// ω
     pub weight: T,
-    /// s of both ends times the bond's own factor.
+    /// Sum of s of both ends times the factor of the bond.
     pub stiffness: T,
-    /// The factor.
+    /// Factor of the bond.
     pub factor: T,
-    /// The fourth number of the rows of both ends: p, where rows hold it.
+    /// Fourth entries of the rows of both ends: p, if rows contain it.
     pub last: T,
 }
 
@@ -128,7 +129,7 @@ impl<'a> SolidBonds<'a> {
             Some(own) => (own[i][0], own[i][1]),
             None => (reference[3], self.layout.cell),
         };
-        // No closures: one that is not inlined would take the baseline's instructions.
+        // No closures here: without inlining they would use baseline instructions.
         let (mut place, mut moved) = ([T::splat(0.0); D], [T::splat(0.0); D]);
         for c in 0..D {
             place[c] = T::splat(reference[c]);
@@ -143,7 +144,7 @@ impl<'a> SolidBonds<'a> {
         }
     }
 
-    /// The rows of the neighbours of a group.
+    /// Returns the rows of the neighbours of a group.
     #[inline(always)]
     pub fn there<T: Lanes>(&self, group: usize, rows: &Records) -> [T; 4] {
         assert!(
@@ -151,11 +152,12 @@ impl<'a> SolidBonds<'a> {
             "a row for every site"
         );
         let indices = self.list.group(group);
-        // SAFETY: neighbours are below the number of sites, which `BondList` guarantees, and there are as many rows.
+        // SAFETY: `BondList` guarantees that neighbours are below the number of sites, which is the number of
+        // rows.
         unsafe { T::gather(rows, indices) }
     }
 
-    /// The eight bonds of a group.
+    /// Returns the eight bonds of a group.
     #[inline(always)]
     pub fn group<T: Lanes, const D: usize>(
         &self,
@@ -201,13 +203,13 @@ impl<'a> SolidBonds<'a> {
         }
     }
 
-    /// ξ of the bond between two sites, m.
+    /// Returns ξ of the bond between two sites, m.
     pub fn vector<const D: usize>(&self, a: usize, b: usize) -> [f64; D] {
         let (from, to) = (&self.layout.reference[a], &self.layout.reference[b]);
         std::array::from_fn(|c| (to[c] - from[c]) * self.layout.unit[c])
     }
 
-    /// ω of one entry that leads from site a to site b along ξ.
+    /// Returns ω of an entry from site a to site b along ξ.
     pub fn weight_of<const D: usize>(&self, entry: usize, [a, b]: [usize; 2], xi: [f64; D]) -> f64 {
         let [_, from] = self.layout.volume_and_cell(a);
         let [volume, to] = self.layout.volume_and_cell(b);
@@ -217,14 +219,14 @@ impl<'a> SolidBonds<'a> {
 }
 
 impl SolidBonds<'_> {
-    /// The factor of the stiffness of an entry.
+    /// Returns the factor of the stiffness of an entry.
     pub fn factor_of(&self, entry: usize) -> f64 {
         self.factor
             .map_or(1.0, |factors| factors.of_entry(entry, 0.0, 0.0, [0.0; 2]))
     }
 }
 
-/// Difference of the vectors of two sites.
+/// Returns the difference of the vectors of two sites.
 pub(super) fn difference<const D: usize>(u: &Records, a: usize, b: usize) -> [f64; D] {
     std::array::from_fn(|c| u[b][c] - u[a][c])
 }

@@ -1,7 +1,9 @@
-//! Breaking of a point's bonds, and the energy that it dissipates.
+//! Bond failure and the dissipated energy of a point.
 //!
-//! The energy of a state-based solid is a sum over points, each with a function of its dilatation and of all its bonds. A point that loses bonds loses the difference of its energy with them and without them;
-//! the work of their forces in the second half of the step is taken off as for single bonds, with the power of the point's energy in place of that of a bond.
+//! The energy of a state-based solid is a sum over points of a function of the dilatation and of all bonds of
+//! the point. A point that loses bonds dissipates the difference of its energies with and without them, minus
+//! the work of their forces in the second half of the step. This is the rule for single bonds with the power
+//! of the energy of the point instead of that of a bond.
 
 use super::bonds::{SolidBonds, difference};
 use super::heat::heated_limit;
@@ -14,20 +16,21 @@ use crate::operator::records::Records;
 use crate::space::Sites;
 use crate::step_end::StepEnd;
 
-/// The factors of every point's force state.
+/// Factors of the force states of points.
 pub(super) struct States {
-    /// D/m: the dilatation is this times Σ ω r e.
+    /// D/m: the dilatation is (D/m) Σ ω r e.
     pub dilatation: Vec<f64>,
-    /// A/m of each site, or of each point and ghost in a body on a stencil: p over θ.
+    /// A/m = p/θ of each site; on a stencil of each point and ghost.
     pub pressure: Vec<f64>,
-    /// s = B/m of the same.
+    /// s = B/m, as for A/m.
     pub stiffness: Vec<f64>,
-    /// A/D, Pa: the energy density is this times θ²/2, and s/2 Σ g ω e².
+    /// A/D, Pa: the energy density is (A/D) θ²/2 + (s/2) Σ g ω e².
     pub bulk: Vec<f64>,
 }
 
 impl States {
-    /// The factors for these weighted volumes; points without bonds have none. `spread` hands the numbers of own points on to all that bonds lead to.
+    /// Creates the factors for these weighted volumes; zero for points without bonds. `spread` copies values
+    /// of own points to all sites.
     pub fn new<const D: usize>(
         volumes: &[f64],
         classes: &SolidClasses,
@@ -48,17 +51,17 @@ impl States {
         }
     }
 
-    /// The energy density of a point at a site with this dilatation and this Σ g ω e², J/m³.
+    /// Returns the energy density of a point at a site for a dilatation and Σ g ω e², J/m³.
     pub fn energy_density(&self, [i, site]: [usize; 2], theta: f64, squares: f64) -> f64 {
         0.5 * (self.bulk[i] * theta * theta + self.stiffness[site] * squares)
     }
 
-    /// k = (max(A D, 0) + g B)/m of a site: W ≤ ½ Σ k ω e² by Cauchy's inequality θ² ≤ (D²/m) Σ ω e².
+    /// Returns k = (max(A D, 0) + g B)/m of a site: W ≤ ½ Σ k ω e² by Cauchy's inequality θ² ≤ (D²/m) Σ ω e².
     pub fn spring<const D: usize>(&self, site: usize, factor: f64) -> f64 {
         (D as f64 * self.pressure[site]).max(0.0) + factor * self.stiffness[site]
     }
 
-    /// Memory, bytes.
+    /// Returns the memory use, bytes.
     pub fn bytes(&self) -> usize {
         let arrays = [
             &self.dilatation,
@@ -70,35 +73,36 @@ impl States {
     }
 }
 
-/// Breaking as the loops see it.
+/// Failure criterion read by the loops.
 #[derive(Clone, Copy)]
 pub(super) struct BreakRule<'a> {
-    /// Bonds with a measure above threshold |ξ|² exceed the critical stretch of the weakest pair of materials.
+    /// A bond exceeds the critical stretch of the weakest pair of materials if measure > threshold |ξ|².
     pub threshold: f64,
-    /// The bond energy of the weakest pair of materials.
+    /// Critical bond energy of the weakest pair of materials.
     pub energy: f64,
     pub classes: &'a SolidClasses,
-    /// Bits of the bonds that may break; all of them if none.
+    /// Bits of the bonds that may break; `None`: all.
     pub breakable: Option<&'a [u8]>,
     pub states: &'a States,
     pub volumes: &'a [f64],
-    /// The step that ended.
+    /// The step that ends.
     pub step: &'a StepEnd<'a>,
-    /// Mean velocities over the step, where breaking asks for them.
+    /// Mean velocities over the step, if the failure criterion needs them.
     pub velocity: Option<Field<'a>>,
-    /// Note what breaks, so that the other end can be cleared.
+    /// Whether breaking bonds are recorded for the update of their other end.
     pub note_events: bool,
-    /// What inelastic stretches keep of an entry, where a material is not elastic.
+    /// Stored energy of inelastic stretches, if a material is not elastic.
     pub stored: Option<Stored<'a>>,
-    /// Thermal stretches of own points and ghosts, if the body is heated.
+    /// Thermal stretches of own points and ghosts, if the material expands.
     pub stretches: Option<&'a [f64]>,
 }
 
-/// Of a point and one of its entries: the inelastic stretch x, and the part c of ψ² − 2 ψ x + c, in units of the energy of a bond, that the stretches of the entry keep.
+/// For a point and one of its entries: the inelastic stretch x and the constant c of the bond energy ψ² − 2 ψ
+/// x + c.
 pub(super) type Stored<'a> = &'a (dyn Fn(usize, usize) -> [f64; 2] + Sync);
 
 impl BreakRule<'_> {
-    /// The critical stretch of a bond between two sites, points included that it leads to.
+    /// Returns the critical stretch of a bond between two sites, including thermal stretch.
     pub fn limit(&self, sites: &Sites, [a, b]: [usize; 2]) -> f64 {
         let limit = self.classes.limits(a, b).stretch;
         match self.stretches {
@@ -110,7 +114,7 @@ impl BreakRule<'_> {
         }
     }
 
-    /// Bits of the bonds of a group that are left and may break.
+    /// Returns the bits of the intact bonds of a group that may break.
     #[inline(always)]
     pub fn candidates(&self, group: usize, intact: u8) -> u8 {
         match self.breakable {
@@ -120,9 +124,11 @@ impl BreakRule<'_> {
     }
 }
 
-/// Breaks the bonds of a point that are stretched beyond their critical stretch and books their energy; returns whether there were any.
+/// Breaks the bonds of a point that exceed their critical stretch and records the dissipated energy. Returns
+/// whether a bond broke.
 ///
-/// Decided with [`PairForce::stretch_measure`], whose rounding is the same at both ends and for all instruction sets.
+/// The criterion uses [`PairForce::stretch_measure`], which is bitwise identical at both ends and for all
+/// instruction sets.
 #[cold]
 #[inline(never)]
 pub(super) fn break_row<L: Kinematics, const D: usize>(
@@ -151,7 +157,8 @@ pub(super) fn break_row<L: Kinematics, const D: usize>(
     take_bonds::<L, D>(bonds, rule, u, i, intact, &broken, tally)
 }
 
-/// Clears the bits of bonds that are broken, books the energy that their point loses, and returns whether there are any.
+/// Clears the bits of broken bonds and records the energy that their point dissipates. Returns whether there
+/// are any.
 pub(super) fn take_bonds<L: Kinematics, const D: usize>(
     bonds: &SolidBonds<'_>,
     rule: &BreakRule<'_>,
@@ -184,7 +191,7 @@ pub(super) fn take_bonds<L: Kinematics, const D: usize>(
     true
 }
 
-/// Energy dissipated by a point that loses the bonds `broken` of those that are left at the end of a step, J.
+/// Returns the energy dissipated by a point whose bonds `broken` break at the end of a step, J.
 fn dissipated<L: Kinematics, const D: usize>(
     bonds: &SolidBonds<'_>,
     rule: &BreakRule<'_>,
@@ -218,23 +225,23 @@ fn dissipated<L: Kinematics, const D: usize>(
     loss.dissipated(rule.states, [i, here], rule.volumes[i], rule.step)
 }
 
-/// A bond of a point that loses some of its bonds.
+/// A bond of a point with breaking bonds.
 pub(super) struct LosingBond<const D: usize> {
     pub xi: [f64; D],
     pub eta: [f64; D],
-    /// Relative velocity of its ends, zero where breaking does not ask for it.
+    /// Relative velocity of its ends; zero if the failure criterion does not need it.
     pub velocity: [f64; D],
     /// ω
     pub weight: f64,
-    /// The factor of its stiffness.
+    /// Factor of its stiffness.
     pub factor: f64,
     /// x and c of [`Stored`]; zero in elastic solids.
     pub stored: [f64; 2],
-    /// The thermal stretch τ of the point.
+    /// Thermal stretch τ of the point.
     pub thermal: f64,
 }
 
-/// What a point loses with some of its bonds: sums over all of its bonds, and over those that it loses.
+/// Sums over all bonds of a point and over its breaking bonds.
 #[derive(Default)]
 pub(super) struct Loss {
     whole: Sums,
@@ -251,12 +258,12 @@ struct Sums {
 }
 
 impl Loss {
-    /// Adds a bond that is left before the loss.
+    /// Adds a bond that is intact before the failure.
     pub fn add<L: Kinematics, const D: usize>(&mut self, bond: &LosingBond<D>, broken: bool) {
         let square = dot(bond.xi, bond.xi);
         let t = F64x8([strain::<L, D>(bond.xi, bond.eta); LANES]);
         let stretch = L::exact_stretch(t).0[0] - bond.thermal;
-        // dψ/dt with the mean velocity.
+        // dψ/dt for the mean velocity.
         let along = dot(direction::<L, D>(bond.xi, bond.eta), bond.velocity);
         let rate = along * L::contraction(t).0[0] / square;
         let weight = bond.weight * square;
@@ -266,7 +273,8 @@ impl Loss {
         }
     }
 
-    /// The energy dissipated at the end of a step by a point at a site, J: [`StepEnd::dissipated_energy`] of the energy that it loses.
+    /// Returns the energy dissipated at the end of a step by a point at a site, J:
+    /// [`StepEnd::dissipated_energy`] of its loss of energy.
     pub fn dissipated(
         &self,
         states: &States,
@@ -277,7 +285,7 @@ impl Loss {
         let Self { whole, lost } = self;
         let [theta, theta_rate] = whole.extension.map(|sum| states.dilatation[i] * sum);
         let [loss, loss_rate] = lost.extension.map(|sum| states.dilatation[i] * sum);
-        // θ² and its rate before less those after.
+        // Decrease of θ² and of its rate.
         let left = theta - loss;
         let energy = 0.5 * states.bulk[i] * loss * (theta + left)
             + 0.5 * states.stiffness[site] * lost.square[0];
@@ -304,7 +312,7 @@ impl Sums {
     }
 }
 
-/// t of one bond.
+/// Returns the strain t of a bond.
 fn strain<L: Kinematics, const D: usize>(xi: [f64; D], eta: [f64; D]) -> f64 {
     let (measure, square) = L::Measure::stretch_measure(xi, eta);
     measure / square

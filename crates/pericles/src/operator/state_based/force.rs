@@ -1,4 +1,4 @@
-//! The force operator of linear peridynamic solids on a bond list.
+//! Neighbour-list force kernel of linear peridynamic solids.
 
 use std::sync::Arc;
 
@@ -20,39 +20,41 @@ use crate::operator::list::stiffness::Stiffness;
 use crate::operator::pool::{Lent, Pool};
 use crate::operator::records::Records;
 use crate::operator::rows::Rows;
-use crate::operator::{InstructionSet, On};
+use crate::operator::{InstructionSet, PointSubset};
 use crate::parallel::{BLOCK, components_mut, for_each_block, for_each_point};
 use crate::space::PointCloud;
 use crate::step_end::StepEnd;
 
-/// The force density of linear peridynamic solids, N/m³, in two passes over a bond list:
+/// Force density of linear peridynamic solids, N/m³, in two passes over a neighbour list:
 ///
-/// θ_i = (D/m_i) Σ_j ω e, then f_i = Σ_j ω [A_i θ_i/m_i + A_j θ_j/m_j + (B_i/m_i + B_j/m_j) e/r] (r/|y|) y, with the weight ω = w b V_j of influence function, partial volume and volume, the extension e of the
-/// bond and its direction y as [`Kinematics`] has them (in the first sum the extension is weighted by r).
+/// θ_i = (D/m_i) Σ_j ω r e, then f_i = Σ_j ω [A_i θ_i/m_i + A_j θ_j/m_j + (B_i/m_i + B_j/m_j) e/r] (r/|y|) y,
+/// with the weight ω = w b V_j of influence function, partial volume and volume, and the extension e and
+/// direction y of the bond given by [`Kinematics`].
 ///
-/// m_i = Σ_j ω r² is computed once, of the bonds that exist at the start, and kept when bonds break: f is then the gradient of Σ W V with W = A θ²/(2 D) + B/(2 m) Σ ω e² whatever is broken, and θ goes to zero
-/// with the bonds.
+/// m_i = Σ_j ω r² is computed once from the initial bonds and does not change when bonds break. Therefore f
+/// remains the gradient of Σ W V with W = A θ²/(2 D) + B/(2 m) Σ ω e², and θ vanishes with the bonds.
 ///
-/// Memory: no number per bond where the influence function is a constant, cone or inverse (see [`BondForce`](crate::operator::BondForce)); 24 bytes per bond where bonds break by their energy.
+/// Memory: no number per bond for a constant, conical or inverse influence function (see
+/// [`BondForce`](crate::operator::BondForce)); 24 bytes per bond for failure by bond energy.
 pub struct LinearSolidForce<L: Kinematics, const D: usize> {
     pub(super) cloud: Arc<PointCloud>,
     pub(super) bonds: BondList,
     pub(super) layout: Layout,
     pub(super) weight: Weight,
-    /// Factors of the stiffness of bonds near surfaces, if they are corrected.
+    /// Factors of the stiffness of bonds near surfaces, with surface correction.
     factor: Option<Stiffness>,
     pub(super) states: States,
     pub(super) classes: SolidClasses,
-    /// The limits of the weakest pair of materials.
+    /// Limits of the weakest pair of materials.
     pub(super) weakest: BondLimits,
     pub(super) breakable: Option<Vec<u8>>,
     pub(super) damage: DamageMeasure,
     pub(super) blocks: Vec<BlockDamage>,
-    /// The influence function alone, where bonds break by their energy.
+    /// Influence function, for failure by bond energy.
     pub(super) influence: Option<Weight>,
-    /// What is kept of bonds that break by their energy, [`KEPT`] numbers for each group.
+    /// Values stored for failure by bond energy, [`KEPT`] per group.
     pub(super) work: Vec<f64>,
-    /// Thermal strain, if the body is heated.
+    /// Thermal strain, if the material expands.
     pub(super) heat: Option<Heat>,
     packed: Pool<Vec<Row>>,
     pub(super) instruction_set: InstructionSet,
@@ -60,7 +62,7 @@ pub struct LinearSolidForce<L: Kinematics, const D: usize> {
 }
 
 crate::saved! {
-    impl<L: Kinematics, const D: usize> Saved for LinearSolidForce<L, D> {
+    impl<L: Kinematics, const D: usize> Checkpointed for LinearSolidForce<L, D> {
         blocks: under("operator"),
         work: array("operator/bond-work"),
         cloud, bonds, layout, weight, factor, states, classes, weakest, breakable, damage, influence: fixed,
@@ -74,10 +76,11 @@ crate::saved! {
 }
 
 impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
-    /// The force of solids with one influence function on the bonds of a body. Bonds of the points `no_fail` never break.
+    /// Creates the force of solids with one influence function on the bonds of a body. Bonds of the points
+    /// `no_fail` never break.
     ///
     /// # Panics
-    /// If the cloud has another dimension than D.
+    /// If the dimension of the cloud is not D.
     pub fn new(
         cloud: Arc<PointCloud>,
         bonds: BondList,
@@ -128,7 +131,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         }
     }
 
-    /// The same with corrected surfaces; every bond keeps a number, a byte where there are few.
+    /// Adds surface correction. Each bond stores a number, or a byte if there are few distinct values.
     pub fn with_surface(self, surface: SolidSurface, influence: &Influence) -> Self {
         let factors = match surface.factors(&self.bonds, influence, &self.classes) {
             SurfaceFactors::None => None,
@@ -143,22 +146,23 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         }
     }
 
-    /// Whether bonds near surfaces have factors of their own.
+    /// Returns whether bonds near surfaces have factors.
     pub(super) fn is_corrected(&self) -> bool {
         self.factor.is_some()
     }
 
-    /// The families.
+    /// Returns the families.
     pub fn bonds(&self) -> &BondList {
         &self.bonds
     }
 
-    /// The weighted volume m of a point, m⁵ for a dimensionless influence function; infinite for a point without bonds.
+    /// Returns the weighted volume m of a point, m⁵ for a dimensionless influence function; infinite for a
+    /// point without bonds.
     pub fn weighted_volume(&self, i: usize) -> f64 {
         D as f64 / self.states.dilatation[i]
     }
 
-    /// Whether an entry's bond is still there.
+    /// Returns whether the bond of an entry is intact.
     pub fn is_intact(&self, i: usize, entry: usize) -> bool {
         let block = i / BLOCK;
         let group = entry / LANES - self.bonds.start()[block * BLOCK];
@@ -174,14 +178,15 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         }
     }
 
-    /// Rows of displacements.
+    /// Returns rows of displacements.
     pub(super) fn packed(&self, u: Field<'_>) -> Lent<'_, Vec<Row>> {
         let mut rows = self.packed.take();
         pack::<D>(u, self.bonds.sites(), |_| 0.0, &mut rows);
         rows
     }
 
-    /// Rows of a vector and of p for the values of the pass over points given: dilatations, and thermal pulls where the body is heated.
+    /// Returns rows of a vector and of p for the given values of the pass over points: dilatations, and
+    /// thermal pulls of a heated body.
     pub(super) fn packed_with(&self, u: Field<'_>, values: Field<'_>) -> Lent<'_, Vec<Row>> {
         let (sites, pressure) = (self.bonds.sites(), &self.states.pressure);
         match self.heat {
@@ -195,7 +200,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         }
     }
 
-    /// Rows of a vector and of a number of each site.
+    /// Returns rows of a vector followed by a number per site.
     pub(super) fn packed_beside(
         &self,
         u: Field<'_>,
@@ -209,12 +214,12 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
     /// Runs a read-only loop over all blocks.
     pub(super) fn sweep<const C: usize>(
         &self,
-        on: &On<'_>,
+        on: &PointSubset<'_>,
         out: &mut [f64],
         rows: impl Fn(&[u8], &Rows<'_>, &mut [&mut [f64]; C]) + Sync,
     ) {
         let n = self.cloud.len();
-        // A vector of nothing: the blocks' state is only read, and no memory is taken.
+        // A vector of units takes no memory: the state of blocks is only read.
         let mut nothing = vec![(); self.blocks.len()];
         for_each_block(
             components_mut::<C>(out, n),
@@ -227,8 +232,8 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         );
     }
 
-    /// Sets the dilatations of the points named by `on`.
-    pub(super) fn dilatations_into(&self, u: Field<'_>, on: &On<'_>, out: &mut [f64]) {
+    /// Sets the dilatations of the points `on`.
+    pub(super) fn dilatations_into(&self, u: Field<'_>, on: &PointSubset<'_>, out: &mut [f64]) {
         let (bonds, factors) = (self.view(), &self.states.dilatation[..]);
         let u = self.packed(u);
         self.sweep::<1>(on, out, |intact, rows, out| {
@@ -237,12 +242,13 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         });
     }
 
-    /// The rule of breaking for the points named by `on`; `velocity` holds the mean velocities over the step, where breaking asks for them.
+    /// Returns the failure criterion for the points `on`; `velocity` contains the mean velocities over the
+    /// step, if needed.
     fn rule<'a>(
         &'a self,
         step: &'a StepEnd<'a>,
         velocity: Option<Field<'a>>,
-        on: &On<'_>,
+        on: &PointSubset<'_>,
     ) -> BreakRule<'a> {
         BreakRule {
             threshold: L::Measure::threshold(self.weakest.stretch),
@@ -253,18 +259,19 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
             volumes: self.cloud.volumes(),
             step,
             velocity,
-            note_events: !matches!(on, On::All),
+            note_events: !matches!(on, PointSubset::All),
             stored: None,
             stretches: None,
         }
     }
 
-    /// Breaks bonds of the points named by `on` that are stretched beyond their critical stretch and sets the points' dilatations. `stored` is what inelastic stretches keep, where a material is not elastic.
+    /// Breaks bonds of the points `on` that exceed their critical stretch and sets the dilatations of these
+    /// points. `stored` is the energy of inelastic stretches, if a material is not elastic.
     pub(super) fn break_by_stretch(
         &mut self,
         step: &StepEnd<'_>,
         u: Field<'_>,
-        on: &On<'_>,
+        on: &PointSubset<'_>,
         dilatations: &mut [f64],
         stored: Option<Stored<'_>>,
     ) {
@@ -306,13 +313,14 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         self.renew_volumes(broken);
     }
 
-    /// Advances the work of the bonds of the points named by `on`, breaks those whose energy is above their limit, and sets the dilatations of points of `on` that lost bonds. Dilatations are given at all
-    /// points that are needed.
+    /// Updates the work of the bonds of the points `on`, breaks bonds whose energy exceeds their limit, and
+    /// sets the dilatations of points that lost bonds. `dilatations` must contain those of all points on
+    /// which the bonds depend.
     pub(super) fn break_by_energy(
         &mut self,
         step: &StepEnd<'_>,
         u: Field<'_>,
-        on: &On<'_>,
+        on: &PointSubset<'_>,
         dilatations: &mut [f64],
     ) {
         let Some(influence) = &self.influence else {
@@ -324,7 +332,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
             std::mem::take(&mut self.work),
         );
         let ghosts = self.cloud.domain().ghosts(dilatations);
-        // These rows hold the dilatations from before: those of points that lose bonds change.
+        // These rows contain the dilatations before failure; those of points that lose bonds change.
         let u = self.packed_with(u, Field::new(dilatations, &ghosts));
         let moved = step.ghost_velocities(self.cloud.domain());
         let rule = self.rule(step, step.velocities(&moved), on);
@@ -357,7 +365,8 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         self.work = work;
     }
 
-    /// Clears the second copy of bonds that broke in a sweep over some of the points only, and books the energy that their other ends lose.
+    /// Breaks the other end of bonds that broke in a sweep over a subset of points, and records the energy
+    /// dissipated there.
     fn clear_other_ends(&self, rule: &BreakRule<'_>, u: &Records, blocks: &mut [BlockDamage]) {
         if !rule.note_events {
             return;
@@ -379,7 +388,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         }
     }
 
-    /// Memory of what the loops read beside the list, bytes.
+    /// Returns the memory use of the arrays of the loops without the list, bytes.
     pub(super) fn own_bytes(&self) -> usize {
         let rows = size_of::<Row>() * self.cloud.len();
         let states = self.states.bytes();
@@ -390,7 +399,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
     }
 }
 
-/// The blocks with the part of what is kept of bonds that belongs to each.
+/// Returns the blocks with their stored values of bonds.
 fn with_work<'a>(
     blocks: &'a mut [BlockDamage],
     mut work: &'a mut [f64],
@@ -404,7 +413,7 @@ fn with_work<'a>(
     parts
 }
 
-/// m = Σ ω r² of every point, over the bonds that exist.
+/// Returns m = Σ ω r² of each point over its existing bonds.
 fn weighted_volumes<const D: usize>(
     cloud: &PointCloud,
     bonds: &BondList,

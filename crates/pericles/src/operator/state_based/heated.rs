@@ -7,22 +7,23 @@ use super::heat::Heat;
 use super::kinematics::Kinematics;
 use crate::error::{PericlesError, Result};
 use crate::lanes::dot;
-use crate::operator::On;
+use crate::operator::PointSubset;
 use crate::parallel::{BLOCK, for_each_point};
 use crate::thermal::{Expandable, ThermalExpansion};
 
 impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
-    /// τ of own points and ghosts at a time, if the body is heated.
+    /// Returns τ of own points and ghosts at time t, if the body is heated.
     pub(super) fn stretches(&self, t: f64) -> Option<Arc<Vec<f64>>> {
         Some(self.heat.as_ref()?.expansion.stretches(t))
     }
 
-    /// The same at the time that forces were computed for last.
+    /// Returns τ at the time of the last force evaluation.
     pub(super) fn latest_stretches(&self) -> Option<Arc<Vec<f64>>> {
         Some(self.heat.as_ref()?.expansion.latest())
     }
 
-    /// What the stretch of a point adds to p, the sum of the pull of its force state that does not depend on the bond.
+    /// Returns the contribution of the thermal stretch of a point to p, the pull of its force state that is
+    /// the same for all bonds.
     pub(super) fn thermal_pull(&self, i: usize, stretch: f64) -> f64 {
         let Some(heat) = &self.heat else {
             return 0.0;
@@ -32,8 +33,8 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         -stretch * (states.pressure[site] * share + states.stiffness[site])
     }
 
-    /// Adds the thermal pull of the points named by `on` to one number of every point.
-    pub(super) fn add_thermal_pulls(&self, t: f64, on: &On<'_>, pulls: &mut [f64]) {
+    /// Adds the thermal pulls of the points `on` to one value per point.
+    pub(super) fn add_thermal_pulls(&self, t: f64, on: &PointSubset<'_>, pulls: &mut [f64]) {
         if let Some(stretches) = self.stretches(t) {
             on.for_each(pulls.len(), |i| {
                 pulls[i] += self.thermal_pull(i, stretches[i]);
@@ -41,15 +42,16 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         }
     }
 
-    /// Sets the thermal pulls of the points named by `on`, of a heated body; nothing of others.
-    pub(super) fn thermal_pulls_into(&self, t: f64, on: &On<'_>, pulls: &mut [f64]) {
+    /// Sets the thermal pulls of the points `on` of a heated body; no effect for other bodies.
+    pub(super) fn thermal_pulls_into(&self, t: f64, on: &PointSubset<'_>, pulls: &mut [f64]) {
         if self.heat.is_some() {
             on.for_each(pulls.len(), |i| pulls[i] = 0.0);
             self.add_thermal_pulls(t, on, pulls);
         }
     }
 
-    /// The energy density of a point with the dilatation θ, the sum Σ g ω e² of total extensions and the sum Σ ω r e_x of inelastic extensions, J/m³.
+    /// Returns the energy density of a point with the dilatation θ, the sum Σ g ω e² of total extensions and
+    /// the sum Σ ω r e_x of inelastic extensions, J/m³.
     pub(super) fn energy_at(
         &self,
         i: usize,
@@ -70,14 +72,15 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         }
     }
 
-    /// Directed bonds broken so far, by blocks; of heated bodies only.
+    /// Returns the number of broken directed bonds per block, for heated bodies only.
     pub(super) fn broken_by_blocks(&self) -> Option<Vec<u64>> {
         self.heat.as_ref()?;
         let blocks = self.blocks.iter();
         Some(blocks.map(|block| block.tally.broken.get()).collect())
     }
 
-    /// Computes M' anew in all blocks that lost bonds since there were so many broken ones in each; everywhere if none are given.
+    /// Updates M' in all blocks in which the number of broken bonds differs from `before`; in all blocks if
+    /// `None`.
     pub(super) fn renew_volumes(&mut self, before: Option<Vec<u64>>) {
         let Some(mut heat) = self.heat.take() else {
             return;
@@ -101,7 +104,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         self.heat = Some(heat);
     }
 
-    /// Σ ω r² over the bonds of a point that are left.
+    /// Returns Σ ω r² over the intact bonds of a point.
     fn volume_left(&self, i: usize) -> f64 {
         let (bonds, here) = (self.view(), self.bonds.site(i));
         let intact = (self.bonds.family(i)).filter(|&(entry, _)| self.is_intact(i, entry));
@@ -115,7 +118,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
 
 impl<L: Kinematics, const D: usize> Expandable for LinearSolidForce<L, D> {
     /// # Errors
-    /// Corrected surfaces and limits of bond energy.
+    /// Surface correction, or failure by bond energy.
     fn expand(&mut self, expansion: ThermalExpansion) -> Result<()> {
         let refuse = |reason| {
             let form = "list";
@@ -123,12 +126,12 @@ impl<L: Kinematics, const D: usize> Expandable for LinearSolidForce<L, D> {
         };
         if self.is_corrected() {
             return refuse(
-                "the factors of corrected surfaces are those of bonds without thermal strain; leave out `surface_correction`",
+                "the surface correction of state-based materials does not include thermal strain; omit `surface_correction`",
             );
         }
         if self.weakest.energy.is_finite() {
             return refuse(
-                "the work of bonds with thermal strain is not followed; use failure = \"stretch\"",
+                "failure by bond energy does not include thermal strain; use failure = \"stretch\"",
             );
         }
         self.heat = Some(Heat {

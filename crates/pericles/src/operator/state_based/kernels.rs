@@ -1,7 +1,9 @@
-//! The loops of a linear peridynamic solid over listed bonds, one text for every dimension and instruction set.
+//! Loops of linear peridynamic solids over the bonds of a neighbour list, generic over dimension and
+//! instruction set.
 //!
-//! The pass over points reads rows of displacements and leaves the dilatation. The pass over bonds reads rows with the displacement and p = A θ/m of both ends. Bonds are taken eight at a time; the lanes of a
-//! sum are added in a fixed order, so that a point's values depend on nothing but its neighbours.
+//! The pass over points reads rows of displacements and computes dilatations. The pass over bonds reads rows
+//! with the displacement and p = A θ/m of both ends. Bonds are processed in groups of eight. The lanes of a
+//! sum are added in a fixed order, so that the values of a point depend on its neighbours only.
 
 use super::bonds::SolidBonds;
 use super::breaking::{BreakRule, break_row};
@@ -12,20 +14,20 @@ use crate::operator::damage::Tally;
 use crate::operator::records::Records;
 use crate::operator::rows::Rows;
 
-/// Σ ω r e of a point, and the range of the strains t it was computed from.
+/// Σ ω r e of a point, and the range of its strains t.
 struct Extension<T> {
     sum: T,
     largest: T,
     smallest: T,
 }
 
-/// The sum of the lanes, in a fixed order.
+/// Returns the sum of the lanes in a fixed order.
 #[inline(always)]
 pub(super) fn sum<T: Lanes>(lanes: T) -> f64 {
     F64x8(lanes.to_array()).sum()
 }
 
-/// The groups of a point among those of its block.
+/// Returns the groups of a point relative to its block.
 #[inline(always)]
 pub(super) fn groups_of(list: &BondList, i: usize, first_point: usize) -> std::ops::Range<usize> {
     let start = list.start();
@@ -47,7 +49,7 @@ fn extension<T: Lanes, L: Kinematics, const D: usize>(
         smallest: zero,
     };
     let first = bonds.list.start()[i];
-    // No closure and no adapter here: one that is not inlined would take the baseline's instructions.
+    // No closure or adapter here: without inlining it would use baseline instructions.
     for k in 0..intact.len() {
         if intact[k] == 0 {
             continue;
@@ -61,7 +63,7 @@ fn extension<T: Lanes, L: Kinematics, const D: usize>(
     extension
 }
 
-/// The same however large the strains.
+/// Returns Σ ω r e by the exact law, for any strains.
 #[inline(always)]
 fn exact_extension<T: Lanes, L: Kinematics, const D: usize>(
     bonds: &SolidBonds<'_>,
@@ -83,14 +85,15 @@ fn exact_extension<T: Lanes, L: Kinematics, const D: usize>(
     total
 }
 
-/// Whether a strain lies beyond the reach of the fast form.
+/// Returns whether a strain exceeds the range of the fast form.
 #[inline(always)]
 fn beyond<T: Lanes, L: Kinematics>(largest: T, smallest: T) -> bool {
     let reach = T::splat(L::REACH);
     largest.greater(reach) | (-smallest).greater(reach) != 0
 }
 
-/// The sum in the form that the strains of the point's own bonds need, so that it does not depend on which other points are computed beside it.
+/// Selects the fast or exact form by the strains of the bonds of the point only, so that the sum does not
+/// depend on which other points are computed with it.
 #[inline(always)]
 fn settled<T: Lanes, L: Kinematics, const D: usize>(
     bonds: &SolidBonds<'_>,
@@ -106,7 +109,7 @@ fn settled<T: Lanes, L: Kinematics, const D: usize>(
     }
 }
 
-/// Σ ω r e of a point.
+/// Returns Σ ω r e of a point.
 #[inline(always)]
 pub(super) fn extension_of<T: Lanes, L: Kinematics, const D: usize>(
     bonds: &SolidBonds<'_>,
@@ -135,7 +138,8 @@ fn dilatation_rows_body<T: Lanes, L: Kinematics, const D: usize>(
     }
 }
 
-/// t above which a row is checked bond by bond: below the threshold by more than the fast form's rounding.
+/// Fraction of the threshold above which bonds of a row are checked individually; the margin exceeds the
+/// rounding error of the fast form.
 const WATCH: f64 = 1.0 - 1e-9;
 
 #[inline(always)]
@@ -152,7 +156,7 @@ fn accept_rows_body<T: Lanes, L: Kinematics, const D: usize>(
     for k in 0..rows.count() {
         let i = rows.at(k);
         let intact = &mut intact[groups_of(bonds.list, i, rows.first)];
-        // Once more if bonds have broken: a loop, so that the compiler has one copy of its body.
+        // Repeated if bonds have broken. A loop gives the compiler a single copy of the body.
         let extension = loop {
             let extension = extension::<T, L, D>(bonds, u, i, intact);
             let endangered = extension.largest.greater(watch) != 0;
@@ -165,7 +169,7 @@ fn accept_rows_body<T: Lanes, L: Kinematics, const D: usize>(
     }
 }
 
-/// The force of a point by the law itself, however large the strains.
+/// Returns the force on a point by the exact law, for any strains.
 #[inline(always)]
 fn exact_force<T: Lanes, L: Kinematics, const D: usize>(
     bonds: &SolidBonds<'_>,
@@ -255,7 +259,7 @@ fn square_rows_body<T: Lanes, L: Kinematics, const D: usize>(
     }
 }
 
-/// The derivative of the stretch ψ in the direction d: (r/|y|) y·d/r².
+/// Returns the derivative of the stretch ψ in the direction d: (r/|y|) y·d/r².
 #[inline(always)]
 pub(super) fn stretch_change<T: Lanes, L: Kinematics, const D: usize>(
     xi: [T; D],
@@ -359,7 +363,7 @@ fn tangent_rows_body<T: Lanes, L: Kinematics, const D: usize>(
 }
 
 for_each_instruction_set! {
-    /// Sets the dilatation of the rows: `factors` (D/m of every point) times Σ ω r e.
+    /// Sets the dilatations of the rows: `factors` (D/m of each point) times Σ ω r e.
     pub(super) fn dilatation_rows [L: Kinematics, const D: usize] <L, D> (
         bonds: &SolidBonds<'_>,
         factors: &[f64],
@@ -371,7 +375,7 @@ for_each_instruction_set! {
 }
 
 for_each_instruction_set! {
-    /// Breaks over-stretched bonds of the rows and sets the dilatation by those that are left.
+    /// Breaks over-stretched bonds of the rows and sets the dilatations from the intact bonds.
     pub(super) fn accept_rows [L: Kinematics, const D: usize] <L, D> (
         bonds: &SolidBonds<'_>,
         rule: &BreakRule<'_>,
@@ -384,7 +388,7 @@ for_each_instruction_set! {
 }
 
 for_each_instruction_set! {
-    /// Adds the force density of the rows; the fourth number of the rows of `u` is p.
+    /// Adds the force density of the rows; the fourth entry of the rows of `u` is p.
     pub(super) fn force_rows [L: Kinematics, const D: usize] <L, D> (
         bonds: &SolidBonds<'_>,
         u: &Records,
@@ -419,7 +423,8 @@ for_each_instruction_set! {
 }
 
 for_each_instruction_set! {
-    /// Adds the derivative of the force density of the rows in a direction, whose rows have the change of p as their fourth number.
+    /// Adds the derivative of the force density of the rows in a direction; the fourth entry of the rows of
+    /// the direction is the change of p.
     pub(super) fn tangent_rows [L: Kinematics, const D: usize] <L, D> (
         bonds: &SolidBonds<'_>,
         u: &Records,

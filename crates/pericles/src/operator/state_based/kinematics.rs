@@ -1,59 +1,65 @@
-//! How stretches and directions of bonds follow from displacements, in the loops of grid and list.
+//! Kinematics of bonds: stretches and directions as functions of displacements.
 
 use crate::lanes::{Vector, dot};
 use crate::material::{BondStretch, LinearBond, PairForce};
 use crate::operator::fast_law::PHI;
 
-/// The geometry of a bond of length r = |ξ| as the loops of state-based materials take it: a strain t of one number decides all.
+/// The kinematics of a bond of length r = |ξ| in the loops of state-based materials, as a function of a
+/// scalar strain t.
 ///
-/// With the stretch ψ = e/r, the direction y and the pull p + ψ s of both force states (p from the dilatations, s from the bond itself), a bond adds
+/// With the stretch ψ = e/r, the direction y and the pull p + ψ s of both force states (p from the
+/// dilatations, ψ s from the bond), a bond contributes
 ///
 /// * ω r² ψ to the weighted extension Σ ω r e of its point,
 /// * ω F y with F = (p + ψ s) r/|y| to the force,
 ///
-/// where ω is the influence function times the partial volume of the neighbour. No root and no division is taken for |t| ≤ [`Kinematics::REACH`].
+/// where ω is the influence function times the partial volume of the neighbour. For
+/// |t| ≤ [`Kinematics::REACH`] no roots or divisions are needed.
 pub trait Kinematics: Copy + Default + Send + Sync + 'static {
-    /// The pair force with the same measure of stretch, by which breaking is decided.
+    /// Pair force with the stretch measure of the failure criterion.
     type Measure: PairForce;
-    /// Whether stretches are linear in the displacement, and directions fixed.
+    /// Whether stretches are linear in the displacement and directions fixed.
     const LINEAR: bool;
-    /// The largest |t| for which [`Kinematics::stretch`] and [`Kinematics::pull`] hold to round-off.
+    /// Largest |t| for which [`Kinematics::stretch`] and [`Kinematics::pull`] are exact to round-off.
     const REACH: f64;
 
-    /// t of bonds side by side; the same bits seen from the other end.
+    /// Returns the strain t of the bonds; bitwise identical from both ends.
     fn strain<T: Vector, const D: usize>(xi: [T; D], eta: [T; D], inverse_square: T) -> T;
 
-    /// ψ for |t| ≤ REACH.
+    /// Returns ψ for |t| ≤ REACH.
     fn stretch<T: Vector>(t: T) -> T;
 
-    /// ψ for any t.
+    /// Returns ψ for any t.
     fn exact_stretch<T: Vector>(t: T) -> T;
 
-    /// F for |t| ≤ REACH.
+    /// Returns F for |t| ≤ REACH.
     fn pull<T: Vector>(t: T, p: T, s: T) -> T;
 
-    /// F for any t.
+    /// Returns F for any t.
     fn exact_pull<T: Vector>(t: T, p: T, s: T) -> T;
 
-    /// The direction of the force, not normalised.
+    /// Returns the direction of the force, not normalised.
     fn direction<T: Vector, const D: usize>(xi: [T; D], eta: [T; D]) -> [T; D];
 
-    /// r/|y| for any t.
+    /// Returns r/|y| for any t.
     fn contraction<T: Vector>(t: T) -> T;
 
-    /// The change of F where ψ changes by `stretch` and p by `change`, for any t.
+    /// Returns the change of F for changes `stretch` of ψ and `change` of p, for any t.
     fn pull_change<T: Vector>(t: T, p: T, s: T, stretch: T, change: T) -> T;
 }
 
-/// e = |ξ + η| − |ξ|, forces along y = ξ + η: for displacements of any size. t = η·(2ξ + η)/|ξ|², so that nothing cancels at small strains, and ψ = √(1 + t) − 1.
+/// Finite displacements: e = |ξ + η| − |ξ|, forces along y = ξ + η. t = η·(2ξ + η)/|ξ|² avoids cancellation
+/// at small strains, and ψ = √(1 + t) − 1.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct FiniteStrain;
 
-/// e = ξ·η/|ξ|, forces along y = ξ: the linearisation of [`FiniteStrain`] about the reference. t = ψ = ξ·η/|ξ|².
+/// Small displacements: e = ξ·η/|ξ|, forces along y = ξ, the linearisation of [`FiniteStrain`] about the
+/// reference state. t = ψ = ξ·η/|ξ|².
 #[derive(Debug, Clone, Copy, Default)]
 pub struct SmallStrain;
 
-/// Coefficients of ψ(t)/t = 1/(1 + √(1+t)), ascending: the polynomial through its values at the seven Chebyshev nodes of |t| ≤ 0.02, computed with 50 digits; relative error below 6e-16 there.
+/// Coefficients of ψ(t)/t = 1/(1 + √(1+t)), ascending: the polynomial through its values at the seven
+/// Chebyshev nodes of |t| ≤ 0.02, computed with 50 digits; relative error below 6e-16 there.
 const PSI: [f64; 7] = [
     0.5,
     -0.12500000000009168,
@@ -64,7 +70,7 @@ const PSI: [f64; 7] = [
     0.0161209210780157,
 ];
 
-/// t times the polynomial.
+/// Returns t times the polynomial.
 #[inline(always)]
 fn polynomial<T: Vector>(coefficients: &[f64; 7], t: T) -> T {
     let mut value = T::splat(coefficients[6]);
@@ -74,7 +80,7 @@ fn polynomial<T: Vector>(coefficients: &[f64; 7], t: T) -> T {
     t * value
 }
 
-/// η·(2ξ + η)
+/// Returns η·(2ξ + η).
 #[inline(always)]
 fn growth<T: Vector, const D: usize>(xi: [T; D], eta: [T; D]) -> T {
     let mut growth = eta[0] * (xi[0] + (xi[0] + eta[0]));
@@ -210,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn changes_of_the_pull_are_its_derivatives() {
+    fn pull_change_is_the_derivative_of_the_pull() {
         // t of a stretch ψ is ψ (2 + ψ).
         let pull = |psi: f64, p: f64, s: f64| {
             let t = lanes(psi * (2.0 + psi));

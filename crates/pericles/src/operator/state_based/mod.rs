@@ -1,15 +1,15 @@
-//! The force of state-based materials.
+//! Force kernels of state-based materials.
 //!
-//! | part | what |
+//! | module | contents |
 //! |---|---|
-//! | `kinematics` | how stretches and directions follow from displacements: the law, shared by all forms of loops |
-//! | `bonds`, `weight` | what the loops over lists read |
-//! | `kernels`, `bond_work` | the loops over lists |
-//! | `breaking` | which bonds break, and what that dissipates |
-//! | `force`, `passes`, `view` | the operator on lists |
-//! | `grid` | the same on a lattice, by one stencil |
-//! | `inelastic` | solids whose shear is viscous or plastic, on lists |
-//! | `body` | what the operator is made of, and the choice of its form |
+//! | `kinematics` | stretches and directions of bonds, shared by all loops |
+//! | `bonds`, `weight` | data of the loops over lists |
+//! | `kernels`, `bond_work` | loops over lists |
+//! | `breaking` | bond failure and dissipated energy |
+//! | `force`, `passes`, `view` | operator on lists |
+//! | `grid` | stencil kernel for lattices |
+//! | `inelastic` | solids with viscous or plastic shear, on lists |
+//! | `body` | input of the operator and choice of the kernel |
 
 mod body;
 mod bond_work;

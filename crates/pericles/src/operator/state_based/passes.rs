@@ -10,19 +10,19 @@ use crate::domain::Field;
 use crate::lanes::LANES;
 use crate::material::PairForce;
 use crate::operator::{
-    AtPoints, BondView, Breakable, CoarseBreak, InstructionSet, On, TwoPass, damage,
+    AtPoints, BondView, Breakable, CoarseBreak, InstructionSet, PointSubset, TwoPass, damage,
 };
 use crate::parallel::for_each_chunk;
 use crate::step_end::StepEnd;
 use crate::thermal::{Expandable, ThermalExpansion};
 
 impl<L: Kinematics, const D: usize> TwoPass for LinearSolidForce<L, D> {
-    /// The dilatation θ; in heated bodies, the thermal pull behind it.
+    /// The dilatation θ; in heated bodies also the thermal pull.
     fn values_per_point(&self) -> usize {
         1 + usize::from(self.heat.is_some())
     }
 
-    fn values_into(&self, t: f64, u: Field<'_>, on: &On<'_>, values: &mut [f64]) {
+    fn values_into(&self, t: f64, u: Field<'_>, on: &PointSubset<'_>, values: &mut [f64]) {
         let (dilatations, pulls) = values.split_at_mut(self.cloud.len());
         self.dilatations_into(u, on, dilatations);
         self.thermal_pulls_into(t, on, pulls);
@@ -33,13 +33,13 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidForce<L, D> {
         let (u, direction) = (self.packed(u), self.packed(direction));
         let (changes, pulls) = changes.split_at_mut(self.cloud.len());
         pulls.fill(0.0);
-        self.sweep::<1>(&On::All, changes, |intact, rows, out| {
+        self.sweep::<1>(&PointSubset::All, changes, |intact, rows, out| {
             let set = self.instruction_set;
             dilatation_change_rows::<L, D>(set, &bonds, factors, &u, &direction, intact, rows, out);
         });
     }
 
-    fn add_bond_force(&self, _t: f64, at: AtPoints<'_>, on: &On<'_>, out: &mut [f64]) {
+    fn add_bond_force(&self, _t: f64, at: AtPoints<'_>, on: &PointSubset<'_>, out: &mut [f64]) {
         let bonds = self.view();
         let u = self.packed_with(at.u, at.values);
         self.sweep::<D>(on, out, |intact, rows, out| {
@@ -51,7 +51,7 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidForce<L, D> {
         let bonds = self.view();
         let u = self.packed_with(at.u, at.values);
         let direction = self.packed_with(change.u, change.values);
-        self.sweep::<D>(&On::All, out, |intact, rows, out| {
+        self.sweep::<D>(&PointSubset::All, out, |intact, rows, out| {
             let set = self.instruction_set;
             tangent_rows::<L, D>(set, &bonds, &u, &direction, intact, rows, out);
         });
@@ -61,7 +61,7 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidForce<L, D> {
         let bonds = self.view();
         let mut squares = vec![0.0; self.cloud.len()];
         let u = self.packed(at.u);
-        self.sweep::<1>(&On::All, &mut squares, |intact, rows, out| {
+        self.sweep::<1>(&PointSubset::All, &mut squares, |intact, rows, out| {
             square_rows::<L, D>(self.instruction_set, &bonds, &u, intact, rows, out);
         });
         let stretches = self.stretches(t);
@@ -74,7 +74,8 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidForce<L, D> {
         });
     }
 
-    /// The solid is softer than springs of the stiffness ω (k_i + k_j) V_i with k = (max(A D, 0) + g B)/m, to which Gershgorin's discs apply.
+    /// The solid is softer than springs of the stiffness ω (k_i + k_j) V_i with k = (max(A D, 0) + g B)/m,
+    /// which Gershgorin discs bound.
     fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {
         let bonds = self.view();
         let mut largest: f64 = 0.0;
@@ -94,7 +95,7 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidForce<L, D> {
         self.cloud.domain().max(largest).sqrt()
     }
 
-    /// With thermal strain it is linear but for a force at rest.
+    /// With thermal strain the force is affine: it does not vanish at rest.
     fn is_linear(&self) -> bool {
         L::LINEAR && self.heat.is_none()
     }
@@ -103,16 +104,17 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidForce<L, D> {
         self.bonds.for_each_neighbour(i, visit);
     }
 
-    /// A critical stretch is decided in the pass over points itself; the bond energy after it, for it needs the dilatations of both ends.
+    /// The critical stretch is evaluated in the pass over points, the bond energy afterwards, because it
+    /// needs the dilatations of both ends.
     fn end_values_into(
         &mut self,
         step: &StepEnd<'_>,
         u: Field<'_>,
-        on: &On<'_>,
-        needed: &On<'_>,
+        on: &PointSubset<'_>,
+        needed: &PointSubset<'_>,
         values: &mut [f64],
     ) {
-        let all = matches!(on, On::All);
+        let all = matches!(on, PointSubset::All);
         let (values, pulls) = values.split_at_mut(self.cloud.len());
         if self.weakest.stretch.is_finite() {
             self.break_by_stretch(step, u, on, values, None);
@@ -151,7 +153,7 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidForce<L, D> {
         Some(self)
     }
 
-    /// None in a body divided among processes: the force of a bond needs the families of both of its ends.
+    /// Not available for bodies divided among processes: the force of a bond needs the families of both ends.
     fn bonds(&self) -> Option<&dyn BondView> {
         (!self.cloud.domain().is_divided()).then_some(self)
     }
@@ -187,7 +189,7 @@ impl<L: Kinematics, const D: usize> Breakable for LinearSolidForce<L, D> {
         damage::dissipate(&mut self.blocks, energy);
     }
 
-    /// None: the energy that a bond stores at its critical stretch depends on the other bonds of its ends.
+    /// Always empty: the energy of a bond at its critical stretch depends on the other bonds of its ends.
     fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {
         Vec::new()
     }
@@ -235,7 +237,7 @@ impl<L: Kinematics, const D: usize> Breakable for LinearSolidForce<L, D> {
         }
     }
 
-    /// The bond energy is taken from the work at the end of the last step.
+    /// The bond energy is that of the work at the end of the last step.
     fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]) {
         let bonds = self.view();
         let worked = self

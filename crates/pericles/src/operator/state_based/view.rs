@@ -8,13 +8,13 @@ use crate::material::PairForce;
 use crate::operator::{BondAt, BondView};
 
 impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
-    /// ξ and η of the bond from point i to a site.
+    /// Returns ξ and η of the bond from point i to a site.
     fn vectors(&self, u: Field<'_>, i: usize, site: usize) -> [[f64; D]; 2] {
         let eta = u.difference::<D>([i, self.bonds.sites().point(site)]);
         [self.view().vector::<D>(self.bonds.site(i), site), eta]
     }
 
-    /// p = A θ/m of a point, with its thermal pull at the time that forces were computed for last.
+    /// Returns p = A θ/m of a point with its thermal pull at the time of the last force evaluation.
     fn pressure_of(&self, u: Field<'_>, i: usize) -> f64 {
         let (family, here) = (self.bonds.family(i), self.bonds.site(i));
         let intact = family.filter(|&(entry, _)| self.is_intact(i, entry));
@@ -31,13 +31,13 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
     }
 }
 
-/// t of a bond.
+/// Returns the strain t of a bond.
 fn strain<L: Kinematics, const D: usize>(xi: [f64; D], eta: [f64; D]) -> F64x8 {
     let (measure, square) = L::Measure::stretch_measure(xi, eta);
     F64x8([measure / square; LANES])
 }
 
-/// ω r e of a bond with the weight ω.
+/// Returns ω r e of a bond with the weight ω.
 pub(super) fn weighted_extension<L: Kinematics, const D: usize>(
     weight: f64,
     xi: [f64; D],
@@ -47,7 +47,7 @@ pub(super) fn weighted_extension<L: Kinematics, const D: usize>(
     weight * dot(xi, xi) * stretch
 }
 
-/// The force density of a bond with the weight ω from p and s, each the sum of both ends.
+/// Returns the force density of a bond with the weight ω from p and s, each summed over both ends.
 pub(super) fn force_of_bond<L: Kinematics, const D: usize>(
     weight: f64,
     [p, s]: [f64; 2],
@@ -61,7 +61,8 @@ pub(super) fn force_of_bond<L: Kinematics, const D: usize>(
 }
 
 impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
-    /// Calls `visit` for every bond of a point that is left. The pull of a bond is taken less `relief` of its point and its entry.
+    /// Calls `visit` for each intact bond of a point. The pull of a bond is reduced by `relief` of its point
+    /// and entry.
     pub(super) fn visit_bonds(
         &self,
         u: Field<'_>,
@@ -85,7 +86,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
     }
 }
 
-/// The dilatations of a point and its neighbours are computed for each call.
+/// Each call computes the dilatations of a point and its neighbours.
 impl<L: Kinematics, const D: usize> BondView for LinearSolidForce<L, D> {
     fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt)) {
         self.visit_bonds(u, i, &|_, _| 0.0, visit);

@@ -1,4 +1,4 @@
-//! The weight of listed bonds, kept without a number per bond where that is possible.
+//! Weights of the bonds of a neighbour list, without a number per bond where possible.
 
 use crate::family::{BondList, VolumeCorrection};
 use crate::kernel::{Influence, InfluenceFunction};
@@ -6,23 +6,24 @@ use crate::lanes::Lanes;
 use crate::operator::list::stiffness::{Formula, Stiffness};
 use crate::space::PointCloud;
 
-/// ω = w b V: influence function, partial volume and volume of the neighbour, for every entry of a list; or w alone.
+/// ω = w b V (influence function, partial volume and volume of the neighbour) of each entry of a list, or
+/// only w.
 #[derive(Debug, Clone)]
 pub(super) struct Weight {
     values: Stiffness,
-    /// One over the horizon where w is `values` over the bond's length, m⁻¹.
+    /// Inverse horizon, m⁻¹, if w is `values` divided by the length of the bond.
     over_length: Option<f64>,
 }
 
 impl Weight {
-    /// w b V.
+    /// Creates weights w b V.
     pub fn of_volumes(cloud: &PointCloud, bonds: &BondList, influence: &Influence) -> Self {
         Self::new(cloud, bonds, influence, bonds.correction(), &|a, b| {
             bonds.volume_factor(a, b) * bonds.volume(b)
         })
     }
 
-    /// w, where the volumes of neighbours are taken to be one.
+    /// Creates weights w, with unit volumes of neighbours.
     pub fn of_influence(cloud: &PointCloud, bonds: &BondList, influence: &Influence) -> Self {
         Self::new(cloud, bonds, influence, VolumeCorrection::None, &|_, _| 1.0)
     }
@@ -55,7 +56,8 @@ impl Weight {
         }
     }
 
-    /// Of the eight bonds of a group with the lengths r = 1/`inverse`; `cells` are the sizes of the cells of the point and of its neighbours.
+    /// Returns the weights of the eight bonds of a group with the lengths r = 1/`inverse`; `cells` are the
+    /// cell sizes of the point and of its neighbours.
     #[inline(always)]
     pub fn of_group<T: Lanes>(
         &self,
@@ -67,13 +69,13 @@ impl Weight {
     ) -> T {
         let values = self.values.of_group(group, r, volume, cells);
         match self.over_length {
-            // Cells beyond the horizon that reach into it take the value at the horizon.
+            // Cells beyond the horizon that overlap with it have the value at the horizon.
             Some(least) => values * inverse.max(T::splat(least)),
             None => values,
         }
     }
 
-    /// Of one entry of length r.
+    /// Returns the weight of an entry of length r.
     pub fn of_entry(&self, entry: usize, r: f64, volume: f64, cells: [f64; 2]) -> f64 {
         let value = self.values.of_entry(entry, r, volume, cells);
         match self.over_length {
@@ -82,13 +84,14 @@ impl Weight {
         }
     }
 
-    /// Memory, bytes.
+    /// Returns the memory use, bytes.
     pub fn bytes(&self) -> usize {
         self.values.bytes()
     }
 }
 
-/// The coefficients a₀ and a₁ of w = a₀ + a₁ r, and whether it is to be divided by r, if w has this form.
+/// Returns the coefficients a₀ and a₁ of w = a₀ + a₁ r, or of w = (a₀ + a₁ r)/r if the flag is set; `None`
+/// for other forms.
 fn first_degree(function: &InfluenceFunction, horizon: f64) -> Option<([f64; 2], bool)> {
     match function {
         InfluenceFunction::Constant => Some(([1.0, 0.0], false)),

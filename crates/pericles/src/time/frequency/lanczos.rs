@@ -1,16 +1,20 @@
-//! Lanczos iteration with a bound from above.
+//! Lanczos iteration for the largest eigenvalue, with an upper bound.
 //!
-//! **The estimate** is the largest Ritz value θ after k products: at most the largest eigenvalue λ.
+//! **Estimate.** The largest Ritz value θ after k products is a lower bound of the largest eigenvalue λ.
 //!
-//! **The bound** (van Dorsselaer, Hochstenbach & van der Vorst, SIAM J. Matrix Anal. Appl. 22 (2000) 837–852). With the coefficients α_j, β_j of the iteration and the
-//! eigenvector v of λ, (q_{k+1}, v) Π β_j = χ_k(λ) (q_1, v), χ_k being the characteristic polynomial of the tridiagonal matrix. The left inner product is at most one, so that
-//! χ_k(λ) ≤ Π β_j/|(q_1, v)|; above θ the polynomial grows, and λ lies below the point where it reaches Π β_j/τ unless |(q_1, v)| < τ. The start vector decides how likely that is:
-//! its entries are independent, symmetric and uniform (times the root of the inverse mass) with standard deviation σ. (q_1, v)‖x‖ is then a sum of independent log-concave
-//! variables, log-concave itself with standard deviation σ, and the density of such a variable is nowhere above 1/(√2 σ): |(q_1, v)| < τ has a probability of at most √2 τ‖x‖/σ.
-//! τ follows from [`FAILURE`](super::FAILURE). The matrix need not be positive definite.
+//! **Bound** (van Dorsselaer, Hochstenbach & van der Vorst, SIAM J. Matrix Anal. Appl. 22 (2000) 837–852). With the
+//! coefficients α_j, β_j of the iteration and the eigenvector v of λ, (q_{k+1}, v) Π β_j = χ_k(λ) (q_1, v), where
+//! χ_k is the characteristic polynomial of the tridiagonal matrix. The left inner product is at most one, so that
+//! χ_k(λ) ≤ Π β_j/|(q_1, v)|. Above θ the polynomial increases, and λ is below the point where it reaches Π β_j/τ
+//! unless |(q_1, v)| < τ. The random start vector determines the probability of that: its entries are independent,
+//! symmetric and uniform (times the root of the inverse mass) with standard deviation σ. (q_1, v)‖x‖ is then a sum
+//! of independent log-concave variables, itself log-concave with standard deviation σ, and the density of such a
+//! variable is at most 1/(√2 σ): |(q_1, v)| < τ has a probability of at most √2 τ‖x‖/σ. τ follows from
+//! [`FAILURE`](super::FAILURE). The matrix need not be positive definite.
 //!
-//! **Rounding.** Without reorthogonalisation the vectors lose their orthogonality once a Ritz value has converged. The recurrence of the products with v is disturbed by some 1e-16 a step,
-//! far below τ, so that the bound stands; copies of converged values change nothing at the upper end.
+//! **Rounding.** Without reorthogonalisation the vectors lose their orthogonality once a Ritz value has converged.
+//! The recurrence of the products with v is perturbed by about 1e-16 per step, far below τ, so that the bound
+//! remains valid; copies of converged values do not change the upper end.
 
 use crate::domain::Domain;
 use crate::noise::noise_on;
@@ -22,7 +26,7 @@ pub(super) struct Problem<'a> {
     pub domain: &'a Domain,
 }
 
-/// The iteration so far.
+/// State of the iteration.
 pub(super) struct Lanczos<'a> {
     problem: Problem<'a>,
     current: Vec<f64>,
@@ -30,21 +34,21 @@ pub(super) struct Lanczos<'a> {
     next: Vec<f64>,
     diagonal: Vec<f64>,
     off: Vec<f64>,
-    /// ln 1/τ; none for start vectors that were not drawn.
+    /// ln 1/τ; `None` for start vectors that are not random.
     depth: Option<f64>,
 }
 
-/// What the iteration knows of the largest eigenvalue.
+/// Lower and upper bound of the largest eigenvalue.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Enclosure {
-    /// The largest Ritz value.
+    /// Largest Ritz value, a lower bound.
     pub estimate: f64,
-    /// Infinite for start vectors that were not drawn.
+    /// Upper bound; infinite for start vectors that are not random.
     pub bound: f64,
 }
 
 impl<'a> Lanczos<'a> {
-    /// From a start vector; none if it is zero.
+    /// Starts from a vector; `None` if it is zero.
     pub fn from_vector(problem: Problem<'a>, start: Vec<f64>) -> Option<Self> {
         let mut lanczos = Self {
             previous: vec![0.0; start.len()],
@@ -63,7 +67,8 @@ impl<'a> Lanczos<'a> {
         Some(lanczos)
     }
 
-    /// From a random vector, the same for every run, without the entries that `hold` sets to zero; none if it sets all of them.
+    /// Starts from a random vector, the same in every run, with the entries that `hold` sets to zero removed;
+    /// `None` if no entry remains.
     pub fn from_noise(
         problem: Problem<'a>,
         entries: usize,
@@ -73,7 +78,7 @@ impl<'a> Lanczos<'a> {
         let components = entries / problem.domain.owned_points().max(1);
         let mut start = noise_on(problem.domain, components, 0x9E37_79B9_7F4A_7C15);
         hold(&mut start);
-        // σ² is a third for numbers that are uniform in [−1, 1).
+        // σ² = 1/3 for numbers uniform in [−1, 1).
         let norm = problem.domain.norm(&start);
         for (k, x) in start.iter_mut().enumerate() {
             *x /= (problem.mass)(k).sqrt();
@@ -90,12 +95,12 @@ impl<'a> Lanczos<'a> {
         self.problem.domain.sum(x.len(), |k| mass(k) * x[k] * y[k])
     }
 
-    /// Products so far.
+    /// Number of products so far.
     pub fn products(&self) -> usize {
         self.diagonal.len()
     }
 
-    /// One product more; says whether all that the start vector is made of has been found.
+    /// Performs one more product; returns whether the invariant subspace of the start vector is exhausted.
     pub fn advance(&mut self) -> bool {
         (self.problem.product)(&self.current, &mut self.next);
         let alpha = self.inner(&self.next, &self.current);
@@ -115,11 +120,11 @@ impl<'a> Lanczos<'a> {
         exhausted
     }
 
-    /// The largest eigenvalue between two numbers.
+    /// Returns the bounds of the largest eigenvalue.
     pub fn enclosure(&self) -> Enclosure {
         let estimate = largest_eigenvalue(&self.diagonal, &self.off);
         let bound = match self.depth {
-            // Bodies without stiffness have no scale in which to look for a bound.
+            // Bodies without stiffness have no scale for a bound.
             Some(depth) if estimate > 0.0 && estimate.is_finite() => {
                 upper_bound(&self.diagonal, &self.off, estimate, depth)
             }
@@ -129,10 +134,10 @@ impl<'a> Lanczos<'a> {
     }
 }
 
-/// The x above the largest Ritz value at which ln χ(x) − Σ ln β = `depth`.
+/// Returns the x above the largest Ritz value at which ln χ(x) − Σ ln β = `depth`.
 fn upper_bound(diagonal: &[f64], off: &[f64], ritz: f64, depth: f64) -> f64 {
     let betas: f64 = off.iter().map(|beta| beta.ln()).sum();
-    // χ is the product of the pivots of x − T, all positive above the spectrum.
+    // χ is the product of the pivots of x − T, which are positive above the spectrum.
     let beyond = |x: f64| {
         let (mut sum, mut pivot) = (0.0, f64::INFINITY);
         for (k, alpha) in diagonal.iter().enumerate() {
@@ -168,7 +173,7 @@ fn scale(x: &mut [f64], factor: f64) {
     x.iter_mut().for_each(|x| *x *= factor);
 }
 
-/// The largest eigenvalue of a symmetric tridiagonal matrix, by bisection.
+/// Returns the largest eigenvalue of a symmetric tridiagonal matrix, by bisection.
 fn largest_eigenvalue(diagonal: &[f64], off: &[f64]) -> f64 {
     let n = diagonal.len();
     let coupling = |k: usize| off.get(k).copied().unwrap_or(0.0);
@@ -179,7 +184,7 @@ fn largest_eigenvalue(diagonal: &[f64], off: &[f64]) -> f64 {
     };
     let mut high = (0..n).fold(f64::NEG_INFINITY, |m, k| m.max(diagonal[k] + radius(k)));
     let mut low = (0..n).fold(f64::NEG_INFINITY, |m, k| m.max(diagonal[k]));
-    // Sturm: all pivots of T − x are negative exactly if x lies above every eigenvalue.
+    // Sturm sequence: all pivots of T − x are negative exactly if x is above every eigenvalue.
     let above = |x: f64| {
         let mut pivot = diagonal[0] - x;
         for k in 1..n {
@@ -209,8 +214,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn tridiagonal_matrix_of_a_string() {
-        // 2 on the diagonal, −1 beside it: eigenvalues 2 − 2 cos(kπ/(n+1)).
+    fn largest_eigenvalue_of_a_string_matrix_is_exact() {
+        // 2 on the diagonal, −1 next to it: eigenvalues 2 − 2 cos(kπ/(n+1)).
         let n = 40;
         let value = largest_eigenvalue(&vec![2.0; n], &vec![-1.0; n - 1]);
         let angle = std::f64::consts::PI / (n + 1) as f64;
@@ -218,8 +223,8 @@ mod tests {
     }
 
     #[test]
-    fn the_bound_is_above_the_largest_eigenvalue_and_comes_down_to_it() {
-        // Diagonal matrices: an even spectrum, and one whose upper end is crowded.
+    fn the_bound_is_above_the_largest_eigenvalue_and_converges_to_it() {
+        // Diagonal matrices: a uniform spectrum, and one clustered at its upper end.
         let even: fn(f64) -> f64 = |x| x;
         let crowded: fn(f64) -> f64 = |x| 1.0 - (1.0 - x).powi(4);
         for (spectrum, products, above) in [(even, 150, 8e-3), (crowded, 150, 8e-3)] {

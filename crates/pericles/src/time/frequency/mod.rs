@@ -1,13 +1,13 @@
-//! The highest frequency of a body, which limits explicit time steps: an estimate from below and a bound from above.
+//! The highest frequency of a body, which limits explicit time steps: a lower estimate and an upper bound.
 //!
 //! | body | bound | certainty |
 //! |---|---|---|
-//! | any, at rest | Gershgorin's discs ([`Force::frequency_bound`](crate::operator::Force::frequency_bound)) | rigorous |
-//! | on a lattice, at rest, more than [`SMALL`] unknowns | the plane waves of the infinite lattice (`zone`) | rigorous |
-//! | any other | the Lanczos polynomial (`lanczos`) | fails with probability [`FAILURE`] at most |
+//! | any, at rest | Gershgorin discs ([`Force::frequency_bound`](crate::operator::Force::frequency_bound)) | rigorous |
+//! | on a lattice, at rest, more than [`SMALL`] unknowns | plane waves of the infinite lattice (`zone`) | rigorous |
+//! | any other | Lanczos polynomial (`lanczos`) | fails with a probability of at most [`FAILURE`] |
 //!
-//! The lowest of them is taken. Bodies of up to [`SMALL`] unknowns are iterated until bound and estimate agree to 0.1 %, very small ones to 1e-6; larger bodies to 1 %, or 2 % where the lattice
-//! gives the bound.
+//! The lowest bound is used. Bodies of up to [`SMALL`] unknowns are iterated until bound and estimate agree to 0.1
+//! %, very small ones to 1e-6; larger bodies to 1 %, or 2 % where the lattice gives the bound.
 
 mod lanczos;
 mod zone;
@@ -18,39 +18,43 @@ use crate::error::{PericlesError, Result};
 use crate::space::{check_length, check_points};
 use crate::system::System;
 
-/// The highest angular frequency of the linearised free vibration.
+/// The highest angular frequency of linearised free vibration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HighestFrequency {
-    /// Estimate from below, 1/s: the largest Ritz value. The highest frequency is at least this.
+    /// Lower estimate, 1/s: the largest Ritz value.
     pub estimate: f64,
-    /// Bound from above, 1/s. The highest frequency is at most this, but for a probability of [`failure_probability`](Self::failure_probability).
+    /// Upper bound, 1/s; it fails with [`failure_probability`](Self::failure_probability).
     pub bound: f64,
-    /// The probability that the highest frequency is above the bound, over the choice of the random start vector: [`FAILURE`], or zero for rigorous bounds.
+    /// Probability over random start vectors that the highest frequency exceeds the bound: [`FAILURE`], or zero for
+    /// rigorous bounds.
     pub failure_probability: f64,
-    /// Whether estimate and bound agree to 2 % at least: the estimate can be relied on, and the bound costs no more than that of the step.
+    /// Whether estimate and bound agree to 2 %.
     pub converged: bool,
-    /// Operator applications used.
+    /// Number of operator applications.
     pub applications: usize,
 }
 
-/// The largest probability with which a bound by Lanczos iteration is too low. The start vector is the same for every run: the probability is that of a body for which this vector is bad.
+/// Largest probability with which the bound by Lanczos iteration is too low. The start vector is the same in every
+/// run, so that this is the probability of a body for which the vector is unsuitable.
 pub const FAILURE: f64 = 1e-9;
-/// Unknowns up to which bound and estimate agree to 0.1 %.
+/// Number of unknowns up to which bound and estimate agree to 0.1 %.
 pub const SMALL: usize = 10_000;
 
 impl HighestFrequency {
-    /// The largest step of a scheme with the limit ω dt ≤ `limit` that is stable for certain, times a safety factor, s: that of the bound.
+    /// Returns the largest certainly stable step (s) of a scheme with the limit ω dt ≤ `limit`, times a safety
+    /// factor; it follows from the upper bound.
     pub fn stable_step(&self, limit: f64, safety: f64) -> f64 {
         safety * limit / self.bound
     }
 
-    /// The step above which a scheme with the limit ω dt ≤ `limit` is certainly unstable, s: that of the estimate. Between this one and
-    /// [`stable_step`](Self::stable_step) either is possible.
+    /// Returns the step (s) above which a scheme with the limit ω dt ≤ `limit` is certainly unstable; it follows
+    /// from the lower estimate. Between [`stable_step`](Self::stable_step) and this step the scheme may be stable
+    /// or unstable.
     pub fn unstable_step(&self, limit: f64) -> f64 {
         limit / self.estimate
     }
 
-    /// The same where something else vibrates with `omega`, 1/s.
+    /// Returns the frequency of the body together with another vibration of frequency `omega`, 1/s.
     #[must_use]
     pub fn at_least(self, omega: f64) -> Self {
         Self {
@@ -60,7 +64,7 @@ impl HighestFrequency {
         }
     }
 
-    /// The higher of two frequencies.
+    /// Returns the higher of two frequencies.
     #[must_use]
     pub(super) fn or_higher(self, other: Self) -> Self {
         Self {
@@ -72,7 +76,7 @@ impl HighestFrequency {
         }
     }
 
-    /// The same for time steps that are `ratio` times smaller.
+    /// Returns the frequency divided by `ratio`, for time steps that are `ratio` times smaller.
     pub(super) fn over(self, ratio: f64) -> Self {
         Self {
             estimate: self.estimate / ratio,
@@ -82,21 +86,22 @@ impl HighestFrequency {
     }
 }
 
-/// Relative distance of bound and estimate at which a frequency counts as known.
+/// Relative difference of bound and estimate below which the iteration has converged.
 const CONVERGED: f64 = 0.02;
-/// The distance (in ω) at which iteration ends, and the most products, by the number of unknowns.
+/// Relative difference (in ω) at which the iteration ends and largest number of products, by the number of
+/// unknowns.
 const EFFORT: [(usize, f64, usize); 3] = [
     (1000, 1e-6, 1500),
     (SMALL, 5e-4, 1500),
     (usize::MAX, 0.01, 400),
 ];
-/// Products between two looks at bound and estimate.
+/// Number of products between computations of the bounds.
 const CHECK_EVERY: usize = 10;
 
-/// The highest frequency of M⁻¹K at displacement `u`, K being the tangent stiffness there.
+/// Computes the highest frequency of M⁻¹K at displacement `u` with the tangent stiffness K.
 ///
 /// # Errors
-/// A body without any stiffness, a displacement of another body.
+/// A body without stiffness; a displacement of wrong length.
 pub fn highest_frequency(system: &System, u: &[f64]) -> Result<HighestFrequency> {
     check_length(
         "the displacement",
@@ -106,15 +111,16 @@ pub fn highest_frequency(system: &System, u: &[f64]) -> Result<HighestFrequency>
     Search::new(system, u, &|vector| system.hold(vector)).run()
 }
 
-/// A frequency that the highest one is not below, by so many applications of the operator; zero where nothing resists motion.
+/// Returns a lower bound of the highest frequency from a number of operator applications; zero if nothing resists
+/// motion.
 pub fn frequency_from_below(system: &System, u: &[f64], applications: usize) -> f64 {
     Search::new(system, u, &|vector| system.hold(vector)).estimate_by(applications)
 }
 
-/// The same with all points held but those given, ascending.
+/// As [`highest_frequency`] with all points fixed except those given (in ascending order).
 ///
 /// # Errors
-/// Points without any stiffness, points or a displacement of another body.
+/// Points without stiffness; points that the body does not have; a displacement of wrong length.
 pub fn highest_frequency_on(
     system: &System,
     u: &[f64],
@@ -141,7 +147,7 @@ pub fn highest_frequency_on(
     Search::new(system, u, &hold).run()
 }
 
-/// The search for the highest frequency of a body.
+/// Data of the computation.
 struct Search<'a> {
     system: &'a System,
     u: &'a [f64],
@@ -186,7 +192,7 @@ impl<'a> Search<'a> {
 
     fn run(&self) -> Result<HighestFrequency> {
         let operator = self.system.operator();
-        // Bounds of the body at rest hold nowhere else, unless the force is linear.
+        // Bounds at rest hold at other displacements only for linear forces.
         let known = operator.is_linear() || self.u.iter().all(|u| *u == 0.0);
         if !known {
             return self.iterate(f64::INFINITY);
@@ -203,7 +209,7 @@ impl<'a> Search<'a> {
         self.iterate(gershgorin * gershgorin * (1.0 + 1e-12))
     }
 
-    /// The bound of ω² by the plane waves of the infinite lattice, and the highest of these.
+    /// Returns the bound of ω² by the plane waves of the infinite lattice, and the wave with the highest frequency.
     fn lattice_bound(&self) -> Option<(f64, PlaneWave)> {
         let springs = self.system.operator().lattice_springs()?;
         let least = (0..self.system.points())
@@ -213,9 +219,10 @@ impl<'a> Search<'a> {
         Some((found.bound / least, found.wave))
     }
 
-    /// Shows by a few products that a body attains the bound of its lattice nearly: with its highest wave, faded out to the body's faces. None if it does not.
+    /// Checks with a few products that the body nearly attains the bound of its lattice, using the highest wave
+    /// tapered towards the faces; `None` if it does not.
     fn confirm(&self, bound: f64, wave: &PlaneWave) -> Option<HighestFrequency> {
-        /// Distances (in ω) that are good enough at once, and after [`PRODUCTS`].
+        /// Relative differences (in ω) that are accepted at once, and after [`PRODUCTS`].
         const GOOD: f64 = 0.002;
         const PRODUCTS: usize = 8;
         let mut start = self.faded_wave(wave)?;
@@ -261,7 +268,7 @@ impl<'a> Search<'a> {
         Some(vector)
     }
 
-    /// Lanczos iteration from noise; `bound` is one of ω² that is known already, or infinite.
+    /// Lanczos iteration from a random vector; `bound` is a known bound of ω², or infinite.
     fn iterate(&self, bound: f64) -> Result<HighestFrequency> {
         let entries = self.u.len();
         let effort = EFFORT.iter().find(|(most, ..)| entries <= *most);

@@ -1,14 +1,18 @@
-//! The highest frequency of an infinite lattice: a bound for every body that is a part of it.
+//! The highest frequency of an infinite lattice: an upper bound for every body that is part of it.
 //!
-//! **Why it is a bound.** Let K be the stiffness of a body whose bonds are springs (stiffness ≥ 0) between nodes of a lattice, none stiffer than the lattice's spring
-//! of the same offset, and let no density be below ρ. Extend a field u of the body by zero to all nodes. The extended field strains every bond of the body as u does, and the
-//! bonds that the body lacks only add energy, so that u·Ku ≤ ũ·K_lattice ũ; its mass is not larger than that of u. Hence
-//! max u·Ku/u·Mu ≤ max over k of the largest eigenvalue of M(k)/ρ, M(k) = Σ (c α κ V/|ξ|)(1 − cos k·ξ) n⊗n with n = ξ/|ξ|, for the lattice's energy is a mean of those of its plane waves.
-//! Holes, cracks, broken bonds, supports and denser parts all fall under "part of the lattice". A periodic body's waves are plane waves of the lattice.
+//! **Bound.** Let K be the stiffness of a body whose bonds are springs (stiffness ≥ 0) between nodes of a lattice,
+//! none stiffer than the lattice spring of the same offset, and let all densities be at least ρ. Extend a field u
+//! of the body by zero to all nodes. The extended field ũ strains every bond of the body as u does, and the bonds
+//! that the body lacks only add energy, so that u·Ku ≤ ũ·K_lattice ũ; its mass is at most that of u. Hence max
+//! u·Ku/u·Mu ≤ max over k of the largest eigenvalue of M(k)/ρ, M(k) = Σ (c α κ V/|ξ|)(1 − cos k·ξ) n⊗n with n =
+//! ξ/|ξ|, because the energy of the lattice is a mean over its plane waves. Bodies with holes, cracks, broken
+//! bonds, constraints and denser parts are parts of the lattice in this sense. Waves of a periodic body are plane
+//! waves of the lattice.
 //!
-//! **Why the maximum over k is one.** Branch and bound over boxes of phases θ = k·Δx. In a box of half widths h about θ₀,
-//! 1 − cos(φ₀ + d) ≤ 1 − cos φ₀ + d sin φ₀ + d²/2 with φ = θ·o for each offset o and |d| ≤ Σ h|o|. The linear part is largest in a corner of the box, because the largest eigenvalue is
-//! convex; and 1 − cos itself has a largest value over the interval, which is the better estimate for large boxes. Both sums bound all eigenvalues in the box.
+//! **Maximum over k.** Branch and bound over boxes of phases θ = k·Δx. In a box of half widths h around θ₀, 1 −
+//! cos(φ₀ + d) ≤ 1 − cos φ₀ + d sin φ₀ + d²/2 with φ = θ·o for each offset o and |d| ≤ Σ h|o|. The linear part is
+//! largest in a corner of the box, because the largest eigenvalue is convex. The maximum of 1 − cos over the
+//! interval is the better estimate for large boxes. Both sums bound all eigenvalues in the box.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -24,27 +28,28 @@ type Matrix = [[f64; 3]; 3];
 pub(super) struct PlaneWave {
     /// Phase per spacing along each axis.
     pub phase: [f64; 3],
-    /// Unit vector.
+    /// Polarisation, a unit vector.
     pub polarisation: [f64; 3],
 }
 
-/// What was found over all wave vectors.
+/// The maximum over all wave vectors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct ZoneMaximum {
     /// An upper bound of ρω², N/m⁴.
     pub bound: f64,
-    /// The wave that comes closest to it.
+    /// A wave that comes closest to the bound.
     pub wave: PlaneWave,
 }
 
-/// Relative distance of the bound from a value that a wave attains, in ω².
+/// Relative difference (in ω²) of the bound and a value attained by a wave, at which the search ends.
 const TOLERANCE: f64 = 1e-3;
-/// Springs looked at in all boxes together: below a second. What is left then is a bound still, only a wider one.
+/// Largest number of springs evaluated over all boxes, which takes less than a second. If it is reached, the result
+/// is still a bound, but wider.
 const MOST_SPRINGS: usize = 20_000_000;
-/// Of sums and of the closed form of the eigenvalues, with room to spare.
+/// Relative margin for the rounding of sums and of the closed form of the eigenvalues.
 const ROUNDING: f64 = 1e-8;
 
-/// The largest ρω² of all plane waves of a lattice.
+/// Computes the largest ρω² of all plane waves of a lattice.
 pub(super) fn zone_maximum(springs: &LatticeSprings) -> ZoneMaximum {
     let dimension = springs.dimension();
     let mut search = Search {
@@ -54,7 +59,7 @@ pub(super) fn zone_maximum(springs: &LatticeSprings) -> ZoneMaximum {
         best: [0.0; 3],
         looked_at: 0,
     };
-    // Waves of opposite wave vectors are alike: half of the zone.
+    // Opposite wave vectors have equal frequencies: half of the zone is enough.
     search.offer(Region {
         centre: [0.5 * PI, 0.0, 0.0],
         half: std::array::from_fn(|c| match c {
@@ -83,14 +88,14 @@ pub(super) fn zone_maximum(springs: &LatticeSprings) -> ZoneMaximum {
     }
 }
 
-/// The state of branch and bound.
+/// State of the branch and bound search.
 struct Search<'a> {
     springs: &'a LatticeSprings,
     boxes: BinaryHeap<Bounded>,
-    /// The largest value found, and its phases.
+    /// Largest value found, and its phases.
     attained: f64,
     best: [f64; 3],
-    /// Springs summed so far.
+    /// Number of springs evaluated so far.
     looked_at: usize,
 }
 
@@ -114,7 +119,7 @@ struct Region {
 }
 
 impl Region {
-    /// The halves along the longest edge.
+    /// Splits the box along its longest edge.
     fn halves(&self) -> [Self; 2] {
         let longest = (1..3).fold(0, |longest, c| {
             if self.half[c] > self.half[longest] {
@@ -132,7 +137,7 @@ impl Region {
     }
 }
 
-/// A box with a bound of the eigenvalues in it; the highest bound comes first.
+/// A box with a bound of its eigenvalues, ordered by the bound.
 struct Bounded {
     upper: f64,
     region: Region,
@@ -170,7 +175,7 @@ fn add(matrix: &mut Matrix, factor: f64, o: [f64; 3]) {
     }
 }
 
-/// M(θ) = Σ 2w(1 − cos θ·o) n⊗n over one spring of each pair.
+/// Returns M(θ) = Σ 2w(1 − cos θ·o) n⊗n over one spring of each pair.
 fn matrix_at(springs: &LatticeSprings, theta: [f64; 3]) -> Matrix {
     let mut matrix = [[0.0; 3]; 3];
     for spring in springs.half() {
@@ -185,7 +190,7 @@ fn matrix_at(springs: &LatticeSprings, theta: [f64; 3]) -> Matrix {
     matrix
 }
 
-/// The largest eigenvalue at the centre of a box, and an upper bound of all eigenvalues in it.
+/// Returns the largest eigenvalue at the centre of a box and an upper bound of all eigenvalues in it.
 fn bounds_of(springs: &LatticeSprings, region: &Region) -> (f64, f64) {
     let dimension = springs.dimension();
     let zero = [[0.0; 3]; 3];
@@ -226,9 +231,9 @@ fn bounds_of(springs: &LatticeSprings, region: &Region) -> (f64, f64) {
     (value, curved.min(largest_eigenvalue(&interval, dimension)))
 }
 
-/// The largest value of 1 − cos within `width` of an angle.
+/// Returns the maximum of 1 − cos within `width` of an angle.
 fn largest_in_interval(sine: f64, cosine: f64, width: f64) -> f64 {
-    // The distance of the angle from the nearest odd multiple of π, where 1 − cos is 2.
+    // Distance of the angle from the nearest odd multiple of π, where 1 − cos = 2.
     let distance = sine.abs().atan2(-cosine);
     if distance <= width {
         2.0
@@ -237,7 +242,8 @@ fn largest_in_interval(sine: f64, cosine: f64, width: f64) -> f64 {
     }
 }
 
-/// The largest eigenvalue of a symmetric matrix of which the first rows and columns count, in closed form (Smith 1961 for three).
+/// Returns the largest eigenvalue of the leading part of a symmetric matrix, in closed form (Smith 1961 in three
+/// dimensions).
 fn largest_eigenvalue(m: &Matrix, dimension: usize) -> f64 {
     match dimension {
         1 => m[0][0],
@@ -262,7 +268,8 @@ fn largest_eigenvalue(m: &Matrix, dimension: usize) -> f64 {
     }
 }
 
-/// The eigenvector of the largest eigenvalue, by repeated squaring of the matrix. Where that eigenvalue is a double one, any vector of its plane.
+/// Returns the eigenvector of the largest eigenvalue, by repeated squaring of the matrix; for a double eigenvalue
+/// any vector of its plane.
 fn dominant_vector(matrix: &Matrix, dimension: usize) -> [f64; 3] {
     let mut power = *matrix;
     for _ in 0..30 {
@@ -290,7 +297,7 @@ mod tests {
     use super::*;
     use crate::operator::LatticeSpring;
 
-    /// A lattice with springs of a stiffness by length.
+    /// A lattice with springs whose stiffness depends on their length.
     fn springs(dimension: usize, reach: f64, stiffness: fn(f64) -> f64) -> LatticeSprings {
         let most = reach.floor() as i32;
         let range = |c: usize| if c < dimension { -most..=most } else { 0..=0 };
@@ -326,7 +333,7 @@ mod tests {
         ];
         for (dimension, reach, stiffness, samples) in cases {
             let springs = springs(dimension, reach, stiffness);
-            // Cubic lattices need phases in one octant only.
+            // Cubic lattices need only phases in one octant.
             let last = |c: usize| if c < dimension { samples } else { 0 };
             let mut scanned: f64 = 0.0;
             for x in 0..=last(0) {
@@ -352,7 +359,7 @@ mod tests {
     }
 
     #[test]
-    fn nearest_neighbour_chain() {
+    fn the_bound_of_a_nearest_neighbour_chain_is_exact() {
         // ρω² = 2w(1 − cos θ), at most 4w.
         let found = zone_maximum(&springs(1, 1.0, |_| 3.0));
         assert!((12.0..12.0 * (1.0 + TOLERANCE)).contains(&found.bound));

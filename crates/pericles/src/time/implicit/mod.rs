@@ -1,4 +1,4 @@
-//! Implicit schemes of order two: the midpoint and the trapezoidal rule.
+//! Implicit schemes of second order: the midpoint and the trapezoidal rule.
 
 mod solver;
 
@@ -9,40 +9,46 @@ use super::{Integrator, State, ends};
 use crate::compatibility::{Need, Requirement, require};
 use crate::error::{PericlesError, Result};
 use crate::interrupt::Interrupt;
-use crate::operator::On;
+use crate::operator::PointSubset;
 use crate::parallel::for_each_chunk;
 use crate::solve::{Nonlinear, SolveLimits, Work, newton_krylov};
 use crate::step_kind::StepKind;
 use crate::system::System;
 
-/// Where the force of a step is taken.
+/// The force used in a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ImplicitRule {
-    /// At the mean of both ends: v′ = v + τ f((u+u′)/2, t+τ/2)/ρ.
+    /// Force at the mean of both ends: v′ = v + τ f((u+u′)/2, t+τ/2)/ρ.
     Midpoint,
-    /// The mean of the forces at both ends: v′ = v + τ/2 [f(u, t) + f(u′, t′)]/ρ.
+    /// Mean of the forces at both ends: v′ = v + τ/2 [f(u, t) + f(u′, t′)]/ρ.
     Trapezoidal,
 }
 
-/// u′ = u + τ (v + v′)/2 with the force of the midpoint or the trapezoidal rule.
+/// Implicit midpoint or trapezoidal rule: u′ = u + τ (v + v′)/2 with the force of an [`ImplicitRule`].
 ///
-/// Second order, stable for any step, symmetric. For linear forces the two differ in loads only, and both conserve kinetic plus elastic energy exactly, but
-/// for the residual of the solver; the midpoint rule is symplectic, and momentum is exact, for nonlinear forces as well. An oscillation ω appears as
-/// (2/τ) atan(τω/2).
+/// Second order, stable for any step, symmetric. For linear forces the rules differ in the treatment of loads only,
+/// and both conserve kinetic plus elastic energy exactly up to the residual of the solver. For nonlinear forces
+/// too, the midpoint rule is symplectic and conserves momentum exactly. An oscillation of frequency ω has the
+/// numerical frequency (2/τ) atan(τω/2).
 ///
-/// The unknown is w, half the increment of the displacement: (ρ + τ²/4 K) w = ρ [τ/2 v + τ²/4 (a + Δb/ρ)], symmetric and positive definite. Linear systems are solved by
-/// Cholesky's factor, kept from step to step, or by conjugate gradients ([`LinearSolver`]), nonlinear ones by Newton–Krylov with the tangent, to a residual of 1e-14 of
-/// the equation's terms (velocity, acceleration, the step's loads and prescribed motions), or what rounding allows: 1e-12 of these terms, or a few units in the last place of the
-/// displacement times the highest stiffness. Boundaries with a memory ([`WithinStep`](crate::boundary::WithinStep)) add a corner to the matrix and what they remember to the right-hand side. Iterations of conjugate gradients: some (1 + τ²ω²/4)^½ times 15 for the highest ω.
+/// The unknown w is half the increment of the displacement: (ρ + τ²/4 K) w = ρ [τ/2 v + τ²/4 (a + Δb/ρ)], symmetric
+/// and positive definite. Linear systems are solved by a Cholesky factor kept from step to step or by conjugate
+/// gradients ([`LinearSolver`]), nonlinear ones by Newton–Krylov with the tangent. The residual is reduced to 1e-14
+/// of the terms of the equation (velocity, acceleration, loads and prescribed motions of the step), or as far as
+/// rounding allows: 1e-12 of these terms, or a few units in the last place of the displacement times the highest
+/// stiffness. Boundaries with memory ([`ImplicitBoundary`](crate::boundary::ImplicitBoundary)) add a block to the matrix and
+/// their history to the right-hand side. Conjugate gradients need about 15 (1 + τ²ω²/4)^½ iterations for the
+/// highest ω.
 pub struct Implicit {
     rule: ImplicitRule,
-    /// Of linear bodies.
+    /// Solver for linear bodies.
     solver: Option<StepSolver>,
     mass: Vec<f64>,
-    /// A bound of ω² of a nonlinear body at rest, 1/s²: what rounding of the displacement is amplified by.
+    /// Upper bound of ω² of a nonlinear body at rest, 1/s²: the amplification of rounding errors of the
+    /// displacement.
     stiffest: f64,
 
-    /// w
+    /// The unknown w.
     half: Vec<f64>,
     right: Vec<f64>,
     change: Vec<f64>,
@@ -51,40 +57,41 @@ pub struct Implicit {
     work: Work,
 }
 
-/// Asked for of the residual: what is left is an error of the energy in each step.
+/// Required residual; what remains is an error of the energy in each step.
 const LIMITS: SolveLimits<'_> = SolveLimits {
     relative: 1e-14,
     absolute: 0.0,
     iterations: 4000,
     interrupt: Interrupt::never(),
 };
-/// Accepted where rounding allows no better.
+/// Residual accepted where rounding prevents a smaller one.
 const ACCEPTED: f64 = 1e-12;
-/// Accepted of τ²/4 ω² m u for the highest ω: displacements are rounded to about 1e-16, and the force of neighbouring points that are rounded differently is that of the shortest wave.
+/// Residual accepted relative to τ²/4 ω² m u for the highest ω: displacements are rounded to about 1e-16, and
+/// differences in rounding between neighbouring points act like the shortest wave.
 const ROUNDING: f64 = 1e-15;
 
 impl Implicit {
-    /// What it needs of a system.
+    /// Requirements on the system.
     pub const REQUIREMENTS: &'static [Requirement] = &[
         Requirement::IN_DOUBLES,
         Requirement {
             need: Need::BoundariesWithinStep,
-            reason: "a boundary of the body follows explicit schemes only; use velocity-verlet, or an end made for the midpoint rule",
+            reason: "a boundary of the body supports explicit schemes only; use velocity-verlet, or an absorbing boundary made for the midpoint rule",
         },
     ];
 
-    /// A scheme for a body.
+    /// Makes the scheme for a system.
     ///
     /// # Errors
-    /// Boundaries that are not made for implicit schemes; forces in single precision.
+    /// Boundaries that do not support implicit schemes; forces in single precision.
     pub fn new(rule: ImplicitRule, system: &System) -> Result<Self> {
         Self::with_solver(rule, LinearSolver::default(), system)
     }
 
-    /// The same with a chosen solver for linear systems.
+    /// Makes the scheme with a given solver for linear systems.
     ///
     /// # Errors
-    /// As [`Implicit::new`].
+    /// Those of [`Implicit::new`].
     pub fn with_solver(rule: ImplicitRule, solver: LinearSolver, system: &System) -> Result<Self> {
         require(rule.name(), Self::REQUIREMENTS, system)?;
         let entries = system.dimension() * system.points();
@@ -108,18 +115,18 @@ impl Implicit {
         })
     }
 
-    /// Fills `half` with what is prescribed, and zeros elsewhere.
+    /// Sets `half` to its prescribed values, and to zero elsewhere.
     fn prescribe(&mut self, system: &System, t_next: f64, u: &[f64]) {
         self.half.fill(0.0);
         if system.motions().is_empty() {
             return;
         }
         self.half.copy_from_slice(u);
-        system.place_on(t_next, &On::All, &mut self.half);
+        system.place_on(t_next, &PointSubset::All, &mut self.half);
         each(&mut self.half, u, |half, u| *half = 0.5 * (*half - u));
     }
 
-    /// Whether steps of length tau are solved by a factor.
+    /// Returns whether steps of length tau are solved by a Cholesky factor.
     pub fn is_direct(&self, tau: f64, system: &System) -> bool {
         let solver = self.solver.as_ref();
         solver.is_some_and(|solver| solver.is_direct(tau, system))
@@ -135,7 +142,7 @@ impl Implicit {
     ) -> Result<()> {
         let tau = t[1] - t[0];
         let quarter = 0.25 * tau * tau;
-        // Loads at the rule's place less those in `a`, over density.
+        // Difference of the loads at the time of the rule and those in `a`, over density.
         let (place, weight) = match self.rule {
             ImplicitRule::Midpoint => (0.5 * (t[0] + t[1]), 1.0),
             ImplicitRule::Trapezoidal => (t[1], 0.5),
@@ -145,11 +152,11 @@ impl Implicit {
         each(&mut self.right, &self.change, |now, before| {
             *now = weight * quarter * (*now - before);
         });
-        // Boundaries: what they give at the middle, were the body where it is.
+        // Boundaries: their acceleration at the middle for an unchanged displacement.
         ends::without_present(system, a, &mut self.change);
         ends::add_middle(system, u, &mut self.change);
         if let Some(push) = push {
-            // The last push of supports is part of `a` as if it lasted for the whole step.
+            // `a` contains the last push of constraints as if it lasted for the whole step.
             each(&mut self.change, push, |a, push| *a -= push);
         }
         each(&mut self.right, &self.change, |right, a| {
@@ -164,7 +171,7 @@ impl Implicit {
         }
         each(&mut self.right, &self.mass, |right, m| *right *= m);
         system.hold_at(t[1], &mut self.right);
-        // Prescribed entries are known: the solver sees the free ones.
+        // Prescribed entries are known: the solver gets the free ones.
         let free = &mut self.change;
         let limits = SolveLimits {
             interrupt,
@@ -185,7 +192,7 @@ impl Implicit {
         interrupt: Interrupt<'_>,
     ) -> Result<()> {
         let tau = t[1] - t[0];
-        // w = τ/2 v + τ²/4 f(u + s w)/s, with what is known on the right.
+        // w = τ/2 v + τ²/4 f(u + s w)/s, with known terms on the right.
         let quarter = 0.25 * tau * tau;
         let (place, reach, known) = match self.rule {
             ImplicitRule::Midpoint => (0.5 * (t[0] + t[1]), 1.0, 0.0),
@@ -193,18 +200,18 @@ impl Implicit {
         };
         let total = quarter - known;
         let of_step = self.size_of_the_step(system, [place, t[1]], u, [total, quarter]);
-        // What boundaries give acts at the middle for both rules, and is no part of `a` here.
+        // Boundaries act at the middle for both rules; remove them from `a`.
         ends::without_present(system, a, &mut self.right);
         each(&mut self.right, v, |right, v| {
             *right = 0.5 * tau * v + known * *right;
         });
         if let Some(push) = push {
-            // What `known` leaves of the last push of supports.
+            // The part of the last push of constraints that `known` does not contain.
             let share = quarter - 2.0 * known;
             each(&mut self.right, push, |right, push| *right += share * push);
         }
         system.hold_at(t[1], &mut self.right);
-        // The first guess: the explicit step.
+        // Initial guess: the explicit step.
         each(&mut self.half, &self.right, |half, right| *half += right);
         let size = &mut self.force;
         size.copy_from_slice(a);
@@ -240,8 +247,9 @@ impl Implicit {
         good_enough(solved.map(|_| ()), (ACCEPTED * scale).max(rounding))
     }
 
-    /// ‖m (|τ²/4 b/s| + |τ²/4 K w|)‖ for the loads b at the rule's place and the prescribed part of w, which `half` holds: the terms of the equation that velocity and acceleration at the
-    /// start know nothing of. At rest they are all there is.
+    /// Returns ‖m (|τ²/4 b/s| + |τ²/4 K w|)‖ for the loads b at the time of the rule and the prescribed part of w,
+    /// which `half` contains: terms of the equation that do not depend on initial velocity and acceleration. At
+    /// rest there are no others.
     fn size_of_the_step(
         &mut self,
         system: &System,
@@ -254,7 +262,7 @@ impl Implicit {
         system.hold_at(t_next, load);
         pull.fill(0.0);
         if !system.motions().is_empty() {
-            // Where the supports have moved: some bodies have no stiffness at rest.
+            // Evaluated where the constraints have moved, because some bodies have no stiffness at rest.
             let moved = &mut self.force;
             moved.copy_from_slice(u);
             each(moved, &self.half, |moved, half| *moved += half);
@@ -271,7 +279,7 @@ impl Implicit {
 }
 
 impl ImplicitRule {
-    /// As written in decks.
+    /// Name in decks.
     pub fn name(self) -> &'static str {
         match self {
             Self::Midpoint => "implicit-midpoint",
@@ -280,7 +288,7 @@ impl ImplicitRule {
     }
 }
 
-/// A bound of ω² at rest, 1/s²; zero where there is none, as of bonds without stiffness at rest.
+/// Upper bound of ω² at rest, 1/s²; zero if unknown, as for bonds without stiffness at rest.
 fn stiffest(system: &System) -> f64 {
     let omega = system
         .operator()
@@ -292,7 +300,8 @@ fn stiffest(system: &System) -> f64 {
     }
 }
 
-/// The nonlinear equation of a step, weighed by masses: m [w − right − τ²/4 (f(u + s w)/s + g(u + w))] = 0 with the accelerations f of the body and g by boundaries; held entries are always solved.
+/// The nonlinear equation of a step, weighted by masses: m [w − right − τ²/4 (f(u + s w)/s + g(u + w))] = 0 with
+/// the accelerations f of the body and g of boundaries; on prescribed entries the residual is zero.
 struct Stage<'a> {
     system: &'a mut System,
     mass: &'a [f64],
@@ -300,16 +309,16 @@ struct Stage<'a> {
     u: &'a [f64],
     place: &'a mut [f64],
     force: &'a mut [f64],
-    /// Times of the force, and of the end of the step, when motion is prescribed or not.
+    /// Time of the force, and time at the end of the step for prescribed motion.
     t: [f64; 2],
-    /// s
+    /// Factor s.
     reach: f64,
     /// τ²/4
     quarter: f64,
 }
 
 impl Stage<'_> {
-    /// Goes to u + reach · half.
+    /// Moves to u + reach · half.
     fn go_to(&mut self, half: &[f64], reach: f64) {
         self.place.copy_from_slice(self.u);
         each(self.place, half, |place, half| *place += reach * half);
@@ -320,7 +329,7 @@ impl Nonlinear for Stage<'_> {
     fn residual_into(&mut self, x: &[f64], out: &mut [f64]) {
         self.go_to(x, self.reach);
         self.system
-            .free_acceleration(self.t[0], self.place, &On::All, self.force);
+            .free_acceleration(self.t[0], self.place, &PointSubset::All, self.force);
         let share = 1.0 / self.reach;
         self.force.iter_mut().for_each(|force| *force *= share);
         if self.system.has_boundaries() {
@@ -344,7 +353,7 @@ impl Nonlinear for Stage<'_> {
     }
 }
 
-/// out = m (x + factor out)
+/// Computes out = m (x + factor out).
 fn add_and_weigh(out: &mut [f64], factor: f64, x: &[f64], mass: &[f64]) {
     each(out, x, |out, x| *out = x + factor * *out);
     each(out, mass, |out, m| *out *= m);
@@ -357,7 +366,7 @@ fn each(y: &mut [f64], x: &[f64], set: impl Fn(&mut f64, f64) + Sync) {
     });
 }
 
-/// Rounding may keep a solver above what was asked for, but not above `accepted`.
+/// Accepts a residual above the required one, due to rounding, up to `accepted`.
 fn good_enough(solved: Result<()>, accepted: f64) -> Result<()> {
     match solved {
         Err(PericlesError::NotConverged { residual, .. }) if residual <= accepted => Ok(()),
@@ -424,9 +433,9 @@ impl Integrator for Implicit {
     }
 }
 
-// The scheme carries nothing from step to step but the state, and what its solver remembers.
+// The scheme has no state from step to step except that of its solver.
 crate::saved! {
-    impl Saved for Implicit {
+    impl Checkpointed for Implicit {
         solver: part,
         rule, mass, stiffest: fixed,
         half, right, change, force, next, work: scratch,

@@ -1,4 +1,4 @@
-//! The linear systems of implicit steps: by a factor that is kept, or by iteration.
+//! Linear solvers of implicit steps: a reused Cholesky factor, or conjugate gradients.
 
 use super::add_and_weigh;
 use crate::error::Result;
@@ -7,23 +7,24 @@ use crate::solve::{BandedCholesky, SolveLimits, Work, conjugate_gradient};
 use crate::system::System;
 use crate::time::ends;
 
-/// How the linear system of a step is solved.
+/// Solver for the linear system of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum LinearSolver {
-    /// The cheaper of the two, by estimated cost.
+    /// The faster of the two by estimated cost.
     #[default]
     Fastest,
-    /// Cholesky's factor, computed once for a step and refined: bars, whose matrix is a band, and small bodies.
+    /// Cholesky factor, computed once for a time step and refined: for bars, whose matrix is a band, and small
+    /// bodies.
     Direct,
-    /// Conjugate gradients: any body.
+    /// Conjugate gradients: for any body.
     ConjugateGradients,
 }
 
 impl LinearSolver {
-    /// All, the default first.
+    /// All solvers, the default first.
     pub const ALL: [Self; 3] = [Self::Fastest, Self::Direct, Self::ConjugateGradients];
 
-    /// As written in decks.
+    /// Name in decks.
     pub fn name(self) -> &'static str {
         match self {
             Self::Fastest => "fastest",
@@ -33,26 +34,26 @@ impl LinearSolver {
     }
 }
 
-/// The matrix of a body as the choice of a solver sees it.
+/// Properties of the matrix that determine the choice of the solver.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Shape {
     unknowns: f64,
-    /// Largest |i − j| of unknowns that act on each other.
+    /// Half bandwidth: largest |i − j| of coupled unknowns.
     reach: f64,
-    /// Multiplications of a product.
+    /// Number of multiplications per matrix–vector product.
     product: f64,
-    /// A bound of the highest frequency, 1/s.
+    /// Upper bound of the highest frequency, 1/s.
     frequency: f64,
 }
 
-/// Numbers of a factor beyond which it is not made unasked: a quarter of a gigabyte.
+/// Largest number of entries of a factor that is chosen automatically: a quarter of a gigabyte.
 const MOST: f64 = 3e7;
-/// Steps over which the cost of the factor is spread; most runs have more.
+/// Number of steps over which the cost of the factor is distributed; most runs have more.
 const STEPS: f64 = 100.0;
 
 impl Shape {
     fn of(system: &System, linear: &dyn LinearOperator) -> Self {
-        /// Multiplications per point beyond which operators use transforms.
+        /// Number of multiplications per point above which operators use transforms.
         const TRANSFORM: f64 = 100.0;
         let operator: &dyn Force = system.operator();
         let points = system.points() as f64;
@@ -67,10 +68,10 @@ impl Shape {
         }
     }
 
-    /// Whether a factor is cheaper than conjugate gradients for steps of length tau.
+    /// Returns whether a factor is cheaper than conjugate gradients for steps of length tau.
     fn favours_a_factor(&self, tau: f64) -> bool {
         let numbers = self.unknowns * (self.reach + 1.0);
-        // Iterations to a residual of 1e-14, some vectors of work in each.
+        // Number of iterations to a residual of 1e-14, with a few vector operations in each.
         let condition = 1.0 + (0.5 * tau * self.frequency).powi(2);
         let iteration = self.product + 6.0 * self.unknowns;
         let iterative = (15.0 * condition.sqrt()).min(self.unknowns) * iteration;
@@ -80,13 +81,13 @@ impl Shape {
     }
 }
 
-/// Solves the systems of the steps of a run.
+/// Solver for the linear systems of a run.
 pub(super) struct StepSolver {
     choice: LinearSolver,
     shape: Shape,
-    /// The step that the factor belongs to, s; zero if there is none. It stays while steps differ by rounding only.
+    /// Time step of the factor, s; zero if there is none. It is unchanged while steps differ by rounding only.
     factored: f64,
-    /// The number of prescribed motions that held their points then.
+    /// Number of constraints that acted when the factor was computed.
     held: u64,
     factor: Option<BandedCholesky>,
 }
@@ -103,11 +104,12 @@ impl StepSolver {
         })
     }
 
-    /// Whether steps of length tau are solved by a factor. One that breaking bonds would spoil is not made, nor one of a body divided among processes.
+    /// Returns whether steps of length tau are solved by a factor. It is not used if breaking bonds would
+    /// invalidate it, or for a body divided among processes.
     pub(super) fn is_direct(&self, tau: f64, system: &System) -> bool {
         match self.choice {
             _ if system.operator().can_break() => false,
-            // A factor takes the whole matrix.
+            // A factor needs the whole matrix.
             _ if system.domain().is_divided() => false,
             LinearSolver::Direct => true,
             LinearSolver::ConjugateGradients => false,
@@ -115,7 +117,8 @@ impl StepSolver {
         }
     }
 
-    /// Solves (M + τ²/4 K) x = right of the step between two times, for a right-hand side that is zero where motion is prescribed at its end; `mass` is the diagonal of M.
+    /// Solves (M + τ²/4 K) x = right for the step between two times, with a right-hand side that is zero where
+    /// motion is prescribed at the end of the step; `mass` is the diagonal of M.
     pub(super) fn solve(
         &mut self,
         system: &System,
@@ -140,14 +143,15 @@ impl StepSolver {
             .map(|_| ())
     }
 
-    /// The factor of a step, made where there is none yet.
+    /// Returns the factor of a step, computing it if needed.
     fn factor_of(
         &mut self,
         system: &System,
         mass: &[f64],
         [tau, t_next]: [f64; 2],
     ) -> Result<&BandedCholesky> {
-        /// Steps that differ by less are one step, the difference of rounded times.
+        /// Steps that differ by less, relative to their length, count as equal: they are differences of rounded
+        /// times.
         const SAME: f64 = 1e-6;
         let held = system.holding(t_next);
         if (self.factored / tau - 1.0).abs() > SAME || self.held != held {
@@ -166,7 +170,7 @@ impl StepSolver {
     }
 }
 
-/// M x + τ²/4 K x, boundaries included, with K x zero where motion is prescribed at the end of the step.
+/// Computes M x + τ²/4 K x including boundaries, with K x = 0 where motion is prescribed at the end of the step.
 fn product_into(
     system: &System,
     mass: &[f64],
@@ -174,13 +178,13 @@ fn product_into(
     x: &[f64],
     out: &mut [f64],
 ) {
-    // The place about which a linear force is linearised does not matter.
+    // For linear forces the point of linearisation is arbitrary.
     system.vibration_at(t_next, x, x, out);
     ends::add_stiffness(system, x, out);
     add_and_weigh(out, 0.25 * tau * tau, x, mass);
 }
 
-/// The factor of the matrix whose rows and columns of prescribed entries are those of the unit matrix.
+/// Computes the factor of the matrix, with unit rows and columns for prescribed entries.
 fn factorise(
     system: &System,
     mass: &[f64],
@@ -199,9 +203,9 @@ fn factorise(
     BandedCholesky::new(&mut apply, mass.len(), reach)
 }
 
-// A factor is that of the first of many steps whose lengths differ by rounding; which step that was is remembered.
+// The factor belongs to the first of many steps that differ by rounding; the checkpoint stores that step.
 crate::saved! {
-    impl Saved for StepSolver {
+    impl Checkpointed for StepSolver {
         factored: array("implicit/factored"),
         held: array("implicit/held"),
         factor: set(None),

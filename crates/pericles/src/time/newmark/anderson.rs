@@ -2,21 +2,22 @@
 
 use crate::domain::Domain;
 
-/// x ← g(x), with g(x) replaced by the combination of the last few images whose residual g − x is smallest (Walker & Ni 2011, in differences).
+/// Anderson acceleration of x ← g(x): g(x) is replaced by the combination of recent images with the smallest
+/// residual g − x (Walker & Ni 2011, in differences).
 ///
 /// Memory: 2 · depth + 2 vectors.
 #[derive(Debug, Clone)]
 pub(super) struct Anderson {
-    /// Differences of successive residuals and of successive images, the oldest overwritten first.
+    /// Differences of successive residuals and of successive images; the oldest is overwritten first.
     residuals: Vec<Vec<f64>>,
     images: Vec<Vec<f64>>,
     last_residual: Vec<f64>,
     last_image: Vec<f64>,
-    /// Images seen since the start of the step.
+    /// Number of images since the start of the step.
     seen: usize,
 }
 
-/// Part of the largest pivot below which a direction adds nothing but rounding.
+/// Pivots below this fraction of the largest one are neglected: their directions add only rounding errors.
 const NEGLIGIBLE: f64 = 1e-14;
 
 impl Anderson {
@@ -31,12 +32,12 @@ impl Anderson {
         }
     }
 
-    /// Forgets the step before.
+    /// Discards the history of the previous step.
     pub(super) fn restart(&mut self) {
         self.seen = 0;
     }
 
-    /// Puts the next iterate in place of `image`, which is g(x) for the iterate `x`.
+    /// Replaces `image`, which is g(x) for the iterate `x`, by the next iterate.
     pub(super) fn next(&mut self, domain: &Domain, x: &[f64], image: &mut [f64]) {
         let depth = self.residuals.len();
         if self.seen > 0 {
@@ -61,7 +62,8 @@ impl Anderson {
         }
     }
 
-    /// argmin ‖f − ΔF w‖ by Cholesky's factorisation of the normal equations, with directions left out that depend on others.
+    /// Returns argmin ‖f − ΔF w‖ by Cholesky factorisation of the normal equations; dependent directions are left
+    /// out.
     fn weights(&self, domain: &Domain, known: usize) -> [f64; MOST] {
         let mut matrix = [[0.0; MOST]; MOST];
         let mut right = [0.0; MOST];
@@ -116,8 +118,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_linear_map_of_few_directions_is_solved_in_as_many_steps() {
-        // g(x) = A x + b with three different eigenvalues, two of them beyond one: the plain iteration diverges.
+    fn a_linear_map_is_solved_in_as_many_steps_as_it_has_directions() {
+        // g(x) = A x + b with three different eigenvalues, two of magnitude above one: the plain iteration
+        // diverges.
         let factors = [0.5, -3.0, 1.8];
         let n = 30;
         let g = |x: &[f64]| -> Vec<f64> {

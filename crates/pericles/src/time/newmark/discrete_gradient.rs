@@ -1,11 +1,11 @@
-//! A scheme that conserves the energy of any elastic body.
+//! The discrete gradient scheme, which conserves the energy of any elastic body.
 
 use super::InnerIterations;
 use super::equation::{StepEquation, centre, root_masses};
 use crate::compatibility::{Need, Requirement, require};
 use crate::error::{PericlesError, Result};
 use crate::interrupt::Interrupt;
-use crate::operator::On;
+use crate::operator::PointSubset;
 use crate::solve::{SolveLimits, Work, newton_krylov};
 use crate::step_end::{Path, StepEnd};
 use crate::step_kind::StepKind;
@@ -13,62 +13,65 @@ use crate::system::System;
 use crate::time::zone::{Sum, Zone};
 use crate::time::{Integrator, State};
 
-/// v′ − v = dt (F̄ + b̄)/ρ, u′ − u = dt (v + v′)/2, with the mean of the force along the straight way from u to u′ (Harten, Lax & van Leer 1983; Quispel &
-/// McLaren 2008), whose work is the loss of elastic energy:
+/// Discrete gradient scheme: v′ − v = dt (F̄ + b̄)/ρ, u′ − u = dt (v + v′)/2, with the mean F̄ of the force along
+/// the segment from u to u′ (Harten, Lax & van Leer 1983; Quispel & McLaren 2008), whose work is the loss of
+/// elastic energy:
 ///
 /// > F̄ = Σ_k w_k F(u + τ_k Δu) − c ρ w,  c = (E(u′) − E(u) + ΣV F̄·Δu)/Σρ V w·w.
 ///
-/// The mean is taken at three Gauss nodes, exact for energies of degree six at most; what is missing for others is closed by c (Gonzalez 1996), with
-/// w = Δu without its rigid translation, so that momentum is conserved as well. b̄ is the mean of the loads at both ends.
+/// The mean uses three Gauss nodes, exact for energies of degree up to six; for others the coefficient c closes the
+/// balance (Gonzalez 1996), with w = Δu without its rigid translation, so that momentum is conserved as well. b̄ is
+/// the mean of the loads at both ends.
 ///
-/// Second order; energy to the tolerance, which is relative to the energy of the state, for any step. Where the elastic energy is convex the equation of a step has
-/// one solution, whatever the step: it is solved by Newton's method with conjugate gradients, c by secants. Some hundred times the cost of an explicit step: worth
-/// it where energy must not drift or the step is far above the explicit limit.
+/// Second order; conserves energy to the tolerance, which is relative to the energy of the state, for any step.
+/// Where the elastic energy is convex the equation of a step has a unique solution for any step. It is solved by
+/// Newton's method with conjugate gradients, and c by the secant method. A step costs about a hundred times an
+/// explicit step: useful where energy must not drift or the step is far above the explicit limit.
 pub struct DiscreteGradient {
     tolerance: f64,
     zone: Zone,
     root_mass: Vec<f64>,
     work: Work,
     vectors: [Vec<f64>; 5],
-    /// What the equation knows, the scaled end, the end.
+    /// Known terms of the equation, the scaled end state, the end state.
     known: Vec<f64>,
     scaled: Vec<f64>,
     next: Vec<f64>,
     mean: Vec<f64>,
-    /// c of the step before: the first guess.
+    /// Coefficient c of the previous step, used as initial guess.
     correction: f64,
     iterations: InnerIterations,
 }
 
-/// Gauss nodes between the ends of a step, with weights.
+/// Gauss nodes of a step, with weights.
 const NODES: [(f64, f64); 3] = [
     (0.112_701_665_379_258_31, 5.0 / 18.0),
     (0.5, 8.0 / 18.0),
     (0.887_298_334_620_741_7, 5.0 / 18.0),
 ];
-/// Corrections of c in a step.
+/// Largest number of corrections of c per step.
 const MOST: usize = 60;
-/// Newton steps for each.
+/// Largest number of Newton iterations per correction.
 const NEWTON: usize = 40;
-/// A residual that is rounding and nothing else, over the size of its terms.
+/// Residual that consists of rounding errors only, relative to the size of its terms.
 const ROUNDING: f64 = 1e-15;
 
 const NAME: &str = "discrete-gradient";
 
 impl DiscreteGradient {
-    /// What it needs of a system.
+    /// Requirements on the system.
     pub const REQUIREMENTS: &'static [Requirement] = &[
         Requirement::IN_DOUBLES,
         Requirement {
             need: Need::BoundariesWithinStep,
-            reason: "a boundary of the body follows explicit schemes only; use velocity-verlet, or an end made for the midpoint rule",
+            reason: "a boundary of the body supports explicit schemes only; use velocity-verlet, or an absorbing boundary made for the midpoint rule",
         },
     ];
 
-    /// The scheme for a body; `tolerance` is the relative error of the energy in a step.
+    /// Makes the scheme for a system; `tolerance` is the relative error of the energy per step.
     ///
     /// # Errors
-    /// A tolerance out of range; boundaries that are not made for implicit schemes; forces in single precision.
+    /// A tolerance out of range; boundaries that do not support implicit schemes; forces in single precision.
     pub fn new(tolerance: f64, system: &System) -> Result<Self> {
         if !(1e-14..1e-2).contains(&tolerance) {
             return Err(PericlesError::SchemeParameter {
@@ -95,7 +98,8 @@ impl DiscreteGradient {
         })
     }
 
-    /// Puts prescribed displacements into the first guess, and what a support gives to points that it lets go into what is known.
+    /// Applies prescribed displacements to the initial guess, and the last push of constraints on released points
+    /// to the known terms.
     fn prescribe(&mut self, system: &mut System, [t, t_next]: [f64; 2], state: &State) {
         let theta = 0.5 * (t_next - t).powi(2);
         if let Some(push) = system.last_push([t, t_next], &state.u) {
@@ -103,15 +107,15 @@ impl DiscreteGradient {
                 *known += theta * push;
             }
         }
-        system.place_on(t_next, &On::All, &mut self.scaled);
+        system.place_on(t_next, &PointSubset::All, &mut self.scaled);
     }
 
-    /// ‖√m Δu‖ of the points that supports move.
+    /// Returns ‖√m Δu‖ of the points that constraints move.
     fn moved_by_supports(&mut self, system: &System, t_next: f64, state: &State) -> f64 {
-        // Where the points are held, and zero elsewhere.
+        // Displacements of constrained points, zero elsewhere.
         let moved = &mut self.next;
         moved.copy_from_slice(&state.u);
-        system.place_on(t_next, &On::All, moved);
+        system.place_on(t_next, &PointSubset::All, moved);
         let (root, moved) = (&self.root_mass, &*moved);
         let scaled = |k: usize| (root[k] * (moved[k] - state.u[k])).powi(2);
         system.domain().sum(root.len(), scaled).sqrt()
@@ -188,9 +192,10 @@ impl DiscreteGradient {
         })
     }
 
-    /// Finds the c that balances the energy: by secants, kept between values that gain and lose it.
+    /// Finds the c that balances the energy, by the secant method within a bracket.
     ///
-    /// The energy that a step gains falls as c grows: c is a drag. Below −1/θ the equation is no longer positive definite.
+    /// The energy gained by a step decreases with c, which acts as a drag. Below −1/θ the equation is no longer
+    /// positive definite.
     fn balance(
         &mut self,
         system: &System,
@@ -205,7 +210,7 @@ impl DiscreteGradient {
         let (mut missing, mut allowed) = (f64::INFINITY, 0.0);
         for _ in 0..MOST {
             let attempt = self.attempt(system, state, step, c, &mut newton, interrupt)?;
-            // From rest the energy is what the loads put in within the step.
+            // Starting from rest, the energy is what the loads supply within the step.
             allowed = self.tolerance * attempt.energy.max(step.kinetic + step.elastic);
             missing = attempt.missing;
             if missing.abs() <= allowed {
@@ -233,33 +238,33 @@ impl DiscreteGradient {
             };
         }
         Err(PericlesError::NotConverged {
-            solver: "the balance of energy",
+            solver: "the energy balance of the step",
             iterations: MOST,
             residual: missing.abs(),
             tolerance: allowed,
-            cause: "the tolerance is below rounding, or the step too large",
+            cause: "the tolerance is below rounding, or the step is too large",
         })
     }
 }
 
-/// A step solved for one c.
+/// The solution of a step for one c.
 struct Attempt {
     /// The c that would have balanced the energy.
     balanced: f64,
-    /// The energy that is missing, J.
+    /// Error of the energy balance, J.
     missing: f64,
-    /// Kinetic and elastic energy at its end, J.
+    /// Kinetic and elastic energy at the end of the step, J.
     energy: f64,
 }
 
-/// What a step starts with.
+/// Data at the start of a step.
 #[derive(Clone, Copy)]
 struct Step {
     t: f64,
     dt: f64,
     kinetic: f64,
     elastic: f64,
-    /// ‖√m Δu‖ of free flight, or by the loads alone, the larger: the scale of what the step moves.
+    /// The larger of ‖√m Δu‖ in free flight and by the loads alone: the scale of the displacement in the step.
     reach: f64,
 }
 
@@ -314,7 +319,7 @@ impl Integrator for DiscreteGradient {
             .plus(0.5 * theta, &self.mean)
             .plus(0.5 * theta, &self.next)
             .onto(&state.u, &self.zone, n, &mut self.known);
-        // The first guess: as if the acceleration stayed.
+        // Initial guess: constant acceleration.
         Sum::new().plus(dt, &state.v).plus(theta, &state.a).onto(
             &state.u,
             &self.zone,
@@ -364,7 +369,7 @@ impl Integrator for DiscreteGradient {
 }
 
 crate::saved! {
-    impl Saved for DiscreteGradient {
+    impl Checkpointed for DiscreteGradient {
         iterations: part,
         correction: array("discrete-gradient/correction"),
         tolerance, zone, root_mass: fixed,

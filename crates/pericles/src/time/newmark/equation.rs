@@ -1,16 +1,18 @@
-//! The equation of an implicit step, in the form the solver takes.
+//! The equation of an implicit step in the form required by the solver.
 
 use crate::domain::Domain;
-use crate::operator::On;
+use crate::operator::PointSubset;
 use crate::parallel::for_each_chunk;
 use crate::solve::Nonlinear;
 use crate::system::System;
 use crate::time::ends;
 
-/// u − known − θ (f̄(u)/ρ + g) + φ P (u − base) = 0, with f̄ = Σ weight · f(base + node · (u − base)), the mean force on the way from the base, g the acceleration that boundaries give at the middle of the step, and P the projection along rigid translations that is orthogonal in the masses.
+/// The equation u − known − θ (f̄(u)/ρ + g) + φ P (u − base) = 0. f̄ = Σ weight · f(base + node · (u − base)) is
+/// the mean force on the segment from the base, g the acceleration by boundaries at the middle of the step, and P
+/// the projection on rigid translations that is orthogonal with respect to the masses.
 ///
-/// The unknowns are y = √m u, the residual is scaled the same way: the derivative is then 1 − θ M^(−1/2) T M^(−1/2) + φ P, symmetric as the
-/// solver wants it, and positive definite where the tangent T is negative semi-definite.
+/// The unknowns are y = √m u, and the residual is scaled in the same way. The derivative is then 1 − θ M^(−1/2) T
+/// M^(−1/2) + φ P, which is symmetric, and positive definite where the tangent T is negative semi-definite.
 pub(super) struct StepEquation<'a> {
     pub(super) system: &'a System,
     pub(super) t: f64,
@@ -18,11 +20,11 @@ pub(super) struct StepEquation<'a> {
     pub(super) root_mass: &'a [f64],
     pub(super) known: &'a [f64],
     pub(super) theta: f64,
-    /// Where the step starts.
+    /// Displacement at the start of the step.
     pub(super) base: &'a [f64],
-    /// Places between base and end, 0 to 1, with weights that sum to one.
+    /// Positions between base and end, 0 to 1, with weights that add up to one.
     pub(super) nodes: &'a [(f64, f64)],
-    /// φ.
+    /// Factor φ.
     pub(super) pull: f64,
     /// Whether boundaries act.
     pub(super) with_boundaries: bool,
@@ -31,7 +33,8 @@ pub(super) struct StepEquation<'a> {
 }
 
 impl StepEquation<'_> {
-    /// √m (x − θ f/ρ + φ P (x − base) − known), with the force in `work[2]`; the direction's own form leaves known and base out.
+    /// Computes √m (x − θ f/ρ + φ P (x − base) − known) with the force in `work[2]`; for a direction (`affine`
+    /// false) without known and base.
     fn scale_into(&self, x: &[f64], affine: bool, out: &mut [f64]) {
         let n = self.system.points();
         let force = &self.work[2];
@@ -60,7 +63,7 @@ impl StepEquation<'_> {
         self.system.hold_at(self.t, out);
     }
 
-    /// Adds −√m θ g at the displacement in `work[0]` or, of the direction in `work[1]`, the derivative of that.
+    /// Adds −√m θ g at the displacement in `work[0]`, or its derivative in the direction in `work[1]`.
     fn add_boundaries(&mut self, of_direction: bool, out: &mut [f64]) {
         if !self.with_boundaries {
             return;
@@ -91,7 +94,7 @@ impl StepEquation<'_> {
     }
 }
 
-/// The mass-weighted mean of component c.
+/// Returns the mass-weighted mean of component c.
 pub(super) fn centre(
     domain: &Domain,
     root_mass: &[f64],
@@ -104,12 +107,12 @@ pub(super) fn centre(
 }
 
 impl StepEquation<'_> {
-    /// Puts the displacement of a scaled unknown into `work[0]`.
+    /// Stores the displacement of a scaled unknown in `work[0]`.
     pub(super) fn displace(&mut self, y: &[f64]) {
         self.unscale(y, 0);
     }
 
-    /// f̄ at the displacement in `work[0]`, into `work[2]`.
+    /// Computes f̄ at the displacement in `work[0]` into `work[2]`.
     pub(super) fn mean_force(&mut self) {
         let [u, _, mean, at_node, force] = &mut *self.work;
         mean.fill(0.0);
@@ -118,12 +121,12 @@ impl StepEquation<'_> {
             force.fill(0.0);
             self.system
                 .operator()
-                .add_force(self.t, at_node, On::All, force);
+                .add_force(self.t, at_node, PointSubset::All, force);
             add(weight, force, mean);
         }
     }
 
-    /// Its derivative in the direction in `work[1]`, into `work[2]`.
+    /// Computes the derivative of f̄ in the direction in `work[1]` into `work[2]`.
     fn mean_tangent(&mut self) {
         let [u, direction, mean, at_node, tangent] = &mut *self.work;
         mean.fill(0.0);
@@ -169,7 +172,7 @@ impl Nonlinear for StepEquation<'_> {
     }
 }
 
-/// √m of every unknown.
+/// Returns √m of every unknown.
 pub(super) fn root_masses(system: &System) -> Vec<f64> {
     let n = system.points();
     let mass = |i: usize| system.density().at(i) * system.cloud().volumes()[i];

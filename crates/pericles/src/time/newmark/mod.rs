@@ -1,19 +1,21 @@
-//! Newmark's method, its inner iterations, and a scheme that conserves energy whatever the forces are.
+//! Newmark's method with several inner solvers, and the discrete gradient scheme.
 //!
-//! With vP = v + (1−γ) dt a and uP = u + dt v + (1/2−β) dt² a a step of Newmark's method (1959) solves
+//! With vP = v + (1−γ) dt a and uP = u + dt v + (1/2−β) dt² a, a step of Newmark's method (1959) solves
 //!
 //! > a′ = (f(u′) + b(t′))/ρ,  u′ = uP + β dt² a′,  v′ = vP + γ dt a′.
 //!
-//! | inner solver | a step costs | converges for |
+//! | inner solver | cost of a step | converges for |
 //! |---|---|---|
-//! | [`InnerSolver::FixedPoint`], the P-(EC)^k form | k force evaluations | ω dt < 1/√β: no more than an explicit scheme |
-//! | [`InnerSolver::Anderson`] | as many, fewer near the limit; 2 · depth more vectors | somewhat larger steps, not guaranteed |
+//! | [`InnerSolver::FixedPoint`], the P-(EC)^k form | k force evaluations | ω dt < 1/√β: not beyond explicit schemes |
+//! | [`InnerSolver::Anderson`] | as many, fewer near the limit; 2 · depth additional vectors | somewhat larger steps, not guaranteed |
 //! | [`InnerSolver::NewtonKrylov`] | products with the tangent | any step, if the tangent is negative semi-definite |
 //!
-//! β = 1/4, γ = 1/2 is the trapezoidal rule: second order, no dissipation, stable for any step once the equation is solved. For γ = 1/2 and linear forces
-//! ½ v·Mv + ½ u·Ku + (β − 1/4) dt²/2 a·Ma is conserved (Hughes 1987, section 9.1.2).
+//! β = 1/4, γ = 1/2 is the trapezoidal rule: second order, no dissipation, stable for any step if the equation is
+//! solved. For γ = 1/2 and linear forces ½ v·Mv + ½ u·Ku + (β − 1/4) dt²/2 a·Ma is conserved (Hughes 1987, section
+//! 9.1.2).
 //!
-//! [`DiscreteGradient`] conserves energy for any elastic forces, for any step where the elastic energy is convex.
+//! [`DiscreteGradient`] conserves energy for any elastic forces and for any step where the elastic energy is
+//! convex.
 
 mod anderson;
 mod discrete_gradient;
@@ -29,15 +31,16 @@ use crate::step_kind::StepKind;
 use crate::sum::max_norm;
 use crate::system::System;
 
-/// How the equation of a step is solved.
+/// Solver for the equation of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum InnerSolver {
-    /// Evaluate and correct until the velocity stays: P-(EC)^k.
+    /// Fixed-point iteration, P-(EC)^k: evaluate and correct until the velocity converges.
     #[default]
     FixedPoint,
-    /// The same, accelerated from the last `depth` corrections (Anderson 1965; Walker & Ni 2011).
+    /// Fixed-point iteration with Anderson acceleration from the last `depth` corrections (Anderson 1965; Walker &
+    /// Ni 2011).
     Anderson {
-        /// Corrections remembered, 1 to 8.
+        /// Number of corrections used, 1 to 8.
         depth: u32,
     },
     /// Newton's method with conjugate gradients.
@@ -45,7 +48,7 @@ pub enum InnerSolver {
 }
 
 impl InnerSolver {
-    /// The scheme with this solver, in messages.
+    /// Name of the scheme with this solver in messages.
     fn scheme(self) -> &'static str {
         match self {
             Self::FixedPoint | Self::Anderson { .. } => "newmark",
@@ -53,7 +56,8 @@ impl InnerSolver {
         }
     }
 
-    /// Where within a step the scheme takes the forces. Newton's method solves for displacements, so that what depends on velocities acts between the steps.
+    /// Time within a step at which forces are evaluated. Newton's method solves for displacements, so that
+    /// velocity-dependent boundaries act between the steps.
     pub const fn step_kind(self) -> StepKind {
         match self {
             Self::FixedPoint | Self::Anderson { .. } => StepKind::Stages,
@@ -61,7 +65,7 @@ impl InnerSolver {
         }
     }
 
-    /// What the scheme with this solver needs of a system.
+    /// Requirements of the scheme with this solver.
     pub const fn requirements(self) -> &'static [Requirement] {
         match self {
             Self::FixedPoint | Self::Anderson { .. } => &[Requirement::IN_DOUBLES],
@@ -69,14 +73,14 @@ impl InnerSolver {
                 Requirement::IN_DOUBLES,
                 Requirement {
                     need: Need::NoMemory,
-                    reason: "its equation has forces by displacements only, none of boundaries with a memory; use velocity-verlet",
+                    reason: "its equation contains forces that depend on displacements only, not boundaries with memory; use velocity-verlet",
                 },
             ],
         }
     }
 }
 
-/// In which norm the change of the velocity (m/s) is measured.
+/// Norm of the change of the velocity, m/s.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum VelocityNorm {
     /// √(Σ |Δv_i|²) over all points.
@@ -84,12 +88,12 @@ pub enum VelocityNorm {
     Sum,
     /// √(Σ V_i |Δv_i|²).
     Weighted,
-    /// The largest component.
+    /// Largest absolute value of a component.
     Largest,
 }
 
 impl VelocityNorm {
-    /// As written in decks.
+    /// Name in decks.
     pub fn name(self) -> &'static str {
         match self {
             Self::Sum => "l2",
@@ -98,7 +102,7 @@ impl VelocityNorm {
         }
     }
 
-    /// The norm of `factor` times a component-major vector.
+    /// Returns the norm of `factor` times a component-major vector.
     fn of(self, system: &System, factor: f64, x: &[f64]) -> f64 {
         let n = system.points();
         let (domain, volumes) = (system.domain(), system.cloud().volumes());
@@ -116,20 +120,20 @@ impl VelocityNorm {
 pub struct NewmarkOptions {
     /// β, 0 to 1/2.
     pub beta: f64,
-    /// γ, 1/2 to 1: above 1/2 the scheme is of first order and dissipates.
+    /// γ, 1/2 to 1; above 1/2 the scheme is of first order and dissipative.
     pub gamma: f64,
-    /// The inner iteration ends when the velocity changes by no more than this, m/s in the chosen norm.
+    /// Tolerance: the inner iteration ends when the velocity changes by at most this, m/s in the given norm.
     pub tolerance: f64,
-    /// That norm.
+    /// Norm of the change.
     pub norm: VelocityNorm,
-    /// Inner iterations after which the step fails.
+    /// Largest number of inner iterations; then the step fails.
     pub iterations: u32,
-    /// How the equation of a step is solved.
+    /// Solver for the equation of a step.
     pub solver: InnerSolver,
 }
 
 impl Default for NewmarkOptions {
-    /// The trapezoidal rule to 1e-7 m/s in at most 50 iterations.
+    /// The trapezoidal rule to 1e-7 m/s with at most 50 iterations.
     fn default() -> Self {
         Self {
             beta: 0.25,
@@ -166,7 +170,7 @@ impl NewmarkOptions {
         within("β", beta, "0 to 0.5", (0.0..=0.5).contains(&beta))?;
         within("γ", gamma, "0.5 to 1", (0.5..=1.0).contains(&gamma))?;
         within(
-            "the tolerance",
+            "the tolerance of the inner iteration",
             tolerance,
             "a positive velocity, m/s",
             tolerance > 0.0 && tolerance.is_finite(),
@@ -179,7 +183,7 @@ impl NewmarkOptions {
         )?;
         match solver {
             InnerSolver::Anderson { depth } => within(
-                "Anderson's depth",
+                "the depth of Anderson acceleration",
                 f64::from(depth),
                 "1 to 8",
                 (1..=8).contains(&depth),
@@ -194,23 +198,25 @@ impl NewmarkOptions {
         }
     }
 
-    /// The largest ω dt at which the scheme itself is stable, its equation solved exactly (Hughes 1987, table 9.1.1); none if any is.
+    /// Largest ω dt at which the scheme is stable if its equation is solved exactly (Hughes 1987, table 9.1.1);
+    /// `None` if any step is stable.
     fn stable(&self) -> Option<f64> {
         let excess = 0.5 * self.gamma - self.beta;
         (excess > 0.0).then(|| 1.0 / excess.sqrt())
     }
 }
 
-/// What the inner iterations of a scheme did.
+/// Statistics of inner iterations.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct InnerIterations {
-    /// Iterations of the last step.
+    /// Number of iterations of the last step.
     pub last: u64,
-    /// The last change of the velocity, m/s in the scheme's norm; of relaxation the forces out of balance over those that act.
+    /// Last change of the velocity, m/s in the norm of the scheme; for adaptive dynamic relaxation the relative
+    /// residual.
     pub change: f64,
-    /// The most iterations a step took.
+    /// Largest number of iterations of a step.
     pub most: u64,
-    /// Iterations of all steps.
+    /// Number of iterations of all steps.
     pub total: u64,
 }
 
@@ -219,13 +225,13 @@ impl InnerIterations {
         self.last = iterations;
         self.change = change;
         self.most = self.most.max(iterations);
-        // A checkpoint may hold any number.
+        // A checkpoint may contain any number.
         self.total = self.total.saturating_add(iterations);
     }
 }
 
 crate::saved! {
-    impl Saved for InnerIterations {
+    impl Checkpointed for InnerIterations {
         last, most, total: array("inner/iterations"),
         change: array("inner/change"),
     }

@@ -7,7 +7,7 @@ use crate::boundary::Exchange;
 use crate::compatibility::{Requirement, require};
 use crate::error::{PericlesError, Result};
 use crate::interrupt::Interrupt;
-use crate::operator::On;
+use crate::operator::PointSubset;
 use crate::solve::{SolveLimits, Work, newton_krylov};
 use crate::step_end::{Path, StepEnd};
 use crate::step_kind::StepKind;
@@ -15,15 +15,16 @@ use crate::system::System;
 use crate::time::zone::{Sum, Zone};
 use crate::time::{Integrator, State, highest_frequency};
 
-/// Newmark's method with a choice of inner solvers; see the module.
+/// Newmark's method with a choice of inner solvers; see the module documentation.
 ///
-/// Breaking and work are booked once, at the end of a step. Prescribed displacements hold during the inner iterations and prescribed velocities at the end.
+/// Bonds break and the energy balance is updated once, at the end of a step. Prescribed displacements apply during
+/// the inner iterations, prescribed velocities at the end.
 pub struct Newmark {
     options: NewmarkOptions,
     zone: Zone,
     /// uP and vP.
     predicted: [Vec<f64>; 2],
-    /// The iterate: displacement, velocity, acceleration, and the acceleration found there.
+    /// The iterate: displacement, velocity, acceleration, and the acceleration evaluated there.
     next: [Vec<f64>; 4],
     inner: Inner,
     iterations: InnerIterations,
@@ -39,7 +40,7 @@ struct NewtonKrylov {
     root_mass: Vec<f64>,
     work: Work,
     vectors: [Vec<f64>; 5],
-    /// What the equation knows, and the scaled unknown.
+    /// Known terms of the equation, and the scaled unknown.
     known: Vec<f64>,
     scaled: Vec<f64>,
     least_root_mass: f64,
@@ -47,10 +48,10 @@ struct NewtonKrylov {
 }
 
 impl Newmark {
-    /// The method for a body.
+    /// Makes the method for a system.
     ///
     /// # Errors
-    /// Parameters out of range; Newton's method on a body with boundaries that have a memory.
+    /// Parameters out of range; boundaries with memory if Newton's method is used.
     pub fn new(options: NewmarkOptions, system: &System) -> Result<Self> {
         options.check()?;
         require(
@@ -91,12 +92,12 @@ impl Newmark {
         })
     }
 
-    /// Parameters.
+    /// Parameters of the method.
     pub fn options(&self) -> &NewmarkOptions {
         &self.options
     }
 
-    /// u′ = uP + β dt² a, v′ = vP + γ dt a, with what is prescribed.
+    /// Computes u′ = uP + β dt² a, v′ = vP + γ dt a with prescribed values.
     fn correct(&mut self, system: &System, t: f64, dt: f64) {
         let n = system.points();
         let [u, v, a, _] = &mut self.next;
@@ -106,11 +107,11 @@ impl Newmark {
         Sum::new()
             .plus(self.options.gamma * dt, a)
             .onto(&self.predicted[1], &self.zone, n, v);
-        system.place_on(t, &On::All, u);
-        system.drive_on(t, &On::All, v);
+        system.place_on(t, &PointSubset::All, u);
+        system.drive_on(t, &PointSubset::All, v);
     }
 
-    /// Evaluate and correct until the velocity stays. Leaves the last acceleration found in `next[3]`.
+    /// Fixed-point iteration until the velocity converges. Leaves the last evaluated acceleration in `next[3]`.
     fn iterate(
         &mut self,
         system: &mut System,
@@ -128,8 +129,8 @@ impl Newmark {
         for k in 1..=u64::from(self.options.iterations) {
             interrupt.poll()?;
             let [u, v, a, found] = &mut self.next;
-            system.acceleration(t, u, v, On::All, found);
-            // The iterate before is not needed any more: it becomes the change.
+            system.acceleration(t, u, v, PointSubset::All, found);
+            // The previous acceleration is no longer needed; its array stores the change.
             for (a, found) in a.iter_mut().zip(&*found) {
                 *a = found - *a;
             }
@@ -159,11 +160,11 @@ impl Newmark {
     }
 
     fn not_converged(&self, system: &System, t: f64, dt: f64, change: f64) -> PericlesError {
-        // The frequency at the predicted state: the iterate itself may be far out.
+        // Frequency at the predicted state, because the iterate may be far off.
         let omega =
             highest_frequency(system, &self.predicted[0]).map_or(0.0, |frequency| frequency.bound);
         let iterations = self.options.iterations;
-        // The correction shrinks by β ω² dt² an iteration: so that the last is a millionth of the first.
+        // The correction shrinks by β ω² dt² per iteration; the last one should be a millionth of the first.
         let shrink = 1e-6_f64.powf(1.0 / f64::from(iterations - 1));
         let safe = (shrink / self.options.beta).sqrt() / omega;
         PericlesError::InnerIteration {
@@ -173,12 +174,12 @@ impl Newmark {
             tolerance: self.options.tolerance,
             dt,
             omega,
-            // One evaluation has nothing to be compared with, and a step that is short enough already is no advice.
+            // No advice if one evaluation cannot show convergence, or if the step is already short enough.
             safe: (iterations > 1 && safe.is_finite() && safe < dt).then_some(safe),
         }
     }
 
-    /// Newton's method on u′ − uP − β dt² (f(u′) + b)/ρ = 0.
+    /// Newton's method for u′ − uP − β dt² (f(u′) + b)/ρ = 0.
     fn solve(
         &mut self,
         system: &mut System,
@@ -208,7 +209,7 @@ impl Newmark {
         Sum::new()
             .plus(theta, &state.a)
             .onto(&self.predicted[0], &self.zone, n, u);
-        system.place_on(t, &On::All, u);
+        system.place_on(t, &PointSubset::All, u);
         for ((y, u), root) in scaled.iter_mut().zip(&*u).zip(&*root_mass) {
             *y = u * root;
         }
@@ -240,7 +241,7 @@ impl Newmark {
         for ((u, y), root) in u.iter_mut().zip(&*scaled).zip(&*root_mass) {
             *u = y / root;
         }
-        system.place_on(t, &On::All, u);
+        system.place_on(t, &PointSubset::All, u);
         Sum::new()
             .plus(-1.0, &self.predicted[0])
             .onto(u, &self.zone, n, a);
@@ -248,13 +249,14 @@ impl Newmark {
         Sum::new()
             .plus(self.options.gamma * dt, a)
             .onto(&self.predicted[1], &self.zone, n, v);
-        system.drive_on(t, &On::All, v);
+        system.drive_on(t, &PointSubset::All, v);
         self.iterations
             .count(solved.iterations as u64, solved.residual * velocity / least);
         Ok(())
     }
 
-    /// Accepts the iterate: breaking, work, and the acceleration the next step starts with.
+    /// Accepts the iterate: breaks bonds, updates the energy balance, and sets the acceleration at the start of the
+    /// next step.
     fn accept(&mut self, system: &mut System, state: &mut State, t: f64, dt: f64) {
         let n = system.points();
         let [u, v, a, found] = &mut self.next;
@@ -271,7 +273,7 @@ impl Newmark {
             u,
             path: Path::MeanVelocity(mean_velocity),
         };
-        // The last evaluation of an inner iteration stands for the new state where nothing is decided or measured there.
+        // The last evaluation of the inner iteration is reused if nothing can break and nothing acts on the boundary.
         let last_stands = !matches!(self.inner, Inner::NewtonKrylov(_))
             && !system.operator().can_break()
             && system.motions().is_empty()
@@ -290,7 +292,7 @@ impl Newmark {
     }
 }
 
-/// A residual that is rounding and nothing else, over the size of its terms.
+/// Residual that consists of rounding errors only, relative to the size of its terms.
 const ROUNDING: f64 = 1e-15;
 
 impl Integrator for Newmark {
@@ -383,7 +385,7 @@ impl Integrator for Newmark {
 }
 
 crate::saved! {
-    impl Saved for Newmark {
+    impl Checkpointed for Newmark {
         iterations: part,
         options, zone: fixed,
         predicted, next, inner: scratch,

@@ -1,4 +1,4 @@
-//! The bodies of these tests.
+//! Bodies of the multirate tests.
 
 use std::f64::consts::PI;
 
@@ -6,21 +6,21 @@ use pericles::System;
 use pericles::boundary::{Load, MotionKind, PrescribedMotion, TimeFunction};
 use pericles::family::{BondList, Crack, VolumeCorrection};
 use pericles::material::{BondStretch, Fracture, LinearBond, StressState};
-use pericles::operator::{BondForce, Breaking, DamageMeasure, FastLaw};
+use pericles::operator::{BondForce, Breaking, DamageMeasure, VectorLaw};
 use pericles::space::PointSet;
 use pericles::time::{State, highest_frequency};
 
 use crate::common::{boxed, listed, material, points, system};
 
-/// A problem: the body, its state at the start, the fine points, the end.
+/// A problem: system, initial state, fine points, end time.
 pub type Problem = (System, State, PointSet, f64);
 
-/// A linear plate in plane stress, pulled along x from rest; a box of fine points.
+/// A linear plate in plane stress, pulled along x from rest, with a box of fine points.
 pub fn plate() -> Problem {
     plate_with::<LinearBond>(1.0)
 }
 
-pub fn plate_with<L: FastLaw>(load: f64) -> Problem {
+pub fn plate_with<L: VectorLaw>(load: f64) -> Problem {
     let spacing = 0.02;
     let cloud = boxed([0.0; 3], &[1.0, 0.5], spacing, spacing);
     let material = material(
@@ -52,7 +52,7 @@ pub fn plate_with<L: FastLaw>(load: f64) -> Problem {
     (system, state, fine, 1.2e-4)
 }
 
-/// The nonlinear plate with twenty times the load, a moving bump, and ragged fine points.
+/// The nonlinear plate with twenty times the load, a moving pulse, and a ragged set of fine points.
 pub fn nonlinear_plate() -> Problem {
     let (system, mut state, _, end) = plate_with::<BondStretch>(20.0);
     let cloud = system.cloud().clone();
@@ -72,13 +72,14 @@ pub fn nonlinear_plate() -> Problem {
     (system, state, fine, end)
 }
 
-/// A pre-cracked plate pulled apart, whose steps are binary fractions of a second: times add up without rounding. Fine is a strip about the crack.
+/// A pre-cracked plate in tension. Its steps are binary fractions of a second, so that times add up without
+/// rounding. The fine points are a strip around the crack.
 pub fn cracking_plate() -> Problem {
     crack::<BondStretch>(40, 20.0, 0.006, 2f64.powi(-17))
 }
 
-/// A plate 0.05 m wide with a central crack and three rows above and below that move apart with ± speed.
-pub fn crack<L: FastLaw>(cells: usize, speed: f64, critical_stretch: f64, end: f64) -> Problem {
+/// A plate 0.05 m wide with a central crack; three rows at the top and bottom move apart with ± speed.
+pub fn crack<L: VectorLaw>(cells: usize, speed: f64, critical_stretch: f64, end: f64) -> Problem {
     let spacing = 0.05 / cells as f64;
     let height = 0.05 + 6.0 * spacing;
     let cloud = boxed(
@@ -123,7 +124,8 @@ pub fn crack<L: FastLaw>(cells: usize, speed: f64, critical_stretch: f64, end: f
     (system, state, fine, end)
 }
 
-/// A clamped plate of 15 × 6 points whose points in the middle are fine; those a horizon within are stiffer by `stiffness`.
+/// A plate of 15 × 6 points with fixed ends and fine points in the middle; points within `core` of the middle
+/// are stiffer by the factor `stiffness`.
 pub fn small_plate(stiffness: f64, core: f64) -> Problem {
     let spacing = 0.01;
     let cloud = boxed([0.0; 3], &[0.15, 0.06], spacing, 1.0);
@@ -167,7 +169,7 @@ pub fn small_plate(stiffness: f64, core: f64) -> Problem {
     (system, state, fine, 1.0)
 }
 
-/// A free nonlinear plate of 800 points with a random start.
+/// A free nonlinear plate of 800 points with a random initial state.
 pub fn free_plate() -> Problem {
     let spacing = 0.01;
     let cloud = boxed([0.0; 3], &[0.4, 0.2], spacing, spacing);
@@ -197,7 +199,7 @@ pub fn free_plate() -> Problem {
     (system, state, fine, 0.0)
 }
 
-/// A bar that a smooth pulse pushes at one end, by a load or by prescribed motion.
+/// A bar with a smooth pulse at one end, by a load or a prescribed motion.
 pub fn pushed_bar(kind: Option<MotionKind>) -> Problem {
     let cloud = boxed([0.0; 3], &[0.5], 0.005, 1e-4);
     let material = material(
@@ -245,7 +247,7 @@ pub fn pushed_bar(kind: Option<MotionKind>) -> Problem {
     (system, state, fine, 6e-5)
 }
 
-/// The problem with as many steps of the given ω dt.
+/// The problem with the given number of steps of the given ω dt.
 pub fn steps_of(problem: Problem, omega_dt: f64, steps: u64) -> Problem {
     let (system, state, fine, _) = problem;
     let omega = highest_frequency(&system, &state.u).unwrap().estimate;

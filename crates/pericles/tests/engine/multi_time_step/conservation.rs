@@ -1,4 +1,4 @@
-//! Energy, momentum and their accounts.
+//! Conservation and balance of energy and momentum.
 
 use pericles::material::BondStretch;
 use pericles::space::PointSet;
@@ -47,13 +47,13 @@ fn respa_keeps_energy_and_momentum(steps: u64) {
 }
 
 #[test]
-fn respa_keeps_energy_within_bounds_and_momentum_to_round_off() {
+fn respa_keeps_energy_bounded_and_momentum_to_round_off() {
     respa_keeps_energy_and_momentum(4_000);
 }
 
 #[test]
-fn accounts_close_to_the_order_of_the_scheme() {
-    // Work of a load is booked to fourth order, so that the balance is what the scheme itself loses.
+fn energy_and_momentum_balances_close_to_the_order_of_the_scheme() {
+    // The work of a load is computed to fourth order, so that the error of the balance is that of the scheme.
     let balance = |steps| {
         let simulation = run(pushed_bar(None), steps, mixed(4, 4));
         let energies = simulation.snapshot().energies();
@@ -64,7 +64,7 @@ fn accounts_close_to_the_order_of_the_scheme() {
         coarse < 1e-4 && (coarse / fine).log2() > 3.5,
         "{coarse} {fine}"
     );
-    // Momentum of the body is the impulse of the load, but for what the interface loses.
+    // The momentum of the body is the impulse of the load, except for what the interface loses.
     let simulation = run(pushed_bar(None), 128, mixed(4, 4));
     let momentum = simulation.system().momentum(&simulation.state().v)[0];
     let impulse = simulation.system().ledger().impulse[0];
@@ -78,7 +78,7 @@ fn accounts_close_to_the_order_of_the_scheme() {
 }
 
 #[test]
-fn energy_is_accounted_for_while_bonds_break() {
+fn the_energy_balance_closes_while_bonds_break() {
     let pair = |system: &System, _: &PointSet| -> Box<dyn Integrator> {
         Box::new(AdaptiveRungeKutta::new(1e-5, system).unwrap())
     };

@@ -1,11 +1,11 @@
-//! A running crack against the fine step everywhere.
+//! A running crack compared with the fine step everywhere.
 
 use pericles::material::BondStretch;
 
 use super::bodies::crack;
 use super::schemes::{Scheme, adaptive, mixed, respa, run, uniform};
 
-/// Crack run: broken bonds, tip, displacement.
+/// Result of a crack run: broken bonds, tip, displacement.
 struct Cracked {
     broken: u64,
     tip: f64,

@@ -1,4 +1,4 @@
-//! What must be the same to the last bit: schemes that come to the same thing, restart, threads; and the count of evaluations.
+//! Bitwise identical results: equivalent schemes, resumed runs, numbers of threads; and the number of evaluations.
 
 use pericles::material::BondStretch;
 use pericles::round_trip::check_resume;
@@ -7,12 +7,12 @@ use pericles::time::{
     AdaptiveRungeKutta, Fine, Follow, Integrator, Interpolant, MultiTimeStepOptions, Predictor,
     Respa, State, VelocityVerlet,
 };
-use pericles::{Archive, Control, Saved, Simulation, System};
+use pericles::{Archive, Checkpointed, Control, Simulation, System};
 
 use super::bodies::{Problem, crack, cracking_plate, plate};
 use super::schemes::{Scheme, adaptive, mixed, options, respa, run, two_steps, uniform};
 
-/// The bits of everything a run is made of, but for what belongs to the scheme.
+/// The bits of the state of a run, except for what belongs to the scheme.
 fn bits(simulation: &Simulation) -> (Vec<u64>, Vec<u64>, u64, u64) {
     let State { u, v, .. } = simulation.state();
     let bits = |x: &[f64]| x.iter().map(|x| x.to_bits()).collect();
@@ -26,8 +26,8 @@ fn bits(simulation: &Simulation) -> (Vec<u64>, Vec<u64>, u64, u64) {
 }
 
 #[test]
-fn without_fine_points_or_with_nothing_else_the_plain_scheme_is_left() {
-    // Bit for bit, breaking included.
+fn scheme_without_coarse_or_fine_points_equals_the_single_rate_scheme() {
+    // Bitwise, including breaking bonds.
     let nothing = |problem: Problem| (problem.0, problem.1, vec![], problem.3);
     let everything = |problem: Problem| {
         let all = (0..problem.0.points() as u32).collect();
@@ -50,7 +50,8 @@ fn without_fine_points_or_with_nothing_else_the_plain_scheme_is_left() {
         assert!(bits(&coarse) != bits(&fine));
         let none = run(nothing(cracking_plate()), 64, two);
         let all = run(everything(cracking_plate()), 64, two);
-        // The dissipated energy of a bond involves the mean velocity of Verlet's step, which r-RESPA rounds otherwise.
+        // The dissipated energy of a bond contains the mean velocity of a velocity Verlet step, which r-RESPA
+        // rounds differently.
         let compare = |a: &Simulation, b: &Simulation| {
             let (a, b) = (bits(a), bits(b));
             assert!((&a.0, &a.1, a.2) == (&b.0, &b.1, b.2), "order {order}");
@@ -102,7 +103,7 @@ fn stop_and_resume_equals_the_uninterrupted_run() {
 }
 
 #[test]
-fn any_number_of_threads_gives_the_same_bits() {
+fn results_are_bitwise_identical_for_any_number_of_threads() {
     let following_respa = |system: &System, _: &PointSet| -> Box<dyn Integrator> {
         Box::new(Respa::new(3, Fine::Adaptive(Follow::default()), system).unwrap())
     };
@@ -131,7 +132,7 @@ fn any_number_of_threads_gives_the_same_bits() {
 }
 
 #[test]
-fn evaluations_equal_the_model() {
+fn number_of_evaluations_equals_its_formula() {
     for ratio in [1, 3, 4] {
         for order in [3u64, 4] {
             let (system, state, fine, end) = plate();
@@ -142,7 +143,8 @@ fn evaluations_equal_the_model() {
             simulation.run(|_| Control::Continue).unwrap();
             let report = simulation.integrator().refinement().unwrap();
             let m = u64::from(ratio);
-            // One evaluation at the start; steps that are fine everywhere feed the predictor.
+            // One evaluation at the start; the first steps are fine everywhere and supply the levels of the
+            // predictor.
             assert_eq!(report.starting_steps, order - 3);
             let starting = report.starting_steps * order * m * n;
             let expected = n + starting + report.steps * order * (n - f + m * f);
@@ -164,7 +166,7 @@ fn evaluations_equal_the_model() {
 }
 
 #[test]
-fn several_fine_regions_are_one_in_parts() {
+fn several_fine_regions_equal_their_union() {
     let halves = |fine: &PointSet| {
         let middle = fine.len() / 2;
         vec![fine[..middle].to_vec(), fine[middle..].to_vec()]

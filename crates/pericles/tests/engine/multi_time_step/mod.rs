@@ -1,5 +1,5 @@
-//! Runge–Kutta with one and with two time steps, r-RESPA, and what they ask of operators. Errors against the numbers of another code on more bodies are the studies
-//! `multi-time-step/…` of the program.
+//! Single-rate and multirate Runge–Kutta, r-RESPA, and their requirements on forces. Errors compared
+//! with another code on more bodies are in the studies `multi-time-step/…` of the program.
 
 mod bodies;
 mod conservation;

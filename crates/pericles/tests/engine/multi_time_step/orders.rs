@@ -1,4 +1,4 @@
-//! Orders, on smooth motion.
+//! Orders of the schemes for smooth motion.
 
 use pericles::System;
 use pericles::boundary::MotionKind;
@@ -11,7 +11,7 @@ use super::schemes::{error_x, mixed, reference, respa, run, uniform};
 #[test]
 fn orders_on_a_nonlinear_plate_with_ragged_fine_points() {
     let exact = reference(nonlinear_plate());
-    // Errors at T/128 and T/256 by another code.
+    // Errors at T/128 and T/256, computed by another code.
     for (order, expected, band) in [
         (3, [9.523e-7, 1.178e-7], 2.95..3.10),
         (4, [4.989e-8, 3.103e-9], 3.90..4.05),
@@ -27,7 +27,7 @@ fn orders_on_a_nonlinear_plate_with_ragged_fine_points() {
 }
 
 #[test]
-fn equal_steps_on_both_sides_differ_from_the_plain_scheme_by_its_order() {
+fn multirate_with_equal_steps_differs_from_the_single_rate_scheme_by_its_order() {
     for order in [3, 4] {
         let difference = |steps| {
             let plain = run(nonlinear_plate(), steps, uniform(order));
@@ -57,7 +57,7 @@ fn respa_is_of_second_order() {
 }
 
 #[test]
-fn loads_and_prescribed_motion_keep_the_order() {
+fn loads_and_prescribed_motion_preserve_the_order() {
     for kind in [
         None,
         Some(MotionKind::Displacement),
@@ -107,7 +107,7 @@ fn the_adaptive_pair_meets_its_tolerance() {
         let pair = |system: &System, _: &PointSet| -> Box<dyn Integrator> {
             Box::new(AdaptiveRungeKutta::new(tolerance, system).unwrap())
         };
-        // Two steps of the run: the sub-steps are the scheme's own.
+        // Two steps of the run: the scheme chooses its own sub-steps.
         let simulation = run(nonlinear_plate(), 2, pair);
         let error = error_x(&simulation, &exact) / size;
         let evaluations = simulation.system().evaluated_points();

@@ -1,4 +1,4 @@
-//! Choices that are refused.
+//! Invalid options are errors.
 
 use pericles::PericlesError;
 use pericles::time::{Fine, Follow, MultiTimeStep, MultiTimeStepOptions, Respa, Tableau};
@@ -8,7 +8,7 @@ use super::schemes::options;
 use crate::common::points;
 
 #[test]
-fn wrong_choices_are_refused() {
+fn invalid_options_are_errors() {
     let (system, _, fine, _) = plate();
     let refused = |ratio, fine| {
         let options = MultiTimeStepOptions {
@@ -16,7 +16,7 @@ fn wrong_choices_are_refused() {
             ..options(ratio, &vec![])
         };
         match MultiTimeStep::new(&Tableau::rk4(), options, &system) {
-            Ok(_) => panic!("refused"),
+            Ok(_) => panic!("invalid options were accepted"),
             Err(error) => error,
         }
     };
@@ -62,7 +62,7 @@ fn wrong_choices_are_refused() {
     }
     let pair = MultiTimeStep::new(&Tableau::dormand_prince(), options(2, &fine), &system);
     assert!(matches!(pair, Err(PericlesError::SchemeNotUsable { .. })));
-    // A layer at the border of the body may be thin, and several regions are one.
+    // A layer at the boundary of the body may be thin, and several regions are allowed.
     let [left, right] = [
         points(system.cloud(), |x, _, _| x < 0.03),
         points(system.cloud(), |x, _, _| (x - 0.7).abs() < 0.1),

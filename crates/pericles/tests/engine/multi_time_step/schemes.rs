@@ -41,7 +41,7 @@ pub fn two_steps(
 /// Makes the scheme for a body and its fine points.
 pub type Scheme<'a> = dyn Fn(&System, &PointSet) -> Box<dyn Integrator> + Sync + 'a;
 
-/// The end state of a problem with `steps` steps.
+/// The final state of a problem with `steps` steps.
 pub fn run(
     (system, state, fine, end): Problem,
     steps: u64,

@@ -1,4 +1,4 @@
-//! Limits of the coarse step.
+//! Stability limits of the coarse step.
 
 use pericles::space::PointSet;
 use pericles::time::{Interpolant, MultiTimeStepOptions, Predictor, highest_frequency_on};
@@ -7,14 +7,14 @@ use pericles::{Interrupt, System};
 use super::bodies::{Problem, small_plate};
 use super::schemes::{Scheme, options, respa, two_steps};
 
-/// The growth per step of the largest velocity between two step numbers, for ω dt of the coarse points.
+/// Growth per step of the largest velocity between two step numbers, for ω dt of the coarse points.
 fn growth(problem: Problem, omega_dt: f64, steps: [u64; 2], scheme: &Scheme<'_>) -> f64 {
     let (mut system, mut state, fine, _) = problem;
     let coarse: PointSet = (0..system.points() as u32)
         .filter(|i| fine.binary_search(i).is_err())
         .collect();
     let all: PointSet = (0..system.points() as u32).collect();
-    // Points without fine neighbours tell the coarse material's own frequency.
+    // Points without fine neighbours have the frequency of the coarse material.
     let omega = highest_frequency_on(&system, &state.u, &coarse).unwrap();
     let whole = highest_frequency_on(&system, &state.u, &all).unwrap();
     assert!(omega.converged && omega.estimate <= whole.estimate * 1.001);
@@ -33,7 +33,7 @@ fn growth(problem: Problem, omega_dt: f64, steps: [u64; 2], scheme: &Scheme<'_>)
             )
             .unwrap();
         for k in 0..2 {
-            // The largest of a few steps, so that the phase does not matter.
+            // The largest value of a few steps, so that the phase does not matter.
             if step <= steps[k] && step + 50 > steps[k] {
                 sizes[k] = state.v.iter().fold(sizes[k], |m: f64, v| m.max(v.abs()));
             }
@@ -46,7 +46,7 @@ fn growth(problem: Problem, omega_dt: f64, steps: [u64; 2], scheme: &Scheme<'_>)
 }
 
 #[test]
-fn stability_reaches_the_full_limit_of_the_method() {
+fn multirate_schemes_are_stable_up_to_the_limit_of_the_method() {
     for (stiffness, core) in [(1.0, 0.0), (16.0, 0.012)] {
         for (order, limit) in [(3, 3f64.sqrt()), (4, 8f64.sqrt())] {
             for interpolant in [Interpolant::Hermite, Interpolant::Stages] {
@@ -80,7 +80,7 @@ fn stability_reaches_the_full_limit_of_the_method() {
 }
 
 #[test]
-fn the_papers_predictor_is_weakly_unstable_and_ours_is_not() {
+fn the_backward_difference_predictor_is_weakly_unstable_and_the_default_is_not() {
     let rate = |predictor, omega_dt| {
         let scheme = move |system: &System, fine: &PointSet| {
             let options = MultiTimeStepOptions {
@@ -91,7 +91,7 @@ fn the_papers_predictor_is_weakly_unstable_and_ours_is_not() {
         };
         growth(small_plate(1.0, 0.0), omega_dt, [10_000, 20_000], &scheme)
     };
-    // The rate depends on the plate and on where it is fine; another code found 3.3e-4 and 1.5e-3 on one like it.
+    // The rate depends on the plate and its fine region; another code found 3.3e-4 and 1.5e-3 on a similar one.
     for (omega_dt, expected) in [(1.5, 3.3e-4), (2.0, 1.5e-3)] {
         let found = rate(Predictor::BackwardDifference, omega_dt);
         assert!(found > 0.1 * expected && found < 10.0 * expected, "{found}");
@@ -102,7 +102,7 @@ fn the_papers_predictor_is_weakly_unstable_and_ours_is_not() {
 #[test]
 fn respa_is_stable_up_to_the_limit_of_the_coarse_points() {
     for (stiffness, core) in [(1.0, 0.0), (16.0, 0.012)] {
-        // Swings of the energy of symplectic schemes leave no more than this over so many steps.
+        // Oscillations of the energy of symplectic schemes cause at most this growth over so many steps.
         let swing = 1e-3;
         let below = growth(small_plate(stiffness, core), 1.96, [1000, 9000], &respa(4));
         let above = growth(small_plate(stiffness, core), 2.1, [60, 160], &respa(4));

@@ -5,11 +5,12 @@ use std::sync::Arc;
 use pericles::domain::Field;
 use pericles::family::VolumeCorrection;
 use pericles::material::{
-    BondMaterial, CubicLaw, ElasticModulus, Fracture, FractureCalibration, InterfaceRule,
-    InterfaceStiffness, MaterialInterface, Modulus, PairClasses, PairLaw, StressState, Treatment,
+    Approximation, BondMaterial, CubicLaw, ElasticModulus, Fracture, FractureCalibration,
+    InterfaceRule, InterfaceStiffness, MaterialInterface, MaterialPairs, Modulus, PairLaw,
+    StressState,
 };
 use pericles::operator::{
-    BondBody, BondForm, CompositeBody, DamageMeasure, Force, GradedBody, Materials, On,
+    BondBody, BondForm, CompositeBody, DamageMeasure, Force, GradedBody, Materials, PointSubset,
 };
 use pericles::round_trip::check_resume;
 use pericles::space::{Finer, GradedCloud, GradedGrid, Grid, PointCloud, Region, Shape};
@@ -30,7 +31,7 @@ fn glass(volume_correction: VolumeCorrection) -> BondMaterial {
     )
 }
 
-/// A box of cells, those inside the region divided by `ratio`.
+/// A box of cells, of which those inside the region are divided by `ratio`.
 fn graded(size: &[f64], region: Region, ratio: u32) -> GradedCloud {
     let grid = Grid {
         shape: Shape::Box {
@@ -95,7 +96,7 @@ fn middle(dimension: usize) -> Region {
     }
 }
 
-/// Smooth and different everywhere.
+/// A smooth displacement that differs at every point.
 fn bumpy(cloud: &PointCloud) -> Vec<f64> {
     let n = cloud.len();
     (0..cloud.dimension() * n)
@@ -108,7 +109,7 @@ fn bumpy(cloud: &PointCloud) -> Vec<f64> {
 }
 
 #[test]
-fn divided_everywhere_it_is_the_body_of_small_cells() {
+fn grid_refined_everywhere_equals_a_grid_of_small_cells() {
     for correction in [VolumeCorrection::None, VolumeCorrection::Extended] {
         let material = glass(correction);
         let state = StressState::PlaneStress;
@@ -123,13 +124,13 @@ fn divided_everywhere_it_is_the_body_of_small_cells() {
         let body = BondBody::new(&plain, &small, &constants);
         let expected = body.operator(BondForm::List).unwrap().operator;
         assert_eq!(force.directed_bonds(), expected.directed_bonds());
-        // The points come in another order.
+        // The points have a different order.
         let same: Vec<usize> = (0..cloud.len())
             .map(|i| plain.nearest(cloud.point(i)))
             .collect();
         let evaluate = |force: &dyn Force, cloud: &PointCloud| {
             let mut out = vec![0.0; 2 * cloud.len()];
-            force.add_force(0.0, &bumpy(cloud), On::All, &mut out);
+            force.add_force(0.0, &bumpy(cloud), PointSubset::All, &mut out);
             out
         };
         let (found, expected) = (evaluate(&*force, &cloud), evaluate(&*expected, &plain));
@@ -145,11 +146,11 @@ fn divided_everywhere_it_is_the_body_of_small_cells() {
 }
 
 #[test]
-fn both_ends_of_every_bond_pull_alike() {
-    let treated = PairLaw::Treated(CubicLaw::Literal57, Treatment::SecondOrder);
+fn forces_on_both_ends_of_every_bond_are_opposite() {
+    let treated = PairLaw::Approximated(CubicLaw::CubicSoftening, Approximation::SecondOrder);
     for (dimension, state, law) in [
         (1, StressState::Uniaxial, PairLaw::BondStretch),
-        (1, StressState::Uniaxial, PairLaw::Literal57),
+        (1, StressState::Uniaxial, PairLaw::CubicSoftening),
         (1, StressState::Uniaxial, treated),
         (2, StressState::PlaneStrain, PairLaw::BondStretch),
         (2, StressState::PlaneStrain, PairLaw::GreenStrain),
@@ -165,7 +166,7 @@ fn both_ends_of_every_bond_pull_alike() {
         let (cloud, force) = bonds(points, &material, state);
         let n = cloud.len();
         let mut density = vec![0.0; dimension * n];
-        force.add_force(0.0, &bumpy(&cloud), On::All, &mut density);
+        force.add_force(0.0, &bumpy(&cloud), PointSubset::All, &mut density);
         for component in density.chunks(n) {
             let pull = |i: usize| component[i] * cloud.volumes()[i];
             let (sum, size) = (0..n).fold((0.0, 0.0), |(sum, size), i| {
@@ -177,7 +178,7 @@ fn both_ends_of_every_bond_pull_alike() {
 }
 
 #[test]
-fn two_time_steps_on_two_grids_keep_momentum_and_energy() {
+fn multirate_on_two_grids_conserves_momentum_and_energy() {
     let points_of = graded(&[0.24, 0.16], middle_of_plate(), 3);
     let state = StressState::PlaneStress;
     let (cloud, force) = bonds(points_of, &glass(VolumeCorrection::Extended), state);
@@ -216,7 +217,7 @@ fn middle_of_plate() -> Region {
     }
 }
 
-/// A plate 24 × 20 large cells, the cells of its right half divided by two.
+/// A plate of 24 × 20 large cells; the cells of its right half are divided by two.
 fn half_fine() -> GradedCloud {
     let right = Region::Box {
         min: [0.12, f64::NEG_INFINITY, f64::NEG_INFINITY],
@@ -225,7 +226,7 @@ fn half_fine() -> GradedCloud {
     graded(&[0.24, 0.2], right, 2)
 }
 
-/// Glass of 100 J/m² with the linear law, all of whose bonds have the same stretch under a dilation.
+/// Glass of 100 J/m² with the linear law, for which all bonds have the same stretch under dilatation.
 fn breakable() -> BondMaterial {
     BondMaterial {
         law: PairLaw::Linear,
@@ -244,7 +245,7 @@ fn dilation(cloud: &PointCloud, strain: f64) -> Vec<f64> {
 }
 
 #[test]
-fn a_crack_along_the_interface_takes_the_mean_energy_of_both_grids() {
+fn a_crack_along_the_interface_dissipates_the_mean_energy_of_both_grids() {
     let state = StressState::PlaneStress;
     let material = breakable();
     let (cloud, force) = bonds(half_fine(), &material, state);
@@ -261,12 +262,12 @@ fn a_crack_along_the_interface_takes_the_mean_energy_of_both_grids() {
     let [large, small] = [SPACING, 0.5 * SPACING].map(stretch_on);
     assert!(small > 1.3 * large);
     let is_fine = |i: usize| cloud.axis(0)[i] > 0.12;
-    // Bonds left within one grid or between both once the body has been dilated.
+    // Bonds that remain after the dilatation, within one grid or between both.
     let left = |strain: f64| {
         let (_, mut force) = bonds(half_fine(), &material, state);
         let u = dilation(&cloud, strain);
         let mut out = vec![0.0; u.len()];
-        force.end_step(&StepEnd::sub_step(0.0, 1.0, &u), On::All, &mut out);
+        force.end_step(&StepEnd::sub_step(0.0, 1.0, &u), PointSubset::All, &mut out);
         let mut left = [0; 3];
         for i in 0..cloud.len() {
             let view = force.as_bonds().unwrap();
@@ -292,7 +293,7 @@ fn a_crack_along_the_interface_takes_the_mean_energy_of_both_grids() {
             }
         }
     }
-    // Critical energies of the bonds across a line x = const, away from free faces, J/m².
+    // Critical energies of the bonds across a line x = const, away from free surfaces, J/m².
     let strain = 1e-6;
     let u = dilation(&cloud, strain);
     let across = |line: f64| {
@@ -320,17 +321,17 @@ fn a_crack_along_the_interface_takes_the_mean_energy_of_both_grids() {
         energy / 0.06
     };
     let (coarse, interface, fine) = (across(0.06), across(0.12), across(0.18));
-    // The same plane of both lattices; the calibration is the mean over planes.
+    // The same plane of both lattices; the calibration is a mean over planes.
     assert!((coarse / fine - 1.0).abs() < 1e-9, "{coarse}, {fine}");
     assert!((coarse / 100.0 - 1.0).abs() < 0.15, "{coarse}");
-    // Seen: the interface has other bonds than a plane of either lattice.
+    // Observed: the interface has other bonds than a plane of either lattice.
     assert!(
         (interface / coarse - 1.0).abs() < 0.15,
         "{interface}, {coarse}"
     );
 }
 
-/// A torn plate whose crack runs from large into small cells, in two materials.
+/// A plate of two materials in tension with a crack that propagates from large into small cells.
 fn torn() -> Simulation {
     let state = StressState::PlaneStress;
     let points = half_fine();
@@ -356,7 +357,7 @@ fn torn() -> Simulation {
     let mut start = State::at_rest(2 * cloud.len());
     let n = cloud.len();
     for i in 0..n {
-        // Both halves fly apart, the left ends faster.
+        // Both halves move apart, the left ends faster.
         let [x, y, _] = cloud.point(i);
         start.v[n + i] = (y - 0.1).signum() * 12.0 * (1.0 - x / 0.3);
     }
@@ -366,7 +367,7 @@ fn torn() -> Simulation {
 }
 
 #[test]
-fn a_crack_through_two_grids_and_materials_keeps_energy_and_momentum() {
+fn a_crack_through_two_grids_and_materials_conserves_energy_and_momentum() {
     let mut run = torn();
     let before = run.system().momentum(&run.state().v);
     let size = run.system().kinetic_energy(&run.state().v);
@@ -385,12 +386,12 @@ fn a_crack_through_two_grids_and_materials_keeps_energy_and_momentum() {
 }
 
 #[test]
-fn a_crack_through_two_grids_is_resumed() {
+fn a_crack_through_two_grids_resumes() {
     check_resume(torn, [90]).unwrap();
 }
 
 #[test]
-fn several_materials_divided_everywhere_are_those_of_small_cells() {
+fn several_materials_on_a_grid_refined_everywhere_equal_those_on_small_cells() {
     let state = StressState::PlaneStress;
     let points = graded(&[0.12, 0.08], Region::All, 2);
     let cloud = Arc::new(points.cloud);
@@ -426,19 +427,21 @@ fn several_materials_divided_everywhere_are_those_of_small_cells() {
     let constants = own
         .each_ref()
         .map(|own| own.constants(&plain, state).unwrap());
-    let mut classes = PairClasses::new(number(&plain), &constants, InterfaceRule::Weaker).unwrap();
+    let mut classes =
+        MaterialPairs::new(number(&plain), &constants, InterfaceRule::Weaker).unwrap();
     classes.set_critical_stretch([0, 1], 2e-4).unwrap();
     let composite = CompositeBody {
         body: BondBody::new(&plain, &own[0], &constants[0]),
         classes: Some(&classes),
         correction: Default::default(),
+        softening: None,
     };
     let expected = || composite.operator(BondForm::List).unwrap().operator;
-    // The points come in another order.
+    // The points have a different order.
     let same: Vec<usize> = (0..cloud.len())
         .map(|i| plain.nearest(cloud.point(i)))
         .collect();
-    // Between the stretches of the interface and of the materials, and beyond that of the stiffer one.
+    // Between the critical stretches of the interface and the materials, and beyond that of the stiffer one.
     let stretches = constants
         .each_ref()
         .map(|constants| constants.critical_stretch);
@@ -446,7 +449,7 @@ fn several_materials_divided_everywhere_are_those_of_small_cells() {
         let broken = |mut force: Box<dyn Force>, cloud: &PointCloud| {
             let u = dilation(cloud, strain);
             let mut out = vec![0.0; u.len()];
-            force.end_step(&StepEnd::sub_step(0.0, 1.0, &u), On::All, &mut out);
+            force.end_step(&StepEnd::sub_step(0.0, 1.0, &u), PointSubset::All, &mut out);
             (force.broken_bonds(), out)
         };
         let (number, out) = broken(found(materials), &cloud);

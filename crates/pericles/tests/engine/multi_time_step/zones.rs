@@ -1,4 +1,4 @@
-//! Forces taken apart by zones, for every form of operator.
+//! Forces split by zones, for every form of the forces.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use pericles::kernel::Influence;
 use pericles::material::{
     BondMaterial, Calibration, ElasticModulus, Fracture, Modulus, PairLaw, StressState,
 };
-use pericles::operator::{BondBody, BondForm, Force, On};
+use pericles::operator::{BondBody, BondForm, Force, PointSubset};
 use pericles::space::{Grid, PointCloud, Region, Shape};
 use pericles::time::{
     Fine, Follow, Integrator, Interpolant, MultiTimeStep, MultiTimeStepOptions, Predictor, Respa,
@@ -19,7 +19,7 @@ use pericles::{Path, StepEnd};
 const SPACING: f64 = 0.01;
 const CRITICAL: f64 = 1e-3;
 
-/// A body with a hole and a pre-crack, in one, two or three dimensions.
+/// A body with a hole and a pre-crack in one, two or three dimensions.
 struct Body {
     cloud: Arc<PointCloud>,
     material: BondMaterial,
@@ -105,7 +105,7 @@ impl Body {
 const FORMS: [BondForm; 2] = [BondForm::List, BondForm::Grid];
 
 #[test]
-fn neighbours_are_those_that_exert_a_force() {
+fn neighbours_are_the_points_that_exert_a_force() {
     for body in bodies() {
         let n = body.cloud.len();
         let families = FORMS.map(|form| {
@@ -143,21 +143,33 @@ fn forces_of_partners_add_up_and_are_opposite() {
             let operator = body.operator(form);
             let split = operator.as_split().unwrap();
             let mut whole = vec![0.0; u.len()];
-            operator.add_force(0.0, &u, On::All, &mut whole);
+            operator.add_force(0.0, &u, PointSubset::All, &mut whole);
             let mut parts = vec![0.0; u.len()];
-            split.add_force_from(0.0, &u, On::All, &inside, &mut parts);
-            split.add_force_from(0.0, &u, On::All, &outside, &mut parts);
+            split.add_force_from(0.0, &u, PointSubset::All, &inside, &mut parts);
+            split.add_force_from(0.0, &u, PointSubset::All, &outside, &mut parts);
             let scale = whole.iter().fold(0.0, |max: f64, f| max.max(f.abs()));
             for k in 0..u.len() {
                 assert!((parts[k] - whole[k]).abs() < 1e-12 * scale);
             }
-            // What the two zones do to each other is equal and opposite; other entries stay.
+            // The forces between the two zones are opposite; other entries are unchanged.
             let mut exchange = vec![0.0; u.len()];
-            split.add_force_from(0.0, &u, On::Set(&set(&inside)), &outside, &mut exchange);
+            split.add_force_from(
+                0.0,
+                &u,
+                PointSubset::Set(&set(&inside)),
+                &outside,
+                &mut exchange,
+            );
             for k in 0..u.len() {
                 assert!(inside[k % n] || exchange[k] == 0.0);
             }
-            split.add_force_from(0.0, &u, On::Set(&set(&outside)), &inside, &mut exchange);
+            split.add_force_from(
+                0.0,
+                &u,
+                PointSubset::Set(&set(&outside)),
+                &inside,
+                &mut exchange,
+            );
             for component in exchange.chunks(n) {
                 let sum: f64 = component.iter().sum();
                 assert!(sum.abs() < 1e-12 * scale * n as f64);
@@ -186,7 +198,7 @@ fn breaking_by_partners_decides_their_bonds_only() {
         for form in FORMS {
             let mut at_once = body.operator(form);
             let mut force = vec![0.0; u.len()];
-            at_once.end_step(&end, On::All, &mut force);
+            at_once.end_step(&end, PointSubset::All, &mut force);
             assert!(at_once.broken_bonds() > 5);
             let mut parts = body.operator(form);
             let mut sum = vec![0.0; u.len()];
@@ -198,10 +210,12 @@ fn breaking_by_partners_decides_their_bonds_only() {
                 (&outside, &inside),
             ] {
                 let rows = set(rows);
-                parts
-                    .split_mut()
-                    .unwrap()
-                    .end_step_from(&end, On::Set(&rows), partners, &mut sum);
+                parts.split_mut().unwrap().end_step_from(
+                    &end,
+                    PointSubset::Set(&rows),
+                    partners,
+                    &mut sum,
+                );
                 counts.push(parts.broken_bonds());
             }
             assert!(
@@ -224,7 +238,7 @@ fn breaking_by_partners_decides_their_bonds_only() {
 }
 
 #[test]
-fn endangered_points_are_those_whose_bonds_would_break_at_a_lower_limit() {
+fn endangered_points_are_those_whose_bonds_break_at_a_lower_limit() {
     for body in bodies() {
         let n = body.cloud.len();
         let u = body.displacement(6e-4);
@@ -242,7 +256,7 @@ fn endangered_points_are_those_whose_bonds_would_break_at_a_lower_limit() {
         let mut weak = lower.operator(BondForm::List);
         weak.end_step(
             &StepEnd::sub_step(0.0, 0.0, &u),
-            On::All,
+            PointSubset::All,
             &mut vec![0.0; u.len()],
         );
         let mut damage = vec![0.0; n];
@@ -263,7 +277,7 @@ fn endangered_points_are_those_whose_bonds_would_break_at_a_lower_limit() {
 }
 
 #[test]
-fn two_time_steps_on_the_grid_equal_those_on_the_list() {
+fn multirate_on_the_stencil_equals_multirate_on_the_list() {
     for body in bodies() {
         let u = body.displacement(9e-4);
         for scheme in 0..3 {

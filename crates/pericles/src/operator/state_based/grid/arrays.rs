@@ -1,13 +1,13 @@
-//! What the loops of a solid on a lattice read.
+//! Arrays of a solid on a lattice read by the loops.
 
 use crate::lanes::{LANES, Lanes};
 use crate::operator::grid::layout::Chunk;
 use crate::operator::grid::stencil::Stencil;
 
-/// One bond of the stencil of a solid.
+/// A bond of the stencil of a solid.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SolidOffset<const D: usize> {
-    /// From a node's place in a padded array to that of its neighbour.
+    /// Distance in places of a padded array from a node to its neighbour.
     pub shift: isize,
     /// ξ, m.
     pub xi: [f64; D],
@@ -19,17 +19,17 @@ pub(super) struct SolidOffset<const D: usize> {
     pub weighted_square: f64,
 }
 
-/// Padded rows (see [`GridLayout`](crate::operator::grid::layout::GridLayout)) as the loops see them.
+/// Padded rows (see [`GridLayout`](crate::operator::grid::layout::GridLayout)) read by the loops.
 #[derive(Clone, Copy)]
 pub(super) struct Arrays<'a, const D: usize> {
     pub offsets: &'a [SolidOffset<D>],
     /// Displacement, or another vector.
     pub u: [&'a [f64]; D],
-    /// p = A θ/m, or its change; the pass over points does not read it.
+    /// p = A θ/m, or its change; not read by the pass over points.
     pub pressure: &'a [f64],
     /// s = B/m.
     pub stiffness: &'a [f64],
-    /// Unused places before the first row.
+    /// Number of unused places before the first row.
     pub margin: usize,
 }
 
@@ -40,7 +40,7 @@ pub(super) struct Bonds<T, const D: usize> {
     pub inverse_square: T,
 }
 
-/// The offsets of a stencil whose stiffness is ω.
+/// Returns the offsets of a stencil with the stiffness ω.
 pub(super) fn solid_offsets<const D: usize>(stencil: &Stencil<D>) -> Vec<SolidOffset<D>> {
     let offsets = stencil.offsets().iter().zip(stencil.lengths());
     let solid = offsets.map(|(offset, length)| SolidOffset {
@@ -54,7 +54,7 @@ pub(super) fn solid_offsets<const D: usize>(stencil: &Stencil<D>) -> Vec<SolidOf
 }
 
 impl<'a, const D: usize> Arrays<'a, D> {
-    /// The same arrays, of which the compiler sees that they have one length: one check for all of them, in place of one for each.
+    /// Returns arrays of equal length, so that the compiler needs one bounds check for all of them.
     #[inline(always)]
     pub fn alike(&self) -> Self {
         let length = self.u[0].len();
@@ -70,7 +70,7 @@ impl<'a, const D: usize> Arrays<'a, D> {
         }
     }
 
-    /// The place of a chunk's first node in the arrays.
+    /// Returns the place of the first node of a chunk in the arrays.
     #[inline(always)]
     pub fn place(&self, chunk: &Chunk) -> usize {
         self.margin + chunk.place as usize * LANES
@@ -85,7 +85,7 @@ impl<'a, const D: usize> Arrays<'a, D> {
         here
     }
 
-    /// The difference of the vectors at both ends of the bonds of an offset.
+    /// Returns the difference of the vectors at both ends of the bonds of an offset.
     #[inline(always)]
     pub fn eta<T: Lanes>(&self, place: usize, shift: isize, here: &[T; D]) -> [T; D] {
         let there = place.wrapping_add_signed(shift);
@@ -96,7 +96,7 @@ impl<'a, const D: usize> Arrays<'a, D> {
         eta
     }
 
-    /// The bonds of an offset.
+    /// Returns the bonds of an offset.
     #[inline(always)]
     pub fn bonds<T: Lanes>(
         &self,
@@ -115,7 +115,7 @@ impl<'a, const D: usize> Arrays<'a, D> {
         }
     }
 
-    /// η of one bond.
+    /// Returns η of a bond.
     pub fn difference(&self, place: usize, shift: isize) -> [f64; D] {
         let there = place.wrapping_add_signed(shift);
         std::array::from_fn(|c| self.u[c][there] - self.u[c][place])

@@ -1,4 +1,4 @@
-//! Breaking of a chunk's bonds, decided where the pass over points has seen a large strain.
+//! Bond failure, evaluated for chunks with large strains in the pass over points.
 
 use super::arrays::Arrays;
 use crate::domain::Field;
@@ -11,38 +11,40 @@ use crate::operator::state_based::breaking::{LosingBond, Loss, States};
 use crate::operator::state_based::kinematics::Kinematics;
 use crate::step_end::StepEnd;
 
-/// Breaking as the loops see it.
+/// Failure criterion read by the loops.
 #[derive(Clone, Copy)]
 pub(super) struct StencilRule<'a, const D: usize> {
-    /// Bonds with a measure above threshold |ξ|² exceed the critical stretch of the weakest pair of materials.
+    /// A bond exceeds the critical stretch of the weakest pair of materials if measure > threshold |ξ|².
     pub threshold: f64,
-    /// Limits by the sites that bonds lead to.
+    /// Limits of bonds as a function of both sites.
     pub classes: &'a SolidClasses,
-    /// Which bonds may break, and the points at their ends.
+    /// Breakable bonds and their end points.
     pub families: Families<'a, D>,
     pub states: &'a States,
     pub volumes: &'a [f64],
-    /// The step that ended.
+    /// The step that ends.
     pub step: &'a StepEnd<'a>,
-    /// Mean velocities over the step, where breaking asks for them.
+    /// Mean velocities over the step, if the failure criterion needs them.
     pub velocity: Option<Field<'a>>,
-    /// Note what breaks, so that the other end can be cleared.
+    /// Whether breaking bonds are recorded for the update of their other end.
     pub note_events: bool,
 }
 
-/// A chunk whose bonds are looked at one by one.
+/// A chunk whose bonds are checked individually.
 #[derive(Clone, Copy)]
 pub(super) struct ChunkBonds<'a> {
     pub chunk: &'a Chunk,
-    /// The lanes that are looked at.
+    /// Lanes to be checked.
     pub lanes: u8,
-    /// Its number among all chunks.
+    /// Index of the chunk.
     pub number: usize,
 }
 
-/// Breaks the over-stretched bonds of a chunk's lanes, of which `intact` has a byte for every offset, and books their energy; returns whether there were any.
+/// Breaks the over-stretched bonds of the lanes of a chunk, with one byte of `intact` per offset, and records
+/// the dissipated energy. Returns whether a bond broke.
 ///
-/// Decided with [`PairForce::stretch_measure`], whose rounding is the same at both ends and for all instruction sets.
+/// The criterion uses [`PairForce::stretch_measure`], which is bitwise identical at both ends and for all
+/// instruction sets.
 #[cold]
 #[inline(never)]
 pub(super) fn break_chunk<L: Kinematics, const D: usize>(
@@ -79,7 +81,7 @@ pub(super) fn break_chunk<L: Kinematics, const D: usize>(
     any
 }
 
-/// Clears the bits of bonds that are broken, and books the energy that their points lose.
+/// Clears the bits of broken bonds and records the energy that their points dissipate.
 pub(super) fn take_bonds<L: Kinematics, const D: usize>(
     arrays: &Arrays<'_, D>,
     rule: &StencilRule<'_, D>,
@@ -118,7 +120,8 @@ pub(super) fn take_bonds<L: Kinematics, const D: usize>(
     }
 }
 
-/// What point i in a lane of the chunk at a place loses; `bits` are those left of an offset, and those that break.
+/// Returns the loss of point i in a lane of the chunk at a place; `bits` are the intact and the breaking
+/// bonds of an offset.
 fn loss_of<L: Kinematics, const D: usize>(
     arrays: &Arrays<'_, D>,
     rule: &StencilRule<'_, D>,
@@ -152,7 +155,7 @@ fn loss_of<L: Kinematics, const D: usize>(
     loss
 }
 
-/// The lanes whose bits are set.
+/// Returns the lanes whose bits are set.
 fn lanes_of(bits: u8) -> impl Iterator<Item = usize> {
     (0..LANES).filter(move |lane| bits >> lane & 1 == 1)
 }

@@ -1,4 +1,4 @@
-//! The force operator of linear peridynamic solids on a lattice.
+//! Stencil force kernel of linear peridynamic solids.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use super::breaking::{ChunkBonds, StencilRule, take_bonds};
 use super::kernels::{accept_chunks, dilatation_chunks};
 use crate::domain::{Field, Letter};
 use crate::error::Result;
-use crate::family::{Crack, Cut, EndRule, VolumeCorrection};
+use crate::family::{BondCut, Crack, EndRule, VolumeCorrection};
 use crate::kernel::Influence;
 use crate::lanes::LANES;
 use crate::material::{BondLimits, PairForce, SolidClasses};
@@ -22,33 +22,37 @@ use crate::operator::grid::wanted::WantedPoints;
 use crate::operator::pool::Pool;
 use crate::operator::state_based::breaking::States;
 use crate::operator::state_based::kinematics::Kinematics;
-use crate::operator::{InstructionSet, On};
+use crate::operator::{InstructionSet, PointSubset};
 use crate::parallel::{components_mut, for_each_chunk, for_each_part};
 use crate::space::PointCloud;
 use crate::step_end::StepEnd;
 
-/// The force density of linear peridynamic solids on a lattice, N/m³: that of [`LinearSolidForce`](crate::operator::LinearSolidForce), several times faster.
+/// Force density of linear peridynamic solids on a lattice, N/m³: that of
+/// [`LinearSolidForce`](crate::operator::LinearSolidForce), several times faster.
 ///
-/// All nodes share one stencil, as in [`GridForce`](crate::operator::GridForce): both passes take rows along x eight nodes at a time, without roots and divisions while strains are small. The influence function and
-/// the partial volume are constants of an offset; A/m and B/m are numbers of a point, so that materials may differ from point to point.
+/// All nodes share one stencil, as in [`GridForce`](crate::operator::GridForce): both passes compute eight
+/// nodes of a row along x together, without roots and divisions for small strains. The influence function and
+/// the partial volume are constants of an offset. A/m and B/m are stored per point, so that materials may
+/// differ between points.
 ///
-/// Memory: per point one byte per eight bonds, copies of the displacement and of p = A θ/m, and five numbers; row ends are padded to eight nodes.
+/// Memory: per point one byte per eight bonds, copies of the displacement and of p = A θ/m, and five numbers;
+/// rows are padded to a multiple of eight nodes.
 pub struct LinearSolidGrid<L: Kinematics, const D: usize> {
     pub(super) cloud: Arc<PointCloud>,
     pub(super) layout: Arc<GridLayout>,
     pub(super) stencil: Stencil<D>,
     pub(super) offsets: Vec<SolidOffset<D>>,
-    /// Bonds left: one byte per chunk and offset, offsets fastest.
+    /// Intact bonds: one byte per chunk and offset, offsets fastest.
     pub(super) blocks: Vec<BlockDamage>,
     held: Option<Vec<u8>>,
     precut: Vec<(u64, u8)>,
-    /// Numbers of points, those of ghosts behind own ones.
+    /// Factors of points, those of ghosts after own points.
     pub(super) states: States,
     /// s = B/m in padded rows.
     stiffness: Padded<f64, 1>,
-    /// Limits by the sites that bonds lead to.
+    /// Limits of bonds as a function of both sites.
     pub(super) classes: SolidClasses,
-    /// The limits of the weakest pair of materials.
+    /// Limits of the weakest pair of materials.
     pub(super) weakest: BondLimits,
     damage: DamageMeasure,
     pub(super) directed_bonds: u64,
@@ -58,7 +62,7 @@ pub struct LinearSolidGrid<L: Kinematics, const D: usize> {
 }
 
 crate::saved! {
-    impl<L: Kinematics, const D: usize> Saved for LinearSolidGrid<L, D> {
+    impl<L: Kinematics, const D: usize> Checkpointed for LinearSolidGrid<L, D> {
         blocks: under("operator/grid"),
         cloud, layout, stencil, offsets, held, precut, states, stiffness, classes, weakest: fixed,
         damage, directed_bonds, instruction_set, kinematics: fixed,
@@ -70,25 +74,28 @@ crate::saved! {
 struct Work<const D: usize> {
     u: Padded<f64, D>,
     pressure: Padded<f64, 1>,
-    /// p of all points, those of ghosts behind own ones.
+    /// p of all points, those of ghosts after own points.
     of_points: Vec<f64>,
     wanted: WantedPoints,
 }
 
-/// What an evaluation needs of the padded rows.
+/// Points for which an evaluation needs padded rows.
 #[derive(Clone, Copy)]
 pub(super) struct Wanted<'a> {
-    /// The points that it is wanted for.
-    pub on: &'a On<'a>,
-    /// Whether rows are needed beyond the neighbours of these points.
+    /// Requested points.
+    pub on: &'a PointSubset<'a>,
+    /// Whether rows beyond the neighbours of these points are needed.
     pub whole: bool,
 }
 
 impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
-    /// The force of solids with one influence function on the points of a lattice with pre-cracks, and what each crack removed. Bonds of the points `no_fail` never break; bonds break by their stretch only.
+    /// Creates the force of solids with one influence function on the points of a lattice with pre-cracks,
+    /// and returns the bonds removed by each crack. Bonds of the points `no_fail` never break; other bonds
+    /// break by stretch only.
     ///
     /// # Errors
-    /// A cloud without a lattice or of another dimension, a horizon that reaches no neighbour, an unusable crack, points `no_fail` that the cloud does not have.
+    /// A cloud without a lattice or of another dimension, a horizon without neighbours, an invalid crack,
+    /// points `no_fail` that do not exist in the cloud.
     pub fn new(
         cloud: &Arc<PointCloud>,
         (influence, horizon): (&Influence, f64),
@@ -97,7 +104,7 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
         cracks: &[(Crack, EndRule)],
         no_fail: &[u32],
         damage: DamageMeasure,
-    ) -> Result<(Self, Vec<Cut>)> {
+    ) -> Result<(Self, Vec<BondCut>)> {
         let weight = |xi| influence.alpha_of(xi, horizon);
         let LatticeBonds {
             sites,
@@ -165,12 +172,13 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
         Ok((force, cuts))
     }
 
-    /// The weighted volume m of a point, m⁵ for a dimensionless influence function; infinite for a point without bonds.
+    /// Returns the weighted volume m of a point, m⁵ for a dimensionless influence function; infinite for a
+    /// point without bonds.
     pub fn weighted_volume(&self, i: usize) -> f64 {
         D as f64 / self.states.dilatation[i]
     }
 
-    /// The families.
+    /// Returns the families.
     pub(super) fn families(&self) -> Families<'_, D> {
         Families {
             cloud: &self.cloud,
@@ -184,7 +192,8 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
         }
     }
 
-    /// Copies a vector and p for the dilatations given to padded rows and hands them on, with the wanted lanes of each chunk or none if all points are wanted.
+    /// Copies a vector and p for the given dilatations to padded rows and passes them on, with the requested
+    /// lanes of each chunk (`None` if all points are requested).
     pub(super) fn with_arrays<R>(
         &self,
         u: Field<'_>,
@@ -200,7 +209,7 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
             wanted,
         } = &mut *lent;
         let layout = &*self.layout;
-        let all = matches!(on, On::All);
+        let all = matches!(on, PointSubset::All);
         if !all {
             wanted.set(layout, on, self.stencil.radius());
         }
@@ -234,7 +243,7 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
         work(&arrays, (!all).then(|| wanted.lanes()))
     }
 
-    /// p = A θ/m of all points, those of ghosts behind own ones.
+    /// Sets p = A θ/m of all points, those of ghosts after own points.
     fn pressures_into(&self, dilatations: Field<'_>, out: &mut [f64]) {
         let n = self.cloud.len();
         let (own, ghosts) = out.split_at_mut(n);
@@ -251,14 +260,14 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
         }
     }
 
-    /// Runs a read-only loop over the blocks with wanted points.
+    /// Runs a read-only loop over the blocks with requested points.
     pub(super) fn sweep<const C: usize>(
         &self,
         lanes: Option<&[u8]>,
         out: &mut [f64],
         chunks: impl Fn(&ChunkBlock<'_>, &[u8], &mut [&mut [f64]; C]) + Sync,
     ) {
-        // A vector of nothing: the blocks' state is only read, and no memory is taken.
+        // A vector of units takes no memory: the state of blocks is only read.
         let mut nothing = vec![(); self.blocks.len()];
         for_each_part(
             components_mut::<C>(out, self.cloud.len()),
@@ -272,8 +281,8 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
         );
     }
 
-    /// Sets the dilatations of the points named by `on`.
-    pub(super) fn dilatations_into(&self, u: Field<'_>, on: &On<'_>, out: &mut [f64]) {
+    /// Sets the dilatations of the points `on`.
+    pub(super) fn dilatations_into(&self, u: Field<'_>, on: &PointSubset<'_>, out: &mut [f64]) {
         let (set, factors) = (self.instruction_set, &self.states.dilatation[..]);
         let wanted = Wanted { on, whole: false };
         self.with_arrays(u, None, wanted, |arrays, lanes| {
@@ -283,16 +292,17 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
         });
     }
 
-    /// Breaks bonds of the points named by `on` that are stretched beyond their critical stretch and sets the points' dilatations.
+    /// Breaks bonds of the points `on` that exceed their critical stretch and sets the dilatations of these
+    /// points.
     pub(super) fn break_by_stretch(
         &mut self,
         step: &StepEnd<'_>,
         u: Field<'_>,
-        on: &On<'_>,
+        on: &PointSubset<'_>,
         dilatations: &mut [f64],
     ) {
         let mut blocks = std::mem::take(&mut self.blocks);
-        let (set, whole) = (self.instruction_set, !matches!(on, On::All));
+        let (set, whole) = (self.instruction_set, !matches!(on, PointSubset::All));
         let moved = step.ghost_velocities(self.cloud.domain());
         let rule = StencilRule {
             threshold: L::Measure::threshold(self.weakest.stretch),
@@ -323,7 +333,8 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
         self.blocks = blocks;
     }
 
-    /// Clears the second copy of bonds that broke in a sweep over some of the points only, and books the energy that their other ends lose.
+    /// Breaks the other end of bonds that broke in a sweep over a subset of points, and records the energy
+    /// dissipated there.
     fn clear_other_ends(
         &self,
         rule: &StencilRule<'_, D>,
@@ -368,7 +379,7 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
         }
     }
 
-    /// Memory, bytes.
+    /// Returns the memory use, bytes.
     pub(super) fn own_bytes(&self) -> usize {
         let masks: usize = self.blocks.iter().map(|block| block.intact.len()).sum();
         let farthest = self.stencil.farthest_shift();

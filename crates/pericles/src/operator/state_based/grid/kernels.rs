@@ -1,9 +1,11 @@
-//! The loops of a linear peridynamic solid on a lattice: both passes, one text for every dimension and instruction set.
+//! Loops of linear peridynamic solids on a lattice: both passes, generic over dimension and instruction set.
 //!
-//! Eight nodes of a row are computed side by side, all offsets of the stencil in turn. The pass over points leaves the dilatation; the pass over bonds reads p = A θ/m and s = B/m of both ends. A lane takes the
-//! exact form if one of its own bonds is strained beyond the fast form's reach, so that a point's values do not depend on which other points are computed beside it.
+//! Eight nodes of a row are computed together, all offsets of the stencil in turn. The pass over points
+//! computes dilatations; the pass over bonds reads p = A θ/m and s = B/m of both ends. A lane uses the exact
+//! law if the strain of one of its own bonds exceeds the range of the fast form, so that the values of a
+//! point do not depend on which other points are computed with it.
 //!
-//! No closures and no adapters here: one that is not inlined would take the baseline's instructions.
+//! No closures or adapters here: without inlining they would use baseline instructions.
 
 use super::arrays::Arrays;
 use super::breaking::{ChunkBonds, StencilRule, break_chunk};
@@ -13,7 +15,7 @@ use crate::operator::grid::block::{ChunkBlock, scatter};
 use crate::operator::grid::layout::Chunk;
 use crate::operator::state_based::kinematics::Kinematics;
 
-/// Σ ω r e of eight points, and the range of the strains t it was computed from.
+/// Σ ω r e of eight points, and the range of their strains t.
 struct Extension<T> {
     sum: T,
     largest: T,
@@ -48,7 +50,7 @@ fn extension<T: Lanes, L: Kinematics, const D: usize>(
     extension
 }
 
-/// The same sum however large the strains.
+/// Returns Σ ω r e by the exact law, for any strains.
 #[inline(always)]
 fn exact_extension<T: Lanes, L: Kinematics, const D: usize>(
     arrays: &Arrays<'_, D>,
@@ -66,7 +68,7 @@ fn exact_extension<T: Lanes, L: Kinematics, const D: usize>(
     sum
 }
 
-/// The sum in the form that the strains of each lane need.
+/// Selects the fast or exact form by the strains of each lane.
 #[inline(always)]
 fn settled<T: Lanes, L: Kinematics, const D: usize>(
     arrays: &Arrays<'_, D>,
@@ -80,11 +82,11 @@ fn settled<T: Lanes, L: Kinematics, const D: usize>(
         return extension.sum;
     }
     let exact = exact_extension::<T, L, D>(arrays, place, intact);
-    // One of the two is zero in every lane.
+    // One of both terms is zero in each lane.
     exact.masked(beyond) + extension.sum.masked(!beyond)
 }
 
-/// Sets the numbers of the wanted lanes, times the factors of their points.
+/// Sets the values of the requested lanes times the factors of their points.
 #[inline(always)]
 fn set(
     numbers: [f64; LANES],
@@ -127,7 +129,8 @@ fn dilatation_chunks_body<T: Lanes, L: Kinematics, const D: usize>(
     }
 }
 
-/// t above which a chunk is checked bond by bond: below the threshold by more than the fast form's rounding.
+/// Fraction of the threshold above which bonds of a chunk are checked individually; the margin exceeds the
+/// rounding error of the fast form.
 const WATCH: f64 = 1.0 - 1e-9;
 
 #[inline(always)]
@@ -149,7 +152,7 @@ fn accept_chunks_body<T: Lanes, L: Kinematics, const D: usize>(
         let chunk = &block.chunks[number];
         let intact = &mut intact[number * m..(number + 1) * m];
         let place = arrays.place(chunk);
-        // Once more if bonds have broken: a loop, so that the compiler has one copy of its body.
+        // Repeated if bonds have broken. A loop gives the compiler a single copy of the body.
         let extension = loop {
             let extension = extension::<T, L, D>(arrays, place, intact);
             let endangered = extension.largest.greater(watch) & lanes;
@@ -168,7 +171,7 @@ fn accept_chunks_body<T: Lanes, L: Kinematics, const D: usize>(
     }
 }
 
-/// The force of eight points by the law itself, however large the strains.
+/// Returns the forces on eight points by the exact law, for any strains.
 #[inline(always)]
 fn exact_force<T: Lanes, L: Kinematics, const D: usize>(
     arrays: &Arrays<'_, D>,
@@ -238,7 +241,7 @@ fn force_chunks_body<T: Lanes, L: Kinematics, const D: usize>(
         if beyond != 0 {
             let exact = exact_force::<T, L, D>(arrays, place, intact);
             for c in 0..D {
-                // One of the two is zero in every lane.
+                // One of both terms is zero in each lane.
                 force[c] = exact[c].masked(beyond) + force[c].masked(!beyond);
             }
         }
@@ -276,7 +279,8 @@ fn square_chunks_body<T: Lanes, L: Kinematics, const D: usize>(
 }
 
 for_each_instruction_set! {
-    /// Sets the dilatation of the wanted points (indexed from the block's first one): `factors` (D/m of every point) times Σ ω r e.
+    /// Sets the dilatations of the requested points (indexed from the first point of the block): `factors`
+    /// (D/m of each point) times Σ ω r e.
     pub(super) fn dilatation_chunks [L: Kinematics, const D: usize] <L, D> (
         arrays: &Arrays<'_, D>,
         factors: &[f64],
@@ -287,7 +291,7 @@ for_each_instruction_set! {
 }
 
 for_each_instruction_set! {
-    /// Breaks over-stretched bonds of the wanted points and sets the dilatation by those that are left.
+    /// Breaks over-stretched bonds of the requested points and sets the dilatations from the intact bonds.
     pub(super) fn accept_chunks [L: Kinematics, const D: usize] <L, D> (
         arrays: &Arrays<'_, D>,
         rule: &StencilRule<'_, D>,
@@ -299,7 +303,7 @@ for_each_instruction_set! {
 }
 
 for_each_instruction_set! {
-    /// Adds the force density of the wanted points to `out`.
+    /// Adds the force density of the requested points to `out`.
     pub(super) fn force_chunks [L: Kinematics, const D: usize] <L, D> (
         arrays: &Arrays<'_, D>,
         block: &ChunkBlock<'_>,

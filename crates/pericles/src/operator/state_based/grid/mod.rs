@@ -1,4 +1,4 @@
-//! Linear peridynamic solids on a lattice by one stencil for all nodes.
+//! Stencil kernel for linear peridynamic solids on a lattice.
 
 mod arrays;
 mod breaking;

@@ -8,14 +8,14 @@ use crate::lanes::LANES;
 use crate::material::PairForce;
 use crate::operator::state_based::kinematics::Kinematics;
 use crate::operator::{
-    AtPoints, BondView, Breakable, CoarseBreak, InstructionSet, On, TwoPass, damage,
+    AtPoints, BondView, Breakable, CoarseBreak, InstructionSet, PointSubset, TwoPass, damage,
 };
 use crate::parallel::for_each_chunk;
 use crate::step_end::StepEnd;
 
 /// All points.
 const ALL: Wanted<'static> = Wanted {
-    on: &On::All,
+    on: &PointSubset::All,
     whole: true,
 };
 
@@ -25,7 +25,7 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidGrid<L, D> {
         1
     }
 
-    fn values_into(&self, _t: f64, u: Field<'_>, on: &On<'_>, values: &mut [f64]) {
+    fn values_into(&self, _t: f64, u: Field<'_>, on: &PointSubset<'_>, values: &mut [f64]) {
         self.dilatations_into(u, on, values);
     }
 
@@ -47,7 +47,7 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidGrid<L, D> {
         });
     }
 
-    fn add_bond_force(&self, _t: f64, at: AtPoints<'_>, on: &On<'_>, out: &mut [f64]) {
+    fn add_bond_force(&self, _t: f64, at: AtPoints<'_>, on: &PointSubset<'_>, out: &mut [f64]) {
         let set = self.instruction_set;
         let wanted = Wanted { on, whole: false };
         self.with_arrays(at.u, Some(at.values), wanted, |arrays, lanes| {
@@ -83,7 +83,7 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidGrid<L, D> {
         });
     }
 
-    /// That of [`LinearSolidForce`](crate::operator::LinearSolidForce).
+    /// The bound of [`LinearSolidForce`](crate::operator::LinearSolidForce).
     fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {
         let (families, m) = (self.families(), self.stencil.len());
         let mut rows = vec![0.0; self.cloud.len()];
@@ -114,18 +114,18 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidGrid<L, D> {
         self.families().for_each_neighbour(i, visit);
     }
 
-    /// A critical stretch is decided in the pass over points itself.
+    /// The critical stretch is evaluated in the pass over points.
     fn end_values_into(
         &mut self,
         step: &StepEnd<'_>,
         u: Field<'_>,
-        on: &On<'_>,
-        needed: &On<'_>,
+        on: &PointSubset<'_>,
+        needed: &PointSubset<'_>,
         values: &mut [f64],
     ) {
         if self.can_break() {
             self.break_by_stretch(step, u, on, values);
-            if matches!(on, On::All) {
+            if matches!(on, PointSubset::All) {
                 return;
             }
         }
@@ -144,7 +144,7 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidGrid<L, D> {
         Some(0)
     }
 
-    /// None in a body divided among processes: the force of a bond needs the families of both of its ends.
+    /// Not available for bodies divided among processes: the force of a bond needs the families of both ends.
     fn bonds(&self) -> Option<&dyn BondView> {
         (!self.cloud.domain().is_divided()).then_some(self)
     }
@@ -177,7 +177,7 @@ impl<L: Kinematics, const D: usize> Breakable for LinearSolidGrid<L, D> {
         damage::dissipate(&mut self.blocks, energy);
     }
 
-    /// None: the energy that a bond stores at its critical stretch depends on the other bonds of its ends.
+    /// Always empty: the energy of a bond at its critical stretch depends on the other bonds of its ends.
     fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {
         Vec::new()
     }

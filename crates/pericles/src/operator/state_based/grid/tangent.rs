@@ -1,4 +1,4 @@
-//! The derivatives of both passes in a direction.
+//! Directional derivatives of both passes.
 
 use super::arrays::{Arrays, Bonds};
 use crate::lanes::{Lanes, for_each_instruction_set};

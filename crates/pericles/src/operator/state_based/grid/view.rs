@@ -7,7 +7,7 @@ use crate::operator::state_based::view::{force_of_bond, weighted_extension};
 use crate::operator::{BondAt, BondView};
 
 impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
-    /// p = A θ/m of a point.
+    /// Returns p = A θ/m of a point.
     fn pressure_of(&self, u: Field<'_>, i: usize) -> f64 {
         let (place, left) = self.families().bonds_of(i);
         let extension: f64 = left
@@ -22,7 +22,7 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
     }
 }
 
-/// The dilatations of a point and its neighbours are computed for each call.
+/// Each call computes the dilatations of a point and its neighbours.
 impl<L: Kinematics, const D: usize> BondView for LinearSolidGrid<L, D> {
     fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt)) {
         let pressure = self.pressure_of(u, i);

@@ -1,4 +1,4 @@
-//! The loops at the end of a step: inelastic stretches follow the displacement, and what that dissipates is booked.
+//! Loops at the end of a step: update of inelastic stretches and of the dissipated energy.
 
 use super::super::bonds::SolidBonds;
 use super::super::breaking::States;
@@ -12,24 +12,24 @@ use crate::material::{Inelasticity, MOST_TERMS, SolidClasses, Yield};
 use crate::operator::records::Records;
 use crate::operator::rows::Rows;
 
-/// The end of a step as the loops see it.
+/// Data of the end of a step read by the loops.
 #[derive(Clone, Copy)]
 pub(super) struct Advance<'a> {
     pub laws: &'a Laws,
     pub classes: &'a SolidClasses,
     pub states: &'a States,
     pub volumes: &'a [f64],
-    /// The influence function w alone, where a material yields.
+    /// Influence function w, if a material yields.
     pub influence: Option<&'a Weight>,
-    /// Viscous terms kept per bond.
+    /// Number of viscous terms per bond.
     pub terms: usize,
     /// The time, s.
     pub t: f64,
-    /// Whether the run starts here: no time has passed, and nothing is booked.
+    /// Whether the run starts: no time has passed and no energy is dissipated.
     pub starts: bool,
 }
 
-/// A point, its groups in the list from `first` on and in its block from `start` on.
+/// A point with its groups, in the list from `first` on and in its block from `start` on.
 #[derive(Clone, Copy)]
 struct Point {
     i: usize,
@@ -38,7 +38,7 @@ struct Point {
     groups: usize,
 }
 
-/// The influence function w of a group; one where none is needed.
+/// Returns the influence function w of a group; one if it is not needed.
 #[inline(always)]
 pub(super) fn influence_of<T: Lanes>(
     influence: Option<&Weight>,
@@ -56,7 +56,7 @@ pub(super) fn influence_of<T: Lanes>(
     }
 }
 
-/// 1/x, zero for points without bonds.
+/// Returns 1/x, zero for points without bonds.
 #[inline(always)]
 pub(super) fn inverse(x: f64) -> f64 {
     if x > 0.0 { 1.0 / x } else { 0.0 }
@@ -108,7 +108,7 @@ fn advance_rows_body<T: Lanes, L: Kinematics, const D: usize>(
     }
 }
 
-/// Advances the back-stretches of a point, and returns what that dissipates over s V.
+/// Updates the back-stretches of a point and returns the dissipated energy divided by s V.
 #[allow(clippy::too_many_arguments)]
 #[inline(always)]
 fn viscous_row<T: Lanes, L: Kinematics, const D: usize>(
@@ -189,7 +189,8 @@ fn viscous_row<T: Lanes, L: Kinematics, const D: usize>(
     sum(dissipated)
 }
 
-/// Lets a point flow if its deviatoric force state lies outside the yield surface, and returns what that dissipates over s V.
+/// Applies plastic flow to a point if its deviatoric force state lies outside the yield surface, and returns
+/// the dissipated energy divided by s V.
 #[allow(clippy::too_many_arguments)]
 #[inline(always)]
 fn plastic_row<T: Lanes, L: Kinematics, const D: usize>(
@@ -244,7 +245,7 @@ fn plastic_row<T: Lanes, L: Kinematics, const D: usize>(
         norm = norm + (w * term).masked(intact);
     }
     let stiffness = rule.states.stiffness[bonds.list.site(point.i)];
-    // B/(s m) is 1, so that D/m over D is 1/m.
+    // B/(s m) = 1, and D/m divided by D is 1/m.
     let over_volume = rule.states.dilatation[point.i] / D as f64;
     let trial = Trial {
         strength: rule.laws.strength[point.i],
@@ -328,7 +329,8 @@ fn sum_rows_body<T: Lanes, const D: usize>(
 }
 
 for_each_instruction_set! {
-    /// Advances the inelastic stretches of the rows to the end of a step; sets the time of the points, their intact weighted volume, their plastic strain and multiplier.
+    /// Updates the inelastic stretches of the rows to the end of a step, and the time, intact weighted
+    /// volume, plastic strain and plastic multiplier of the points.
     pub(super) fn advance_rows [L: Kinematics, const D: usize] <L, D> (
         bonds: &SolidBonds<'_>,
         rule: &Advance<'_>,
@@ -340,7 +342,7 @@ for_each_instruction_set! {
 }
 
 for_each_instruction_set! {
-    /// Sets the sums of points over the bonds that are left, and their intact weighted volume.
+    /// Sets the sums of points over their intact bonds, and their intact weighted volume.
     pub(super) fn sum_rows [const D: usize] <D> (
         bonds: &SolidBonds<'_>,
         rule: &Advance<'_>,

@@ -1,10 +1,10 @@
-//! Bodies of inelastic solids.
+//! Bodies of viscous and plastic solids.
 
 use super::super::body::LinearSolidBody;
 use super::super::kinematics::{FiniteStrain, Kinematics, SmallStrain};
 use super::force::InelasticSolidForce;
 use crate::error::{PericlesError, Result};
-use crate::family::Cut;
+use crate::family::BondCut;
 use crate::material::{Inelasticity, Strains, StressState};
 use crate::operator::{AssembledBonds, BondForm, Feature, Features, Limit, TwoPassForce};
 
@@ -13,35 +13,37 @@ use crate::operator::{AssembledBonds, BondForm, Feature, Features, Limit, TwoPas
 pub struct InelasticSolidBody<'a> {
     /// The body with its elastic constants.
     pub elastic: LinearSolidBody<'a>,
-    /// The inelasticity of every material, in the order of the classes of the elastic body.
+    /// Inelastic law of each material, in the order of the classes of the elastic body.
     pub laws: &'a [Inelasticity],
 }
 
-/// What bodies with history do not represent.
+/// Features that inelastic bodies do not support.
 const LIMITS: &[Limit] = &[
     Limit::new(
         Feature::SurfaceCorrection,
-        "viscous and plastic materials have no corrected surfaces: the factors are those of elastic bonds; leave out `surface_correction`",
+        "the surface correction of viscous and plastic materials is not supported: its factors hold for elastic bonds; omit `surface_correction`",
     ),
     Limit::new(
         Feature::BondEnergy,
-        "the bonds of viscous and plastic materials break by their stretch; use failure = \"stretch\"",
+        "bonds of viscous and plastic materials break by stretch only; use failure = \"stretch\"",
     ),
 ];
 
-/// What the forms on a lattice do not represent.
-const ON_LATTICE: &str = "viscous and plastic materials keep numbers for every bond of a list; use \"list\" or leave `bonds` out";
+/// Reason why stencil kernels are not available.
+const ON_LATTICE: &str = "viscous and plastic materials store the history of each bond of a neighbour list; use bonds = \"list\" or omit `bonds`";
 
 impl InelasticSolidBody<'_> {
-    /// Why a body with these features cannot be viscous or plastic; none if it can.
+    /// Returns why a body with these features cannot be viscous or plastic; `None` if it can.
     pub fn refusal(features: Features) -> Option<&'static str> {
         Limit::refusal(LIMITS, features)
     }
 
-    /// The operator, on a list.
+    /// Returns the operator, which uses a list.
     ///
     /// # Errors
-    /// Those of [`LinearSolidBody::operator`] and of [`Inelasticity::check`]; a form other than a list, corrected surfaces, limits of bond energy, another number of laws than of materials; a body that is divided among processes.
+    /// Errors of [`LinearSolidBody::operator`] and of [`Inelasticity::check`]; a kernel other than a list,
+    /// surface correction, failure by bond energy, a number of laws that is not the number of materials; a
+    /// body divided among processes.
     pub fn operator(&self, form: BondForm) -> Result<AssembledBonds> {
         match (self.elastic.strains, self.elastic.cloud.dimension()) {
             (Strains::Finite, 1) => self.of_form::<FiniteStrain, 1>(form),
@@ -68,16 +70,16 @@ impl InelasticSolidBody<'_> {
         })
     }
 
-    /// The force in two passes, and what each pre-crack removed.
+    /// Returns the two-pass force and the bonds removed by each pre-crack.
     ///
     /// # Errors
-    /// Those of [`InelasticSolidBody::operator`].
+    /// Errors of [`InelasticSolidBody::operator`].
     ///
     /// # Panics
-    /// If the body has another dimension than D.
+    /// If the dimension of the body is not D.
     pub fn list<L: Kinematics, const D: usize>(
         &self,
-    ) -> Result<(InelasticSolidForce<L, D>, Vec<Cut>)> {
+    ) -> Result<(InelasticSolidForce<L, D>, Vec<BondCut>)> {
         let form = BondForm::List.name();
         Limit::check(LIMITS, form, self.elastic.features())?;
         let state = match self.elastic.cloud.dimension() {
@@ -92,7 +94,7 @@ impl InelasticSolidBody<'_> {
             .map_or(1, |classes| classes.materials());
         if self.laws.len() != materials {
             return Err(PericlesError::OutOfRange {
-                quantity: "the number of laws of inelasticity",
+                quantity: "the number of inelastic laws",
                 value: self.laws.len() as f64,
                 allowed: "one for each material",
             });

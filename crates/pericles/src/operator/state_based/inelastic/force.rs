@@ -1,4 +1,4 @@
-//! The force operator of inelastic solids.
+//! Neighbour-list force kernel of inelastic solids.
 
 use super::super::force::LinearSolidForce;
 use super::super::kinematics::Kinematics;
@@ -12,36 +12,42 @@ use crate::error::{PericlesError, Result};
 use crate::kernel::Influence;
 use crate::lanes::{Row, dot};
 use crate::material::Inelasticity;
-use crate::operator::On;
+use crate::operator::PointSubset;
 use crate::operator::pool::{Lent, Pool};
 use crate::operator::rows::Rows;
 use crate::parallel::{BLOCK, for_each_block, for_each_point};
 use crate::step_end::StepEnd;
 use rayon::prelude::*;
 
-/// The force density of linear peridynamic solids whose shear is viscous or plastic ([`Inelasticity`]), on a bond list.
+/// Force density of linear peridynamic solids with viscous or plastic shear ([`Inelasticity`]), on a
+/// neighbour list, N/m³.
 ///
-/// The force state of a point is t_ij = (w/m)(A θ r + B (e − e_x)) with the inelastic extension e_x of the directed bond. Viscous and plastic materials may stand beside elastic ones; bonds break by their critical stretch.
-/// Extensions are advanced to the end of every accepted step. Between, at time t and displacement u, the force is that of a step from the last one to t: schemes with stages and static solvers see the viscosity and the
-/// plasticity of the step that they are in, and the tangent is that of this force.
+/// The force state of a point is t_ij = (w/m)(A θ r + B (e − e_x)) with the inelastic extension e_x of the
+/// directed bond. Viscous, plastic and elastic materials can be combined. Bonds break at their critical
+/// stretch. Inelastic extensions are updated at the end of each accepted step. In between, the force at time
+/// t and displacement u is that of a step from the last accepted state to t: stages and static solvers
+/// include the viscosity and plasticity of the current step, and the tangent is the derivative of this force.
 ///
-/// What flow and relaxation dissipate is booked with what breaking bonds dissipate ([`Breakable::dissipated`](crate::operator::Breakable::dissipated)); with hardening, all plastic work counts as dissipated.
+/// Energy dissipated by flow and relaxation is added to that of breaking bonds
+/// ([`Breakable::dissipated`](crate::operator::Breakable::dissipated)). With hardening, all plastic work
+/// counts as dissipated.
 ///
-/// For influence functions other than the constant the flow of a plastic point is radial but not normal to the yield surface, and the tangent of yielding points is not symmetric.
+/// For influence functions other than the constant one, the plastic flow of a point is radial but not normal
+/// to the yield surface, and the tangent of yielding points is not symmetric.
 ///
-/// Memory beside that of [`LinearSolidForce`]: 20 bytes per directed bond and 8 for every viscous term.
+/// Memory in addition to [`LinearSolidForce`]: 20 bytes per directed bond, and 8 bytes per viscous term.
 pub struct InelasticSolidForce<L: Kinematics, const D: usize> {
     pub(super) solid: LinearSolidForce<L, D>,
     pub(super) laws: Laws,
     pub(super) history: History,
-    /// The influence function alone, where a material yields.
+    /// Influence function, if a material yields.
     pub(super) influence: Option<Weight>,
     states: Pool<Vec<Row>>,
     reliefs: Pool<Vec<f64>>,
 }
 
 crate::saved! {
-    impl<L: Kinematics, const D: usize> Saved for InelasticSolidForce<L, D> {
+    impl<L: Kinematics, const D: usize> Checkpointed for InelasticSolidForce<L, D> {
         solid, history: part,
         laws, influence: fixed,
         states, reliefs: scratch,
@@ -49,10 +55,11 @@ crate::saved! {
 }
 
 impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
-    /// The force of solids of these laws, one for each material. The solid has the influence function `influence`, whole stiffness at its surfaces, and no limits of bond energy.
+    /// Creates the force of a solid with these inelastic laws, one per material. The solid must have the
+    /// influence function `influence`, no surface correction, and no failure by bond energy.
     ///
     /// # Errors
-    /// A body that is divided among processes; more than 4.29e9 directed bonds.
+    /// A body divided among processes; more than 4.29e9 directed bonds.
     pub fn new(
         solid: LinearSolidForce<L, D>,
         of_material: Vec<Inelasticity>,
@@ -61,7 +68,7 @@ impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
         if solid.cloud.domain().is_divided() {
             return Err(PericlesError::FormNotUsable {
                 form: "list",
-                reason: "viscous and plastic materials keep numbers for each end of a bond, which must belong to one process",
+                reason: "viscous and plastic materials store the history of both ends of a bond in the same process, but this body is divided among processes",
             });
         }
         let mut laws = Laws {
@@ -93,27 +100,30 @@ impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
         })
     }
 
-    /// The elastic solid.
+    /// Returns the elastic solid.
     pub fn solid(&self) -> &LinearSolidForce<L, D> {
         &self.solid
     }
 
-    /// Equivalent plastic strain ε_p of every point.
+    /// Returns the equivalent plastic strain ε_p of each point.
     pub fn plastic_strain(&self) -> &[f64] {
         &self.history.plastic_strain
     }
 
-    /// Plastic multiplier of every point since the start, m⁵/Pa for a dimensionless influence function: the plastic extensions change by the deviatoric force state over w times its change.
+    /// Returns the accumulated plastic multiplier of each point, m⁵/Pa for a dimensionless influence
+    /// function. The change of the plastic extensions is the change of the multiplier times the deviatoric
+    /// force state divided by w.
     pub fn multiplier(&self) -> &[f64] {
         &self.history.multiplier
     }
 
-    /// √(2 ψ₀) of a point, the norm of the deviatoric force state at which it yields first; infinite where nothing yields.
+    /// Returns √(2 ψ₀) of a point, the norm of the deviatoric force state at first yield; infinite if the
+    /// point does not yield.
     pub fn strength(&self, i: usize) -> f64 {
         self.laws.strength.get(i).copied().unwrap_or(f64::INFINITY)
     }
 
-    /// The inelastic stretch e_x/r of an entry.
+    /// Returns the inelastic stretch e_x/r of an entry.
     pub fn inelastic_stretch(&self, entry: usize) -> f64 {
         self.history.inelastic[entry]
     }
@@ -129,7 +139,7 @@ impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
         }
     }
 
-    /// R of all entries at a time; none if they are those at the end of the last step.
+    /// Returns R of all entries at time t; `None` if they are those at the end of the last step.
     pub(super) fn reliefs_at(&self, t: f64) -> Option<Lent<'_, Vec<f64>>> {
         if self.laws.terms == 0 || self.history.time.iter().all(|&time| time >= t) {
             return None;
@@ -141,7 +151,7 @@ impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
         Some(reliefs)
     }
 
-    /// What the loops over bonds read, with the rows of S and G.
+    /// Returns the data of the loops over bonds, with rows of S and G.
     pub(super) fn reliefs<'a>(
         &'a self,
         at_time: &'a Option<Lent<'_, Vec<f64>>>,
@@ -157,7 +167,7 @@ impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
         }
     }
 
-    /// Rows of S and G, or of their changes, from the values of the points.
+    /// Returns rows of S and G, or of their changes, from the values of points.
     pub(super) fn state_rows(&self, values: Field<'_>, changes: bool) -> Lent<'_, Vec<Row>> {
         let mut rows = self.states.take();
         let sites = self.solid.bonds.sites();
@@ -182,15 +192,21 @@ impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
         rows
     }
 
-    /// Rows of a vector and of P, or of its change.
+    /// Returns rows of a vector and of P, or of its change.
     pub(super) fn packed_with(&self, u: Field<'_>, values: Field<'_>) -> Lent<'_, Vec<Row>> {
         let sites = self.solid.bonds.sites();
         self.solid
             .packed_beside(u, |site| values.at::<3>(1, sites.point(site)))
     }
 
-    /// Sets P and S of the points named by `on`, whose dilatations are the first of the values.
-    pub(super) fn states_into(&self, t: f64, u: Field<'_>, on: &On<'_>, values: &mut [f64]) {
+    /// Sets P and S of the points `on`; the dilatation is the first of the values.
+    pub(super) fn states_into(
+        &self,
+        t: f64,
+        u: Field<'_>,
+        on: &PointSubset<'_>,
+        values: &mut [f64],
+    ) {
         let (bonds, points) = (self.solid.view(), self.points(t));
         let u = self.solid.packed(u);
         self.solid.sweep::<3>(on, values, |intact, rows, out| {
@@ -199,8 +215,8 @@ impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
         });
     }
 
-    /// Advances the inelastic stretches of the points named by `on` to the end of a step.
-    pub(super) fn advance(&mut self, step: &StepEnd<'_>, u: Field<'_>, on: &On<'_>) {
+    /// Updates the inelastic stretches of the points `on` to the end of a step.
+    pub(super) fn advance(&mut self, step: &StepEnd<'_>, u: Field<'_>, on: &PointSubset<'_>) {
         let mut blocks = std::mem::take(&mut self.solid.blocks);
         let mut history = std::mem::take(&mut self.history);
         let (bonds, set) = (self.solid.view(), self.solid.instruction_set);
@@ -218,7 +234,7 @@ impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
         self.history = history;
     }
 
-    /// Sets the sums over the bonds of points again in all blocks that have lost bonds since there were so many broken ones in each.
+    /// Updates the sums over bonds in all blocks in which the number of broken bonds differs from `before`.
     pub(super) fn renew_sums(&mut self, step: &StepEnd<'_>, u: Field<'_>, before: &[u64]) {
         let mut blocks = std::mem::take(&mut self.solid.blocks);
         let mut history = std::mem::take(&mut self.history);
@@ -229,7 +245,7 @@ impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
         let ([_, volumes, ..], mut parts) = history.split(start, &mut blocks);
         for_each_block([volumes], &mut parts, &|first, mut out, part| {
             let len = n.min(first + BLOCK) - first;
-            if let Some(rows) = Rows::of_block(&On::All, first, len)
+            if let Some(rows) = Rows::of_block(&PointSubset::All, first, len)
                 && part.damage.tally.broken.get() != before[first / BLOCK]
             {
                 sum_rows::<D>(set, &bonds, &rule, &u, part, &rows, &mut out);
@@ -240,13 +256,13 @@ impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
         self.history = history;
     }
 
-    /// Broken directed bonds by blocks.
+    /// Returns the number of broken directed bonds per block.
     pub(super) fn broken(&self) -> Vec<u64> {
         let blocks = self.solid.blocks.iter();
         blocks.map(|block| block.tally.broken.get()).collect()
     }
 
-    /// The end of a step as the loops see it. What changes in the loops is not read by it.
+    /// Returns the data of the end of a step read by the loops, without the arrays that they modify.
     fn rule(&self, step: &StepEnd<'_>) -> Advance<'_> {
         Advance {
             laws: &self.laws,
@@ -260,12 +276,12 @@ impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
         }
     }
 
-    /// Breaks bonds of the points named by `on` and sets the dilatations of those named by `needed`.
+    /// Breaks bonds of the points `on` and sets the dilatations of the points `needed`.
     pub(super) fn break_bonds(
         &mut self,
         step: &StepEnd<'_>,
         u: Field<'_>,
-        [on, needed]: [&On<'_>; 2],
+        [on, needed]: [&PointSubset<'_>; 2],
         dilatations: &mut [f64],
     ) {
         if !self.solid.weakest.stretch.is_finite() {
@@ -285,7 +301,7 @@ impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
             history.stored(&laws.of_material[usize::from(material[i])], entry)
         };
         solid.break_by_stretch(step, u, on, dilatations, Some(&stored));
-        if !matches!(on, On::All) {
+        if !matches!(on, PointSubset::All) {
             solid.dilatations_into(u, needed, dilatations);
         }
         if self.broken() != before {
@@ -293,7 +309,7 @@ impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
         }
     }
 
-    /// Memory of what is kept beside the elastic solid, bytes.
+    /// Returns the memory use without the elastic solid, bytes.
     pub(super) fn own_bytes(&self) -> usize {
         let influence = self.influence.as_ref().map_or(0, Weight::bytes);
         let strength = size_of_val(&self.laws.strength[..]);
@@ -302,7 +318,7 @@ impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
     }
 }
 
-/// √(2 ψ₀) of every point.
+/// Returns √(2 ψ₀) of each point.
 fn strengths<L: Kinematics, const D: usize>(
     solid: &LinearSolidForce<L, D>,
     laws: &Laws,

@@ -1,4 +1,4 @@
-//! What bonds and points of inelastic solids keep from step to step.
+//! History variables of bonds and points of inelastic solids.
 
 use rayon::prelude::*;
 
@@ -13,30 +13,32 @@ use crate::parallel::{BLOCK, for_each_point};
 /// Inelastic stretches of bonds, and sums over the bonds of points.
 #[derive(Default)]
 pub(super) struct History {
-    /// Viscous terms kept per bond.
+    /// Number of viscous terms per bond.
     pub terms: usize,
-    /// The inelastic stretch x of each entry.
+    /// Inelastic stretch x of each entry.
     pub inelastic: Vec<f64>,
-    /// The stretch of each entry at the end of the last step.
+    /// Stretch of each entry at the end of the last step.
     pub last: Vec<f64>,
-    /// The back-stretches ψ_k, the terms of a group of eight entries behind each other.
+    /// Back-stretches ψ_k; the terms of a group of eight entries are consecutive.
     pub back: Vec<f64>,
-    /// The time at which each point was advanced last, s.
+    /// Time of the last update of each point, s.
     pub time: Vec<f64>,
-    /// Σ ω r² over the bonds of each point that are left.
+    /// Σ ω r² over the intact bonds of each point.
     pub volume: Vec<f64>,
-    /// Σ ω r² of the stretch of the last step (viscous) or of the plastic stretch, then of every back-stretch, point by point.
+    /// Per point: Σ ω r² times the stretch of the last step (viscous) or the plastic stretch, followed by
+    /// Σ ω r² ψ_k of each back-stretch.
     pub sums: Vec<f64>,
-    /// Equivalent plastic strain of the points.
+    /// Equivalent plastic strain of points.
     pub plastic_strain: Vec<f64>,
-    /// Plastic multiplier of the points: e_p changes by the deviatoric force state over w times its change.
+    /// Plastic multiplier of points: the change of e_p is its change times the deviatoric force state divided
+    /// by w.
     pub multiplier: Vec<f64>,
-    /// The entry that leads back, for every entry; itself for padding.
+    /// Reverse entry of each entry; itself for padding.
     pub opposite: Vec<u32>,
 }
 
 crate::saved! {
-    impl Saved for History {
+    impl Checkpointed for History {
         inelastic: array("inelastic/stretch"),
         last: array("inelastic/last"),
         back: array("inelastic/back"),
@@ -49,7 +51,7 @@ crate::saved! {
     }
 }
 
-/// What a block of points keeps.
+/// History of a block of points.
 pub(super) struct Part<'a> {
     pub damage: &'a mut BlockDamage,
     pub inelastic: &'a mut [f64],
@@ -59,7 +61,7 @@ pub(super) struct Part<'a> {
 }
 
 impl History {
-    /// That of bodies without a history yet; `volumes` are the weighted volumes of the points.
+    /// Creates an empty history; `volumes` are the weighted volumes of points.
     pub fn new(bonds: &BondList, terms: usize, volumes: Vec<f64>) -> Result<Self> {
         let (n, entries) = (volumes.len(), bonds.present().len() * LANES);
         Ok(Self {
@@ -76,12 +78,12 @@ impl History {
         })
     }
 
-    /// The sums of a point.
+    /// Returns the sums of a point.
     pub fn sums(&self, i: usize) -> &[f64] {
         &self.sums[i * (1 + self.terms)..(i + 1) * (1 + self.terms)]
     }
 
-    /// Σ ω r² x of a point with the inelastic stretches x at the end of the last step.
+    /// Returns Σ ω r² x of a point with the inelastic stretches x at the end of the last step.
     pub fn inelastic_sum(&self, law: &Inelasticity, i: usize) -> f64 {
         let sums = self.sums(i);
         match law {
@@ -94,7 +96,7 @@ impl History {
         }
     }
 
-    /// x of an entry and c, the part of the energy that its inelastic stretches keep.
+    /// Returns x of an entry and c, the energy constant of its inelastic stretches.
     pub fn stored(&self, law: &Inelasticity, entry: usize) -> [f64; 2] {
         let x = self.inelastic[entry];
         let first = entry / LANES * LANES * self.terms + entry % LANES;
@@ -109,7 +111,9 @@ impl History {
         }
     }
 
-    /// Sets what the inelastic stretches at a time keep of those at the end of the last step: R of every entry, with which the deviatoric pull of its first point is S ψ − G R and a number of the point.
+    /// Sets R of each entry at time t, the remaining contribution of inelastic stretches at the end of the
+    /// last step. The deviatoric pull of the first point of the entry is S ψ − G R plus a number of the
+    /// point.
     pub fn reliefs_into(
         &self,
         t: f64,
@@ -147,7 +151,8 @@ impl History {
         });
     }
 
-    /// Time, intact weighted volume, plastic strain and multiplier of all points, and the parts of the blocks.
+    /// Returns time, intact weighted volume, plastic strain and multiplier of all points, and the history of
+    /// each block.
     pub fn split<'a>(
         &'a mut self,
         start: &[usize],
@@ -179,7 +184,7 @@ impl History {
         (points, parts)
     }
 
-    /// Memory, bytes.
+    /// Returns the memory use, bytes.
     pub fn bytes(&self) -> usize {
         let numbers = [
             &self.inelastic,
@@ -196,7 +201,7 @@ impl History {
     }
 }
 
-/// An array with `width` numbers for each group, in parts for the blocks of points.
+/// Splits an array with `width` numbers per group into parts for the blocks of points.
 pub(super) fn split_groups<'a>(
     start: &[usize],
     mut array: &'a mut [f64],
@@ -213,7 +218,7 @@ pub(super) fn split_groups<'a>(
     parts
 }
 
-/// The entry that leads back, for every entry of a list.
+/// Returns the reverse entry of each entry of a list.
 fn opposites(bonds: &BondList) -> Result<Vec<u32>> {
     let entries = bonds.present().len() * LANES;
     if u32::try_from(entries).is_err() {

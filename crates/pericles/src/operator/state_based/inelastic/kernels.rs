@@ -1,4 +1,4 @@
-//! The loops over points and bonds of inelastic solids.
+//! Loops over points and bonds of inelastic solids.
 
 use super::super::bonds::SolidBonds;
 use super::super::breaking::States;
@@ -13,47 +13,47 @@ use crate::material::{Inelasticity, SolidClasses, Yield};
 use crate::operator::records::Records;
 use crate::operator::rows::Rows;
 
-/// What the pass over points reads: the body at a time within a step.
+/// Data read by the pass over points at a time within a step.
 #[derive(Clone, Copy)]
 pub(super) struct Points<'a> {
     pub laws: &'a Laws,
     pub classes: &'a SolidClasses,
     pub states: &'a States,
     pub history: &'a History,
-    /// The influence function w alone, where a material yields.
+    /// Influence function w, if a material yields.
     pub influence: Option<&'a Weight>,
     /// The time, s.
     pub t: f64,
 }
 
-/// What the loops over bonds read beside displacements.
+/// Data read by the loops over bonds in addition to displacements.
 #[derive(Clone, Copy)]
 pub(super) struct Reliefs<'a> {
-    /// R of every entry.
+    /// R of each entry.
     pub of_entries: &'a [f64],
-    /// The entry that leads back.
+    /// Reverse entry of each entry.
     pub opposite: &'a [u32],
     /// S and G of all sites.
     pub states: &'a Records,
 }
 
-/// The force state of a point beside its bonds' own stretches: the pull of a bond is P + S ψ − G R.
+/// Force state of a point: the pull of a bond is P + S ψ − G R.
 #[derive(Clone, Copy)]
 pub(super) struct PointState {
-    /// P, N/m³ over ω r.
+    /// P, N/m³ per ω r.
     pub pull: f64,
-    /// S, the same units.
+    /// S, in the units of P.
     pub stiffness: f64,
 }
 
-/// The trial state of a plastic point, with the mean of ψ − x over its bonds.
+/// Trial state of a plastic point with the mean of ψ − x over its bonds.
 pub(super) struct PlasticPoint {
     pub trial: Trial,
     pub mean: f64,
 }
 
 impl<'a> Reliefs<'a> {
-    /// R of a group, and of the entries that lead back.
+    /// Returns R of the entries of a group and of their reverse entries.
     #[inline(always)]
     pub fn of_group<T: Lanes>(&self, group: usize) -> [T; 2] {
         let places = &self.opposite[group * LANES..(group + 1) * LANES];
@@ -69,7 +69,7 @@ impl<'a> Reliefs<'a> {
 }
 
 impl Points<'_> {
-    /// The trial state of a plastic point with the dilatation θ.
+    /// Returns the trial state of a plastic point with the dilatation θ.
     #[inline(always)]
     pub fn plastic<T: Lanes, L: Kinematics, const D: usize>(
         &self,
@@ -108,7 +108,7 @@ impl Points<'_> {
         PlasticPoint { trial, mean }
     }
 
-    /// P and S of a plastic point at a site whose p over θ is A/m.
+    /// Returns P and S of a plastic point at a site with p/θ = A/m.
     #[inline(always)]
     pub fn of_plastic(
         &self,
@@ -124,7 +124,7 @@ impl Points<'_> {
         }
     }
 
-    /// P and S of a viscous point with the dilatation θ.
+    /// Returns P and S of a viscous point with the dilatation θ.
     #[inline(always)]
     pub fn of_viscous(
         &self,
@@ -211,7 +211,7 @@ fn force_rows_body<T: Lanes, L: Kinematics, const D: usize>(
             let bond = bonds.group(first + k, &here, u);
             let there = bonds.there::<T>(first + k, reliefs.states);
             let [forth, back] = reliefs.of_group::<T>(first + k);
-            // The same bits seen from the other end.
+            // Bitwise identical from the other end.
             let p = bond.last - (factor * forth + there[1] * back);
             let t = L::strain(bond.xi, bond.eta, bond.inverse_square).masked(intact[k]);
             let pull = L::exact_pull(t, p, stiffness + there[0]);
@@ -270,7 +270,7 @@ fn square_rows_body<T: Lanes, L: Kinematics, const D: usize>(
 }
 
 for_each_instruction_set! {
-    /// Sets P and S of the rows, whose dilatations are the first of `out`.
+    /// Sets P and S of the rows; the dilatation is the first array of `out`.
     pub(super) fn point_rows [L: Kinematics, const D: usize] <L, D> (
         bonds: &SolidBonds<'_>,
         points: &Points<'_>,
@@ -282,7 +282,7 @@ for_each_instruction_set! {
 }
 
 for_each_instruction_set! {
-    /// Adds the force density of the rows; the fourth number of the rows of `u` is P.
+    /// Adds the force density of the rows; the fourth entry of the rows of `u` is P.
     pub(super) fn force_rows [L: Kinematics, const D: usize] <L, D> (
         bonds: &SolidBonds<'_>,
         reliefs: &Reliefs<'_>,

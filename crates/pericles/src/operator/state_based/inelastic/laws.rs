@@ -1,11 +1,12 @@
-//! Relaxation over a step, and the return to the yield surface.
+//! Constitutive updates: viscous relaxation over a step and return to the yield surface.
 
 use crate::lanes::Lanes;
 use crate::material::{Inelasticity, MOST_TERMS, ViscousTerm, Yield};
 
-/// The factors by which back-stretches follow a stretch that changes linearly over a time dt:
+/// Factors of the update of back-stretches for a stretch that changes linearly over a time dt:
 ///
-/// ψ_k' = q_k ψ_k + (1 − q_k) h + β_k (h' − h), q = exp(−dt/τ), β = 1 − (τ/dt)(1 − q), with the driving stretches h and h' at the start and the end: the exact solution.
+/// ψ_k' = q_k ψ_k + (1 − q_k) h + β_k (h' − h), q = exp(−dt/τ), β = 1 − (τ/dt)(1 − q), with the driving
+/// stretches h and h' at the start and end of the step. This is the exact solution.
 #[derive(Clone, Copy)]
 pub(super) struct Relaxation {
     /// dt, s.
@@ -23,7 +24,7 @@ pub(super) struct Relaxation {
 }
 
 impl Relaxation {
-    /// The factors of terms over a time; nothing changes in no time.
+    /// Creates the factors of viscous terms over a time dt; without change for dt = 0.
     pub fn new(terms: &[ViscousTerm], dt: f64) -> Self {
         let zero = [0.0; MOST_TERMS];
         let mut of = Self {
@@ -44,28 +45,28 @@ impl Relaxation {
         of
     }
 
-    /// Σ λ_k β_k: the share of a change of stretch within the step that has relaxed at its end.
+    /// Returns Σ λ_k β_k, the fraction of a change of stretch within the step that has relaxed at its end.
     pub fn relaxed(&self) -> f64 {
         (0..self.terms).map(|k| self.share[k] * self.slope[k]).sum()
     }
 
-    /// Σ λ_k (1 − q_k − β_k): the weight of the stretch at the start.
+    /// Returns Σ λ_k (1 − q_k − β_k), the weight of the stretch at the start.
     pub fn of_start(&self) -> f64 {
         let weight = |k: usize| self.share[k] * (self.gain[k] - self.slope[k]);
         (0..self.terms).map(weight).sum()
     }
 }
 
-/// β = 1 − (1 − e^−a)/a.
+/// Returns β = 1 − (1 − e^−a)/a.
 fn slope(a: f64) -> f64 {
     if a < 1e-3 {
-        // Nothing cancels in the series; the next term is below 1e-16 of the first.
+        // The series avoids cancellation; the next term is below 1e-16 of the first.
         return a * (0.5 - a * (1.0 / 6.0 - a * (1.0 / 24.0 - a * (1.0 / 120.0 - a / 720.0))));
     }
     1.0 + (-a).exp_m1() / a
 }
 
-/// c of [`Yield`]: ε_p² = c Σ ω e_p²/m of the plastic extensions e_p of a uniform plastic strain.
+/// Returns c of [`Yield`]: ε_p² = c Σ ω e_p²/m of the plastic extensions e_p of a uniform plastic strain.
 pub(super) const fn mean_square(dimension: usize) -> f64 {
     match dimension {
         3 => 5.0,
@@ -73,33 +74,35 @@ pub(super) const fn mean_square(dimension: usize) -> f64 {
     }
 }
 
-/// A deviatoric force state that may lie outside the yield surface.
+/// Trial deviatoric force state, which may lie outside the yield surface.
 #[derive(Clone, Copy)]
 pub(super) struct Trial {
-    /// √(2 ψ₀), the norm at which the material that has not yielded yet yields.
+    /// √(2 ψ₀), the norm at first yield.
     pub strength: f64,
-    /// Equivalent plastic strain so far.
+    /// Accumulated equivalent plastic strain.
     pub strain: f64,
-    /// |t| of the trial state.
+    /// Norm |t| of the trial state.
     pub norm: f64,
-    /// The equivalent strain that belongs to its deviatoric extensions; that of the plastic flow is 1 − γ times it.
+    /// Equivalent strain of its deviatoric extensions; that of the plastic flow is 1 − γ times this value.
     pub equivalent: f64,
 }
 
 impl Trial {
-    /// The norm at the yield surface before the step.
+    /// Returns the norm at the yield surface before the step.
     fn limit(&self, law: &Yield) -> f64 {
         self.strength * (1.0 + law.hardening * self.strain / law.stress)
     }
 
-    /// √(2 ψ₀) H E/σ_y: how far the surface grows if all of the deviatoric extension becomes plastic.
+    /// Returns √(2 ψ₀) H E/σ_y with the equivalent strain E: the growth of the yield surface if the whole
+    /// deviatoric extension becomes plastic.
     fn growth(&self, law: &Yield) -> f64 {
         self.strength * law.hardening * self.equivalent / law.stress
     }
 
-    /// γ, the factor of the deviatoric force state that puts it on the yield surface of the hardened material; 1 within the surface.
+    /// Returns γ, the factor that returns the deviatoric force state to the yield surface of the hardened
+    /// material; 1 inside the surface.
     ///
-    /// γ |t| = limit + (1 − γ) growth is linear in γ, so that no iteration is needed.
+    /// γ |t| = limit + (1 − γ) growth is linear in γ, so no iteration is needed.
     pub fn factor(&self, law: &Yield) -> f64 {
         let limit = self.limit(law);
         if self.norm <= limit {
@@ -109,7 +112,7 @@ impl Trial {
         (limit + growth) / (self.norm + growth)
     }
 
-    /// The change of γ with those of the norm and of the equivalent strain.
+    /// Returns the change of γ for changes of the norm and of the equivalent strain.
     pub fn factor_change(&self, law: &Yield, norm: f64, equivalent: f64) -> f64 {
         if self.norm <= self.limit(law) {
             return 0.0;
@@ -120,25 +123,25 @@ impl Trial {
     }
 }
 
-/// The laws of all materials of a body, and the strength of its points.
+/// Inelastic laws of all materials of a body, and yield strength of its points.
 pub(super) struct Laws {
-    /// By material.
+    /// Laws per material.
     pub of_material: Vec<Inelasticity>,
-    /// The largest number of viscous terms of a material.
+    /// Largest number of viscous terms of a material.
     pub terms: usize,
-    /// √(2 ψ₀) of every point; infinite where nothing yields.
+    /// √(2 ψ₀) of each point; infinite for points that do not yield.
     pub strength: Vec<f64>,
 }
 
 impl Laws {
-    /// Whether a material is plastic.
+    /// Returns whether a material is plastic.
     pub fn yields(&self) -> bool {
         let mut laws = self.of_material.iter();
         laws.any(|law| matches!(law, Inelasticity::Plastic(_)))
     }
 }
 
-/// Σ λ_k ψ_k of the back-stretches of a group.
+/// Returns Σ λ_k ψ_k of the back-stretches of a group.
 #[inline(always)]
 pub(super) fn weighted<T: Lanes>(factors: &[f64; MOST_TERMS], terms: usize, back: &[f64]) -> T {
     let mut total = T::splat(0.0);
@@ -153,7 +156,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_slope_is_continuous_where_its_forms_meet() {
+    fn slope_agrees_with_its_integral() {
         for a in [1e-12, 1e-6, 0.999_999e-3, 1.000_001e-3, 0.1, 3.0, 100.0_f64] {
             // ∫₀¹ (1 − e^−as) ds = β
             let steps = 2000;
@@ -170,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn the_return_lands_on_the_hardened_surface() {
+    fn return_mapping_ends_on_the_hardened_yield_surface() {
         let law = Yield {
             stress: 2.0,
             hardening: 5.0,

@@ -1,22 +1,29 @@
-//! Linear peridynamic solids whose shear is viscous or plastic, on a bond list.
+//! Linear peridynamic solids with viscous or plastic shear, on a neighbour list.
 //!
-//! Each directed bond keeps an inelastic stretch x = e_x/r of the force state of its first point: t = (w/m)(A θ r + B (e − e_x)). Both states of a bond act along it, so that the loops over bonds read the inelastic stretch of
-//! the entry itself and of the entry that leads back. Within a step the inelastic stretches follow from those at the end of the last step and from the displacement; they are kept when the step has been accepted.
+//! Each directed bond stores an inelastic stretch x = e_x/r of the force state of its first point:
+//! t = (w/m)(A θ r + B (e − e_x)). The force states of both ends act along the bond, so that the loops read
+//! the inelastic stretches of the entry and of its reverse entry. Within a step, inelastic stretches follow
+//! from those at the end of the last step and from the displacement; they are stored when the step is
+//! accepted.
 //!
-//! With x fixed, the force is the gradient of Σ W V, W = A θ²/(2 D) + (B/2m) Σ ω r² (ψ² − 2 ψ x + c), where c is Σ λ_k ψ_k² of the back-stretches ψ_k, or x² of the plastic stretch. A step therefore dissipates the mean of
-//! −∂W/∂x before and after times the change of x: energy and work then balance to rounding under velocity Verlet where strains are small, and to second order in the step elsewhere.
+//! For fixed x the force is the gradient of Σ W V with W = A θ²/(2 D) + (B/2m) Σ ω r² (ψ² − 2 ψ x + c), where
+//! c is Σ λ_k ψ_k² of the back-stretches ψ_k, or x² of the plastic stretch. A step therefore dissipates the
+//! mean of −∂W/∂x before and after it times the change of x. The energy balance of velocity Verlet is then
+//! exact to round-off for small strains, and of second order in the step otherwise.
 //!
-//! Points that have lost bonds keep their weighted volume m, as elastic solids do. Their inelastic stretches change by the part of ψ − x that is orthogonal to a dilatation of the bonds that are left, Σ ω r² Δx = 0: for points with
-//! all bonds this is the deviatoric extension over r, and dissipation is never negative for points with any.
+//! Points with broken bonds keep their weighted volume m, as in elastic solids. Their inelastic stretches
+//! change by the part of ψ − x that is orthogonal to a dilatation of the intact bonds, Σ ω r² Δx = 0. For
+//! points with all bonds this is the deviatoric extension divided by r, and the dissipation is never negative
+//! for points with any bonds.
 //!
-//! | part | what |
+//! | module | contents |
 //! |---|---|
 //! | `laws` | relaxation over a step, return to the yield surface |
-//! | `history` | what bonds and points keep |
-//! | `advance` | the loops at the end of a step |
-//! | `kernels`, `tangent` | the loops over points and bonds: values, force, energy; their derivatives |
-//! | `force`, `passes` | the operator |
-//! | `body` | what the operator is made of |
+//! | `history` | history variables of bonds and points |
+//! | `advance` | loops at the end of a step |
+//! | `kernels`, `tangent` | loops over points and bonds: values, force, energy; derivatives |
+//! | `force`, `passes` | operator |
+//! | `body` | input of the operator |
 
 mod advance;
 mod body;

@@ -7,19 +7,21 @@ use super::kernels::{force_rows, square_rows};
 use super::tangent::{Along, change_rows, tangent_rows};
 use crate::domain::Field;
 use crate::operator::{
-    AtPoints, BondAt, BondView, Breakable, CoarseBreak, InstructionSet, On, PlasticView, TwoPass,
+    AtPoints, BondAt, BondView, Breakable, CoarseBreak, InstructionSet, PlasticView, PointSubset,
+    TwoPass,
 };
 use crate::parallel::for_each_chunk;
 use crate::step_end::StepEnd;
 use crate::thermal::{Expandable, ThermalExpansion};
 
 impl<L: Kinematics, const D: usize> TwoPass for InelasticSolidForce<L, D> {
-    /// The dilatation θ, then P and S: the own force state of a point pulls at a bond with P + S ψ − G R, where R is what the inelastic stretch of the entry keeps of the last step.
+    /// The dilatation θ, P and S: the force state of a point has the pull P + S ψ − G R at a bond, where R is
+    /// the contribution of the inelastic stretch at the end of the last step.
     fn values_per_point(&self) -> usize {
         3
     }
 
-    fn values_into(&self, t: f64, u: Field<'_>, on: &On<'_>, values: &mut [f64]) {
+    fn values_into(&self, t: f64, u: Field<'_>, on: &PointSubset<'_>, values: &mut [f64]) {
         let n = self.solid.cloud.len();
         self.solid.dilatations_into(u, on, &mut values[..n]);
         self.states_into(t, u, on, values);
@@ -30,10 +32,10 @@ impl<L: Kinematics, const D: usize> TwoPass for InelasticSolidForce<L, D> {
         let (solid, n) = (&self.solid, self.solid.cloud.len());
         let (bonds, factors) = (solid.view(), &solid.states.dilatation[..]);
         let mut thetas = vec![0.0; n];
-        solid.dilatations_into(u, &On::All, &mut thetas);
+        solid.dilatations_into(u, &PointSubset::All, &mut thetas);
         let (u, direction) = (solid.packed(u), solid.packed(direction));
         let set = solid.instruction_set;
-        solid.sweep::<1>(&On::All, &mut changes[..n], |intact, rows, out| {
+        solid.sweep::<1>(&PointSubset::All, &mut changes[..n], |intact, rows, out| {
             dilatation_change_rows::<L, D>(set, &bonds, factors, &u, &direction, intact, rows, out);
         });
         let points = self.points(t);
@@ -41,12 +43,12 @@ impl<L: Kinematics, const D: usize> TwoPass for InelasticSolidForce<L, D> {
             u: &u,
             direction: &direction,
         };
-        solid.sweep::<3>(&On::All, changes, |intact, rows, out| {
+        solid.sweep::<3>(&PointSubset::All, changes, |intact, rows, out| {
             change_rows::<L, D>(set, &bonds, &points, &thetas, &along, intact, rows, out);
         });
     }
 
-    fn add_bond_force(&self, t: f64, at: AtPoints<'_>, on: &On<'_>, out: &mut [f64]) {
+    fn add_bond_force(&self, t: f64, at: AtPoints<'_>, on: &PointSubset<'_>, out: &mut [f64]) {
         let (solid, at_time) = (&self.solid, self.reliefs_at(t));
         let (bonds, states) = (solid.view(), self.state_rows(at.values, false));
         let reliefs = self.reliefs(&at_time, &states);
@@ -68,7 +70,7 @@ impl<L: Kinematics, const D: usize> TwoPass for InelasticSolidForce<L, D> {
             u: &u,
             direction: &direction,
         };
-        solid.sweep::<D>(&On::All, out, |intact, rows, out| {
+        solid.sweep::<D>(&PointSubset::All, out, |intact, rows, out| {
             let set = solid.instruction_set;
             tangent_rows::<L, D>(set, &bonds, &reliefs, &changes, &along, intact, rows, out);
         });
@@ -80,7 +82,7 @@ impl<L: Kinematics, const D: usize> TwoPass for InelasticSolidForce<L, D> {
         let (bonds, points) = (solid.view(), self.points(t));
         let mut squares = vec![0.0; solid.cloud.len()];
         let u = solid.packed(at.u);
-        solid.sweep::<1>(&On::All, &mut squares, |intact, rows, out| {
+        solid.sweep::<1>(&PointSubset::All, &mut squares, |intact, rows, out| {
             let set = solid.instruction_set;
             square_rows::<L, D>(set, &bonds, &points, &u, intact, rows, out);
         });
@@ -96,7 +98,7 @@ impl<L: Kinematics, const D: usize> TwoPass for InelasticSolidForce<L, D> {
         });
     }
 
-    /// Viscosity and plasticity soften: the bound is that of the elastic solid.
+    /// Viscosity and plasticity reduce the stiffness: the bound is that of the elastic solid.
     fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {
         self.solid.frequency_bound(density)
     }
@@ -105,18 +107,20 @@ impl<L: Kinematics, const D: usize> TwoPass for InelasticSolidForce<L, D> {
         TwoPass::neighbours(&self.solid, i, visit);
     }
 
-    /// Bonds act through the step and relax or flow before they are found over-stretched.
+    /// Bonds break before the intact ones relax and flow. A point that loses bonds is then on its yield
+    /// surface at the end of the step: for influence functions other than the constant one, lost bonds can
+    /// leave a force state outside of it.
     fn end_values_into(
         &mut self,
         step: &StepEnd<'_>,
         u: Field<'_>,
-        on: &On<'_>,
-        needed: &On<'_>,
+        on: &PointSubset<'_>,
+        needed: &PointSubset<'_>,
         values: &mut [f64],
     ) {
         let n = self.solid.cloud.len();
-        self.advance(step, u, on);
         self.break_bonds(step, u, [on, needed], &mut values[..n]);
+        self.advance(step, u, on);
         self.states_into(step.t, u, needed, values);
         let pulls = &mut values[n..2 * n];
         self.solid.add_thermal_pulls(step.t, needed, pulls);
@@ -171,7 +175,7 @@ impl<L: Kinematics, const D: usize> TwoPass for InelasticSolidForce<L, D> {
     }
 }
 
-/// As of the elastic solid; what inelastic stretches dissipate is booked with what breaking does.
+/// As for the elastic solid; energy dissipated by inelastic stretches is added to that of breaking bonds.
 impl<L: Kinematics, const D: usize> Breakable for InelasticSolidForce<L, D> {
     fn dissipated(&self) -> f64 {
         self.solid.dissipated()
@@ -212,7 +216,7 @@ impl<L: Kinematics, const D: usize> PlasticView for InelasticSolidForce<L, D> {
     }
 }
 
-/// Bonds with the inelastic stretches at the end of the last step.
+/// Bonds have the inelastic stretches at the end of the last step.
 impl<L: Kinematics, const D: usize> BondView for InelasticSolidForce<L, D> {
     fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt)) {
         let (bonds, stiffness) = (&self.solid.bonds, &self.solid.states.stiffness);

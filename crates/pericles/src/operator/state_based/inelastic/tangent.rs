@@ -1,4 +1,4 @@
-//! The derivatives of both passes of inelastic solids.
+//! Directional derivatives of both passes of inelastic solids.
 
 use super::super::bonds::SolidBonds;
 use super::super::kernels::{groups_of, stretch_change, sum};
@@ -11,14 +11,14 @@ use crate::material::{Inelasticity, Yield};
 use crate::operator::records::Records;
 use crate::operator::rows::Rows;
 
-/// A vector with the displacement at which a derivative is taken.
+/// A direction with the displacement at which the derivative is taken.
 #[derive(Clone, Copy)]
 pub(super) struct Along<'a> {
     pub u: &'a Records,
     pub direction: &'a Records,
 }
 
-/// The change of the stretches of a group.
+/// Returns the change of the stretches of a group.
 #[inline(always)]
 fn stretch_changes<T: Lanes, L: Kinematics, const D: usize>(
     bonds: &SolidBonds<'_>,
@@ -88,7 +88,8 @@ fn change_rows_body<T: Lanes, L: Kinematics, const D: usize>(
     }
 }
 
-/// The changes of s (1 − γ) q and of γ s of a plastic point with the mean q of ψ − x, from its dilatation and the change of q.
+/// Returns the changes of s (1 − γ) q and of γ s of a plastic point with the mean q of ψ − x, from its
+/// dilatation and the change of q.
 #[inline(always)]
 fn plastic_change<T: Lanes, L: Kinematics, const D: usize>(
     bonds: &SolidBonds<'_>,
@@ -172,7 +173,7 @@ fn tangent_rows_body<T: Lanes, L: Kinematics, const D: usize>(
             let s = T::splat(own[0]) + there[0];
             let t = L::strain(bond.xi, bond.eta, bond.inverse_square);
             let (d, stretch) = stretch_changes::<T, L, D>(bonds, along, first + k, from, &bond);
-            // The changes of P, S and G at both ends.
+            // Changes of P, S and G at both ends.
             let relief = T::splat(own_change[1]) * forth + change_there[1] * back;
             let stiffness = T::splat(own_change[0]) + change_there[0];
             let pull = pull_here + pull_there - relief;
@@ -197,7 +198,8 @@ fn tangent_rows_body<T: Lanes, L: Kinematics, const D: usize>(
 }
 
 for_each_instruction_set! {
-    /// Sets the derivatives of P and S of the rows in a direction, in which their dilatations change by the first of `out`.
+    /// Sets the derivatives of P and S of the rows in a direction; the change of the dilatation is the first
+    /// array of `out`.
     pub(super) fn change_rows [L: Kinematics, const D: usize] <L, D> (
         bonds: &SolidBonds<'_>,
         points: &Points<'_>,
@@ -210,7 +212,8 @@ for_each_instruction_set! {
 }
 
 for_each_instruction_set! {
-    /// Adds the derivative of the force density of the rows in a direction, whose rows have the change of P as their fourth number; `changes` holds those of S and G.
+    /// Adds the derivative of the force density of the rows in a direction; the fourth entry of the rows of
+    /// the direction is the change of P, and `changes` contains those of S and G.
     pub(super) fn tangent_rows [L: Kinematics, const D: usize] <L, D> (
         bonds: &SolidBonds<'_>,
         reliefs: &Reliefs<'_>,

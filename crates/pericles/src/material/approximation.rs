@@ -1,23 +1,23 @@
-//! Approximations of cubic pair forces about the reference.
+//! Approximations of cubic pair forces about the reference configuration.
 
 use std::marker::PhantomData;
 
 use super::pair_force::PairForce;
-use super::polynomial::{GreenBond, LiteralBond};
+use super::polynomial::{CubicSofteningBond, GreenBond};
 use crate::lanes::{Real, dot, vector};
 
-/// How a force f = f₁ + f₂ + f₃, the terms of first to third order in the relative displacement η, is taken.
+/// Approximation of a force f = f₁ + f₂ + f₃ with terms of first to third order in the relative displacement η.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Treatment {
-    /// Taylor's polynomial of second order about the reference, f₁ + f₂.
+pub enum Approximation {
+    /// Second-order Taylor polynomial about the reference configuration, f₁ + f₂.
     SecondOrder,
-    /// The trapezoidal rule for f = ∫₀^η f′ dη, ½ [f′(0) + f′(η)] η, which is f₁ + f₂ + 3/2 f₃.
+    /// Trapezoidal rule for f = ∫₀^η f′ dη: ½ [f′(0) + f′(η)] η = f₁ + f₂ + 3/2 f₃.
     Trapezoidal,
 }
 
 /// A pair force whose cubic term is `CUBIC` |η|² η/|ξ|³.
 pub trait CubicBond: PairForce {
-    /// See there.
+    /// Coefficient of the cubic term.
     const CUBIC: f64;
 }
 
@@ -25,21 +25,21 @@ impl CubicBond for GreenBond {
     const CUBIC: f64 = 0.5;
 }
 
-impl CubicBond for LiteralBond {
+impl CubicBond for CubicSofteningBond {
     const CUBIC: f64 = 1.0;
 }
 
-/// A [`Treatment`] as a type.
+/// Type-level counterpart of [`Approximation`].
 pub trait CubicFactor: Copy + Default + Send + Sync + 'static {
     /// Factor of f₃.
     const FACTOR: f64;
 }
 
-/// [`Treatment::SecondOrder`].
+/// [`Approximation::SecondOrder`].
 #[derive(Debug, Clone, Copy, Default)]
 pub struct SecondOrder;
 
-/// [`Treatment::Trapezoidal`].
+/// [`Approximation::Trapezoidal`].
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Trapezoidal;
 
@@ -51,13 +51,15 @@ impl CubicFactor for Trapezoidal {
     const FACTOR: f64 = 1.5;
 }
 
-/// f₁ + f₂ + κ f₃ of a cubic law: off the law by O(|η|²), relative, and a gradient like it, for every term is one (by Euler's theorem on homogeneous functions).
+/// f₁ + f₂ + κ f₃ of a cubic law, with a relative error of O(|η|²). The approximation is conservative: every
+/// term is a gradient (Euler's theorem on homogeneous functions).
 ///
-/// Source: Coclite et al., Appl. Numer. Math. 155 (2020), section 7, with the Taylor coefficients' 1/i! and without the factor η − s of its integral form, which are misprinted.
+/// Source: Coclite et al., Appl. Numer. Math. 155 (2020), section 7. Two misprints are corrected: the missing
+/// Taylor coefficients 1/i! and the factor η − s of the integral form.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Treated<L, T>(PhantomData<(L, T)>);
+pub struct Approximated<L, T>(PhantomData<(L, T)>);
 
-impl<L: CubicBond, T: CubicFactor> Treated<L, T> {
+impl<L: CubicBond, T: CubicFactor> Approximated<L, T> {
     /// (κ − 1) CUBIC/|ξ|³
     #[inline(always)]
     fn excess<N: Real, const D: usize>(xi: [N; D]) -> N {
@@ -66,7 +68,7 @@ impl<L: CubicBond, T: CubicFactor> Treated<L, T> {
     }
 }
 
-impl<L: CubicBond, T: CubicFactor> PairForce for Treated<L, T> {
+impl<L: CubicBond, T: CubicFactor> PairForce for Approximated<L, T> {
     const LINEAR: bool = false;
 
     #[inline(always)]
@@ -99,6 +101,11 @@ impl<L: CubicBond, T: CubicFactor> PairForce for Treated<L, T> {
     fn threshold(stretch: f64) -> f64 {
         L::threshold(stretch)
     }
+
+    #[inline(always)]
+    fn stretch<N: Real>(t: N) -> N {
+        L::stretch(t)
+    }
 }
 
 #[cfg(test)]
@@ -112,33 +119,36 @@ mod tests {
         std::array::from_fn(|c| 0.5 * (rest[c] + place[c]))
     }
 
-    fn treatments_are_what_they_say<L: CubicBond>(xi: [f64; 3], direction: [f64; 3]) {
+    fn check_definitions_and_orders<L: CubicBond>(xi: [f64; 3], direction: [f64; 3]) {
         let scaled = |size: f64| direction.map(|x| size * x);
         let minus = |a: [f64; 3], b: [f64; 3]| -> [f64; 3] { std::array::from_fn(|c| a[c] - b[c]) };
         let eta = scaled(0.3);
-        let trapezoidal = Treated::<L, Trapezoidal>::force(xi, eta);
+        let trapezoidal = Approximated::<L, Trapezoidal>::force(xi, eta);
         assert!(max_norm(&minus(trapezoidal, rule::<L>(xi, eta))) < 1e-14);
-        // What Taylor's polynomial leaves is of third order, and homogeneous: f₃.
+        // The remainder of the Taylor polynomial is f₃, homogeneous of third order.
         let rest = |size: f64| {
             let eta = scaled(size);
             max_norm(&minus(
                 L::force(xi, eta),
-                Treated::<L, SecondOrder>::force(xi, eta),
+                Approximated::<L, SecondOrder>::force(xi, eta),
             ))
         };
         assert!((rest(0.4) / rest(0.2) - 8.0).abs() < 1e-11);
         let linear = |size: f64| {
             let eta = scaled(size);
             let first = L::tangent(xi, [0.0; 3], eta);
-            max_norm(&minus(Treated::<L, SecondOrder>::force(xi, eta), first))
+            max_norm(&minus(
+                Approximated::<L, SecondOrder>::force(xi, eta),
+                first,
+            ))
         };
         assert!((linear(0.4) / linear(0.2) - 4.0).abs() < 1e-11);
     }
 
     #[test]
-    fn treatments_of_both_laws() {
+    fn approximations_of_both_cubic_laws_follow_their_definitions() {
         let (xi, d) = ([0.6, -0.3, 0.5], [0.4, 0.7, -0.2]);
-        treatments_are_what_they_say::<GreenBond>(xi, d);
-        treatments_are_what_they_say::<LiteralBond>(xi, d);
+        check_definitions_and_orders::<GreenBond>(xi, d);
+        check_definitions_and_orders::<CubicSofteningBond>(xi, d);
     }
 }

@@ -1,18 +1,18 @@
-//! One number of a run.
+//! Scalars of a run.
 
 use pericles_io::read_csv;
 
 use crate::error::RunError;
 use crate::results::Results;
 
-/// Where the number is.
+/// The source of a scalar.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Scalar {
+pub(crate) struct Scalar {
     name: String,
     pick: Pick,
 }
 
-/// Which of a column's values.
+/// The value of a column.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Pick {
     Last,
@@ -21,8 +21,8 @@ enum Pick {
 }
 
 impl Scalar {
-    /// `tip_u_x`, `max:kinetic_energy`, `min:…`, or `audit.elastic_energy` of run.json.
-    pub(super) fn named(text: &str) -> Self {
+    /// Parses `tip_u_x`, `max:kinetic_energy`, `min:…`, or `audit.elastic_energy` of run.json.
+    pub(crate) fn named(text: &str) -> Self {
         let (pick, name) = match text.split_once(':') {
             Some(("max", name)) => (Pick::Greatest, name),
             Some(("min", name)) => (Pick::Least, name),
@@ -34,11 +34,11 @@ impl Scalar {
         }
     }
 
-    /// The number of a run, and its unit; empty for numbers of run.json.
+    /// Returns the scalar of a run and its unit, which is empty for numbers of run.json.
     ///
     /// # Errors
-    /// A run that has no such number, tables that are damaged.
-    pub(super) fn of(&self, results: &Results) -> Result<(f64, String), RunError> {
+    /// The run does not have the scalar, or a table is damaged.
+    pub(crate) fn of(&self, results: &Results) -> Result<(f64, String), RunError> {
         let mut known = Vec::new();
         for path in results.tables() {
             let table = read_csv(path)?;
@@ -58,10 +58,10 @@ impl Scalar {
             .map(|number| (number, String::new()));
         number.ok_or_else(|| {
             let listing = format!(
-                "the tables have {}; run.json has numbers such as audit.elastic_energy",
+                "the tables have the columns {}; run.json has numbers such as audit.elastic_energy",
                 known.join(", ")
             );
-            RunError::unknown("number", &self.name, &known, &listing)
+            RunError::unknown("scalar", &self.name, &known, &listing)
         })
     }
 

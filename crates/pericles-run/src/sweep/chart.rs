@@ -1,0 +1,113 @@
+//! Charts of scalars over the values of a sweep.
+
+use pericles_io::{Axis as ChartAxis, Curve, LineChart};
+use serde_json::Value;
+
+use super::record::Member;
+use super::results::SweepResults;
+use crate::error::RunError;
+use crate::results::Results;
+use crate::scalar::Scalar;
+
+impl SweepResults {
+    /// Returns a chart of a scalar of the runs over the values of a key, by default of the first one, with a curve for each
+    /// combination of the other values. Values that are not numbers are counted from 1. Runs without results are omitted.
+    ///
+    /// The scalar is a column of the tables (last value), `max:COLUMN`, `min:COLUMN`, or a number of `run.json` such as
+    /// `audit.elastic_energy`.
+    ///
+    /// # Errors
+    /// The sweep does not have the key, or the runs do not have the scalar.
+    pub fn chart(&self, key: Option<&str>, scalar: &str) -> Result<LineChart, RunError> {
+        let axes = &self.record.axes;
+        let place = match key {
+            None => 0,
+            Some(key) => {
+                let found = axes
+                    .iter()
+                    .position(|axis| axis.key == key || axis.name() == key);
+                found.ok_or_else(|| {
+                    let keys: Vec<String> = self.keys().map(|(key, _)| key.into()).collect();
+                    let listing = format!("the keys of the sweep are {}", keys.join(", "));
+                    RunError::unknown("key", key, &keys, &listing)
+                })?
+            }
+        };
+        let source = Scalar::named(scalar);
+        let (mut curves, mut unit): (Vec<Family>, _) = (Vec::new(), String::new());
+        let mut is_numeric = true;
+        for member in &self.members {
+            let Ok(results) = Results::open(&self.folder().join(&member.name)) else {
+                continue;
+            };
+            let value;
+            (value, unit) = source.of(&results)?;
+            let x = value_of(member, &axes[place].key)?;
+            is_numeric &= x.is_some();
+            let number = axes[place].values.iter();
+            let number = number
+                .take_while(|value| **value != member.values[place])
+                .count();
+            let others = axes.iter().zip(&member.values).enumerate();
+            let others: Vec<String> = others
+                .filter(|(k, _)| *k != place)
+                .map(|(_, (axis, value))| format!("{} = {value}", axis.name()))
+                .collect();
+            let name = others.join(", ");
+            let point = (x, number as f64 + 1.0, value);
+            match curves.iter_mut().find(|family| family.name == name) {
+                Some(family) => family.points.push(point),
+                None => curves.push(Family {
+                    name,
+                    points: vec![point],
+                }),
+            }
+        }
+        let across = match is_numeric {
+            true => ChartAxis::new(axes[place].key.as_str(), unit_of(&axes[place].key)),
+            false => ChartAxis::new(format!("{} (number of the value)", axes[place].key), ""),
+        };
+        let upward = ChartAxis::new(scalar.replace('_', " "), unit);
+        let chart = curves
+            .into_iter()
+            .fold(LineChart::new(across, upward), |chart, family| {
+                let mut points: Vec<(f64, f64)> = family
+                    .points
+                    .iter()
+                    .map(|(x, number, y)| (x.filter(|_| is_numeric).unwrap_or(*number), *y))
+                    .collect();
+                points.sort_by(|a, b| a.0.total_cmp(&b.0));
+                let (x, y): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
+                chart.curve(Curve::line(family.name, &x, &y).with_markers())
+            });
+        Ok(chart)
+    }
+}
+
+/// Runs with the same values of all other keys: value of the key, its number, scalar.
+struct Family {
+    name: String,
+    points: Vec<(Option<f64>, f64, f64)>,
+}
+
+/// Returns the value of a key in the deck of a run, in SI units; none if it is not a number.
+fn value_of(member: &Member, key: &str) -> Result<Option<f64>, RunError> {
+    let deck = member.deck.read()?;
+    let found = key.split('.').try_fold(deck.to_json(), |value, part| {
+        let index: Option<usize> = part.parse().ok();
+        match (value, index) {
+            (Value::Array(items), Some(index)) => items.get(index),
+            _ => value.get(part),
+        }
+    });
+    Ok(found.and_then(Value::as_f64))
+}
+
+/// Returns the SI unit of lengths and times of frequent keys; empty for others.
+fn unit_of(key: &str) -> &'static str {
+    match key.rsplit('.').next() {
+        Some("spacing" | "dx" | "horizon" | "length") => "m",
+        Some("dt" | "end") => "s",
+        _ => "",
+    }
+}

@@ -1,0 +1,87 @@
+//! Access to bonds and neighbours of bodies with ghost layers.
+
+use super::force::GhostForce;
+use crate::domain::Field;
+use crate::operator::{BondAt, BondView, LocalForce};
+
+impl GhostForce {
+    /// Calls `visit` for the places on whose displacements the force on a place depends, including itself.
+    fn reached(&self, place: usize, visit: &mut dyn FnMut(usize)) {
+        visit(place);
+        if let Some(local) = self.inner.capabilities().local {
+            local.neighbours(place, visit);
+        }
+    }
+
+    /// Returns the index of the ghost at a place.
+    fn ghost_at(&self, place: usize) -> Option<usize> {
+        self.layer.ghosts().binary_search(&(place as u32)).ok()
+    }
+
+    /// Calls `visit` for the points of the body that determine the displacement at a place.
+    fn sources(&self, place: usize, visit: &mut dyn FnMut(u32, f64)) {
+        match (self.numbers[place], self.ghost_at(place)) {
+            (Some(i), _) => visit(i, 1.0),
+            (None, Some(g)) => {
+                let row = self.extrapolation.row(g).iter();
+                row.for_each(|&(j, weight)| visit(j, weight));
+            }
+            (None, None) => {}
+        }
+    }
+}
+
+impl LocalForce for GhostForce {
+    fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize)) {
+        let mut points = Vec::new();
+        let mut places = Vec::new();
+        let ghosts = self.extrapolation.column(i).iter();
+        let fed = ghosts.map(|&(g, _)| self.layer.ghosts()[g as usize]);
+        for place in fed.chain([self.layer.body()[i]]) {
+            self.reached(place as usize, &mut |near| places.push(near));
+        }
+        places.sort_unstable();
+        places.dedup();
+        for place in places {
+            self.sources(place, &mut |j, _| points.push(j));
+        }
+        points.sort_unstable();
+        points.dedup();
+        let others = points.into_iter().map(|j| j as usize);
+        others.filter(|&j| j != i).for_each(visit);
+    }
+}
+
+/// Bonds to ghosts lead to the nearest point of the body and are marked.
+impl BondView for GhostForce {
+    fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt)) {
+        let Some(bonds) = self.inner.capabilities().bonds else {
+            return;
+        };
+        let (dimension, m) = (self.cloud.dimension(), self.layer.cloud().len());
+        let here = self.layer.body()[i] as usize;
+        // The bonds of a point depend on these displacements only.
+        let mut all = self.vector();
+        self.reached(here, &mut |place| {
+            for c in 0..dimension {
+                let mut sum = 0.0;
+                self.sources(place, &mut |j, weight| {
+                    sum += weight * u.entry(dimension, c, j as usize);
+                });
+                all[c * m + place] = sum;
+            }
+        });
+        bonds.for_each_bond(Field::new(&all, &[]), here, &mut |bond| {
+            let place = bond.neighbour;
+            let ghost = self.ghost_at(place);
+            let nearest = ghost.and_then(|g| self.extrapolation.nearest(g));
+            if let Some(neighbour) = self.numbers[place].or(nearest) {
+                visit(BondAt {
+                    neighbour: neighbour as usize,
+                    to_ghost: ghost.is_some(),
+                    ..bond
+                });
+            }
+        });
+    }
+}

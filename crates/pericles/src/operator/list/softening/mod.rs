@@ -1,0 +1,10 @@
+//! Softening bonds: neighbour lists that store the largest stretch of each bond.
+
+mod advance;
+mod breaking;
+mod curves;
+mod force;
+mod kernels;
+mod operator;
+
+pub use force::SofteningForce;

@@ -1,0 +1,135 @@
+//! [`Force`] for softening bonds.
+
+use super::force::SofteningForce;
+use super::kernels::{energy_rows, force_rows, tangent_rows};
+use crate::domain::Field;
+use crate::operator::fast_law::VectorLaw;
+use crate::operator::{
+    BondAt, BondView, Breakable, Capabilities, Force, InstructionSet, LatticeSprings, PointSubset,
+};
+use crate::step_end::StepEnd;
+use crate::thermal::Expandable;
+
+impl<L: VectorLaw, const D: usize> Force for SofteningForce<L, D> {
+    fn points(&self) -> usize {
+        self.list.points()
+    }
+
+    fn dimension(&self) -> usize {
+        D
+    }
+
+    fn add_force(&self, t: f64, u: &[f64], on: PointSubset<'_>, out: &mut [f64]) {
+        let (list, kept) = (&self.list, self.kept());
+        let heat = list.heat_at(t);
+        let bonds = list.view().heated(heat.as_deref().map(Vec::as_slice));
+        list.with_packed(u, &on, |u| {
+            list.sweep::<D>(&on, out, |intact, rows, out| {
+                force_rows::<L, D>(list.instruction_set, &bonds, &kept, u, intact, rows, out);
+            });
+        });
+    }
+
+    fn add_energy_density(&self, t: f64, u: &[f64], out: &mut [f64]) {
+        let (list, kept) = (&self.list, self.kept());
+        let heat = list.heat_at(t);
+        let bonds = list.view().heated(heat.as_deref().map(Vec::as_slice));
+        list.with_packed(u, &PointSubset::All, |u| {
+            list.sweep::<1>(&PointSubset::All, out, |intact, rows, out| {
+                energy_rows::<L, D>(list.instruction_set, &bonds, &kept, u, intact, rows, out);
+            });
+        });
+    }
+
+    fn energy(&self, t: f64, u: &[f64]) -> f64 {
+        let mut density = vec![0.0; self.points()];
+        self.add_energy_density(t, u, &mut density);
+        let volumes = self.list.cloud.volumes();
+        let energy = |i: usize| density[i] * volumes[i];
+        self.list.cloud.domain().sum(self.points(), energy)
+    }
+
+    /// Softening does not increase the stiffness of a bond.
+    fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {
+        self.list.frequency_bound(density)
+    }
+
+    fn end_step(&mut self, step: &StepEnd<'_>, on: PointSubset<'_>, out: &mut [f64]) {
+        self.advance(step, &on, out);
+    }
+
+    fn tangent_into(&self, t: f64, u: &[f64], direction: &[f64], out: &mut [f64]) {
+        let (list, kept) = (&self.list, self.kept());
+        let heat = list.heat_at(t);
+        let bonds = list.view().heated(heat.as_deref().map(Vec::as_slice));
+        list.with_packed(u, &PointSubset::All, |u| {
+            list.with_packed(direction, &PointSubset::All, |direction| {
+                list.sweep::<D>(&PointSubset::All, out, |intact, rows, out| {
+                    let set = list.instruction_set;
+                    tangent_rows::<L, D>(set, &bonds, &kept, u, direction, intact, rows, out);
+                });
+            });
+        });
+    }
+
+    fn directed_bonds(&self) -> u64 {
+        self.list.directed_bonds()
+    }
+
+    fn bytes(&self) -> usize {
+        self.list.bytes() + size_of_val(&self.largest[..])
+    }
+
+    fn instruction_set(&self) -> InstructionSet {
+        self.list.instruction_set()
+    }
+
+    fn use_instruction_set(&mut self, set: InstructionSet) {
+        self.list.use_instruction_set(set);
+    }
+
+    fn lattice_springs(&self) -> Option<LatticeSprings> {
+        self.list.lattice_springs()
+    }
+
+    /// Both ends of a bond must update its largest stretch at the same time, so the force is evaluated on the
+    /// whole body.
+    fn capabilities(&self) -> Capabilities<'_> {
+        Capabilities {
+            breaking: Some(self),
+            bonds: Some(self),
+            path_dependent: true,
+            thermal: self.list.capabilities().thermal,
+            ..Capabilities::default()
+        }
+    }
+
+    fn breaking_mut(&mut self) -> Option<&mut dyn Breakable> {
+        Some(self)
+    }
+
+    fn expandable_mut(&mut self) -> Option<&mut dyn Expandable> {
+        self.list.expandable_mut()
+    }
+}
+
+/// Bonds have the damage at the end of the last step.
+impl<L: VectorLaw, const D: usize> BondView for SofteningForce<L, D> {
+    fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt)) {
+        let list = &self.list;
+        let (heat, sites) = (list.latest_heat(), list.bonds.sites());
+        let bonds = list.view().heated(heat.as_deref().map(Vec::as_slice));
+        let here = sites.of_point(i);
+        for (entry, b) in list.bonds.family(i) {
+            if !list.is_intact(i, entry) {
+                continue;
+            }
+            let xi: [f64; D] = bonds.vector(here, b);
+            let eta = u.difference::<D>([i, sites.point(b)]);
+            let (free, pulled, scale) = bonds.expanded([here, b], xi, eta);
+            let stiffness = scale * self.retained(i, entry, b) * list.stiffness_of(entry, i, b);
+            let force = L::force(free, pulled).map(|force| stiffness * force);
+            visit(BondAt::new(sites.point(b), xi, eta, force));
+        }
+    }
+}
