@@ -232,3 +232,15 @@ fn check_reports_the_numbers_of_a_deck() {
     }
     assert_eq!(run(place.path(), "check gone.toml").status.code(), Some(3));
 }
+
+#[test]
+fn check_draws_the_body_with_the_names_of_its_sets() {
+    let place = with_plate();
+    succeed(place.path(), "check plate.toml --picture sets.svg");
+    let picture = std::fs::read_to_string(place.path().join("sets.svg")).unwrap();
+    for name in ["top (", "bottom (", "no set ("] {
+        assert!(picture.contains(name), "{name}");
+    }
+    let unknown = run(place.path(), "check plate.toml --picture gone/sets.png");
+    assert_eq!(unknown.status.code(), Some(6));
+}

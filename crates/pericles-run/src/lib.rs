@@ -13,6 +13,7 @@
 //! * [`Results`] – reads the results of a run from its folder.
 //! * [`sweep`] – parameter sweeps; [`convergence`] – convergence studies.
 //! * [`Vibration`] – natural modes of a body as table, fields and pictures.
+//! * [`draw_sets`] – picture of the body at rest with its sets.
 //! * [`refinement`] – net speed-up of multirate schemes; [`dispersion`] – files of the dispersion analysis of a
 //!   lattice.
 //!
@@ -69,6 +70,7 @@ mod report;
 mod results;
 mod run;
 mod scalar;
+mod sets_picture;
 mod source;
 mod static_balance;
 pub mod sweep;
@@ -96,6 +98,7 @@ pub use observers::{overlay, picture_of, result_body};
 pub use report::{Report, Span, Status};
 pub use results::{FieldFile, Results, file_name};
 pub use run::{Ending, Run};
+pub use sets_picture::draw_sets;
 pub use source::{ModelData, Source, SourceRecord};
 pub use static_balance::StaticBalance;
 pub use vibration::Vibration;

@@ -251,6 +251,9 @@ pub(crate) struct CheckArgs {
     /// Write all numbers as JSON, in SI units, to a file; `-` writes to standard output and suppresses other output
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
+    /// Draw the body at rest, coloured by its sets, with pre-cracks and interfaces, into a PNG or SVG file
+    #[arg(long, value_name = "FILE")]
+    pub(crate) picture: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) overrides: Overrides,
     #[command(flatten)]

@@ -15,7 +15,7 @@ use pericles_run::refinement::{Comparison, LONGEST, seconds_per_step};
 use pericles_run::units::{
     bytes, count, duration, frequency, percent, quantity, significant, threads,
 };
-use pericles_run::{Assembled, Assembly, Facts, Means, Source};
+use pericles_run::{Assembled, Assembly, Facts, Means, Source, draw_sets};
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -49,6 +49,9 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
         console::note(format_args!("warning: {warning}"));
     }
     let model = source.model();
+    if let Some(path) = &args.picture {
+        draw_sets(model, &assembly, path)?;
+    }
     let mut lines = body(model, &facts);
     lines.extend(mesh::mesh(&assembly));
     lines.extend(neighbours(&assembly));

@@ -36,7 +36,7 @@ impl Overlay {
     }
 
     /// Returns the lines for a displacement, component-major, magnified by `scale`.
-    pub(super) fn lines(&self, displacement: &[f64], scale: f64) -> Vec<Vec<[f64; 2]>> {
+    pub fn lines(&self, displacement: &[f64], scale: f64) -> Vec<Vec<[f64; 2]>> {
         let n = displacement.len() / 2;
         let cracks = self.cracks.iter().map(|ends| ends.to_vec());
         let interfaces = self.interfaces.iter().map(|edge| {

@@ -213,7 +213,7 @@ impl PictureOf {
             [low - margin * (high - low), high + margin * (high - low)]
         });
         picture = match self.field == Field::FragmentId {
-            true => picture.categories(),
+            true => picture.categories(Vec::new()),
             false => picture.range(low, high),
         };
         if let Some(end) = self.load_end {

@@ -54,7 +54,7 @@ pub struct FieldPicture<'a> {
     load_factor: Option<f64>,
     lines: Vec<Vec<[f64; 2]>>,
     colours: Option<ColourMap>,
-    categories: bool,
+    categories: Option<Vec<String>>,
     range: Option<(f64, f64)>,
     window: Option<([f64; 3], [f64; 3])>,
     view: [f64; 3],
@@ -95,7 +95,7 @@ impl<'a> FieldPicture<'a> {
             load_factor: None,
             lines: Vec::new(),
             colours: None,
-            categories: false,
+            categories: None,
             range: None,
             window: None,
             // From the front right, slightly above: x points to the right, z upwards.
@@ -162,9 +162,10 @@ impl<'a> FieldPicture<'a> {
     }
 
     /// Treats the values as identification numbers: the most frequent ones have a colour each, with their share
-    /// of the points in the legend; all others are grey.
-    pub fn categories(mut self) -> Self {
-        self.categories = true;
+    /// of the points in the legend; all others are grey. The legend shows the name of a number, if `names` has
+    /// one. A bar is then drawn as a strip of its cells, not as a curve.
+    pub fn categories(mut self, names: Vec<String>) -> Self {
+        self.categories = Some(names);
         self
     }
 
@@ -204,7 +205,7 @@ impl<'a> FieldPicture<'a> {
 
     fn draw(&self, path: &Path) -> Result<Drawing, IoError> {
         self.check(path)?;
-        if self.dimension == 1 {
+        if self.dimension == 1 && self.categories.is_none() {
             return self.along_the_bar().draw(path);
         }
         let scene = self.scene();
@@ -214,10 +215,9 @@ impl<'a> FieldPicture<'a> {
                 reason: "no point has a finite position".into(),
             });
         }
-        Ok(if self.dimension == 2 {
-            plane::draw(&scene)
-        } else {
-            solid::draw(&scene)
+        Ok(match self.dimension {
+            3 => solid::draw(&scene),
+            _ => plane::draw(&scene),
         })
     }
 
@@ -292,8 +292,8 @@ impl<'a> FieldPicture<'a> {
     }
 
     fn colour_bar(&self) -> ColourBar {
-        if self.categories {
-            return ColourBar::of_numbers(self.values);
+        if let Some(names) = &self.categories {
+            return ColourBar::of_numbers(self.values, names);
         }
         let [low, high] = match self.range {
             Some((low, high)) => [low, high],
@@ -364,6 +364,7 @@ impl<'a> FieldPicture<'a> {
         };
         Scene {
             width: self.width as usize,
+            is_strip: self.dimension == 1,
             cells,
             facets: self.facets(),
             low,
@@ -403,7 +404,11 @@ impl<'a> FieldPicture<'a> {
             .map(|triangle| Facet {
                 corners: corners(*triangle),
                 normals: triangle.map(|point| normals[point as usize]),
-                values: triangle.map(|point| self.values[point as usize]),
+                values: match &self.categories {
+                    // Numbers are not interpolated.
+                    Some(_) => [self.values[triangle[0] as usize]; 3],
+                    None => triangle.map(|point| self.values[point as usize]),
+                },
             })
             .collect()
     }

@@ -255,15 +255,15 @@ pub(super) struct ColourBar {
 }
 
 impl ColourBar {
-    /// Returns the bar for identification numbers: a colour for each of the most frequent ones.
-    pub(super) fn of_numbers(numbers: &[f64]) -> Self {
+    /// Returns the bar for identification numbers with these names: a colour for each of the most frequent ones.
+    pub(super) fn of_numbers(numbers: &[f64], names: &[String]) -> Self {
         Self {
             map: ColourMap::Viridis,
             low: 0.0,
             high: 1.0,
             shown: Shown::for_size(1.0, ""),
             clipped: [false; 2],
-            categories: Category::legend(numbers),
+            categories: Category::legend(numbers, names),
         }
     }
 

@@ -45,7 +45,9 @@ pub(super) fn draw(scene: &Scene) -> Drawing {
             .round();
         let per_metre = (plot / ew).min(height / eh);
         let wanted = (height / (4.0 * sizes.tick_text)).clamp(2.0, 8.0) as usize;
-        y_ticks = scale(1, height, per_metre).ticks(wanted);
+        if !scene.is_strip {
+            y_ticks = scale(1, height, per_metre).ticks(wanted);
+        }
         bar_ticks = scene.bar.ticks(height, &sizes);
         left = sizes.beside(&y_ticks).round();
         right = ColourBar::room(&bar_ticks, &sizes).round();
@@ -97,7 +99,10 @@ pub(super) fn draw(scene: &Scene) -> Drawing {
     };
     let y = AxisText {
         ticks: y_ticks,
-        label: shown.label("y"),
+        label: match scene.is_strip {
+            true => String::new(),
+            false => shown.label("y"),
+        },
     };
     frame.draw_axes(&mut drawing, &x, &y, &sizes);
     scene.bar.draw(&mut drawing, area, &bar_ticks, &sizes);

@@ -24,6 +24,8 @@ pub(super) struct Facet {
 #[derive(Debug)]
 pub(super) struct Scene {
     pub(super) width: usize,
+    /// Whether the body is a bar, whose height has no meaning.
+    pub(super) is_strip: bool,
     pub(super) cells: Vec<Drawn>,
     /// Triangles, drawn instead of cells.
     pub(super) facets: Vec<Facet>,
