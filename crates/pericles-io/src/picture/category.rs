@@ -64,7 +64,7 @@ mod tests {
         values.extend([3.0; 10]);
         let entries = Category::legend(&values, &[]);
         let labels: Vec<&str> = entries.iter().map(|entry| entry.label.as_str()).collect();
-        assert_eq!(labels[..3], ["7 (71 %)", "3 (11 %)", "0 (1 %)"]);
+        assert_eq!(labels[..3], ["7 (71 %)", "3 (11 %)", "0 (1.0 %)"]);
         assert_eq!(*labels.last().unwrap(), "others (12 %)");
         assert_eq!(entries.len(), 9);
         let bar = ColourBar::of_numbers(&values, &[]);
