@@ -38,6 +38,15 @@ struct Page<'a> {
     text: String,
 }
 
+/// Returns a text in which `<` does not start an HTML tag; code spans are unchanged.
+fn literal(text: &str) -> String {
+    let parts = text.split('`').enumerate().map(|(k, part)| match k % 2 {
+        0 => part.replace('<', "\\<"),
+        _ => part.to_owned(),
+    });
+    parts.collect::<Vec<String>>().join("`")
+}
+
 impl Page<'_> {
     /// Writes the section of a table and of the tables in it.
     fn section(&mut self, place: &str) {
@@ -63,7 +72,7 @@ impl Page<'_> {
 
     fn about(&mut self, place: &str) {
         if let Some(text) = self.schema.descriptions.of_table(place) {
-            self.text += &format!("\n{text}\n");
+            self.text += &format!("\n{}\n", literal(text));
         }
     }
 
@@ -102,7 +111,10 @@ impl Page<'_> {
                 self.default(table, key, &at),
                 meaning,
             ];
-            let cells: Vec<String> = row.iter().map(|cell| cell.replace('|', "\\|")).collect();
+            let cells: Vec<String> = row
+                .iter()
+                .map(|cell| literal(cell).replace('|', "\\|"))
+                .collect();
             self.text += &format!("| {} |\n", cells.join(" | "));
         }
         for (keys, needed) in table.choices() {
