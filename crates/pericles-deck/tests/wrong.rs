@@ -202,6 +202,13 @@ const WRONG: &[Wrong] = &[
     wrong("youngs_modulus = \"72 GPa\"\n", "model = \"correspondence\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nstrength = \"1 MPa\"\n", (14, 1), "strength", &["not allowed", "principal-stress"]),
     wrong("fracture_energy = \"135 J/m2\"\n", "model = \"correspondence\"\npoisson_ratio = 0.3\nfailure = \"principal-stress\"\nstrength = 0\n", (16, 12), "0", &["out of range", "positive"]),
     wrong("youngs_modulus = \"72 GPa\"\n", "youngs_modulus = \"72 GPa\"\nstrength = \"1 MPa\"\n", (12, 1), "strength", &["not allowed", "correspondence"]),
+    wrong("fracture_energy = \"135 J/m2\"\n", "model = \"state-based\"\npoisson_ratio = 0.3\nfailure = \"expression\"\n", (9, 1), "[material]", &["`criterion`"]),
+    wrong("fracture_energy = \"135 J/m2\"\n", "model = \"state-based\"\npoisson_ratio = 0.3\nfailure = \"expression\"\ncriterion = \"stress_zz\"\n", (16, 13), "\"stress_zz\"", &["unknown name `stress_zz`", "stress_xx"]),
+    wrong("fracture_energy = \"135 J/m2\"\n", "model = \"correspondence\"\npoisson_ratio = 0.3\nfailure = \"expression\"\ncriterion = \"2\"\n", (16, 13), "\"2\"", &["depends on no stress or strain"]),
+    wrong("fracture_energy = \"135 J/m2\"\n", "model = \"state-based\"\npoisson_ratio = 0.3\nfailure = \"expression\"\ncriterion = \"stress_1/1e6\"\nfracture_energy = 1\n", (17, 1), "fracture_energy", &["not allowed", "break by `criterion`"]),
+    wrong("fracture_energy = \"135 J/m2\"\n", "model = \"state-based\"\npoisson_ratio = 0.3\ncriterion = \"stress_1/1e6\"\n", (15, 1), "criterion", &["not allowed", "requires failure = \"expression\""]),
+    wrong("fracture_energy = \"135 J/m2\"\n", "model = \"state-based\"\npoisson_ratio = 0.3\nfailure = \"expression\"\nstrength = 1\ncriterion = \"stress_1/1e6\"\n", (16, 1), "strength", &["not allowed", "requires failure = \"principal-stress\""]),
+    wrong("youngs_modulus = \"72 GPa\"\n", "youngs_modulus = \"72 GPa\"\ncriterion = \"stress_1\"\n", (12, 1), "criterion", &["not allowed", "state-based"]),
     wrong("youngs_modulus = \"72 GPa\"\n", "youngs_modulus = \"72 GPa\"\nlaw = \"neo-hooke\"\n", (12, 1), "law", &["not allowed", "correspondence"]),
     // Stop conditions.
     wrong("[output]", "[[time.stop_when]]\nset = \"top\"\n[output]", (37, 1), "[[time.stop_when]]", &["[time.stop_when.0] lacks one of `reaction_below` and `damage_above`"]),

@@ -353,9 +353,11 @@ impl Assembler<'_> {
         self.has_one_stiffness(solid) && !solid.shape.is_refined() && !solid.shape.is_listed()
     }
 
-    /// Returns whether bonds of a state-based body break by their energy.
+    /// Returns whether bonds of a state-based body break by their energy, or by stress or strain.
     fn breaks_by_energy(&self, solid: &Solid) -> bool {
-        let by_energy = |failure: &BondFailure| matches!(failure, BondFailure::BondEnergy { .. });
+        let by_energy = |failure: &BondFailure| {
+            matches!(failure, BondFailure::BondEnergy { .. } | BondFailure::ByCriterion)
+        };
         let others = self.model.materials.iter().map(|other| &other.model);
         let own = solid.material.state_based();
         own.is_some_and(|own| by_energy(&own.solid.failure))

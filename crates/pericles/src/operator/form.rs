@@ -27,6 +27,7 @@ const OF_GRID: &[Limit] = &[
     Limit::new(Feature::NoLattice, NO_LATTICE),
     Limit::new(Feature::GaussNodes, NO_LATTICE),
     Limit::BOND_ENERGY,
+    Limit::STRESS_FAILURE,
     Limit::THERMAL_EXPANSION,
     Limit::SOFTENING,
 ];

@@ -60,6 +60,7 @@ const ON_GRID: &[Limit] = &[
         "the surface correction of state-based materials needs a neighbour list; use bonds = \"list\" or omit `bonds`",
     ),
     Limit::BOND_ENERGY,
+    Limit::STRESS_FAILURE,
     Limit::THERMAL_EXPANSION,
     Limit::new(
         Feature::NoLattice,
@@ -105,6 +106,13 @@ impl<'a> LinearSolidBody<'a> {
                 self.surface != SolidSurface::None,
             )
             .with(Feature::BondEnergy, limits.energy.is_finite())
+            .with(
+                Feature::StressFailure,
+                match self.classes {
+                    Some(classes) => !classes.criteria().is_empty(),
+                    None => self.constants.criterion.is_some(),
+                },
+            )
             .with(Feature::NoLattice, self.cloud.lattice().is_none())
     }
 

@@ -318,7 +318,8 @@ fn strain<L: Kinematics, const D: usize>(xi: [f64; D], eta: [f64; D]) -> f64 {
     measure / square
 }
 
-fn direction<L: Kinematics, const D: usize>(xi: [f64; D], eta: [f64; D]) -> [f64; D] {
+/// Returns the direction of the force of a bond, y or ξ.
+pub(super) fn direction<L: Kinematics, const D: usize>(xi: [f64; D], eta: [f64; D]) -> [f64; D] {
     let lanes = |vector: [f64; D]| vector.map(|x| F64x8([x; LANES]));
     L::direction(lanes(xi), lanes(eta)).map(|x| x.0[0])
 }

@@ -244,7 +244,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
 
     /// Returns the failure criterion for the points `on`; `velocity` contains the mean velocities over the
     /// step, if needed.
-    fn rule<'a>(
+    pub(super) fn rule<'a>(
         &'a self,
         step: &'a StepEnd<'a>,
         velocity: Option<Field<'a>>,
@@ -367,7 +367,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
 
     /// Breaks the other end of bonds that broke in a sweep over a subset of points, and records the energy
     /// dissipated there.
-    fn clear_other_ends(&self, rule: &BreakRule<'_>, u: &Records, blocks: &mut [BlockDamage]) {
+    pub(super) fn clear_other_ends(&self, rule: &BreakRule<'_>, u: &Records, blocks: &mut [BlockDamage]) {
         if !rule.note_events {
             return;
         }
