@@ -61,7 +61,6 @@ const ON_GRID: &[Limit] = &[
     ),
     Limit::BOND_ENERGY,
     Limit::STRESS_FAILURE,
-    Limit::THERMAL_EXPANSION,
     Limit::new(
         Feature::NoLattice,
         "the points do not lie on a regular grid; use bonds = \"list\"",
