@@ -190,10 +190,10 @@ impl Limit {
         "stress and strain of points are computed with a neighbour list only; use bonds = \"list\", omit `bonds`, or use failure = \"stretch\"",
     );
 
-    /// Limit of all kernels except lists.
+    /// Limit of all kernels except lists and stencils in double precision.
     pub const THERMAL_EXPANSION: Self = Self::new(
         Feature::ThermalExpansion,
-        "thermal expansion needs a neighbour list; use bonds = \"list\" or omit `bonds`",
+        "thermal expansion needs a neighbour list or a stencil in double precision; use bonds = \"list\" or \"grid\", or omit `bonds`",
     );
 
     /// Limit of all kernels except lists.
