@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use pericles::material::StressState;
-use pericles::operator::Feature;
+use pericles::operator::{Feature, Features};
 use pericles::parallel::for_each_point;
 use pericles::space::PointCloud;
 use pericles::units::quantity;
@@ -41,17 +41,11 @@ impl Temperature for Prescribed {
 }
 
 impl Assembler<'_> {
-    /// Returns the force kernel of a heated body.
+    /// Rejects force kernels that do not support thermal expansion, for models that have it.
     pub(super) fn heated_form(&self, form: ForceForm) -> Result<ForceForm, BuildError> {
-        match (&self.model.thermal, form) {
-            (None, form) => Ok(form),
-            (Some(_), ForceForm::Fastest) => Ok(ForceForm::List),
-            (Some(_), form) => {
-                let heated = form.check(Feature::ThermalExpansion.into());
-                heated.map_err(at_material)?;
-                Ok(form)
-            }
-        }
+        let expands = Features::default().with(Feature::ThermalExpansion, self.model.thermal.is_some());
+        form.check(expands).map_err(at_material)?;
+        Ok(form)
     }
 
     /// Adds thermal expansion to the materials of a body, if the model has it.

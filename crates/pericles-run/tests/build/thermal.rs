@@ -95,7 +95,7 @@ time = { end = 1, dt = 0.1 }
 
 #[test]
 fn thermal_expansion_is_rejected_where_it_is_not_supported() {
-    let heated = PLATE.replace("MODEL", "bonds = \"grid\"");
+    let heated = PLATE.replace("MODEL", "bonds = \"float-grid\"");
     assert!(refusal(&heated).to_string().contains("thermal expansion"));
     let spectral = PLATE.replace("MODEL", "model = \"linear\", bonds = \"convolution\"");
     refusal(&spectral);
