@@ -181,6 +181,8 @@ const WRONG: &[Wrong] = &[
     wrong("[time]\n", "[thermal]\nexpansion = 1e-5\ntemperature = \"300 m\"\nreference = 293\n[time]\n", (35, 15), "\"300 m\"", &["a temperature", "293.15 K"]),
     wrong("[time]\n", "[thermal]\nexpansion = 1e-5\ntemperature = { expression = \"300 + z\" }\nreference = 293\n[time]\n", (35, 30), "\"300 + z\"", &["`z`"]),
     wrong("[time]\n", "[thermal]\nexpansion = 1e-5\ntemperature = 300\n[time]\n", (33, 1), "[thermal]", &["reference"]),
+    wrong("[time]\n", "[thermal]\nexpansion = 1e-5\nreference = 293\n[time]\n", (33, 1), "[thermal]", &["`temperature`", "`file`"]),
+    wrong("[time]\n", "[thermal]\nexpansion = 1e-5\nreference = 293\nfile = 3\n[time]\n", (36, 8), "3", &["a string in quotes"]),
     wrong("[time]\n", "[thermal]\nexpansion = 1e-5\ntemperature = 300\nreference = 293\nmaterial = [{ name = \"lead\", expansion = 1e-5 }]\n[time]\n", (37, 22), "\"lead\"", &["lead", "default"]),
     wrong("fracture_energy = \"135 J/m2\"\n", "fracture_energy = \"135 J/m2\"\nsoftening = { law = \"cubic\", onset_stretch = 1e-4 }\n", (14, 21), "\"cubic\"", &["unknown softening law `cubic`", "\"exponential\""]),
     wrong("fracture_energy = \"135 J/m2\"\n", "fracture_energy = \"135 J/m2\"\nsoftening = { law = \"linear\", onset_stretch = 0 }\n", (14, 47), "0", &["out of range", "positive stretch"]),

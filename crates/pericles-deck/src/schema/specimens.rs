@@ -381,6 +381,7 @@ pub(super) const SPECIMENS: &[Specimen] = &[
     specimen(BAR, &["time={ end = 1, dt = 1, scheme = 'discrete-gradient', tolerance = 1e-10 }"]),
     specimen(BAR, &["time={ end = 1, dt = 1, scheme = 'discrete-gradient' }"]),
     specimen(BAR, &["thermal={ expansion = 1e-5, temperature = 300, reference = 293, material = [{ name = 'default', expansion = 2e-5 }] }"]),
+    specimen(BAR, &["thermal={ expansion = 1e-5, file = 'temperatures.txt', reference = 293, function = { kind = 'ramp', duration = 1 } }"]),
     specimen(BAR, &["material.scatter={ distribution = 'weibull', of = 'fracture_energy', shape = 5, seed = 2 }"]),
     specimen(BAR, &["material.scatter={ shape = 5 }"]),
     specimen(BAR, &["material.softening={ law = 'trilinear', onset_stretch = 1e-4, knee_force = 0.3, knee_position = 0.2 }"]),
