@@ -142,11 +142,11 @@ pub use conditions::{Constraint, Initial, Load, LoadAmplitude, Probe, ProbePlace
 pub use correspondence::Correspondence;
 pub use course::{Course, TimeHistory};
 pub use crack::{CrackSurface, PreCrack};
+pub use criterion::FailureCriterion;
 pub use damping::Damping;
 pub use deck::Deck;
 pub use error::DeckError;
 pub use exact::{Exact, KnownSolution, Pulse};
-pub use criterion::FailureCriterion;
 pub use expression::{BondExpression, Condition, Expression};
 pub use fault::Fault;
 pub use finding::{Finding, Problem, Warning};

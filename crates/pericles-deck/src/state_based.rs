@@ -63,8 +63,10 @@ enum Criterion {
 }
 
 /// Words of `failure` for limits of bonds.
-const LIMITS: [(&str, Criterion); 2] =
-    [("stretch", Criterion::Stretch), ("bond-energy", Criterion::BondEnergy)];
+const LIMITS: [(&str, Criterion); 2] = [
+    ("stretch", Criterion::Stretch),
+    ("bond-energy", Criterion::BondEnergy),
+];
 
 impl SolidRules {
     /// Reads the rules of a material; `calibration` follows from the body. `shared`: other materials inherit them.
@@ -109,11 +111,7 @@ impl SolidRules {
         calibration: Option<FractureCalibration>,
         words: &[(&'static str, Criterion)],
     ) -> Self {
-        let criterion = table.choice_or_first(
-            "failure",
-            "failure criterion",
-            words,
-        );
+        let criterion = table.choice_or_first("failure", "failure criterion", words);
         let definition = match criterion {
             Some(Criterion::BondEnergy) => {
                 table.forbid(

@@ -172,7 +172,8 @@ mod tests {
             assert_eq!(value(&format!("stress_{axes}")), stress[a][b]);
             assert_eq!(value(&format!("strain_{axes}")), strain[a][b]);
         }
-        let mises = "sqrt(((stress_1-stress_2)^2 + (stress_2-stress_3)^2 + (stress_3-stress_1)^2)/2)";
+        let mises =
+            "sqrt(((stress_1-stress_2)^2 + (stress_2-stress_3)^2 + (stress_3-stress_1)^2)/2)";
         assert!((value("equivalent_stress") - value(mises)).abs() < 1e-13);
         assert!((value("stress_1 + stress_2 + stress_3") - 1.4).abs() < 1e-14);
         let trace = value("strain_xx + strain_yy + strain_zz");
@@ -197,7 +198,11 @@ mod tests {
             (2, "stress_xx/", "ends"),
         ] {
             let malformed = BondExpression::parse(text, dimension).unwrap_err();
-            assert!(malformed.reason.contains(says), "{text}: {}", malformed.reason);
+            assert!(
+                malformed.reason.contains(says),
+                "{text}: {}",
+                malformed.reason
+            );
         }
     }
 }

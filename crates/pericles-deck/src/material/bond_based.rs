@@ -15,8 +15,8 @@ use crate::constants::{
 use crate::correspondence;
 use crate::influence::{InfluenceRead, influence};
 use crate::reader::Table;
-use crate::vocabulary::BY_STATE;
 use crate::set::SetNames;
+use crate::vocabulary::BY_STATE;
 
 pub(super) fn read(
     table: Table<'_>,

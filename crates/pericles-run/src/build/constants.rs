@@ -1,7 +1,8 @@
 //! Constants of materials of all models.
 
 use pericles::material::{
-    BondConstants, CrackPlane, Criterion, ElasticWaves, FractureCalibration, LinearSolidConstants, StressState,
+    BondConstants, CrackPlane, Criterion, ElasticWaves, FractureCalibration, LinearSolidConstants,
+    StressState,
 };
 use pericles_solids::correspondence::CorrespondenceConstants;
 

@@ -323,7 +323,10 @@ impl Assembler<'_> {
         !shape.is_listed()
             && solid.material.surface_correction == Default::default()
             && !self.breaks(solid, &|failure| {
-                matches!(failure, BondFailure::BondEnergy { .. } | BondFailure::ByCriterion)
+                matches!(
+                    failure,
+                    BondFailure::BondEnergy { .. } | BondFailure::ByCriterion
+                )
             })
             && self.history_of_bond(solid) == 0.0
     }

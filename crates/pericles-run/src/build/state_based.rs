@@ -8,8 +8,8 @@ use pericles::material::{
 use pericles::operator::{Feature, InelasticSolidBody, LinearSolidBody};
 use pericles::space::PointCloud;
 use pericles_deck::{
-    BuildError, Caution, FailureCriterion, Fault, InterfaceFailure, KeyPath, MaterialModel, ModelWarning, Remark,
-    Solid, StateBased,
+    BuildError, Caution, FailureCriterion, Fault, InterfaceFailure, KeyPath, MaterialModel,
+    ModelWarning, Remark, Solid, StateBased,
 };
 
 use super::assembler::Assembler;

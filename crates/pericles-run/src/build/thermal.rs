@@ -65,7 +65,8 @@ impl Temperature for Prescribed {
 impl Assembler<'_> {
     /// Rejects force kernels that do not support thermal expansion, for models that have it.
     pub(super) fn heated_form(&self, form: ForceForm) -> Result<ForceForm, BuildError> {
-        let expands = Features::default().with(Feature::ThermalExpansion, self.model.thermal.is_some());
+        let expands =
+            Features::default().with(Feature::ThermalExpansion, self.model.thermal.is_some());
         form.check(expands).map_err(at_material)?;
         Ok(form)
     }

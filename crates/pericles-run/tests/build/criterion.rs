@@ -38,7 +38,8 @@ fn bodies_in_tension_break_at_the_predicted_strain() {
     let strength = "failure = \"principal-stress\", strength = 0.01";
     let index = "failure = \"expression\", criterion = ";
     // Finite strains change the stress by terms of the order of the strain, 1e-3.
-    for (body, model, other, margin) in [(BAR, bar, "", 1e-6), (PLATE, plate, ", \"free\"", 0.005)] {
+    for (body, model, other, margin) in [(BAR, bar, "", 1e-6), (PLATE, plate, ", \"free\"", 0.005)]
+    {
         for criterion in [
             strength.to_owned(),
             format!("{index}\"stress_1 / 0.01\""),

@@ -31,10 +31,7 @@ impl<const D: usize> CorrespondenceForce<D> {
             let stress = product(&state.stress, &transpose(&f));
             let thermal = heat.factor(i) - 1.0;
             let strain = combination(1.0, &symmetric(&gradient), -thermal, &unit::<D>());
-            [
-                stress.map(|row| row.map(|entry| entry / volume)),
-                strain,
-            ]
+            [stress.map(|row| row.map(|entry| entry / volume)), strain]
         });
         let mut all = vec![0.0; 2 * D * D * n];
         for (i, tensors) in tensors.iter().enumerate() {

@@ -257,7 +257,14 @@ fn inverted_point_stops_the_run() {
     }
     let mut run = Simulation::new(system, Box::new(VelocityVerlet), start, 0.02, 100).unwrap();
     let error = run.run(|_| Control::Continue).unwrap_err().to_string();
-    for part in ["step ", "t = ", "determinant", "at point ", " m, speed", "neo-Hookean law"] {
+    for part in [
+        "step ",
+        "t = ",
+        "determinant",
+        "at point ",
+        " m, speed",
+        "neo-Hookean law",
+    ] {
         assert!(error.contains(part), "{part}: {error}");
     }
 }

@@ -113,11 +113,23 @@ fn stress_and_strain_of_an_isotropic_lattice_follow_hookes_law() {
         .map(|[x, y]| along(x, y))
         .fold(0.0, f64::max);
     let cases = [
-        (Criterion::new(PrincipalStress::new(0.01).unwrap()), normal / 0.01),
-        (Criterion::new(Index(|bond| bond.principal_stresses()[0])), first(stress)),
+        (
+            Criterion::new(PrincipalStress::new(0.01).unwrap()),
+            normal / 0.01,
+        ),
+        (
+            Criterion::new(Index(|bond| bond.principal_stresses()[0])),
+            first(stress),
+        ),
         (Criterion::new(Index(|bond| bond.stress[1][1])), stress[1]),
-        (Criterion::new(Index(|bond| bond.principal_strains()[0])), first([xx, yy, xy])),
-        (Criterion::new(Index(|bond| 0.1 - bond.strain[0][1])), 0.1 - xy),
+        (
+            Criterion::new(Index(|bond| bond.principal_strains()[0])),
+            first([xx, yy, xy]),
+        ),
+        (
+            Criterion::new(Index(|bond| 0.1 - bond.strain[0][1])),
+            0.1 - xy,
+        ),
     ];
     let inside: Vec<usize> = (0..cloud.len())
         .filter(|&i| {
@@ -126,7 +138,10 @@ fn stress_and_strain_of_an_isotropic_lattice_follow_hookes_law() {
         })
         .collect();
     for (criterion, expected) in cases {
-        let force = small(&cloud, &constants(&material, &cloud, StressState::PlaneStrain, criterion));
+        let force = small(
+            &cloud,
+            &constants(&material, &cloud, StressState::PlaneStrain, criterion),
+        );
         let [below, above] =
             [1.0 - 1e-10, 1.0 + 1e-10].map(|part| marks(&*force, &u, part * expected));
         assert!(inside.iter().all(|&i| below[i] && !above[i]), "{expected}");
@@ -157,7 +172,11 @@ fn mean_stress_of_a_dilatation_is_exact_at_free_surfaces() {
         let others = constants(&material, &cloud, state, by_strain);
         for (constants, expected) in [(own, d * modulus * d * size), (others, d * size)] {
             let force = small(&cloud, &constants);
-            assert!(marks(&*force, &u, (1.0 - 1e-11) * expected).iter().all(|mark| *mark));
+            assert!(
+                marks(&*force, &u, (1.0 - 1e-11) * expected)
+                    .iter()
+                    .all(|mark| *mark)
+            );
             assert!(!marks(&*force, &u, (1.0 + 1e-11) * expected).contains(&true));
         }
     }
@@ -199,7 +218,10 @@ fn stress_of_a_viscous_solid_relaxes() {
     let mut force = body.operator(BondForm::List).unwrap().operator;
     let mut out = vec![0.0; u.len()];
     let started = largest(&*force, &u);
-    assert!((started / initial - 1.0).abs() < 1e-11, "{started} {initial}");
+    assert!(
+        (started / initial - 1.0).abs() < 1e-11,
+        "{started} {initial}"
+    );
     for t in [0.0, 10.0] {
         force.end_step(&StepEnd::sub_step(t, t, &u), PointSubset::All, &mut out);
     }
@@ -217,13 +239,18 @@ fn unsupported_bodies_are_refused() {
     let body = LinearSolidBody::new(&cloud, &own, VolumeCorrection::None);
     assert_eq!(body.fastest_form(), BondForm::List);
     let error = body.operator(BondForm::Grid).err().unwrap();
-    assert!(matches!(error, PericlesError::FormNotUsable { .. }), "{error}");
+    assert!(
+        matches!(error, PericlesError::FormNotUsable { .. }),
+        "{error}"
+    );
     assert!(error.to_string().contains("stress and strain"), "{error}");
     let signed = LinearSolid {
         influence: StateInfluence::Isotropic,
         failure: BondFailure::ByCriterion,
         ..solid(0.3, 5.0 * (1.0 + 1e-6), InfluenceFunction::Constant)
     };
-    let error = signed.constants(&cloud, StressState::PlaneStress).unwrap_err();
+    let error = signed
+        .constants(&cloud, StressState::PlaneStress)
+        .unwrap_err();
     assert!(error.to_string().contains("negative"), "{error}");
 }

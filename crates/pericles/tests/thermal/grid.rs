@@ -24,7 +24,9 @@ fn clouds() -> Vec<Arc<PointCloud>> {
     let plate = Grid::plate([21.0, 9.0], 1.0, 1.0).points().unwrap();
     let around = Grid::plate([19.0, 11.0], 1.0, 1.0).points().unwrap();
     let block = Grid::block([9.0, 6.0, 5.0], 1.0).points().unwrap();
-    [plate, around.with_periodic_faces().unwrap(), block].map(Arc::new).into()
+    [plate, around.with_periodic_faces().unwrap(), block]
+        .map(Arc::new)
+        .into()
 }
 
 fn pair(cloud: &Arc<PointCloud>, model: &Model, limit: f64) -> [Box<dyn Force>; 2] {
@@ -74,9 +76,12 @@ fn the_stencil_has_the_forces_energies_and_failure_of_the_list() {
                     force.add_energy_density(0.7, &u, &mut density);
                     let mut bond = Vec::new();
                     let field = Field::new(&u, &[]);
-                    force.as_bonds().unwrap().for_each_bond(field, 40, &mut |at| {
-                        bond.push((at.neighbour, at.force));
-                    });
+                    force
+                        .as_bonds()
+                        .unwrap()
+                        .for_each_bond(field, 40, &mut |at| {
+                            bond.push((at.neighbour, at.force));
+                        });
                     bond.sort_by_key(|(j, _)| *j);
                     let bond: Vec<f64> = bond.iter().flat_map(|(_, force)| *force).collect();
                     let mut marks = vec![false; cloud.len()];

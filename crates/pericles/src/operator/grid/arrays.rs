@@ -75,7 +75,10 @@ impl<N: GridNumber, const D: usize> Grid<'_, N, D> {
         here: &[T; D],
     ) -> (FixedBond<T, D>, [T; D]) {
         let shift = self.offsets[offset].shift;
-        let (bonds, eta) = (self.bonds::<T>(offset, factors), self.eta(places, shift, here));
+        let (bonds, eta) = (
+            self.bonds::<T>(offset, factors),
+            self.eta(places, shift, here),
+        );
         match self.heat {
             None => (bonds, eta),
             Some(heat) => {

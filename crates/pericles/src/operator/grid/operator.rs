@@ -198,13 +198,7 @@ impl<L: VectorLaw, const D: usize> Force for GridForce<L, D> {
 }
 
 impl<L: VectorLaw, const D: usize> GridForce<L, D> {
-    fn add_force_in_doubles(
-        &self,
-        t: f64,
-        u: &[f64],
-        on: &PointSubset<'_>,
-        out: &mut [f64],
-    ) {
+    fn add_force_in_doubles(&self, t: f64, u: &[f64], on: &PointSubset<'_>, out: &mut [f64]) {
         let u = (u, self.stretches(t));
         self.sweep::<f64, D>(&self.doubles, u, on, out, |grid, block, intact, out| {
             force_chunks::<L, D>(self.instruction_set, grid, block, intact, out);

@@ -117,7 +117,8 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         }
         let mut strain = [[0.0; D]; D];
         if let Some(inverse) = inverse(&shape) {
-            let entry = |a: usize, c: usize| (0..D).map(|k| moment[a][k] * inverse[k][c]).sum::<f64>();
+            let entry =
+                |a: usize, c: usize| (0..D).map(|k| moment[a][k] * inverse[k][c]).sum::<f64>();
             for a in 0..D {
                 for c in 0..D {
                     strain[a][c] = 0.5 * (entry(a, c) + entry(c, a));

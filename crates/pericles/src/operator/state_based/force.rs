@@ -367,7 +367,12 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
 
     /// Breaks the other end of bonds that broke in a sweep over a subset of points, and records the energy
     /// dissipated there.
-    pub(super) fn clear_other_ends(&self, rule: &BreakRule<'_>, u: &Records, blocks: &mut [BlockDamage]) {
+    pub(super) fn clear_other_ends(
+        &self,
+        rule: &BreakRule<'_>,
+        u: &Records,
+        blocks: &mut [BlockDamage],
+    ) {
         if !rule.note_events {
             return;
         }

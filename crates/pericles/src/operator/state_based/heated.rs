@@ -26,7 +26,9 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
     /// the same for all bonds.
     pub(super) fn thermal_pull(&self, i: usize, stretch: f64) -> f64 {
         let heat = self.heat.as_ref();
-        heat.map_or(0.0, |heat| heat.pull(&self.states, [i, self.bonds.site(i)], stretch))
+        heat.map_or(0.0, |heat| {
+            heat.pull(&self.states, [i, self.bonds.site(i)], stretch)
+        })
     }
 
     /// Adds the thermal pulls of the points `on` to one value per point.

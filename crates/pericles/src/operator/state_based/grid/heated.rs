@@ -19,7 +19,10 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
     pub(super) fn coldest_limit(&self, stretches: Option<&Vec<f64>>) -> f64 {
         let limit = self.weakest.stretch;
         stretches.map_or(limit, |stretches| {
-            heated_limit(limit, stretches.iter().copied().fold(f64::INFINITY, f64::min))
+            heated_limit(
+                limit,
+                stretches.iter().copied().fold(f64::INFINITY, f64::min),
+            )
         })
     }
 
@@ -51,7 +54,10 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
             let (families, layout) = (self.families(), &*self.layout);
             families.for_each_block(&mut heat.volume, |first, number, intact, volumes| {
                 let block = layout.block_of(number);
-                if before.as_ref().is_some_and(|before| before[block] == now[block]) {
+                if before
+                    .as_ref()
+                    .is_some_and(|before| before[block] == now[block])
+                {
                     return;
                 }
                 for (lane, i) in layout.chunks()[number].points() {

@@ -45,7 +45,8 @@ impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
     ) {
         let n = self.solid.cloud.len();
         self.states_into(step.t, u, needed, values);
-        self.solid.add_thermal_pulls(step.t, needed, &mut values[n..2 * n]);
+        self.solid
+            .add_thermal_pulls(step.t, needed, &mut values[n..2 * n]);
         let states = self.force_states(step.t, values);
         let before = self.broken();
         let broke = self.breaking_solid(|solid, stored| {
