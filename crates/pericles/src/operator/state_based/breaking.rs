@@ -6,7 +6,6 @@
 //! of the energy of the point instead of that of a bond.
 
 use super::bonds::{SolidBonds, difference};
-use super::heat::heated_limit;
 use super::kinematics::Kinematics;
 use crate::domain::Field;
 use crate::lanes::{F64x8, LANES, dot};
@@ -95,6 +94,12 @@ pub(super) struct BreakRule<'a> {
     pub stored: Option<Stored<'a>>,
     /// Thermal stretches of own points and ghosts, if the material expands.
     pub stretches: Option<&'a [f64]>,
+}
+
+/// Returns the stretch at which a bond with the thermal stretch τ breaks: the ratio of its length to the
+/// stress-free length is then 1 + `limit`.
+pub(super) fn heated_limit(limit: f64, stretch: f64) -> f64 {
+    limit + stretch * (1.0 + limit)
 }
 
 /// For a point and one of its entries: the inelastic stretch x and the constant c of the bond energy ψ² − 2 ψ

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use super::bond_work::{KEPT, Worked, work_rows};
 use super::bonds::{Layout, SolidBonds, pack};
-use super::breaking::{BreakRule, States, Stored, take_bonds};
-use super::heat::{Heat, heated_limit};
+use super::breaking::{BreakRule, States, Stored, heated_limit, take_bonds};
+use super::heat::Heat;
 use super::kernels::{accept_rows, dilatation_rows};
 use super::kinematics::Kinematics;
 use super::weight::Weight;

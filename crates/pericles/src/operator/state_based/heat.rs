@@ -59,9 +59,3 @@ impl Heat {
         states.energy_density(place, theta - factor * volume * stretch, squares)
     }
 }
-
-/// Returns the stretch at which a bond with the thermal stretch τ breaks: the ratio of its length to the
-/// stress-free length is then 1 + `limit`.
-pub(super) fn heated_limit(limit: f64, stretch: f64) -> f64 {
-    limit + stretch * (1.0 + limit)
-}

@@ -2,8 +2,8 @@
 
 use super::bond_work::{KEPT, Worked};
 use super::bonds::difference;
+use super::breaking::heated_limit;
 use super::force::LinearSolidForce;
-use super::heat::heated_limit;
 use super::kernels::{dilatation_change_rows, force_rows, square_rows, tangent_rows};
 use super::kinematics::Kinematics;
 use crate::domain::Field;

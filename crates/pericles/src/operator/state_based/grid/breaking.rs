@@ -7,8 +7,7 @@ use crate::material::{PairForce, SolidClasses};
 use crate::operator::damage::{BreakEvent, Tally};
 use crate::operator::grid::families::Families;
 use crate::operator::grid::layout::Chunk;
-use crate::operator::state_based::breaking::{LosingBond, Loss, States};
-use crate::operator::state_based::heat::heated_limit;
+use crate::operator::state_based::breaking::{LosingBond, Loss, States, heated_limit};
 use crate::operator::state_based::kinematics::Kinematics;
 use crate::step_end::StepEnd;
 

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use super::force::LinearSolidGrid;
 use crate::error::Result;
 use crate::operator::PointSubset;
-use crate::operator::state_based::heat::{Heat, heated_limit};
+use crate::operator::state_based::breaking::heated_limit;
+use crate::operator::state_based::heat::Heat;
 use crate::operator::state_based::kinematics::Kinematics;
 use crate::thermal::{Expandable, ThermalExpansion};
 

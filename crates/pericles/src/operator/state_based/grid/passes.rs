@@ -8,7 +8,7 @@ use super::tangent::{dilatation_change_chunks, tangent_chunks};
 use crate::domain::Field;
 use crate::lanes::LANES;
 use crate::material::PairForce;
-use crate::operator::state_based::heat::heated_limit;
+use crate::operator::state_based::breaking::heated_limit;
 use crate::operator::state_based::kinematics::Kinematics;
 use crate::operator::{
     AtPoints, BondView, Breakable, CoarseBreak, InstructionSet, PointSubset, TwoPass, damage,
