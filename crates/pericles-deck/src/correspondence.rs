@@ -1,15 +1,16 @@
 //! `model = "correspondence"`: correspondence materials for large strain.
 
+use pericles::Result;
 use pericles::material::{Inelasticity, LinearSolid, Strains, Yield};
 use pericles_solids::correspondence::{
     CorrespondenceMaterial, ElasticLaw, Plasticity, Stabilisation,
 };
 use serde::{Deserialize, Serialize};
 
-use crate::quantity::Quantity;
+use crate::criterion::{self, FailureCriterion};
 use crate::reader::Table;
 use crate::state_based::{StateBased, read_yield};
-use crate::vocabulary::STRENGTHS;
+use crate::vocabulary::BY_STATE;
 
 /// A correspondence material.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -27,9 +28,9 @@ pub struct Correspondence {
     /// Plasticity; none for elastic materials.
     #[serde(default, with = "crate::form")]
     pub plasticity: Option<Plasticity>,
-    /// The largest principal stress that a bond bears, Pa, if bonds break by their stress.
+    /// Failure criterion of stress and strain, if bonds break by them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub strength: Option<f64>,
+    pub criterion: Option<FailureCriterion>,
 }
 
 impl Correspondence {
@@ -39,23 +40,28 @@ impl Correspondence {
             solid: self.solid.clone(),
             strains: Strains::Finite,
             inelastic: Inelasticity::Elastic,
+            criterion: self.criterion.clone(),
         }
     }
 
     /// Returns the material of `pericles-solids`.
-    pub fn material(&self) -> CorrespondenceMaterial {
-        CorrespondenceMaterial {
+    ///
+    /// # Errors
+    /// A strength that is not positive.
+    pub fn material(&self) -> Result<CorrespondenceMaterial> {
+        let criterion = self.criterion.as_ref();
+        Ok(CorrespondenceMaterial {
             solid: self.solid.clone(),
             law: self.law,
             stabilisation: self.stabilisation,
             plasticity: self.plasticity,
-            strength: self.strength,
-        }
+            criterion: criterion.map(FailureCriterion::criterion).transpose()?,
+        })
     }
 }
 
 /// Keys of correspondence materials only.
-const OWN_KEYS: [&str; 3] = ["law", "stabilisation", "strength"];
+const OWN_KEYS: [&str; 2] = ["law", "stabilisation"];
 
 /// Refuses these keys in the table of another model.
 pub(crate) fn forbid_keys(table: &Table<'_>) {
@@ -64,25 +70,16 @@ pub(crate) fn forbid_keys(table: &Table<'_>) {
     }
 }
 
-/// Reads `failure` and `strength`: the principal stress at which bonds break, if they break by stress.
-pub(crate) fn strength(table: &Table<'_>) -> Option<Option<f64>> {
-    let by_stress = table.choice_or_first(
-        "failure",
-        "failure criterion",
-        &[("stretch", false), ("principal-stress", true)],
-    )?;
-    if !by_stress {
-        table.forbid("strength", "it requires failure = \"principal-stress\"");
-        return Some(None);
-    }
-    for &key in STRENGTHS {
-        table.forbid(
-            key,
-            "with failure = \"principal-stress\" bonds break at the `strength`, which determines the dissipated energy",
-        );
-    }
-    let strength = table.required("strength")?;
-    strength.positive(Quantity::Traction).map(Some)
+/// Reads `failure` and its criterion of stress and strain; `Some(None)` for bonds that break by their stretch.
+pub(crate) fn criterion(
+    table: &Table<'_>,
+    dimension: Option<usize>,
+) -> Option<Option<FailureCriterion>> {
+    let by_state = BY_STATE.map(|(word, _)| (word, ()));
+    let words: Vec<_> = [("stretch", ())].into_iter().chain(by_state).collect();
+    let known = table.choice_or_first("failure", "failure criterion", &words);
+    let read = criterion::read(table, dimension);
+    known.and(read)
 }
 
 /// Reads the elastic law; plastic materials have the logarithmic one.

@@ -41,6 +41,11 @@ pub enum TimeHistory {
 }
 
 impl TimeHistory {
+    /// Returns whether the function is 1 at all times.
+    pub fn is_constant(&self) -> bool {
+        *self == Self::Constant
+    }
+
     /// Returns the function that the engine evaluates.
     ///
     /// # Errors

@@ -4,7 +4,7 @@
 //! messages point to the original key.
 
 use crate::document::{Entry, Node, Value};
-use crate::vocabulary::{FAILURE_RULES, OWN_CONSTANTS, canonical, replaces};
+use crate::vocabulary::{BY_STATE, FAILURE_RULES, OWN_CONSTANTS, canonical, replaces};
 
 /// Copies the keys shared by all bonds into the tables of materials, and failure rules into those of
 /// materials and interfaces.
@@ -49,11 +49,17 @@ pub(crate) fn inherit(root: &mut Node) {
     }
 }
 
-/// Returns whether a failure rule applies to a table: it needs a fracture energy, and `stretch_definition`
-/// its failure criterion.
+/// Returns whether a failure rule applies to a table: it needs the key that the criterion requires, a fracture energy
+/// or that of [`BY_STATE`]; `stretch_definition` also its failure criterion.
 fn counts(own: &[Entry], rule: &Entry) -> bool {
     let has = |key: &str| own.iter().any(|entry| canonical(&entry.key) == key);
-    has("fracture_energy") && (rule.key != "stretch_definition" || !has("failure"))
+    let by_state = BY_STATE.iter().find(|(word, _)| {
+        rule.key == "failure" && matches!(&rule.node.value, Value::Text(text) if text == word)
+    });
+    match by_state {
+        Some((_, required)) => has(required),
+        None => has("fracture_energy") && (rule.key != "stretch_definition" || !has("failure")),
+    }
 }
 
 /// Adds entries of another table, except for constants of one material and keys that the table already has.

@@ -116,7 +116,7 @@ fn interface(
                     for key in ["failure", "stretch_definition"] {
                         table.forbid(key, "it requires model = \"state-based\"");
                     }
-                    SolidRules::closing(state, calibration).failure(&table)
+                    SolidRules::closing(state, calibration, false).failure(&table)
                 }
                 _ => state_based_failure(&table, state, calibration),
             };
@@ -136,7 +136,7 @@ fn state_based_failure(
     state: Option<StressState>,
     calibration: Option<FractureCalibration>,
 ) -> Option<BondFailure> {
-    SolidRules::read(table, state, calibration, false).failure(table)
+    SolidRules::interface(table, state, calibration).failure(table)
 }
 
 /// Reads the rule or modulus from which the bond constant follows.

@@ -256,7 +256,9 @@ impl Model {
         let initial = initial.filter_map(|initial| initial.file.as_deref());
         let cracks = self.cracks.iter();
         let cracks = cracks.filter_map(|crack| crack.surface.file());
+        let thermal = self.thermal.iter();
+        let thermal = thermal.filter_map(|thermal| thermal.file.as_deref());
         let body = self.body.file().into_iter();
-        body.chain(initial).chain(cracks).collect()
+        body.chain(initial).chain(cracks).chain(thermal).collect()
     }
 }

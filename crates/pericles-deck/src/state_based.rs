@@ -7,9 +7,10 @@ use pericles::material::{
 use serde::{Deserialize, Serialize};
 
 use crate::constants;
+use crate::criterion::FailureCriterion;
 use crate::quantity::Quantity;
 use crate::reader::Table;
-use crate::vocabulary::{MODULI, STRENGTHS};
+use crate::vocabulary::{BY_STATE, MODULI, STRENGTHS};
 
 /// A state-based material.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -28,6 +29,9 @@ pub struct StateBased {
         skip_serializing_if = "Inelasticity::is_elastic"
     )]
     pub inelastic: Inelasticity,
+    /// Failure criterion of stress and strain, if bonds break by them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub criterion: Option<FailureCriterion>,
 }
 
 impl StateBased {
@@ -55,35 +59,59 @@ pub(crate) struct SolidRules {
 enum Criterion {
     Stretch,
     BondEnergy,
+    ByState,
 }
+
+/// Words of `failure` for limits of bonds.
+const LIMITS: [(&str, Criterion); 2] = [
+    ("stretch", Criterion::Stretch),
+    ("bond-energy", Criterion::BondEnergy),
+];
 
 impl SolidRules {
     /// Reads the rules of a material; `calibration` follows from the body. `shared`: other materials inherit them.
+    /// `by_state`: its bonds break by stress or strain.
     pub(crate) fn read(
         table: &Table<'_>,
         state: Option<StressState>,
         calibration: Option<FractureCalibration>,
-        shared: bool,
+        [shared, by_state]: [bool; 2],
     ) -> Self {
-        if !shared && !STRENGTHS.iter().any(|key| table.has(key)) {
-            for key in ["failure", "stretch_definition"] {
-                table.forbid(key, "bonds without `fracture_energy` never break");
-            }
-            return Self {
-                state,
-                criterion: Some(Criterion::Stretch),
-                definition: Some(StretchDefinition::default()),
-                calibration,
-            };
+        if shared || by_state {
+            let by_state = BY_STATE.map(|(word, _)| (word, Criterion::ByState));
+            let words: Vec<_> = LIMITS.into_iter().chain(by_state).collect();
+            return Self::of_words(table, state, calibration, &words);
         }
-        let criterion = table.choice_or_first(
-            "failure",
-            "failure criterion",
-            &[
-                ("stretch", Criterion::Stretch),
-                ("bond-energy", Criterion::BondEnergy),
-            ],
-        );
+        Self::interface(table, state, calibration)
+    }
+
+    /// Reads the rules of bonds between two materials, and of further materials, which break by stretch or energy.
+    pub(crate) fn interface(
+        table: &Table<'_>,
+        state: Option<StressState>,
+        calibration: Option<FractureCalibration>,
+    ) -> Self {
+        if STRENGTHS.iter().any(|key| table.has(key)) {
+            return Self::of_words(table, state, calibration, &LIMITS);
+        }
+        for key in ["failure", "stretch_definition"] {
+            table.forbid(key, "bonds without `fracture_energy` never break");
+        }
+        Self {
+            state,
+            criterion: Some(Criterion::Stretch),
+            definition: Some(StretchDefinition::default()),
+            calibration,
+        }
+    }
+
+    fn of_words(
+        table: &Table<'_>,
+        state: Option<StressState>,
+        calibration: Option<FractureCalibration>,
+        words: &[(&'static str, Criterion)],
+    ) -> Self {
+        let criterion = table.choice_or_first("failure", "failure criterion", words);
         let definition = match criterion {
             Some(Criterion::BondEnergy) => {
                 table.forbid(
@@ -92,6 +120,7 @@ impl SolidRules {
                 );
                 Some(StretchDefinition::default())
             }
+            Some(Criterion::ByState) => Some(StretchDefinition::default()),
             _ => table.worded("stretch_definition", "definition of the critical stretch"),
         };
         Self {
@@ -106,10 +135,14 @@ impl SolidRules {
     pub(crate) fn closing(
         state: Option<StressState>,
         calibration: Option<FractureCalibration>,
+        by_state: bool,
     ) -> Self {
         Self {
             state,
-            criterion: Some(Criterion::Stretch),
+            criterion: Some(match by_state {
+                true => Criterion::ByState,
+                false => Criterion::Stretch,
+            }),
             definition: Some(StretchDefinition::Closing),
             calibration,
         }
@@ -151,6 +184,9 @@ impl SolidRules {
 
     /// Reads the failure of bonds.
     pub(crate) fn failure(&self, table: &Table<'_>) -> Option<BondFailure> {
+        if self.criterion == Some(Criterion::ByState) {
+            return Some(BondFailure::ByCriterion);
+        }
         if self.criterion == Some(Criterion::BondEnergy) {
             table.forbid(
                 "critical_stretch",
@@ -166,6 +202,7 @@ impl SolidRules {
                 definition: self.definition?,
                 calibration: self.calibration?,
             },
+            (Fracture::Energy { .. }, Criterion::ByState) => BondFailure::ByCriterion,
             (Fracture::Energy { energy, .. }, Criterion::BondEnergy) => BondFailure::BondEnergy {
                 fracture_energy: energy,
                 calibration: self.calibration?,

@@ -1,8 +1,11 @@
 //! `[thermal]`: thermal expansion by a prescribed temperature.
 
+use std::path::PathBuf;
+
 use serde::{Deserialize, Serialize};
 
 use crate::component::{Component, Variables, component};
+use crate::course::{self, TimeHistory};
 use crate::quantity::Quantity;
 use crate::reader::Table;
 
@@ -15,8 +18,15 @@ pub struct Thermal {
     /// Coefficients by material.
     #[serde(default, rename = "material")]
     pub materials: Vec<MaterialExpansion>,
-    /// Temperature, K.
-    pub temperature: Component,
+    /// Temperature, K, unless a file gives it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub temperature: Option<Component>,
+    /// File with the temperature of every point; a relative path starts at the deck's folder.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub file: Option<PathBuf>,
+    /// Time function that multiplies the difference to the reference temperature.
+    #[serde(default, skip_serializing_if = "TimeHistory::is_constant")]
+    pub function: TimeHistory,
     /// Reference temperature without thermal strain, K.
     pub reference: f64,
 }
@@ -31,6 +41,9 @@ pub struct MaterialExpansion {
     pub expansion: f64,
 }
 
+/// Keys of the temperature.
+const TEMPERATURES: &[&str] = &["temperature", "file"];
+
 /// Largest allowed coefficient, above that of any solid, 1/K.
 pub(crate) const LARGEST: f64 = 0.01;
 
@@ -44,20 +57,28 @@ pub(crate) fn read(
         time: true,
     };
     let expansion = expansion(&table);
-    let temperature = table
-        .required("temperature")
-        .and_then(|item| component(&item, Quantity::Temperature, variables));
+    let (temperature, file) = match table.exactly_one(TEMPERATURES) {
+        Some(("file", item)) => (None, item.text().map(PathBuf::from)),
+        Some((_, item)) => (component(&item, Quantity::Temperature, variables), None),
+        None => (None, None),
+    };
+    let function = course::function(&table);
     let reference = table
         .required("reference")
         .and_then(|item| item.quantity(Quantity::Temperature));
     let tables = table.tables("material").into_iter();
     let materials: Vec<_> = tables.map(|table| of_material(table, names)).collect();
     table.finish();
+    if temperature.is_none() && file.is_none() {
+        return None;
+    }
     let materials: Vec<MaterialExpansion> = materials.into_iter().collect::<Option<_>>()?;
     Some(Thermal {
         expansion: expansion?,
         materials,
-        temperature: temperature?,
+        temperature,
+        file,
+        function: function?,
         reference: reference?,
     })
 }

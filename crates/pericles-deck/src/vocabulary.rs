@@ -38,6 +38,11 @@ pub(crate) const MODULI: &[&str] = &["youngs_modulus", "bulk_modulus", "shear_mo
 pub(crate) const HORIZONS: &[&str] = &["horizon", "horizon_ratio"];
 /// Keys of the strength of bonds.
 pub(crate) const STRENGTHS: &[&str] = &["fracture_energy", "critical_stretch"];
+/// Words of `failure` for bonds that break by stress or strain, and the keys that they require.
+pub(crate) const BY_STATE: [(&str, &str); 2] = [
+    ("principal-stress", "strength"),
+    ("expression", "criterion"),
+];
 /// Keys of which each material has its own value; all other keys are shared by all bonds of the body.
 pub(crate) const OWN_CONSTANTS: &[&str] = &[
     "name",
@@ -50,6 +55,7 @@ pub(crate) const OWN_CONSTANTS: &[&str] = &[
     "fracture_energy",
     "critical_stretch",
     "strength",
+    "criterion",
     "viscosity",
     "yield_stress",
     "hardening",

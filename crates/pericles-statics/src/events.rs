@@ -4,7 +4,7 @@ use pericles::operator::PointSubset;
 use pericles::{Result, System};
 
 use crate::error::StaticsError;
-use crate::stretch::largest_ratio;
+use crate::stretch::load_factor;
 
 /// Returns an error for systems that event-by-event analysis does not support: states between events must be
 /// multiples of one solution that prescribed displacements alone cause.
@@ -38,6 +38,6 @@ pub(crate) fn next(system: &System, response: &[f64], last: f64) -> Option<f64> 
     const ACCURACY: f64 = 1e-7;
     /// Factors beyond this multiple of the last one come from bonds stretched by round-off: the body is severed.
     const SEVERED: f64 = 1e3;
-    let factor = 1.0 / largest_ratio(system, response, ACCURACY)?;
+    let factor = load_factor(system, response, ACCURACY)?;
     (last == 0.0 || factor <= SEVERED * last).then_some(factor)
 }

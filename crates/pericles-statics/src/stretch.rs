@@ -18,7 +18,28 @@ const SMALLEST: f64 = 1e-12;
 /// Returns a lower bound of the largest ratio of stretch to critical stretch of breakable bonds, to a
 /// relative `accuracy`; `None` if no bond is stretched or the ratio exceeds 1e12.
 pub(crate) fn largest_ratio(system: &System, u: &[f64], accuracy: f64) -> Option<f64> {
-    let any = |part: f64| endangered(system, u, part).contains(&true);
+    largest(accuracy, |part| endangered(system, u, part).contains(&true))
+}
+
+/// Returns the factor by which the displacements may be multiplied until the first bond breaks, to a relative
+/// `accuracy`, also for failure criteria that are not proportional to the displacements; `None` as for
+/// [`largest_ratio`].
+pub(crate) fn load_factor(system: &System, u: &[f64], accuracy: f64) -> Option<f64> {
+    let breaks = |factor: f64| {
+        let scaled: Vec<f64> = u.iter().map(|u| factor * u).collect();
+        endangered(system, &scaled, 1.0).contains(&true)
+    };
+    let factor = 1.0 / largest_ratio(system, u, accuracy)?;
+    let margin = 10.0 * accuracy;
+    if breaks(factor * (1.0 + margin)) && !breaks(factor * (1.0 - margin)) {
+        return Some(factor);
+    }
+    // Without a result the criterion does not depend on the displacements alone.
+    Some(largest(accuracy, |part| breaks(1.0 / part)).map_or(factor, |part| 1.0 / part))
+}
+
+/// Returns a lower bound of the largest number for which `any` holds.
+fn largest(accuracy: f64, any: impl Fn(f64) -> bool) -> Option<f64> {
     let (mut low, mut high) = (1.0, 1.0);
     if any(1.0) {
         while any(high) {

@@ -44,7 +44,7 @@ const TENSORS: Limit = Limit::new(
 );
 
 /// Limits of all transforms.
-const OF_TRANSFORMS: [Limit; 16] = [
+const OF_TRANSFORMS: [Limit; 17] = [
     Limit::STATE_BASED,
     Limit::CORRESPONDENCE,
     Limit::SEVERAL_SPACINGS,
@@ -58,6 +58,7 @@ const OF_TRANSFORMS: [Limit; 16] = [
     uniform(Feature::PreCracks),
     uniform(Feature::Breaking),
     Limit::BOND_ENERGY,
+    Limit::STRESS_FAILURE,
     TENSORS,
     Limit::THERMAL_EXPANSION,
     Limit::SOFTENING,

@@ -259,11 +259,8 @@ fn breaking(constants: &MaterialConstants) -> String {
         format!("at stretch {}", significant(stretch, 4))
     } else if energy.is_finite() {
         format!("at bond energy {}", quantity(energy, "J/m⁶"))
-    } else if constants.strength().is_finite() {
-        return format!(
-            "at the principal stress {}",
-            quantity(constants.strength(), "Pa")
-        );
+    } else if let Some(criterion) = constants.criterion() {
+        return criterion.words();
     } else {
         return "never".into();
     };

@@ -274,6 +274,9 @@ impl Check {
         let solid = &state_based.solid;
         self.engine(key.clone(), solid.elastic.resolve(state));
         self.failure(key, &solid.failure);
+        if let Some(criterion) = &state_based.criterion {
+            self.engine(key.key("strength"), criterion.criterion());
+        }
         if let Some(influence) = state_based.given_influence() {
             self.influence(key, &influence, dimension, solid.horizon);
         }
@@ -281,7 +284,7 @@ impl Check {
 
     fn failure(&mut self, key: &KeyPath, failure: &BondFailure) {
         match *failure {
-            BondFailure::Unbreakable => {}
+            BondFailure::Unbreakable | BondFailure::ByCriterion => {}
             BondFailure::CriticalStretch(stretch) => {
                 self.positive(key.key("critical_stretch"), stretch);
             }

@@ -8,6 +8,7 @@
 //! a sign tighter than a power (`-x^2 = x^2`) and evaluates powers from left to right; therefore [`grammar`]
 //! puts every power in parentheses first.
 
+mod bond;
 mod condition;
 mod grammar;
 mod jet;
@@ -18,6 +19,7 @@ use std::sync::Arc;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+pub use bond::BondExpression;
 pub use condition::Condition;
 use exmex::{Express, FlatEx, FloatOpsFactory, MakeOperators, Operator};
 use jet::{Jet, JetOperators, Variation};

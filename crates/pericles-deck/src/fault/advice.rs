@@ -104,6 +104,9 @@ impl Subject for Fault {
             Self::LargeFile { .. } => {
                 "use a smaller file; the limit is the free memory of the machine, or the given limit".into()
             }
+            Self::BadTemperatureFile { points, .. } => format!(
+                "expected: one line for each of the {points} points, in the order of the field files (listed points: of their file), with the temperature in K; a relative path starts at the deck's folder"
+            ),
             Self::BadInitialFile { points, .. } => format!(
                 "expected: one line for each of the {points} points, in the order of the field files (listed points: of their file), with displacement components in m, then velocity components in m/s; a relative path starts at the deck's folder"
             ),
@@ -160,6 +163,7 @@ impl Subject for Fault {
             | Self::BadMesh { .. }
             | Self::BadCrackFile { .. }
             | Self::BadInitialFile { .. }
+            | Self::BadTemperatureFile { .. }
             | Self::BadSurfaceFile { .. } => "invalid",
             Self::NothingPrescribed => "all components free",
             Self::BadOverride { .. } => "invalid override",

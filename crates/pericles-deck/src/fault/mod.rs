@@ -193,6 +193,14 @@ pub enum Fault {
         /// The number of points of the body.
         points: usize,
     },
+    /// An invalid file of temperatures.
+    #[error("{reason}")]
+    BadTemperatureFile {
+        /// What is wrong, with the file and the line in it.
+        reason: String,
+        /// The number of points of the body.
+        points: usize,
+    },
     /// Listed points whose volumes do not match the spacing.
     #[error(
         "the volumes of the listed points correspond to a spacing of {}, but `spacing` is {}",

@@ -118,6 +118,7 @@ enum BondFailureForm {
         #[serde(with = "crate::form")]
         calibration: FractureCalibration,
     },
+    ByCriterion,
 }
 
 #[derive(Serialize, Deserialize)]

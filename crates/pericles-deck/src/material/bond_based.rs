@@ -16,6 +16,7 @@ use crate::correspondence;
 use crate::influence::{InfluenceRead, influence};
 use crate::reader::Table;
 use crate::set::SetNames;
+use crate::vocabulary::BY_STATE;
 
 pub(super) fn read(
     table: Table<'_>,
@@ -26,6 +27,12 @@ pub(super) fn read(
 ) -> Option<Material> {
     forbid_former_tables(&table);
     correspondence::forbid_keys(&table);
+    for (_, key) in BY_STATE {
+        table.forbid(
+            key,
+            "it requires model = \"state-based\" or \"correspondence\", whose points have a stress",
+        );
+    }
     for key in ["yield_stress", "hardening"] {
         table.forbid(
             key,

@@ -11,7 +11,7 @@ use super::softening::forbid_softening;
 use super::types::Material;
 use crate::body::BodyRead;
 use crate::constants::fracture_calibration;
-use crate::correspondence::{Correspondence, law, plasticity, strength};
+use crate::correspondence::{Correspondence, criterion, law, plasticity};
 use crate::influence::state_influence;
 use crate::reader::Table;
 use crate::set::SetNames;
@@ -41,8 +41,9 @@ pub(super) fn read(
     };
     let horizon = extent.and_then(|extent| extent.with(given.as_ref(), body.frame.dimension));
     let calibration = fracture_calibration(&table, body, shared);
-    let rules = SolidRules::closing(body.state, calibration);
-    let strength = strength(&table);
+    let criterion = criterion(&table, body.frame.dimension);
+    let by_state = matches!(criterion, Some(Some(_)));
+    let rules = SolidRules::closing(body.state, calibration, by_state);
     let (elastic, failure) = (rules.elastic(&table), rules.failure(&table));
     let plasticity = plasticity(&table);
     let law = law(&table, table.has("yield_stress"));
@@ -73,7 +74,7 @@ pub(super) fn read(
             law: law?,
             stabilisation: stabilisation?,
             plasticity: plasticity?,
-            strength: strength?,
+            criterion: criterion?,
         })
     })
 }

@@ -13,6 +13,7 @@ use super::types::Material;
 use crate::body::BodyRead;
 use crate::constants::fracture_calibration;
 use crate::correspondence;
+use crate::criterion;
 use crate::influence::state_influence;
 use crate::reader::Table;
 use crate::set::SetNames;
@@ -45,11 +46,13 @@ pub(super) fn read(
         _ => None,
     };
     let horizon = extent.and_then(|extent| extent.with(given.as_ref(), body.frame.dimension));
+    let criterion = criterion::read(&table, body.frame.dimension);
+    let by_state = matches!(criterion, Some(Some(_)));
     let rules = SolidRules::read(
         &table,
         body.state,
         fracture_calibration(&table, body, shared),
-        shared,
+        [shared, by_state],
     );
     let (elastic, failure) = (rules.elastic(&table), rules.failure(&table));
     let inelastic = inelastic::read(&table, body.state);
@@ -78,6 +81,7 @@ pub(super) fn read(
             solid,
             strains: strains?,
             inelastic: inelastic?,
+            criterion: criterion?,
         })
     })
 }

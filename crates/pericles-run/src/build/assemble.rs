@@ -53,7 +53,7 @@ pub fn assemble(
         }
         (Body::Solid(solid), _) => assembler.grid_parts(solid, &discretisation, &mut warnings)?,
     };
-    assembler.heat(&mut parts, &discretisation)?;
+    assembler.heat(&mut parts, &discretisation, resources)?;
     let BodyParts {
         constants,
         others,

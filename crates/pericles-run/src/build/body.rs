@@ -248,7 +248,9 @@ impl Assembler<'_> {
         is_graded: bool,
     ) -> Result<ForceForm, BuildError> {
         let scheme = &self.model.time.scheme;
-        let needs_bonds = self.model.output.wants_tensors() || has_need(scheme, Need::FiniteReach);
+        let needs_bonds = self.model.output.wants_tensors()
+            || self.model.thermal.is_some()
+            || has_need(scheme, Need::FiniteReach);
         match self.heated_form(solid.material.form)? {
             ForceForm::Fastest if needs_bonds && !is_graded => Ok(composite.fastest_form().into()),
             ForceForm::FloatGrid if has_need(scheme, Need::DoublePrecision) => {

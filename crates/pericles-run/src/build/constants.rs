@@ -1,7 +1,8 @@
 //! Constants of materials of all models.
 
 use pericles::material::{
-    BondConstants, CrackPlane, ElasticWaves, FractureCalibration, LinearSolidConstants, StressState,
+    BondConstants, CrackPlane, Criterion, ElasticWaves, FractureCalibration, LinearSolidConstants,
+    StressState,
 };
 use pericles_solids::correspondence::CorrespondenceConstants;
 
@@ -65,12 +66,9 @@ impl MaterialConstants {
         }
     }
 
-    /// The largest principal stress that bonds bear, Pa; infinite unless they break by their stress.
-    pub fn strength(&self) -> f64 {
-        match self {
-            Self::Bonds(_) | Self::StateBased(_) => f64::INFINITY,
-            Self::Correspondence(solid) => solid.strength,
-        }
+    /// Returns the failure criterion of stress and strain, if bonds break by them.
+    pub fn criterion(&self) -> Option<&Criterion> {
+        self.state_based()?.criterion.as_ref()
     }
 
     /// Returns the critical stretch; infinite if bonds do not break by their stretch.

@@ -30,13 +30,18 @@ impl Assembler<'_> {
         self.refuse_correspondence_features(solid)?;
         let Discretisation { cloud, sets, .. } = discretisation;
         let material = &solid.material;
-        let mut materials = vec![(KeyPath::from("material"), own.material())];
+        let material_of = |path: KeyPath, own: &Correspondence| {
+            let material = own.material();
+            let material = material.map_err(|error| at_path(&path, error.into()))?;
+            Ok::<_, BuildError>((path, material))
+        };
+        let mut materials = vec![material_of(KeyPath::from("material"), own)?];
         for other in &self.model.materials {
             let path = KeyPath::from("materials").key(&other.name);
             let MaterialModel::Correspondence(own) = &other.model else {
                 return Err(self.other_kind(&path, &other.name));
             };
-            materials.push((path, own.material()));
+            materials.push(material_of(path, own)?);
         }
         let constants = |(path, material): &(KeyPath, CorrespondenceMaterial)| {
             let constants = material.constants(cloud, solid.state);
@@ -48,7 +53,7 @@ impl Assembler<'_> {
             .collect::<Result<_, BuildError>>()?;
         for ((path, material), constants) in materials.iter().zip(&all) {
             let key = match material.solid.failure {
-                BondFailure::Unbreakable => continue,
+                BondFailure::Unbreakable | BondFailure::ByCriterion => continue,
                 BondFailure::CriticalStretch(_) => "critical_stretch",
                 BondFailure::Stretch { .. } | BondFailure::BondEnergy { .. } => "fracture_energy",
             };

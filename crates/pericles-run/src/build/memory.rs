@@ -293,7 +293,8 @@ impl Assembler<'_> {
         if solid.material.correspondence().is_some() {
             return LISTED + NUMBER;
         }
-        let worked = self.breaks_by_energy(solid);
+        let by_energy = |failure: &BondFailure| matches!(failure, BondFailure::BondEnergy { .. });
+        let worked = self.breaks(solid, &by_energy);
         let kept = match solid.material.state_based() {
             Some(_) => solid.material.surface_correction != Default::default(),
             None => !self.is_on_one_grid(solid),
@@ -321,7 +322,12 @@ impl Assembler<'_> {
         let shape = &solid.shape;
         !shape.is_listed()
             && solid.material.surface_correction == Default::default()
-            && !self.breaks_by_energy(solid)
+            && !self.breaks(solid, &|failure| {
+                matches!(
+                    failure,
+                    BondFailure::BondEnergy { .. } | BondFailure::ByCriterion
+                )
+            })
             && self.history_of_bond(solid) == 0.0
     }
 
@@ -353,18 +359,17 @@ impl Assembler<'_> {
         self.has_one_stiffness(solid) && !solid.shape.is_refined() && !solid.shape.is_listed()
     }
 
-    /// Returns whether bonds of a state-based body break by their energy.
-    fn breaks_by_energy(&self, solid: &Solid) -> bool {
-        let by_energy = |failure: &BondFailure| matches!(failure, BondFailure::BondEnergy { .. });
+    /// Returns whether the failure of some bonds of a state-based body is of a kind.
+    fn breaks(&self, solid: &Solid, is: &dyn Fn(&BondFailure) -> bool) -> bool {
         let others = self.model.materials.iter().map(|other| &other.model);
         let own = solid.material.state_based();
-        own.is_some_and(|own| by_energy(&own.solid.failure))
+        own.is_some_and(|own| is(&own.solid.failure))
             || others.into_iter().any(|model| match model {
-                MaterialModel::StateBased(state) => by_energy(&state.solid.failure),
+                MaterialModel::StateBased(state) => is(&state.solid.failure),
                 MaterialModel::Bonds(_) | MaterialModel::Correspondence(_) => false,
             })
             || self.model.interfaces.iter().any(|interface| {
-                matches!(&interface.failure, Some(InterfaceFailure::StateBased(failure)) if by_energy(failure))
+                matches!(&interface.failure, Some(InterfaceFailure::StateBased(failure)) if is(failure))
             })
     }
 }

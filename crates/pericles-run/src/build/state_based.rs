@@ -1,14 +1,15 @@
 //! Forces of bodies of state-based materials.
 
+use pericles::PericlesError;
 use pericles::material::{
     BondFailure, BondLimits, Inelasticity, LinearSolid, LinearSolidConstants, SolidClasses,
-    SolidSurface, SurfaceCorrection,
+    SolidSurface, StressState, SurfaceCorrection,
 };
 use pericles::operator::{Feature, InelasticSolidBody, LinearSolidBody};
 use pericles::space::PointCloud;
 use pericles_deck::{
-    BuildError, Caution, Fault, InterfaceFailure, KeyPath, MaterialModel, ModelWarning, Remark,
-    Solid, StateBased,
+    BuildError, Caution, FailureCriterion, Fault, InterfaceFailure, KeyPath, MaterialModel,
+    ModelWarning, Remark, Solid, StateBased,
 };
 
 use super::assembler::Assembler;
@@ -17,6 +18,19 @@ use super::constants::MaterialConstants;
 use super::discretisation::Discretisation;
 use super::materials::PairRule;
 use super::refusal::{at, at_material, at_path};
+
+/// Returns the constants of a material with its failure criterion.
+fn with_criterion(
+    own: &StateBased,
+    cloud: &PointCloud,
+    state: StressState,
+) -> Result<LinearSolidConstants, PericlesError> {
+    let criterion = own.criterion.as_ref();
+    Ok(LinearSolidConstants {
+        criterion: criterion.map(FailureCriterion::criterion).transpose()?,
+        ..own.solid.constants(cloud, state)?
+    })
+}
 
 impl Assembler<'_> {
     /// Builds force operator and materials of a state-based body.
@@ -30,8 +44,7 @@ impl Assembler<'_> {
         self.refuse_features(solid)?;
         let Discretisation { cloud, sets, .. } = discretisation;
         let material = &solid.material;
-        let constants = state_based.solid.constants(cloud, solid.state);
-        let constants = constants.map_err(at_material)?;
+        let constants = with_criterion(state_based, cloud, solid.state).map_err(at_material)?;
         self.judge_limits(
             &constants,
             &state_based.solid.failure,
@@ -48,7 +61,7 @@ impl Assembler<'_> {
             };
             solids.push(&own.solid);
             laws.push(own.inelastic.clone());
-            let constants = own.solid.constants(cloud, solid.state);
+            let constants = with_criterion(own, cloud, solid.state);
             let constants = constants.map_err(|error| at_path(&path, error.into()))?;
             self.judge_limits(&constants, &own.solid.failure, &path, warnings);
             all.push(constants);
@@ -188,7 +201,7 @@ impl Assembler<'_> {
         warnings: &mut Vec<ModelWarning>,
     ) {
         let key = match failure {
-            BondFailure::Unbreakable => return,
+            BondFailure::Unbreakable | BondFailure::ByCriterion => return,
             BondFailure::CriticalStretch(_) => "critical_stretch",
             BondFailure::Stretch { .. } | BondFailure::BondEnergy { .. } => "fracture_energy",
         };

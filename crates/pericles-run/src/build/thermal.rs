@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
+use pericles::boundary::TimeFunction;
 use pericles::material::StressState;
-use pericles::operator::Feature;
+use pericles::operator::{Feature, Features};
 use pericles::parallel::for_each_point;
 use pericles::space::PointCloud;
 use pericles::units::quantity;
@@ -16,42 +17,58 @@ use super::body::BodyParts;
 use super::constants::MaterialConstants;
 use super::discretisation::Discretisation;
 use super::refusal::{at, at_material, at_path};
+use super::resources::Resources;
 
-/// A temperature given by the deck.
+/// A temperature given by the deck: T₀ + g(t) (T − T₀).
 #[derive(Debug)]
 struct Prescribed {
     cloud: Arc<PointCloud>,
-    value: Component,
+    value: Given,
+    function: TimeFunction,
+    reference: f64,
+}
+
+/// The temperature T.
+#[derive(Debug)]
+enum Given {
+    Formula(Component),
+    OfPoints(Vec<f64>),
 }
 
 impl Temperature for Prescribed {
     fn temperatures_into(&self, t: f64, out: &mut [f64]) {
         match &self.value {
-            Component::Number(value) => out.fill(*value),
-            value => {
+            Given::Formula(Component::Number(value)) => out.fill(*value),
+            Given::Formula(value) => {
                 let at = |i: usize| value.value(self.cloud.point(i), t);
                 out.copy_from_slice(&for_each_point(out.len(), &at));
+            }
+            Given::OfPoints(values) => out.copy_from_slice(values),
+        }
+        if !matches!(self.function, TimeFunction::Constant) {
+            let factor = self.function.value(t);
+            for value in out {
+                *value = self.reference + factor * (*value - self.reference);
             }
         }
     }
 
     fn is_steady(&self) -> bool {
-        !self.value.depends_on_time()
+        let varies = match &self.value {
+            Given::Formula(value) => value.depends_on_time(),
+            Given::OfPoints(_) => false,
+        };
+        !varies && matches!(self.function, TimeFunction::Constant)
     }
 }
 
 impl Assembler<'_> {
-    /// Returns the force kernel of a heated body.
+    /// Rejects force kernels that do not support thermal expansion, for models that have it.
     pub(super) fn heated_form(&self, form: ForceForm) -> Result<ForceForm, BuildError> {
-        match (&self.model.thermal, form) {
-            (None, form) => Ok(form),
-            (Some(_), ForceForm::Fastest) => Ok(ForceForm::List),
-            (Some(_), form) => {
-                let heated = form.check(Feature::ThermalExpansion.into());
-                heated.map_err(at_material)?;
-                Ok(form)
-            }
-        }
+        let expands =
+            Features::default().with(Feature::ThermalExpansion, self.model.thermal.is_some());
+        form.check(expands).map_err(at_material)?;
+        Ok(form)
     }
 
     /// Adds thermal expansion to the materials of a body, if the model has it.
@@ -59,16 +76,22 @@ impl Assembler<'_> {
         &self,
         parts: &mut BodyParts,
         discretisation: &Discretisation,
+        resources: &Resources<'_>,
     ) -> Result<(), BuildError> {
         let (Some(thermal), Body::Solid(solid)) = (&self.model.thermal, &self.model.body) else {
             return Ok(());
         };
         let cloud = &discretisation.cloud;
-        self.refuse_no_temperature(thermal, cloud)?;
+        let value = self.temperature(thermal, cloud, resources)?;
+        let path = KeyPath::from("thermal").key("function");
+        let function = thermal.function.function();
+        let function = function.map_err(|fault| at_path(path, fault))?;
         let coefficient = self.coefficients(thermal, solid, parts, discretisation)?;
         let temperature = Arc::new(Prescribed {
             cloud: cloud.clone(),
-            value: thermal.temperature.clone(),
+            value,
+            function,
+            reference: thermal.reference,
         });
         let expansion =
             ThermalExpansion::new(cloud.clone(), temperature, thermal.reference, coefficient);
@@ -126,17 +149,38 @@ impl Assembler<'_> {
         })
     }
 
-    /// Rejects an expression that is not finite at a point at t = 0.
-    fn refuse_no_temperature(
+    /// Returns the temperature; rejects an expression that is not finite at a point at t = 0.
+    fn temperature(
         &self,
         thermal: &Thermal,
         cloud: &PointCloud,
-    ) -> Result<(), BuildError> {
-        let value = |i: usize| thermal.temperature.value(cloud.point(i), 0.0);
-        let Some(i) = (0..cloud.len()).find(|&i| !value(i).is_finite()) else {
-            return Ok(());
+        resources: &Resources<'_>,
+    ) -> Result<Given, BuildError> {
+        let path = KeyPath::from("thermal");
+        let (n, memory) = (cloud.len(), resources.memory);
+        let formula = match (&thermal.temperature, &thermal.file) {
+            (_, Some(file)) => {
+                let file = resources.beside(file);
+                let rows = (resources.read_table)(&file, n, &["temperature"], memory);
+                let rows = rows.map_err(|error| {
+                    let wrong = |reason| Fault::BadTemperatureFile { reason, points: n };
+                    at_path(path.key("file"), error.fault(wrong))
+                })?;
+                let of_point = (0..n).map(|i| rows[cloud.user_number(i)]);
+                return Ok(Given::OfPoints(of_point.collect()));
+            }
+            (Some(formula), None) => formula,
+            (None, None) => {
+                let allowed = ["temperature", "file"].map(String::from).into();
+                let table = "[thermal]".into();
+                return Err(at_path(path, Fault::MissingChoice { table, allowed }));
+            }
         };
-        let text = match &thermal.temperature {
+        let value = |i: usize| formula.value(cloud.point(i), 0.0);
+        let Some(i) = (0..n).find(|&i| !value(i).is_finite()) else {
+            return Ok(Given::Formula(formula.clone()));
+        };
+        let text = match formula {
             Component::Expression(expression) => expression.text().to_owned(),
             Component::Number(number) => number.to_string(),
         };
@@ -145,7 +189,7 @@ impl Assembler<'_> {
             "the value at ({x}, {y}, {z}) and t = 0 is NaN or infinite; it must be finite at every point"
         );
         let fault = Fault::BadExpression { text, reason };
-        Err(at_path(KeyPath::from("thermal").key("temperature"), fault))
+        Err(at_path(path.key("temperature"), fault))
     }
 }
 

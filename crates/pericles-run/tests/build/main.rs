@@ -8,6 +8,7 @@ mod decks;
 mod compatibility;
 mod composition;
 mod conditions;
+mod criterion;
 mod ends;
 mod extremes;
 mod fields;

@@ -93,9 +93,56 @@ time = { end = 1, dt = 0.1 }
     assert!(format!("{error:?}").contains("cold"));
 }
 
+/// T₀ + g(t) (T − T₀) with T of each point from a file, in the order of the points of the user.
+#[test]
+fn temperatures_of_points_come_from_a_file_and_follow_a_time_function() {
+    use pericles_run::{assemble, discretise, readers};
+    let folder = tempfile::tempdir().unwrap();
+    let line = |k: usize| format!("{}\n", 293.0 + k as f64);
+    let write = |count: usize| {
+        let text: String = (0..count).map(line).collect();
+        std::fs::write(folder.path().join("temperatures.txt"), text).unwrap();
+    };
+    let table = "kind = \"table\", rows = [[0, 0], [1, 0.5], [3, 2]]";
+    let text = PLATE
+        .replace("MODEL", "model = \"state-based\", poisson_ratio = 0.3")
+        .replace(
+            "temperature = 303",
+            &format!("file = \"temperatures.txt\", function = {{ {table} }}"),
+        );
+    let deck = parse(&text);
+    assert_eq!(deck.model.files().len(), 1);
+    let resources = pericles_run::Resources {
+        folder: folder.path(),
+        ..readers()
+    };
+    let built = || {
+        let discretisation = discretise(&deck.model, &resources)?;
+        assemble(&deck.model, discretisation, &resources)
+    };
+    write(32);
+    let run = built().unwrap().simulation();
+    let thermal = run.system().operator().capabilities().thermal.unwrap();
+    let cloud = run.system().cloud();
+    for (t, factor) in [(0.0, 0.0), (1.0, 0.5), (2.0, 1.25), (9.0, 2.0)] {
+        // (1 + ν) α in plane strain.
+        let stretches = thermal.stretches(t);
+        for (i, stretch) in stretches.iter().enumerate() {
+            let expected = 1.3e-5 * factor * cloud.user_number(i) as f64;
+            assert!((stretch - expected).abs() < 1e-15, "{t}, {i}: {stretch}");
+        }
+    }
+    write(31);
+    let error = built().err().unwrap().to_string();
+    assert!(
+        error.contains("temperatures.txt") && error.contains("32"),
+        "{error}"
+    );
+}
+
 #[test]
 fn thermal_expansion_is_rejected_where_it_is_not_supported() {
-    let heated = PLATE.replace("MODEL", "bonds = \"grid\"");
+    let heated = PLATE.replace("MODEL", "bonds = \"float-grid\"");
     assert!(refusal(&heated).to_string().contains("thermal expansion"));
     let spectral = PLATE.replace("MODEL", "model = \"linear\", bonds = \"convolution\"");
     refusal(&spectral);

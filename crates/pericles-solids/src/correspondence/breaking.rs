@@ -37,7 +37,7 @@ impl<const D: usize> CorrespondenceForce<D> {
         let domain = self.cloud.domain().clone();
         let heat = self.heat_at(step.t);
         let mut found = self.over_stretched(&self.packed(u), on, &heat);
-        if self.limits.has_strength() {
+        if self.limits.has_criteria() {
             found.extend(self.over_stressed(&self.packed(u), on, &heat, 1.0));
         }
         if domain.all(found.is_empty()) {
@@ -261,7 +261,7 @@ impl<const D: usize> CorrespondenceForce<D> {
 
 impl<const D: usize> Breakable for CorrespondenceForce<D> {
     fn can_break(&self) -> bool {
-        self.weakest.is_finite() || self.limits.has_strength()
+        self.weakest.is_finite() || self.limits.has_criteria()
     }
 
     fn broken_bonds(&self) -> u64 {
@@ -326,7 +326,7 @@ impl<const D: usize> Breakable for CorrespondenceForce<D> {
         let ghosts = self.cloud.domain().ghosts(u);
         let rows = self.packed(Field::new(u, &ghosts));
         let (heat, sites) = (self.latest_heat(), self.bonds.list.sites());
-        if self.limits.has_strength() {
+        if self.limits.has_criteria() {
             for (i, _) in self.over_stressed(&rows, &PointSubset::All, &heat, fraction) {
                 marks[i] = true;
             }

@@ -1,6 +1,6 @@
 //! Bodies of several correspondence materials.
 
-use pericles::material::BondLimits;
+use pericles::material::{BondLimits, BondState, PairCriteria};
 use pericles::space::Sites;
 use pericles::{PericlesError, Result};
 
@@ -20,6 +20,8 @@ pub struct CorrespondenceClasses {
     materials: Vec<CorrespondenceConstants>,
     /// Critical stretches by pair of materials.
     stretch: Vec<f64>,
+    /// Criteria of stress and strain by pair of materials.
+    criteria: PairCriteria,
     /// Factor of the critical stretch of each point; empty if strengths do not scatter.
     strengths: Vec<f64>,
 }
@@ -31,6 +33,7 @@ impl CorrespondenceClasses {
             of_point: Vec::new(),
             materials: vec![constants.clone()],
             stretch: vec![constants.solid.limits.stretch],
+            criteria: PairCriteria::new(&[constants.solid.criterion.clone()]),
             strengths: Vec::new(),
         }
     }
@@ -60,12 +63,15 @@ impl CorrespondenceClasses {
             });
         }
         let limit = |material: &CorrespondenceConstants| material.solid.limits.stretch;
+        let criteria = materials.iter().map(|own| own.solid.criterion.clone());
+        let criteria: Vec<_> = criteria.collect();
         let pairs = materials
             .iter()
             .flat_map(|a| materials.iter().map(move |b| limit(a).min(limit(b))));
         Ok(Self {
             of_point,
             stretch: pairs.collect(),
+            criteria: PairCriteria::new(&criteria),
             materials: materials.to_vec(),
             strengths: Vec::new(),
         })
@@ -81,7 +87,7 @@ impl CorrespondenceClasses {
         }
     }
 
-    /// Sets the critical stretch of bonds between two materials.
+    /// Sets the critical stretch of bonds between two materials, which replaces their criteria of stress and strain.
     ///
     /// # Panics
     /// If a material number is out of range.
@@ -93,6 +99,7 @@ impl CorrespondenceClasses {
         );
         self.stretch[a * count + b] = limits.stretch;
         self.stretch[b * count + a] = limits.stretch;
+        self.criteria.remove([a, b]);
     }
 
     /// Returns whether materials and strengths cover this number of points.
@@ -136,7 +143,7 @@ impl CorrespondenceClasses {
             count: self.materials.len(),
             stretch: self.stretch.clone(),
             strengths: sites.spread(&self.strengths).into_owned(),
-            tensile: self.materials.iter().map(|own| own.strength).collect(),
+            criteria: self.criteria.clone(),
         }
     }
 }
@@ -152,21 +159,20 @@ pub(super) struct SiteLimits {
     count: usize,
     stretch: Vec<f64>,
     strengths: Vec<f64>,
-    /// Tensile strengths by material, Pa.
-    tensile: Vec<f64>,
+    criteria: PairCriteria,
 }
 
 impl SiteLimits {
-    /// Returns whether bonds of any material break by their stress.
-    pub fn has_strength(&self) -> bool {
-        self.tensile.iter().any(|strength| strength.is_finite())
+    /// Returns whether bonds of any material break by stress or strain.
+    pub fn has_criteria(&self) -> bool {
+        !self.criteria.is_empty()
     }
 
-    /// Returns the tensile strength of the bond between two sites, that of the weaker end point, Pa; infinite
-    /// if it does not break by its stress.
-    pub fn strength(&self, a: usize, b: usize) -> f64 {
-        let [own, other] = [a, b].map(|site| self.tensile[number(&self.of_site, site)]);
-        self.factor(a, b) * own.min(other)
+    /// Returns the failure index of the bond between two sites, divided by its factor of strength; −∞ if it does not
+    /// break by stress or strain.
+    pub fn failure_index(&self, a: usize, b: usize, bond: impl FnOnce() -> BondState) -> f64 {
+        let pair = [a, b].map(|site| number(&self.of_site, site));
+        self.criteria.failure_index(pair, bond) / self.factor(a, b)
     }
 
     /// Returns the factor of both limits.

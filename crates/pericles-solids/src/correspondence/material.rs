@@ -2,7 +2,7 @@
 
 use pericles::family::VolumeCorrection;
 use pericles::material::{
-    BondFailure, BondLimits, CrackPlane, FractureCalibration, LayerMoments, LinearSolid,
+    BondFailure, BondLimits, CrackPlane, Criterion, FractureCalibration, LayerMoments, LinearSolid,
     LinearSolidConstants, StressState, StretchDefinition,
 };
 use pericles::space::PointCloud;
@@ -27,9 +27,8 @@ pub struct CorrespondenceMaterial {
     pub stabilisation: Stabilisation,
     /// Plasticity; `None` for elastic materials.
     pub plasticity: Option<Plasticity>,
-    /// Tensile strength, Pa, if bonds break by their stress: a bond breaks when the mean Cauchy stress of its
-    /// end points exceeds the strength in the direction of the bond.
-    pub strength: Option<f64>,
+    /// Criterion of the Cauchy stress and of the strain, if bonds break by them.
+    pub criterion: Option<Criterion>,
 }
 
 /// Constants of a correspondence material on a given body.
@@ -42,8 +41,6 @@ pub struct CorrespondenceConstants {
     pub point: Solid,
     /// Control of zero-energy modes.
     pub stabilisation: Stabilisation,
-    /// Tensile strength, Pa; infinite if bonds do not break by their stress.
-    pub strength: f64,
 }
 
 impl CorrespondenceMaterial {
@@ -54,7 +51,7 @@ impl CorrespondenceMaterial {
             law,
             stabilisation,
             plasticity: None,
-            strength: None,
+            criterion: None,
         }
     }
 
@@ -71,15 +68,13 @@ impl CorrespondenceMaterial {
         if let Some(plasticity) = &self.plasticity {
             plasticity.check()?;
         }
-        if let Some(strength) = self.strength {
-            positive("the tensile strength", strength)?;
-        }
         let unbroken = LinearSolid {
             failure: BondFailure::Unbreakable,
             ..self.solid.clone()
         };
         let mut solid = unbroken.constants(cloud, state)?;
         solid.lattice_shear = None;
+        solid.criterion = self.criterion.clone();
         let mut constants = CorrespondenceConstants {
             point: Solid {
                 state,
@@ -91,7 +86,6 @@ impl CorrespondenceMaterial {
                 plasticity: self.plasticity,
             },
             stabilisation: self.stabilisation,
-            strength: self.strength.unwrap_or(f64::INFINITY),
             solid,
         };
         self.set_limits(&mut constants, cloud)?;
@@ -140,7 +134,7 @@ impl CorrespondenceMaterial {
         let sides = cloud.cell_sides();
         let planes = |fine: bool| constants.crack_planes(&self.solid, cloud, fine);
         let (stretch, energy, calibration) = match self.solid.failure {
-            BondFailure::Unbreakable => return Ok(()),
+            BondFailure::Unbreakable | BondFailure::ByCriterion => return Ok(()),
             BondFailure::BondEnergy { .. } => return Err(no_such_failure("the bond energy")),
             BondFailure::CriticalStretch(stretch) => {
                 let stretch = positive("the critical stretch", stretch)?;

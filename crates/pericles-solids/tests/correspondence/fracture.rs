@@ -234,7 +234,7 @@ fn points_whose_bonds_do_not_span_the_space_are_errors() {
     );
 }
 
-/// An inverted bar stops the run with an error that contains the point.
+/// An inverted body stops the run with an error that contains step, time, point, position and advice.
 #[test]
 fn inverted_point_stops_the_run() {
     let cloud = lattice(&[8.0, 8.0]);
@@ -257,5 +257,14 @@ fn inverted_point_stops_the_run() {
     }
     let mut run = Simulation::new(system, Box::new(VelocityVerlet), start, 0.02, 100).unwrap();
     let error = run.run(|_| Control::Continue).unwrap_err().to_string();
-    assert!(error.contains("determinant"), "{error}");
+    for part in [
+        "step ",
+        "t = ",
+        "determinant",
+        "at point ",
+        " m, speed",
+        "neo-Hookean law",
+    ] {
+        assert!(error.contains(part), "{part}: {error}");
+    }
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use pericles::domain::Field;
 use pericles::family::{Crack, EndRule, VolumeCorrection};
-use pericles::material::StressState;
+use pericles::material::{Criterion, PrincipalStress, StressState};
 use pericles::operator::{BondForm, Force, PointSubset};
 use pericles::round_trip::check_resume;
 use pericles::space::PointCloud;
@@ -24,7 +24,7 @@ fn strong(strength: f64) -> CorrespondenceMaterial {
         Stabilisation::Isotropic,
     );
     CorrespondenceMaterial {
-        strength: Some(strength),
+        criterion: Some(Criterion::new(PrincipalStress::new(strength).unwrap())),
         ..own
     }
 }
@@ -156,9 +156,6 @@ fn energy_balance_closes_momentum_is_conserved_and_runs_resume() {
 
 #[test]
 fn strengths_that_are_not_positive_are_errors() {
-    let cloud = lattice(&[9.0, 7.0]);
-    let error = strong(0.0)
-        .constants(&cloud, StressState::PlaneStress)
-        .unwrap_err();
+    let error = PrincipalStress::new(0.0).unwrap_err();
     assert!(error.to_string().contains("tensile strength"), "{error}");
 }

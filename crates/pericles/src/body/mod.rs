@@ -222,10 +222,7 @@ impl Body {
             softening: self.softening,
             ..CompositeBody::from(body)
         };
-        let form = match (&self.expansion, self.form) {
-            (Some(_), BondForm::Fastest) => BondForm::List,
-            (_, form) => form,
-        };
+        let form = self.form;
         let expands = Features::default().with(Feature::ThermalExpansion, self.expansion.is_some());
         form.check(expands)?;
         let mut bonds = (self.assemble)(&composite, form)?;

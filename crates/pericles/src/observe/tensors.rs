@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use crate::domain::Field;
 use crate::operator::{BondAt, BondView};
 use crate::parallel::BLOCK;
+use crate::solve::inverse;
 use crate::space::PointCloud;
 
 /// Row and column of every component.
@@ -153,23 +154,6 @@ fn per_point(cloud: &PointCloud, matrix: impl Fn(usize) -> Matrix + Send + Sync)
 
 fn product(a: &Matrix, b: &Matrix) -> Matrix {
     std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| a[i][k] * b[k][j]).sum()))
-}
-
-/// Returns the inverse, or `None` if the matrix is singular to round-off.
-fn inverse(m: &Matrix) -> Option<Matrix> {
-    let minor = |i: usize, j: usize| {
-        let (a, b) = ((i + 1) % 3, (i + 2) % 3);
-        let (c, d) = ((j + 1) % 3, (j + 2) % 3);
-        m[a][c] * m[b][d] - m[a][d] * m[b][c]
-    };
-    let determinant: f64 = (0..3).map(|j| m[0][j] * minor(0, j)).sum();
-    let size = (0..3).map(|c| m[c][c].abs()).fold(0.0, f64::max);
-    if determinant.abs() <= 1e-9 * size.powi(3) {
-        return None;
-    }
-    Some(std::array::from_fn(|i| {
-        std::array::from_fn(|j| minor(j, i) / determinant)
-    }))
 }
 
 #[cfg(test)]

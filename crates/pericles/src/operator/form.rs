@@ -27,12 +27,15 @@ const OF_GRID: &[Limit] = &[
     Limit::new(Feature::NoLattice, NO_LATTICE),
     Limit::new(Feature::GaussNodes, NO_LATTICE),
     Limit::BOND_ENERGY,
-    Limit::THERMAL_EXPANSION,
+    Limit::STRESS_FAILURE,
     Limit::SOFTENING,
 ];
 
-/// State-based materials are not supported in single precision.
-const OF_FLOAT_GRID: &[Limit] = &preceded::<{ OF_GRID.len() + 1 }>(Limit::STATE_BASED, OF_GRID);
+/// State-based materials and thermal expansion are not supported in single precision.
+const OF_FLOAT_GRID: &[Limit] = &preceded::<{ OF_GRID.len() + 2 }>(
+    Limit::STATE_BASED,
+    &preceded::<{ OF_GRID.len() + 1 }>(Limit::THERMAL_EXPANSION, OF_GRID),
+);
 
 /// Returns a limit followed by others.
 const fn preceded<const N: usize>(first: Limit, others: &[Limit]) -> [Limit; N] {

@@ -25,6 +25,8 @@ pub enum Feature {
     Breaking,
     /// Bonds that break by their energy, the accumulated work of their force states.
     BondEnergy,
+    /// Bonds that break by stress or strain at their ends.
+    StressFailure,
     /// Pre-cracks.
     PreCracks,
     /// Several materials.
@@ -55,7 +57,7 @@ pub enum Feature {
 
 impl Feature {
     /// All features, in the order of the table.
-    pub const ALL: [Self; 21] = [
+    pub const ALL: [Self; 22] = [
         Self::BondStretch,
         Self::GreenStrainBar,
         Self::GreenStrain,
@@ -64,6 +66,7 @@ impl Feature {
         Self::Correspondence,
         Self::Breaking,
         Self::BondEnergy,
+        Self::StressFailure,
         Self::PreCracks,
         Self::SeveralMaterials,
         Self::SeveralHorizons,
@@ -90,6 +93,7 @@ impl Feature {
             Self::Correspondence => "correspondence materials",
             Self::Breaking => "breaking bonds",
             Self::BondEnergy => "bonds that break by their energy",
+            Self::StressFailure => "bonds that break by stress or strain",
             Self::PreCracks => "pre-cracks",
             Self::SeveralMaterials => "several materials",
             Self::SeveralHorizons => "materials of different horizons",
@@ -181,9 +185,15 @@ impl Limit {
     );
 
     /// Limit of all kernels except lists.
+    pub const STRESS_FAILURE: Self = Self::new(
+        Feature::StressFailure,
+        "stress and strain of points are computed with a neighbour list only; use bonds = \"list\", omit `bonds`, or use failure = \"stretch\"",
+    );
+
+    /// Limit of all kernels except lists and stencils in double precision.
     pub const THERMAL_EXPANSION: Self = Self::new(
         Feature::ThermalExpansion,
-        "thermal expansion needs a neighbour list; use bonds = \"list\" or omit `bonds`",
+        "thermal expansion needs a neighbour list or a stencil in double precision; use bonds = \"list\" or \"grid\", or omit `bonds`",
     );
 
     /// Limit of all kernels except lists.

@@ -50,6 +50,23 @@ pub fn principal_axes(mut matrix: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
     axes
 }
 
+/// Returns the inverse of a matrix, or `None` if it is singular to round-off.
+pub fn inverse(m: &[[f64; 3]; 3]) -> Option<[[f64; 3]; 3]> {
+    let minor = |i: usize, j: usize| {
+        let (a, b) = ((i + 1) % 3, (i + 2) % 3);
+        let (c, d) = ((j + 1) % 3, (j + 2) % 3);
+        m[a][c] * m[b][d] - m[a][d] * m[b][c]
+    };
+    let determinant: f64 = (0..3).map(|j| m[0][j] * minor(0, j)).sum();
+    let size = (0..3).map(|c| m[c][c].abs()).fold(0.0, f64::max);
+    if determinant.abs() <= 1e-9 * size.powi(3) {
+        return None;
+    }
+    Some(std::array::from_fn(|i| {
+        std::array::from_fn(|j| minor(j, i) / determinant)
+    }))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

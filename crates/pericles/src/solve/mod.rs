@@ -1,5 +1,5 @@
 //! Solvers for implicit schemes: conjugate gradients, Newton–Krylov, banded Cholesky factorisation, and principal
-//! axes of 3 × 3 matrices.
+//! axes and inverses of 3 × 3 matrices.
 //!
 //! A linear system is given by its matrix–vector products, a nonlinear one by its residual and the products with
 //! its derivative ([`Nonlinear`]). Both must be symmetric and positive definite, as the matrices M + β dt² K of
@@ -31,7 +31,7 @@ mod cholesky;
 mod conjugate_gradient;
 mod newton;
 
-pub use axes::principal_axes;
+pub use axes::{inverse, principal_axes};
 pub use cholesky::BandedCholesky;
 pub use conjugate_gradient::conjugate_gradient;
 pub use newton::{Nonlinear, newton_krylov};

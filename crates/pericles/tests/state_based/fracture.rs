@@ -8,8 +8,8 @@ use pericles::boundary::{MotionKind, PrescribedMotion, TimeFunction};
 use pericles::family::{Crack, EndRule, VolumeCorrection};
 use pericles::kernel::InfluenceFunction;
 use pericles::material::{
-    BondFailure, BondLimits, FractureCalibration, LinearSolid, LinearSolidConstants, SolidClasses,
-    Strains, StressState, StretchDefinition,
+    BondFailure, BondLimits, Criterion, FractureCalibration, LinearSolid, LinearSolidConstants,
+    PrincipalStress, SolidClasses, Strains, StressState, StretchDefinition,
 };
 use pericles::operator::{BondForm, Force, LinearSolidBody, PointSubset};
 use pericles::round_trip::check_resume;
@@ -34,12 +34,13 @@ fn bond_energy() -> BondFailure {
     }
 }
 
-/// The two kinds of failure criteria, in the forms that support them.
-fn criteria() -> [(BondFailure, BondForm); 3] {
+/// The kinds of failure criteria, in the forms that support them.
+fn criteria() -> [(BondFailure, BondForm); 4] {
     [
         (stretch(StretchDefinition::Closing), BondForm::List),
         (stretch(StretchDefinition::Closing), BondForm::Grid),
         (bond_energy(), BondForm::List),
+        (BondFailure::ByCriterion, BondForm::List),
     ]
 }
 
@@ -53,7 +54,12 @@ fn constants(
         failure,
         ..solid(nu, 3.0 * (1.0 + 1e-6), InfluenceFunction::Conical)
     };
-    material.constants(cloud, state).unwrap()
+    let criterion = (failure == BondFailure::ByCriterion)
+        .then(|| Criterion::new(PrincipalStress::new(0.1).unwrap()));
+    LinearSolidConstants {
+        criterion,
+        ..material.constants(cloud, state).unwrap()
+    }
 }
 
 /// A plate of two materials with a notch.

@@ -6,6 +6,7 @@ mod clock;
 #[path = "../common/mod.rs"]
 mod common;
 mod constants;
+mod criterion;
 mod fracture;
 mod ghosts;
 mod identities;

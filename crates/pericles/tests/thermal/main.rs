@@ -4,5 +4,6 @@
 #[path = "../state_based/bodies.rs"]
 mod bodies;
 mod forces;
+mod grid;
 mod runs;
 mod setup;

@@ -82,6 +82,16 @@ pub fn models() -> Vec<Model> {
 /// The force of a body of displaced cells with E = 10 and a cut from its left side, not heated; bonds break at the
 /// given stretch.
 pub fn operator(cloud: &Arc<PointCloud>, model: &Model, limit: f64) -> Box<dyn Force> {
+    operator_of(cloud, model, limit, BondForm::List)
+}
+
+/// The force of such a body with a force kernel.
+pub fn operator_of(
+    cloud: &Arc<PointCloud>,
+    model: &Model,
+    limit: f64,
+    form: BondForm,
+) -> Box<dyn Force> {
     let state = match cloud.dimension() {
         1 => StressState::Uniaxial,
         2 => StressState::PlaneStress,
@@ -110,7 +120,7 @@ pub fn operator(cloud: &Arc<PointCloud>, model: &Model, limit: f64) -> Box<dyn F
                 cracks,
                 ..BondBody::new(cloud, &material, &constants)
             };
-            body.operator(BondForm::List).unwrap().operator
+            body.operator(form).unwrap().operator
         }
         Model::Solid(strains, inelastic) => {
             let function = match inelastic {
@@ -128,7 +138,7 @@ pub fn operator(cloud: &Arc<PointCloud>, model: &Model, limit: f64) -> Box<dyn F
                 ..LinearSolidBody::new(cloud, &constants, VolumeCorrection::None)
             };
             if inelastic.is_elastic() {
-                return elastic.operator(BondForm::List).unwrap().operator;
+                return elastic.operator(form).unwrap().operator;
             }
             let laws = [inelastic.clone()];
             let body = InelasticSolidBody {

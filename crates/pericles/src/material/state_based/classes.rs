@@ -3,7 +3,7 @@
 use super::failure::BondLimits;
 use super::linear_solid::LinearSolidConstants;
 use crate::error::{PericlesError, Result};
-use crate::material::{Factors, check_materials};
+use crate::material::{BondState, Factors, PairCriteria, check_materials};
 use crate::space::Sites;
 
 /// Material of every point, and failure limits of bonds for every pair of materials.
@@ -19,6 +19,8 @@ pub struct SolidClasses {
     constants: Vec<[f64; 2]>,
     /// Limits by pair of materials.
     limits: Vec<BondLimits>,
+    /// Criteria of stress and strain by pair of materials.
+    criteria: PairCriteria,
     /// Factor of the critical stretch of each point.
     strength: Factors,
 }
@@ -30,6 +32,7 @@ impl SolidClasses {
             of_point: Vec::new(),
             constants: vec![[constants.dilatational, constants.deviatoric]],
             limits: vec![constants.limits],
+            criteria: PairCriteria::new(&[constants.criterion.clone()]),
             strength: Factors::default(),
         }
     }
@@ -50,6 +53,7 @@ impl SolidClasses {
                     .into(),
             });
         }
+        let criteria: Vec<_> = materials.iter().map(|own| own.criterion.clone()).collect();
         let pairs = materials
             .iter()
             .flat_map(|a| materials.iter().map(move |b| a.limits.weaker(b.limits)));
@@ -60,6 +64,7 @@ impl SolidClasses {
                 .map(|material| [material.dilatational, material.deviatoric])
                 .collect(),
             limits: pairs.collect(),
+            criteria: PairCriteria::new(&criteria),
             strength: Factors::default(),
         })
     }
@@ -74,7 +79,24 @@ impl SolidClasses {
         }
     }
 
-    /// Sets the limits of bonds between two materials.
+    /// Returns the failure criteria of stress and strain.
+    pub fn criteria(&self) -> &PairCriteria {
+        &self.criteria
+    }
+
+    /// Returns the failure index of the bond between two points, divided by its factor of strength; −∞ if it does not
+    /// break by stress or strain.
+    pub fn failure_index(&self, i: usize, j: usize, bond: impl FnOnce() -> BondState) -> f64 {
+        let pair = [self.of_point(i), self.of_point(j)];
+        self.criteria.failure_index(pair, bond) / self.strength.of_bond(i, j)
+    }
+
+    /// Returns whether any bond can break.
+    pub fn can_break(&self) -> bool {
+        self.weakest().can_break() || !self.criteria.is_empty()
+    }
+
+    /// Sets the limits of bonds between two materials, which replace their failure criteria of stress and strain.
     ///
     /// # Panics
     /// If a material number is out of range.
@@ -86,6 +108,7 @@ impl SolidClasses {
         );
         self.limits[a * count + b] = limits;
         self.limits[b * count + a] = limits;
+        self.criteria.remove([a, b]);
     }
 
     /// Returns the classes by sites, the end points of bonds.
@@ -98,8 +121,8 @@ impl SolidClasses {
     }
 
     /// Returns the classes of a larger set of points, in which the points of this body have the given
-    /// positions. The other points have A = B = 0, so that their states store no energy, and unbreakable
-    /// bonds.
+    /// positions. The other points have A = B = 0, so that their states store no energy. Their bonds are
+    /// unbreakable; bonds of this body keep their limits, not their criteria of stress and strain.
     ///
     /// # Errors
     /// A body that already has 256 materials.
@@ -127,6 +150,7 @@ impl SolidClasses {
             of_point,
             constants: [&self.constants[..], &[[0.0; 2]]].concat(),
             limits: pairs.map(|(a, b)| pair(a, b)).collect(),
+            criteria: PairCriteria::default(),
             strength: Factors::new(strengths),
         })
     }

@@ -57,6 +57,9 @@ pub enum BondFailure {
         /// Calibration of w_c.
         calibration: FractureCalibration,
     },
+    /// Bonds break by stress or strain at their ends, with the criterion in
+    /// [`LinearSolidConstants::criterion`](super::LinearSolidConstants::criterion), which has no fracture energy.
+    ByCriterion,
 }
 
 /// Failure limits of a bond; infinite if a criterion does not apply. A bond breaks when one of the limits is exceeded.
@@ -149,7 +152,7 @@ impl BondFailure {
         on_lattice: bool,
     ) -> Result<Calibrated> {
         let (measure, energy, calibration) = match self {
-            Self::Unbreakable => {
+            Self::Unbreakable | Self::ByCriterion => {
                 return Ok(Calibrated {
                     limits: BondLimits::NONE,
                     fracture_energy: f64::INFINITY,

@@ -8,7 +8,7 @@ use crate::family::VolumeCorrection;
 use crate::kernel::{ActsOn, Influence, InfluenceFunction};
 use crate::material::crack_planes::CrackPlane;
 use crate::material::lattice::{Cells, check_reach, for_each_offset};
-use crate::material::{FractureCalibration, StressState};
+use crate::material::{Criterion, FractureCalibration, StressState};
 use crate::space::PointCloud;
 
 /// Influence function w(r) of a state-based material.
@@ -70,6 +70,9 @@ pub struct LinearSolidConstants {
     pub horizon: f64,
     /// Failure limits of bonds.
     pub limits: BondLimits,
+    /// Failure criterion of stress and strain; `None` after [`LinearSolid::constants`], set it before the classes of a
+    /// body are made.
+    pub criterion: Option<Criterion>,
     /// Fracture energy that corresponds to the limits, J/m²: the given fracture energy, or for a given
     /// critical stretch the continuum value by the closing definition. Infinite for unbreakable bonds.
     pub fracture_energy: f64,
@@ -161,6 +164,7 @@ impl LinearSolid {
             elastic,
             horizon: self.horizon,
             limits: calibrated.limits,
+            criterion: None,
             fracture_energy: calibrated.fracture_energy,
             fracture_calibration: calibrated.calibration,
             crack_planes: calibrated.crack_planes,

@@ -25,8 +25,7 @@ impl LinearSolidBody<'_> {
     /// a plane.
     pub fn with_ghost_layer(&self, layer: GhostLayer, form: BondForm) -> Result<AssembledBonds> {
         let classes = self.classes()?;
-        let limits = classes.weakest();
-        if limits.stretch.is_finite() || limits.energy.is_finite() {
+        if classes.can_break() {
             return Err(breaking());
         }
         let classes = classes.among(layer.body(), layer.cloud().len())?;

@@ -14,6 +14,8 @@ pub(super) struct Grid<'a, N, const D: usize> {
     pub factors: Option<&'a Factors<N>>,
     /// Displacement (or another vector) in padded rows.
     pub u: [&'a [N]; D],
+    /// Thermal stretch of sites in padded rows, if the material expands.
+    pub heat: Option<&'a [N]>,
     /// Number of unused places before the first row.
     pub margin: usize,
     /// Unit of length, m.
@@ -61,6 +63,35 @@ impl<N: GridNumber, const D: usize> Grid<'_, N, D> {
             bonds.factor = bonds.factor * factor;
         }
         bonds
+    }
+
+    /// Returns the bonds of an offset with their stress-free lengths, and their η relative to them.
+    #[inline(always)]
+    pub(super) fn pulled<T: ChunkLanes<Number = N>>(
+        &self,
+        places: T::Places,
+        offset: usize,
+        factors: Option<T::Places>,
+        here: &[T; D],
+    ) -> (FixedBond<T, D>, [T; D]) {
+        let shift = self.offsets[offset].shift;
+        let (bonds, eta) = (
+            self.bonds::<T>(offset, factors),
+            self.eta(places, shift, here),
+        );
+        match self.heat {
+            None => (bonds, eta),
+            Some(heat) => {
+                let both = T::at(heat, places, 0) + T::at(heat, places, shift);
+                bonds.expanded(T::splat(0.5) * both, eta)
+            }
+        }
+    }
+
+    /// Returns the mean thermal stretch of the bond between two places.
+    pub(super) fn thermal(&self, [here, there]: [usize; 2]) -> f64 {
+        let of = |heat: &[N]| -> f64 { heat[here].into() + heat[there].into() };
+        self.heat.map_or(0.0, |heat| 0.5 * of(heat))
     }
 
     /// Returns the stiffness of the bond of an offset and lane of a chunk, N/m³.

@@ -88,6 +88,14 @@ pub(super) fn break_chunk<T: Lanes, L: VectorLaw, N: GridNumber, const D: usize>
             xi[c] = T::splat(offset.xi[c].into());
             eta[c] = N::load::<T>(grid.u[c], there) - here[c];
         }
+        if let Some(heat) = grid.heat {
+            let both = N::load::<T>(heat, place) + N::load::<T>(heat, there);
+            let thermal = T::splat(0.5) * both;
+            for c in 0..D {
+                eta[c] = eta[c] - thermal * xi[c];
+                xi[c] = (T::splat(1.0) + thermal) * xi[c];
+            }
+        }
         let threshold = match rule.pairs {
             None => threshold,
             Some(pairs) => T::load(&pairs.of_lanes(first, offset.shift), 0),
@@ -123,8 +131,12 @@ fn book<L: VectorLaw, N: GridNumber, const D: usize>(
         let here = grid.place(chunk) + k;
         let there = here.wrapping_add_signed(offset.shift);
         let difference = |field: &[N]| -> f64 { field[there].into() - field[here].into() };
-        let eta: [f64; D] = std::array::from_fn(|c| difference(grid.u[c]) * grid.unit);
+        let thermal = grid.thermal([here, there]);
+        let eta: [f64; D] =
+            std::array::from_fn(|c| difference(grid.u[c]) * grid.unit - thermal * xi[c]);
+        let xi = xi.map(|component| (1.0 + thermal) * component);
         let stiffness = grid.stiffness(bonds.entry / grid.offsets.len(), number, k);
+        let stiffness = (1.0 + thermal) * stiffness;
         let places = [here, there].map(|place| place - grid.margin);
         let ends = places.map(rule.point_at);
         let stretch = match rule.pairs {

@@ -57,7 +57,7 @@ impl<L: VectorLaw, const D: usize> Breakable for GridForce<L, D> {
         };
         self.sweep::<f64, 1>(
             &self.doubles,
-            u,
+            (u, self.latest_stretches()),
             &PointSubset::All,
             &mut found,
             |grid, block, intact, out| {
@@ -107,8 +107,8 @@ fn endangered_chunks_body<T: Lanes, L: VectorLaw, const D: usize>(
         let intact = &intact[number * m..(number + 1) * m];
         for k in 0..m {
             let (offset, mask) = (&grid.offsets[k], intact[k]);
-            let eta = grid.eta(place, offset.shift, &here);
-            let strain = L::strain(&offset.lanes::<T>(), eta);
+            let (bond, eta) = grid.pulled::<T>(place, k, None, &here);
+            let strain = L::strain(&bond, eta);
             let over = strain.greater(threshold) & mask;
             if over & !endangered != 0 {
                 let own = T::load(&of_lanes(place - grid.margin, offset.shift), 0);

@@ -26,6 +26,7 @@ use crate::operator::{DamageMeasure, Force, InstructionSet, PointSubset};
 use crate::parallel::{components_mut, for_each_part};
 use crate::space::{PointCloud, Sites};
 use crate::step_end::StepEnd;
+use crate::thermal::ThermalExpansion;
 
 /// Force density f(x_i) = Σ_j c α κ V_j s n on a lattice, N/m³: that of
 /// [`BondForce`](crate::operator::BondForce), several times faster.
@@ -95,6 +96,8 @@ pub struct GridForce<L: VectorLaw, const D: usize> {
     /// them.
     pub(super) pairs: Option<PlaceThresholds>,
     pub(super) damage: DamageMeasure,
+    /// Thermal expansion, if the material expands.
+    pub(super) expansion: Option<ThermalExpansion>,
     pub(super) doubles: Working<f64, D>,
     /// Work arrays for forces and bond failure in single precision; everything else uses double precision.
     pub(super) floats: Option<Working<f32, D>>,
@@ -171,6 +174,7 @@ impl<L: VectorLaw, const D: usize> GridForce<L, D> {
             critical_stretch,
             pairs: None,
             damage,
+            expansion: None,
             instruction_set: InstructionSet::detect(),
             law: std::marker::PhantomData,
         }
@@ -261,17 +265,19 @@ impl<L: VectorLaw, const D: usize> GridForce<L, D> {
         ChunkBlock::of(&self.layout, lanes, block)
     }
 
-    /// Runs a read-only loop over all blocks at displacement u.
+    /// Runs a read-only loop over all blocks at displacement u and the thermal stretches of own points and ghosts.
     pub(super) fn sweep<N: GridNumber, const C: usize>(
         &self,
         working: &Working<N, D>,
-        u: &[f64],
+        (u, stretches): (&[f64], Option<Arc<Vec<f64>>>),
         on: &PointSubset<'_>,
         out: &mut [f64],
         chunks: impl Fn(&Grid<'_, N, D>, &ChunkBlock<'_>, &[u8], &mut [&mut [f64]; C]) + Sync,
     ) {
         let ghosts = self.cloud.domain().ghosts(u);
-        working.with(&self.layout, Field::new(u, &ghosts), on, |grid, lanes| {
+        let heat = stretches.as_ref().map(|stretches| self.field_of(stretches));
+        let values = (Field::new(u, &ghosts), heat);
+        working.with(&self.layout, values, on, |grid, lanes| {
             // A vector of units takes no memory: the state of blocks is only read.
             let mut nothing = vec![(); self.blocks.len()];
             for_each_part(
@@ -296,6 +302,7 @@ impl<L: VectorLaw, const D: usize> GridForce<L, D> {
         out: &mut [f64],
     ) {
         let whole = matches!(on, PointSubset::All) && partners.is_none();
+        let stretches = self.stretches(step.t);
         let mut blocks = std::mem::take(&mut self.blocks);
         let set = self.instruction_set;
         let domain = self.cloud.domain();
@@ -311,7 +318,8 @@ impl<L: VectorLaw, const D: usize> GridForce<L, D> {
             velocity: step.velocities(&moved),
             note_events: !whole,
         };
-        let u = Field::new(step.u, &ghosts);
+        let heat = stretches.as_ref().map(|stretches| self.field_of(stretches));
+        let u = (Field::new(step.u, &ghosts), heat);
         match &self.floats {
             Some(working) => working.with(&self.layout, u, on, |grid, lanes| {
                 self.decide_blocks(

@@ -38,12 +38,11 @@ fn fast_force<T: ChunkLanes, L: VectorLaw, const D: usize>(
     let bonds = T::bonds(intact, grid.offsets.len());
     // No iterator adapter here: without inlining it would pass all registers through memory.
     for k in 0..grid.offsets.len() {
-        let (offset, mask) = (&grid.offsets[k], T::present(bonds, k));
+        let mask = T::present(bonds, k);
         if T::none(mask) {
             continue;
         }
-        let eta = grid.eta(places, offset.shift, &here);
-        let bond = grid.bonds::<T>(k, factors);
+        let (bond, eta) = grid.pulled::<T>(places, k, factors, &here);
         let t = L::strain(&bond, eta).masked(mask);
         fast.largest = t.max(fast.largest);
         fast.smallest = t.min(fast.smallest);
@@ -64,9 +63,8 @@ fn exact_force<T: ChunkLanes, L: VectorLaw, const D: usize>(
     let mut sum = [T::splat(0.0); D];
     let bonds = T::bonds(intact, grid.offsets.len());
     for k in 0..grid.offsets.len() {
-        let (offset, mask) = (&grid.offsets[k], T::present(bonds, k));
-        let eta = grid.eta(places, offset.shift, &here);
-        let bond = grid.bonds::<T>(k, factors);
+        let mask = T::present(bonds, k);
+        let (bond, eta) = grid.pulled::<T>(places, k, factors, &here);
         let force = L::force(bond.xi, eta);
         for c in 0..D {
             sum[c] = sum[c] + (bond.stiffness * force[c]).masked(mask);
@@ -218,9 +216,8 @@ fn energy_chunks_body<T: Lanes, L: VectorLaw, const D: usize>(
         let mut sum = T::splat(0.0);
         let intact = &intact[k * m..(k + 1) * m];
         for k in 0..m {
-            let (offset, mask) = (&grid.offsets[k], intact[k]);
-            let eta = grid.eta(place, offset.shift, &here);
-            let bond = grid.bonds::<T>(k, factors);
+            let mask = intact[k];
+            let (bond, eta) = grid.pulled::<T>(place, k, factors, &here);
             let energy = L::energy(bond.xi, eta);
             sum = sum + (T::splat(0.5) * bond.stiffness * energy).masked(mask);
         }
@@ -252,9 +249,9 @@ fn tangent_chunks_body<T: Lanes, L: VectorLaw, const D: usize>(
         let intact = &intact[k * m..(k + 1) * m];
         for k in 0..m {
             let (offset, mask) = (&grid.offsets[k], intact[k]);
-            let eta = grid.eta(place, offset.shift, &here);
+            let (bond, eta) = grid.pulled::<T>(place, k, factors, &here);
             let d = direction.eta(place, offset.shift, &direction_here);
-            let force = L::tangent_force(&grid.bonds::<T>(k, factors), eta, d);
+            let force = L::tangent_force(&bond, eta, d);
             for c in 0..D {
                 sum[c] = sum[c] + force[c].masked(mask);
             }

@@ -8,6 +8,7 @@ mod damage;
 mod factors;
 pub(in crate::operator) mod families;
 mod force;
+mod heated;
 mod kernels;
 pub(in crate::operator) mod layout;
 mod numbers;

@@ -13,6 +13,7 @@ use crate::operator::{
     Linearity, PointSubset, SplitForce,
 };
 use crate::step_end::StepEnd;
+use crate::thermal::Expandable;
 
 impl<L: VectorLaw, const D: usize> Force for GridForce<L, D> {
     fn points(&self) -> usize {
@@ -23,21 +24,21 @@ impl<L: VectorLaw, const D: usize> Force for GridForce<L, D> {
         D
     }
 
-    fn add_force(&self, _t: f64, u: &[f64], on: PointSubset<'_>, out: &mut [f64]) {
+    fn add_force(&self, t: f64, u: &[f64], on: PointSubset<'_>, out: &mut [f64]) {
         match &self.floats {
             Some(floats) => {
-                self.sweep::<f32, D>(floats, u, &on, out, |grid, block, intact, out| {
+                self.sweep::<f32, D>(floats, (u, None), &on, out, |grid, block, intact, out| {
                     force_chunks_in_floats::<L, D>(self.instruction_set, grid, block, intact, out);
                 })
             }
-            None => self.add_force_in_doubles(u, &on, out),
+            None => self.add_force_in_doubles(t, u, &on, out),
         }
     }
 
-    fn add_energy_density(&self, _t: f64, u: &[f64], out: &mut [f64]) {
+    fn add_energy_density(&self, t: f64, u: &[f64], out: &mut [f64]) {
         self.sweep::<f64, 1>(
             &self.doubles,
-            u,
+            (u, self.stretches(t)),
             &PointSubset::All,
             out,
             |grid, block, intact, out| {
@@ -80,7 +81,7 @@ impl<L: VectorLaw, const D: usize> Force for GridForce<L, D> {
         }
     }
 
-    fn tangent_into(&self, _t: f64, u: &[f64], direction: &[f64], out: &mut [f64]) {
+    fn tangent_into(&self, t: f64, u: &[f64], direction: &[f64], out: &mut [f64]) {
         let spare = || {
             self.direction
                 .lock()
@@ -95,7 +96,7 @@ impl<L: VectorLaw, const D: usize> Force for GridForce<L, D> {
         out.fill(0.0);
         self.sweep::<f64, D>(
             &self.doubles,
-            u,
+            (u, self.stretches(t)),
             &PointSubset::All,
             out,
             |grid, block, intact, out| {
@@ -151,7 +152,7 @@ impl<L: VectorLaw, const D: usize> Force for GridForce<L, D> {
         self.floats.as_ref()?;
         let (mut rounded, mut exact) = (vec![0.0; u.len()], vec![0.0; u.len()]);
         self.add_force(0.0, u, PointSubset::All, &mut rounded);
-        self.add_force_in_doubles(u, &PointSubset::All, &mut exact);
+        self.add_force_in_doubles(0.0, u, &PointSubset::All, &mut exact);
         let largest = |of: &dyn Fn(usize) -> f64| (0..u.len()).map(of).fold(0.0, f64::max);
         let difference = largest(&|k| (rounded[k] - exact[k]).abs());
         let scale = largest(&|k| exact[k].abs());
@@ -165,7 +166,8 @@ impl<L: VectorLaw, const D: usize> Force for GridForce<L, D> {
     fn capabilities(&self) -> Capabilities<'_> {
         let in_doubles = self.floats.is_none();
         Capabilities {
-            linear: match (L::LINEAR, in_doubles) {
+            // With thermal strain the force is affine: it does not vanish at rest.
+            linear: match (L::LINEAR && self.expansion.is_none(), in_doubles) {
                 (true, true) => Linearity::Exact(self),
                 (true, false) => Linearity::Rounded,
                 (false, _) => Linearity::Nonlinear,
@@ -178,8 +180,12 @@ impl<L: VectorLaw, const D: usize> Force for GridForce<L, D> {
             dilatation: None,
             plastic: None,
             path_dependent: false,
-            thermal: None,
+            thermal: self.expansion.as_ref(),
         }
+    }
+
+    fn expandable_mut(&mut self) -> Option<&mut dyn Expandable> {
+        Some(self)
     }
 
     fn breaking_mut(&mut self) -> Option<&mut dyn Breakable> {
@@ -192,7 +198,8 @@ impl<L: VectorLaw, const D: usize> Force for GridForce<L, D> {
 }
 
 impl<L: VectorLaw, const D: usize> GridForce<L, D> {
-    fn add_force_in_doubles(&self, u: &[f64], on: &PointSubset<'_>, out: &mut [f64]) {
+    fn add_force_in_doubles(&self, t: f64, u: &[f64], on: &PointSubset<'_>, out: &mut [f64]) {
+        let u = (u, self.stretches(t));
         self.sweep::<f64, D>(&self.doubles, u, on, out, |grid, block, intact, out| {
             force_chunks::<L, D>(self.instruction_set, grid, block, intact, out);
         });
@@ -215,6 +222,7 @@ crate::saved! {
     impl<L: VectorLaw, const D: usize> Checkpointed for GridForce<L, D> {
         blocks: under("operator/grid"),
         cloud, sites, layout, stencil, held, geometric, cuts, precut, directed_bonds, critical_stretch, pairs, damage: fixed,
+        expansion: fixed,
         instruction_set, law: fixed,
         doubles, floats, direction: scratch,
     } then |force| force.families().check_bonds()

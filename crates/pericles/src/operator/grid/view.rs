@@ -9,6 +9,7 @@ impl<L: VectorLaw, const D: usize> BondView for GridForce<L, D> {
     fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt)) {
         let (place, left) = self.families().bonds_of(i);
         let (chunk, lane) = self.layout.chunk_at(place);
+        let stretches = self.latest_stretches();
         for k in left {
             let (offset, stiffness) = (
                 &self.stencil.offsets()[k],
@@ -18,7 +19,11 @@ impl<L: VectorLaw, const D: usize> BondView for GridForce<L, D> {
                 .layout
                 .point_at(place.wrapping_add_signed(offset.shift));
             let eta = u.difference::<D>([i, j]);
-            let force = L::force(offset.xi, eta).map(|force| stiffness * force);
+            let thermal = stretches.as_ref().map_or(0.0, |of| 0.5 * (of[i] + of[j]));
+            let free = offset.xi.map(|x| (1.0 + thermal) * x);
+            let pulled = std::array::from_fn(|c| eta[c] - thermal * offset.xi[c]);
+            let stiffness = (1.0 + thermal) * stiffness;
+            let force = L::force(free, pulled).map(|force| stiffness * force);
             visit(BondAt::new(j, offset.xi, eta, force));
         }
     }

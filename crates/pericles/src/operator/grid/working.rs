@@ -30,6 +30,8 @@ pub(super) struct Working<N, const D: usize> {
 /// Work arrays of one evaluation.
 struct Scratch<N, const D: usize> {
     padded: Padded<N, D>,
+    /// Thermal stretches, allocated if the material expands.
+    heat: Option<Padded<N, 1>>,
     wanted: WantedPoints,
 }
 
@@ -57,12 +59,13 @@ impl<N: GridNumber, const D: usize> Working<N, D> {
         self.factors.as_ref()
     }
 
-    /// Copies the values of u for the requested points and their neighbours to padded rows and passes them
-    /// on, with the requested lanes of each chunk (`None` if all points are requested).
+    /// Copies the values of u, and the thermal stretches if the material expands, for the requested points and their
+    /// neighbours to padded rows and passes them on, with the requested lanes of each chunk (`None` if all points are
+    /// requested).
     pub fn with<R>(
         &self,
         layout: &GridLayout,
-        u: Field<'_>,
+        (u, heat): (Field<'_>, Option<Field<'_>>),
         on: &PointSubset<'_>,
         work: impl FnOnce(&Grid<'_, N, D>, Option<&[u8]>) -> R,
     ) -> R {
@@ -80,8 +83,13 @@ impl<N: GridNumber, const D: usize> Working<N, D> {
             }
             Err(TryLockError::WouldBlock) => &mut own,
         };
-        let Scratch { padded, wanted } = scratch.get_or_insert_with(|| Scratch {
+        let Scratch {
+            padded,
+            heat: stretches,
+            wanted,
+        } = scratch.get_or_insert_with(|| Scratch {
             padded: Padded::new(layout, self.farthest),
+            heat: None,
             wanted: WantedPoints::new(layout),
         });
         let frame = Frame::of(u, self.unit);
@@ -100,7 +108,16 @@ impl<N: GridNumber, const D: usize> Working<N, D> {
                 Some(wanted.lanes())
             }
         };
-        work(&self.grid(padded), lanes)
+        let heat = heat.map(|heat| {
+            let rows = stretches.get_or_insert_with(|| Padded::new(layout, self.farthest));
+            rows.fill(layout, heat, &Frame::of(heat, 1.0));
+            &*rows
+        });
+        let grid = Grid {
+            heat: heat.map(|rows| rows.components()[0]),
+            ..self.grid(padded)
+        };
+        work(&grid, lanes)
     }
 
     /// Returns the arrays of the loops for another vector in padded rows.
@@ -109,6 +126,7 @@ impl<N: GridNumber, const D: usize> Working<N, D> {
             offsets: &self.offsets,
             factors: self.factors.as_ref(),
             u: padded.components(),
+            heat: None,
             margin: padded.margin(),
             unit: self.unit,
         }

@@ -45,13 +45,14 @@ impl<L: VectorLaw, const D: usize> SplitForce for GridForce<L, D> {
     /// Needs a work array of one byte per bond group of the affected blocks.
     fn add_force_from(
         &self,
-        _t: f64,
+        t: f64,
         u: &[f64],
         on: PointSubset<'_>,
         partners: &[bool],
         out: &mut [f64],
     ) {
         let partners = self.partners(partners);
+        let u = (u, self.stretches(t));
         self.sweep::<f64, D>(&self.doubles, u, &on, out, |grid, block, intact, out| {
             let left = self.bonds_to(&partners, block, intact);
             force_chunks::<L, D>(self.instruction_set, grid, block, &left, out);

@@ -60,7 +60,7 @@ const ON_GRID: &[Limit] = &[
         "the surface correction of state-based materials needs a neighbour list; use bonds = \"list\" or omit `bonds`",
     ),
     Limit::BOND_ENERGY,
-    Limit::THERMAL_EXPANSION,
+    Limit::STRESS_FAILURE,
     Limit::new(
         Feature::NoLattice,
         "the points do not lie on a regular grid; use bonds = \"list\"",
@@ -105,6 +105,13 @@ impl<'a> LinearSolidBody<'a> {
                 self.surface != SolidSurface::None,
             )
             .with(Feature::BondEnergy, limits.energy.is_finite())
+            .with(
+                Feature::StressFailure,
+                match self.classes {
+                    Some(classes) => !classes.criteria().is_empty(),
+                    None => self.constants.criterion.is_some(),
+                },
+            )
             .with(Feature::NoLattice, self.cloud.lattice().is_none())
     }
 

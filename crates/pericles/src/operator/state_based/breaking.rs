@@ -6,7 +6,6 @@
 //! of the energy of the point instead of that of a bond.
 
 use super::bonds::{SolidBonds, difference};
-use super::heat::heated_limit;
 use super::kinematics::Kinematics;
 use crate::domain::Field;
 use crate::lanes::{F64x8, LANES, dot};
@@ -95,6 +94,12 @@ pub(super) struct BreakRule<'a> {
     pub stored: Option<Stored<'a>>,
     /// Thermal stretches of own points and ghosts, if the material expands.
     pub stretches: Option<&'a [f64]>,
+}
+
+/// Returns the stretch at which a bond with the thermal stretch τ breaks: the ratio of its length to the
+/// stress-free length is then 1 + `limit`.
+pub(super) fn heated_limit(limit: f64, stretch: f64) -> f64 {
+    limit + stretch * (1.0 + limit)
 }
 
 /// For a point and one of its entries: the inelastic stretch x and the constant c of the bond energy ψ² − 2 ψ
@@ -318,7 +323,8 @@ fn strain<L: Kinematics, const D: usize>(xi: [f64; D], eta: [f64; D]) -> f64 {
     measure / square
 }
 
-fn direction<L: Kinematics, const D: usize>(xi: [f64; D], eta: [f64; D]) -> [f64; D] {
+/// Returns the direction of the force of a bond, y or ξ.
+pub(super) fn direction<L: Kinematics, const D: usize>(xi: [f64; D], eta: [f64; D]) -> [f64; D] {
     let lanes = |vector: [f64; D]| vector.map(|x| F64x8([x; LANES]));
     L::direction(lanes(xi), lanes(eta)).map(|x| x.0[0])
 }

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use super::bond_work::{KEPT, Worked, work_rows};
 use super::bonds::{Layout, SolidBonds, pack};
-use super::breaking::{BreakRule, States, Stored, take_bonds};
-use super::heat::{Heat, heated_limit};
+use super::breaking::{BreakRule, States, Stored, heated_limit, take_bonds};
+use super::heat::Heat;
 use super::kernels::{accept_rows, dilatation_rows};
 use super::kinematics::Kinematics;
 use super::weight::Weight;
@@ -244,7 +244,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
 
     /// Returns the failure criterion for the points `on`; `velocity` contains the mean velocities over the
     /// step, if needed.
-    fn rule<'a>(
+    pub(super) fn rule<'a>(
         &'a self,
         step: &'a StepEnd<'a>,
         velocity: Option<Field<'a>>,
@@ -367,7 +367,12 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
 
     /// Breaks the other end of bonds that broke in a sweep over a subset of points, and records the energy
     /// dissipated there.
-    fn clear_other_ends(&self, rule: &BreakRule<'_>, u: &Records, blocks: &mut [BlockDamage]) {
+    pub(super) fn clear_other_ends(
+        &self,
+        rule: &BreakRule<'_>,
+        u: &Records,
+        blocks: &mut [BlockDamage],
+    ) {
         if !rule.note_events {
             return;
         }

@@ -5,6 +5,8 @@
 //! additional pull −τ (A D M'/m + B)/m at every bond. This is a number per point, so that the loops over
 //! bonds are unchanged.
 
+use super::breaking::States;
+use crate::operator::PointSubset;
 use crate::thermal::ThermalExpansion;
 
 /// Data of a heated solid.
@@ -14,8 +16,46 @@ pub(super) struct Heat {
     pub volume: Vec<f64>,
 }
 
-/// Returns the stretch at which a bond with the thermal stretch τ breaks: the ratio of its length to the
-/// stress-free length is then 1 + `limit`.
-pub(super) fn heated_limit(limit: f64, stretch: f64) -> f64 {
-    limit + stretch * (1.0 + limit)
+impl Heat {
+    /// Returns the contribution of the thermal stretch of a point at a site to p, the pull of its force state that is
+    /// the same for all bonds.
+    pub fn pull(&self, states: &States, [i, site]: [usize; 2], stretch: f64) -> f64 {
+        let share = states.dilatation[i] * self.volume[i];
+        -stretch * (states.pressure[site] * share + states.stiffness[site])
+    }
+
+    /// Adds the thermal pulls of the points `on` at a time to one value per point. `site_of` returns the site of a
+    /// point in `states`.
+    pub fn add_pulls(
+        &self,
+        t: f64,
+        states: &States,
+        site_of: impl Fn(usize) -> usize,
+        on: &PointSubset<'_>,
+        pulls: &mut [f64],
+    ) {
+        let stretches = self.expansion.stretches(t);
+        on.for_each(pulls.len(), |i| {
+            pulls[i] += self.pull(states, [i, site_of(i)], stretches[i]);
+        });
+    }
+
+    /// Returns the energy density of a point with the dilatation θ, the sum Σ g ω e² of total extensions and the sum
+    /// Σ ω r e_x of inelastic extensions, J/m³.
+    pub fn energy_density(
+        &self,
+        states: &States,
+        place: [usize; 2],
+        stretch: f64,
+        [theta, squares, inelastic]: [f64; 3],
+    ) -> f64 {
+        let factor = states.dilatation[place[0]];
+        if factor <= 0.0 {
+            return states.energy_density(place, theta, squares);
+        }
+        let volume = self.volume[place[0]];
+        let linear = theta / factor - inelastic;
+        let squares = squares - stretch * (2.0 * linear - stretch * volume);
+        states.energy_density(place, theta - factor * volume * stretch, squares)
+    }
 }

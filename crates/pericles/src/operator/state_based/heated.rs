@@ -25,20 +25,16 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
     /// Returns the contribution of the thermal stretch of a point to p, the pull of its force state that is
     /// the same for all bonds.
     pub(super) fn thermal_pull(&self, i: usize, stretch: f64) -> f64 {
-        let Some(heat) = &self.heat else {
-            return 0.0;
-        };
-        let (states, site) = (&self.states, self.bonds.site(i));
-        let share = states.dilatation[i] * heat.volume[i];
-        -stretch * (states.pressure[site] * share + states.stiffness[site])
+        let heat = self.heat.as_ref();
+        heat.map_or(0.0, |heat| {
+            heat.pull(&self.states, [i, self.bonds.site(i)], stretch)
+        })
     }
 
     /// Adds the thermal pulls of the points `on` to one value per point.
     pub(super) fn add_thermal_pulls(&self, t: f64, on: &PointSubset<'_>, pulls: &mut [f64]) {
-        if let Some(stretches) = self.stretches(t) {
-            on.for_each(pulls.len(), |i| {
-                pulls[i] += self.thermal_pull(i, stretches[i]);
-            });
+        if let Some(heat) = &self.heat {
+            heat.add_pulls(t, &self.states, |i| self.bonds.site(i), on, pulls);
         }
     }
 
@@ -59,14 +55,9 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         [theta, squares, inelastic]: [f64; 3],
     ) -> f64 {
         let place = [i, self.bonds.site(i)];
-        let factor = self.states.dilatation[i];
         match (&self.heat, stretch) {
-            (Some(heat), Some(stretch)) if factor > 0.0 => {
-                let volume = heat.volume[i];
-                let linear = theta / factor - inelastic;
-                let squares = squares - stretch * (2.0 * linear - stretch * volume);
-                let theta = theta - factor * volume * stretch;
-                self.states.energy_density(place, theta, squares)
+            (Some(heat), Some(stretch)) => {
+                heat.energy_density(&self.states, place, stretch, [theta, squares, inelastic])
             }
             _ => self.states.energy_density(place, theta, squares),
         }

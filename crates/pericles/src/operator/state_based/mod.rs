@@ -5,7 +5,7 @@
 //! | `kinematics` | stretches and directions of bonds, shared by all loops |
 //! | `bonds`, `weight` | data of the loops over lists |
 //! | `kernels`, `bond_work` | loops over lists |
-//! | `breaking` | bond failure and dissipated energy |
+//! | `breaking`, `criterion` | bond failure and dissipated energy |
 //! | `force`, `passes`, `view` | operator on lists |
 //! | `grid` | stencil kernel for lattices |
 //! | `inelastic` | solids with viscous or plastic shear, on lists |
@@ -15,6 +15,7 @@ mod body;
 mod bond_work;
 mod bonds;
 mod breaking;
+mod criterion;
 mod force;
 mod grid;
 mod heat;

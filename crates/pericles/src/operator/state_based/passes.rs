@@ -2,8 +2,8 @@
 
 use super::bond_work::{KEPT, Worked};
 use super::bonds::difference;
+use super::breaking::heated_limit;
 use super::force::LinearSolidForce;
-use super::heat::heated_limit;
 use super::kernels::{dilatation_change_rows, force_rows, square_rows, tangent_rows};
 use super::kinematics::Kinematics;
 use crate::domain::Field;
@@ -131,6 +131,13 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidForce<L, D> {
             }
         }
         self.thermal_pulls_into(step.t, needed, pulls);
+        if self.has_criteria() {
+            let states = self.elastic_states(values, pulls);
+            if self.break_by_criterion(step, u, [on, needed], &states, None) {
+                self.dilatations_into(u, needed, values);
+                self.thermal_pulls_into(step.t, needed, pulls);
+            }
+        }
     }
 
     fn breaking(&self) -> Option<&dyn Breakable> {
@@ -199,7 +206,7 @@ impl<L: Kinematics, const D: usize> Breakable for LinearSolidForce<L, D> {
     }
 
     fn can_break(&self) -> bool {
-        self.weakest.can_break()
+        self.classes.can_break()
     }
 
     fn damage_into(&self, out: &mut [f64]) {
@@ -239,6 +246,19 @@ impl<L: Kinematics, const D: usize> Breakable for LinearSolidForce<L, D> {
 
     /// The bond energy is that of the work at the end of the last step.
     fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]) {
+        let ghosts = self.cloud.domain().ghosts(u);
+        let u = Field::new(u, &ghosts);
+        if self.has_criteria() {
+            let states = self.latest_states(u);
+            self.mark_by_criterion(u, &states, fraction, marks);
+        }
+        self.mark_by_limits(u, fraction, marks);
+    }
+}
+
+impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
+    /// Marks the points with a bond beyond a fraction of its critical stretch or energy.
+    pub(super) fn mark_by_limits(&self, u: Field<'_>, fraction: f64, marks: &mut [bool]) {
         let bonds = self.view();
         let worked = self
             .influence
@@ -249,8 +269,7 @@ impl<L: Kinematics, const D: usize> Breakable for LinearSolidForce<L, D> {
                 .as_ref()
                 .is_none_or(|bits| bits[entry / LANES] >> (entry % LANES) & 1 == 1)
         };
-        let ghosts = self.cloud.domain().ghosts(u);
-        let u = self.packed(Field::new(u, &ghosts));
+        let u = self.packed(u);
         let (stretches, sites) = (self.latest_stretches(), self.bonds.sites());
         let over = |i: usize, entry: usize, b: usize| {
             let a = self.bonds.site(i);

@@ -7,7 +7,7 @@ use crate::material::{PairForce, SolidClasses};
 use crate::operator::damage::{BreakEvent, Tally};
 use crate::operator::grid::families::Families;
 use crate::operator::grid::layout::Chunk;
-use crate::operator::state_based::breaking::{LosingBond, Loss, States};
+use crate::operator::state_based::breaking::{LosingBond, Loss, States, heated_limit};
 use crate::operator::state_based::kinematics::Kinematics;
 use crate::step_end::StepEnd;
 
@@ -28,6 +28,8 @@ pub(super) struct StencilRule<'a, const D: usize> {
     pub velocity: Option<Field<'a>>,
     /// Whether breaking bonds are recorded for the update of their other end.
     pub note_events: bool,
+    /// Thermal stretches of own points and ghosts, if the material expands.
+    pub stretches: Option<&'a [f64]>,
 }
 
 /// A chunk whose bonds are checked individually.
@@ -67,6 +69,10 @@ pub(super) fn break_chunk<L: Kinematics, const D: usize>(
                 let ends = [here, here.wrapping_add_signed(offset.shift)];
                 let [a, b] = ends.map(|place| layout.site_at(place - arrays.margin));
                 let limit = rule.classes.limits(a, b).stretch;
+                let limit = rule.stretches.map_or(limit, |stretches| {
+                    let [i, j] = ends.map(|place| layout.point_at(place - arrays.margin));
+                    heated_limit(limit, 0.5 * (stretches[i] + stretches[j]))
+                });
                 over |= u8::from(measure > L::Measure::threshold(limit) * square) << lane;
             }
         }
@@ -148,7 +154,7 @@ fn loss_of<L: Kinematics, const D: usize>(
             weight: offset.weight,
             factor: 1.0,
             stored: [0.0; 2],
-            thermal: 0.0,
+            thermal: rule.stretches.map_or(0.0, |stretches| stretches[i]),
         };
         loss.add::<L, D>(&bond, broken);
     }

@@ -21,6 +21,7 @@ use crate::operator::grid::stencil::Stencil;
 use crate::operator::grid::wanted::WantedPoints;
 use crate::operator::pool::Pool;
 use crate::operator::state_based::breaking::States;
+use crate::operator::state_based::heat::Heat;
 use crate::operator::state_based::kinematics::Kinematics;
 use crate::operator::{InstructionSet, PointSubset};
 use crate::parallel::{components_mut, for_each_chunk, for_each_part};
@@ -55,6 +56,8 @@ pub struct LinearSolidGrid<L: Kinematics, const D: usize> {
     /// Limits of the weakest pair of materials.
     pub(super) weakest: BondLimits,
     damage: DamageMeasure,
+    /// Thermal strain, if the material expands.
+    pub(super) heat: Option<Heat>,
     pub(super) directed_bonds: u64,
     work: Pool<Work<D>>,
     pub(super) instruction_set: InstructionSet,
@@ -66,8 +69,12 @@ crate::saved! {
         blocks: under("operator/grid"),
         cloud, layout, stencil, offsets, held, precut, states, stiffness, classes, weakest: fixed,
         damage, directed_bonds, instruction_set, kinematics: fixed,
+        heat: rebuilt,
         work: scratch,
-    } then |force| force.families().check_bonds()
+    } then |force| {
+        force.renew_volumes(None);
+        force.families().check_bonds()
+    }
 }
 
 /// Work arrays of one evaluation.
@@ -167,6 +174,7 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
             states,
             stiffness,
             damage,
+            heat: None,
             work,
         };
         Ok((force, cuts))
@@ -192,12 +200,13 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
         }
     }
 
-    /// Copies a vector and p for the given dilatations to padded rows and passes them on, with the requested
-    /// lanes of each chunk (`None` if all points are requested).
+    /// Copies a vector and p for the given values of the pass over points (dilatations, and thermal pulls of a heated
+    /// body) to padded rows and passes them on, with the requested lanes of each chunk (`None` if all points are
+    /// requested).
     pub(super) fn with_arrays<R>(
         &self,
         u: Field<'_>,
-        dilatations: Option<Field<'_>>,
+        values: Option<Field<'_>>,
         Wanted { on, whole }: Wanted<'_>,
         work: impl FnOnce(&Arrays<'_, D>, Option<&[u8]>) -> R,
     ) -> R {
@@ -219,8 +228,8 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
             None => rows.fill(layout, u, &frame),
             Some(wanted) => rows.fill_around(layout, u, &frame, wanted),
         }
-        if let Some(dilatations) = dilatations {
-            self.pressures_into(dilatations, of_points);
+        if let Some(values) = values {
+            self.pressures_into(values, of_points);
             let (own, ghosts) = of_points.split_at(self.cloud.len());
             let of_points = Field::new(own, ghosts);
             let frame = Frame::of(of_points, 1.0);
@@ -243,20 +252,31 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
         work(&arrays, (!all).then(|| wanted.lanes()))
     }
 
-    /// Sets p = A θ/m of all points, those of ghosts after own points.
-    fn pressures_into(&self, dilatations: Field<'_>, out: &mut [f64]) {
+    /// Sets p = A θ/m with the thermal pull of all points, those of ghosts after own points.
+    fn pressures_into(&self, values: Field<'_>, out: &mut [f64]) {
         let n = self.cloud.len();
         let (own, ghosts) = out.split_at_mut(n);
         for_each_chunk(own, &|first, pressures| {
             let of = first..first + pressures.len();
             let factors = &self.states.pressure[of.clone()];
-            let pairs = factors.iter().zip(&dilatations.owned[of]);
+            let pairs = factors.iter().zip(&values.owned[of]);
             for (pressure, (factor, theta)) in pressures.iter_mut().zip(pairs) {
                 *pressure = factor * theta;
             }
         });
         for (g, pressure) in ghosts.iter_mut().enumerate() {
-            *pressure = self.states.pressure[n + g] * dilatations.ghosts[g];
+            *pressure = self.states.pressure[n + g] * values.ghosts[g];
+        }
+        if self.heat.is_some() {
+            let pulls = [&values.owned[n..], &values.ghosts[ghosts.len()..]];
+            for (pressures, pulls) in [own, ghosts].into_iter().zip(pulls) {
+                for_each_chunk(pressures, &|first, pressures| {
+                    let pulls = &pulls[first..first + pressures.len()];
+                    for (pressure, pull) in pressures.iter_mut().zip(pulls) {
+                        *pressure += pull;
+                    }
+                });
+            }
         }
     }
 
@@ -301,11 +321,14 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
         on: &PointSubset<'_>,
         dilatations: &mut [f64],
     ) {
+        let broken = self.broken_by_blocks();
+        let stretches = self.stretches(step.t);
         let mut blocks = std::mem::take(&mut self.blocks);
         let (set, whole) = (self.instruction_set, !matches!(on, PointSubset::All));
         let moved = step.ghost_velocities(self.cloud.domain());
         let rule = StencilRule {
-            threshold: L::Measure::threshold(self.weakest.stretch),
+            threshold: L::Measure::threshold(self.coldest_limit(stretches.as_deref())),
+            stretches: stretches.as_ref().map(|stretches| &stretches[..]),
             classes: &self.classes,
             families: self.families(),
             states: &self.states,
@@ -331,6 +354,7 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
             }
         });
         self.blocks = blocks;
+        self.renew_volumes(broken);
     }
 
     /// Breaks the other end of bonds that broke in a sweep over a subset of points, and records the energy

@@ -3,6 +3,7 @@
 mod arrays;
 mod breaking;
 mod force;
+mod heated;
 mod kernels;
 mod passes;
 mod tangent;

@@ -1,17 +1,21 @@
 //! [`TwoPass`] and [`Breakable`] for linear peridynamic solids on a lattice.
 
+use std::sync::Arc;
+
 use super::force::{LinearSolidGrid, Wanted};
 use super::kernels::{force_chunks, square_chunks};
 use super::tangent::{dilatation_change_chunks, tangent_chunks};
 use crate::domain::Field;
 use crate::lanes::LANES;
 use crate::material::PairForce;
+use crate::operator::state_based::breaking::heated_limit;
 use crate::operator::state_based::kinematics::Kinematics;
 use crate::operator::{
     AtPoints, BondView, Breakable, CoarseBreak, InstructionSet, PointSubset, TwoPass, damage,
 };
 use crate::parallel::for_each_chunk;
 use crate::step_end::StepEnd;
+use crate::thermal::{Expandable, ThermalExpansion};
 
 /// All points.
 const ALL: Wanted<'static> = Wanted {
@@ -20,17 +24,20 @@ const ALL: Wanted<'static> = Wanted {
 };
 
 impl<L: Kinematics, const D: usize> TwoPass for LinearSolidGrid<L, D> {
-    /// The dilatation θ.
+    /// The dilatation θ; in heated bodies also the thermal pull.
     fn values_per_point(&self) -> usize {
-        1
+        1 + usize::from(self.heat.is_some())
     }
 
-    fn values_into(&self, _t: f64, u: Field<'_>, on: &PointSubset<'_>, values: &mut [f64]) {
-        self.dilatations_into(u, on, values);
+    fn values_into(&self, t: f64, u: Field<'_>, on: &PointSubset<'_>, values: &mut [f64]) {
+        let (dilatations, pulls) = values.split_at_mut(self.cloud.len());
+        self.dilatations_into(u, on, dilatations);
+        self.thermal_pulls_into(t, on, pulls);
     }
 
     fn value_changes_into(&self, _t: f64, u: Field<'_>, direction: Field<'_>, changes: &mut [f64]) {
         changes.fill(0.0);
+        let changes = &mut changes[..self.cloud.len()];
         let set = self.instruction_set;
         self.with_arrays(u, None, ALL, |arrays, _| {
             self.with_arrays(direction, None, ALL, |direction, _| {
@@ -68,7 +75,7 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidGrid<L, D> {
         });
     }
 
-    fn add_energy_density(&self, _t: f64, at: AtPoints<'_>, out: &mut [f64]) {
+    fn add_energy_density(&self, t: f64, at: AtPoints<'_>, out: &mut [f64]) {
         let (set, states) = (self.instruction_set, &self.states);
         let mut squares = vec![0.0; self.cloud.len()];
         self.with_arrays(at.u, None, ALL, |arrays, _| {
@@ -76,9 +83,16 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidGrid<L, D> {
                 square_chunks::<L, D>(set, arrays, block, intact, out);
             });
         });
+        let stretches = self.stretches(t);
         for_each_chunk(out, &|first, out| {
             for (i, energy) in (first..).zip(out) {
-                *energy += states.energy_density([i, i], at.values.owned[i], squares[i]);
+                let (theta, square) = (at.values.owned[i], squares[i]);
+                *energy += match (&self.heat, &stretches) {
+                    (Some(heat), Some(stretches)) => {
+                        heat.energy_density(states, [i, i], stretches[i], [theta, square, 0.0])
+                    }
+                    _ => states.energy_density([i, i], theta, square),
+                };
             }
         });
     }
@@ -106,8 +120,9 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidGrid<L, D> {
         self.cloud.domain().max(own).sqrt()
     }
 
+    /// With thermal strain the force is affine: it does not vanish at rest.
     fn is_linear(&self) -> bool {
-        L::LINEAR
+        L::LINEAR && self.heat.is_none()
     }
 
     fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize)) {
@@ -123,13 +138,23 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidGrid<L, D> {
         needed: &PointSubset<'_>,
         values: &mut [f64],
     ) {
-        if self.can_break() {
+        let (values, pulls) = values.split_at_mut(self.cloud.len());
+        let breaks = self.can_break();
+        if breaks {
             self.break_by_stretch(step, u, on, values);
-            if matches!(on, PointSubset::All) {
-                return;
-            }
         }
-        self.dilatations_into(u, needed, values);
+        if !(breaks && matches!(on, PointSubset::All)) {
+            self.dilatations_into(u, needed, values);
+        }
+        self.thermal_pulls_into(step.t, needed, pulls);
+    }
+
+    fn thermal(&self) -> Option<&ThermalExpansion> {
+        self.heat.as_ref().map(|heat| &heat.expansion)
+    }
+
+    fn expandable_mut(&mut self) -> Option<&mut dyn Expandable> {
+        Some(self)
     }
 
     fn breaking(&self) -> Option<&dyn Breakable> {
@@ -205,11 +230,16 @@ impl<L: Kinematics, const D: usize> Breakable for LinearSolidGrid<L, D> {
         let (families, m) = (self.families(), self.stencil.len());
         let ghosts = self.cloud.domain().ghosts(u);
         let u = Field::new(u, &ghosts);
+        let stretches = self.thermal().map(ThermalExpansion::latest);
         let over = |place: usize, i: usize, k: usize| {
             let there = place.wrapping_add_signed(self.offsets[k].shift);
             let [a, b] = [place, there].map(|place| self.layout.site_at(place));
-            let threshold = L::Measure::threshold(fraction * self.classes.limits(a, b).stretch);
-            let eta = u.difference::<D>([i, self.layout.point_at(there)]);
+            let j = self.layout.point_at(there);
+            let thermal = |stretches: &Arc<Vec<f64>>| 0.5 * (stretches[i] + stretches[j]);
+            let thermal = stretches.as_ref().map_or(0.0, thermal);
+            let limit = fraction * self.classes.limits(a, b).stretch;
+            let threshold = L::Measure::threshold(heated_limit(limit, thermal));
+            let eta = u.difference::<D>([i, j]);
             let (measure, square) = L::Measure::stretch_measure(self.offsets[k].xi, eta);
             measure > threshold * square
         };

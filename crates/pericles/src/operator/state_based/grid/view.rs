@@ -7,7 +7,7 @@ use crate::operator::state_based::view::{force_of_bond, weighted_extension};
 use crate::operator::{BondAt, BondView};
 
 impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
-    /// Returns p = A θ/m of a point.
+    /// Returns p = A θ/m of a point with its thermal pull at the time of the last force evaluation.
     fn pressure_of(&self, u: Field<'_>, i: usize) -> f64 {
         let (place, left) = self.families().bonds_of(i);
         let extension: f64 = left
@@ -18,7 +18,10 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
                 weighted_extension::<L, D>(offset.weight, offset.xi, eta)
             })
             .sum();
-        self.states.pressure[i] * self.states.dilatation[i] * extension
+        let thermal = self.heat.as_ref().map_or(0.0, |heat| {
+            heat.pull(&self.states, [i, i], heat.expansion.latest()[i])
+        });
+        self.states.pressure[i] * self.states.dilatation[i] * extension + thermal
     }
 }
 

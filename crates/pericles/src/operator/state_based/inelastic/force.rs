@@ -1,5 +1,6 @@
 //! Neighbour-list force kernel of inelastic solids.
 
+use super::super::breaking::Stored;
 use super::super::force::LinearSolidForce;
 use super::super::kinematics::Kinematics;
 use super::super::weight::Weight;
@@ -288,6 +289,22 @@ impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
             return self.solid.dilatations_into(u, needed, dilatations);
         }
         let before = self.broken();
+        self.breaking_solid(|solid, stored| {
+            solid.break_by_stretch(step, u, on, dilatations, Some(stored));
+        });
+        if !matches!(on, PointSubset::All) {
+            self.solid.dilatations_into(u, needed, dilatations);
+        }
+        if self.broken() != before {
+            self.renew_sums(step, u, &before);
+        }
+    }
+
+    /// Calls `break_bonds` with the elastic solid and the stored energy of its bonds.
+    pub(super) fn breaking_solid<T>(
+        &mut self,
+        break_bonds: impl FnOnce(&mut LinearSolidForce<L, D>, Stored<'_>) -> T,
+    ) -> T {
         let Self {
             solid,
             history,
@@ -300,13 +317,7 @@ impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
         let stored = |i: usize, entry: usize| {
             history.stored(&laws.of_material[usize::from(material[i])], entry)
         };
-        solid.break_by_stretch(step, u, on, dilatations, Some(&stored));
-        if !matches!(on, PointSubset::All) {
-            solid.dilatations_into(u, needed, dilatations);
-        }
-        if self.broken() != before {
-            self.renew_sums(step, u, &before);
-        }
+        break_bonds(solid, &stored)
     }
 
     /// Returns the memory use without the elastic solid, bytes.

@@ -22,11 +22,12 @@
 //! | `history` | history variables of bonds and points |
 //! | `advance` | loops at the end of a step |
 //! | `kernels`, `tangent` | loops over points and bonds: values, force, energy; derivatives |
-//! | `force`, `passes` | operator |
+//! | `force`, `passes`, `criterion` | operator; bond failure by stress |
 //! | `body` | input of the operator |
 
 mod advance;
 mod body;
+mod criterion;
 mod force;
 mod history;
 mod kernels;

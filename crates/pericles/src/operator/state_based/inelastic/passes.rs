@@ -120,6 +120,9 @@ impl<L: Kinematics, const D: usize> TwoPass for InelasticSolidForce<L, D> {
     ) {
         let n = self.solid.cloud.len();
         self.break_bonds(step, u, [on, needed], &mut values[..n]);
+        if self.solid.has_criteria() {
+            self.break_by_criterion(step, u, [on, needed], values);
+        }
         self.advance(step, u, on);
         self.states_into(step.t, u, needed, values);
         let pulls = &mut values[n..2 * n];
@@ -205,8 +208,17 @@ impl<L: Kinematics, const D: usize> Breakable for InelasticSolidForce<L, D> {
         self.solid.for_each_intact(visit);
     }
 
+    /// Force states are those for the history at the end of the last step.
     fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]) {
-        self.solid.mark_endangered(u, fraction, marks);
+        let u = Field::new(u, &[]);
+        self.solid.mark_by_limits(u, fraction, marks);
+        if self.solid.has_criteria() {
+            let t = self.history.time.iter().copied().fold(0.0, f64::max);
+            let mut values = vec![0.0; 3 * self.solid.cloud.len()];
+            self.values_into(t, u, &PointSubset::All, &mut values);
+            let states = self.force_states(t, &values);
+            self.solid.mark_by_criterion(u, &states, fraction, marks);
+        }
     }
 }
 

@@ -1,0 +1,91 @@
+//! Failure by stress and strain in decks.
+
+use pericles::Control;
+
+use super::{build, parse, refusal};
+
+/// A bar or plate whose ends have the displacements of a uniform strain, in static equilibrium.
+fn pulled(body: &str, material: &str, strain: f64, other: &str) -> String {
+    format!(
+        "body = {{ {body} }}\n\
+         material = {{ density = 1, youngs_modulus = 10, horizon_ratio = 3, {material} }}\n\
+         sets.left = {{ layer = {{ side = \"-x\", cells = 3 }} }}\n\
+         sets.right = {{ layer = {{ side = \"+x\", cells = 3 }} }}\n\
+         constraint = [\n\
+           {{ set = \"left\", displacement = [{{ expression = \"{strain}*x\" }}{other}] }},\n\
+           {{ set = \"right\", displacement = [{{ expression = \"{strain}*x\" }}{other}] }},\n\
+         ]\n\
+         time = {{ scheme = \"static\", tolerance = 1e-10, rigid_modes = \"fix\" }}\n"
+    )
+}
+
+const BAR: &str = "shape = \"bar\", length = 20, spacing = 1";
+const PLATE: &str = "shape = \"plate\", size = [16, 7], spacing = 1, plane = \"stress\"";
+
+/// Returns whether bonds break under a uniaxial strain.
+fn breaks(body: &str, material: &str, strain: f64, other: &str) -> bool {
+    let mut run = build(&pulled(body, material, strain, other)).simulation();
+    run.run(|_| Control::Continue).unwrap();
+    run.system().operator().broken_bonds() > 0
+}
+
+/// σ = E ε in a bar, and in a plate of a correspondence material that is free to contract: the stress is exact at free
+/// surfaces. A bond breaks where its failure index exceeds one.
+#[test]
+fn bodies_in_tension_break_at_the_predicted_strain() {
+    let bar = "model = \"state-based\", strains = \"small\"";
+    let plate = "model = \"correspondence\", poisson_ratio = 0.3";
+    let strength = "failure = \"principal-stress\", strength = 0.01";
+    let index = "failure = \"expression\", criterion = ";
+    // Finite strains change the stress by terms of the order of the strain, 1e-3.
+    for (body, model, other, margin) in [(BAR, bar, "", 1e-6), (PLATE, plate, ", \"free\"", 0.005)]
+    {
+        for criterion in [
+            strength.to_owned(),
+            format!("{index}\"stress_1 / 0.01\""),
+            format!("{index}\"(equivalent_stress / 0.01)^2\""),
+            format!("{index}\"strain_xx / 1e-3\""),
+        ] {
+            let material = format!("{model}, {criterion}");
+            for (part, expected) in [(1.0 - margin, false), (1.0 + margin, true)] {
+                let found = breaks(body, &material, 1e-3 * part, other);
+                assert_eq!(found, expected, "{material}: {part}");
+            }
+        }
+    }
+}
+
+/// Each material has its own criterion; the inherited `failure` needs the key of its criterion.
+#[test]
+fn materials_have_criteria_of_their_own() {
+    let text = pulled(
+        BAR,
+        "model = \"state-based\", strains = \"small\", failure = \"principal-stress\", strength = 0.02",
+        1e-3,
+        "",
+    );
+    let weak = "materials.weak = { strength = 0.009 }\nsets.part = { where = \"x > 14\" }\nassign = [{ set = \"part\", material = \"weak\" }]\n";
+    let mut run = build(&format!("{text}{weak}")).simulation();
+    run.run(|_| Control::Continue).unwrap();
+    assert!(run.system().operator().broken_bonds() > 0);
+    let strong = weak.replace("0.009", "0.011");
+    let mut run = build(&format!("{text}{strong}")).simulation();
+    run.run(|_| Control::Continue).unwrap();
+    assert_eq!(run.system().operator().broken_bonds(), 0);
+}
+
+#[test]
+fn constants_describe_the_criterion_and_the_stencil_is_refused() {
+    let material = "model = \"state-based\", poisson_ratio = 0.3, failure = \"expression\", criterion = \"stress_1 / 1e6\"";
+    let text = pulled(PLATE, material, 1e-3, ", 0");
+    let assembly = build(&text);
+    let constants = assembly.assembly.constants.as_ref().unwrap();
+    let words = constants.criterion().unwrap().words();
+    assert_eq!(words, "where stress_1 / 1e6 exceeds 1");
+    let on_grid = text.replace("model =", "bonds = \"grid\", model =");
+    let reason = refusal(&on_grid).to_string();
+    assert!(reason.contains("stress and strain"), "{reason}");
+    let model = serde_json::to_string(&parse(&text).model).unwrap();
+    let again: pericles_deck::Model = serde_json::from_str(&model).unwrap();
+    assert_eq!(again, parse(&text).model);
+}
