@@ -5,4 +5,5 @@ mod breaking;
 mod equilibrium;
 mod modes;
 mod progress;
+mod relaxation;
 mod solver;
