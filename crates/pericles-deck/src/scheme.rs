@@ -1,7 +1,8 @@
 //! The scheme of `[time]` and its parameters.
 
 use pericles::time::{
-    Damping, Follow, ImplicitRule, Interpolant, LinearSolver, NewmarkOptions, Predictor, RelaxationOptions,
+    Damping, Follow, ImplicitRule, Interpolant, LinearSolver, NewmarkOptions, Predictor,
+    RelaxationOptions,
 };
 use pericles_waves::TrigonometricOptions;
 use serde::{Deserialize, Serialize};

@@ -16,10 +16,10 @@ pub enum BreakingRule {
     },
     /// All bonds beyond their limits break: fewer static states, more broken bonds.
     All,
-    /// Event by event: each step scales the displacements of the supports by the factor at which the next
+    /// Event by event: each step scales loads and displacements of the supports by the factor at which the next
     /// bond reaches its critical stretch. The factor decreases during snap-back.
     Event {
-        /// Time (s) at which supports have the reference displacements.
+        /// Time (s) at which loads and supports have the values that are scaled.
         reference: f64,
         /// Bonds within this fraction of the largest stretch break together; 0 for the most stretched bond alone.
         ties: f64,

@@ -7,7 +7,7 @@ use crate::error::StaticsError;
 use crate::stretch::largest_ratio;
 
 /// Returns an error for systems that event-by-event analysis does not support: states between events must be
-/// multiples of one solution that prescribed displacements alone cause.
+/// multiples of one solution.
 pub(crate) fn check(system: &System, reference: f64) -> Result<()> {
     let refuse = |reason| Err(StaticsError::NoEvents { reason }.into());
     if system.operator().as_linear().is_none() {
@@ -18,17 +18,19 @@ pub(crate) fn check(system: &System, reference: f64) -> Result<()> {
             "no bond can break (set a fracture energy or a critical stretch of the material)",
         );
     }
-    if !system.loads().is_empty() {
+    let (mut supports, mut load) = (vec![0.0; entries(system)], vec![0.0; entries(system)]);
+    system.place_on(reference, &PointSubset::All, &mut supports);
+    system.load_density_into(reference, &mut load);
+    if supports.iter().chain(&load).all(|x| *x == 0.0) {
         return refuse(
-            "loads are not scaled from event to event (use prescribed displacements only)",
+            "no load and no prescribed displacement differs from zero at the end of the run",
         );
     }
-    let mut supports = vec![0.0; system.dimension() * system.points()];
-    system.place_on(reference, &PointSubset::All, &mut supports);
-    if supports.iter().all(|u| *u == 0.0) {
-        return refuse("no displacement is prescribed that is not zero at the end of the run");
-    }
     Ok(())
+}
+
+fn entries(system: &System) -> usize {
+    system.dimension() * system.points()
 }
 
 /// Returns the factor at which the most stretched bond of a response reaches its critical stretch; `None` if

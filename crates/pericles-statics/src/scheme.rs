@@ -1,6 +1,6 @@
 //! Integrator whose steps are static load steps.
 
-use pericles::boundary::Exchange;
+use pericles::boundary::{Exchange, ProportionalLoading};
 use pericles::operator::PointSubset;
 use pericles::time::{InnerIterations, Integrator, State};
 use pericles::{
@@ -47,7 +47,7 @@ pub struct StaticScheme {
     largest: f64,
     /// Energy released after bonds broke, J.
     released: f64,
-    /// Factor of the displacements of supports at the last event.
+    /// Factor of loads and displacements of supports at the last event.
     factor: f64,
     inner: InnerIterations,
     /// Effort of the last step.
@@ -177,9 +177,9 @@ impl StaticScheme {
         }
     }
 
-    /// Advances `state` to the next event: scales the displacements of the supports such that the most
+    /// Advances `state` to the next event: scales loads and displacements of the supports such that the most
     /// stretched bond reaches its critical stretch, and breaks it. The body is linear between events, so that
-    /// one solution at the reference displacements gives all states in between.
+    /// one solution at the reference time gives all states in between.
     fn step_to_event(
         &mut self,
         system: &mut System,
@@ -189,8 +189,12 @@ impl StaticScheme {
     ) -> Result<()> {
         self.prepare(system, reference)?;
         let first = state.step == 0;
-        let mut supports = vec![0.0; self.entries];
+        let (mut load, mut supports) = (vec![0.0; self.entries], vec![0.0; self.entries]);
         system.place_on(reference, &PointSubset::All, &mut supports);
+        let loading = |factors| ProportionalLoading { reference, factors };
+        system.load_proportionally(loading([1.0; 2]));
+        system.load_density_into(reference, &mut load);
+        self.equilibrium.check_loads(system, t, &load)?;
         let free = self.equilibrium.free();
         let guess = |k: usize| match self.factor {
             _ if free[k] == 0.0 => supports[k],
@@ -200,10 +204,9 @@ impl StaticScheme {
         let mut response: Vec<f64> = (0..self.entries).map(guess).collect();
         /// Fraction of the largest reactions: a residual below it is sufficient for an almost severed body.
         const SEVERED: f64 = 1e-3;
-        let none = vec![0.0; self.entries];
         let step = LoadStep {
             t: reference,
-            loads: [&none; 2],
+            loads: [&load; 2],
             supports: [&supports; 2],
             largest: SEVERED * self.largest,
         };
@@ -212,6 +215,7 @@ impl StaticScheme {
         let factor = ratio.unwrap_or(self.factor);
         let scaled = |by: f64| -> Vec<f64> { response.iter().map(|u| by * u).collect() };
         let settled = scaled(self.factor);
+        system.load_proportionally(loading([self.factor; 2]));
         if !first {
             let (elastic, work) = (system.operator().energy(t, &state.u), system.ledger().work);
             system.book_equilibrium(&chord(t, 0.0, &settled, &state.u, false), &mut state.a);
@@ -219,6 +223,7 @@ impl StaticScheme {
                 elastic - system.operator().energy(t, &settled) + system.ledger().work - work;
         }
         state.u = scaled(factor);
+        system.load_proportionally(loading([self.factor, factor]));
         let end = chord(t, t - state.t, &state.u, &settled, first);
         system.book_equilibrium(&end, &mut state.a);
         self.factor = factor;
@@ -337,6 +342,7 @@ impl Integrator for StaticScheme {
             system.load_density_into(state.t, &mut loads[0]);
         }
         system.load_density_into(t_next, &mut loads[1]);
+        self.equilibrium.check_loads(system, t_next, &loads[1])?;
         let mut supports = before.clone();
         system.place_on(t_next, &PointSubset::All, &mut supports);
         let step = LoadStep {

@@ -3,6 +3,7 @@
 mod bodies;
 mod breaking;
 mod equilibrium;
+mod events;
 mod modes;
 mod progress;
 mod relaxation;

@@ -8,8 +8,8 @@ use pericles::family::VolumeCorrection;
 use pericles::material::{Fracture, LinearBond, StressState};
 use pericles::round_trip::{Incomplete, check_resume};
 use pericles::time::{
-    AdaptiveRungeKutta, Damping, Implicit, ImplicitRule, InnerSolver, Integrator, LinearSolver, Relaxation,
-    RelaxationOptions, RungeKutta, State, Tableau, VelocityVerlet,
+    AdaptiveRungeKutta, Damping, Implicit, ImplicitRule, InnerSolver, Integrator, LinearSolver,
+    Relaxation, RelaxationOptions, RungeKutta, State, Tableau, VelocityVerlet,
 };
 use pericles::{
     Archive, Checkpointed, Interrupt, Result, Simulation, StepKind, StopCondition, StopWhen, System,

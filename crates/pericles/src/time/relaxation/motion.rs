@@ -70,9 +70,7 @@ impl Motion {
                 self.damped(c)
             }
             Damping::Fire => {
-                let turn = self
-                    .fire
-                    .turn(system, [&self.free, &self.velocity, force]);
+                let turn = self.fire.turn(system, [&self.free, &self.velocity, force]);
                 (turn.keep, turn.push + turn.step * self.mobility, turn.step)
             }
         };
@@ -99,11 +97,7 @@ impl Motion {
         if self.from_rest {
             (0.0, 0.5 * self.mobility, 1.0)
         } else {
-            (
-                (2.0 - c) / (2.0 + c),
-                2.0 * self.mobility / (2.0 + c),
-                1.0,
-            )
+            ((2.0 - c) / (2.0 + c), 2.0 * self.mobility / (2.0 + c), 1.0)
         }
     }
 
