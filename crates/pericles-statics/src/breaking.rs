@@ -64,12 +64,26 @@ impl BreakingRule {
             },
             Self::All => end_step(system, t, u, work),
             Self::Event { ties, .. } => {
-                let up: Vec<f64> = u.iter().map(|u| (1.0 + ties) * u).collect();
-                beyond = at(system, t, (&up, u), work);
+                beyond = at(system, t, (&enlarged(system, u, ties), u), work)
             }
         }
         (system.operator().broken_bonds() > broken).then_some(beyond)
     }
+}
+
+/// Returns enlarged displacements in which the bonds within the fraction `ties` of the largest stretch exceed their
+/// limits. Where points rotate by large angles, scaling stretches some bonds by more than `ties`; the factor is then
+/// closer to 1.
+fn enlarged(system: &System, u: &[f64], ties: f64) -> Vec<f64> {
+    const SHARES: [f64; 4] = [1.0, 0.1, 0.01, 1e-3];
+    let tied = endangered(system, u, 1.0 - ties);
+    let by = |share: f64| -> Vec<f64> { u.iter().map(|u| (1.0 + share * ties) * u).collect() };
+    let within = |up: &Vec<f64>| {
+        let up = endangered(system, up, 1.0);
+        up.iter().zip(&tied).all(|(up, tied)| *tied || !*up)
+    };
+    let found = SHARES.into_iter().map(by).find(within);
+    found.unwrap_or_else(|| u.to_vec())
 }
 
 /// Breaks the bonds beyond their limits in `scaled` displacements, at which they dissipate their energy.

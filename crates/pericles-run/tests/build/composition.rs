@@ -380,13 +380,12 @@ fn refusal(text: &str, reason: &str) {
     }
 }
 
-/// Static schemes that need force evaluations only.
-const RELAXATIONS: [&str; 2] = ["adaptive-dynamic-relaxation", "fire"];
+const STATICS: [&str; 3] = ["adaptive-dynamic-relaxation", "fire", "static"];
 
 /// Static states of a plate in tension, with all force kernels.
 #[test]
 fn every_force_kernel_reaches_a_static_state() {
-    for scheme in RELAXATIONS {
+    for scheme in STATICS {
         let at_rest = |operator: Operator| {
             let text = operator.deck(&format!("scheme = \"{scheme}\", tolerance = 1e-8"));
             let held = "sets.left = { layer = { side = \"-x\", cells = 3 } }\nconstraint = [{ set = \"left\", displacement = [0, 0] }]\n";
@@ -416,7 +415,7 @@ fn plane_waves_and_surfaces_reach_a_static_state() {
             "[0, 0, 0]",
         ),
     ];
-    for scheme in RELAXATIONS {
+    for scheme in STATICS {
         for (operator, set, zero) in bodies {
             let text = operator.deck(&format!("scheme = \"{scheme}\", tolerance = 1e-8"));
             let run = run_every_way(

@@ -1,10 +1,12 @@
 //! Event-by-event analysis with applied forces: closed forms, snap-back, energy balance.
 
+use std::cell::Cell;
 use std::sync::Arc;
 
+use pericles::boundary::ProportionalLoading;
 use pericles::material::StressState;
 use pericles::prelude::*;
-use pericles::round_trip;
+use pericles::{Interrupt, round_trip};
 use pericles_statics::{BreakingRule, StaticOptions, StaticScheme};
 
 use crate::bodies::points;
@@ -234,4 +236,129 @@ fn loads_on_a_separated_part_are_an_error() {
 #[test]
 fn resumed_run_is_bitwise_identical() {
     round_trip::check_resume(|| run_of(pulled_plate(), EVENTS, 4), [1, 2]).unwrap();
+}
+
+/// Prescribed displacement of an end, m.
+const OPENING: f64 = 0.1;
+
+/// The notched plate of a bond-based material, pulled by prescribed displacements.
+fn stretched_plate(law: PairLaw, fracture_energy: f64, opening: f64) -> System {
+    let cells = 16;
+    let dx = 1.0 / f64::from(cells);
+    let plate = Arc::new(Grid::plate([1.0, 1.0], dx, 1.0).points().unwrap());
+    let mut material = BondMaterial::new(ElasticModulus::Young(1.0), 1.0, 3.0 * dx)
+        .with_fracture_energy(fracture_energy);
+    material.law = law;
+    let top = points(&plate, |x| x[1] > 1.0 - 3.0 * dx);
+    let bottom = points(&plate, |x| x[1] < 3.0 * dx);
+    let opening = [Some(0.0), Some(opening), None];
+    Body::new(plate, material)
+        .stress_state(StressState::PlaneStress)
+        .crack(Crack::Segment {
+            from: [0.0, 0.5],
+            to: [0.3, 0.5],
+        })
+        .no_fail(top.clone())
+        .no_fail(bottom.clone())
+        .motion(PrescribedMotion::fixed(bottom, 2))
+        .motion(PrescribedMotion::displacement(
+            top,
+            opening,
+            TimeFunction::Constant,
+        ))
+        .build()
+        .unwrap()
+}
+
+#[test]
+fn events_of_nonlinear_forces_approach_those_of_linear_forces_at_small_strains() {
+    // Critical stretches of about 3e-4 and 3e-2: the laws differ in the order of the stretch.
+    let factors = |law: PairLaw, energy: f64| -> Vec<f64> {
+        let mut run = run_of(stretched_plate(law, energy, OPENING), EVENTS, 3);
+        let mut found = Vec::new();
+        run.run(|now| {
+            let energies = now.snapshot().energies();
+            assert!(
+                energies.balance().abs() < 1e-5 * energies.work,
+                "{energies:?}"
+            );
+            found.push(now.system().load_factor().unwrap());
+            Control::Continue
+        })
+        .unwrap();
+        found
+    };
+    let difference = |energy: f64| {
+        let (linear, stretch) = (
+            factors(PairLaw::Linear, energy),
+            factors(PairLaw::BondStretch, energy),
+        );
+        (stretch[0] / linear[0] - 1.0).abs()
+    };
+    let (small, large) = (difference(1e-8), difference(1e-4));
+    println!("{small:e} {large:e}");
+    assert!(small < 1e-3, "{small}");
+    assert!(large > 10.0 * small, "{large}");
+}
+
+#[test]
+fn largest_stretch_is_critical_at_every_event_of_a_body_at_large_strain() {
+    // Critical stretch of about 10 %.
+    let mut run = run_of(
+        stretched_plate(PairLaw::BondStretch, 1e-3, OPENING),
+        EVENTS,
+        12,
+    );
+    let mut factors = Vec::new();
+    run.run(|now| {
+        let (system, u) = (now.system(), &now.state().u);
+        let mut marks = vec![false; system.points()];
+        let view = system.operator().capabilities().breaking.unwrap();
+        // The bonds of this event are broken; at most the accepted excess remains.
+        view.mark_endangered(u, 1.0 + 2e-5, &mut marks);
+        assert!(!marks.contains(&true));
+        let energies = now.snapshot().energies();
+        assert!(
+            energies.balance().abs() < 1e-5 * energies.work,
+            "{energies:?}"
+        );
+        factors.push(system.load_factor().unwrap());
+        Control::Continue
+    })
+    .unwrap();
+    assert!(
+        factors.windows(2).any(|pair| pair[1] < pair[0]),
+        "{factors:?}"
+    );
+    // The first event is the load at which the first bond breaks.
+    let breaks = |factor: f64| {
+        let system = stretched_plate(PairLaw::BondStretch, 1e-3, factor * OPENING);
+        let mut run = run_of(system, BreakingRule::All, 1);
+        run.run_to_end().unwrap();
+        run.system().operator().broken_bonds() > 0
+    };
+    assert!(!breaks(0.9999 * factors[0]));
+    assert!(breaks(1.0001 * factors[0]));
+}
+
+#[test]
+fn run_interrupted_within_an_event_continues_bitwise_identically() {
+    let make = || run_of(pulled_plate(), EVENTS, 3);
+    let mut whole = make();
+    whole.run_to_end().unwrap();
+    for stop_after in [5, 30, 60] {
+        let left = Cell::new(stop_after);
+        let is_over = || {
+            left.set(left.get() - 1);
+            left.get() == 0
+        };
+        let mut run = make();
+        let outcome = run
+            .run_interruptible(Interrupt::when(&is_over), |_| Control::Continue)
+            .unwrap();
+        assert_eq!(outcome, Outcome::Stopped, "{stop_after}");
+        run.run_to_end().unwrap();
+        assert_eq!(run.state().u, whole.state().u, "{stop_after}");
+        assert_eq!(run.system().load_factor(), whole.system().load_factor());
+    }
 }

@@ -1,6 +1,8 @@
 //! Integrator whose steps are static load steps.
 
-use pericles::boundary::{Exchange, ProportionalLoading};
+mod event;
+
+use pericles::boundary::Exchange;
 use pericles::operator::PointSubset;
 use pericles::time::{InnerIterations, Integrator, State};
 use pericles::{
@@ -9,7 +11,6 @@ use pericles::{
 
 use crate::breaking::BreakingRule;
 use crate::equilibrium::{Effort, Equilibrium};
-use crate::error::StaticsError;
 use crate::events;
 use crate::options::StaticOptions;
 use crate::path::{Follower, LoadStep};
@@ -28,7 +29,10 @@ use crate::path::{Follower, LoadStep};
 /// stretch first ([`BreakingRule`](crate::BreakingRule)), and the state is recomputed at the same loads until
 /// no bond breaks.
 ///
-/// With [`BreakingRule::Event`] each step computes the load and the state at which the next bond breaks.
+/// With [`BreakingRule::Event`] each step computes the load and the state at which the next bond breaks: for linear
+/// forces from one solution, otherwise by a search of the load factor at which the largest ratio of a bond stretch to
+/// its critical stretch is 1. Between events the bonds do not change, so that the load factor determines the state;
+/// it jumps backwards where the body snaps back, and no arc length along a falling branch is needed.
 ///
 /// Energy balance: loads and supports change linearly within a load step. For linear forces their work is
 /// exactly that of the mean forces; for nonlinear forces it is integrated by Simpson's rule over intermediate
@@ -175,68 +179,6 @@ impl StaticScheme {
             self.released +=
                 elastic - system.operator().energy(t, &state.u) + system.ledger().work - work;
         }
-    }
-
-    /// Advances `state` to the next event: scales loads and displacements of the supports such that the most
-    /// stretched bond reaches its critical stretch, and breaks it. The body is linear between events, so that
-    /// one solution at the reference time gives all states in between.
-    fn step_to_event(
-        &mut self,
-        system: &mut System,
-        state: &mut State,
-        (t, reference): (f64, f64),
-        interrupt: Interrupt<'_>,
-    ) -> Result<()> {
-        self.prepare(system, reference)?;
-        let first = state.step == 0;
-        let (mut load, mut supports) = (vec![0.0; self.entries], vec![0.0; self.entries]);
-        system.place_on(reference, &PointSubset::All, &mut supports);
-        let loading = |factors| ProportionalLoading { reference, factors };
-        system.load_proportionally(loading([1.0; 2]));
-        system.load_density_into(reference, &mut load);
-        self.equilibrium.check_loads(system, t, &load)?;
-        let free = self.equilibrium.free();
-        let guess = |k: usize| match self.factor {
-            _ if free[k] == 0.0 => supports[k],
-            0.0 => 0.0,
-            factor => state.u[k] / factor,
-        };
-        let mut response: Vec<f64> = (0..self.entries).map(guess).collect();
-        /// Fraction of the largest reactions: a residual below it is sufficient for an almost severed body.
-        const SEVERED: f64 = 1e-3;
-        let step = LoadStep {
-            t: reference,
-            loads: [&load; 2],
-            supports: [&supports; 2],
-            largest: SEVERED * self.largest,
-        };
-        self.follow(system, step, (&mut response, false), interrupt)?;
-        let ratio = events::next(system, &response, self.factor);
-        let factor = ratio.unwrap_or(self.factor);
-        let scaled = |by: f64| -> Vec<f64> { response.iter().map(|u| by * u).collect() };
-        let settled = scaled(self.factor);
-        system.load_proportionally(loading([self.factor; 2]));
-        if !first {
-            let (elastic, work) = (system.operator().energy(t, &state.u), system.ledger().work);
-            system.book_equilibrium(&chord(t, 0.0, &settled, &state.u, false), &mut state.a);
-            self.released +=
-                elastic - system.operator().energy(t, &settled) + system.ledger().work - work;
-        }
-        state.u = scaled(factor);
-        system.load_proportionally(loading([self.factor, factor]));
-        let end = chord(t, t - state.t, &state.u, &settled, first);
-        system.book_equilibrium(&end, &mut state.a);
-        self.factor = factor;
-        if ratio.is_some() {
-            let broken = self
-                .options
-                .breaking
-                .apply(system, t, &state.u, &mut state.a);
-            self.released += broken.ok_or(StaticsError::NoEvents {
-                reason: "bonds do not break at a critical stretch",
-            })?;
-        }
-        Ok(())
     }
 
     /// Records the effort of a step and advances the time to its end.
