@@ -147,11 +147,11 @@ impl StaticScheme {
         let mut here = self.factor;
         let mut u = u.to_vec();
         if here != 0.0 {
-            self.advance(system, at, [here; 2], &mut u, interrupt)?;
+            self.advance(system, at, [here; 2], (&mut u, false), interrupt)?;
         }
         let settled = u.clone();
         let mut ratio = largest_ratio(system, &u, ACCURACY).filter(|_| here != 0.0);
-        let (mut work, mut power) = (0.0, 1.0);
+        let mut power = 1.0;
         for _ in 0..TRIALS {
             let next = match ratio {
                 // To the middle of the window.
@@ -167,9 +167,12 @@ impl StaticScheme {
                     work: None,
                 });
             }
-            work += self.advance(system, at, [here, next], &mut u, interrupt)?;
+            self.advance(system, at, [here, next], (&mut u, false), interrupt)?;
             let new = largest_ratio(system, &u, ACCURACY);
             if new.is_some_and(|new| (1.0..=1.0 + WINDOW).contains(&new)) {
+                // Along the direct path, because the search may pass the event.
+                let (range, mut end) = ([self.factor, next], settled.clone());
+                let work = self.advance(system, at, range, (&mut end, true), interrupt)?;
                 return Ok(Between {
                     settled,
                     u,
@@ -194,13 +197,13 @@ impl StaticScheme {
         .into())
     }
 
-    /// Advances `u` between two load factors and returns the work of loads and supports.
+    /// Advances `u` between two load factors and returns the work of loads and supports, if wanted.
     fn advance(
         &mut self,
         system: &System,
         at: &Reference,
         factors: [f64; 2],
-        u: &mut Vec<f64>,
+        u: (&mut Vec<f64>, bool),
         interrupt: Interrupt<'_>,
     ) -> Result<f64> {
         let loads = factors.map(|factor| scaled(factor, &at.load));
@@ -211,6 +214,6 @@ impl StaticScheme {
             supports: [&supports[0], &supports[1]],
             largest: self.largest,
         };
-        self.follow(system, step, (u, true), interrupt)
+        self.follow(system, step, u, interrupt)
     }
 }

