@@ -158,9 +158,16 @@ fn a_checkpoint_that_does_not_match_the_output_files_is_rejected() {
 }
 
 #[test]
-fn a_static_run_resumes_to_identical_results() {
+fn static_runs_resume_to_identical_results() {
+    for scheme in ["adaptive-dynamic-relaxation", "fire", "static"] {
+        static_run_resumes(scheme);
+    }
+}
+
+fn static_run_resumes(scheme: &str) {
     let place = with_plate();
-    let statics = "run plate.toml --quiet --set time={scheme='adaptive-dynamic-relaxation',load_steps=8,end=4e-6} --set checkpoint.every=3 --set load.0.traction=[0,0] \
+    let time = format!("run plate.toml --quiet --set time={{scheme='{scheme}',load_steps=8,end=4e-6}}");
+    let statics = time + " --set checkpoint.every=3 --set load.0.traction=[0,0] \
                    --set output.fields.every=2 --set output.history.every=1 --set output.cracks.every=1 --set output.picture.1.every=4";
     for name in ["whole", "begun"] {
         succeed(place.path(), &format!("{statics} --out {name}"));

@@ -1,11 +1,11 @@
-//! Options of `scheme = "adaptive-dynamic-relaxation"`.
+//! Options of `scheme = "adaptive-dynamic-relaxation"` and `scheme = "fire"`.
 
 use pericles::time::{Damping, RelaxationOptions};
 
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 
-/// Keys of this scheme only.
+/// Keys of adaptive dynamic relaxation only.
 pub(crate) const KEYS: [&str; 1] = ["damping"];
 
 /// The key of static schemes for the number of load steps.
@@ -14,15 +14,20 @@ pub(crate) const LOAD_STEPS: &str = "load_steps";
 /// Default pseudo-time at which all loads have their final values.
 pub(crate) const END: f64 = 1.0;
 
-pub(crate) fn read(table: &Table<'_>) -> Option<RelaxationOptions> {
-    let default = RelaxationOptions::default();
-    let damping = match table.optional("damping") {
+/// Reads the damping of adaptive dynamic relaxation.
+pub(crate) fn damping(table: &Table<'_>) -> Option<Damping> {
+    match table.optional("damping") {
         None => {
             table.record("damping", "adaptive");
             Some(Damping::Adaptive)
         }
-        Some(item) => damping(&item),
-    };
+        Some(item) => damping_of(&item),
+    }
+}
+
+/// Reads the options of both schemes.
+pub(crate) fn read(table: &Table<'_>, damping: Option<Damping>) -> Option<RelaxationOptions> {
+    let default = RelaxationOptions::default();
     let tolerance = table.or("tolerance", default.tolerance, |item| {
         item.within(
             Quantity::Number,
@@ -46,7 +51,7 @@ pub(crate) fn read(table: &Table<'_>) -> Option<RelaxationOptions> {
     })
 }
 
-fn damping(item: &Item<'_>) -> Option<Damping> {
+fn damping_of(item: &Item<'_>) -> Option<Damping> {
     if item.is_keyword("adaptive") {
         return Some(Damping::Adaptive);
     }

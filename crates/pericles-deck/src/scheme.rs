@@ -1,7 +1,8 @@
 //! The scheme of `[time]` and its parameters.
 
 use pericles::time::{
-    Follow, ImplicitRule, Interpolant, LinearSolver, NewmarkOptions, Predictor, RelaxationOptions,
+    Damping, Follow, ImplicitRule, Interpolant, LinearSolver, NewmarkOptions, Predictor,
+    RelaxationOptions,
 };
 use pericles_waves::TrigonometricOptions;
 use serde::{Deserialize, Serialize};
@@ -67,7 +68,7 @@ pub enum Scheme {
         /// Relative energy error of a step.
         tolerance: f64,
     },
-    /// Static states by adaptive dynamic relaxation.
+    /// Static states by adaptive dynamic relaxation or FIRE.
     Relaxation(#[serde(with = "crate::form")] RelaxationOptions),
     /// Static states by Newton's method.
     Static(Statics),
@@ -136,6 +137,7 @@ enum Kind {
     Newmark,
     DiscreteGradient,
     Relaxation,
+    Fire,
     Static,
 }
 
@@ -164,6 +166,7 @@ fn kind(table: &Table<'_>) -> Option<Kind> {
             ("newmark", Kind::Newmark),
             ("discrete-gradient", Kind::DiscreteGradient),
             ("adaptive-dynamic-relaxation", Kind::Relaxation),
+            ("fire", Kind::Fire),
             ("static", Kind::Static),
         ],
     );
@@ -205,7 +208,7 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
     );
     let newmark_keys: Vec<&'static str> = newmark::KEYS
         .into_iter()
-        .filter(|key| !(kind == Kind::Relaxation && *key == "iterations"))
+        .filter(|key| !(matches!(kind, Kind::Relaxation | Kind::Fire) && *key == "iterations"))
         .collect();
     let newmark = only(
         kind == Kind::Newmark,
@@ -214,13 +217,18 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
         "it requires scheme = \"newmark\"",
         newmark::read,
     );
-    let relaxation = only(
+    let damping = only(
         kind == Kind::Relaxation,
         table,
         &relaxation::KEYS,
         "it requires scheme = \"adaptive-dynamic-relaxation\"",
-        relaxation::read,
+        relaxation::damping,
     );
+    let relaxation = match kind {
+        Kind::Relaxation => relaxation::read(table, damping.flatten()).map(Some),
+        Kind::Fire => relaxation::read(table, Some(Damping::Fire)).map(Some),
+        _ => Some(None),
+    };
     let statics = only(
         kind == Kind::Static,
         table,
@@ -228,21 +236,21 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
         "it requires scheme = \"static\"",
         statics::read,
     );
-    if !matches!(kind, Kind::Relaxation | Kind::Static) {
+    if !matches!(kind, Kind::Relaxation | Kind::Fire | Kind::Static) {
         table.forbid(
             relaxation::LOAD_STEPS,
-            "it requires scheme = \"adaptive-dynamic-relaxation\" or scheme = \"static\"",
+            "it requires a static scheme: \"adaptive-dynamic-relaxation\", \"fire\" or \"static\"",
         );
     }
     let tolerance = match kind {
         Kind::DormandPrince => tolerance(table).map(Some),
         Kind::DiscreteGradient => energy_tolerance(table).map(Some),
         // These read tolerances of their own.
-        Kind::Newmark | Kind::Relaxation | Kind::Static => Some(None),
+        Kind::Newmark | Kind::Relaxation | Kind::Fire | Kind::Static => Some(None),
         _ => {
             table.forbid(
                 "tolerance",
-                "it requires scheme = \"dormand-prince\", \"newmark\", \"discrete-gradient\", \"adaptive-dynamic-relaxation\" or \"static\"",
+                "it requires scheme = \"dormand-prince\", \"newmark\", \"discrete-gradient\", \"adaptive-dynamic-relaxation\", \"fire\" or \"static\"",
             );
             Some(None)
         }
@@ -304,7 +312,7 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
         Kind::DiscreteGradient => Scheme::DiscreteGradient {
             tolerance: tolerance?,
         },
-        Kind::Relaxation => Scheme::Relaxation(relaxation?),
+        Kind::Relaxation | Kind::Fire => Scheme::Relaxation(relaxation?),
         Kind::Static => Scheme::Static(statics?),
     })
 }

@@ -145,7 +145,9 @@ const WRONG: &[Wrong] = &[
     wrong("dt = \"auto\"", "scheme = \"static\"\nrigid_modes = \"keep\"", (36, 15), "\"keep\"", &["rigid", "refuse", "fix"]),
     wrong("dt = \"auto\"", "scheme = \"static\"\nbreaking = \"first\"", (36, 12), "\"first\"", &["breaking rule", "worst-first", "all", "event"]),
     wrong("dt = \"auto\"", "newton_steps = 4", (35, 1), "newton_steps", &["not allowed", "scheme = \"static\""]),
-    wrong("dt = \"auto\"", "load_steps = 4", (35, 1), "load_steps", &["not allowed", "scheme = \"adaptive-dynamic-relaxation\""]),
+    wrong("dt = \"auto\"", "load_steps = 4", (35, 1), "load_steps", &["not allowed", "a static scheme: \"adaptive-dynamic-relaxation\", \"fire\" or \"static\""]),
+    wrong("dt = \"auto\"", "scheme = \"fire\"\ndamping = 0.1", (36, 1), "damping", &["`damping` is not allowed in [time]", "scheme = \"adaptive-dynamic-relaxation\""]),
+    wrong("dt = \"auto\"", "scheme = \"fire\"\ndt = 1", (36, 1), "dt", &["`dt` is not allowed in [time]", "set load_steps"]),
     wrong("fields = {", "fragments = { smallest = 1 }\nfields = {", (38, 26), "1", &["out of range", "a fraction of the body's mass"]),
     // Profiles.
     wrong("fields = { interval = \"0.5 us\" }\n", "fields = { interval = \"0.5 us\" }\n[[output.profile]]\nname = \"a/b\"\nfield = \"Damage\"\nfrom = [0, 0]\nto = [1, 0]\n", (40, 8), "\"a/b\"", &["it is part of a file's name", "letters, digits"]),

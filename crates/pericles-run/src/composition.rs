@@ -51,8 +51,8 @@ pub const SCHEMES: [Scheme; 13] = [
         requirements: &[],
     },
     Scheme {
-        words: "adaptive dynamic relaxation (static states)",
-        names: &["adaptive-dynamic-relaxation"],
+        words: "adaptive dynamic relaxation, FIRE (static states)",
+        names: &["adaptive-dynamic-relaxation", "fire"],
         kind: StepKind::Stages,
         requirements: Relaxation::REQUIREMENTS,
     },

@@ -13,8 +13,9 @@ use pericles_deck::{
 };
 use pericles_io::observers::{
     CellMesh, Cracks, EnergyBoundColumns, ErrorColumns, ExtremeColumns, FieldSelection,
-    FieldSeries, ForceDisplacement, FragmentCourse, History, InnerColumns, Overlay, PictureOf,
-    Pictures, PointMark, Probes, Profile, Reactions, ResultFile, ResultFormat, SurfaceCourse,
+    FieldSeries, ForceDisplacement, FragmentCourse, History, InnerColumns, LoadFactorColumn,
+    Overlay, PictureOf, Pictures, PointMark, Probes, Profile, Reactions, ResultFile, ResultFormat,
+    SurfaceCourse,
 };
 use pericles_io::{OutputFolder, ResultBody};
 use pericles_manifold::surface::Surface;
@@ -38,12 +39,15 @@ pub fn simulation(
     let can_break = assembly.system.operator().can_break();
     let reactions = (!assembly.system.motions().is_empty())
         .then(|| Reactions::new(folder.file("reactions.csv"), assembly.system.motions()));
-    let curve = (model.time.scheme.is_static() && reactions.is_some()).then(|| {
+    let loaded: Vec<String> = model.loads.iter().map(|load| load.set.clone()).collect();
+    let acts = reactions.is_some() || !loaded.is_empty();
+    let curve = (model.time.scheme.is_static() && acts).then(|| {
         ForceDisplacement::new(
             folder.file("force_displacement.csv"),
             folder.file("force_displacement.png"),
             model.title.clone().unwrap_or_default(),
-            assembly.system.motions(),
+            &assembly.system,
+            &loaded,
         )
     });
     let (probes, cracks) = (assembly.probes.clone(), assembly.cracks.clone());
@@ -67,6 +71,9 @@ pub fn simulation(
             Scheme::Relaxation(_) | Scheme::Static(_) => InnerColumns::Residual,
             _ => InnerColumns::Velocity,
         });
+    }
+    if follows_events(model) {
+        history = history.with(LoadFactorColumn);
     }
     if let Some(ExactReference { solution, points }) = exact {
         history = history.with(ErrorColumns::new(solution, points));
@@ -136,12 +143,14 @@ pub fn picture_of(model: &Model, picture: &Picture, surface: Option<&Arc<Surface
     }
 }
 
+/// Returns whether the scheme scales the loads from event to event, whatever the time is.
+fn follows_events(model: &Model) -> bool {
+    matches!(&model.time.scheme, Scheme::Static(options) if options.breaking == StaticBreaking::Event)
+}
+
 /// Returns the time at which all loads of a static run act; none if the time is not proportional to the loads.
 fn load_end(model: &Model) -> Option<f64> {
-    match &model.time.scheme {
-        Scheme::Static(options) if options.breaking == StaticBreaking::Event => None,
-        scheme => scheme.is_static().then_some(model.time.end),
-    }
+    (model.time.scheme.is_static() && !follows_events(model)).then_some(model.time.end)
 }
 
 /// Returns the lines on pictures of a plane body: pre-cracks, interfaces of materials, borders of refined parts.

@@ -16,10 +16,10 @@ pub enum BreakingRule {
     },
     /// All bonds beyond their limits break: fewer static states, more broken bonds.
     All,
-    /// Event by event: each step scales the displacements of the supports by the factor at which the next
+    /// Event by event: each step scales loads and displacements of the supports by the factor at which the next
     /// bond reaches its critical stretch. The factor decreases during snap-back.
     Event {
-        /// Time (s) at which supports have the reference displacements.
+        /// Time (s) at which loads and supports have the values that are scaled.
         reference: f64,
         /// Bonds within this fraction of the largest stretch break together; 0 for the most stretched bond alone.
         ties: f64,
@@ -64,12 +64,26 @@ impl BreakingRule {
             },
             Self::All => end_step(system, t, u, work),
             Self::Event { ties, .. } => {
-                let up: Vec<f64> = u.iter().map(|u| (1.0 + ties) * u).collect();
-                beyond = at(system, t, (&up, u), work);
+                beyond = at(system, t, (&enlarged(system, u, ties), u), work)
             }
         }
         (system.operator().broken_bonds() > broken).then_some(beyond)
     }
+}
+
+/// Returns enlarged displacements in which the bonds within the fraction `ties` of the largest stretch exceed their
+/// limits. Where points rotate by large angles, scaling stretches some bonds by more than `ties`; the factor is then
+/// closer to 1.
+fn enlarged(system: &System, u: &[f64], ties: f64) -> Vec<f64> {
+    const SHARES: [f64; 4] = [1.0, 0.1, 0.01, 1e-3];
+    let tied = endangered(system, u, 1.0 - ties);
+    let by = |share: f64| -> Vec<f64> { u.iter().map(|u| (1.0 + share * ties) * u).collect() };
+    let within = |up: &Vec<f64>| {
+        let up = endangered(system, up, 1.0);
+        up.iter().zip(&tied).all(|(up, tied)| *tied || !*up)
+    };
+    let found = SHARES.into_iter().map(by).find(within);
+    found.unwrap_or_else(|| u.to_vec())
 }
 
 /// Breaks the bonds beyond their limits in `scaled` displacements, at which they dissipate their energy.

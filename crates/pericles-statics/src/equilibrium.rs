@@ -134,6 +134,30 @@ impl Equilibrium {
         }
     }
 
+    /// Returns an error for loads on a part of the body that bonds no longer connect to constraints, unless its
+    /// motions are projected out.
+    ///
+    /// # Errors
+    /// [`StaticsError::Separated`].
+    pub fn check_loads(&self, system: &System, t: f64, load: &[f64]) -> Result<()> {
+        if self.options.fix_rigid_modes {
+            return Ok(());
+        }
+        let of = system.points();
+        let separated = |points: usize| Err(StaticsError::Separated { t, points, of }.into());
+        let loaded = |piece: &&FreePiece| piece.moved_by(load, system.cloud().volumes());
+        if let Some(piece) = self.pieces.iter().find(loaded) {
+            return separated(piece.points.len());
+        }
+        let mut damage = vec![0.0; of];
+        system.operator().damage_into(&mut damage);
+        let loose = |k: usize| self.free[k] * load[k] != 0.0 && damage[k % of] >= 1.0;
+        match (0..load.len()).find(|&k| loose(k)) {
+            Some(_) => separated(1),
+            None => Ok(()),
+        }
+    }
+
     /// Advances `u` to the static state of a target.
     ///
     /// # Errors

@@ -30,6 +30,20 @@ pub enum StaticsError {
         /// Resultant along rigid-body motions over the norm of the loads.
         part: f64,
     },
+    /// Loads on a part of the body that no longer has a connection to constraints.
+    #[error(
+        "at t = {} loads act on a part of the body ({points} of {of} points) that bonds no longer connect to a constraint, so that it has no static state; \
+         end the run before with [[time.stop_when]], or prescribe displacements with [[constraint]] instead of loads",
+        quantity(*.t, "s")
+    )]
+    Separated {
+        /// Time, s.
+        t: f64,
+        /// Number of points of the part.
+        points: usize,
+        /// Number of points of the body.
+        of: usize,
+    },
     /// Natural modes are not supported for the system.
     #[error("natural modes are not available for this body: {reason}")]
     NoModes {

@@ -1,4 +1,4 @@
-//! Event-by-event analysis of bodies with linear forces, from one breaking bond to the next.
+//! Event-by-event analysis, from one breaking bond to the next.
 
 use pericles::operator::PointSubset;
 use pericles::{Result, System};
@@ -6,38 +6,47 @@ use pericles::{Result, System};
 use crate::error::StaticsError;
 use crate::stretch::load_factor;
 
-/// Returns an error for systems that event-by-event analysis does not support: states between events must be
-/// multiples of one solution that prescribed displacements alone cause.
+/// Returns an error for systems that event-by-event analysis does not support: the state between events must be
+/// determined by the bonds and one factor of loads and supports.
 pub(crate) fn check(system: &System, reference: f64) -> Result<()> {
     let refuse = |reason| Err(StaticsError::NoEvents { reason }.into());
-    if system.operator().as_linear().is_none() {
-        return refuse("forces are not linear in the displacements (use small strains)");
+    let capabilities = system.operator().capabilities();
+    if capabilities.path_dependent {
+        return refuse(
+            "forces depend on the history of the deformation, so that the load factor does not determine the state (use an elastic material)",
+        );
+    }
+    if capabilities.thermal.is_some() {
+        return refuse("thermal strain is not scaled with the loads (remove [thermal])");
     }
     if !system.operator().can_break() {
         return refuse(
             "no bond can break (set a fracture energy or a critical stretch of the material)",
         );
     }
-    if !system.loads().is_empty() {
-        return refuse(
-            "loads are not scaled from event to event (use prescribed displacements only)",
-        );
-    }
-    let mut supports = vec![0.0; system.dimension() * system.points()];
+    let (mut supports, mut load) = (vec![0.0; entries(system)], vec![0.0; entries(system)]);
     system.place_on(reference, &PointSubset::All, &mut supports);
-    if supports.iter().all(|u| *u == 0.0) {
-        return refuse("no displacement is prescribed that is not zero at the end of the run");
+    system.load_density_into(reference, &mut load);
+    if supports.iter().chain(&load).all(|x| *x == 0.0) {
+        return refuse(
+            "no load and no prescribed displacement differs from zero at the end of the run",
+        );
     }
     Ok(())
 }
+
+fn entries(system: &System) -> usize {
+    system.dimension() * system.points()
+}
+
+/// Factors beyond this multiple of the last one come from bonds stretched by round-off: the body is severed.
+pub(crate) const SEVERED: f64 = 1e3;
 
 /// Returns the factor at which the most stretched bond of a response reaches its critical stretch; `None` if
 /// bonds are stretched only by round-off.
 pub(crate) fn next(system: &System, response: &[f64], last: f64) -> Option<f64> {
     /// Relative accuracy of the factor.
     const ACCURACY: f64 = 1e-7;
-    /// Factors beyond this multiple of the last one come from bonds stretched by round-off: the body is severed.
-    const SEVERED: f64 = 1e3;
     let factor = load_factor(system, response, ACCURACY)?;
     (last == 0.0 || factor <= SEVERED * last).then_some(factor)
 }

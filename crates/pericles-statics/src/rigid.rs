@@ -18,6 +18,25 @@ pub struct FreePiece {
     pub basis: Vec<Vec<f64>>,
 }
 
+impl FreePiece {
+    /// Returns whether a load (N/m³) has a resultant along the motions, and thus sets the part in motion.
+    pub(crate) fn moved_by(&self, load: &[f64], volumes: &[f64]) -> bool {
+        /// Part of the norm of the load: a smaller resultant is due to rounding.
+        const BALANCED: f64 = 1e-9;
+        let (n, own) = (volumes.len(), self.points.len());
+        let force = |k: usize| {
+            let i = self.points[k % own] as usize;
+            volumes[i] * load[k / own * n + i]
+        };
+        let entries = self.basis.first().map_or(0, Vec::len);
+        let norm = (0..entries).map(|k| force(k).powi(2)).sum::<f64>().sqrt();
+        self.basis.iter().any(|motion| {
+            let along: f64 = motion.iter().enumerate().map(|(k, x)| x * force(k)).sum();
+            along.abs() > BALANCED * norm
+        })
+    }
+}
+
 /// Returns the connected parts of two or more points that have rigid-body motions compatible with the
 /// constrained entries.
 pub fn free_pieces(system: &System, surrogate: &Surrogate, unknowns: &Unknowns) -> Vec<FreePiece> {

@@ -1,6 +1,6 @@
 //! Work and impulse of external forces.
 
-use crate::boundary::Load;
+use crate::boundary::{Load, ProportionalLoading};
 use crate::space::PointCloud;
 use crate::step_end::{Path, StepEnd};
 
@@ -26,10 +26,22 @@ impl Ledger {
     }
 
     /// Adds the work and impulse of a load over a step.
-    pub(crate) fn book_load(&mut self, step: &StepEnd<'_>, load: &Load, cloud: &PointCloud) {
+    pub(crate) fn book_load(
+        &mut self,
+        step: &StepEnd<'_>,
+        load: &Load,
+        loading: Option<ProportionalLoading>,
+        cloud: &PointCloud,
+    ) {
         let (n, volumes) = (cloud.len(), cloud.volumes());
-        let times = [step.t - step.dt, step.t - 0.5 * step.dt, step.t];
-        let mut factors = times.map(|t| load.factor(t));
+        let mut times = [step.t - step.dt, step.t - 0.5 * step.dt, step.t];
+        let mut shares = [1.0; 3];
+        if let Some(loading) = loading {
+            let [first, last] = loading.factors;
+            times = [loading.reference; 3];
+            shares = [first, 0.5 * (first + last), last];
+        }
+        let mut factors = [0, 1, 2].map(|m| shares[m] * load.factor(times[m]));
         if let Path::Chord { first: true, .. } = step.path {
             factors[0] = 0.0;
         }
@@ -82,7 +94,7 @@ mod tests {
                     };
                     let cloud = PointCloud::new(1, vec![0.0], vec![1.0], 1.0).unwrap();
                     let mut ledger = Ledger::default();
-                    ledger.book_load(&step, &load, &cloud);
+                    ledger.book_load(&step, &load, None, &cloud);
                     ledger.work
                 })
                 .sum()

@@ -53,6 +53,7 @@ struct RelaxationOptionsForm {
 enum DampingForm {
     Adaptive,
     Viscous(f64),
+    Fire,
 }
 
 #[derive(Serialize, Deserialize)]

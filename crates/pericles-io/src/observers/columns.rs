@@ -52,6 +52,29 @@ impl Checkpointed for InnerColumns {
     }
 }
 
+/// Factor of loads and prescribed displacements in a state that a scheme found by scaling them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct LoadFactorColumn;
+
+impl HistoryColumns for LoadFactorColumn {
+    fn columns(&self) -> Vec<Column> {
+        vec![Column::real("load_factor", "1")]
+    }
+
+    fn cells(&mut self, snapshot: &Snapshot<'_>) -> Vec<Cell> {
+        // The run starts from the body without loads.
+        vec![snapshot.system().load_factor().unwrap_or(0.0).into()]
+    }
+}
+
+impl Checkpointed for LoadFactorColumn {
+    fn save(&self, _archive: &mut Archive) {}
+
+    fn restore(&mut self, _archive: &Archive) -> Result<()> {
+        Ok(())
+    }
+}
+
 /// Errors against an exact solution of a bar: the maximum error over selected points (m), its maximum up to
 /// now, and the root mean square error relative to that of the solution.
 pub struct ErrorColumns {

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use pericles::boundary::PrescribedMotion;
+use pericles::System;
 use pericles::observe::{ObserveError, Observer, Snapshot};
 
 use super::table::{AXES, ObserverTable, step_and_time, whole};
@@ -10,40 +10,54 @@ use crate::csv::{Cell, Column, read_csv};
 use crate::error::IoError;
 use crate::picture::{Axis, Curve, LineChart};
 
-/// Mean displacement and force of each prescribed motion along each of its axes: `force_displacement.csv`,
-/// and a chart `force_displacement.png` at the end of the run.
+/// Mean displacement and force of each prescribed motion along each of its axes, and of each loaded set along the
+/// other axes: `force_displacement.csv`, and a chart `force_displacement.png` at the end of the run.
 ///
 /// Columns: step, time, then `<name>_displacement_<axis>` in metres and `<name>_force_<axis>` in newtons. The
-/// force is that of the support on the body. Displacements are taken from the body, so that they are correct
+/// force is that of the support or load on the body. Displacements are taken from the body, so that they are correct
 /// if a scheme scales the prescribed values. The chart shows the motions whose displacement changes.
 pub struct ForceDisplacement {
     table: ObserverTable,
     path: PathBuf,
     chart: PathBuf,
     title: String,
-    /// Name and axis of each pair of columns.
-    pairs: Vec<(String, usize)>,
+    pairs: Vec<Pair>,
+}
+
+/// A pair of columns.
+#[derive(Debug, Clone)]
+struct Pair {
+    name: String,
+    axis: usize,
+    force: Acting,
+}
+
+/// Source of a force.
+#[derive(Debug, Clone)]
+enum Acting {
+    /// A prescribed motion.
+    Support(usize),
+    /// Loads on the same points.
+    Loads(Vec<usize>),
 }
 
 impl ForceDisplacement {
-    /// Creates the observer for a system with these motions, which must be those of the system; `table` and
-    /// `chart` are file paths.
+    /// Creates the observer for a system; `loaded` are the names of the sets on which its loads act, in the order of
+    /// the loads, and `table` and `chart` are file paths.
     pub fn new(
         table: impl Into<PathBuf>,
         chart: impl Into<PathBuf>,
         title: impl Into<String>,
-        motions: &[PrescribedMotion],
+        system: &System,
+        loaded: &[String],
     ) -> Self {
         let path = table.into();
+        let pairs = pairs(system, loaded);
         let mut columns = step_and_time();
-        let mut pairs = Vec::new();
-        for motion in motions {
-            for axis in motion.axes() {
-                let [displacement, force] = names(&motion.name, axis);
-                columns.push(Column::real(displacement, "m"));
-                columns.push(Column::real(force, "N"));
-                pairs.push((motion.name.clone(), axis));
-            }
+        for pair in &pairs {
+            let [displacement, force] = names(&pair.name, pair.axis);
+            columns.push(Column::real(displacement, "m"));
+            columns.push(Column::real(force, "N"));
         }
         Self {
             table: ObserverTable::new(path.clone(), "observer/force_displacement", columns),
@@ -64,7 +78,7 @@ impl ForceDisplacement {
         let axes = (Axis::new("displacement", "m"), Axis::new("force", "N"));
         let mut chart = LineChart::new(axes.0, axes.1).title(&self.title);
         let mut curves = 0;
-        for (name, axis) in &self.pairs {
+        for Pair { name, axis, .. } in &self.pairs {
             let [displacement, force] = names(name, *axis);
             let (x, y) = (column(&displacement), column(&force));
             let moves = x.iter().any(|u| *u != x[0]);
@@ -81,6 +95,33 @@ impl ForceDisplacement {
     }
 }
 
+fn pairs(system: &System, loaded: &[String]) -> Vec<Pair> {
+    let mut pairs = Vec::new();
+    for (k, motion) in system.motions().iter().enumerate() {
+        pairs.extend(motion.axes().map(|axis| Pair {
+            name: motion.name.clone(),
+            axis,
+            force: Acting::Support(k),
+        }));
+    }
+    for (k, (load, name)) in system.loads().iter().zip(loaded).enumerate() {
+        for axis in (0..system.dimension()).filter(|&axis| !load.is_free_of(axis)) {
+            let same = |pair: &&mut Pair| pair.name == *name && pair.axis == axis;
+            match pairs.iter_mut().find(same).map(|pair| &mut pair.force) {
+                Some(Acting::Loads(loads)) => loads.push(k),
+                // Loads on constrained components change the reactions only.
+                Some(Acting::Support(_)) => {}
+                None => pairs.push(Pair {
+                    name: name.clone(),
+                    axis,
+                    force: Acting::Loads(vec![k]),
+                }),
+            }
+        }
+    }
+    pairs
+}
+
 /// Returns the names of the displacement and force columns.
 fn names(motion: &str, axis: usize) -> [String; 2] {
     ["displacement", "force"].map(|what| format!("{motion}_{what}_{}", AXES[axis]))
@@ -91,13 +132,22 @@ impl Observer for ForceDisplacement {
         let (state, system) = (snapshot.state(), snapshot.system());
         let mut row = vec![whole(state.step), state.t.into()];
         let (n, domain) = (system.points(), system.domain());
-        for motion in system.motions() {
-            let (points, force) = (&motion.points, motion.reaction(system.cloud()));
-            for axis in motion.axes() {
-                let sum = domain.sum(points.len(), |k| state.u[axis * n + points[k] as usize]);
-                row.push(Cell::Real(sum / points.len() as f64));
-                row.push(Cell::Real(force[axis]));
-            }
+        for pair in &self.pairs {
+            let (points, force) = match &pair.force {
+                Acting::Support(k) => {
+                    let motion = &system.motions()[*k];
+                    (&motion.points, motion.reaction(system.cloud())[pair.axis])
+                }
+                Acting::Loads(loads) => {
+                    let forces = loads.iter().map(|&k| system.load_resultant(k, state.t));
+                    let force: f64 = forces.map(|force| force[pair.axis]).sum();
+                    (&system.loads()[loads[0]].points, force)
+                }
+            };
+            let entry = |k: usize| pair.axis * n + points[k] as usize;
+            let sum = domain.sum(points.len(), |k| state.u[entry(k)]);
+            row.push(Cell::Real(sum / points.len() as f64));
+            row.push(Cell::Real(force));
         }
         Ok(self.table.append(&row)?)
     }

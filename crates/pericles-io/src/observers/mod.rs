@@ -73,7 +73,10 @@ mod surface;
 mod table;
 
 pub use cell_mesh::CellMesh;
-pub use columns::{EnergyBoundColumns, ErrorColumns, ExtremeColumns, HistoryColumns, InnerColumns};
+pub use columns::{
+    EnergyBoundColumns, ErrorColumns, ExtremeColumns, HistoryColumns, InnerColumns,
+    LoadFactorColumn,
+};
 pub use cracks::Cracks;
 pub use field_columns::{FieldSelection, PointMark};
 pub use fields::FieldSeries;

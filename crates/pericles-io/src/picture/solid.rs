@@ -5,7 +5,7 @@ use super::colour::shaded;
 use super::drawing::Drawing;
 use super::frame::{Area, ColourBar, Sizes};
 use super::raster::{Face, Raster};
-use super::scene::Scene;
+use super::scene::{Facet, Scene};
 use super::text::{Align, Style};
 use super::ticks::{Ticks, round_below};
 use pericles::sum::max_norm;
@@ -239,8 +239,12 @@ fn draw_cells(raster: &mut Raster, scene: &Scene, placing: &Placing) {
 
 /// Draws triangles of a surface, lit by their normals.
 fn draw_facets(raster: &mut Raster, scene: &Scene, placing: &Placing) {
-    for facet in &scene.facets {
-        let corners = facet.corners.map(|corner| placing.place(corner));
+    let corners = |facet: &Facet| facet.corners.map(|corner| placing.place(corner));
+    let mut placed: Vec<_> = scene.facets.iter().map(|facet| (corners(facet), facet)).collect();
+    // From front to back, so that few hidden pixels are coloured.
+    let nearest = |corners: &[[f64; 3]; 3]| corners.iter().map(|x| x[2]).fold(f64::INFINITY, f64::min);
+    placed.sort_by(|(a, _), (b, _)| nearest(a).total_cmp(&nearest(b)));
+    for (corners, facet) in placed {
         raster.triangle(corners, |shares| {
             let mix = |values: [f64; 3]| (0..3).map(|k| shares[k] * values[k]).sum::<f64>();
             let normal = std::array::from_fn(|c| mix(facet.normals.map(|normal| normal[c])));

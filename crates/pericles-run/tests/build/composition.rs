@@ -380,19 +380,23 @@ fn refusal(text: &str, reason: &str) {
     }
 }
 
+const STATICS: [&str; 3] = ["adaptive-dynamic-relaxation", "fire", "static"];
+
 /// Static states of a plate in tension, with all force kernels.
 #[test]
 fn every_force_kernel_reaches_a_static_state() {
-    let at_rest = |operator: Operator| {
-        let text = operator.deck("scheme = \"adaptive-dynamic-relaxation\", tolerance = 1e-8");
-        let held = "sets.left = { layer = { side = \"-x\", cells = 3 } }\nconstraint = [{ set = \"left\", displacement = [0, 0] }]\n";
-        run_every_way(&(text + held)).u
-    };
-    let list = at_rest(List);
-    let size = largest(list.iter().copied());
-    for operator in [Grid, Convolution] {
-        let error = distance(&at_rest(operator), &list) / size;
-        assert!(error < 1e-6, "{}: {error:e}", operator.word());
+    for scheme in STATICS {
+        let at_rest = |operator: Operator| {
+            let text = operator.deck(&format!("scheme = \"{scheme}\", tolerance = 1e-8"));
+            let held = "sets.left = { layer = { side = \"-x\", cells = 3 } }\nconstraint = [{ set = \"left\", displacement = [0, 0] }]\n";
+            run_every_way(&(text + held)).u
+        };
+        let list = at_rest(List);
+        let size = largest(list.iter().copied());
+        for operator in [Grid, Convolution] {
+            let error = distance(&at_rest(operator), &list) / size;
+            assert!(error < 1e-6, "{scheme}, {}: {error:e}", operator.word());
+        }
     }
 }
 
@@ -411,14 +415,16 @@ fn plane_waves_and_surfaces_reach_a_static_state() {
             "[0, 0, 0]",
         ),
     ];
-    for (operator, set, zero) in bodies {
-        let text = operator.deck("scheme = \"adaptive-dynamic-relaxation\", tolerance = 1e-8");
-        let run = run_every_way(
-            &(text
-                + set
-                + &format!("constraint = [{{ set = \"held\", displacement = {zero} }}]\n")),
-        );
-        assert!(run.force < 1e-6 * 1e-3, "{:e}", run.force);
+    for scheme in STATICS {
+        for (operator, set, zero) in bodies {
+            let text = operator.deck(&format!("scheme = \"{scheme}\", tolerance = 1e-8"));
+            let run = run_every_way(
+                &(text
+                    + set
+                    + &format!("constraint = [{{ set = \"held\", displacement = {zero} }}]\n")),
+            );
+            assert!(run.force < 1e-6 * 1e-3, "{scheme}: {:e}", run.force);
+        }
     }
 }
 

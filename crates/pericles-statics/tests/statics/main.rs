@@ -3,6 +3,8 @@
 mod bodies;
 mod breaking;
 mod equilibrium;
+mod events;
 mod modes;
 mod progress;
+mod relaxation;
 mod solver;

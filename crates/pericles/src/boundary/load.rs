@@ -110,7 +110,7 @@ impl Load {
     }
 
     /// Returns whether the load has no component along axis c at any time.
-    pub(crate) fn is_free_of(&self, c: usize) -> bool {
+    pub fn is_free_of(&self, c: usize) -> bool {
         matches!(self.density, LoadDensity::Uniform(density) if density[c] == 0.0)
     }
 
@@ -155,16 +155,16 @@ impl Load {
             }
     }
 
-    /// Adds the force density at time t on the points of `on`.
+    /// Adds the force density at time t, times a factor, on the points of `on`.
     pub(crate) fn add_force(
         &self,
-        t: f64,
+        (t, share): (f64, f64),
         on: &PointSubset<'_>,
         points: usize,
         dimension: usize,
         out: &mut [f64],
     ) {
-        let factor = self.factor(t);
+        let factor = share * self.factor(t);
         if factor == 0.0 {
             return;
         }

@@ -3,6 +3,7 @@
 mod damping;
 mod function;
 mod load;
+mod loading;
 mod motion;
 mod rayleigh;
 mod table;
@@ -10,6 +11,7 @@ mod table;
 pub use damping::{DampedSteps, DampingLayer, DampingProfile};
 pub use function::{TimeCourse, TimeFunction};
 pub use load::{ALWAYS, FieldFunction, Load, LoadDensity};
+pub use loading::ProportionalLoading;
 pub use motion::{AxisMotion, MotionKind, PrescribedMotion, Trajectory};
 pub use rayleigh::{RayleighDamping, RayleighRates, Stiffness, StiffnessProduct};
 pub use table::TimeTable;

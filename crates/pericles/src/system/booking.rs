@@ -10,7 +10,7 @@ impl System {
     pub fn book_step(&mut self, step: &StepEnd<'_>, acceleration: &[f64]) {
         let n = self.points();
         for load in &self.loads {
-            self.ledger.book_load(step, load, &self.cloud);
+            self.ledger.book_load(step, load, self.loading, &self.cloud);
         }
         let density = |i: usize| self.density.at(i);
         let chord = match step.path {

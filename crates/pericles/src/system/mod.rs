@@ -1,6 +1,7 @@
 //! The semi-discrete equation of motion, which integrators advance.
 
 mod booking;
+mod loading;
 mod stored;
 mod supports;
 
@@ -8,7 +9,9 @@ use std::sync::Arc;
 
 use crate::accounts::Ledger;
 use crate::archive::Counter;
-use crate::boundary::{Boundary, Exchange, Load, PrescribedMotion, Stage, Stiffness};
+use crate::boundary::{
+    Boundary, Exchange, Load, PrescribedMotion, ProportionalLoading, Stage, Stiffness,
+};
 use crate::domain::Domain;
 use crate::error::{PericlesError, Result, positive};
 use crate::operator::{Force, Forces, PointSubset};
@@ -26,6 +29,7 @@ pub struct System {
     forces: Forces,
     density: PointScalar,
     loads: Vec<Load>,
+    loading: Option<ProportionalLoading>,
     motions: Vec<PrescribedMotion>,
     boundaries: Vec<Box<dyn Boundary>>,
     ledger: Ledger,
@@ -60,22 +64,13 @@ impl System {
             forces: Forces::new(operator),
             density,
             loads: Vec::new(),
+            loading: None,
             motions: Vec::new(),
             boundaries: Vec::new(),
             ledger: Ledger::default(),
             evaluated: Counter::default(),
             coarse_breaks: Counter::default(),
         })
-    }
-
-    /// Adds a load.
-    ///
-    /// # Errors
-    /// Points that the body does not have; values that are not one per loaded point and axis.
-    pub fn add_load(&mut self, load: Load) -> Result<()> {
-        load.check(self.dimension(), self.points())?;
-        self.loads.push(load);
-        Ok(())
     }
 
     /// Adds a boundary.
@@ -165,11 +160,6 @@ impl System {
     /// The constraints.
     pub fn motions(&self) -> &[PrescribedMotion] {
         &self.motions
-    }
-
-    /// The loads.
-    pub fn loads(&self) -> &[Load] {
-        &self.loads
     }
 
     /// Work and impulse of external forces so far.
@@ -367,12 +357,6 @@ impl System {
         self.add_loads(t, &PointSubset::All, out);
     }
 
-    /// Computes loads at time t, N/m³.
-    pub fn load_density_into(&self, t: f64, out: &mut [f64]) {
-        self.zero(&PointSubset::All, out);
-        self.add_loads(t, &PointSubset::All, out);
-    }
-
     /// Computes loads over density at time t, m/s².
     pub fn external_acceleration_into(&self, t: f64, out: &mut [f64]) {
         self.zero(&PointSubset::All, out);
@@ -426,12 +410,6 @@ impl System {
 
     fn zero(&self, on: &PointSubset<'_>, out: &mut [f64]) {
         for_each_entry(on, self.points(), out, &|_, x| *x = 0.0);
-    }
-
-    fn add_loads(&self, t: f64, on: &PointSubset<'_>, out: &mut [f64]) {
-        for load in &self.loads {
-            load.add_force(t, on, self.points(), self.dimension(), out);
-        }
     }
 
     fn divide_by_density(&self, on: &PointSubset<'_>, out: &mut [f64]) {

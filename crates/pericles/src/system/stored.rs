@@ -9,6 +9,7 @@ crate::saved! {
         motions: under("motion"),
         boundaries: part,
         ledger: array("ledger"),
+        loading: array("loading"),
         evaluated: array("evaluated"),
         coarse_breaks: array("coarse breaks"),
         cloud, density, loads: fixed,

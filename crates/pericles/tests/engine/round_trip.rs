@@ -8,8 +8,8 @@ use pericles::family::VolumeCorrection;
 use pericles::material::{Fracture, LinearBond, StressState};
 use pericles::round_trip::{Incomplete, check_resume};
 use pericles::time::{
-    AdaptiveRungeKutta, Implicit, ImplicitRule, InnerSolver, Integrator, LinearSolver, Relaxation,
-    RelaxationOptions, RungeKutta, State, Tableau, VelocityVerlet,
+    AdaptiveRungeKutta, Damping, Implicit, ImplicitRule, InnerSolver, Integrator, LinearSolver,
+    Relaxation, RelaxationOptions, RungeKutta, State, Tableau, VelocityVerlet,
 };
 use pericles::{
     Archive, Checkpointed, Interrupt, Result, Simulation, StepKind, StopCondition, StopWhen, System,
@@ -78,11 +78,24 @@ fn direct_solver_factorises_for_the_same_step_after_a_resume() {
 
 #[test]
 fn adaptive_dynamic_relaxation_with_stop_conditions_resumes() {
+    relaxation_resumes(Damping::Adaptive);
+}
+
+#[test]
+fn fire_with_stop_conditions_resumes() {
+    relaxation_resumes(Damping::Fire);
+}
+
+fn relaxation_resumes(damping: Damping) {
     let make = || {
         let body = torn();
         let points = body.motions()[1].points.clone();
         let relaxation = |body: &System| -> Box<dyn Integrator> {
-            Box::new(Relaxation::new(RelaxationOptions::default(), body).unwrap())
+            let options = RelaxationOptions {
+                damping,
+                ..RelaxationOptions::default()
+            };
+            Box::new(Relaxation::new(options, body).unwrap())
         };
         let mut run = from_rest(body, &relaxation, 0.125, 8);
         let reaction = StopCondition::ReactionBelow {

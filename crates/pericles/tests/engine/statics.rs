@@ -164,7 +164,13 @@ fn static_state_does_not_depend_on_damping_and_load_steps() {
         relaxed(held(&cloud, force, &Pull::Force), options, steps).unwrap()
     };
     let reference = run(Damping::Adaptive, 1);
-    for (damping, steps) in [(Damping::Adaptive, 3), (Damping::Viscous(0.05), 1)] {
+    let others = [
+        (Damping::Adaptive, 3),
+        (Damping::Viscous(0.05), 1),
+        (Damping::Fire, 1),
+        (Damping::Fire, 3),
+    ];
+    for (damping, steps) in others {
         let other = run(damping, steps);
         for (a, b) in reference.state().u.iter().zip(&other.state().u) {
             assert!((a - b).abs() < 1e-8, "{damping:?}: {a} {b}");

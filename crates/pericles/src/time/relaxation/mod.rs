@@ -1,26 +1,19 @@
-//! Static states by adaptive dynamic relaxation.
+//! Static states by fictitious motion: adaptive dynamic relaxation and FIRE.
 
-use rayon::prelude::*;
+mod fire;
+mod motion;
+
+pub use motion::Damping;
+
+use motion::Motion;
 
 use super::{InnerIterations, Integrator, State};
 use crate::compatibility::{Need, Requirement, require};
 use crate::error::{PericlesError, Result};
 use crate::interrupt::Interrupt;
 use crate::operator::PointSubset;
-use crate::parallel::BLOCK;
 use crate::step_end::{Path, StepEnd};
 use crate::system::System;
-
-/// Damping of the fictitious motion.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub enum Damping {
-    /// Adaptive: c = 2 √(dᵀK d / dᵀM d) for the displacement d since the start, with K d from the change of the
-    /// forces; critical for the shape of d (Underwood 1983).
-    #[default]
-    Adaptive,
-    /// Constant c per iteration, between 0 and 2.
-    Viscous(f64),
-}
 
 /// Options of [`Relaxation`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,6 +47,15 @@ impl Default for RelaxationOptions {
 ///
 /// v ← ((2 − c) v + 2 F/M)/(2 + c), u ← u + v.
 ///
+/// With [`Damping::Fire`] there is no coefficient c. The velocity is turned towards the force and accelerated by
+/// it in steps Δτ ≤ 1 (semi-implicit Euler),
+///
+/// v ← (1 − α) v + α |v| F/|F| + Δτ F/M, u ← u + Δτ v,
+///
+/// with the standard constants of Bitzek et al. (2006): after five steps with positive power F·v the step grows by
+/// 10 % and α = 0.1 shrinks by 1 % per step; when the power is not positive the body stops, the step is halved and α
+/// is reset. The norms include the masses. Steps begin at 0.1; the largest step of 1 is the stable step of the masses.
+///
 /// Then all bonds beyond their critical stretch break at once, and the body relaxes again under the same loads,
 /// until no bond breaks. Physical masses play no role, and time enters through loads and constraints only.
 ///
@@ -68,14 +70,8 @@ impl Default for RelaxationOptions {
 #[derive(Debug, Clone)]
 pub struct Relaxation {
     options: RelaxationOptions,
-    /// Inverse fictitious mass times volume, per point.
-    mobility: f64,
-    /// 1 for free entries, 0 for prescribed ones.
-    free: Vec<f64>,
+    motion: Motion,
     force: Vec<f64>,
-    first_force: Vec<f64>,
-    velocity: Vec<f64>,
-    start: Vec<f64>,
     before: Vec<f64>,
     /// Largest norm of loads or reactions at an equilibrium so far, N.
     largest: f64,
@@ -86,7 +82,13 @@ pub struct Relaxation {
     iterations: u64,
 }
 
-const NAME: &str = "adaptive-dynamic-relaxation";
+/// Returns the name of the scheme with this damping.
+fn name_of(damping: Damping) -> &'static str {
+    match damping {
+        Damping::Fire => "fire",
+        Damping::Adaptive | Damping::Viscous(_) => "adaptive-dynamic-relaxation",
+    }
+}
 
 impl Relaxation {
     /// Requirements on the system.
@@ -118,12 +120,13 @@ impl Relaxation {
         {
             return refuse("the damping", damping, "above 0 and below 2");
         }
-        require(NAME, Self::REQUIREMENTS, system)?;
+        let name = name_of(options.damping);
+        require(name, Self::REQUIREMENTS, system)?;
         // Unit densities give the bound of the stiffness itself.
         let omega = system.operator().frequency_bound(&|_| 1.0);
         if !(omega > 0.0 && omega.is_finite()) {
             return Err(PericlesError::SchemeNotUsable {
-                scheme: NAME,
+                scheme: name,
                 reason: "its bonds have no stiffness at rest, which determines the fictitious masses",
             });
         }
@@ -133,12 +136,8 @@ impl Relaxation {
         let zeros = || vec![0.0; entries];
         Ok(Self {
             options,
-            mobility: (OMEGA_DT / omega).powi(2),
-            free: zeros(),
+            motion: Motion::new(options.damping, (OMEGA_DT / omega).powi(2), entries),
             force: zeros(),
-            first_force: zeros(),
-            velocity: zeros(),
-            start: zeros(),
             before: zeros(),
             largest: 0.0,
             damped: 0.0,
@@ -161,15 +160,12 @@ impl Relaxation {
         interrupt: Interrupt<'_>,
     ) -> Result<f64> {
         let RelaxationOptions {
-            damping,
             tolerance,
             iterations,
+            ..
         } = self.options;
         system.place_on(t, &PointSubset::All, u);
-        self.free.fill(1.0);
-        system.hold_at(t, &mut self.free);
-        self.start.copy_from_slice(u);
-        self.velocity.fill(0.0);
+        self.motion.rest(system, t, u);
         system.load_density_into(t, &mut self.force);
         let load = self.norm(system, &self.force, |free| free);
         let load = load.max(system.thermal_force(t, u));
@@ -182,7 +178,6 @@ impl Relaxation {
             let residual = self.norm(system, &self.force, |free| free);
             if iteration == 0 {
                 first = residual;
-                self.first_force.copy_from_slice(&self.force);
             }
             let support = self.norm(system, &self.force, |free| 1.0 - free);
             // When a body breaks apart, no force remains to compare with; hence the largest forces so far count
@@ -204,11 +199,7 @@ impl Relaxation {
                 break;
             }
             self.iterations += 1;
-            let c = match damping {
-                Damping::Viscous(c) => c,
-                Damping::Adaptive => self.critical_damping(system, u),
-            };
-            self.advance(c, iteration == 0, u);
+            self.motion.advance(system, &self.force, u);
         }
         Err(PericlesError::NoEquilibrium {
             t,
@@ -224,52 +215,9 @@ impl Relaxation {
         system
             .domain()
             .sum(force.len(), |entry| {
-                counts(self.free[entry]) * (force[entry] * volumes[entry % n]).powi(2)
+                counts(self.motion.free[entry]) * (force[entry] * volumes[entry % n]).powi(2)
             })
             .sqrt()
-    }
-
-    /// Returns 2 √(dᵀK d / dᵀM d), with K d = F₀ − F for the displacement d since the start.
-    fn critical_damping(&self, system: &System, u: &[f64]) -> f64 {
-        /// // From 2 on the motion would reverse at every step.
-        const MOST: f64 = 1.9;
-        let (n, volumes) = (system.points(), system.cloud().volumes());
-        let d = |entry: usize| u[entry] - self.start[entry];
-        let weighted = |entry: usize, x: f64| self.free[entry] * volumes[entry % n] * x;
-        let stiffness = system.domain().sum(u.len(), |entry| {
-            weighted(
-                entry,
-                d(entry) * (self.first_force[entry] - self.force[entry]),
-            )
-        });
-        let mass = system
-            .domain()
-            .sum(u.len(), |entry| weighted(entry, d(entry).powi(2)));
-        if stiffness > 0.0 && mass > 0.0 {
-            (2.0 * (self.mobility * stiffness / mass).sqrt()).min(MOST)
-        } else {
-            0.0
-        }
-    }
-
-    /// One unit step. The first one starts from rest with half a step.
-    fn advance(&mut self, c: f64, from_rest: bool, u: &mut [f64]) {
-        let (keep, push) = if from_rest {
-            (0.0, 0.5 * self.mobility)
-        } else {
-            ((2.0 - c) / (2.0 + c), 2.0 * self.mobility / (2.0 + c))
-        };
-        self.velocity
-            .par_chunks_mut(BLOCK)
-            .zip(u.par_chunks_mut(BLOCK))
-            .zip(self.force.par_chunks(BLOCK))
-            .zip(self.free.par_chunks(BLOCK))
-            .for_each(|(((velocity, u), force), free)| {
-                for k in 0..u.len() {
-                    velocity[k] = free[k] * (keep * velocity[k] + push * force[k]);
-                    u[k] += velocity[k];
-                }
-            });
     }
 
     /// Breaks bonds beyond their critical stretch and relaxes again until none is left; returns the final relative
@@ -310,11 +258,11 @@ impl Relaxation {
 
 impl Integrator for Relaxation {
     fn name(&self) -> &'static str {
-        NAME
+        name_of(self.options.damping)
     }
 
     fn vector_length(&self) -> Option<usize> {
-        Some(self.free.len())
+        Some(self.force.len())
     }
 
     fn requirements(&self) -> &'static [Requirement] {
@@ -401,7 +349,7 @@ crate::saved! {
     impl Checkpointed for Relaxation {
         damped, largest: array("relaxation/account"),
         inner: part,
-        options, mobility: fixed,
-        free, force, first_force, velocity, start, before, iterations: scratch,
+        options: fixed,
+        motion, force, before, iterations: scratch,
     }
 }

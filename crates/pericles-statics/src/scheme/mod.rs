@@ -1,5 +1,7 @@
 //! Integrator whose steps are static load steps.
 
+mod event;
+
 use pericles::boundary::Exchange;
 use pericles::operator::PointSubset;
 use pericles::time::{InnerIterations, Integrator, State};
@@ -9,7 +11,6 @@ use pericles::{
 
 use crate::breaking::BreakingRule;
 use crate::equilibrium::{Effort, Equilibrium};
-use crate::error::StaticsError;
 use crate::events;
 use crate::options::StaticOptions;
 use crate::path::{Follower, LoadStep};
@@ -28,7 +29,10 @@ use crate::path::{Follower, LoadStep};
 /// stretch first ([`BreakingRule`](crate::BreakingRule)), and the state is recomputed at the same loads until
 /// no bond breaks.
 ///
-/// With [`BreakingRule::Event`] each step computes the load and the state at which the next bond breaks.
+/// With [`BreakingRule::Event`] each step computes the load and the state at which the next bond breaks: for linear
+/// forces from one solution, otherwise by a search of the load factor at which the largest ratio of a bond stretch to
+/// its critical stretch is 1. Between events the bonds do not change, so that the load factor determines the state;
+/// it jumps backwards where the body snaps back, and no arc length along a falling branch is needed.
 ///
 /// Energy balance: loads and supports change linearly within a load step. For linear forces their work is
 /// exactly that of the mean forces; for nonlinear forces it is integrated by Simpson's rule over intermediate
@@ -47,7 +51,7 @@ pub struct StaticScheme {
     largest: f64,
     /// Energy released after bonds broke, J.
     released: f64,
-    /// Factor of the displacements of supports at the last event.
+    /// Factor of loads and displacements of supports at the last event.
     factor: f64,
     inner: InnerIterations,
     /// Effort of the last step.
@@ -177,63 +181,6 @@ impl StaticScheme {
         }
     }
 
-    /// Advances `state` to the next event: scales the displacements of the supports such that the most
-    /// stretched bond reaches its critical stretch, and breaks it. The body is linear between events, so that
-    /// one solution at the reference displacements gives all states in between.
-    fn step_to_event(
-        &mut self,
-        system: &mut System,
-        state: &mut State,
-        (t, reference): (f64, f64),
-        interrupt: Interrupt<'_>,
-    ) -> Result<()> {
-        self.prepare(system, reference)?;
-        let first = state.step == 0;
-        let mut supports = vec![0.0; self.entries];
-        system.place_on(reference, &PointSubset::All, &mut supports);
-        let free = self.equilibrium.free();
-        let guess = |k: usize| match self.factor {
-            _ if free[k] == 0.0 => supports[k],
-            0.0 => 0.0,
-            factor => state.u[k] / factor,
-        };
-        let mut response: Vec<f64> = (0..self.entries).map(guess).collect();
-        /// Fraction of the largest reactions: a residual below it is sufficient for an almost severed body.
-        const SEVERED: f64 = 1e-3;
-        let none = vec![0.0; self.entries];
-        let step = LoadStep {
-            t: reference,
-            loads: [&none; 2],
-            supports: [&supports; 2],
-            largest: SEVERED * self.largest,
-        };
-        self.follow(system, step, (&mut response, false), interrupt)?;
-        let ratio = events::next(system, &response, self.factor);
-        let factor = ratio.unwrap_or(self.factor);
-        let scaled = |by: f64| -> Vec<f64> { response.iter().map(|u| by * u).collect() };
-        let settled = scaled(self.factor);
-        if !first {
-            let (elastic, work) = (system.operator().energy(t, &state.u), system.ledger().work);
-            system.book_equilibrium(&chord(t, 0.0, &settled, &state.u, false), &mut state.a);
-            self.released +=
-                elastic - system.operator().energy(t, &settled) + system.ledger().work - work;
-        }
-        state.u = scaled(factor);
-        let end = chord(t, t - state.t, &state.u, &settled, first);
-        system.book_equilibrium(&end, &mut state.a);
-        self.factor = factor;
-        if ratio.is_some() {
-            let broken = self
-                .options
-                .breaking
-                .apply(system, t, &state.u, &mut state.a);
-            self.released += broken.ok_or(StaticsError::NoEvents {
-                reason: "bonds do not break at a critical stretch",
-            })?;
-        }
-        Ok(())
-    }
-
     /// Records the effort of a step and advances the time to its end.
     fn close_step(&mut self, state: &mut State, t_next: f64) {
         let InnerIterations { most, total, .. } = self.inner;
@@ -337,6 +284,7 @@ impl Integrator for StaticScheme {
             system.load_density_into(state.t, &mut loads[0]);
         }
         system.load_density_into(t_next, &mut loads[1]);
+        self.equilibrium.check_loads(system, t_next, &loads[1])?;
         let mut supports = before.clone();
         system.place_on(t_next, &PointSubset::All, &mut supports);
         let step = LoadStep {

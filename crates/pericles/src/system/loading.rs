@@ -1,0 +1,54 @@
+//! Loads of a system.
+
+use super::System;
+use crate::boundary::{Load, ProportionalLoading};
+use crate::error::Result;
+use crate::parallel::PointSubset;
+
+impl System {
+    /// Adds a load.
+    ///
+    /// # Errors
+    /// Points that the body does not have; values that are not one per loaded point and axis.
+    pub fn add_load(&mut self, load: Load) -> Result<()> {
+        load.check(self.dimension(), self.points())?;
+        self.loads.push(load);
+        Ok(())
+    }
+
+    /// The loads.
+    pub fn loads(&self) -> &[Load] {
+        &self.loads
+    }
+
+    /// Makes all loads multiples of their values at a reference time, for schemes that search the load of a state.
+    pub fn load_proportionally(&mut self, loading: ProportionalLoading) {
+        self.loading = Some(loading);
+    }
+
+    /// The factor of proportional loading.
+    pub fn load_factor(&self) -> Option<f64> {
+        self.loading.map(|loading| loading.factors[1])
+    }
+
+    /// Resultant force (N) of a load, given by its index, at time t.
+    pub fn load_resultant(&self, load: usize, t: f64) -> [f64; 3] {
+        let (t, factor) = ProportionalLoading::of(self.loading, t);
+        self.loads[load]
+            .resultant(t, &self.cloud)
+            .map(|force| factor * force)
+    }
+
+    /// Computes loads at time t, N/m³.
+    pub fn load_density_into(&self, t: f64, out: &mut [f64]) {
+        self.zero(&PointSubset::All, out);
+        self.add_loads(t, &PointSubset::All, out);
+    }
+
+    pub(super) fn add_loads(&self, t: f64, on: &PointSubset<'_>, out: &mut [f64]) {
+        let at = ProportionalLoading::of(self.loading, t);
+        for load in &self.loads {
+            load.add_force(at, on, self.points(), self.dimension(), out);
+        }
+    }
+}
