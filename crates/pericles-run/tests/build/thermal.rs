@@ -121,7 +121,7 @@ fn temperatures_of_points_come_from_a_file_and_follow_a_time_function() {
         assemble(&deck.model, discretisation, &resources)
     };
     write(32);
-    let run = built().unwrap().simulation();
+    let run = built().unwrap().simulation().unwrap();
     let thermal = run.system().operator().capabilities().thermal.unwrap();
     let cloud = run.system().cloud();
     for (t, factor) in [(0.0, 0.0), (1.0, 0.5), (2.0, 1.25), (9.0, 2.0)] {
