@@ -121,7 +121,7 @@ fn temperatures_of_points_come_from_a_file_and_follow_a_time_function() {
         assemble(&deck.model, discretisation, &resources)
     };
     write(32);
-    let run = built().unwrap().simulation();
+    let run = built().unwrap().simulation().unwrap();
     let thermal = run.system().operator().capabilities().thermal.unwrap();
     let cloud = run.system().cloud();
     for (t, factor) in [(0.0, 0.0), (1.0, 0.5), (2.0, 1.25), (9.0, 2.0)] {
@@ -134,10 +134,7 @@ fn temperatures_of_points_come_from_a_file_and_follow_a_time_function() {
     }
     write(31);
     let error = built().err().unwrap().to_string();
-    assert!(
-        error.contains("temperatures.txt") && error.contains("32"),
-        "{error}"
-    );
+    assert!(error.contains("temperatures.txt"), "{error}");
 }
 
 #[test]
