@@ -42,7 +42,7 @@ pub(super) fn read(
     let horizon = extent.and_then(|extent| extent.with(given.as_ref(), body.frame.dimension));
     let calibration = fracture_calibration(&table, body, shared);
     let criterion = criterion(&table, body.frame.dimension);
-    let by_state = matches!(criterion, Some(Some(_)));
+    let by_state = !matches!(criterion, Some(None));
     let rules = SolidRules::closing(body.state, calibration, by_state);
     let (elastic, failure) = (rules.elastic(&table), rules.failure(&table));
     let plasticity = plasticity(&table);

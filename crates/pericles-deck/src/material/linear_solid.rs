@@ -47,7 +47,7 @@ pub(super) fn read(
     };
     let horizon = extent.and_then(|extent| extent.with(given.as_ref(), body.frame.dimension));
     let criterion = criterion::read(&table, body.frame.dimension);
-    let by_state = matches!(criterion, Some(Some(_)));
+    let by_state = !matches!(criterion, Some(None));
     let rules = SolidRules::read(
         &table,
         body.state,
