@@ -57,7 +57,7 @@ const BODY: &str =
 #[rustfmt::skip]
 const WRONG: &[Wrong] = &[
     // Keys.
-    wrong("spacing =", "spaceing =", (6, 1), "spaceing", &["unknown key `spaceing` in [body]", "did you mean `spacing`?", "`shape`, `spacing`, `size`, `origin`, `thickness`, `plane`, `hole`, `refine`, `positions` and `periodic`"]),
+    wrong("spacing =", "spaceing =", (6, 1), "spaceing", &["unknown key `spaceing` in [body]", "did you mean `spacing`?", "`piece`, `shape`, `spacing`, `size`, `origin`, `thickness`, `plane`, `hole`, `refine`, `positions` and `periodic`"]),
     wrong("[time]", "[tme]", (33, 2), "tme", &["unknown key `tme` in the deck", "did you mean `time`?"]),
     wrong("depth =", "deep =", (16, 24), "deep", &["unknown key `deep` in [sets.top.layer]", "`side`, `depth` and `cells`"]),
     wrong("spacing = \"0.25 mm\"\n", "", (3, 1), "[body]", &["[body] lacks `spacing`", "alternative names: `dx`"]),

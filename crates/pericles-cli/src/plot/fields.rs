@@ -223,6 +223,7 @@ impl Body {
             displacement: &displacement,
             values: &what.numbers(&field, n),
             extent: None,
+            impactors: &[],
         };
         Ok(what.draw_state(&self.cloud, &drawn, path)?)
     }

@@ -314,6 +314,17 @@ pub enum Fault {
         /// The set.
         set: String,
     },
+    /// Pieces of a body that overlap.
+    #[error("the pieces `{}` and `{}` overlap: near {} two of their points are {} apart, less than half of a cell",
+        shortened(&pieces[0]), shortened(&pieces[1]), spot(place), quantity(*distance, "m"))]
+    OverlappingPieces {
+        /// Their names.
+        pieces: [String; 2],
+        /// Position of a point of the first piece, m.
+        place: Vec<f64>,
+        /// Distance of the points, m.
+        distance: f64,
+    },
     /// A material that is assigned to no point.
     #[error("no point has the material `{}`", shortened(material))]
     EmptyMaterial {

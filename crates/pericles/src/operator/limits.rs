@@ -27,6 +27,8 @@ pub enum Feature {
     BondEnergy,
     /// Pre-cracks.
     PreCracks,
+    /// Several pieces that no bond joins.
+    Pieces,
     /// Several materials.
     SeveralMaterials,
     /// Materials of different horizons.
@@ -55,7 +57,7 @@ pub enum Feature {
 
 impl Feature {
     /// All features, in the order of the table.
-    pub const ALL: [Self; 21] = [
+    pub const ALL: [Self; 22] = [
         Self::BondStretch,
         Self::GreenStrainBar,
         Self::GreenStrain,
@@ -65,6 +67,7 @@ impl Feature {
         Self::Breaking,
         Self::BondEnergy,
         Self::PreCracks,
+        Self::Pieces,
         Self::SeveralMaterials,
         Self::SeveralHorizons,
         Self::Inclusions,
@@ -91,6 +94,7 @@ impl Feature {
             Self::Breaking => "breaking bonds",
             Self::BondEnergy => "bonds that break by their energy",
             Self::PreCracks => "pre-cracks",
+            Self::Pieces => "several pieces",
             Self::SeveralMaterials => "several materials",
             Self::SeveralHorizons => "materials of different horizons",
             Self::Inclusions => "inclusions",
@@ -142,6 +146,7 @@ impl Features {
             .with(Feature::PeriodicFaces, cloud.is_periodic())
             .with(Feature::FreeFaces, !cloud.is_periodic())
             .with(Feature::NoLattice, cloud.lattice().is_none())
+            .with(Feature::Pieces, cloud.has_pieces())
     }
 }
 

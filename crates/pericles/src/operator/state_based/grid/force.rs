@@ -44,6 +44,8 @@ pub struct LinearSolidGrid<L: Kinematics, const D: usize> {
     pub(super) offsets: Vec<SolidOffset<D>>,
     /// Intact bonds: one byte per chunk and offset, offsets fastest.
     pub(super) blocks: Vec<BlockDamage>,
+    /// All bonds before pre-cracks, as in `blocks`, of a body of several pieces.
+    geometric: Option<Vec<Vec<u8>>>,
     held: Option<Vec<u8>>,
     precut: Vec<(u64, u8)>,
     /// Factors of points, those of ghosts after own points.
@@ -64,7 +66,7 @@ pub struct LinearSolidGrid<L: Kinematics, const D: usize> {
 crate::saved! {
     impl<L: Kinematics, const D: usize> Checkpointed for LinearSolidGrid<L, D> {
         blocks: under("operator/grid"),
-        cloud, layout, stencil, offsets, held, precut, states, stiffness, classes, weakest: fixed,
+        cloud, layout, stencil, offsets, geometric, held, precut, states, stiffness, classes, weakest: fixed,
         damage, directed_bonds, instruction_set, kinematics: fixed,
         work: scratch,
     } then |force| force.families().check_bonds()
@@ -114,7 +116,7 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
             held,
             cuts,
             precut,
-            geometric: _,
+            geometric,
         } = LatticeBonds::<D>::new(cloud, (horizon, None), correction, &weight, cracks, no_fail)?;
         let offsets = solid_offsets(&stencil);
         let families = Families {
@@ -122,7 +124,7 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
             layout: &layout,
             stencil: &stencil,
             blocks: &blocks,
-            geometric: None,
+            geometric: geometric.as_deref(),
             held: None,
             precut: &precut,
             damage,
@@ -162,6 +164,7 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
             stencil,
             offsets,
             blocks,
+            geometric,
             held,
             precut,
             states,
@@ -185,7 +188,7 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
             layout: &self.layout,
             stencil: &self.stencil,
             blocks: &self.blocks,
-            geometric: None,
+            geometric: self.geometric.as_deref(),
             held: self.held.as_deref(),
             precut: &self.precut,
             damage: self.damage,
