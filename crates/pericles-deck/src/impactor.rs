@@ -156,7 +156,8 @@ pub(crate) fn read(table: Table<'_>, dimension: Option<usize>) -> Option<Impacto
         .and_then(|item| item.choice("shape", &KINDS));
     let solid = matches!(kind, Some(Kind::Cylinder | Kind::Surface));
     if let (true, Some(item), Some(1 | 2)) = (solid, &shape_item, dimension) {
-        item.out_of_range("\"ball\" (a disc in 2D), \"box\" or \"half-space\"; cylinders and surfaces require a 3D body");
+        let allowed = "\"ball\" (a disc in 2D), \"box\" or \"half-space\"; cylinders and surfaces require a 3D body";
+        item.out_of_range(allowed);
         return None;
     }
     let shape = kind.and_then(|kind| shape(&table, kind, dimension));

@@ -140,6 +140,7 @@ pub fn assemble(
         body_frequency: steps.body_frequency,
         dt: steps.dt,
         steps: steps.count,
+        contact_frequency: (contact.frequency > 0.0).then_some(contact.frequency),
         probes,
         ends,
         exact,
