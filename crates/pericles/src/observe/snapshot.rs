@@ -2,6 +2,7 @@
 
 use std::cell::OnceCell;
 
+use super::energies::{Energies, StartEnergy};
 use super::fragments::Fragments;
 use super::tensors::{equivalent_stress, fitted_strain, places, principal_stresses, virial_stress};
 use crate::error::{PericlesError, Result};
@@ -195,41 +196,6 @@ impl Field {
             &[]
         }
     }
-}
-
-/// The energy balance of a body, J.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Energies {
-    /// Kinetic energy ½ Σ ρ V v².
-    pub kinetic: f64,
-    /// Elastic energy of the bonds.
-    pub elastic: f64,
-    /// Energy dissipated by fracture and inelastic deformation.
-    pub dissipated: f64,
-    /// Work of loads, constraints and temperature changes since the start.
-    pub work: f64,
-    /// Kinetic and elastic energy at the start.
-    pub initial: f64,
-    /// Difference between the energy that the scheme conserves and kinetic + elastic energy, minus that difference
-    /// at the start ([`crate::time::Integrator::energy_correction`]).
-    pub scheme: f64,
-}
-
-impl Energies {
-    /// Error of the energy balance: kinetic + elastic + dissipated + scheme − work − initial. It is zero up to
-    /// rounding for linear forces and of order dt² for nonlinear forces.
-    pub fn balance(&self) -> f64 {
-        self.kinetic + self.elastic + self.dissipated + self.scheme - self.work - self.initial
-    }
-}
-
-/// Energies at the start of a run, J.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct StartEnergy {
-    /// Kinetic and elastic energy.
-    pub energy: f64,
-    /// Correction of the scheme.
-    pub scheme: f64,
 }
 
 /// A body and its state at one time.
@@ -490,6 +456,9 @@ impl<'a> Snapshot<'a> {
             kinetic: self.system.kinetic_energy(&self.state.v),
             elastic: self.system.operator().energy(self.state.t, &self.state.u),
             dissipated: self.system.operator().dissipated(),
+            contact: self.system.contact_energy(self.state.t, &self.state.u),
+            contact_dissipated: self.system.contact_dissipated(),
+            bodies: self.system.body_kinetic_energy(),
             work: self.system.ledger().work,
             initial: self.start.energy,
             scheme: self.scheme - self.start.scheme,

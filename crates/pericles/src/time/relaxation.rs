@@ -8,6 +8,7 @@ use crate::error::{PericlesError, Result};
 use crate::interrupt::Interrupt;
 use crate::operator::PointSubset;
 use crate::parallel::BLOCK;
+use crate::scalar::PointScalar;
 use crate::step_end::{Path, StepEnd};
 use crate::system::System;
 
@@ -96,6 +97,8 @@ impl Relaxation {
             need: Need::NoBoundaries,
             reason: "static states have no waves to absorb and no velocities to damp; leave the boundary out",
         },
+        Requirement::CONSERVATIVE_CONTACT,
+        Requirement::NO_FREE_BODIES,
     ];
 
     /// Makes the scheme for a system.
@@ -121,6 +124,7 @@ impl Relaxation {
         require(NAME, Self::REQUIREMENTS, system)?;
         // Unit densities give the bound of the stiffness itself.
         let omega = system.operator().frequency_bound(&|_| 1.0);
+        let omega = omega.hypot(system.contact_frequency(&PointScalar::Uniform(1.0)));
         if !(omega > 0.0 && omega.is_finite()) {
             return Err(PericlesError::SchemeNotUsable {
                 scheme: NAME,
@@ -290,7 +294,7 @@ impl Relaxation {
                 return Ok(residual);
             }
             self.before.copy_from_slice(&state.u);
-            let (elastic, work) = (system.operator().energy(t, &state.u), system.ledger().work);
+            let (elastic, work) = (system.stored_energy(t, &state.u), system.ledger().work);
             residual = self.relax(system, t, &mut state.u, interrupt)?;
             let after_breaking = StepEnd {
                 t,
@@ -303,7 +307,7 @@ impl Relaxation {
             };
             system.book_equilibrium(&after_breaking, &mut state.a);
             self.damped +=
-                elastic - system.operator().energy(t, &state.u) + system.ledger().work - work;
+                elastic - system.stored_energy(t, &state.u) + system.ledger().work - work;
         }
     }
 }
@@ -367,7 +371,7 @@ impl Integrator for Relaxation {
         let first = state.step == 0;
         let displaced = first && before.iter().any(|u| *u != 0.0);
         let elastic = if displaced {
-            system.operator().energy(state.t, &before)
+            system.stored_energy(state.t, &before)
         } else {
             0.0
         };
@@ -383,7 +387,7 @@ impl Integrator for Relaxation {
         system.book_equilibrium(&load_step, &mut state.a);
         if displaced {
             self.damped +=
-                elastic - system.operator().energy(t_next, &state.u) + system.ledger().work - work;
+                elastic - system.stored_energy(t_next, &state.u) + system.ledger().work - work;
         }
         if system.operator().changes_at_step_ends() {
             residual = self.settle(system, state, t_next, residual, interrupt)?;
