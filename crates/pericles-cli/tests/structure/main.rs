@@ -51,6 +51,7 @@ const CRATES: &[(&str, &[&str])] = &[
             "pericles-manifold",
             "pericles-dispersion",
             "pericles-mesh",
+            "pericles-contact",
         ],
     ),
     (
