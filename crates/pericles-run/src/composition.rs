@@ -5,7 +5,8 @@ use std::fmt::Write;
 
 use pericles::operator::{Feature, Limit};
 use pericles::time::{
-    AdaptiveRungeKutta, DiscreteGradient, Implicit, InnerSolver, MultiTimeStep, Relaxation, Respa, RungeKutta,
+    AdaptiveRungeKutta, DiscreteGradient, Implicit, InnerSolver, MultiTimeStep, Relaxation, Respa,
+    RungeKutta,
 };
 use pericles::{Need, Requirement, StepKind};
 use pericles_deck::Scheme as DeckScheme;

@@ -1,6 +1,6 @@
 //! Motion of impactors and the forces on them over time.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use pericles::observe::{ObserveError, Observer, Snapshot};
 use pericles::{Archive, Checkpointed, Result, Values};
@@ -10,7 +10,7 @@ use super::rigid::{RigidMesh, impactors};
 use super::table::{AXES, ObserverTable, misfit, step_and_time, whole};
 use crate::csv::{Cell, Column};
 use crate::error::IoError;
-use crate::vtk::{PvdSeries, write_polydata};
+use crate::vtk::{PvdSeries, read_polydata, write_polydata};
 
 /// Energies of contact, as columns of a history: energy stored by contact, energy dissipated by dampers and friction,
 /// kinetic energy of free impactors.
@@ -157,6 +157,38 @@ impl ImpactorSurfaces {
             found.push(file);
         }
         found
+    }
+
+    /// Reads the impactors with these names at a time, s, from the files of a run; those without a file at this time are
+    /// left out.
+    ///
+    /// # Errors
+    /// A file is damaged.
+    pub fn read(
+        folder: &Path,
+        names: &[String],
+        time: f64,
+    ) -> std::result::Result<Vec<RigidMesh>, IoError> {
+        let mut meshes = Vec::new();
+        for name in Self::file_names(names) {
+            let series = folder.join(format!("{name}.pvd"));
+            if !series.exists() {
+                continue;
+            }
+            let outputs = PvdSeries::read(&series)?;
+            let Some((_, file)) = outputs.into_iter().find(|(t, _)| *t == time) else {
+                continue;
+            };
+            let (vertices, polygons, lines) = read_polydata(&folder.join(file))?;
+            let triangles = polygons.iter();
+            let triangles = triangles.filter_map(|one| <[u32; 3]>::try_from(&one[..]).ok());
+            meshes.push(RigidMesh {
+                vertices,
+                triangles: triangles.collect(),
+                closed: lines.is_empty(),
+            });
+        }
+        Ok(meshes)
     }
 
     fn pvd(&self, name: &str) -> PathBuf {

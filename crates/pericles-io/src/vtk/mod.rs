@@ -36,5 +36,5 @@ mod vtu;
 pub use cells::VtuCells;
 pub use field::VtkField;
 pub use pvd::PvdSeries;
-pub(crate) use vtp::write_polydata;
+pub(crate) use vtp::{read_polydata, write_polydata};
 pub use vtu::VtuFile;

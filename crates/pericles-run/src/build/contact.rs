@@ -1,14 +1,15 @@
 //! Contact between points, and impactors.
 
+use pericles::space::PointCloud;
 use pericles::time::State;
-use pericles::{PointScalar, System};
+use pericles::{Interaction, PointScalar, System};
 use pericles_contact::{
     ClosedMesh, ContactBodies, ContactLaw, ContactPairs, ContactStiffness, Friction, Impactor,
     ImpactorMotion, Inertia, PairLaw, PointContact, Pose, Shape, usual_overlap,
 };
 use pericles_deck::{
     BuildError, Caution, Contact, Fault, ImpactorInertia, ImpactorShape, KeyPath, ModelWarning,
-    Remark, Rotation, Solid,
+    Remark, Solid,
 };
 
 use super::assembler::Assembler;
@@ -16,6 +17,7 @@ use super::constants::MaterialConstants;
 use super::discretisation::Discretisation;
 use super::refusal::{at, at_path};
 use super::resources::Resources;
+use super::rotation::{UNIT, matrix, product, times, upright};
 
 /// The constants of the materials: that of the body and the others in the order of the deck.
 pub(super) type AllConstants<'a> = (Option<&'a MaterialConstants>, &'a [MaterialConstants]);
@@ -62,7 +64,7 @@ impl Assembler<'_> {
             let path = KeyPath::from("impactor").index(k);
             let (shape, pose) = self.impactor_shape(&path, impactor, resources)?;
             let motion = impactor_motion(&path, impactor)?;
-            Impactor::new(
+            let one = Impactor::new(
                 impactor.name.clone(),
                 shape,
                 pose,
@@ -71,8 +73,11 @@ impl Assembler<'_> {
                 law,
                 bodies.clone(),
             )
-            .and_then(|one| system.add_interaction(Box::new(one)))
             .map_err(|error| at(&path, error))?;
+            refuse_points_inside(&path, &one, cloud)?;
+            system
+                .add_interaction(Box::new(one))
+                .map_err(|error| at(&path, error))?;
         }
         let density = &bodies.density;
         let contacts = system
@@ -273,10 +278,30 @@ pub(super) const CONTACT_PHASE: f64 = 0.63;
 
 const ORIGIN: [f64; 3] = [0.0; 3];
 
-const UNIT: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-
-/// A matrix by rows.
-type Matrix = [[f64; 3]; 3];
+/// Rejects an impactor with points of the body inside: their overlap exceeds half of their cell size.
+fn refuse_points_inside(
+    path: &KeyPath,
+    impactor: &Impactor,
+    cloud: &PointCloud,
+) -> Result<(), BuildError> {
+    let Pose { centre, rotation } = impactor.pose();
+    let is_inside = |&i: &usize| {
+        let y = cloud.point(i);
+        let q = std::array::from_fn(|k| (0..3).map(|c| rotation[c][k] * (y[c] - centre[c])).sum());
+        // Touching bodies may overlap by rounding.
+        impactor.shape().distance(q).0 < -1e-6 * cloud.cell_size(i)
+    };
+    let inside: Vec<usize> = (0..cloud.len()).filter(is_inside).collect();
+    let Some(&first) = inside.first() else {
+        return Ok(());
+    };
+    let fault = Fault::ImpactorInBody {
+        impactor: impactor.name().to_owned(),
+        points: inside.len(),
+        place: cloud.point(first)[..cloud.dimension()].to_vec(),
+    };
+    Err(at_path(path.key("centre"), fault))
+}
 
 /// Converts the table of a deck to the law of the contact forces.
 fn law(contact: &Contact) -> ContactLaw {
@@ -343,47 +368,6 @@ fn impactor_motion(
     })
 }
 
-/// Returns the matrix of a rotation (formula of Rodrigues).
-fn matrix(rotation: &Rotation) -> Matrix {
-    let length = rotation.axis.iter().map(|a| a * a).sum::<f64>().sqrt();
-    let a = rotation.axis.map(|entry| entry / length);
-    let (sin, cos) = rotation.angle.sin_cos();
-    std::array::from_fn(|r| {
-        std::array::from_fn(|c| {
-            let across = match (3 + c - r) % 3 {
-                0 => cos,
-                1 => -sin * a[3 - r - c],
-                _ => sin * a[3 - r - c],
-            };
-            across + (1.0 - cos) * a[r] * a[c]
-        })
-    })
-}
-
-/// Returns a rotation that maps the z axis to a direction.
-fn upright(direction: [f64; 3]) -> Matrix {
-    let length = direction.iter().map(|a| a * a).sum::<f64>().sqrt();
-    let [x, y, z] = direction.map(|entry| entry / length);
-    let across = x.hypot(y);
-    if across == 0.0 {
-        // About x, by half a turn for −z.
-        return [[1.0, 0.0, 0.0], [0.0, z, 0.0], [0.0, 0.0, z]];
-    }
-    matrix(&Rotation {
-        angle: across.atan2(z),
-        axis: [-y, x, 0.0],
-        centre: None,
-    })
-}
-
-fn times(m: &Matrix, v: [f64; 3]) -> [f64; 3] {
-    m.map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2])
-}
-
-fn product(a: &Matrix, b: &Matrix) -> Matrix {
-    std::array::from_fn(|r| std::array::from_fn(|c| (0..3).map(|k| a[r][k] * b[k][c]).sum()))
-}
-
 /// Returns the centre of the volume of a closed mesh, from signed tetrahedra.
 fn centroid(mesh: &ClosedMesh) -> [f64; 3] {
     let (mut volume, mut moment) = (0.0, [0.0; 3]);
@@ -398,49 +382,4 @@ fn centroid(mesh: &ClosedMesh) -> [f64; 3] {
         }
     }
     moment.map(|entry| entry / volume)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn rotations_are_anticlockwise_and_keep_lengths() {
-        let quarter = Rotation {
-            angle: std::f64::consts::FRAC_PI_2,
-            axis: [0.0, 0.0, 2.0],
-            centre: None,
-        };
-        let turned = times(&matrix(&quarter), [1.0, 0.0, 3.0]);
-        let expected = [0.0, 1.0, 3.0];
-        assert!((0..3).all(|c| (turned[c] - expected[c]).abs() < 1e-15));
-        for direction in [
-            [1.0, 2.0, -2.0],
-            [0.0, 0.0, -3.0],
-            [0.0, 0.0, 1.0],
-            [-1.0, 0.0, 0.0],
-        ] {
-            let rotation = upright(direction);
-            let mapped = times(&rotation, [0.0, 0.0, 1.0]);
-            let length = direction.iter().map(|a| a * a).sum::<f64>().sqrt();
-            for c in 0..3 {
-                assert!((mapped[c] - direction[c] / length).abs() < 1e-15);
-            }
-            // Orthogonal and right-handed.
-            let square = product(
-                &rotation,
-                &std::array::from_fn(|r| rotation.map(|row| row[r])),
-            );
-            for r in 0..3 {
-                for c in 0..3 {
-                    assert!((square[r][c] - UNIT[r][c]).abs() < 1e-15);
-                }
-            }
-            let [a, b, c] = rotation;
-            let det = a[0] * (b[1] * c[2] - b[2] * c[1])
-                + a[1] * (b[2] * c[0] - b[0] * c[2])
-                + a[2] * (b[0] * c[1] - b[1] * c[0]);
-            assert!((det - 1.0).abs() < 1e-15);
-        }
-    }
 }

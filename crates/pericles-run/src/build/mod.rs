@@ -36,6 +36,7 @@ mod points;
 mod random;
 mod refusal;
 mod resources;
+mod rotation;
 mod scheme;
 mod sense;
 mod state_based;

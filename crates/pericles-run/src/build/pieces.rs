@@ -2,13 +2,14 @@
 
 use pericles::family::pairs_within;
 use pericles::space::{GradedCloud, Lattice, ListedPoints, Point, PointCloud, PointSet};
-use pericles_deck::{BuildError, Fault, KeyPath, ModelWarning, Piece, Rotation, Solid, piece_path};
+use pericles_deck::{BuildError, Fault, KeyPath, ModelWarning, Piece, Solid, piece_path};
 
 use super::assembler::Assembler;
 use super::mesh_body::MeshBody;
 use super::points::BodyPoints;
 use super::refusal::{at, at_path};
 use super::resources::Resources;
+use super::rotation::{matrix, times};
 
 /// Distance of points of different pieces, in mean cell sizes, below which the pieces overlap.
 const CLOSEST: f64 = 0.5;
@@ -155,20 +156,6 @@ fn place(piece: &Piece, made: BodyPoints) -> Placed {
         cloud,
         positions,
     }
-}
-
-/// Rotates a point about an axis through a centre (formula of Rodrigues).
-fn rotated(x: Point, rotation: &Rotation, centre: Point) -> Point {
-    let length = rotation.axis.iter().map(|a| a * a).sum::<f64>().sqrt();
-    let a = rotation.axis.map(|entry| entry / length);
-    let (sin, cos) = rotation.angle.sin_cos();
-    let r: Point = std::array::from_fn(|c| x[c] - centre[c]);
-    let along = (0..3).map(|c| a[c] * r[c]).sum::<f64>() * (1.0 - cos);
-    std::array::from_fn(|c| {
-        let (next, last) = ((c + 1) % 3, (c + 2) % 3);
-        let cross = a[next] * r[last] - a[last] * r[next];
-        centre[c] + cos * r[c] + sin * cross + along * a[c]
-    })
 }
 
 /// Returns the points on a common lattice; `None` if they do not lie on one.
