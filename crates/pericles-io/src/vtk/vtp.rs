@@ -102,10 +102,7 @@ pub(crate) fn read_polydata(path: &Path) -> Result<Polydata, IoError> {
     };
     let read = || {
         let points = array("Points", 0)?;
-        let points: Vec<[f64; 3]> = points
-            .chunks_exact(3)
-            .map(|x| [x[0], x[1], x[2]])
-            .collect();
+        let points: Vec<[f64; 3]> = points.chunks_exact(3).map(|x| [x[0], x[1], x[2]]).collect();
         let (polygons, lines) = (cells("Polys")?, cells("Lines")?);
         let mut corners = polygons.iter().chain(&lines).flatten();
         let known = corners.all(|&k| (k as usize) < points.len());

@@ -146,9 +146,11 @@ fn place(piece: &Piece, made: BodyPoints) -> Placed {
             shift(std::array::from_fn(|c| 0.5 * (bounds[0][c] + bounds[1][c])))
         };
         let centre = rotation.centre.unwrap_or_else(middle);
-        positions
-            .iter_mut()
-            .for_each(|x| *x = rotated(*x, rotation, centre));
+        let turn = matrix(rotation);
+        for x in &mut positions {
+            let arm = times(&turn, std::array::from_fn(|c| x[c] - centre[c]));
+            *x = std::array::from_fn(|c| centre[c] + arm[c]);
+        }
     }
     Placed {
         moved: piece.rotation.is_none().then_some(piece.origin),

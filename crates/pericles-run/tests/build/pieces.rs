@@ -105,8 +105,7 @@ fn the_forces_of_a_piece_do_not_depend_on_the_other_one_nor_on_the_kernel() {
             }
         }
         let mut damage = vec![1.0; touching.cloud.len()];
-        let operator = touching.system.operator();
-        operator.as_breakable().unwrap().damage_into(&mut damage);
+        touching.system.operator().damage_into(&mut damage);
         assert!(damage.iter().all(|damage| *damage == 0.0), "{model}");
     }
 }
