@@ -275,7 +275,7 @@ pub(super) const SPECIMENS: &[Specimen] = &[
             "body={ shape = 'plate', size = [10, 4], spacing = 1, plane = 'strain', name = 'target', piece = [{ name = 'a', shape = 'plate', size = [2, 2], origin = [11, 0], material = 'glass', velocity = [-1, 0] }, { name = 'b', shape = 'disc', radius = 2, centre = [-9, 0], rotation = { angle = '30 deg', centre = [0, 0] } }, { name = 'c', shape = 'points', file = 'c.txt', dimension = 2, origin = [0, 9] }, { name = 'd', shape = 'mesh', file = 'd.msh', unit = 'mm', dimension = 2, rotation = { angle = 1, axis = [0, 0, 1] } }, { name = 'e', shape = 'outline', polygons = [[[0, 0], [1, 0], [0, 1]]] }] }",
         ],
     ),
-    specimen(BLOCK, &["body.periodic=false", "body.piece=[{ name = 'a', shape = 'ball', radius = 2, centre = [0, 0, 30], rotation = { angle = 1, axis = [1, 0, 0] } }]"]),
+    specimen(BLOCK, &["body.periodic=false", "body.piece=[{ name = 'far', shape = 'ball', radius = 2, centre = [0, 0, 30], rotation = { angle = 1, axis = [1, 0, 0] } }]"]),
     // Contact.
     specimen(PLATE, &["contact={ pairs = 'pieces', law = 'power', exponent = 1.5, stiffness = 2, distance = 1, closing = 1, damping = 0.3, friction = { coefficient = 0.2, speed = 1 } }"]),
     specimen(BAR, &["contact={ law = 'emu' }", "impactor=[{ name = 'a', shape = 'half-space', normal = 1, centre = 0 }]"]),
