@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
+use pericles::Simulation;
 use pericles::prelude::*;
 use pericles::round_trip::check_resume;
 use pericles::time::{Relaxation, RelaxationOptions, RungeKutta, Tableau};
-use pericles::Simulation;
 use pericles_contact::{
     ContactBodies, ContactLaw, Impactor, ImpactorMotion, Inertia, PointContact, Pose, Shape,
 };
