@@ -51,24 +51,30 @@ impl ContactBodies {
             ("the horizons of the points", &self.horizon),
             ("the densities of the points", &self.density),
         ] {
-            let values = match numbers {
-                PointScalar::Uniform(value) => std::slice::from_ref(value),
-                PointScalar::PerPoint(values) if values.len() == points => &values[..],
-                PointScalar::PerPoint(values) => {
-                    return Err(ContactError::Length {
-                        what,
-                        given: values.len(),
-                        needed: points,
-                    }
-                    .into());
-                }
-            };
-            for &value in values {
-                pericles::positive(what, value)?;
-            }
+            check_numbers(what, numbers, points)?;
         }
         Ok(())
     }
+}
+
+/// Checks that numbers are positive and one per point.
+fn check_numbers(what: &'static str, numbers: &PointScalar, points: usize) -> Result<()> {
+    let values = match numbers {
+        PointScalar::Uniform(value) => std::slice::from_ref(value),
+        PointScalar::PerPoint(values) if values.len() == points => &values[..],
+        PointScalar::PerPoint(values) => {
+            return Err(ContactError::Length {
+                what,
+                given: values.len(),
+                needed: points,
+            }
+            .into());
+        }
+    };
+    for &value in values {
+        pericles::positive(what, value)?;
+    }
+    Ok(())
 }
 
 /// Sizes, stiffnesses and masses of the points in contact.
@@ -112,6 +118,17 @@ impl Touching {
             law,
             bodies,
         })
+    }
+
+    /// Sets the sizes of the points, m.
+    ///
+    /// # Errors
+    /// Sizes that are not positive, or not one per point.
+    pub(crate) fn set_sizes(&mut self, sizes: &PointScalar) -> Result<()> {
+        let points = self.cloud.len();
+        check_numbers("the sizes of the points", sizes, points)?;
+        self.size = (0..points).map(|i| sizes.at(i)).collect();
+        Ok(())
     }
 
     /// Checks that contact is possible on a body with these internal forces.

@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use pericles::operator::Force;
 use pericles::space::PointCloud;
-use pericles::{Configuration, Result};
+use pericles::{Configuration, PointScalar, Result};
 
 use crate::bodies::{ContactBodies, Touching};
 use crate::error::ContactError;
@@ -91,6 +91,16 @@ impl PointContact {
         self.skin = relative * sizes.iter().sum::<f64>() / sizes.len().max(1) as f64;
         self.list = Mutex::default();
         self
+    }
+
+    /// Sets the sizes of the points (m) that enter the contact distance, in place of the sizes of their cells.
+    ///
+    /// # Errors
+    /// Sizes that are not positive, or not one per point.
+    pub fn with_sizes(mut self, sizes: &PointScalar) -> Result<Self> {
+        self.touching.set_sizes(sizes)?;
+        self.list = Mutex::default();
+        Ok(self)
     }
 
     /// Returns contacts and searches.

@@ -4,6 +4,7 @@ use pericles::observe::{Field, Schedule};
 use serde::{Deserialize, Serialize};
 
 use super::{FieldComponent, is_never, schedule};
+use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 use crate::set::SetNames;
 
@@ -308,4 +309,29 @@ pub(super) fn field_names(dimension: Option<usize>) -> Vec<(String, FieldCompone
         (name, (field, component))
     });
     named.collect()
+}
+
+/// Quantity of the values of a field.
+pub(super) fn quantity(field: Field) -> Quantity {
+    match field {
+        Field::Displacement | Field::Radius => Quantity::Length,
+        Field::Velocity => Quantity::Velocity,
+        Field::ForceDensity | Field::ExternalForce | Field::Reaction | Field::ContactForce => {
+            Quantity::ForceDensity
+        }
+        Field::Stress
+        | Field::EquivalentStress
+        | Field::VonMisesStress
+        | Field::PrincipalStress => Quantity::Traction,
+        Field::Damage
+        | Field::Strain
+        | Field::Dilatation
+        | Field::PlasticStrain
+        | Field::YieldFlag
+        | Field::PointId
+        | Field::FragmentId => Quantity::Number,
+        Field::StrainEnergyDensity | Field::KineticEnergyDensity => Quantity::EnergyDensity,
+        Field::Volume => Quantity::Number,
+        Field::Temperature => Quantity::Temperature,
+    }
 }

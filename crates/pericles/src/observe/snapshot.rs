@@ -28,6 +28,8 @@ pub enum Field {
     ExternalForce,
     /// Reaction force density of constraints, N/m³.
     Reaction,
+    /// Force density of contact, with dampers and friction, N/m³.
+    ContactForce,
     /// Virial stress, Pa: ½ Σ f ⊗ (ξ + η) over the bonds of a point. NaN if the force does not list its bonds.
     Stress,
     /// Strain of the displacement gradient fitted to the bonds of a point by least squares. NaN if the force does
@@ -72,7 +74,7 @@ impl Field {
     ];
 
     /// All fields.
-    pub const ALL: [Self; 21] = [
+    pub const ALL: [Self; 22] = [
         Self::Displacement,
         Self::Velocity,
         Self::ForceDensity,
@@ -80,6 +82,7 @@ impl Field {
         Self::StrainEnergyDensity,
         Self::ExternalForce,
         Self::Reaction,
+        Self::ContactForce,
         Self::Stress,
         Self::Strain,
         Self::Volume,
@@ -106,6 +109,7 @@ impl Field {
             Self::StrainEnergyDensity => "Strain_Energy_Density",
             Self::ExternalForce => "External_Force_Density",
             Self::Reaction => "Reaction_Density",
+            Self::ContactForce => "Contact_Force_Density",
             Self::Stress => "Stress",
             Self::Strain => "Strain",
             Self::Volume => "Volume",
@@ -128,7 +132,9 @@ impl Field {
         match self {
             Self::Displacement | Self::Radius => "m",
             Self::Velocity => "m/s",
-            Self::ForceDensity | Self::ExternalForce | Self::Reaction => "N/m³",
+            Self::ForceDensity | Self::ExternalForce | Self::Reaction | Self::ContactForce => {
+                "N/m³"
+            }
             Self::Stress
             | Self::EquivalentStress
             | Self::VonMisesStress
@@ -155,6 +161,7 @@ impl Field {
                 | Self::ForceDensity
                 | Self::ExternalForce
                 | Self::Reaction
+                | Self::ContactForce
                 | Self::PrincipalStress
         )
     }
@@ -210,6 +217,7 @@ pub struct Snapshot<'a> {
     energy_density: OnceCell<Vec<f64>>,
     kinetic_density: OnceCell<Vec<f64>>,
     external: OnceCell<Vec<f64>>,
+    contact: OnceCell<Vec<f64>>,
     reaction: OnceCell<Vec<f64>>,
     stress: OnceCell<Vec<f64>>,
     strain: OnceCell<Vec<f64>>,
@@ -239,6 +247,7 @@ impl<'a> Snapshot<'a> {
             energy_density: OnceCell::new(),
             kinetic_density: OnceCell::new(),
             external: OnceCell::new(),
+            contact: OnceCell::new(),
             reaction: OnceCell::new(),
             stress: OnceCell::new(),
             strain: OnceCell::new(),
@@ -329,6 +338,11 @@ impl<'a> Snapshot<'a> {
                     .operator()
                     .add_energy_density(t, u, &mut density);
                 density
+            }),
+            Field::ContactForce => self.contact.get_or_init(|| {
+                let mut force = vec![0.0; u.len()];
+                self.system.add_contact_force(t, u, &mut force);
+                force
             }),
             Field::ExternalForce => self.external.get_or_init(|| {
                 let mut force = vec![0.0; u.len()];
