@@ -48,7 +48,7 @@ fn a_bar_leaves_a_wall_with_the_velocity_of_wave_theory() {
     let built = build(BAR);
     assert_eq!(built.system.interactions().count(), 1);
     let end = run(built);
-    // Specification, section 7: 0.99311 for 100 cells (dt = dx/2); the automatic step is larger.
+    // An independent program with the same equations has 0.99311 for 100 cells (dt = dx/2); the automatic step is larger.
     let ratio = mean_velocity(&end) / 0.001;
     assert!((ratio - 0.993).abs() < 0.006, "{ratio}");
     let wall = end.system().interactions().next().unwrap();
@@ -122,7 +122,7 @@ end = 3
         let sum: f64 = points.iter().map(|&i| end.state().v[i as usize]).sum();
         sum / points.len() as f64
     };
-    // The bars exchange their velocities; specification, section 7: v2 = 0.99339 for 50 cells.
+    // The bars exchange their velocities: an independent program has v2 = 0.99339 for 50 cells.
     let (first, second) = (of("main"), of("struck"));
     assert!((second / 0.001 - 0.993).abs() < 0.006, "{second}");
     assert!(((first + second) / 0.001 - 1.0).abs() < 1e-12 * n as f64);
