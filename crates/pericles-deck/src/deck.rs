@@ -10,6 +10,7 @@ use crate::body::{self, BodyRead, SurfaceRead};
 use crate::boundary;
 use crate::caution::Caution;
 use crate::conditions::{self, Constraint};
+use crate::contact;
 use crate::crack;
 use crate::damping;
 use crate::document::{self, Node};
@@ -18,6 +19,7 @@ use crate::exact;
 use crate::fault::Fault;
 use crate::finding::{Finding, Warning};
 use crate::former::{self, Former};
+use crate::impactor;
 use crate::inheritance::inherit;
 use crate::interface::{self, MaterialInterface};
 use crate::material::{self, Material, MaterialModel, Materials, NamedMaterial};
@@ -181,7 +183,7 @@ fn model(root: Table<'_>) -> Option<Model> {
     let title = root.maybe("title", |item| item.text());
     let body = body::read(root.required("body").and_then(|item| item.table()));
     let frame = body.frame;
-    let (sets, names) = set::read(root.table_or_empty("sets"), frame);
+    let (sets, names) = set::read(root.table_or_empty("sets"), frame, &body.pieces);
     let (made, gaussian, several, thermal) = match &body.surface {
         Some(read) => {
             let surface = surface_of(&root, read, frame, &names);
@@ -221,6 +223,10 @@ fn model(root: Table<'_>) -> Option<Model> {
     let exact = root.maybe("exact", |item| {
         exact::read(item.table()?, frame.dimension, gaussian)
     });
+    let contact = root.maybe("contact", |item| contact::read(item.table()?));
+    let impactors = each(&root, "impactor", |table| {
+        impactor::read(table, frame.dimension)
+    });
     let damping = root.maybe("damping", |item| damping::read(item.table()?));
     let time = root
         .required("time")
@@ -255,6 +261,8 @@ fn model(root: Table<'_>) -> Option<Model> {
         boundaries: boundaries?,
         probes: probes?,
         exact: exact?,
+        contact: contact?,
+        impactors: impactors?,
         thermal: thermal?,
         damping: damping?,
         time: time?,

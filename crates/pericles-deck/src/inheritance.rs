@@ -1,4 +1,4 @@
-//! Keys that `[materials]` and `[[interface]]` inherit from the first material.
+//! Keys that `[materials]` and `[[interface]]` inherit from the first material, and `[[body.piece]]` from `[body]`.
 //!
 //! The keys are copied into these tables before a deck is read, so that every table is read by itself and
 //! messages point to the original key.
@@ -15,6 +15,9 @@ pub(crate) fn inherit(root: &mut Node) {
     let Value::Table(entries) = &mut root.value else {
         return;
     };
+    if let Some(body) = table(entries, "body") {
+        inherit_in_pieces(body);
+    }
     let given = match table(entries, "material") {
         Some(given) => given.clone(),
         None => Vec::new(),
@@ -45,6 +48,29 @@ pub(crate) fn inherit(root: &mut Node) {
                     is_one_of(FAILURE_RULES, entry) && counts(own, entry)
                 });
             }
+        }
+    }
+}
+
+/// Copies the keys shared by all pieces of a body into the tables of its pieces.
+fn inherit_in_pieces(body: &mut [Entry]) {
+    const SHARED: [&str; 4] = ["spacing", "thickness", "area", "plane"];
+    let shared = body.iter().filter(|entry| is_one_of(&SHARED, entry));
+    let shared: Vec<Entry> = shared.cloned().collect();
+    let pieces = body.iter_mut().find(|entry| entry.key == "piece");
+    let Some(Value::Array(pieces)) = pieces.map(|entry| &mut entry.node.value) else {
+        return;
+    };
+    for piece in pieces {
+        if let Value::Table(own) = &mut piece.value {
+            let is_mesh = own.iter().any(|entry| {
+                entry.key == "shape"
+                    && matches!(&entry.node.value, Value::Text(shape) if shape == "mesh")
+            });
+            // The spacing of a mesh follows from its elements.
+            take_over(own, &shared, |_, entry| {
+                !is_mesh || canonical(&entry.key) != "spacing"
+            });
         }
     }
 }

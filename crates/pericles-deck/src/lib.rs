@@ -83,6 +83,7 @@ mod check;
 mod component;
 mod conditions;
 mod constants;
+mod contact;
 mod correspondence;
 mod course;
 mod crack;
@@ -97,6 +98,7 @@ mod fault;
 mod finding;
 mod form;
 mod former;
+mod impactor;
 mod influence;
 mod inheritance;
 mod interface;
@@ -132,13 +134,15 @@ mod words;
 
 pub use assign::Assignment;
 pub use body::{
-    Boundary, FilledCells, FilledShape, Lattice, MeshFile, PointsFile, Positions, Quadrature,
-    SolidShape, SurfaceFormula, SurfaceShape, VertexAreas, length_unit,
+    Boundary, FilledCells, FilledShape, Lattice, MeshFile, Piece, PointsFile, Positions,
+    Quadrature, Rotation, SolidShape, SurfaceFormula, SurfaceShape, VertexAreas, length_unit,
+    piece_path,
 };
 pub use boundary::BoundaryCondition;
 pub use caution::{AreaDoubt, Caution};
 pub use component::{Component, VectorField};
 pub use conditions::{Constraint, Initial, Load, LoadAmplitude, Probe, ProbePlace, RandomVelocity};
+pub use contact::{Contact, ContactFriction, ContactLaw, ContactPairs, ContactStiffness};
 pub use correspondence::Correspondence;
 pub use course::{Course, TimeHistory};
 pub use crack::{CrackSurface, PreCrack};
@@ -150,6 +154,7 @@ pub use exact::{Exact, KnownSolution, Pulse};
 pub use expression::{BondExpression, Condition, Expression};
 pub use fault::Fault;
 pub use finding::{Finding, Problem, Warning};
+pub use impactor::{Impactor, ImpactorInertia, ImpactorMotion, ImpactorShape};
 pub use interface::{InterfaceFailure, MaterialInterface};
 pub use key_path::KeyPath;
 pub use material::{

@@ -6,13 +6,16 @@ use pericles::material::StressState;
 use serde::{Deserialize, Serialize};
 
 use crate::assign::Assignment;
-use crate::body::{SolidShape, SurfaceShape};
+use crate::body::{SolidShape, SurfaceShape, piece_path};
 use crate::boundary::BoundaryCondition;
 use crate::conditions::{Constraint, Initial, Load, Probe};
+use crate::contact::Contact;
 use crate::crack::PreCrack;
 use crate::damping::Damping;
 use crate::exact::Exact;
+use crate::impactor::Impactor;
 use crate::interface::MaterialInterface;
+use crate::key_path::KeyPath;
 use crate::material::{Material, NamedMaterial};
 use crate::output::{Checkpoint, Output};
 use crate::set::NamedSet;
@@ -120,6 +123,12 @@ pub struct Model {
     /// `[exact]`
     #[serde(default)]
     pub exact: Option<Exact>,
+    /// `[contact]`: contact between points; none if points do not interact by contact.
+    #[serde(default)]
+    pub contact: Option<Contact>,
+    /// `[[impactor]]`
+    #[serde(default)]
+    pub impactors: Vec<Impactor>,
     /// `[thermal]`
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub thermal: Option<Thermal>,
@@ -212,15 +221,15 @@ impl Body {
         }
     }
 
-    /// Returns the path of the file of the points, if there is one.
-    fn file(&self) -> Option<&Path> {
+    /// Returns the paths of the files of the points.
+    fn files(&self) -> Vec<&Path> {
         match self {
-            Self::Solid(solid) => solid.shape.file(),
+            Self::Solid(solid) => solid.shape.files(),
             Self::Surface(SurfaceBody {
                 shape: SurfaceShape::File { path, .. },
                 ..
-            }) => Some(path),
-            Self::Surface(_) => None,
+            }) => vec![path],
+            Self::Surface(_) => Vec::new(),
         }
     }
 }
@@ -242,12 +251,36 @@ impl Model {
             boundaries: Vec::new(),
             probes: Vec::new(),
             exact: None,
+            contact: None,
+            impactors: Vec::new(),
             thermal: None,
             damping: None,
             time,
             output: Output::default(),
             checkpoint: Checkpoint::default(),
         }
+    }
+
+    /// Returns the materials of pieces and of `[[assign]]`, with their paths and sets; later ones take precedence.
+    pub fn assigned_materials(&self) -> Vec<(KeyPath, &[String], &str)> {
+        let pieces = self
+            .body
+            .solid()
+            .map_or(&[][..], |solid| solid.shape.pieces());
+        let of_pieces = pieces.iter().enumerate().filter_map(|(k, piece)| {
+            let path = piece_path(k).key("material");
+            Some((
+                path,
+                std::slice::from_ref(&piece.name),
+                piece.material.as_deref()?,
+            ))
+        });
+        let assigned = self.assignments.iter().enumerate();
+        let assigned = assigned.filter_map(|(k, one)| {
+            let path = KeyPath::from("assign").index(k);
+            Some((path, &one.sets[..], one.material.as_deref()?))
+        });
+        of_pieces.chain(assigned).collect()
     }
 
     /// Returns the paths of all input files of the model; relative paths start at the deck's folder.
@@ -258,7 +291,12 @@ impl Model {
         let cracks = cracks.filter_map(|crack| crack.surface.file());
         let thermal = self.thermal.iter();
         let thermal = thermal.filter_map(|thermal| thermal.file.as_deref());
-        let body = self.body.file().into_iter();
-        body.chain(initial).chain(cracks).chain(thermal).collect()
+        let body = self.body.files().into_iter();
+        let impactors = self.impactors.iter().filter_map(Impactor::file);
+        body.chain(initial)
+            .chain(cracks)
+            .chain(thermal)
+            .chain(impactors)
+            .collect()
     }
 }

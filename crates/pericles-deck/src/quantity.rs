@@ -20,6 +20,9 @@ pub(crate) enum Quantity {
     Temperature,
     Expansion,
     Rate,
+    Stiffness,
+    Mass,
+    Inertia,
 }
 
 impl Quantity {
@@ -32,7 +35,9 @@ impl Quantity {
             Self::Density => Dimension::new(1, -3, 0),
             Self::SurfaceDensity => Dimension::new(1, -2, 0),
             Self::Modulus | Self::Traction | Self::EnergyDensity => Dimension::new(1, -1, -2),
-            Self::SurfaceEnergy => Dimension::new(1, 0, -2),
+            Self::SurfaceEnergy | Self::Stiffness => Dimension::new(1, 0, -2),
+            Self::Mass => Dimension::new(1, 0, 0),
+            Self::Inertia => Dimension::new(1, 2, 0),
             Self::Velocity => Dimension::new(0, 1, -1),
             Self::ForceDensity => Dimension::new(1, -2, -2),
             Self::Rate => Dimension::new(0, 0, -1),
@@ -57,6 +62,9 @@ impl Quantity {
             Self::Velocity => "a velocity",
             Self::ForceDensity => "a force per volume",
             Self::Rate => "a rate",
+            Self::Stiffness => "a stiffness",
+            Self::Mass => "a mass",
+            Self::Inertia => "a moment of inertia",
             Self::Temperature => "a temperature",
             Self::Expansion => "a coefficient of thermal expansion",
         }
@@ -89,6 +97,9 @@ impl Quantity {
             Self::Velocity => "20 m/s",
             Self::ForceDensity => "48 GN/m3",
             Self::Rate => "100 1/s",
+            Self::Stiffness => "3 MN/m",
+            Self::Mass => "1.5 kg",
+            Self::Inertia => "0.2 kg·m2",
             Self::Temperature => "293.15 K",
             Self::Expansion => "12e-6 1/K",
         }
@@ -109,6 +120,9 @@ impl Quantity {
             Self::Velocity => "m/s",
             Self::ForceDensity => "N/m3",
             Self::Rate => "1/s",
+            Self::Stiffness => "N/m",
+            Self::Mass => "kg",
+            Self::Inertia => "kg·m2",
             Self::Temperature => "K",
             Self::Expansion => "1/K",
         }
@@ -170,6 +184,9 @@ mod tests {
             Temperature,
             Expansion,
             Rate,
+            Stiffness,
+            Mass,
+            Inertia,
         ] {
             let unit = quantity.unit();
             for text in [quantity.example().to_owned(), format!("1 {unit}")] {

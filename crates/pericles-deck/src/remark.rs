@@ -64,6 +64,17 @@ impl<S: Subject> Remark<S> {
         &self.keys
     }
 
+    /// Returns the remark with the start `from` of its keys replaced by `to`.
+    #[must_use]
+    pub fn moved(self, from: &KeyPath, to: &KeyPath) -> Self {
+        let keys = self.keys.into_iter();
+        let keys = keys.map(|key| key.moved(from, to).unwrap_or(key));
+        Self {
+            keys: keys.collect(),
+            subject: self.subject,
+        }
+    }
+
     /// Returns what was found.
     pub fn subject(&self) -> &S {
         &self.subject
@@ -109,6 +120,13 @@ impl BuildError {
     /// Creates an error from several problems.
     pub fn of(problems: Vec<ModelProblem>) -> Self {
         Self { problems }
+    }
+
+    /// Returns the error with the start `from` of all keys replaced by `to`.
+    #[must_use]
+    pub fn moved(self, from: &KeyPath, to: &KeyPath) -> Self {
+        let problems = self.problems.into_iter();
+        Self::of(problems.map(|problem| problem.moved(from, to)).collect())
     }
 
     /// Returns the problems.

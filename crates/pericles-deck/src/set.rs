@@ -127,9 +127,15 @@ impl SetNames {
     }
 }
 
-pub(crate) fn read(table: Option<Table<'_>>, frame: Frame) -> (Option<Vec<NamedSet>>, SetNames) {
+/// Reads `[sets]`; `pieces` are the names of the pieces of the body, which are sets too.
+pub(crate) fn read(
+    table: Option<Table<'_>>,
+    frame: Frame,
+    pieces: &[String],
+) -> (Option<Vec<NamedSet>>, SetNames) {
+    let all = std::iter::once(ALL.to_owned());
     let mut names = SetNames {
-        names: vec![ALL.into()],
+        names: all.chain(pieces.iter().cloned()).collect(),
         open: frame.mesh,
     };
     let mut sets = Some(Vec::new());

@@ -93,7 +93,7 @@ const fn plain(symbol: &'static str, exponent: i32, factor: f64, s: i32) -> Unit
     }
 }
 
-const UNITS: [Unit; 13] = [
+const UNITS: [Unit; 15] = [
     unit("m", 0, 0, 1, 0),
     unit("g", -3, 1, 0, 0),
     unit("s", 0, 0, 0, 1),
@@ -113,6 +113,8 @@ const UNITS: [Unit; 13] = [
     plain("min", 0, 60.0, 1),
     plain("h", 0, 3600.0, 1),
     plain("%", -2, 1.0, 0),
+    plain("rad", 0, 1.0, 0),
+    plain("deg", 0, std::f64::consts::PI / 180.0, 0),
 ];
 
 const PREFIXES: [(&str, i32); 14] = [

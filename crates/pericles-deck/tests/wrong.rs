@@ -57,7 +57,7 @@ const BODY: &str =
 #[rustfmt::skip]
 const WRONG: &[Wrong] = &[
     // Keys.
-    wrong("spacing =", "spaceing =", (6, 1), "spaceing", &["unknown key `spaceing` in [body]", "did you mean `spacing`?", "`shape`, `spacing`, `size`, `origin`, `thickness`, `plane`, `hole`, `refine`, `positions` and `periodic`"]),
+    wrong("spacing =", "spaceing =", (6, 1), "spaceing", &["unknown key `spaceing` in [body]", "did you mean `spacing`?", "`piece`, `shape`, `spacing`, `size`, `origin`, `thickness`, `plane`, `hole`, `refine`, `positions` and `periodic`"]),
     wrong("[time]", "[tme]", (33, 2), "tme", &["unknown key `tme` in the deck", "did you mean `time`?"]),
     wrong("depth =", "deep =", (16, 24), "deep", &["unknown key `deep` in [sets.top.layer]", "`side`, `depth` and `cells`"]),
     wrong("spacing = \"0.25 mm\"\n", "", (3, 1), "[body]", &["[body] lacks `spacing`", "alternative names: `dx`"]),
@@ -70,6 +70,22 @@ const WRONG: &[Wrong] = &[
     wrong("dt = \"auto\"", "dt = 1e-9\nsafety = 0.5", (36, 1), "safety", &["`safety` is not allowed", "dt = \"auto\""]),
     wrong("segment =", "section =", (18, 1), "[[crack]]", &["[crack.0] lacks `segment`", "`section` requires a bar"]),
     wrong("traction =", "body_force = [0, 1]\narea = 1\n# traction =", (28, 1), "area", &["`area` is not allowed in [load.0]", "`traction`"]),
+    // Pieces, contact, impactors.
+    wrong("[material]", "[[body.piece]]\nshape = \"plate\"\nsize = [1, 1]\n[material]", (9, 1), "[[body.piece]]", &["[body.piece.0] lacks `name`"]),
+    wrong("[material]", "[[body.piece]]\nname = \"main\"\nshape = \"plate\"\nsize = [1, 1]\n[material]", (10, 8), "\"main\"", &["another piece has this name"]),
+    wrong("[material]", "[[body.piece]]\nname = \"a\"\nshape = \"ball\"\nradius = 1\n[material]", (11, 9), "\"ball\"", &["shapes of the dimension of the body"]),
+    wrong("[material]", "[[body.piece]]\nname = \"a\"\nshape = \"plate\"\nsize = [1, 1]\nperiodic = true\n[material]", (11, 9), "\"plate\"", &["not periodic"]),
+    wrong("[material]", "[[body.piece]]\nname = \"a\"\nshape = \"plate\"\nsize = [1, 1]\nmaterial = \"b\"\nrotation = { angle = 1, axis = [0, 0, 1] }\n[material]", (14, 25), "axis", &["rotates in its plane"]),
+    wrong("plane = \"strain\"", "plane = \"strain\"\nname = \"a\"", (8, 1), "name", &["`name` is not allowed in [body]", "[[body.piece]]"]),
+    wrong("[material]", "[contact]\nclosing = 1.2\n[material]", (10, 11), "1.2", &["out of range", "release energy when a bond breaks"]),
+    wrong("[material]", "[contact]\npairs = \"all\"\nclosing = 1\n[material]", (11, 11), "1", &["at most 0.9"]),
+    wrong("[material]", "[contact]\nexponent = 2\n[material]", (10, 1), "exponent", &["`exponent` is not allowed in [contact]", "law = \"power\""]),
+    wrong("[material]", "[contact]\nstiffness = \"3 MPa\"\n[material]", (10, 13), "\"3 MPa\"", &["a stiffness"]),
+    wrong("[material]", "[contact]\nfriction = { coefficient = 0.1 }\n[material]", (10, 12), "{ coefficient = 0.1 }", &["lacks `speed`"]),
+    wrong("[material]", "[[impactor]]\nname = \"a\"\nshape = \"half-space\"\nnormal = [0, 1]\ncentre = [0, 0]\nmotion = \"free\"\n[material]", (14, 10), "\"free\"", &["no finite mass"]),
+    wrong("[material]", "[[impactor]]\nname = \"a\"\nshape = \"ball\"\nradius = 1\ncentre = [0, 0]\nmotion = \"prescribed\"\ndensity = 1\n[material]", (15, 1), "density", &["`density` is not allowed in [impactor.0]", "does not depend on mass"]),
+    wrong("[material]", "[[impactor]]\nname = \"a\"\nshape = \"ball\"\nradius = 1\ncentre = [0, 0]\n[material]", (9, 1), "[[impactor]]", &["lacks one of `density` and `mass`"]),
+    wrong("[material]", "[[impactor]]\nname = \"a\"\nshape = \"cylinder\"\nradius = 1\nheight = 1\ncentre = [0, 0]\ndensity = 1\n[material]", (11, 9), "\"cylinder\"", &["require a 3D body"]),
     // Meshes, random positions, formats.
     wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "near_faces = { faces = \"a\", depth = 1 }", (16, 14), "{ faces", &["requires shape = \"mesh\"", "`layer`"]),
     wrong("fields = { interval = \"0.5 us\" }", "fields = { cells = true }", (38, 12), "cells", &["`cells` is not allowed in [output.fields]", "requires shape = \"mesh\""]),

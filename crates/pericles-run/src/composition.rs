@@ -6,6 +6,7 @@ use std::fmt::Write;
 use pericles::operator::{Feature, Limit};
 use pericles::time::{
     AdaptiveRungeKutta, DiscreteGradient, Implicit, InnerSolver, MultiTimeStep, Relaxation, Respa,
+    RungeKutta,
 };
 use pericles::{Need, Requirement, StepKind};
 use pericles_deck::Scheme as DeckScheme;
@@ -66,7 +67,7 @@ pub const SCHEMES: [Scheme; 13] = [
         words: "Runge–Kutta of orders 3 and 4",
         names: &["rk3", "rk4"],
         kind: StepKind::Stages,
-        requirements: &[],
+        requirements: RungeKutta::REQUIREMENTS,
     },
     Scheme {
         words: "Dormand–Prince",
@@ -204,9 +205,8 @@ impl Scheme {
 /// Returns the requirements of the scheme of a model.
 pub fn requirements(scheme: &DeckScheme) -> &'static [Requirement] {
     match scheme {
-        DeckScheme::VelocityVerlet | DeckScheme::RungeKutta3 { .. } | DeckScheme::RungeKutta4 => {
-            &[]
-        }
+        DeckScheme::VelocityVerlet => &[],
+        DeckScheme::RungeKutta3 { .. } | DeckScheme::RungeKutta4 => RungeKutta::REQUIREMENTS,
         DeckScheme::DormandPrince { .. } => AdaptiveRungeKutta::REQUIREMENTS,
         DeckScheme::MultiTimeStep3 { .. } | DeckScheme::MultiTimeStep4 { .. } => {
             MultiTimeStep::REQUIREMENTS
@@ -234,16 +234,25 @@ pub enum Condition {
     AbsorbingEnds,
     /// Damping layers.
     DampingLayers,
+    /// Elastic contact between points, and with impactors of prescribed motion.
+    Contact,
+    /// Contact with damping or friction.
+    DampedContact,
+    /// Free impactors.
+    FreeImpactors,
 }
 
 impl Condition {
     /// All conditions.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 8] = [
         Self::Supports,
         Self::ReleasedPoints,
         Self::Breaking,
         Self::AbsorbingEnds,
         Self::DampingLayers,
+        Self::Contact,
+        Self::DampedContact,
+        Self::FreeImpactors,
     ];
 
     /// Returns the name in tables.
@@ -254,6 +263,9 @@ impl Condition {
             Self::Breaking => "breaking bonds",
             Self::AbsorbingEnds => "absorbing boundaries",
             Self::DampingLayers => "damping layers",
+            Self::Contact => "contact",
+            Self::DampedContact => "contact with damping or friction",
+            Self::FreeImpactors => "free impactors",
         }
     }
 
@@ -263,6 +275,11 @@ impl Condition {
             Self::Supports | Self::ReleasedPoints | Self::Breaking => false,
             Self::AbsorbingEnds => matches!(need, Need::NoBoundaries | Need::NoMemory),
             Self::DampingLayers => need == Need::NoBoundaries,
+            Self::Contact => need == Need::NoInteractions,
+            Self::DampedContact => {
+                matches!(need, Need::NoInteractions | Need::ConservativeInteractions)
+            }
+            Self::FreeImpactors => matches!(need, Need::NoInteractions | Need::NoFreeBodies),
         }
     }
 
@@ -270,7 +287,7 @@ impl Condition {
     fn kinds(self) -> &'static [StepKind] {
         match self {
             Self::AbsorbingEnds => LatticeScheme::KINDS,
-            Self::Supports | Self::ReleasedPoints | Self::Breaking | Self::DampingLayers => &[],
+            _ => &[],
         }
     }
 }

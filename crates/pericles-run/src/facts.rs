@@ -89,6 +89,15 @@ pub struct Facts {
     /// The loads, in the order of the deck.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub loads: Vec<LoadFacts>,
+    /// Number of pieces that no bond joins.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pieces: Option<usize>,
+    /// The highest frequency of a contact of two points, or of a point and an impactor, 1/s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contact_frequency: Option<f64>,
+    /// Names of the impactors.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub impactors: Vec<String>,
     /// The absorbing boundaries.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub ends: Vec<EndFacts>,
@@ -278,6 +287,13 @@ impl Facts {
                 .iter()
                 .map(|load| LoadFacts::of(load, dimension))
                 .collect(),
+            pieces: model
+                .body
+                .solid()
+                .map(|solid| solid.shape.pieces().len())
+                .filter(|&pieces| pieces > 0),
+            contact_frequency: assembly.contact_frequency,
+            impactors: model.impactors.iter().map(|one| one.name.clone()).collect(),
             ends: assembly.ends.iter().map(EndFacts::of).collect(),
             instruction_set: operator.instruction_set().name(),
             warnings,

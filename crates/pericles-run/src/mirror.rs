@@ -11,6 +11,7 @@ use pericles::noise::SplitMix64;
 use pericles::operator::PointSubset;
 use pericles::space::PointCloud;
 use pericles::{Simulation, System};
+use pericles_io::observers::impactors;
 use rayon::slice::ParallelSliceMut;
 use serde::Serialize;
 
@@ -72,8 +73,9 @@ impl Symmetries {
     /// Detects the symmetries of a simulation before its first step.
     pub fn of(simulation: &Simulation) -> Self {
         let system = simulation.system();
-        // Absorbing boundaries and damping layers are not compared.
-        if system.points() > MOST_POINTS || system.has_boundaries() {
+        // Absorbing boundaries, damping layers and impactors are not compared.
+        let struck = impactors(system).next().is_some();
+        if system.points() > MOST_POINTS || system.has_boundaries() || struck {
             return Self::default();
         }
         let signs: &[f64] = if system.dimension() == 1 {

@@ -12,10 +12,10 @@ use pericles_deck::{
     Precision, Scheme, StaticBreaking,
 };
 use pericles_io::observers::{
-    CellMesh, Cracks, EnergyBoundColumns, ErrorColumns, ExtremeColumns, FieldSelection,
-    FieldSeries, ForceDisplacement, FragmentCourse, History, InnerColumns, LoadFactorColumn,
-    Overlay, PictureOf, Pictures, PointMark, Probes, Profile, Reactions, ResultFile, ResultFormat,
-    SurfaceCourse,
+    CellMesh, ContactColumns, Cracks, EnergyBoundColumns, ErrorColumns, ExtremeColumns,
+    FieldSelection, FieldSeries, ForceDisplacement, FragmentCourse, History, ImpactorSurfaces,
+    Impactors, InnerColumns, LoadFactorColumn, Overlay, PictureOf, Pictures, PointMark, Probes,
+    Profile, Reactions, ResultFile, ResultFormat, SurfaceCourse,
 };
 use pericles_io::{OutputFolder, ResultBody};
 use pericles_manifold::surface::Surface;
@@ -84,7 +84,11 @@ pub fn simulation(
     if !output.extremes.is_empty() {
         history = history.with(ExtremeColumns::new(output.extremes.clone(), dimension));
     }
+    if simulation.system().interactions().next().is_some() {
+        history = history.with(ContactColumns);
+    }
     simulation.observe(output.history, Box::new(history));
+    names.extend(add_impactors(model, folder, &mut simulation)?);
     if let Some(reactions) = reactions {
         names.push("reactions.csv".into());
         simulation.observe(output.history, Box::new(reactions));
@@ -127,6 +131,33 @@ pub fn simulation(
     )?);
     folder.claim(&names)?;
     Ok(simulation)
+}
+
+/// Adds the table and the files of impactors; returns their names relative to the folder.
+fn add_impactors(
+    model: &Model,
+    folder: &OutputFolder,
+    simulation: &mut Simulation,
+) -> Result<Vec<String>, RunError> {
+    let impactors = model.impactors.iter().map(|impactor| impactor.name.clone());
+    let impactors: Vec<String> = impactors.collect();
+    if impactors.is_empty() {
+        return Ok(Vec::new());
+    }
+    let (output, dimension) = (&model.output, simulation.system().dimension());
+    let table = Impactors::new(folder.file("impactors.csv"), &impactors, dimension);
+    simulation.observe(output.history, Box::new(table));
+    let mut names = vec!["impactors.csv".to_owned()];
+    if output.fields != Schedule::Never && output.formats.contains(&FieldFormat::Vtu) {
+        let place = ImpactorSurfaces::FOLDER;
+        folder.subfolder(place)?;
+        for name in ImpactorSurfaces::file_names(&impactors) {
+            names.extend([format!("{name}.pvd"), format!("{place}/{name}_*.vtp")]);
+        }
+        let surfaces = ImpactorSurfaces::new(folder.path(), &impactors);
+        simulation.observe(output.fields, Box::new(surfaces));
+    }
+    Ok(names)
 }
 
 /// Returns a picture requested by a model.
@@ -230,6 +261,10 @@ fn point_marks(model: &Model, cloud: &PointCloud, sets: &Sets) -> Vec<PointMark>
             }
             None => vec![1; cloud.len()],
         },
+        PointNumber::Piece => {
+            let number = |i| cloud.piece(i) as i32 + 1;
+            (0..cloud.len()).map(number).collect()
+        }
         PointNumber::Set(name) => {
             let mut numbers = vec![0; cloud.len()];
             for (_, points) in sets.iter().filter(|(known, _)| known == name) {
@@ -345,12 +380,11 @@ fn material_blocks<'m>(
     let others = model.materials.iter().map(|other| other.name.as_str());
     let names: Vec<&str> = std::iter::once(own).chain(others).collect();
     let mut numbers = vec![1; cloud.len()];
-    for assignment in &model.assignments {
-        let material = assignment.material.as_deref();
-        let Some(place) = names.iter().position(|name| Some(*name) == material) else {
+    for (_, assigned, material) in model.assigned_materials() {
+        let Some(place) = names.iter().position(|name| *name == material) else {
             continue;
         };
-        let is_assigned = |name: &String| assignment.sets.contains(name);
+        let is_assigned = |name: &String| assigned.contains(name);
         for (_, points) in sets.iter().filter(|(name, _)| is_assigned(name)) {
             for &i in points {
                 numbers[i as usize] = place as u32 + 1;

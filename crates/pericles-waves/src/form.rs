@@ -44,7 +44,7 @@ const TENSORS: Limit = Limit::new(
 );
 
 /// Limits of all transforms.
-const OF_TRANSFORMS: [Limit; 17] = [
+const OF_TRANSFORMS: [Limit; 18] = [
     Limit::STATE_BASED,
     Limit::CORRESPONDENCE,
     Limit::SEVERAL_SPACINGS,
@@ -56,6 +56,7 @@ const OF_TRANSFORMS: [Limit; 17] = [
     uniform(Feature::Inclusions),
     uniform(Feature::SurfaceCorrection),
     uniform(Feature::PreCracks),
+    uniform(Feature::Pieces),
     uniform(Feature::Breaking),
     Limit::BOND_ENERGY,
     Limit::STRESS_FAILURE,

@@ -116,11 +116,17 @@ const NAME: &str = "trigonometric";
 
 impl Trigonometric {
     /// Requirements on a system.
-    pub const REQUIREMENTS: &'static [Requirement] = &[Requirement {
-        need: Need::NoMemory,
-        reason: "the cosine of the stiffness extends much farther in one step than the ghosts of a boundary with memory, \
-            which are as many as the horizon has points; use velocity-verlet",
-    }];
+    pub const REQUIREMENTS: &'static [Requirement] = &[
+        Requirement {
+            need: Need::NoMemory,
+            reason: "the cosine of the stiffness extends much farther in one step than the ghosts of a boundary with memory, \
+                which are as many as the horizon has points; use velocity-verlet",
+        },
+        Requirement {
+            need: Need::NoInteractions,
+            reason: "it is exact for the linear part of the force, but contacts open and close within a step; use velocity-verlet",
+        },
+    ];
 
     /// Creates the scheme for a body.
     ///

@@ -19,6 +19,12 @@ pub enum Need {
     NoMemory,
     /// Boundaries that act linearly within an implicit step.
     BoundariesWithinStep,
+    /// No contact.
+    NoInteractions,
+    /// Contact without dampers and friction.
+    ConservativeInteractions,
+    /// No rigid bodies that move under the forces of the points.
+    NoFreeBodies,
 }
 
 /// A requirement of a scheme, with its reason.
@@ -36,6 +42,18 @@ impl Requirement {
         need: Need::DoublePrecision,
         reason: "it solves equations to more digits than forces in single precision have; use forces in double precision",
     };
+
+    /// The requirement of schemes that evaluate forces between the ends of steps.
+    pub const CONSERVATIVE_CONTACT: Self = Self {
+        need: Need::ConservativeInteractions,
+        reason: "dampers and friction of contact act on the mean velocity of a step, which this scheme does not have; use velocity-verlet, or contact without damping and friction",
+    };
+
+    /// The requirement of schemes that move the points only.
+    pub const NO_FREE_BODIES: Self = Self {
+        need: Need::NoFreeBodies,
+        reason: "rigid bodies that move freely advance by the steps of velocity-verlet; use it, or prescribe their motion",
+    };
 }
 
 impl Need {
@@ -51,6 +69,11 @@ impl Need {
             Self::BoundariesWithinStep => {
                 system.boundaries().all(|one| one.within_step().is_some())
             }
+            Self::NoInteractions => !system.has_interactions(),
+            Self::ConservativeInteractions => {
+                system.interactions().all(|one| one.is_conservative())
+            }
+            Self::NoFreeBodies => !system.interactions().any(|one| one.has_free_bodies()),
         }
     }
 }

@@ -230,8 +230,7 @@ impl Watched<'_> {
     }
 
     fn look_at_growth(&self) -> Result<(), Alarm> {
-        let State { t, u, v, .. } = self.state;
-        let energy = self.system.kinetic_energy(v) + self.system.operator().energy(*t, u);
+        let energy = self.system.mechanical_energy(self.state);
         self.compare(energy, PLAIN_GROWTH)
     }
 
@@ -241,7 +240,7 @@ impl Watched<'_> {
         let Some(ratio) = self.step_ratio.filter(|ratio| *ratio < 1.0) else {
             return Ok(());
         };
-        if self.system.operator().is_linear() {
+        if self.system.is_linear() {
             return Ok(());
         }
         let hidden = 0.25 * self.dt * self.dt * self.system.kinetic_energy(&self.state.a);
@@ -295,11 +294,8 @@ impl Watched<'_> {
     /// of magnitude.
     fn look_at_energy(&self) -> Result<(), Alarm> {
         let (system, state) = (self.system, self.state);
-        let operator = system.operator();
-        let elastic = operator.energy(state.t, &state.u);
-        let kinetic = system.kinetic_energy(&state.v);
         let correction = self.integrator.energy_correction(system, state, self.dt);
-        let conserved = kinetic + elastic + operator.dissipated() + correction;
+        let conserved = system.mechanical_energy(state) + system.dissipated() + correction;
         self.compare(conserved, GROWTH)
     }
 
@@ -322,7 +318,7 @@ impl Watched<'_> {
     fn look_at_order(&self) -> Result<(), Alarm> {
         let (system, cloud) = (self.system, self.system.cloud());
         let operator = system.operator();
-        if system.dimension() != 1 || operator.is_linear() {
+        if system.dimension() != 1 || system.is_linear() {
             return Ok(());
         }
         let mut damage = vec![0.0; cloud.len()];
@@ -348,7 +344,7 @@ impl Watched<'_> {
     }
 
     fn look_at_stiffness(&self) -> Result<(), Alarm> {
-        if self.system.operator().is_linear() || self.stable_step(1.0).is_none() {
+        if self.system.is_linear() || self.stable_step(1.0).is_none() {
             return Ok(());
         }
         let omega = frequency_from_below(self.system, &self.state.u, APPLICATIONS);

@@ -166,6 +166,7 @@ pub mod domain;
 mod error;
 pub mod family;
 mod guard;
+mod interaction;
 mod interrupt;
 pub mod kernel;
 pub mod lanes;
@@ -195,6 +196,7 @@ pub use body::Body;
 pub use compatibility::{Need, Requirement, require};
 pub use error::{PericlesError, Result, positive};
 pub use guard::InstabilityCause;
+pub use interaction::{Configuration, Interaction, InteractionStep};
 pub use interrupt::{Interrupt, IterationProgress};
 pub use scalar::PointScalar;
 pub use simulation::{

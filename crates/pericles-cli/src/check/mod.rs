@@ -77,6 +77,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
                 .with("loads_not_listed", more),
         );
     }
+    lines.extend(contact(&facts));
     lines.extend(probes(&assembly));
     for end in &facts.ends {
         lines.push(Line::new("absorbing boundary", end.line()));
@@ -164,6 +165,29 @@ fn run_time(
     Ok(Line::new("run time", text)
         .with("run_seconds", seconds)
         .with("threads", count_of_threads))
+}
+
+/// Returns the lines about pieces, contact and impactors.
+fn contact(facts: &Facts) -> Vec<Line> {
+    let pieces = facts.pieces.map(|pieces| {
+        let text = format!("{pieces}, without bonds between them");
+        Line::new("pieces", text).with("pieces", pieces)
+    });
+    let step = facts.contact_frequency.map(|contact| {
+        let lasts = std::f64::consts::PI / contact;
+        let steps = lasts / facts.dt;
+        let text = format!(
+            "of two points lasts {}, {} steps",
+            quantity(lasts, "s"),
+            significant(steps, 3)
+        );
+        Line::new("contact", text)
+            .with("contact_duration", lasts)
+            .with("contact_steps", steps)
+    });
+    let impactors = facts.impactors.iter();
+    let impactors = impactors.map(|name| Line::new("impactor", name.clone()));
+    pieces.into_iter().chain(step).chain(impactors).collect()
 }
 
 fn body(model: &Model, facts: &Facts) -> Vec<Line> {

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use pericles::observe::Field;
 use pericles::space::PointCloud;
 use pericles_deck::Model;
-use pericles_io::observers::{DrawnState, PictureOf};
+use pericles_io::observers::{DrawnState, ImpactorSurfaces, PictureOf};
 use pericles_io::{Extent, FieldData, write_animation};
 use pericles_run::{
     FieldFile, Resources, Results, RunError, discretise, machine, overlay, picture_of, readers,
@@ -43,6 +43,8 @@ pub(super) fn draw(
     let body = Body {
         rows: (0..cloud.len()).map(|i| cloud.user_number(i)).collect(),
         cloud,
+        folder: results.folder().to_path_buf(),
+        impactors: model.impactors.iter().map(|one| one.name.clone()).collect(),
     };
     let mut pictures: Vec<PictureOf> = wanted(model, args, &last.read()?, body.cloud.dimension())?
         .into_iter()
@@ -201,6 +203,10 @@ fn columns(field: Field, dimension: usize) -> Vec<String> {
 struct Body {
     cloud: Arc<PointCloud>,
     rows: Vec<usize>,
+    /// The output folder.
+    folder: PathBuf,
+    /// Names of the impactors.
+    impactors: Vec<String>,
 }
 
 impl Body {
@@ -223,6 +229,7 @@ impl Body {
             displacement: &displacement,
             values: &what.numbers(&field, n),
             extent: None,
+            impactors: &ImpactorSurfaces::read(&self.folder, &self.impactors, state.time)?,
         };
         Ok(what.draw_state(&self.cloud, &drawn, path)?)
     }

@@ -30,6 +30,7 @@ const CRATES: &[(&str, &[&str])] = &[
     ("pericles-dispersion", &["pericles"]),
     ("pericles-mesh", &[]),
     ("pericles-solids", &["pericles"]),
+    ("pericles-contact", &["pericles"]),
     ("pericles-statics", &["pericles"]),
     (
         "pericles-deck",
@@ -39,6 +40,7 @@ const CRATES: &[(&str, &[&str])] = &[
             "pericles-manifold",
             "pericles-dispersion",
             "pericles-solids",
+            "pericles-contact",
         ],
     ),
     (
@@ -49,6 +51,7 @@ const CRATES: &[(&str, &[&str])] = &[
             "pericles-manifold",
             "pericles-dispersion",
             "pericles-mesh",
+            "pericles-contact",
         ],
     ),
     (
@@ -60,6 +63,7 @@ const CRATES: &[(&str, &[&str])] = &[
             "pericles-dispersion",
             "pericles-mesh",
             "pericles-solids",
+            "pericles-contact",
             "pericles-statics",
             "pericles-deck",
             "pericles-io",
@@ -74,6 +78,7 @@ const CRATES: &[(&str, &[&str])] = &[
             "pericles-dispersion",
             "pericles-mesh",
             "pericles-solids",
+            "pericles-contact",
             "pericles-statics",
             "pericles-deck",
             "pericles-io",
@@ -90,6 +95,7 @@ const CRATES: &[(&str, &[&str])] = &[
             "pericles-dispersion",
             "pericles-mesh",
             "pericles-solids",
+            "pericles-contact",
             "pericles-statics",
             "pericles-deck",
             "pericles-io",

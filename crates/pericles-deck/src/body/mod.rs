@@ -4,6 +4,7 @@ mod filled;
 mod kind;
 mod mesh;
 mod outline;
+mod piece;
 mod plane;
 mod points;
 mod positions;
@@ -12,12 +13,14 @@ mod surface;
 mod types;
 mod unit;
 
+pub use piece::{Piece, Rotation, piece_path};
 pub use positions::Positions;
 pub use sources::{Boundary, FilledCells, FilledShape, MeshFile};
 pub use surface::{SurfaceFormula, SurfaceShape, VertexAreas};
 pub use types::{Lattice, PointsFile, Quadrature, SolidShape};
 pub use unit::length_unit;
 
+pub(crate) use piece::rotation;
 pub(crate) use types::{BodyRead, SurfaceRead};
 pub(crate) use unit::unit;
 
@@ -34,18 +37,16 @@ use crate::region::{self, Frame};
 
 /// Reads `[body]`.
 pub(crate) fn read(table: Option<Table<'_>>) -> BodyRead {
-    let mut read = BodyRead {
-        shape: None,
-        frame: Frame {
-            dimension: None,
-            spacing: None,
-            cells: true,
-            mesh: false,
-        },
-        state: None,
-        surface: None,
+    let Some(table) = table else {
+        return BodyRead::default();
     };
-    let Some(table) = table else { return read };
+    let pieces = piece::read(&table, one_piece);
+    pieces.join(one_piece(table))
+}
+
+/// Reads the shape of a piece; its further keys have been read.
+fn one_piece(table: Table<'_>) -> BodyRead {
+    let mut read = BodyRead::default();
     let kind = table
         .required("shape")
         .and_then(|item| item.choice("shape", &KINDS));

@@ -6,6 +6,7 @@ use pericles::material::StressState;
 use pericles::space::{Finer, Grid, Region};
 use serde::{Deserialize, Serialize};
 
+use super::piece::Piece;
 use super::positions::Positions;
 use super::sources::{FilledShape, MeshFile};
 use super::surface::{SurfaceShape, VertexAreas};
@@ -23,6 +24,8 @@ pub enum SolidShape {
     Mesh(MeshFile),
     /// Cells in a closed surface or an outline.
     Filled(FilledShape),
+    /// Several pieces that no bond joins, at least one; the first one is that of `[body]`.
+    Pieces(Vec<Piece>),
 }
 
 /// A body on a grid.
@@ -64,28 +67,49 @@ impl From<Grid> for Lattice {
 }
 
 impl SolidShape {
-    /// Returns the lattice of an analytic shape.
+    /// Returns the lattice of an analytic shape of one piece.
     pub fn lattice(&self) -> Option<&Lattice> {
         match self {
             Self::Lattice(lattice) => Some(lattice),
-            Self::Points(_) | Self::Mesh(_) | Self::Filled(_) => None,
+            Self::Points(_) | Self::Mesh(_) | Self::Filled(_) | Self::Pieces(_) => None,
         }
     }
 
-    /// Returns the lattice of an analytic shape, mutably.
+    /// Returns the lattice of an analytic shape of one piece, mutably.
     pub fn lattice_mut(&mut self) -> Option<&mut Lattice> {
         match self {
             Self::Lattice(lattice) => Some(lattice),
-            Self::Points(_) | Self::Mesh(_) | Self::Filled(_) => None,
+            Self::Points(_) | Self::Mesh(_) | Self::Filled(_) | Self::Pieces(_) => None,
         }
     }
 
-    /// Returns whether the points come from a file, a mesh or random numbers instead of the nodes of a lattice.
+    /// Returns the pieces; none for a body of one piece.
+    pub fn pieces(&self) -> &[Piece] {
+        match self {
+            Self::Pieces(pieces) => pieces,
+            _ => &[],
+        }
+    }
+
+    /// Returns the shape of the first piece.
+    fn first(&self) -> Option<&Self> {
+        self.pieces().first().map(|piece| &piece.shape)
+    }
+
+    /// Returns whether the points come from a file, a mesh or random numbers instead of the nodes of a lattice, or from
+    /// rotated pieces or pieces of several spacings.
     pub fn is_listed(&self) -> bool {
         match self {
             Self::Lattice(lattice) => lattice.positions.are_random(),
             Self::Points(_) | Self::Mesh(_) => true,
             Self::Filled(filled) => !filled.is_on_lattice(),
+            Self::Pieces(pieces) => {
+                let differ = |two: &[Piece]| {
+                    let [one, other] = [&two[0].shape, &two[1].shape];
+                    one.spacing() != other.spacing() || one.rectangular() != other.rectangular()
+                };
+                pieces.iter().any(Piece::is_listed) || pieces.windows(2).any(differ)
+            }
         }
     }
 
@@ -96,16 +120,20 @@ impl SolidShape {
             Self::Points(file) => file.dimension,
             Self::Mesh(mesh) => mesh.dimension,
             Self::Filled(filled) => filled.boundary.dimension(),
+            // A list without pieces is rejected.
+            Self::Pieces(_) => self.first().map_or(3, Self::dimension),
         }
     }
 
-    /// Returns the spacing, m: the largest one of a grid; none for a mesh with automatic spacing.
+    /// Returns the spacing, m: the largest one of a grid, that of the first piece; none for a mesh with automatic
+    /// spacing.
     pub fn spacing(&self) -> Option<f64> {
         match self {
             Self::Lattice(lattice) => Some(lattice.grid.spacing),
             Self::Points(file) => Some(file.spacing),
             Self::Mesh(mesh) => mesh.spacing,
             Self::Filled(filled) => Some(filled.spacing),
+            Self::Pieces(_) => self.first()?.spacing(),
         }
     }
 
@@ -116,16 +144,21 @@ impl SolidShape {
             Self::Points(file) => file.section,
             Self::Mesh(mesh) => mesh.section,
             Self::Filled(filled) => filled.section,
+            Self::Pieces(_) => self.first().map_or(1.0, Self::section),
         }
     }
 
-    /// Returns the path of the file of the points, if there is one.
-    pub fn file(&self) -> Option<&Path> {
+    /// Returns the paths of the files of the points.
+    pub fn files(&self) -> Vec<&Path> {
         match self {
-            Self::Lattice(_) => None,
-            Self::Points(file) => Some(&file.path),
-            Self::Mesh(mesh) => Some(&mesh.path),
-            Self::Filled(filled) => filled.boundary.file(),
+            Self::Lattice(_) => Vec::new(),
+            Self::Points(file) => vec![&file.path],
+            Self::Mesh(mesh) => vec![&mesh.path],
+            Self::Filled(filled) => filled.boundary.file().into_iter().collect(),
+            Self::Pieces(pieces) => pieces
+                .iter()
+                .flat_map(|piece| piece.shape.files())
+                .collect(),
         }
     }
 
@@ -139,12 +172,12 @@ impl SolidShape {
         !self.finer().is_empty()
     }
 
-    /// Returns the refined parts.
+    /// Returns the refined parts; pieces have none.
     pub fn finer(&self) -> &[Finer] {
         match self {
             Self::Lattice(lattice) => &lattice.finer,
             Self::Filled(filled) => &filled.finer,
-            Self::Points(_) | Self::Mesh(_) => &[],
+            Self::Points(_) | Self::Mesh(_) | Self::Pieces(_) => &[],
         }
     }
 
@@ -154,18 +187,21 @@ impl SolidShape {
         lattice.is_some_and(|lattice| lattice.quadrature == Quadrature::Gauss)
     }
 
-    /// Returns the holes.
+    /// Returns the holes of a body of one piece.
     pub fn holes(&self) -> &[Region] {
         match self {
             Self::Lattice(lattice) => &lattice.grid.holes,
             Self::Filled(filled) => &filled.holes,
-            Self::Points(_) | Self::Mesh(_) => &[],
+            Self::Points(_) | Self::Mesh(_) | Self::Pieces(_) => &[],
         }
     }
 
-    /// Returns the spacing along each axis, m, of a box with anisotropic spacing.
+    /// Returns the spacing along each axis, m, of a box with anisotropic spacing, that of the first piece.
     pub fn rectangular(&self) -> Option<&[f64]> {
-        self.lattice()?.rectangular.as_deref()
+        match self {
+            Self::Pieces(_) => self.first()?.rectangular(),
+            _ => self.lattice()?.rectangular.as_deref(),
+        }
     }
 }
 
@@ -183,10 +219,30 @@ pub enum Quadrature {
 /// Properties of a body that other tables need; none if they could not be read.
 pub(crate) struct BodyRead {
     pub(crate) shape: Option<SolidShape>,
+    /// Names of the pieces; empty for a body of one piece.
+    pub(crate) pieces: Vec<String>,
     pub(crate) frame: Frame,
     pub(crate) state: Option<StressState>,
     /// The body, if it is a 2-manifold.
     pub(crate) surface: Option<SurfaceRead>,
+}
+
+impl Default for BodyRead {
+    /// A body of which nothing is known.
+    fn default() -> Self {
+        Self {
+            shape: None,
+            pieces: Vec::new(),
+            frame: Frame {
+                dimension: None,
+                spacing: None,
+                cells: true,
+                mesh: false,
+            },
+            state: None,
+            surface: None,
+        }
+    }
 }
 
 /// A 2-manifold, as far as it could be read.

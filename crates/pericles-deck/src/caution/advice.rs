@@ -1,6 +1,7 @@
 //! Advice and labels of warnings.
 
 use miette::Severity;
+use pericles::units::quantity;
 
 use super::Caution;
 use crate::subject::Subject;
@@ -74,6 +75,21 @@ impl Subject for Caution {
             Self::Pieces { .. } => {
                 "check cracks, holes and the horizon, unless separate parts are intended"
             }
+            Self::NoContact { .. } => {
+                "add [contact], or [contact] with pairs = \"pieces\" for the pieces only"
+            }
+            Self::FastImpact { .. } => {
+                "use a larger `contact.stiffness` with a smaller step, fewer spacings per horizon, or a smaller speed; the history shows the overlap of impactors"
+            }
+            Self::FewContactSteps { longest, .. } => {
+                return Some(format!(
+                    "use dt = \"auto\" or at most {}",
+                    quantity(*longest, "s")
+                ));
+            }
+            Self::CoarseImpact { .. } => {
+                "broken bonds then depend on the time step; repeat the run with a smaller dt and compare"
+            }
             Self::NoSupport { .. } => {
                 "constrain them with [[constraint]]; without supports, a static state exists only if the loads on them are in equilibrium"
             }
@@ -138,6 +154,9 @@ impl Subject for Caution {
             Self::CrackCutsNothing | Self::UnusedMaterial { .. } => "no effect",
             Self::CrackOutside { .. } => "outside the body",
             Self::Pieces { .. } => "disconnected",
+            Self::NoContact { .. } => "no contact",
+            Self::FastImpact { .. } => "fast impact",
+            Self::FewContactSteps { .. } | Self::CoarseImpact { .. } => "large step",
             Self::LargeStretch { .. } => "large critical stretch",
             Self::SoftSolid { .. } => "low modulus",
             Self::HeavySolid { .. } => "large density",

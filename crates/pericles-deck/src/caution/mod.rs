@@ -200,6 +200,43 @@ pub enum Caution {
         /// One of them, m.
         place: Vec<f64>,
     },
+    /// Several pieces without contact.
+    #[error(
+        "the {pieces} pieces of the body do not interact: bonds do not join them and the deck has no [contact]"
+    )]
+    NoContact {
+        /// Their number.
+        pieces: usize,
+    },
+    /// An impact in which points may pass each other.
+    #[error("the impact at {} ({} of the wave speed) makes points overlap by about {} of the spacing; beyond 1 they pass each other",
+        quantity(*speed, "m/s"), percent(speed / wave_speed), significant(*overlap, 2))]
+    FastImpact {
+        /// Relative speed of the bodies, m/s.
+        speed: f64,
+        /// Speed of waves, m/s.
+        wave_speed: f64,
+        /// Estimated overlap in spacings.
+        overlap: f64,
+    },
+    /// A step in which contacts are not resolved.
+    #[error("a contact of two points lasts less than five steps of {}: bodies may leave each other with up to 10 % more or less velocity",
+        quantity(*dt, "s"))]
+    FewContactSteps {
+        /// The step, s.
+        dt: f64,
+        /// The largest step with five steps per contact, s.
+        longest: f64,
+    },
+    /// A step in which an impact stretches bonds far beyond the critical stretch.
+    #[error("within a step the impact at {} stretches bonds by {} times the critical stretch",
+        quantity(*speed, "m/s"), significant(*times, 2))]
+    CoarseImpact {
+        /// Relative speed of the bodies, m/s.
+        speed: f64,
+        /// Stretch in a step relative to the critical stretch.
+        times: f64,
+    },
     /// A static body with parts that are not connected to a support.
     #[error(
         "{points} of {of} points, such as the one at {} m, are not connected to a support by bonds",

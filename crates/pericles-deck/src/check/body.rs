@@ -10,7 +10,8 @@ use pericles_manifold::{PowerMaterial, SurfaceBond};
 
 use super::ranges::{Check, POSITIVE};
 use crate::body::{
-    Boundary, FilledCells, FilledShape, Lattice, Positions, Quadrature, SolidShape, VertexAreas,
+    Boundary, FilledCells, FilledShape, Lattice, Piece, Positions, Quadrature, SolidShape,
+    VertexAreas, piece_path,
 };
 use crate::fault::Fault;
 use crate::interface::InterfaceFailure;
@@ -18,30 +19,14 @@ use crate::key_path::KeyPath;
 use crate::material::{Material, MaterialModel, difference};
 use crate::model::{Model, Solid};
 use crate::remark::Remark;
+use crate::set::bad_name;
 use crate::state_based::StateBased;
 use crate::surface::SurfaceBody;
 
 impl Check {
     pub(super) fn solid(&mut self, key: &KeyPath, solid: &Solid) {
-        if let Some(spacing) = solid.shape.spacing() {
-            self.positive(key.key("spacing"), spacing);
-        }
+        self.shape(key, &solid.shape);
         let section = ["body.area", "body.thickness", "body"];
-        match &solid.shape {
-            SolidShape::Lattice(lattice) => self.lattice(key, lattice),
-            SolidShape::Points(_) => {}
-            SolidShape::Mesh(mesh) => {
-                self.positive(key.key("unit"), mesh.unit);
-                let right = mesh.dimension >= 2;
-                self.within(
-                    right,
-                    key.key("dimension"),
-                    mesh.dimension,
-                    "allowed: 2 or 3",
-                );
-            }
-            SolidShape::Filled(filled) => self.filled(key, filled),
-        }
         let dimension = solid.shape.dimension();
         let right = (1..=3).contains(&dimension);
         self.within(right, key.key("dimension"), dimension, "allowed: 1, 2 or 3");
@@ -57,6 +42,65 @@ impl Check {
         let allowed = "allowed: uniaxial in one dimension, plane stress or plane strain in two, spatial in three";
         self.within(fits, key.key("plane"), solid.state.name(), allowed);
         self.material(&solid.material, solid.state, dimension);
+    }
+
+    fn shape(&mut self, key: &KeyPath, shape: &SolidShape) {
+        if let Some(spacing) = shape.spacing() {
+            self.positive(key.key("spacing"), spacing);
+        }
+        match shape {
+            SolidShape::Lattice(lattice) => self.lattice(key, lattice),
+            SolidShape::Points(_) => {}
+            SolidShape::Mesh(mesh) => {
+                self.positive(key.key("unit"), mesh.unit);
+                let right = mesh.dimension >= 2;
+                self.within(
+                    right,
+                    key.key("dimension"),
+                    mesh.dimension,
+                    "allowed: 2 or 3",
+                );
+            }
+            SolidShape::Filled(filled) => self.filled(key, filled),
+            SolidShape::Pieces(pieces) => self.pieces(key, pieces),
+        }
+    }
+
+    fn pieces(&mut self, key: &KeyPath, pieces: &[Piece]) {
+        let allowed = "allowed: at least one piece";
+        self.within(!pieces.is_empty(), key.key("piece"), pieces.len(), allowed);
+        for (k, piece) in pieces.iter().enumerate() {
+            let key = piece_path(k);
+            let whole = piece.shape.pieces().is_empty()
+                && !piece.shape.is_periodic()
+                && !piece.shape.is_refined()
+                && !piece.shape.has_gauss_nodes();
+            let allowed =
+                "allowed: a shape that is not periodic, with one point per cell and one cell size";
+            self.within(whole, key.key("shape"), &piece.name, allowed);
+            if whole {
+                self.shape(&key, &piece.shape);
+            }
+            let first = &pieces[0].shape;
+            let alike = first.dimension() == piece.shape.dimension()
+                && first.section() == piece.shape.section();
+            let allowed = "allowed: the dimension and the `area` or `thickness` of the body";
+            self.within(alike, key.key("shape"), &piece.name, allowed);
+            let known = pieces[..k].iter().any(|other| other.name == piece.name);
+            let allowed = "allowed: a name that no other piece has";
+            self.within(
+                !known && bad_name(&piece.name).is_none(),
+                key.key("name"),
+                &piece.name,
+                allowed,
+            );
+            if let Some(rotation) = piece.rotation {
+                let right = rotation.axis.iter().any(|&x| x != 0.0)
+                    && rotation.axis.iter().all(|x| x.is_finite());
+                let allowed = "allowed: a nonzero vector";
+                self.within(right, key.key("rotation").key("axis"), "zero", allowed);
+            }
+        }
     }
 
     fn filled(&mut self, key: &KeyPath, filled: &FilledShape) {
@@ -241,6 +285,16 @@ impl Check {
             if let Some(name) = &assignment.material {
                 let known = names.contains(&name.as_str());
                 self.within(known, key.key("material"), name, allowed);
+            }
+        }
+        for (k, piece) in solid
+            .iter()
+            .flat_map(|solid| solid.shape.pieces())
+            .enumerate()
+        {
+            if let Some(name) = &piece.material {
+                let known = names.contains(&name.as_str());
+                self.within(known, piece_path(k).key("material"), name, allowed);
             }
         }
         for (k, interface) in model.interfaces.iter().enumerate() {

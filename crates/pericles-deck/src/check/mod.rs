@@ -2,6 +2,7 @@
 
 mod body;
 mod conditions;
+mod contact;
 mod course;
 mod ranges;
 
@@ -30,6 +31,7 @@ impl Model {
             }
         }
         check.conditions(self);
+        check.contact(self);
         check.thermal(self);
         check.damping(self);
         check.boundaries(&self.boundaries);

@@ -322,6 +322,31 @@ pub enum Fault {
         /// The set.
         set: String,
     },
+    /// Pieces of a body that overlap.
+    #[error("the pieces `{}` and `{}` overlap: near {} two of their points are {} apart, less than half of a cell",
+        shortened(&pieces[0]), shortened(&pieces[1]), spot(place), quantity(*distance, "m"))]
+    OverlappingPieces {
+        /// Their names.
+        pieces: [String; 2],
+        /// Position of a point of the first piece, m.
+        place: Vec<f64>,
+        /// Distance of the points, m.
+        distance: f64,
+    },
+    /// An impactor that overlaps the body at the start.
+    #[error(
+        "{points} points of the body, such as the one at {} m, are inside the impactor `{}`",
+        spot(place),
+        shortened(impactor)
+    )]
+    ImpactorInBody {
+        /// Its name.
+        impactor: String,
+        /// Number of points inside.
+        points: usize,
+        /// Position of one of them, m.
+        place: Vec<f64>,
+    },
     /// A material that is assigned to no point.
     #[error("no point has the material `{}`", shortened(material))]
     EmptyMaterial {

@@ -4,6 +4,7 @@ use pericles::observe::{Field, Schedule};
 use serde::{Deserialize, Serialize};
 
 use super::{FieldComponent, is_never, schedule};
+use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 use crate::set::SetNames;
 
@@ -106,18 +107,22 @@ pub(super) fn cells(table: &Table<'_>) -> Option<CellChoice> {
 pub enum PointNumber {
     /// The material of the point: 1 for that of the body, 2 for the first of `[materials]` …
     Material,
+    /// The piece of the point: 1 for that of `[body]`, 2 for the first of `[[body.piece]]` …
+    Piece,
     /// 1 for the points of a set, 0 for others.
     Set(String),
 }
 
 impl PointNumber {
     const MATERIAL: &str = "Material_Id";
+    const PIECE: &str = "Piece_Id";
     const SET: &str = "Set_";
 
     /// The number that a name stands for.
     fn named(name: &str) -> Option<Self> {
         match name.strip_prefix(Self::SET) {
             Some(set) => Some(Self::Set(set.into())),
+            None if name == Self::PIECE => Some(Self::Piece),
             None => (name == Self::MATERIAL).then_some(Self::Material),
         }
     }
@@ -126,6 +131,7 @@ impl PointNumber {
     pub fn name(&self) -> String {
         match self {
             Self::Material => Self::MATERIAL.into(),
+            Self::Piece => Self::PIECE.into(),
             Self::Set(set) => format!("{}{set}", Self::SET),
         }
     }
@@ -164,7 +170,8 @@ fn names(item: &Item<'_>, dimension: Option<usize>, sets: &SetNames) -> Option<N
         }
         let words = field_names(dimension);
         let fields = words.iter().map(|(word, one)| (word.as_str(), Some(*one)));
-        let numbers = [(PointNumber::MATERIAL, None), ("Set_<name>", None)];
+        let numbers = [PointNumber::MATERIAL, PointNumber::PIECE, "Set_<name>"];
+        let numbers = numbers.map(|name| (name, None));
         let words: Vec<(&str, Option<FieldComponent>)> = fields.chain(numbers).collect();
         match item.choice("field", &words)? {
             Some((field, None)) => Some(Name::Field(field)),
@@ -302,4 +309,29 @@ pub(super) fn field_names(dimension: Option<usize>) -> Vec<(String, FieldCompone
         (name, (field, component))
     });
     named.collect()
+}
+
+/// Quantity of the values of a field.
+pub(super) fn quantity(field: Field) -> Quantity {
+    match field {
+        Field::Displacement | Field::Radius => Quantity::Length,
+        Field::Velocity => Quantity::Velocity,
+        Field::ForceDensity | Field::ExternalForce | Field::Reaction | Field::ContactForce => {
+            Quantity::ForceDensity
+        }
+        Field::Stress
+        | Field::EquivalentStress
+        | Field::VonMisesStress
+        | Field::PrincipalStress => Quantity::Traction,
+        Field::Damage
+        | Field::Strain
+        | Field::Dilatation
+        | Field::PlasticStrain
+        | Field::YieldFlag
+        | Field::PointId
+        | Field::FragmentId => Quantity::Number,
+        Field::StrainEnergyDensity | Field::KineticEnergyDensity => Quantity::EnergyDensity,
+        Field::Volume => Quantity::Number,
+        Field::Temperature => Quantity::Temperature,
+    }
 }

@@ -10,7 +10,7 @@ use pericles::observe::{Field, Schedule};
 use pericles::space::Point;
 use serde::{Deserialize, Serialize};
 
-use self::fields::{Fields, cells, field_names, fields};
+use self::fields::{Fields, cells, field_names, fields, quantity};
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 use crate::set::SetNames;
@@ -419,28 +419,6 @@ fn picture(table: Table<'_>, dimension: Option<usize>) -> Option<Picture> {
         animation: animation?,
         schedule: schedule?,
     })
-}
-
-fn quantity(field: Field) -> Quantity {
-    match field {
-        Field::Displacement | Field::Radius => Quantity::Length,
-        Field::Velocity => Quantity::Velocity,
-        Field::ForceDensity | Field::ExternalForce | Field::Reaction => Quantity::ForceDensity,
-        Field::Stress
-        | Field::EquivalentStress
-        | Field::VonMisesStress
-        | Field::PrincipalStress => Quantity::Traction,
-        Field::Damage
-        | Field::Strain
-        | Field::Dilatation
-        | Field::PlasticStrain
-        | Field::YieldFlag
-        | Field::PointId
-        | Field::FragmentId => Quantity::Number,
-        Field::StrainEnergyDensity | Field::KineticEnergyDensity => Quantity::EnergyDensity,
-        Field::Volume => Quantity::Number,
-        Field::Temperature => Quantity::Temperature,
-    }
 }
 
 impl Output {

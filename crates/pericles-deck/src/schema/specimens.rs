@@ -268,6 +268,32 @@ pub(super) const SPECIMENS: &[Specimen] = &[
     specimen(PLATE, &[]),
     specimen(BLOCK, &[]),
     specimen(SURFACE, &[]),
+    // Pieces.
+    specimen(
+        PLATE,
+        &[
+            "body={ shape = 'plate', size = [10, 4], spacing = 1, plane = 'strain', name = 'target', piece = [{ name = 'a', shape = 'plate', size = [2, 2], origin = [11, 0], material = 'glass', velocity = [-1, 0] }, { name = 'b', shape = 'disc', radius = 2, centre = [-9, 0], rotation = { angle = '30 deg', centre = [0, 0] } }, { name = 'c', shape = 'points', file = 'c.txt', dimension = 2, origin = [0, 9] }, { name = 'd', shape = 'mesh', file = 'd.msh', unit = 'mm', dimension = 2, rotation = { angle = 1, axis = [0, 0, 1] } }, { name = 'e', shape = 'outline', polygons = [[[0, 0], [1, 0], [0, 1]]] }] }",
+        ],
+    ),
+    specimen(BLOCK, &["body.periodic=false", "body.piece=[{ name = 'far', shape = 'ball', radius = 2, centre = [0, 0, 30], rotation = { angle = 1, axis = [1, 0, 0] } }]"]),
+    // Contact.
+    specimen(PLATE, &["contact={ pairs = 'pieces', law = 'power', exponent = 1.5, stiffness = 2, distance = 1, closing = 1, damping = 0.3, friction = { coefficient = 0.2, speed = 1 } }"]),
+    specimen(BAR, &["contact={ law = 'emu' }", "impactor=[{ name = 'a', shape = 'half-space', normal = 1, centre = 0 }]"]),
+    specimen(
+        BAR,
+        &[
+            "contact={ pairs = 'all', stiffness = '3 MN/m' }",
+            "impactor=[{ name = 'a', shape = 'ball', radius = 1, centre = 0, density = 1 }]",
+        ],
+    ),
+    specimen(
+        PLATE,
+        &["impactor=[{ name = 'a', shape = 'box', size = [1, 1], centre = [0, 0], mass = 1, inertia = 1, spin = 1, velocity = [0, 1], rotation = { angle = 1 } }, { name = 'b', shape = 'ball', radius = 1, centre = [0, 9], motion = 'prescribed', displacement = [0, 1], function = { kind = 'ramp', duration = 1 } }]"],
+    ),
+    specimen(
+        BLOCK,
+        &["body.periodic=false", "impactor=[{ name = 'a', shape = 'cylinder', radius = 1, height = 1, centre = [0, 0, 0], mass = 1, inertia = [1, 1, 1], spin = [0, 0, 1], motion = 'free' }, { name = 'b', shape = 'surface', file = 'a.stl', unit = 'mm', centre = [0, 0, 9], motion = 'prescribed', velocity = [0, 0, -1] }, { name = 'c', shape = 'cylinder', radius = 1, height = 1, axis = [1, 0, 0], centre = [0, 0, 0], density = 1 }]"],
+    ),
     // Shapes.
     specimen(BAR, &["body={ shape = 'bar', size = 10, origin = 0, spacing = 1, area = 1, quadrature = 'gauss' }"]),
     specimen(BAR, &["body={ shape = 'plate', size = [9, 9], spacing = [1, 1.5], plane = 'stress' }"]),

@@ -32,7 +32,8 @@ const CORNERS: [[f64; 3]; 8] = [
 const BOX_TYPES: [u8; 3] = [3, 9, 12];
 
 impl CellMesh {
-    /// The cells of a body whose points are the centres of boxes: lines, quadrilaterals or hexahedra. Cells share the nodes in which they meet.
+    /// The cells of a body whose points are the centres of boxes: lines, quadrilaterals or hexahedra. Cells of a piece share the nodes in
+    /// which they meet.
     pub fn of_boxes(cloud: &PointCloud) -> Self {
         /// Corners that are nearer to each other than this share of the smallest cell are one node.
         const SAME: f64 = 1e-4;
@@ -52,7 +53,7 @@ impl CellMesh {
         for i in 0..n as u32 {
             in_order[numbering.number(i) as usize] = i as usize;
         }
-        let mut numbers: HashMap<[i64; 3], u32> = HashMap::with_capacity(n);
+        let mut numbers: HashMap<([i64; 3], u32), u32> = HashMap::with_capacity(n);
         let mut nodes: Vec<[f64; 3]> = Vec::with_capacity(n);
         let mut cells = VtuCells::default();
         for i in in_order {
@@ -65,7 +66,7 @@ impl CellMesh {
                 let key = std::array::from_fn(|c| {
                     ((place[c] - low[c]) / (SAME * smallest)).round() as i64
                 });
-                *numbers.entry(key).or_insert_with(|| {
+                *numbers.entry((key, cloud.piece(i))).or_insert_with(|| {
                     nodes.push(place);
                     nodes.len() as u32 - 1
                 })
@@ -105,6 +106,16 @@ impl CellMesh {
 mod tests {
     use super::*;
     use pericles::space::{Finer, GradedGrid, Grid, Region, Shape};
+
+    #[test]
+    fn touching_pieces_have_nodes_of_their_own() {
+        let cloud = plate().points().unwrap();
+        let right = cloud.axis(0).iter().map(|&x| u32::from(x > 0.0)).collect();
+        let apart = cloud.clone().with_pieces(right).unwrap();
+        // The three nodes of the common edge exist twice.
+        let nodes = |cloud: &PointCloud| CellMesh::of_boxes(cloud).nodes.len() / 3;
+        assert_eq!((nodes(&cloud), nodes(&apart)), (12, 15));
+    }
 
     fn plate() -> Grid {
         let shape = Shape::Box {

@@ -63,12 +63,14 @@ mod fields;
 mod force_displacement;
 mod fragments;
 mod history;
+mod impactors;
 mod overlay;
 mod pictures;
 mod probes;
 mod profile;
 mod reactions;
 mod result_file;
+mod rigid;
 mod surface;
 mod table;
 
@@ -83,12 +85,14 @@ pub use fields::FieldSeries;
 pub use force_displacement::ForceDisplacement;
 pub use fragments::FragmentCourse;
 pub use history::History;
+pub use impactors::{ContactColumns, ImpactorSurfaces, Impactors};
 pub use overlay::Overlay;
 pub use pictures::{DrawnState, PictureOf, Pictures};
 pub use probes::Probes;
 pub use profile::{Profile, Reference};
 pub use reactions::Reactions;
 pub use result_file::{ResultFile, ResultFormat};
+pub use rigid::{RigidMesh, impactors};
 pub use surface::SurfaceCourse;
 
 #[cfg(test)]

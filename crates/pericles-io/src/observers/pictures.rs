@@ -10,6 +10,7 @@ use pericles::{Archive, Checkpointed, PericlesError, Result, Values};
 use pericles_manifold::surface::Surface;
 
 use super::overlay::Overlay;
+use super::rigid::{RigidMesh, rigid_meshes};
 use crate::checkpoint::Container;
 use crate::error::IoError;
 use crate::picture::{CellSize, Extent, FieldPicture, write_animation};
@@ -57,6 +58,8 @@ pub struct DrawnState<'a> {
     pub values: &'a [f64],
     /// Range of the values; computed from them if `None`.
     pub extent: Option<Extent>,
+    /// Impactors.
+    pub impactors: &'a [RigidMesh],
 }
 
 /// Returns the name of a field or field component for a body of the given dimension: `Damage`, `Velocity_x`.
@@ -158,6 +161,7 @@ impl PictureOf {
             displacement: &state.u,
             values: &values,
             extent: Some(self.extent(field, &values)),
+            impactors: &rigid_meshes(snapshot.system()),
         };
         self.draw_state(cloud, &drawn, path)
     }
@@ -222,6 +226,12 @@ impl PictureOf {
         if let Some(overlay) = &self.overlay {
             picture = picture.lines(overlay.lines(state.displacement, self.scale));
         }
+        let outlines = state.impactors.iter().map(RigidMesh::outline);
+        let corners = state.impactors.iter().flat_map(RigidMesh::corners);
+        picture = picture.rigid(
+            corners.collect(),
+            outlines.filter(|one| !one.is_empty()).collect(),
+        );
         picture.write(path)
     }
 }
@@ -259,6 +269,7 @@ struct DrawnFile {
     size: f64,
     displacement: Vec<f64>,
     values: Vec<f64>,
+    impactors: Vec<RigidMesh>,
 }
 
 impl DrawnFile {
@@ -271,6 +282,7 @@ impl DrawnFile {
             size: what.extent(field, &values).size(),
             displacement: state.u.clone(),
             values: values.into_owned(),
+            impactors: rigid_meshes(snapshot.system()),
         }
     }
 
@@ -280,6 +292,8 @@ impl DrawnFile {
         archive.put("size", Values::F64(vec![self.size]));
         archive.put("displacement", Values::F64(self.displacement));
         archive.put("values", Values::F64(self.values));
+        let impactors = self.impactors.iter().flat_map(RigidMesh::to_numbers);
+        archive.put("impactors", Values::F64(impactors.collect()));
         Container::from_archive(serde_json::Value::Null, archive).write(path)
     }
 
@@ -305,6 +319,8 @@ impl DrawnFile {
             size: number("size")?,
             displacement: array("displacement")?,
             values: array("values")?,
+            impactors: RigidMesh::from_numbers(&array("impactors")?)
+                .ok_or_else(|| damaged("impactors are incomplete".into()))?,
         })
     }
 
@@ -318,6 +334,7 @@ impl DrawnFile {
             displacement: &self.displacement,
             values: &self.values,
             extent: None,
+            impactors: &self.impactors,
         }
     }
 }

@@ -53,6 +53,8 @@ pub struct FieldPicture<'a> {
     time: Option<f64>,
     load_factor: Option<f64>,
     lines: Vec<Vec<[f64; 2]>>,
+    rigid: Vec<[[f64; 3]; 3]>,
+    outlines: Vec<Vec<[f64; 2]>>,
     colours: Option<ColourMap>,
     categories: Option<Vec<String>>,
     range: Option<(f64, f64)>,
@@ -94,6 +96,8 @@ impl<'a> FieldPicture<'a> {
             time: None,
             load_factor: None,
             lines: Vec::new(),
+            rigid: Vec::new(),
+            outlines: Vec::new(),
             colours: None,
             categories: None,
             range: None,
@@ -151,6 +155,14 @@ impl<'a> FieldPicture<'a> {
     /// Adds lines on a plane body, such as pre-cracks and interfaces, as polylines of positions in m.
     pub fn lines(mut self, lines: Vec<Vec<[f64; 2]>>) -> Self {
         self.lines = lines;
+        self
+    }
+
+    /// Adds rigid bodies, which count in the extent: in space grey triangles, by the positions of their corners, in the plane outlines,
+    /// m.
+    pub fn rigid(mut self, triangles: Vec<[[f64; 3]; 3]>, outlines: Vec<Vec<[f64; 2]>>) -> Self {
+        self.rigid = triangles;
+        self.outlines = outlines;
         self
     }
 
@@ -355,6 +367,14 @@ impl<'a> FieldPicture<'a> {
                 });
             }
         }
+        let outlines = self.outlines.iter().flatten().map(|&[x, y]| [x, y, 0.0]);
+        let around = self.rigid.iter().flatten().copied().chain(outlines);
+        for corner in around {
+            for c in 0..self.dimension {
+                low[c] = low[c].min(corner[c]);
+                high[c] = high[c].max(corner[c]);
+            }
+        }
         let (low, high) = self.window.unwrap_or((low, high));
         let header = Header {
             title: self.title.clone(),
@@ -374,7 +394,8 @@ impl<'a> FieldPicture<'a> {
             header,
             length_unit: self.length_unit,
             view: self.view,
-            lines: self.lines.clone(),
+            lines: self.lines.iter().chain(&self.outlines).cloned().collect(),
+            rigid: self.rigid.clone(),
         }
     }
 

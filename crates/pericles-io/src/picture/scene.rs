@@ -41,4 +41,6 @@ pub(super) struct Scene {
     pub(super) view: [f64; 3],
     /// Lines on a plane body, m.
     pub(super) lines: Vec<Vec<[f64; 2]>>,
+    /// Triangles of rigid bodies in space, m.
+    pub(super) rigid: Vec<[[f64; 3]; 3]>,
 }

@@ -28,6 +28,9 @@ const AXES: [(&str, Rgb); 3] = [
     ("z", [30, 60, 200]),
 ];
 
+/// Colour of rigid bodies.
+const RIGID: Rgb = [168, 172, 178];
+
 /// Unit vectors of the screen: to the right, upwards, and towards the viewer.
 #[derive(Debug, Clone, Copy)]
 struct View {
@@ -130,6 +133,7 @@ pub(super) fn draw(scene: &Scene) -> Drawing {
     };
     draw_cells(&mut raster, scene, &placing);
     draw_facets(&mut raster, scene, &placing);
+    draw_rigid(&mut raster, scene, &placing);
 
     let arm = 3.0 * sizes.tick_text;
     let below = 2.0 * arm + sizes.tick_text + 2.0 * sizes.gap;
@@ -240,9 +244,14 @@ fn draw_cells(raster: &mut Raster, scene: &Scene, placing: &Placing) {
 /// Draws triangles of a surface, lit by their normals.
 fn draw_facets(raster: &mut Raster, scene: &Scene, placing: &Placing) {
     let corners = |facet: &Facet| facet.corners.map(|corner| placing.place(corner));
-    let mut placed: Vec<_> = scene.facets.iter().map(|facet| (corners(facet), facet)).collect();
+    let mut placed: Vec<_> = scene
+        .facets
+        .iter()
+        .map(|facet| (corners(facet), facet))
+        .collect();
     // From front to back, so that few hidden pixels are coloured.
-    let nearest = |corners: &[[f64; 3]; 3]| corners.iter().map(|x| x[2]).fold(f64::INFINITY, f64::min);
+    let nearest =
+        |corners: &[[f64; 3]; 3]| corners.iter().map(|x| x[2]).fold(f64::INFINITY, f64::min);
     placed.sort_by(|(a, _), (b, _)| nearest(a).total_cmp(&nearest(b)));
     for (corners, facet) in placed {
         raster.triangle(corners, |shares| {
@@ -253,6 +262,17 @@ fn draw_facets(raster: &mut Raster, scene: &Scene, placing: &Placing) {
                 placing.view.light_on(normal),
             )
         });
+    }
+}
+
+/// Draws rigid bodies in grey.
+fn draw_rigid(raster: &mut Raster, scene: &Scene, placing: &Placing) {
+    for &corners in &scene.rigid {
+        let [a, b, c] = corners;
+        let edge = |p: [f64; 3]| std::array::from_fn(|k| p[k] - a[k]);
+        let light = placing.view.light_on(cross(edge(b), edge(c)));
+        let colour = shaded(RIGID, light);
+        raster.triangle(corners.map(|corner| placing.place(corner)), |_| colour);
     }
 }
 

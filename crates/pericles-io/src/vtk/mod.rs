@@ -30,9 +30,11 @@ mod cells;
 pub(crate) mod decode;
 mod field;
 mod pvd;
+mod vtp;
 mod vtu;
 
 pub use cells::VtuCells;
 pub use field::VtkField;
 pub use pvd::PvdSeries;
+pub(crate) use vtp::{read_polydata, write_polydata};
 pub use vtu::VtuFile;

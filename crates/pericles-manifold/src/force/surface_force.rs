@@ -1,5 +1,6 @@
 //! Force operator of a surface.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use rayon::prelude::*;
@@ -295,6 +296,17 @@ impl<L: SurfaceLaw> Breakable for SurfaceForce<L> {
                 visit(i, j);
             }
         }
+    }
+
+    fn for_each_broken_count(&self, visit: &mut dyn FnMut(Range<usize>, u64)) {
+        visit(0..self.points(), Breakable::broken_bonds(self));
+    }
+
+    fn for_each_intact_of(&self, i: usize, visit: &mut dyn FnMut(usize)) {
+        let weights = self.bonds.weights();
+        let row = self.bonds.row(i);
+        let intact = row.filter(|&(entry, _)| weights[entry] != 0.0);
+        intact.for_each(|(_, j)| visit(j));
     }
 
     fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]) {

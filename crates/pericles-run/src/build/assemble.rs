@@ -78,6 +78,13 @@ pub fn assemble(
     assembler.judge_conditions(&system, &mut warnings);
     warnings.extend(assembler.judge_idle_keys(&system));
     warnings.extend(assembler.judge_rest(&state));
+    let contact = assembler.add_contact(
+        &mut system,
+        (&discretisation, &state),
+        (constants.as_ref(), &others),
+        resources,
+        &mut warnings,
+    )?;
     let probes = assembler.point_probes(cloud, sets, &mut warnings)?;
     let integrator = assembler.integrator(&system, sets)?;
     let ends = assembler.ends(&system, &state, sets, &*integrator, resources)?;
@@ -88,10 +95,16 @@ pub fn assemble(
         &system,
         &state,
         &*integrator,
-        exterior,
-        damping,
+        (exterior, damping, contact.frequency),
         &mut warnings,
     )?;
+    assembler.judge_contact_step(
+        steps.dt,
+        contact,
+        constants.as_ref(),
+        cloud.spacing(),
+        &mut warnings,
+    );
     assembler.judge_two_steps(&*integrator, &steps, &mut warnings);
     assembler.judge_breaking(&system, &state, constants.as_ref(), &steps, &mut warnings);
     let ends = assembler.add_ends(&mut system, ends, &state, &steps, resources, &mut warnings)?;
@@ -127,6 +140,7 @@ pub fn assemble(
         body_frequency: steps.body_frequency,
         dt: steps.dt,
         steps: steps.count,
+        contact_frequency: (contact.frequency > 0.0).then_some(contact.frequency),
         probes,
         ends,
         exact,

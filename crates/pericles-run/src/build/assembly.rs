@@ -53,6 +53,8 @@ pub struct Assembly {
     pub dt: f64,
     /// Number of steps.
     pub steps: u64,
+    /// The highest frequency of a contact of two points, or of a point and an impactor, 1/s; `None` without contact.
+    pub contact_frequency: Option<f64>,
     /// The probes.
     pub probes: Vec<PointProbe>,
     /// The absorbing boundaries.

@@ -18,7 +18,8 @@ use super::refusal::{at, at_path};
 use super::resources::Resources;
 
 impl Assembler<'_> {
-    /// Builds the initial state; later entries for a point replace earlier ones.
+    /// Builds the initial state: the velocities of pieces, then the entries of the deck; later entries for a point
+    /// replace earlier ones.
     pub(super) fn initial_state(
         &self,
         cloud: &PointCloud,
@@ -27,6 +28,14 @@ impl Assembler<'_> {
     ) -> Result<State, BuildError> {
         let n = cloud.len();
         let mut state = State::at_rest(cloud.dimension() * n);
+        let shape = self.model.body.solid().map(|solid| &solid.shape);
+        let pieces = shape.map_or(&[][..], |shape| shape.pieces());
+        for (i, c) in (0..n).flat_map(|i| (0..cloud.dimension()).map(move |c| (i, c))) {
+            let velocity = pieces
+                .get(cloud.piece(i) as usize)
+                .and_then(|piece| piece.velocity);
+            state.v[c * n + i] = velocity.map_or(0.0, |velocity| velocity[c]);
+        }
         for (k, initial) in self.model.initial.iter().enumerate() {
             let path = KeyPath::from("initial").index(k);
             let points = self.members(sets, &initial.set, path.key("set"))?;

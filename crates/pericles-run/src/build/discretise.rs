@@ -52,6 +52,7 @@ pub fn discretise(model: &Model, resources: &Resources<'_>) -> Result<Discretisa
     let assembler = Assembler::new(model);
     let mut warnings = Vec::new();
     let mut mesh = None;
+    let mut named = Sets::new();
     let (points, surface) = match &model.body {
         Body::Surface(body) => {
             let (surface, cloud) = assembler.surface_points(body, resources)?;
@@ -60,11 +61,12 @@ pub fn discretise(model: &Model, resources: &Resources<'_>) -> Result<Discretisa
         Body::Solid(solid) => {
             let points = assembler.points(solid, resources, &mut warnings)?;
             mesh = points.mesh.map(Arc::new);
+            named = points.sets;
             (points.cloud, None)
         }
     };
     Ok(Discretisation {
-        sets: assembler.select(&points.cloud, mesh.as_deref())?,
+        sets: assembler.select(&points.cloud, mesh.as_deref(), named)?,
         cracks: assembler.read_cracks(resources)?,
         cloud: Arc::new(points.cloud),
         grids: Grids {
@@ -78,17 +80,24 @@ pub fn discretise(model: &Model, resources: &Resources<'_>) -> Result<Discretisa
 }
 
 impl Assembler<'_> {
-    fn select(&self, cloud: &PointCloud, mesh: Option<&MeshBody>) -> Result<Sets, BuildError> {
+    fn select(
+        &self,
+        cloud: &PointCloud,
+        mesh: Option<&MeshBody>,
+        named: Sets,
+    ) -> Result<Sets, BuildError> {
         let mut sets = vec![(ALL.to_owned(), (0..cloud.len() as u32).collect())];
         sets.extend(mesh.iter().flat_map(|mesh| mesh.sets(cloud)));
+        sets.extend(named);
+        sets.extend(self.pieces_as_sets(cloud));
         let mut problems = Vec::new();
         for set in &self.model.sets {
             let path = KeyPath::from("sets").key(&set.name);
             if sets.iter().any(|(name, _)| *name == set.name) {
                 let fault = Fault::BadName {
                     name: set.name.clone(),
-                    reason: "the mesh has a set of this name",
-                    allowed: "allowed: another name; sets of the mesh are available under their own names",
+                    reason: "the mesh or a piece has a set of this name",
+                    allowed: "allowed: another name; sets of the mesh and pieces are available under their own names",
                 };
                 problems.push(Remark::new(path, fault));
                 continue;
@@ -109,6 +118,17 @@ impl Assembler<'_> {
         } else {
             Err(BuildError::of(problems))
         }
+    }
+
+    /// Returns the points of each piece under its name.
+    fn pieces_as_sets(&self, cloud: &PointCloud) -> Sets {
+        let shape = self.model.body.solid().map(|solid| &solid.shape);
+        let pieces = shape.map_or(&[][..], |shape| shape.pieces()).iter();
+        let of = |k: u32| (0..cloud.len() as u32).filter(move |&i| cloud.piece(i as usize) == k);
+        (0..)
+            .zip(pieces)
+            .map(|(k, piece)| (piece.name.clone(), of(k).collect()))
+            .collect()
     }
 
     fn points_of(

@@ -194,12 +194,11 @@ impl<'m> Assembler<'m> {
         };
         let mut of_point = vec![None; cloud.len()];
         let mut last_of: Vec<Option<KeyPath>> = vec![None; others.len() + 1];
-        for (k, assignment) in self.model.assignments.iter().enumerate() {
-            let path = KeyPath::from("assign").index(k);
-            let Some(number) = assignment.material.as_deref().and_then(number) else {
+        for (path, assigned, material) in self.model.assigned_materials() {
+            let Some(number) = number(material) else {
                 continue;
             };
-            for set in &assignment.sets {
+            for set in assigned {
                 for &i in self.members(sets, set, &path)? {
                     of_point[i as usize] = Some(number as u8);
                 }

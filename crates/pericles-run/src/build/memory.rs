@@ -333,7 +333,9 @@ impl Assembler<'_> {
 
     /// Returns whether all bonds with the same vector have the same stiffness.
     fn has_one_stiffness(&self, solid: &Solid) -> bool {
-        self.model.assignments.is_empty() && solid.material.surface_correction == Default::default()
+        self.model.assignments.is_empty()
+            && self.model.assigned_materials().is_empty()
+            && solid.material.surface_correction == Default::default()
     }
 
     /// Returns the horizons of all materials, that of the body first.

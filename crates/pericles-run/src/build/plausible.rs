@@ -77,7 +77,8 @@ impl Assembler<'_> {
                 .all(|entry| entry.number() == Some(0.0));
             !fixed && (motion.moves() || motion.kind == MotionKind::Displacement)
         });
-        let acts = loaded || moved || !self.model.boundaries.is_empty();
+        let struck = !self.model.impactors.is_empty();
+        let acts = loaded || moved || struck || !self.model.boundaries.is_empty();
         (at_rest && !acts).then(|| Remark::new("time", Caution::NothingActs))
     }
 }

@@ -12,6 +12,7 @@ use pericles_deck::{
 };
 
 use super::assembler::Assembler;
+use super::discretisation::Sets;
 use super::mesh_body::MeshBody;
 use super::random::{Space, nodes_of};
 use super::refusal::{at, at_path, refined_key};
@@ -20,7 +21,10 @@ use super::resources::Resources;
 /// The points of a body, and the mesh if they are its elements.
 pub(super) struct BodyPoints {
     pub(super) cloud: GradedCloud,
+    /// The mesh of the first piece.
     pub(super) mesh: Option<MeshBody>,
+    /// Sets of the meshes of further pieces.
+    pub(super) sets: Sets,
 }
 
 impl Assembler<'_> {
@@ -32,6 +36,9 @@ impl Assembler<'_> {
     ) -> Result<BodyPoints, BuildError> {
         let mut mesh = None;
         let cloud = match &solid.shape {
+            SolidShape::Pieces(pieces) => {
+                return self.piece_points(solid, pieces, resources, warnings);
+            }
             SolidShape::Points(file) => self
                 .listed_points(solid, file, resources, warnings)
                 .map(GradedCloud::of_one_grid),
@@ -54,7 +61,11 @@ impl Assembler<'_> {
                 Caution::TinySpacing { spacing },
             ));
         }
-        Ok(BodyPoints { cloud, mesh })
+        Ok(BodyPoints {
+            cloud,
+            mesh,
+            sets: Sets::new(),
+        })
     }
 
     fn listed_points(

@@ -150,7 +150,8 @@ impl Assembler<'_> {
         let cloud = system.cloud();
         let holes = &solid.shape.holes();
         let whole = self.model.cracks.is_empty() && holes.is_empty() && !solid.shape.is_listed();
-        if whole || cloud.len() > MOST || cloud.is_periodic() {
+        let joined = self.model.contact.is_some();
+        if whole || joined || cloud.len() > MOST || cloud.is_periodic() {
             return;
         }
         let Some(piece) = self.pieces(solid, cloud) else {
@@ -162,7 +163,7 @@ impl Assembler<'_> {
         let smallest = (0..cloud.len())
             .filter(|&first| sizes[first] > 0)
             .min_by_key(|&first| sizes[first]);
-        if let (Some(first), true) = (smallest, pieces > 1) {
+        if let (Some(first), true) = (smallest, pieces > solid.shape.pieces().len().max(1)) {
             let caution = Caution::Pieces {
                 pieces,
                 points: sizes[first],

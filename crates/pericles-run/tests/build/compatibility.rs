@@ -63,7 +63,7 @@ fn decks_are_rejected_according_to_the_table() {
 fn deck_with(feature: Feature, form: &Form) -> String {
     use Feature::{
         BondEnergy, BondStretch, Breaking, Correspondence, FreeFaces, GaussNodes, GreenStrain,
-        GreenStrainBar, Inclusions, NoLattice, OtherCubic, PeriodicFaces, PreCracks,
+        GreenStrainBar, Inclusions, NoLattice, OtherCubic, PeriodicFaces, Pieces, PreCracks,
         SeveralHorizons, SeveralMaterials, SeveralSpacings, Softening, StateBased, StressFailure,
         SurfaceCorrection, Tensors, ThermalExpansion,
     };
@@ -82,6 +82,9 @@ fn deck_with(feature: Feature, form: &Form) -> String {
     };
     let body = match feature {
         GaussNodes => ", quadrature = \"gauss\"",
+        Pieces => {
+            ", piece = [{ name = \"b\", shape = \"plate\", size = [4, 8], origin = [14, 0] }]"
+        }
         SeveralSpacings => ", refine = [{ box = { max = [4, 8] }, ratio = 2 }]",
         _ => "",
     };
@@ -147,6 +150,11 @@ fn bar_with(condition: Condition, time: &str) -> String {
         Condition::AbsorbingEnds => "boundary = [{ kind = \"absorbing\", side = \"+x\" }]\n",
         Condition::DampingLayers => {
             "boundary = [{ kind = \"damping-layer\", side = \"+x\", thickness = 10 }]\n"
+        }
+        Condition::Contact => "contact = {}\n",
+        Condition::DampedContact => "contact = { damping = 0.3 }\n",
+        Condition::FreeImpactors => {
+            "impactor = [{ name = \"a\", shape = \"ball\", radius = 1, centre = -3, density = 1 }]\n"
         }
     };
     format!(

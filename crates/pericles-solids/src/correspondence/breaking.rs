@@ -5,6 +5,7 @@
 //! of the step in which they no longer act ([`StepEnd::dissipated_energy`]).
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use pericles::StepEnd;
 use pericles::domain::{Field, Letter};
@@ -320,6 +321,19 @@ impl<const D: usize> Breakable for CorrespondenceForce<D> {
                 }
             });
         }
+    }
+
+    fn for_each_broken_count(&self, visit: &mut dyn FnMut(Range<usize>, u64)) {
+        visit(0..self.cloud.len(), self.broken);
+    }
+
+    fn for_each_intact_of(&self, i: usize, visit: &mut dyn FnMut(usize)) {
+        let sites = self.bonds.list.sites();
+        self.bonds.for_each::<D>(i, self.bits(i), |bond| {
+            if let Some(j) = sites.own_point(bond.site) {
+                visit(j);
+            }
+        });
     }
 
     fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]) {

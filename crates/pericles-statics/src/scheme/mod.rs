@@ -68,6 +68,10 @@ impl StaticScheme {
             need: Need::NoBoundaries,
             reason: "static states have no waves to absorb and no velocities to damp; leave the boundary out",
         },
+        Requirement {
+            need: Need::NoInteractions,
+            reason: "its preconditioner and load steps need bonds that do not open and close; use adaptive-dynamic-relaxation",
+        },
     ];
 
     /// Creates the scheme for a system with the supports at the start.

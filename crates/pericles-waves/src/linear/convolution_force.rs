@@ -70,7 +70,9 @@ impl<const D: usize> ConvolutionForce<D> {
         let cut = !cracks.is_empty();
         require(
             ForceForm::Convolution,
-            features.with(Feature::PreCracks, cut),
+            features
+                .with(Feature::PreCracks, cut)
+                .with(Feature::Pieces, cloud.has_pieces()),
         )?;
         let stiffness =
             |xi| constants.micromodulus * material.influence.alpha_of(xi, material.horizon);

@@ -122,7 +122,10 @@ impl BondList {
     ) -> Result<Self> {
         let n = sites.cloud().len();
         let place = |i: usize| sites.of_point(i);
-        let (row_start, pairs) = pairs_of(sites.places(), n, &place, reach, wanted);
+        let places = sites.places();
+        let wanted =
+            |a: usize, b: usize, r: f64| places.piece(a) == places.piece(b) && wanted(a, b, r);
+        let (row_start, pairs) = pairs_of(places, n, &place, reach, &wanted);
         let domain = sites.cloud().domain();
         if domain.all(pairs.is_empty()) {
             return Err(PericlesError::HorizonTooSmall {

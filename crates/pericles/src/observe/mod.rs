@@ -4,6 +4,7 @@
 //! an evaluation are computed on first use, once per snapshot.
 
 mod crack;
+mod energies;
 mod fragments;
 mod probe;
 mod schedule;
@@ -12,10 +13,11 @@ mod snapshot;
 mod tensors;
 
 pub use crack::{CrackTip, CrackTracker, TrackedCrack};
+pub use energies::{Energies, StartEnergy};
 pub use fragments::{FragmentCount, Fragments};
 pub use probe::{Probe, ProbeReading};
 pub use schedule::Schedule;
-pub use snapshot::{Energies, Field, Snapshot, StartEnergy};
+pub use snapshot::{Field, Snapshot};
 
 use crate::archive::Checkpointed;
 

@@ -2,6 +2,7 @@
 
 use std::cell::OnceCell;
 
+use super::energies::{Energies, StartEnergy};
 use super::fragments::Fragments;
 use super::tensors::{equivalent_stress, fitted_strain, places, principal_stresses, virial_stress};
 use crate::error::{PericlesError, Result};
@@ -27,6 +28,8 @@ pub enum Field {
     ExternalForce,
     /// Reaction force density of constraints, N/m³.
     Reaction,
+    /// Force density of contact, with dampers and friction, N/m³.
+    ContactForce,
     /// Virial stress, Pa: ½ Σ f ⊗ (ξ + η) over the bonds of a point. NaN if the force does not list its bonds.
     Stress,
     /// Strain of the displacement gradient fitted to the bonds of a point by least squares. NaN if the force does
@@ -71,7 +74,7 @@ impl Field {
     ];
 
     /// All fields.
-    pub const ALL: [Self; 21] = [
+    pub const ALL: [Self; 22] = [
         Self::Displacement,
         Self::Velocity,
         Self::ForceDensity,
@@ -79,6 +82,7 @@ impl Field {
         Self::StrainEnergyDensity,
         Self::ExternalForce,
         Self::Reaction,
+        Self::ContactForce,
         Self::Stress,
         Self::Strain,
         Self::Volume,
@@ -105,6 +109,7 @@ impl Field {
             Self::StrainEnergyDensity => "Strain_Energy_Density",
             Self::ExternalForce => "External_Force_Density",
             Self::Reaction => "Reaction_Density",
+            Self::ContactForce => "Contact_Force_Density",
             Self::Stress => "Stress",
             Self::Strain => "Strain",
             Self::Volume => "Volume",
@@ -127,7 +132,9 @@ impl Field {
         match self {
             Self::Displacement | Self::Radius => "m",
             Self::Velocity => "m/s",
-            Self::ForceDensity | Self::ExternalForce | Self::Reaction => "N/m³",
+            Self::ForceDensity | Self::ExternalForce | Self::Reaction | Self::ContactForce => {
+                "N/m³"
+            }
             Self::Stress
             | Self::EquivalentStress
             | Self::VonMisesStress
@@ -154,6 +161,7 @@ impl Field {
                 | Self::ForceDensity
                 | Self::ExternalForce
                 | Self::Reaction
+                | Self::ContactForce
                 | Self::PrincipalStress
         )
     }
@@ -197,41 +205,6 @@ impl Field {
     }
 }
 
-/// The energy balance of a body, J.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Energies {
-    /// Kinetic energy ½ Σ ρ V v².
-    pub kinetic: f64,
-    /// Elastic energy of the bonds.
-    pub elastic: f64,
-    /// Energy dissipated by fracture and inelastic deformation.
-    pub dissipated: f64,
-    /// Work of loads, constraints and temperature changes since the start.
-    pub work: f64,
-    /// Kinetic and elastic energy at the start.
-    pub initial: f64,
-    /// Difference between the energy that the scheme conserves and kinetic + elastic energy, minus that difference
-    /// at the start ([`crate::time::Integrator::energy_correction`]).
-    pub scheme: f64,
-}
-
-impl Energies {
-    /// Error of the energy balance: kinetic + elastic + dissipated + scheme − work − initial. It is zero up to
-    /// rounding for linear forces and of order dt² for nonlinear forces.
-    pub fn balance(&self) -> f64 {
-        self.kinetic + self.elastic + self.dissipated + self.scheme - self.work - self.initial
-    }
-}
-
-/// Energies at the start of a run, J.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct StartEnergy {
-    /// Kinetic and elastic energy.
-    pub energy: f64,
-    /// Correction of the scheme.
-    pub scheme: f64,
-}
-
 /// A body and its state at one time.
 pub struct Snapshot<'a> {
     system: &'a System,
@@ -244,6 +217,7 @@ pub struct Snapshot<'a> {
     energy_density: OnceCell<Vec<f64>>,
     kinetic_density: OnceCell<Vec<f64>>,
     external: OnceCell<Vec<f64>>,
+    contact: OnceCell<Vec<f64>>,
     reaction: OnceCell<Vec<f64>>,
     stress: OnceCell<Vec<f64>>,
     strain: OnceCell<Vec<f64>>,
@@ -273,6 +247,7 @@ impl<'a> Snapshot<'a> {
             energy_density: OnceCell::new(),
             kinetic_density: OnceCell::new(),
             external: OnceCell::new(),
+            contact: OnceCell::new(),
             reaction: OnceCell::new(),
             stress: OnceCell::new(),
             strain: OnceCell::new(),
@@ -363,6 +338,11 @@ impl<'a> Snapshot<'a> {
                     .operator()
                     .add_energy_density(t, u, &mut density);
                 density
+            }),
+            Field::ContactForce => self.contact.get_or_init(|| {
+                let mut force = vec![0.0; u.len()];
+                self.system.add_contact_force(t, u, &mut force);
+                force
             }),
             Field::ExternalForce => self.external.get_or_init(|| {
                 let mut force = vec![0.0; u.len()];
@@ -490,6 +470,9 @@ impl<'a> Snapshot<'a> {
             kinetic: self.system.kinetic_energy(&self.state.v),
             elastic: self.system.operator().energy(self.state.t, &self.state.u),
             dissipated: self.system.operator().dissipated(),
+            contact: self.system.contact_energy(self.state.t, &self.state.u),
+            contact_dissipated: self.system.contact_dissipated(),
+            bodies: self.system.body_kinetic_energy(),
             work: self.system.ledger().work,
             initial: self.start.energy,
             scheme: self.scheme - self.start.scheme,

@@ -1,5 +1,7 @@
 //! Forces with bonds that break or were removed by pre-cracks.
 
+use std::ops::Range;
+
 use super::CoarseBreak;
 
 /// A force whose bonds can be cut by pre-cracks or break during the run.
@@ -31,6 +33,14 @@ pub trait Breakable {
 
     /// Calls `visit` with both ends of each intact bond, once or twice per bond.
     fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize));
+
+    /// Calls `visit` with the other end of each intact bond of point i, in any order. Points that other processes own
+    /// are left out.
+    fn for_each_intact_of(&self, i: usize, visit: &mut dyn FnMut(usize));
+
+    /// Calls `visit` with ranges of points that together contain all points, and the number of directed bonds that
+    /// broke so far in each: a changed number shows where bonds broke since an earlier call. The ranges do not change.
+    fn for_each_broken_count(&self, visit: &mut dyn FnMut(Range<usize>, u64));
 
     /// Marks the points with an intact breakable bond whose stretch exceeds `fraction` of the critical
     /// stretch.

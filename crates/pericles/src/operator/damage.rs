@@ -1,5 +1,7 @@
 //! Damage: intact bonds, broken bonds and the energy they dissipated, for all force kernels.
 
+use std::ops::Range;
+
 use crate::archive::{Archive, Counter, SavedUnder, Values};
 use crate::domain::Domain;
 use crate::error::Result;
@@ -162,6 +164,23 @@ fn own_dissipation(blocks: &[BlockDamage]) -> BinnedSum {
 pub(super) fn broken_bonds(domain: &Domain, blocks: &[BlockDamage]) -> u64 {
     let directed: Counter = blocks.iter().map(|block| block.tally.broken).sum();
     domain.count(directed.get()) / 2
+}
+
+/// Calls `visit` with the points of each block, which starts at point `first`, and the number of broken directed bonds
+/// in it.
+pub(super) fn broken_counts(
+    blocks: &[BlockDamage],
+    points: usize,
+    first: &dyn Fn(usize) -> usize,
+    visit: &mut dyn FnMut(Range<usize>, u64),
+) {
+    for (number, block) in blocks.iter().enumerate() {
+        let end = match number + 1 == blocks.len() {
+            true => points,
+            false => first(number + 1),
+        };
+        visit(first(number)..end, block.tally.broken.get());
+    }
 }
 
 /// Returns the number of intact bonds, each counted twice.

@@ -1,5 +1,7 @@
 //! Sums of several forces on a body.
 
+use std::ops::Range;
+
 use super::{
     BondAt, BondView, Breakable, Capabilities, CoarseBreak, Force, InstructionSet, Inversion,
     LinearOperator, Linearity, LocalForce, PointSubset, SplitForce,
@@ -259,6 +261,18 @@ impl Breakable for Forces {
     fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
         for breaking in self.breaking() {
             breaking.for_each_intact(visit);
+        }
+    }
+
+    fn for_each_broken_count(&self, visit: &mut dyn FnMut(Range<usize>, u64)) {
+        for breaking in self.breaking() {
+            breaking.for_each_broken_count(visit);
+        }
+    }
+
+    fn for_each_intact_of(&self, i: usize, visit: &mut dyn FnMut(usize)) {
+        for breaking in self.breaking() {
+            breaking.for_each_intact_of(i, visit);
         }
     }
 

@@ -29,6 +29,8 @@ pub enum Feature {
     StressFailure,
     /// Pre-cracks.
     PreCracks,
+    /// Several pieces that no bond joins.
+    Pieces,
     /// Several materials.
     SeveralMaterials,
     /// Materials of different horizons.
@@ -57,7 +59,7 @@ pub enum Feature {
 
 impl Feature {
     /// All features, in the order of the table.
-    pub const ALL: [Self; 22] = [
+    pub const ALL: [Self; 23] = [
         Self::BondStretch,
         Self::GreenStrainBar,
         Self::GreenStrain,
@@ -68,6 +70,7 @@ impl Feature {
         Self::BondEnergy,
         Self::StressFailure,
         Self::PreCracks,
+        Self::Pieces,
         Self::SeveralMaterials,
         Self::SeveralHorizons,
         Self::Inclusions,
@@ -95,6 +98,7 @@ impl Feature {
             Self::BondEnergy => "bonds that break by their energy",
             Self::StressFailure => "bonds that break by stress or strain",
             Self::PreCracks => "pre-cracks",
+            Self::Pieces => "several pieces",
             Self::SeveralMaterials => "several materials",
             Self::SeveralHorizons => "materials of different horizons",
             Self::Inclusions => "inclusions",
@@ -146,6 +150,7 @@ impl Features {
             .with(Feature::PeriodicFaces, cloud.is_periodic())
             .with(Feature::FreeFaces, !cloud.is_periodic())
             .with(Feature::NoLattice, cloud.lattice().is_none())
+            .with(Feature::Pieces, cloud.has_pieces())
     }
 }
 

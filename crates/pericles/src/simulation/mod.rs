@@ -118,7 +118,7 @@ impl Simulation {
         }
         integrator.start(&mut system, &mut state);
         let start = StartEnergy {
-            energy: system.kinetic_energy(&state.v) + system.operator().energy(state.t, &state.u),
+            energy: system.mechanical_energy(&state),
             scheme: integrator.energy_correction(&system, &state, dt),
         };
         Ok(Self {

@@ -29,6 +29,8 @@ pub struct PointCloud {
     user_numbers: Vec<u32>,
     /// The block of each point; empty if all are in block 1.
     blocks: Vec<u32>,
+    /// The piece of each point; empty if no point is in another piece than 0.
+    pub(super) pieces: Vec<u32>,
     domain: Domain,
 }
 
@@ -101,6 +103,7 @@ impl PointCloud {
             periodic: false,
             user_numbers: Vec::new(),
             blocks: Vec::new(),
+            pieces: Vec::new(),
             domain: Domain::alone(n),
         })
     }
@@ -269,6 +272,7 @@ impl PointCloud {
             lattice,
             user_numbers: own.iter().map(|&k| self.user_number(k) as u32).collect(),
             blocks: numbers(&self.blocks),
+            pieces: numbers(&self.pieces),
             domain,
             ..*self
         }
@@ -289,7 +293,18 @@ impl PointCloud {
             }
         });
         let volumes = self.domain.with_ghosts(&self.volumes).into_owned();
+        let pieces: Vec<f64> = self.pieces.iter().map(|&piece| f64::from(piece)).collect();
+        let pieces = match self.has_pieces() {
+            true => self
+                .domain
+                .with_ghosts(&pieces)
+                .iter()
+                .map(|&piece| piece as u32)
+                .collect(),
+            false => Vec::new(),
+        };
         Self {
+            pieces,
             domain: Domain::alone(volumes.len()),
             positions,
             volumes,
@@ -335,7 +350,12 @@ impl PointCloud {
                 .map(move |&(shift, point)| axis[point as usize] + f64::from(shift[c]) * side)
         };
         let volume = |&(_, point): &([i16; 3], u32)| self.volumes[point as usize];
+        let piece = |&(_, point): &([i16; 3], u32)| self.piece(point as usize);
         Self {
+            pieces: match self.has_pieces() {
+                true => points.iter().map(piece).collect(),
+                false => Vec::new(),
+            },
             positions: (0..self.dimension).flat_map(moved).collect(),
             volumes: points.iter().map(volume).collect(),
             lattice,

@@ -14,6 +14,7 @@ mod graded;
 mod grid;
 mod lattice;
 mod listed;
+mod pieces;
 mod quadrature;
 mod rectangular;
 mod region;

@@ -34,6 +34,11 @@ impl System {
     /// mean of their forces at both ends, without inertia. With length zero they are constant. `work` is a work
     /// array for accelerations.
     pub fn book_equilibrium(&mut self, step: &StepEnd<'_>, work: &mut [f64]) {
+        if self.has_interactions() {
+            self.zero(&PointSubset::All, work);
+            let touched = self.end_interactions(step, work);
+            self.book_exchange(touched);
+        }
         self.free_acceleration(step.t, step.u, &PointSubset::All, work);
         let n = self.points();
         for motion in &self.motions {

@@ -1,6 +1,7 @@
 //! The semi-discrete equation of motion, which integrators advance.
 
 mod booking;
+mod interactions;
 mod loading;
 mod stored;
 mod supports;
@@ -14,6 +15,7 @@ use crate::boundary::{
 };
 use crate::domain::Domain;
 use crate::error::{PericlesError, Result, positive};
+use crate::interaction::Interaction;
 use crate::operator::{Force, Forces, PointSubset};
 use crate::parallel::{for_each_chunk, for_each_entry};
 use crate::scalar::PointScalar;
@@ -32,6 +34,7 @@ pub struct System {
     loading: Option<ProportionalLoading>,
     motions: Vec<PrescribedMotion>,
     boundaries: Vec<Box<dyn Boundary>>,
+    interactions: Vec<Box<dyn Interaction>>,
     ledger: Ledger,
     evaluated: Counter,
     pub(crate) coarse_breaks: Counter,
@@ -67,6 +70,7 @@ impl System {
             loading: None,
             motions: Vec::new(),
             boundaries: Vec::new(),
+            interactions: Vec::new(),
             ledger: Ledger::default(),
             evaluated: Counter::default(),
             coarse_breaks: Counter::default(),
@@ -217,19 +221,33 @@ impl System {
     pub fn end_step(&mut self, step: &StepEnd<'_>, v: &[f64], out: &mut [f64]) {
         // With the bonds that acted within the step, before those that break at its end are removed.
         let heating = self.operator().heating(step);
-        self.end_step_on(step, &PointSubset::All, out);
+        let touched = self.end_forces(step, out);
         self.ledger.book(heating, [0.0; 3]);
+        self.book_exchange(touched);
         self.book_step(step, out);
         self.accept_boundaries(step);
         self.finish(step.t, step.u, v, &PointSubset::All, out);
     }
 
+    /// Ends a step for all forces: breaks bonds and evaluates f/ρ. Returns work and impulse of interactions.
+    fn end_forces(&mut self, step: &StepEnd<'_>, out: &mut [f64]) -> Exchange {
+        let on = &PointSubset::All;
+        self.zero(on, out);
+        self.count(on);
+        self.operator_mut().end_step(step, on.clone(), out);
+        self.add_loads(step.t, on, out);
+        let touched = self.end_interactions(step, out);
+        self.divide_by_density(on, out);
+        touched
+    }
+
     /// Ends a sub-step of the points of `on`: breaks their bonds and evaluates f/ρ. Does not update the energy
-    /// balance and leaves prescribed motion to [`System::finish`].
+    /// balance, leaves prescribed motion to [`System::finish`] and does not end the step of interactions.
     pub fn end_step_on(&mut self, step: &StepEnd<'_>, on: &PointSubset<'_>, out: &mut [f64]) {
         self.zero(on, out);
         self.count(on);
         self.operator_mut().end_step(step, on.clone(), out);
+        self.add_interactions(step.t, step.u, on, out);
         self.add_loads(step.t, on, out);
         self.divide_by_density(on, out);
     }
@@ -264,7 +282,7 @@ impl System {
     pub fn free_acceleration(&mut self, t: f64, u: &[f64], on: &PointSubset<'_>, out: &mut [f64]) {
         self.zero(on, out);
         self.count(on);
-        self.operator().add_force(t, u, on.clone(), out);
+        self.add_internal_force(t, u, on, out);
         self.add_loads(t, on, out);
         self.divide_by_density(on, out);
     }
@@ -325,7 +343,7 @@ impl System {
         }
         let mut boundaries = std::mem::take(&mut self.boundaries);
         let product = |u: &[f64], direction: &[f64], out: &mut [f64]| {
-            self.operator().tangent_into(t, u, direction, out);
+            self.internal_tangent_into(t, u, direction, out);
             self.divide_by_density(&PointSubset::All, out);
             for_each_chunk(out, &|_, chunk| chunk.iter_mut().for_each(|x| *x = -*x));
             self.hold_at(t, out);
@@ -344,7 +362,13 @@ impl System {
     /// Stores the reactions of the initial state.
     pub fn start(&mut self, t: f64, u: &[f64], v: &[f64], out: &mut [f64]) {
         let start = StepEnd::start(t, u, v);
-        self.free_acceleration(t, u, &PointSubset::All, out);
+        self.zero(&PointSubset::All, out);
+        self.count(&PointSubset::All);
+        self.operator().add_force(t, u, PointSubset::All, out);
+        self.add_loads(t, &PointSubset::All, out);
+        let touched = self.end_interactions(&start, out);
+        self.book_exchange(touched);
+        self.divide_by_density(&PointSubset::All, out);
         self.book_step(&start, out);
         self.accept_boundaries(&start);
         self.finish(t, u, v, &PointSubset::All, out);
@@ -353,7 +377,7 @@ impl System {
     /// Computes internal force and loads at displacement u, N/m³.
     pub fn force_density_into(&self, t: f64, u: &[f64], out: &mut [f64]) {
         self.zero(&PointSubset::All, out);
-        self.operator().add_force(t, u, PointSubset::All, out);
+        self.add_internal_force(t, u, &PointSubset::All, out);
         self.add_loads(t, &PointSubset::All, out);
     }
 
@@ -382,6 +406,7 @@ impl System {
             Some(linear) => linear.apply_into(direction, out),
             None => self.operator().tangent_into(0.0, u, direction, out),
         }
+        self.add_interaction_tangent(0.0, u, direction, out);
         self.divide_by_density(&PointSubset::All, out);
         for_each_chunk(out, &|_, chunk| chunk.iter_mut().for_each(|x| *x = -*x));
     }

@@ -8,6 +8,7 @@ crate::saved! {
         forces: part,
         motions: under("motion"),
         boundaries: part,
+        interactions: part,
         ledger: array("ledger"),
         loading: array("loading"),
         evaluated: array("evaluated"),

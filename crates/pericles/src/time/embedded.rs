@@ -53,10 +53,14 @@ const NAME: &str = "dormand-prince";
 
 impl AdaptiveRungeKutta {
     /// Requirements on the system.
-    pub const REQUIREMENTS: &'static [Requirement] = &[Requirement {
-        need: Need::NoMemory,
-        reason: "its steps vary in length, but a boundary with memory is made for one step length; use velocity-verlet",
-    }];
+    pub const REQUIREMENTS: &'static [Requirement] = &[
+        Requirement {
+            need: Need::NoMemory,
+            reason: "its steps vary in length, but a boundary with memory is made for one step length; use velocity-verlet",
+        },
+        Requirement::CONSERVATIVE_CONTACT,
+        Requirement::NO_FREE_BODIES,
+    ];
 
     /// Makes the scheme with a relative tolerance per sub-step.
     ///

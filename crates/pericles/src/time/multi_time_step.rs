@@ -71,6 +71,10 @@ impl MultiTimeStep {
             reason: "a boundary with memory knows one time step only; use velocity-verlet",
         },
         PARTS_OF_THE_BODY,
+        Requirement {
+            need: Need::NoInteractions,
+            reason: "a contact may join points of zones with different time steps, whose forces are then known at different times; use velocity-verlet",
+        },
     ];
 
     /// Makes the scheme for a system.

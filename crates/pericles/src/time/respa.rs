@@ -48,6 +48,10 @@ impl Respa {
         },
         PARTS_OF_THE_BODY,
         Requirement {
+            need: Need::NoInteractions,
+            reason: "a contact may join points of zones with different time steps, whose forces are then known at different times; use velocity-verlet",
+        },
+        Requirement {
             need: Need::SumOverBonds,
             reason: "it splits the force by bonds, but here the force of a bond depends on the other bonds of its ends; use multirate-rk3 or multirate-rk4",
         },

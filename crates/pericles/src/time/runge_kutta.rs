@@ -2,6 +2,7 @@
 
 use super::zone::{Sum, Zone};
 use super::{Integrator, State, Tableau};
+use crate::compatibility::Requirement;
 use crate::error::Result;
 use crate::interrupt::Interrupt;
 use crate::operator::PointSubset;
@@ -97,6 +98,12 @@ pub struct RungeKutta {
 }
 
 impl RungeKutta {
+    /// Requirements on the system.
+    pub const REQUIREMENTS: &'static [Requirement] = &[
+        Requirement::CONSERVATIVE_CONTACT,
+        Requirement::NO_FREE_BODIES,
+    ];
+
     /// Makes the method of a tableau for a body; embedded weights are ignored.
     pub fn new(tableau: &Tableau, system: &System) -> Self {
         let entries = system.dimension() * system.points();
@@ -117,6 +124,10 @@ impl RungeKutta {
 impl Integrator for RungeKutta {
     fn name(&self) -> &'static str {
         self.name
+    }
+
+    fn requirements(&self) -> &'static [Requirement] {
+        Self::REQUIREMENTS
     }
 
     fn vector_length(&self) -> Option<usize> {

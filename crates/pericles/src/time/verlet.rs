@@ -38,7 +38,7 @@ impl Integrator for VelocityVerlet {
     /// trapezoidal work ½ (F + F′)·Δu, which is the loss of elastic energy for linear forces and the work of loads
     /// in the energy balance.
     fn energy_correction(&self, system: &System, state: &State, dt: f64) -> f64 {
-        -0.25 * dt * dt * system.kinetic_energy(&state.a)
+        system.interaction_correction(dt) - 0.25 * dt * dt * system.kinetic_energy(&state.a)
     }
 
     fn step(

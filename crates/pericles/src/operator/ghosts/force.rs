@@ -1,5 +1,6 @@
 //! The force of a body with a ghost layer.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::extrapolation::Extrapolation;
@@ -311,6 +312,21 @@ impl Breakable for GhostForce {
             breaking.for_each_intact(&mut |a, b| {
                 if let (Some(i), Some(j)) = (self.numbers[a], self.numbers[b]) {
                     visit(i as usize, j as usize);
+                }
+            });
+        }
+    }
+
+    fn for_each_broken_count(&self, visit: &mut dyn FnMut(Range<usize>, u64)) {
+        visit(0..self.points(), 0);
+    }
+
+    fn for_each_intact_of(&self, i: usize, visit: &mut dyn FnMut(usize)) {
+        if let Some(breaking) = self.inner.capabilities().breaking {
+            let place = self.layer.body()[i] as usize;
+            breaking.for_each_intact_of(place, &mut |there| {
+                if let Some(j) = self.numbers[there] {
+                    visit(j as usize);
                 }
             });
         }

@@ -34,6 +34,11 @@ impl GhostLayer {
                 "ghost points occupy free cells of a lattice, but the points of this body do not lie on a regular grid; use a body on a grid or omit surface_correction = \"ghosts\"",
             ));
         };
+        if cloud.has_pieces() {
+            return Err(refused(
+                "a ghost point in the gap between two pieces would extrapolate the displacements of both, although no bond joins them; use surface_correction = \"energy\" or \"volume\"",
+            ));
+        }
         let n = cloud.len();
         if cloud.is_periodic() {
             return Ok(Self {

@@ -20,7 +20,7 @@ pub(in crate::operator) struct LatticeBonds<const D: usize> {
     pub stencil: Stencil<D>,
     /// Intact bonds: one byte per chunk and offset, offsets fastest.
     pub blocks: Vec<BlockDamage>,
-    /// All bonds before pre-cracks, as in `blocks`, if points have different horizons.
+    /// All bonds before pre-cracks, as in `blocks`, if points have different horizons or pieces.
     pub geometric: Option<Vec<Vec<u8>>>,
     /// Sites whose bonds never break, one byte per place (in chunks).
     pub held: Option<Vec<u8>>,
@@ -33,7 +33,8 @@ pub(in crate::operator) struct LatticeBonds<const D: usize> {
 impl<const D: usize> LatticeBonds<D> {
     /// Creates the bonds within a horizon without those cut by cracks. The stencil stores `stiffness` times
     /// κ V of the neighbour for each vector ξ. If `horizons` gives a horizon for each point, none larger than
-    /// the first argument, a bond exists within the larger horizon of its ends.
+    /// the first argument, a bond exists within the larger horizon of its ends. Points of different pieces have
+    /// no bonds.
     ///
     /// # Errors
     /// A cloud without a lattice or of another dimension, a horizon without neighbours, an invalid crack,
@@ -71,15 +72,18 @@ impl<const D: usize> LatticeBonds<D> {
         let layout = GridLayout::new(&sites, lattice);
         let stencil = Stencil::<D>::new(lattice, layout.strides(), &rule);
         let mut blocks = geometric_blocks(&layout, &stencil);
-        let geometric = horizons.map(|horizons| {
-            let of_site = sites.spread(horizons);
-            let reach = |a: usize, b: usize| {
-                let larger = of_site[a].max(of_site[b]);
-                correction.reach(larger, spacing)
+        let of_site = horizons.map(|horizons| sites.spread(horizons));
+        let geometric = (of_site.is_some() || cloud.has_pieces()).then(|| {
+            let places = sites.places();
+            let reach = |a: usize, b: usize| match &of_site {
+                _ if places.piece(a) != places.piece(b) => 0.0,
+                Some(of_site) => correction.reach(of_site[a].max(of_site[b]), spacing),
+                None => rule.reach,
             };
             keep_within(&sites, &layout, &stencil, &reach, &mut blocks);
             blocks.iter().map(|block| block.intact.clone()).collect()
         });
+        drop(of_site);
         if cloud.domain().all(bonds_left(&blocks) == 0) {
             return Err(PericlesError::HorizonTooSmall { horizon, spacing });
         }
@@ -136,7 +140,7 @@ fn geometric_blocks<const D: usize>(layout: &GridLayout, stencil: &Stencil<D>) -
         .collect()
 }
 
-/// Removes bonds longer than the horizons of both sites.
+/// Removes bonds longer than the reach of their two sites.
 fn keep_within<const D: usize>(
     sites: &Sites,
     layout: &GridLayout,

@@ -1,5 +1,7 @@
 //! [`Breakable`] for lattice bodies.
 
+use std::ops::Range;
+
 use super::arrays::Grid;
 use super::block::{ChunkBlock, scatter};
 use super::force::GridForce;
@@ -36,6 +38,15 @@ impl<L: VectorLaw, const D: usize> Breakable for GridForce<L, D> {
 
     fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
         self.families().for_each_intact(visit);
+    }
+
+    fn for_each_broken_count(&self, visit: &mut dyn FnMut(Range<usize>, u64)) {
+        let first = |block| self.layout.first_point(block);
+        damage::broken_counts(&self.blocks, self.cloud.len(), &first, visit);
+    }
+
+    fn for_each_intact_of(&self, i: usize, visit: &mut dyn FnMut(usize)) {
+        self.families().for_each_intact_of(i, visit);
     }
 
     fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]) {

@@ -178,6 +178,19 @@ impl<const D: usize> Families<'_, D> {
         }
     }
 
+    /// Calls `visit` with the other end of each intact bond of point i.
+    pub fn for_each_intact_of(self, i: usize, visit: &mut dyn FnMut(usize)) {
+        let (n, offsets) = (self.cloud.len(), self.stencil.offsets());
+        let (place, intact) = self.bonds_of(i);
+        for k in intact {
+            let there = place.wrapping_add_signed(offsets[k].shift);
+            let j = self.layout.point_at(there);
+            if j < n && j != i {
+                visit(j);
+            }
+        }
+    }
+
     /// Calls `visit` once for each own point that is initially bonded to point i.
     pub fn for_each_neighbour(&self, i: usize, visit: &mut dyn FnMut(usize)) {
         let place = self.layout.place_of(i);

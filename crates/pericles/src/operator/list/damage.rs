@@ -1,11 +1,13 @@
 //! [`Breakable`] for neighbour lists.
 
+use std::ops::Range;
+
 use super::force::BondForce;
 use crate::domain::Field;
 use crate::lanes::LANES;
 use crate::operator::fast_law::VectorLaw;
 use crate::operator::{Breakable, CoarseBreak, Force, damage};
-use crate::parallel::for_each_chunk;
+use crate::parallel::{BLOCK, for_each_chunk};
 
 impl<L: VectorLaw, const D: usize> Breakable for BondForce<L, D> {
     fn dissipated(&self) -> f64 {
@@ -62,6 +64,23 @@ impl<L: VectorLaw, const D: usize> Breakable for BondForce<L, D> {
                 }
             }
         }
+    }
+
+    fn for_each_broken_count(&self, visit: &mut dyn FnMut(Range<usize>, u64)) {
+        damage::broken_counts(
+            &self.blocks,
+            self.cloud.len(),
+            &|block| block * BLOCK,
+            visit,
+        );
+    }
+
+    fn for_each_intact_of(&self, i: usize, visit: &mut dyn FnMut(usize)) {
+        let (family, sites) = (self.bonds.family(i), self.bonds.sites());
+        let intact = family.filter(|&(entry, _)| self.is_intact(i, entry));
+        intact
+            .filter_map(|(_, b)| sites.own_point(b))
+            .for_each(visit);
     }
 
     fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]) {

@@ -1,5 +1,7 @@
 //! [`TwoPass`] and [`Breakable`] for linear peridynamic solids.
 
+use std::ops::Range;
+
 use super::bond_work::{KEPT, Worked};
 use super::bonds::difference;
 use super::breaking::heated_limit;
@@ -12,7 +14,7 @@ use crate::material::PairForce;
 use crate::operator::{
     AtPoints, BondView, Breakable, CoarseBreak, InstructionSet, PointSubset, TwoPass, damage,
 };
-use crate::parallel::for_each_chunk;
+use crate::parallel::{BLOCK, for_each_chunk};
 use crate::step_end::StepEnd;
 use crate::thermal::{Expandable, ThermalExpansion};
 
@@ -242,6 +244,23 @@ impl<L: Kinematics, const D: usize> Breakable for LinearSolidForce<L, D> {
                 }
             }
         }
+    }
+
+    fn for_each_broken_count(&self, visit: &mut dyn FnMut(Range<usize>, u64)) {
+        damage::broken_counts(
+            &self.blocks,
+            self.cloud.len(),
+            &|block| block * BLOCK,
+            visit,
+        );
+    }
+
+    fn for_each_intact_of(&self, i: usize, visit: &mut dyn FnMut(usize)) {
+        let (family, sites) = (self.bonds.family(i), self.bonds.sites());
+        let intact = family.filter(|&(entry, _)| self.is_intact(i, entry));
+        intact
+            .filter_map(|(_, b)| sites.own_point(b))
+            .for_each(visit);
     }
 
     /// The bond energy is that of the work at the end of the last step.

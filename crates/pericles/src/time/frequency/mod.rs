@@ -193,7 +193,7 @@ impl<'a> Search<'a> {
     fn run(&self) -> Result<HighestFrequency> {
         let operator = self.system.operator();
         // Bounds at rest hold at other displacements only for linear forces.
-        let known = operator.is_linear() || self.u.iter().all(|u| *u == 0.0);
+        let known = self.system.is_linear() || self.u.iter().all(|u| *u == 0.0);
         if !known {
             return self.iterate(f64::INFINITY);
         }

@@ -78,6 +78,10 @@ impl Implicit {
             need: Need::BoundariesWithinStep,
             reason: "a boundary of the body supports explicit schemes only; use velocity-verlet, or an absorbing boundary made for the midpoint rule",
         },
+        Requirement {
+            need: Need::NoInteractions,
+            reason: "it solves steps that are linear while no bond breaks, but contacts open and close within a step; use discrete-gradient or velocity-verlet",
+        },
     ];
 
     /// Makes the scheme for a system.

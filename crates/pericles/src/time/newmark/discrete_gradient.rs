@@ -66,6 +66,8 @@ impl DiscreteGradient {
             need: Need::BoundariesWithinStep,
             reason: "a boundary of the body supports explicit schemes only; use velocity-verlet, or an absorbing boundary made for the midpoint rule",
         },
+        Requirement::CONSERVATIVE_CONTACT,
+        Requirement::NO_FREE_BODIES,
     ];
 
     /// Makes the scheme for a system; `tolerance` is the relative error of the energy per step.
@@ -179,7 +181,7 @@ impl DiscreteGradient {
         let shape = system.domain().sum(next.len(), |k| {
             (root_mass[k] * (moved(k) - means[k / n])).powi(2)
         });
-        let elastic = system.operator().energy(step.t, next);
+        let elastic = system.stored_energy(step.t, next);
         let missing = elastic - step.elastic + work;
         let velocity = |k: usize| 2.0 * moved(k) / step.dt - state.v[k];
         let twice = system
@@ -338,7 +340,7 @@ impl Integrator for DiscreteGradient {
             t: t_next,
             dt,
             kinetic,
-            elastic: system.operator().energy(state.t, &state.u),
+            elastic: system.stored_energy(state.t, &state.u),
             reach: (dt * (2.0 * kinetic).sqrt())
                 .max(0.5 * theta * pushed)
                 .max(given),

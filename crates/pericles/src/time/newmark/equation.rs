@@ -120,8 +120,7 @@ impl StepEquation<'_> {
             between(self.base, u, node, at_node);
             force.fill(0.0);
             self.system
-                .operator()
-                .add_force(self.t, at_node, PointSubset::All, force);
+                .add_internal_force(self.t, at_node, &PointSubset::All, force);
             add(weight, force, mean);
         }
     }
@@ -133,8 +132,7 @@ impl StepEquation<'_> {
         for &(node, weight) in self.nodes {
             between(self.base, u, node, at_node);
             self.system
-                .operator()
-                .tangent_into(self.t, at_node, direction, tangent);
+                .internal_tangent_into(self.t, at_node, direction, tangent);
             add(weight * node, tangent, mean);
         }
     }

@@ -68,13 +68,19 @@ impl InnerSolver {
     /// Requirements of the scheme with this solver.
     pub const fn requirements(self) -> &'static [Requirement] {
         match self {
-            Self::FixedPoint | Self::Anderson { .. } => &[Requirement::IN_DOUBLES],
+            Self::FixedPoint | Self::Anderson { .. } => &[
+                Requirement::IN_DOUBLES,
+                Requirement::CONSERVATIVE_CONTACT,
+                Requirement::NO_FREE_BODIES,
+            ],
             Self::NewtonKrylov => &[
                 Requirement::IN_DOUBLES,
                 Requirement {
                     need: Need::NoMemory,
                     reason: "its equation contains forces that depend on displacements only, not boundaries with memory; use velocity-verlet",
                 },
+                Requirement::CONSERVATIVE_CONTACT,
+                Requirement::NO_FREE_BODIES,
             ],
         }
     }

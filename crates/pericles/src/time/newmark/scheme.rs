@@ -277,7 +277,8 @@ impl Newmark {
         let last_stands = !matches!(self.inner, Inner::NewtonKrylov(_))
             && !system.operator().can_break()
             && system.motions().is_empty()
-            && !system.has_boundaries();
+            && !system.has_boundaries()
+            && !system.has_interactions();
         if last_stands {
             system.book_heating(&end);
             system.book_step(&end, found);

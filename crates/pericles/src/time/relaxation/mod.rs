@@ -12,6 +12,7 @@ use crate::compatibility::{Need, Requirement, require};
 use crate::error::{PericlesError, Result};
 use crate::interrupt::Interrupt;
 use crate::operator::PointSubset;
+use crate::scalar::PointScalar;
 use crate::step_end::{Path, StepEnd};
 use crate::system::System;
 
@@ -98,6 +99,8 @@ impl Relaxation {
             need: Need::NoBoundaries,
             reason: "static states have no waves to absorb and no velocities to damp; leave the boundary out",
         },
+        Requirement::CONSERVATIVE_CONTACT,
+        Requirement::NO_FREE_BODIES,
     ];
 
     /// Makes the scheme for a system.
@@ -124,6 +127,7 @@ impl Relaxation {
         require(name, Self::REQUIREMENTS, system)?;
         // Unit densities give the bound of the stiffness itself.
         let omega = system.operator().frequency_bound(&|_| 1.0);
+        let omega = omega.hypot(system.contact_frequency(&PointScalar::Uniform(1.0)));
         if !(omega > 0.0 && omega.is_finite()) {
             return Err(PericlesError::SchemeNotUsable {
                 scheme: name,
@@ -238,7 +242,7 @@ impl Relaxation {
                 return Ok(residual);
             }
             self.before.copy_from_slice(&state.u);
-            let (elastic, work) = (system.operator().energy(t, &state.u), system.ledger().work);
+            let (elastic, work) = (system.stored_energy(t, &state.u), system.ledger().work);
             residual = self.relax(system, t, &mut state.u, interrupt)?;
             let after_breaking = StepEnd {
                 t,
@@ -251,7 +255,7 @@ impl Relaxation {
             };
             system.book_equilibrium(&after_breaking, &mut state.a);
             self.damped +=
-                elastic - system.operator().energy(t, &state.u) + system.ledger().work - work;
+                elastic - system.stored_energy(t, &state.u) + system.ledger().work - work;
         }
     }
 }
@@ -315,7 +319,7 @@ impl Integrator for Relaxation {
         let first = state.step == 0;
         let displaced = first && before.iter().any(|u| *u != 0.0);
         let elastic = if displaced {
-            system.operator().energy(state.t, &before)
+            system.stored_energy(state.t, &before)
         } else {
             0.0
         };
@@ -331,7 +335,7 @@ impl Integrator for Relaxation {
         system.book_equilibrium(&load_step, &mut state.a);
         if displaced {
             self.damped +=
-                elastic - system.operator().energy(t_next, &state.u) + system.ledger().work - work;
+                elastic - system.stored_energy(t_next, &state.u) + system.ledger().work - work;
         }
         if system.operator().changes_at_step_ends() {
             residual = self.settle(system, state, t_next, residual, interrupt)?;

@@ -1,5 +1,7 @@
 //! [`Breakable`] for softening bonds.
 
+use std::ops::Range;
+
 use super::force::SofteningForce;
 use crate::domain::Field;
 use crate::lanes::LANES;
@@ -55,6 +57,14 @@ impl<L: VectorLaw, const D: usize> Breakable for SofteningForce<L, D> {
 
     fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
         self.list.for_each_intact(visit);
+    }
+
+    fn for_each_broken_count(&self, visit: &mut dyn FnMut(Range<usize>, u64)) {
+        self.list.for_each_broken_count(visit);
+    }
+
+    fn for_each_intact_of(&self, i: usize, visit: &mut dyn FnMut(usize)) {
+        self.list.for_each_intact_of(i, visit);
     }
 
     /// The fraction is relative to the stretch at which a bond breaks, the end of its softening curve.

@@ -45,6 +45,8 @@ pub struct LinearSolidGrid<L: Kinematics, const D: usize> {
     pub(super) offsets: Vec<SolidOffset<D>>,
     /// Intact bonds: one byte per chunk and offset, offsets fastest.
     pub(super) blocks: Vec<BlockDamage>,
+    /// All bonds before pre-cracks, as in `blocks`, of a body of several pieces.
+    geometric: Option<Vec<Vec<u8>>>,
     held: Option<Vec<u8>>,
     precut: Vec<(u64, u8)>,
     /// Factors of points, those of ghosts after own points.
@@ -67,7 +69,7 @@ pub struct LinearSolidGrid<L: Kinematics, const D: usize> {
 crate::saved! {
     impl<L: Kinematics, const D: usize> Checkpointed for LinearSolidGrid<L, D> {
         blocks: under("operator/grid"),
-        cloud, layout, stencil, offsets, held, precut, states, stiffness, classes, weakest: fixed,
+        cloud, layout, stencil, offsets, geometric, held, precut, states, stiffness, classes, weakest: fixed,
         damage, directed_bonds, instruction_set, kinematics: fixed,
         heat: rebuilt,
         work: scratch,
@@ -121,7 +123,7 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
             held,
             cuts,
             precut,
-            geometric: _,
+            geometric,
         } = LatticeBonds::<D>::new(cloud, (horizon, None), correction, &weight, cracks, no_fail)?;
         let offsets = solid_offsets(&stencil);
         let families = Families {
@@ -129,7 +131,7 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
             layout: &layout,
             stencil: &stencil,
             blocks: &blocks,
-            geometric: None,
+            geometric: geometric.as_deref(),
             held: None,
             precut: &precut,
             damage,
@@ -169,6 +171,7 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
             stencil,
             offsets,
             blocks,
+            geometric,
             held,
             precut,
             states,
@@ -193,7 +196,7 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
             layout: &self.layout,
             stencil: &self.stencil,
             blocks: &self.blocks,
-            geometric: None,
+            geometric: self.geometric.as_deref(),
             held: self.held.as_deref(),
             precut: &self.precut,
             damage: self.damage,

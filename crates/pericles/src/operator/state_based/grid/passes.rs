@@ -1,5 +1,6 @@
 //! [`TwoPass`] and [`Breakable`] for linear peridynamic solids on a lattice.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::force::{LinearSolidGrid, Wanted};
@@ -221,6 +222,15 @@ impl<L: Kinematics, const D: usize> Breakable for LinearSolidGrid<L, D> {
 
     fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
         self.families().for_each_intact(visit);
+    }
+
+    fn for_each_broken_count(&self, visit: &mut dyn FnMut(Range<usize>, u64)) {
+        let first = |block| self.layout.first_point(block);
+        damage::broken_counts(&self.blocks, self.cloud.len(), &first, visit);
+    }
+
+    fn for_each_intact_of(&self, i: usize, visit: &mut dyn FnMut(usize)) {
+        self.families().for_each_intact_of(i, visit);
     }
 
     fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]) {

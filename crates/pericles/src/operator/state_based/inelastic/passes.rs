@@ -1,5 +1,7 @@
 //! [`TwoPass`], [`Breakable`] and [`BondView`] for inelastic solids.
 
+use std::ops::Range;
+
 use super::super::kernels::dilatation_change_rows;
 use super::super::kinematics::Kinematics;
 use super::force::InelasticSolidForce;
@@ -206,6 +208,14 @@ impl<L: Kinematics, const D: usize> Breakable for InelasticSolidForce<L, D> {
 
     fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
         self.solid.for_each_intact(visit);
+    }
+
+    fn for_each_broken_count(&self, visit: &mut dyn FnMut(Range<usize>, u64)) {
+        self.solid.for_each_broken_count(visit);
+    }
+
+    fn for_each_intact_of(&self, i: usize, visit: &mut dyn FnMut(usize)) {
+        self.solid.for_each_intact_of(i, visit);
     }
 
     /// Force states are those for the history at the end of the last step.

@@ -1,0 +1,139 @@
+//! How far points have moved relative to each other since a search.
+
+use rayon::prelude::*;
+
+use pericles::parallel::BLOCK;
+
+use crate::vector::V3;
+
+/// Pieces that are followed separately; a body with more of them is followed as one.
+const MOST: usize = 8;
+
+/// Lowest and highest value of each component.
+#[derive(Debug, Clone, Copy)]
+struct Span {
+    low: V3,
+    high: V3,
+}
+
+/// Displacements at the time of a search, and how far pieces may move relative to each other before pairs in contact may
+/// be missing from its result.
+#[derive(Debug, Clone)]
+pub(super) struct Ranges {
+    u: Vec<f64>,
+    /// Piece of each point; empty if all points are followed as one.
+    piece: Vec<u32>,
+    pieces: usize,
+    points: usize,
+    /// Squares of the allowed relative displacements of two pieces, m².
+    allowed: Vec<f64>,
+}
+
+impl Span {
+    const NOTHING: Self = Self {
+        low: [f64::INFINITY; 3],
+        high: [f64::NEG_INFINITY; 3],
+    };
+
+    fn add(&mut self, c: usize, x: f64) {
+        self.low[c] = self.low[c].min(x);
+        self.high[c] = self.high[c].max(x);
+    }
+
+    fn merge(&mut self, other: &Self) {
+        for c in 0..3 {
+            self.low[c] = self.low[c].min(other.low[c]);
+            self.high[c] = self.high[c].max(other.high[c]);
+        }
+    }
+
+    /// Square of the distance of two boxes.
+    fn gap(&self, other: &Self) -> f64 {
+        let apart = |c: usize| {
+            (self.low[c] - other.high[c])
+                .max(other.low[c] - self.high[c])
+                .max(0.0)
+        };
+        (0..3).map(|c| apart(c).powi(2)).sum()
+    }
+
+    /// Square of the largest difference of a vector of one box and a vector of the other.
+    fn spread(&self, other: &Self, dimension: usize) -> f64 {
+        let most = |c: usize| (self.high[c] - other.low[c]).max(other.high[c] - self.low[c]);
+        (0..dimension).map(|c| most(c).powi(2)).sum()
+    }
+}
+
+impl Ranges {
+    /// Starts to follow the points from displacement u, where a search has found all pairs closer than the contact
+    /// distance, at most `reach`, plus `skin`. Pieces far apart may approach each other by more than the skin.
+    pub(super) fn new(pieces: &[u32], places: &[V3], u: &[f64], skin: f64, reach: f64) -> Self {
+        let points = places.len();
+        let count = pieces.iter().max().map_or(1, |most| *most as usize + 1);
+        let one = count > MOST || count == 1;
+        let mut ranges = Self {
+            u: u.to_vec(),
+            piece: if one { Vec::new() } else { pieces.to_vec() },
+            pieces: if one { 1 } else { count },
+            points,
+            allowed: Vec::new(),
+        };
+        let mut boxes = vec![Span::NOTHING; ranges.pieces];
+        for (i, place) in places.iter().enumerate() {
+            let own = &mut boxes[ranges.piece_of(i)];
+            (0..3).for_each(|c| own.add(c, place[c]));
+        }
+        for p in 0..ranges.pieces {
+            for q in 0..ranges.pieces {
+                let free = boxes[p].gap(&boxes[q]).sqrt() - reach;
+                let most = if p == q { skin } else { free.max(skin) };
+                ranges.allowed.push(most * most);
+            }
+        }
+        ranges
+    }
+
+    fn piece_of(&self, i: usize) -> usize {
+        self.piece.get(i).map_or(0, |piece| *piece as usize)
+    }
+
+    /// Returns whether no point has moved too far relative to another at displacement u.
+    pub(super) fn are_kept(&self, u: &[f64]) -> bool {
+        let (n, dimension) = (self.points, u.len() / self.points.max(1));
+        let of_block = |block: usize| {
+            let mut spans = [Span::NOTHING; MOST];
+            let own = block * BLOCK..((block + 1) * BLOCK).min(n);
+            for c in 0..dimension {
+                let (now, then) = (&u[c * n..(c + 1) * n], &self.u[c * n..(c + 1) * n]);
+                if self.piece.is_empty() {
+                    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+                    for (now, then) in now[own.clone()].iter().zip(&then[own.clone()]) {
+                        let moved = now - then;
+                        low = if moved < low { moved } else { low };
+                        high = if moved > high { moved } else { high };
+                    }
+                    spans[0].add(c, low);
+                    spans[0].add(c, high);
+                } else {
+                    for i in own.clone() {
+                        spans[self.piece[i] as usize].add(c, now[i] - then[i]);
+                    }
+                }
+            }
+            spans
+        };
+        let nothing = || [Span::NOTHING; MOST];
+        let merged = |mut a: [Span; MOST], b: [Span; MOST]| {
+            a.iter_mut().zip(&b).for_each(|(a, b)| a.merge(b));
+            a
+        };
+        let blocks = (0..n.div_ceil(BLOCK)).into_par_iter();
+        let spans = blocks.map(of_block).reduce(nothing, merged);
+        let pairs = (0..self.pieces).flat_map(|p| (p..self.pieces).map(move |q| [p, q]));
+        let mut pairs = pairs.map(|[p, q]| {
+            let apart = spans[p].spread(&spans[q], dimension);
+            apart <= self.allowed[p * self.pieces + q]
+        });
+        pairs.all(|kept| kept)
+    }
+}

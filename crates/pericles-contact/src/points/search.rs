@@ -1,0 +1,302 @@
+//! Pairs of points that may touch soon: candidates for contact.
+
+use rayon::prelude::*;
+
+use pericles::operator::{Breakable, Force};
+use pericles::parallel::BLOCK;
+
+use super::ranges::Ranges;
+use crate::bodies::Touching;
+use crate::law::ContactPairs;
+use crate::vector::{V3, dot, minus};
+
+/// Pairs closer than the contact distance plus a skin at the time of the search. While no point moves relative to another
+/// by more than the skin, they contain all pairs in contact.
+///
+/// Rows contain both ends of each pair, in ascending order, so that forces do not depend on the list: candidates that do
+/// not touch add nothing. The list is therefore not part of a checkpoint.
+#[derive(Debug, Clone)]
+pub(super) struct Candidates {
+    /// First entry of each row.
+    starts: Vec<usize>,
+    near: Vec<u32>,
+    /// Whether the pair of an entry may touch: not for pairs with an intact bond.
+    open: Vec<bool>,
+    /// Points with an open entry, ascending.
+    exposed: Vec<u32>,
+    ranges: Ranges,
+    /// Numbers of bonds that broke so far, for the ranges of points of the forces.
+    broken: Vec<u64>,
+}
+
+/// The internal forces' list of bonds, if contact depends on it.
+fn bonds<'a>(touching: &Touching, forces: &'a dyn Force) -> Option<&'a dyn Breakable> {
+    match touching.law.pairs {
+        ContactPairs::Unbonded => forces.capabilities().breaking,
+        ContactPairs::Pieces | ContactPairs::All => None,
+    }
+}
+
+impl Candidates {
+    /// Searches all pairs at displacement u.
+    pub(super) fn search(
+        touching: &Touching,
+        pieces: &[u32],
+        u: &[f64],
+        skin: f64,
+        forces: &dyn Force,
+    ) -> Self {
+        let n = touching.cloud.len();
+        let places = places(touching, u);
+        let largest = touching.size.iter().copied().fold(0.0, f64::max);
+        let reach = touching.law.distance * largest;
+        let ranges = Ranges::new(pieces, &places, u, skin, reach);
+        let cells = Cells::new(&places, touching.cloud.dimension(), reach + skin);
+        let of_block = |block: usize| {
+            let (mut near, mut lengths) = (Vec::new(), Vec::new());
+            for i in block * BLOCK..((block + 1) * BLOCK).min(n) {
+                let first = near.len();
+                cells.visit(places[i], |j| {
+                    let j = j as usize;
+                    if j != i && may_touch(touching, &places, [i, j], skin) {
+                        near.push(j as u32);
+                    }
+                });
+                near[first..].sort_unstable();
+                lengths.push(near.len() - first);
+            }
+            (near, lengths)
+        };
+        let blocks: Vec<_> = (0..n.div_ceil(BLOCK))
+            .into_par_iter()
+            .map(of_block)
+            .collect();
+        let (mut starts, mut near) = (Vec::with_capacity(n + 1), Vec::new());
+        starts.push(0);
+        for (own, lengths) in blocks {
+            for length in lengths {
+                starts.push(starts[starts.len() - 1] + length);
+            }
+            near.extend(own);
+        }
+        let mut candidates = Self {
+            open: vec![true; near.len()],
+            starts,
+            near,
+            exposed: Vec::new(),
+            ranges,
+            broken: Vec::new(),
+        };
+        if let Some(bonds) = bonds(touching, forces) {
+            bonds.for_each_broken_count(&mut |_, count| candidates.broken.push(count));
+            candidates.close_bonded(touching, forces, &[0..n]);
+        }
+        candidates.find_exposed();
+        candidates
+    }
+
+    /// Returns whether the list contains all pairs in contact at displacement u.
+    pub(super) fn contains_contacts(&self, u: &[f64]) -> bool {
+        self.ranges.are_kept(u)
+    }
+
+    /// Returns whether bonds broke since the list was last brought up to date.
+    pub(super) fn is_behind(&self, touching: &Touching, forces: &dyn Force) -> bool {
+        let (mut k, mut same) = (0, true);
+        if let Some(bonds) = bonds(touching, forces) {
+            bonds.for_each_broken_count(&mut |_, count| {
+                same &= self.broken.get(k) == Some(&count);
+                k += 1;
+            });
+        }
+        !same
+    }
+
+    /// Opens the pairs whose bonds have broken.
+    pub(super) fn follow_breaks(&mut self, touching: &Touching, forces: &dyn Force) {
+        let Some(bonds) = bonds(touching, forces) else {
+            return;
+        };
+        let (mut k, mut changed) = (0, Vec::new());
+        bonds.for_each_broken_count(&mut |range, count| {
+            if self.broken[k] != count {
+                self.broken[k] = count;
+                changed.push(range);
+            }
+            k += 1;
+        });
+        self.close_bonded(touching, forces, &changed);
+        self.find_exposed();
+    }
+
+    /// Decides for the rows of ranges of points which pairs are open.
+    fn close_bonded(
+        &mut self,
+        touching: &Touching,
+        forces: &dyn Force,
+        ranges: &[std::ops::Range<usize>],
+    ) {
+        let blocks: Vec<std::ops::Range<usize>> = ranges
+            .iter()
+            .flat_map(|range| {
+                let end = range.end;
+                range
+                    .clone()
+                    .step_by(BLOCK)
+                    .map(move |first| first..(first + BLOCK).min(end))
+            })
+            .collect();
+        let (starts, near) = (&self.starts, &self.near);
+        let of_block = |block: &std::ops::Range<usize>| {
+            let mut open = vec![true; starts[block.end] - starts[block.start]];
+            if let Some(bonds) = bonds(touching, forces) {
+                for i in block.clone() {
+                    let row = &near[starts[i]..starts[i + 1]];
+                    let (Some(&low), Some(&high)) = (row.first(), row.last()) else {
+                        continue;
+                    };
+                    let own = &mut open[starts[i] - starts[block.start]..];
+                    bonds.for_each_intact_of(i, &mut |j| {
+                        let j = j as u32;
+                        if (low..=high).contains(&j)
+                            && let Ok(k) = row.binary_search(&j)
+                        {
+                            own[k] = false;
+                        }
+                    });
+                }
+            }
+            open
+        };
+        let found: Vec<Vec<bool>> = blocks.par_iter().map(of_block).collect();
+        for (block, open) in blocks.iter().zip(found) {
+            self.open[self.starts[block.start]..self.starts[block.end]].copy_from_slice(&open);
+        }
+    }
+
+    fn find_exposed(&mut self) {
+        let exposed = |&i: &u32| {
+            let row = self.starts[i as usize]..self.starts[i as usize + 1];
+            self.open[row].contains(&true)
+        };
+        let n = self.starts.len() as u32 - 1;
+        self.exposed = (0..n).into_par_iter().filter(exposed).collect();
+    }
+
+    /// Points that may touch others, ascending.
+    pub(super) fn exposed(&self) -> &[u32] {
+        &self.exposed
+    }
+
+    /// Points that may touch point i, ascending.
+    #[inline]
+    pub(super) fn row(&self, i: usize) -> impl Iterator<Item = usize> + '_ {
+        let row = self.starts[i]..self.starts[i + 1];
+        let entries = self.near[row.clone()].iter().zip(&self.open[row]);
+        entries.filter(|(_, open)| **open).map(|(j, _)| *j as usize)
+    }
+
+    /// Number of pairs that may touch.
+    pub(super) fn pairs(&self) -> u64 {
+        self.open.iter().filter(|open| **open).count() as u64 / 2
+    }
+}
+
+/// Returns the positions of all points at displacement u.
+fn places(touching: &Touching, u: &[f64]) -> Vec<V3> {
+    let cloud = &touching.cloud;
+    let (n, x) = (cloud.len(), cloud.positions());
+    let place = |i: usize| {
+        let mut place = [0.0; 3];
+        for c in 0..cloud.dimension() {
+            place[c] = x[c * n + i] + u[c * n + i];
+        }
+        place
+    };
+    pericles::parallel::for_each_point(n, &place)
+}
+
+fn may_touch(touching: &Touching, places: &[V3], [i, j]: [usize; 2], skin: f64) -> bool {
+    let apart = minus(places[j], places[i]);
+    let reach = touching.law.distance * 0.5 * (touching.size[i] + touching.size[j]) + skin;
+    let piece = &touching.bodies.piece;
+    let wanted = touching.law.pairs != ContactPairs::Pieces || piece[i] != piece[j];
+    wanted && dot(apart, apart) < reach * reach
+}
+
+/// Points sorted into cells. Cells share buckets by a hash function, so that the memory does not depend on how far
+/// fragments fly apart.
+struct Cells {
+    side: f64,
+    dimension: usize,
+    mask: u64,
+    starts: Vec<u32>,
+    order: Vec<u32>,
+}
+
+impl Cells {
+    fn new(places: &[V3], dimension: usize, side: f64) -> Self {
+        let buckets = (2 * places.len()).next_power_of_two().max(2);
+        let mut cells = Self {
+            side,
+            dimension,
+            mask: buckets as u64 - 1,
+            starts: vec![0; buckets + 1],
+            order: vec![0; places.len()],
+        };
+        let bucket: Vec<u32> = places
+            .par_iter()
+            .map(|&y| cells.bucket(cells.cell(y)) as u32)
+            .collect();
+        for &b in &bucket {
+            cells.starts[b as usize + 1] += 1;
+        }
+        for b in 0..buckets {
+            cells.starts[b + 1] += cells.starts[b];
+        }
+        let mut next = cells.starts.clone();
+        for (i, &b) in bucket.iter().enumerate() {
+            cells.order[next[b as usize] as usize] = i as u32;
+            next[b as usize] += 1;
+        }
+        cells
+    }
+
+    fn cell(&self, y: V3) -> [i64; 3] {
+        y.map(|x| (x / self.side).floor() as i64)
+    }
+
+    fn bucket(&self, cell: [i64; 3]) -> u64 {
+        /// Large odd numbers, as in Teschner et al. (2003).
+        const FACTORS: [u64; 3] = [73_856_093, 19_349_663, 83_492_791];
+        let mut hash = 0;
+        for (x, factor) in cell.iter().zip(FACTORS) {
+            hash ^= (*x as u64).wrapping_mul(factor);
+        }
+        hash & self.mask
+    }
+
+    /// Calls `found` once for each point in the cell of y and in the cells around it, and for others that share their
+    /// buckets.
+    fn visit(&self, y: V3, mut found: impl FnMut(u32)) {
+        let centre = self.cell(y);
+        let span = |c: usize| if c < self.dimension { -1..=1 } else { 0..=0 };
+        let (mut seen, mut count) = ([0u64; 27], 0);
+        for dx in span(0) {
+            for dy in span(1) {
+                for dz in span(2) {
+                    let cell = [centre[0] + dx, centre[1] + dy, centre[2] + dz];
+                    let bucket = self.bucket(cell);
+                    if seen[..count].contains(&bucket) {
+                        continue;
+                    }
+                    seen[count] = bucket;
+                    count += 1;
+                    let own = self.starts[bucket as usize]..self.starts[bucket as usize + 1];
+                    let own = &self.order[own.start as usize..own.end as usize];
+                    own.iter().for_each(|&j| found(j));
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,7 @@
+//! Tests of contact and rigid bodies.
+
+mod bonded;
+mod impact;
+mod reference;
+mod runs;
+mod setup;

@@ -1,0 +1,385 @@
+//! Contact between points, and impactors.
+
+use pericles::space::PointCloud;
+use pericles::time::State;
+use pericles::{Interaction, PointScalar, System};
+use pericles_contact::{
+    ClosedMesh, ContactBodies, ContactLaw, ContactPairs, ContactStiffness, Friction, Impactor,
+    ImpactorMotion, Inertia, PairLaw, PointContact, Pose, Shape, usual_overlap,
+};
+use pericles_deck::{
+    BuildError, Caution, Contact, Fault, ImpactorInertia, ImpactorShape, KeyPath, ModelWarning,
+    Remark, Solid,
+};
+
+use super::assembler::Assembler;
+use super::constants::MaterialConstants;
+use super::discretisation::Discretisation;
+use super::refusal::{at, at_path};
+use super::resources::Resources;
+use super::rotation::{UNIT, matrix, product, times, upright};
+
+/// The constants of the materials: that of the body and the others in the order of the deck.
+pub(super) type AllConstants<'a> = (Option<&'a MaterialConstants>, &'a [MaterialConstants]);
+
+/// Contact of an assembled model, for the time step and warnings.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct ContactFacts {
+    /// The highest frequency of a single contact, 1/s; 0 without contact.
+    pub(super) frequency: f64,
+    /// The largest relative speed of pieces and impactors at the start, m/s.
+    pub(super) speed: f64,
+}
+
+impl Assembler<'_> {
+    /// Adds the contact of the model to a system.
+    pub(super) fn add_contact(
+        &self,
+        system: &mut System,
+        (discretisation, state): (&Discretisation, &State),
+        constants: AllConstants<'_>,
+        resources: &Resources<'_>,
+        warnings: &mut Vec<ModelWarning>,
+    ) -> Result<ContactFacts, BuildError> {
+        let Some(solid) = self.model.body.solid() else {
+            return Ok(ContactFacts::default());
+        };
+        let pieces = solid.shape.pieces().len();
+        if self.model.contact.is_none() && pieces > 1 {
+            warnings.push(Remark::new("body.piece", Caution::NoContact { pieces }));
+        }
+        if self.model.contact.is_none() && self.model.impactors.is_empty() {
+            return Ok(ContactFacts::default());
+        }
+        let contact = self.model.contact.unwrap_or_default();
+        let law = law(&contact);
+        let bodies = self.contact_bodies(solid, discretisation, constants, system)?;
+        let cloud = &discretisation.cloud;
+        if self.model.contact.is_some() {
+            PointContact::new(cloud.clone(), law, bodies.clone())
+                .and_then(|points| system.add_interaction(Box::new(points)))
+                .map_err(|error| at("contact", error))?;
+        }
+        for (k, impactor) in self.model.impactors.iter().enumerate() {
+            let path = KeyPath::from("impactor").index(k);
+            let (shape, pose) = self.impactor_shape(&path, impactor, resources)?;
+            let motion = impactor_motion(&path, impactor)?;
+            let one = Impactor::new(
+                impactor.name.clone(),
+                shape,
+                pose,
+                motion,
+                cloud.clone(),
+                law,
+                bodies.clone(),
+            )
+            .map_err(|error| at(&path, error))?;
+            refuse_points_inside(&path, &one, cloud)?;
+            system
+                .add_interaction(Box::new(one))
+                .map_err(|error| at(&path, error))?;
+        }
+        let density = &bodies.density;
+        let contacts = system
+            .interactions()
+            .map(|one| one.contact_frequency(density));
+        let facts = ContactFacts {
+            frequency: contacts.fold(0.0, f64::max),
+            speed: self.impact_speed(system, state),
+        };
+        self.judge_impact(solid, &contact, facts, constants, warnings);
+        Ok(facts)
+    }
+
+    /// Returns pieces and materials of the points.
+    fn contact_bodies(
+        &self,
+        solid: &Solid,
+        discretisation: &Discretisation,
+        (own, others): AllConstants<'_>,
+        system: &System,
+    ) -> Result<ContactBodies, BuildError> {
+        let Discretisation {
+            cloud, grids, sets, ..
+        } = discretisation;
+        // Warnings about materials were reported when the forces were built.
+        let (of_point, density) =
+            self.points_of_materials(&solid.material, (cloud, sets), &mut Vec::new())?;
+        let young: Vec<f64> = own
+            .into_iter()
+            .chain(others)
+            .map(|one| one.young())
+            .collect();
+        let horizons = std::iter::once(solid.material.horizon());
+        let others = self.model.materials.iter();
+        let horizons: Vec<f64> = horizons
+            .chain(others.map(|other| other.model.horizon()))
+            .collect();
+        let material = |i: usize| of_point.as_ref().map_or(0, |all| usize::from(all[i]));
+        let points = system.points();
+        let ratio = |i: usize| f64::from(grids.ratios[usize::from(grids.of_point[i])]);
+        let horizon = |i: usize| horizons[material(i)] / ratio(i);
+        let modulus = |i: usize| young.get(material(i)).copied().unwrap_or(young[0]);
+        let all = |value: &dyn Fn(usize) -> f64| match of_point.is_some() || grids.ratios.len() > 1
+        {
+            true => PointScalar::PerPoint((0..points).map(value).collect()),
+            false => PointScalar::Uniform(value(0)),
+        };
+        Ok(ContactBodies {
+            piece: (0..points).map(|i| cloud.piece(i)).collect(),
+            young: all(&modulus),
+            horizon: all(&horizon),
+            density,
+        })
+    }
+
+    /// Returns the shape of an impactor in its own frame and its place.
+    fn impactor_shape(
+        &self,
+        path: &KeyPath,
+        impactor: &pericles_deck::Impactor,
+        resources: &Resources<'_>,
+    ) -> Result<(Shape, Pose), BuildError> {
+        let turned = impactor.rotation.as_ref().map_or(UNIT, matrix);
+        let (shape, frame, middle) = match &impactor.shape {
+            ImpactorShape::Ball { radius } => (Shape::Ball { radius: *radius }, UNIT, ORIGIN),
+            ImpactorShape::Box { size } => {
+                let half = size.map(|side| 0.5 * side);
+                (Shape::Box { half }, UNIT, ORIGIN)
+            }
+            ImpactorShape::Cylinder {
+                radius,
+                height,
+                axis,
+            } => {
+                let shape = Shape::Cylinder {
+                    radius: *radius,
+                    half_height: 0.5 * height,
+                };
+                (shape, upright(*axis), ORIGIN)
+            }
+            ImpactorShape::HalfSpace { normal } => (Shape::HalfSpace, upright(*normal), ORIGIN),
+            ImpactorShape::Surface { path: file, unit } => {
+                let key = path.key("file");
+                let file = resources.beside(file);
+                let mesh = self.read_mesh(key.clone(), &file, resources)?;
+                let wrong = |reason: String| {
+                    let reason = format!("{}: {reason}", file.display());
+                    at_path(&key, Fault::BadMesh { reason })
+                };
+                mesh.check().map_err(|error| wrong(error.to_string()))?;
+                let nodes = mesh.nodes.iter().map(|node| node.map(|x| x * unit));
+                let closed = ClosedMesh::new(nodes.collect(), mesh.triangles());
+                let closed = closed.map_err(|error| wrong(error.to_string()))?;
+                let middle = centroid(&closed);
+                (Shape::Mesh(closed), UNIT, middle)
+            }
+        };
+        // The centre of mass stays where it is when the impactor is rotated.
+        let moved = times(&turned, middle);
+        let centre = std::array::from_fn(|c| impactor.centre[c] + middle[c] - moved[c]);
+        let rotation = product(&turned, &frame);
+        Ok((shape, Pose { centre, rotation }))
+    }
+
+    /// Returns the largest relative speed of pieces and impactors at the start.
+    fn impact_speed(&self, system: &System, state: &State) -> f64 {
+        let cloud = system.cloud();
+        let pieces = cloud.pieces().iter().max().map_or(1, |most| most + 1) as usize;
+        let mut momentum = vec![[0.0; 3]; pieces];
+        let mut mass = vec![0.0; pieces];
+        for i in 0..cloud.len() {
+            let (piece, m) = (cloud.piece(i) as usize, cloud.volumes()[i]);
+            mass[piece] += m;
+            for c in 0..cloud.dimension() {
+                momentum[piece][c] += m * state.v[c * cloud.len() + i];
+            }
+        }
+        let mut all: Vec<[f64; 3]> = momentum
+            .iter()
+            .zip(&mass)
+            .filter(|(_, m)| **m > 0.0)
+            .map(|(p, m)| p.map(|x| x / m))
+            .collect();
+        let impactors = system.interactions();
+        let impactors = impactors.filter_map(|one| one.downcast_ref::<Impactor>());
+        all.extend(impactors.map(|one| one.reading().velocity));
+        let apart =
+            |a: &[f64; 3], b: &[f64; 3]| (0..3).map(|c| (a[c] - b[c]).powi(2)).sum::<f64>().sqrt();
+        let pairs = all.iter().enumerate();
+        pairs
+            .flat_map(|(k, a)| all[..k].iter().map(move |b| apart(a, b)))
+            .fold(0.0, f64::max)
+    }
+
+    /// Warns of impacts so fast that points may pass each other.
+    fn judge_impact(
+        &self,
+        solid: &Solid,
+        contact: &Contact,
+        facts: ContactFacts,
+        (own, _): AllConstants<'_>,
+        warnings: &mut Vec<ModelWarning>,
+    ) {
+        /// Overlap in spacings above which points may pass each other.
+        const LARGE: f64 = 0.5;
+        let (Some(own), Some(spacing)) = (own, solid.shape.spacing()) else {
+            return;
+        };
+        let wave_speed = (own.young() / solid.material.density()).sqrt();
+        let ratio = solid.material.horizon() / spacing;
+        let overlap = match contact.stiffness {
+            pericles_deck::ContactStiffness::Relative(stiffness) => {
+                usual_overlap(facts.speed, wave_speed, ratio, stiffness)
+            }
+            pericles_deck::ContactStiffness::Absolute(_) => 0.0,
+        };
+        if overlap > LARGE {
+            let caution = Caution::FastImpact {
+                speed: facts.speed,
+                wave_speed,
+                overlap,
+            };
+            warnings.push(Remark::new("contact.stiffness", caution));
+        }
+    }
+
+    /// Warns of steps that resolve contacts badly, and in which a bond is stretched by more than the critical stretch.
+    pub(super) fn judge_contact_step(
+        &self,
+        dt: f64,
+        facts: ContactFacts,
+        own: Option<&MaterialConstants>,
+        spacing: f64,
+        warnings: &mut Vec<ModelWarning>,
+    ) {
+        if self.model.time.scheme.is_static() {
+            return;
+        }
+        let longest = CONTACT_PHASE / facts.frequency;
+        if dt > longest * (1.0 + 1e-9) {
+            let caution = Caution::FewContactSteps { dt, longest };
+            warnings.push(Remark::new("time.dt", caution));
+        }
+        let critical = own.map_or(f64::INFINITY, MaterialConstants::critical_stretch);
+        let stretched = facts.speed * dt / spacing;
+        if stretched > critical {
+            let caution = Caution::CoarseImpact {
+                speed: facts.speed,
+                times: stretched / critical,
+            };
+            warnings.push(Remark::new("time.dt", caution));
+        }
+    }
+}
+
+/// Phase ω dt of a contact in a step such that a lone contact, which lasts half a period, takes five steps.
+pub(super) const CONTACT_PHASE: f64 = 0.63;
+
+const ORIGIN: [f64; 3] = [0.0; 3];
+
+/// Rejects an impactor with points of the body inside: their overlap exceeds half of their cell size.
+fn refuse_points_inside(
+    path: &KeyPath,
+    impactor: &Impactor,
+    cloud: &PointCloud,
+) -> Result<(), BuildError> {
+    let Pose { centre, rotation } = impactor.pose();
+    let is_inside = |&i: &usize| {
+        let y = cloud.point(i);
+        let q = std::array::from_fn(|k| (0..3).map(|c| rotation[c][k] * (y[c] - centre[c])).sum());
+        // Touching bodies may overlap by rounding.
+        impactor.shape().distance(q).0 < -1e-6 * cloud.cell_size(i)
+    };
+    let inside: Vec<usize> = (0..cloud.len()).filter(is_inside).collect();
+    let Some(&first) = inside.first() else {
+        return Ok(());
+    };
+    let fault = Fault::ImpactorInBody {
+        impactor: impactor.name().to_owned(),
+        points: inside.len(),
+        place: cloud.point(first)[..cloud.dimension()].to_vec(),
+    };
+    Err(at_path(path.key("centre"), fault))
+}
+
+/// Converts the table of a deck to the law of the contact forces.
+fn law(contact: &Contact) -> ContactLaw {
+    ContactLaw {
+        pairs: match contact.pairs {
+            pericles_deck::ContactPairs::Unbonded => ContactPairs::Unbonded,
+            pericles_deck::ContactPairs::Pieces => ContactPairs::Pieces,
+            pericles_deck::ContactPairs::All => ContactPairs::All,
+        },
+        law: match contact.law {
+            pericles_deck::ContactLaw::Linear => PairLaw::Linear,
+            pericles_deck::ContactLaw::Power(exponent) => PairLaw::Power(exponent),
+            pericles_deck::ContactLaw::Emu => PairLaw::Emu,
+        },
+        stiffness: match contact.stiffness {
+            pericles_deck::ContactStiffness::Relative(factor) => ContactStiffness::Relative(factor),
+            pericles_deck::ContactStiffness::Absolute(k) => ContactStiffness::Absolute(k),
+        },
+        distance: contact.distance,
+        closing: contact.closing,
+        damping: contact.damping,
+        friction: contact.friction.map(|friction| Friction {
+            coefficient: friction.coefficient,
+            speed: friction.speed,
+        }),
+    }
+}
+
+fn impactor_motion(
+    path: &KeyPath,
+    impactor: &pericles_deck::Impactor,
+) -> Result<ImpactorMotion, BuildError> {
+    Ok(match &impactor.motion {
+        pericles_deck::ImpactorMotion::Free {
+            inertia,
+            velocity,
+            spin,
+        } => ImpactorMotion::Free {
+            inertia: match *inertia {
+                ImpactorInertia::Density(density) => Inertia::Density(density),
+                ImpactorInertia::Mass { mass, inertia } => Inertia::Mass {
+                    mass,
+                    inertia: inertia.map(|moments| {
+                        std::array::from_fn(|a| {
+                            std::array::from_fn(|b| if a == b { moments[a] } else { 0.0 })
+                        })
+                    }),
+                },
+            },
+            velocity: *velocity,
+            spin: *spin,
+        },
+        pericles_deck::ImpactorMotion::Prescribed {
+            kind,
+            amplitude,
+            function,
+        } => ImpactorMotion::Prescribed {
+            kind: *kind,
+            amplitude: *amplitude,
+            function: function
+                .smooth_function()
+                .map_err(|fault| at_path(path.key("function"), fault))?,
+        },
+    })
+}
+
+/// Returns the centre of the volume of a closed mesh, from signed tetrahedra.
+fn centroid(mesh: &ClosedMesh) -> [f64; 3] {
+    let (mut volume, mut moment) = (0.0, [0.0; 3]);
+    for triangle in mesh.triangles() {
+        let [a, b, c] = triangle.map(|k| mesh.vertices()[k as usize]);
+        let six = a[0] * (b[1] * c[2] - b[2] * c[1])
+            + a[1] * (b[2] * c[0] - b[0] * c[2])
+            + a[2] * (b[0] * c[1] - b[1] * c[0]);
+        volume += six;
+        for k in 0..3 {
+            moment[k] += 0.25 * six * (a[k] + b[k] + c[k]);
+        }
+    }
+    moment.map(|entry| entry / volume)
+}

@@ -1,0 +1,291 @@
+//! Points of bodies of several pieces.
+
+use pericles::family::pairs_within;
+use pericles::space::{GradedCloud, Lattice, ListedPoints, Point, PointCloud, PointSet};
+use pericles_deck::{BuildError, Fault, KeyPath, ModelWarning, Piece, Solid, piece_path};
+
+use super::assembler::Assembler;
+use super::mesh_body::MeshBody;
+use super::points::BodyPoints;
+use super::refusal::{at, at_path};
+use super::resources::Resources;
+use super::rotation::{matrix, times};
+
+/// Distance of points of different pieces, in mean cell sizes, below which the pieces overlap.
+const CLOSEST: f64 = 0.5;
+
+/// Tolerance of positions on a common lattice, in spacings.
+const ALIGNED: f64 = 1e-6;
+
+/// Largest number of lattice nodes per point; wider gaps between pieces need a list of points.
+const NODES: f64 = 32.0;
+
+/// The points of a piece at their positions.
+struct Placed {
+    cloud: PointCloud,
+    mesh: Option<MeshBody>,
+    /// Displacement of the lattice; `None` after a rotation.
+    moved: Option<Point>,
+    positions: Vec<Point>,
+}
+
+impl Assembler<'_> {
+    /// Creates the points of all pieces: on a common lattice if all gaps are whole cells, else as a list.
+    pub(super) fn piece_points(
+        &self,
+        solid: &Solid,
+        pieces: &[Piece],
+        resources: &Resources<'_>,
+        warnings: &mut Vec<ModelWarning>,
+    ) -> Result<BodyPoints, BuildError> {
+        let mut placed = Vec::new();
+        for (k, piece) in pieces.iter().enumerate() {
+            let (body, path) = (KeyPath::from("body"), piece_path(k));
+            let own = Solid {
+                shape: piece.shape.clone(),
+                ..solid.clone()
+            };
+            let mut found = Vec::new();
+            let made = self
+                .points(&own, resources, &mut found)
+                .map_err(|error| error.moved(&body, &path))?;
+            warnings.extend(found.into_iter().map(|one| one.moved(&body, &path)));
+            placed.push(place(piece, made));
+        }
+        let joined = match on_common_lattice(&placed, pieces)? {
+            Some(cloud) => BodyPoints {
+                cloud: GradedCloud::of_one_grid(cloud),
+                mesh: None,
+                sets: Vec::new(),
+            },
+            None => self.listed_pieces(solid, pieces, placed, resources)?,
+        };
+        refuse_overlap(&joined.cloud.cloud, pieces)?;
+        Ok(joined)
+    }
+
+    /// Creates a list of the points of all pieces.
+    fn listed_pieces(
+        &self,
+        solid: &Solid,
+        pieces: &[Piece],
+        mut placed: Vec<Placed>,
+        resources: &Resources<'_>,
+    ) -> Result<BodyPoints, BuildError> {
+        let mut listed = ListedPoints::default();
+        let mut of_entry = Vec::new();
+        let mut starts = Vec::new();
+        for (k, piece) in placed.iter().enumerate() {
+            starts.push(listed.positions.len() as u32);
+            for i in piece.order() {
+                listed.positions.push(piece.positions[i]);
+                listed.volumes.push(piece.cloud.volumes()[i]);
+                listed.blocks.push(piece.cloud.block(i));
+                of_entry.push(k as u32);
+            }
+        }
+        if let Some((a, b)) = listed.first_twins() {
+            let at = listed.positions[a];
+            return Err(overlap(
+                [a, b].map(|entry| of_entry[entry]),
+                at,
+                0.0,
+                pieces,
+            ));
+        }
+        let section = solid.shape.section();
+        let cloud = listed
+            .cloud(solid.shape.dimension(), section)
+            .map_err(|error| at("body", error))?;
+        let of_point = (0..cloud.len()).map(|i| of_entry[cloud.user_number(i)]);
+        let of_point = of_point.collect();
+        let cloud = cloud
+            .with_pieces(of_point)
+            .map_err(|error| at("body.piece", error))?;
+        self.check_listed(solid, &cloud, resources)?;
+        let mut place = vec![0; cloud.len()];
+        for i in 0..cloud.len() {
+            place[cloud.user_number(i)] = i as u32;
+        }
+        let mut sets = Vec::new();
+        for (k, piece) in placed.iter().enumerate().skip(1) {
+            let Some(mesh) = &piece.mesh else { continue };
+            for (name, points) in mesh.sets(&piece.cloud) {
+                let number = |&i: &u32| starts[k] + piece.cloud.user_number(i as usize) as u32;
+                let points = points.iter().map(|i| place[number(i) as usize]);
+                let mut points: PointSet = points.collect();
+                points.sort_unstable();
+                sets.push((format!("{}/{name}", pieces[k].name), points));
+            }
+        }
+        Ok(BodyPoints {
+            cloud: GradedCloud::of_one_grid(cloud),
+            mesh: placed.swap_remove(0).mesh,
+            sets,
+        })
+    }
+}
+
+impl Placed {
+    /// Returns the points in the user's order.
+    fn order(&self) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..self.cloud.len()).collect();
+        order.sort_unstable_by_key(|&i| self.cloud.user_number(i));
+        order
+    }
+}
+
+/// Moves the points of a piece to their positions.
+fn place(piece: &Piece, made: BodyPoints) -> Placed {
+    let cloud = made.cloud.cloud;
+    let shift = |x: Point| -> Point { std::array::from_fn(|c| x[c] + piece.origin[c]) };
+    let mut positions: Vec<Point> = (0..cloud.len()).map(|i| shift(cloud.point(i))).collect();
+    if let Some(rotation) = &piece.rotation {
+        let middle = || {
+            let bounds = cloud.bounds();
+            shift(std::array::from_fn(|c| 0.5 * (bounds[0][c] + bounds[1][c])))
+        };
+        let centre = rotation.centre.unwrap_or_else(middle);
+        let turn = matrix(rotation);
+        for x in &mut positions {
+            let arm = times(&turn, std::array::from_fn(|c| x[c] - centre[c]));
+            *x = std::array::from_fn(|c| centre[c] + arm[c]);
+        }
+    }
+    Placed {
+        moved: piece.rotation.is_none().then_some(piece.origin),
+        mesh: made.mesh,
+        cloud,
+        positions,
+    }
+}
+
+/// Returns the points on a common lattice; `None` if they do not lie on one.
+///
+/// # Errors
+/// Two pieces have a point at the same node.
+fn on_common_lattice(
+    placed: &[Placed],
+    pieces: &[Piece],
+) -> Result<Option<PointCloud>, BuildError> {
+    let Some(parts) = nodes_of(placed) else {
+        return Ok(None);
+    };
+    let first = &placed[0];
+    let (dimension, section) = (first.cloud.dimension(), first.cloud.section());
+    let all = || parts.nodes.iter().flatten();
+    let low: [i64; 3] = std::array::from_fn(|c| all().map(|at| at[c]).min().unwrap_or(0));
+    let high: [i64; 3] = std::array::from_fn(|c| all().map(|at| at[c]).max().unwrap_or(0));
+    let shape: [usize; 3] = std::array::from_fn(|c| (high[c] - low[c] + 1) as usize);
+    let wide = shape.iter().map(|&nodes| nodes as f64).product::<f64>();
+    if wide > (NODES * all().count() as f64).min(f64::from(u32::MAX)) {
+        return Ok(None);
+    }
+    let mut nodes: Vec<(u32, u32)> = Vec::new();
+    for (k, of_piece) in parts.nodes.iter().enumerate() {
+        for at in of_piece {
+            let [x, y, z] = std::array::from_fn(|c| (at[c] - low[c]) as usize);
+            nodes.push(((x + shape[0] * (y + shape[1] * z)) as u32, k as u32));
+        }
+    }
+    nodes.sort_unstable();
+    let origin = std::array::from_fn(|c| match c < dimension {
+        true => parts.origin[c] + low[c] as f64 * parts.spacing[c],
+        false => 0.0,
+    });
+    let lattice = Lattice {
+        spacing: parts.spacing,
+        shape,
+        node: nodes.iter().map(|&(node, _)| node).collect(),
+    };
+    if let Some(two) = nodes.windows(2).find(|two| two[0].0 == two[1].0) {
+        let cell = lattice.coordinates(two[0].0);
+        let at = std::array::from_fn(|c| origin[c] + f64::from(cell[c]) * parts.spacing[c]);
+        return Err(overlap([two[0].1, two[1].1], at, 0.0, pieces));
+    }
+    let of_point = nodes.iter().map(|&(_, piece)| piece).collect();
+    PointCloud::on_lattice(dimension, origin, lattice, section)
+        .and_then(|cloud| cloud.with_pieces(of_point))
+        .map(Some)
+        .map_err(|error| at("body", error))
+}
+
+/// Lattice nodes of pieces, counted from a common origin.
+struct Nodes {
+    origin: Point,
+    spacing: Point,
+    nodes: Vec<Vec<[i64; 3]>>,
+}
+
+/// Returns the nodes of all pieces on the lattice of the first one, if they have one.
+fn nodes_of(placed: &[Placed]) -> Option<Nodes> {
+    let first = &placed[0];
+    let dimension = first.cloud.dimension();
+    let spacing = first.cloud.lattice()?.spacing;
+    let corner = |piece: &Placed| -> Option<Point> {
+        let (lattice, moved) = (piece.cloud.lattice()?, piece.moved?);
+        let cell = lattice.coordinates(*lattice.node.first()?);
+        let at = piece.cloud.point(0);
+        Some(std::array::from_fn(|c| {
+            at[c] + moved[c] - f64::from(cell[c]) * spacing[c]
+        }))
+    };
+    let origin = corner(first)?;
+    let mut nodes = Vec::new();
+    for piece in placed {
+        let (lattice, from) = (piece.cloud.lattice()?, corner(piece)?);
+        let mut steps = [0i64; 3];
+        for c in 0..dimension {
+            if (lattice.spacing[c] / spacing[c] - 1.0).abs() > 1e-12 {
+                return None;
+            }
+            let gap = (from[c] - origin[c]) / spacing[c];
+            if (gap - gap.round()).abs() > ALIGNED || gap.abs() > 1e9 {
+                return None;
+            }
+            steps[c] = gap.round() as i64;
+        }
+        let at = |&node: &u32| {
+            let cell = lattice.coordinates(node);
+            std::array::from_fn(|c| i64::from(cell[c]) + steps[c])
+        };
+        nodes.push(lattice.node.iter().map(at).collect());
+    }
+    Some(Nodes {
+        origin,
+        spacing,
+        nodes,
+    })
+}
+
+/// Rejects pieces that overlap: points of different pieces closer than half of their mean cell size.
+fn refuse_overlap(cloud: &PointCloud, pieces: &[Piece]) -> Result<(), BuildError> {
+    let sizes = (0..cloud.len()).map(|i| cloud.cell_size(i));
+    let reach = CLOSEST * sizes.fold(0.0, f64::max);
+    let (start, near) = pairs_within(cloud, reach);
+    for i in 0..cloud.len() {
+        for &j in &near[start[i]..start[i + 1]] {
+            let j = j as usize;
+            let (a, b) = (cloud.point(i), cloud.point(j));
+            let distance = (0..3).map(|c| (a[c] - b[c]).powi(2)).sum::<f64>().sqrt();
+            let mean = 0.5 * (cloud.cell_size(i) + cloud.cell_size(j));
+            if cloud.piece(i) != cloud.piece(j) && distance < CLOSEST * mean {
+                let two = [cloud.piece(i), cloud.piece(j)];
+                return Err(overlap(two, a, distance, pieces));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Creates the error for two pieces with points that are too close, at the later piece.
+fn overlap(two: [u32; 2], place: Point, distance: f64, pieces: &[Piece]) -> BuildError {
+    let [a, b] = [two[0].min(two[1]), two[0].max(two[1])].map(|piece| piece as usize);
+    let dimension = pieces[a].shape.dimension();
+    let fault = Fault::OverlappingPieces {
+        pieces: [a, b].map(|piece| pieces[piece].name.clone()),
+        place: place[..dimension].to_vec(),
+        distance,
+    };
+    at_path(piece_path(b), fault)
+}

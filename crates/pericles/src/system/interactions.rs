@@ -1,0 +1,168 @@
+//! Interactions of a system: contact between points and with bodies of their own.
+
+use super::System;
+use crate::boundary::Exchange;
+use crate::error::{PericlesError, Result};
+use crate::interaction::{Configuration, Interaction, InteractionStep};
+use crate::parallel::PointSubset;
+use crate::scalar::PointScalar;
+use crate::step_end::StepEnd;
+use crate::time::State;
+
+impl System {
+    /// Adds an interaction.
+    ///
+    /// # Errors
+    /// [`PericlesError::DividedInteraction`] for bodies divided among processes; errors of [`Interaction::check`].
+    pub fn add_interaction(&mut self, interaction: Box<dyn Interaction>) -> Result<()> {
+        if self.domain().is_divided() {
+            return Err(PericlesError::DividedInteraction);
+        }
+        interaction.check(self.operator())?;
+        self.interactions.push(interaction);
+        Ok(())
+    }
+
+    /// The interactions.
+    pub fn interactions(&self) -> impl Iterator<Item = &dyn Interaction> {
+        self.interactions.iter().map(|one| &**one)
+    }
+
+    /// Returns whether there are interactions.
+    pub fn has_interactions(&self) -> bool {
+        !self.interactions.is_empty()
+    }
+
+    /// Returns whether the internal forces are linear in the displacement while no bond breaks, in any precision, and
+    /// nothing else acts that is not.
+    pub fn is_linear(&self) -> bool {
+        self.operator().is_linear() && !self.has_interactions()
+    }
+
+    /// Adds the force density of contact at displacement u, with dampers and friction as they are at the last accepted
+    /// state, N/m³.
+    pub fn add_contact_force(&self, t: f64, u: &[f64], out: &mut [f64]) {
+        self.add_interactions(t, u, &PointSubset::All, out);
+        self.interactions().for_each(|one| one.add_drag(out));
+    }
+
+    /// Returns the energy stored by the internal forces and by contact at displacement u, J.
+    pub fn stored_energy(&self, t: f64, u: &[f64]) -> f64 {
+        self.operator().energy(t, u) + self.contact_energy(t, u)
+    }
+
+    /// Returns the kinetic and stored energy of a state, with contact and the bodies of interactions, J.
+    pub fn mechanical_energy(&self, state: &State) -> f64 {
+        let kinetic = self.kinetic_energy(&state.v) + self.body_kinetic_energy();
+        kinetic + self.stored_energy(state.t, &state.u)
+    }
+
+    /// Returns the energy stored by contact at displacement u, J.
+    pub fn contact_energy(&self, t: f64, u: &[f64]) -> f64 {
+        let at = self.configuration(t, u);
+        self.interactions().map(|one| one.energy(&at)).sum()
+    }
+
+    /// Returns the energy dissipated by the internal forces and by contact so far, J.
+    pub fn dissipated(&self) -> f64 {
+        self.operator().dissipated() + self.contact_dissipated()
+    }
+
+    /// Returns the energy dissipated by contact so far, J.
+    pub fn contact_dissipated(&self) -> f64 {
+        self.interactions().map(|one| one.dissipated()).sum()
+    }
+
+    /// Kinetic energy of the bodies of interactions, J.
+    pub fn body_kinetic_energy(&self) -> f64 {
+        self.interactions().map(|one| one.kinetic()).sum()
+    }
+
+    /// Adds internal forces and interactions at displacement u, N/m³, for the points of `on`.
+    pub fn add_internal_force(&self, t: f64, u: &[f64], on: &PointSubset<'_>, out: &mut [f64]) {
+        self.operator().add_force(t, u, on.clone(), out);
+        self.add_interactions(t, u, on, out);
+    }
+
+    /// Sets `out` to the derivative of internal forces and interactions at u in the given direction.
+    pub fn internal_tangent_into(&self, t: f64, u: &[f64], direction: &[f64], out: &mut [f64]) {
+        self.operator().tangent_into(t, u, direction, out);
+        self.add_interaction_tangent(t, u, direction, out);
+    }
+
+    pub(super) fn add_interactions(
+        &self,
+        t: f64,
+        u: &[f64],
+        on: &PointSubset<'_>,
+        out: &mut [f64],
+    ) {
+        let at = self.configuration(t, u);
+        for interaction in &self.interactions {
+            interaction.add_force(&at, on, out);
+        }
+    }
+
+    pub(super) fn add_interaction_tangent(
+        &self,
+        t: f64,
+        u: &[f64],
+        direction: &[f64],
+        out: &mut [f64],
+    ) {
+        let at = self.configuration(t, u);
+        for interaction in &self.interactions {
+            interaction.add_tangent(&at, direction, out);
+        }
+    }
+
+    /// Ends a step of all interactions, adds their force densities and returns work and impulse of the outside.
+    pub(super) fn end_interactions(&mut self, step: &StepEnd<'_>, out: &mut [f64]) -> Exchange {
+        let mut exchange = Exchange::default();
+        let end = InteractionStep {
+            step,
+            forces: self.forces.sum(),
+            density: &self.density,
+        };
+        for interaction in &mut self.interactions {
+            exchange.add(interaction.end_step(&end, out));
+        }
+        exchange
+    }
+
+    /// Difference between the energy of the bodies of interactions that velocity Verlet conserves and their kinetic
+    /// energy, J.
+    pub(crate) fn interaction_correction(&self, dt: f64) -> f64 {
+        self.interactions()
+            .map(|one| one.scheme_correction(dt))
+            .sum()
+    }
+
+    /// Returns an upper bound of the frequency (1/s) that contacts at displacement u alone would cause; zero without
+    /// interactions.
+    pub fn contact_frequency_bound(&self, t: f64, u: &[f64]) -> f64 {
+        let at = self.configuration(t, u);
+        let square = |one: &dyn Interaction| one.frequency_bound(&at, &self.density).powi(2);
+        self.interactions().map(square).sum::<f64>().sqrt()
+    }
+
+    /// Returns a frequency (1/s) that contacts add to those of the bonds, for the density of each point (kg/m³); zero
+    /// without interactions. A point of a compact lattice has several contacts at a time, which together reach √1.7
+    /// times the frequency of a single one at the upper end of the spectrum (measured on pressed lattice blocks with
+    /// one, two and four contacts per point).
+    pub fn contact_frequency(&self, density: &PointScalar) -> f64 {
+        /// Ratio of squared frequencies of many contacts and one.
+        const SEVERAL: f64 = 1.7;
+        let square = |one: &dyn Interaction| one.contact_frequency(density).powi(2);
+        let largest = self.interactions().map(square).fold(0.0, f64::max);
+        (SEVERAL * largest).sqrt()
+    }
+
+    fn configuration<'a>(&'a self, t: f64, u: &'a [f64]) -> Configuration<'a> {
+        Configuration {
+            t,
+            u,
+            forces: self.operator(),
+        }
+    }
+}
