@@ -127,9 +127,14 @@ impl SetNames {
     }
 }
 
-pub(crate) fn read(table: Option<Table<'_>>, frame: Frame) -> (Option<Vec<NamedSet>>, SetNames) {
+/// Reads `[sets]`; references may also name the `further` sets, which the program adds.
+pub(crate) fn read(
+    table: Option<Table<'_>>,
+    frame: Frame,
+    further: &[String],
+) -> (Option<Vec<NamedSet>>, SetNames) {
     let mut names = SetNames {
-        names: vec![ALL.into()],
+        names: [&[ALL.into()], further].concat(),
         open: frame.mesh,
     };
     let mut sets = Some(Vec::new());

@@ -13,8 +13,9 @@ use pericles_deck::{
 };
 use pericles_io::observers::{
     CellMesh, Cracks, EnergyBoundColumns, ErrorColumns, ExtremeColumns, FieldSelection,
-    FieldSeries, ForceDisplacement, FragmentCourse, History, InnerColumns, Overlay, PictureOf,
-    Pictures, PointMark, Probes, Profile, Reactions, ResultFile, ResultFormat, SurfaceCourse,
+    FieldSeries, ForceDisplacement, FragmentCourse, History, HistoryRows, InnerColumns, Overlay,
+    PictureOf, Pictures, PointMark, Probes, Profile, Reactions, ResultFile, ResultFormat,
+    SurfaceCourse,
 };
 use pericles_io::{OutputFolder, ResultBody};
 use pericles_manifold::surface::Surface;
@@ -61,22 +62,8 @@ pub fn simulation(
     .to_vec();
     names.push(format!("checkpoints/{}", checkpoint::FAILED));
 
-    let mut history = History::new(folder.file("history.csv"), dimension);
-    if simulation.integrator().inner_iterations().is_some() {
-        history = history.with(match model.time.scheme {
-            Scheme::Relaxation(_) | Scheme::Static(_) => InnerColumns::Residual,
-            _ => InnerColumns::Velocity,
-        });
-    }
-    if let Some(ExactReference { solution, points }) = exact {
-        history = history.with(ErrorColumns::new(solution, points));
-    }
-    if let Some(rate) = output.energy_bound {
-        history = history.with(EnergyBoundColumns(EnergyInequality::new(rate)));
-    }
-    if !output.extremes.is_empty() {
-        history = history.with(ExtremeColumns::new(output.extremes.clone(), dimension));
-    }
+    let rows = history_rows(model, &simulation, exact);
+    let history = History::new(folder.file("history.csv"), rows);
     simulation.observe(output.history, Box::new(history));
     if let Some(reactions) = reactions {
         names.push("reactions.csv".into());
@@ -120,6 +107,32 @@ pub fn simulation(
     )?);
     folder.claim(&names)?;
     Ok(simulation)
+}
+
+/// Returns the rows of the history that a model requests; `exact` is the exact solution of its assembly, if it has one.
+pub fn history_rows(
+    model: &Model,
+    simulation: &Simulation,
+    exact: Option<ExactReference>,
+) -> HistoryRows {
+    let (output, dimension) = (&model.output, simulation.system().dimension());
+    let mut rows = HistoryRows::new(dimension);
+    if simulation.integrator().inner_iterations().is_some() {
+        rows = rows.with(match model.time.scheme {
+            Scheme::Relaxation(_) | Scheme::Static(_) => InnerColumns::Residual,
+            _ => InnerColumns::Velocity,
+        });
+    }
+    if let Some(ExactReference { solution, points }) = exact {
+        rows = rows.with(ErrorColumns::new(solution, points));
+    }
+    if let Some(rate) = output.energy_bound {
+        rows = rows.with(EnergyBoundColumns(EnergyInequality::new(rate)));
+    }
+    if !output.extremes.is_empty() {
+        rows = rows.with(ExtremeColumns::new(output.extremes.clone(), dimension));
+    }
+    rows
 }
 
 /// Returns a picture requested by a model.

@@ -31,6 +31,7 @@ mod mesh;
 mod mesh_body;
 mod plausible;
 mod points;
+mod program;
 mod random;
 mod refusal;
 mod resources;
@@ -53,6 +54,7 @@ pub use discretise::discretise;
 pub use exact::ExactReference;
 pub use loads::LoadReport;
 pub use mesh_body::MeshBody;
+pub use program::Conditions;
 pub use resources::{
     FileError, MeshReader, OutlineReader, PointsReader, Polygons, Resources, SurfaceReader,
     TableReader,

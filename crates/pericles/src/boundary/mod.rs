@@ -6,6 +6,7 @@ mod load;
 mod motion;
 mod rayleigh;
 mod table;
+mod values;
 
 pub use damping::{DampedSteps, DampingLayer, DampingProfile};
 pub use function::{TimeCourse, TimeFunction};
@@ -13,6 +14,7 @@ pub use load::{ALWAYS, FieldFunction, Load, LoadDensity};
 pub use motion::{AxisMotion, MotionKind, PrescribedMotion, Trajectory};
 pub use rayleigh::{RayleighDamping, RayleighRates, Stiffness, StiffnessProduct};
 pub use table::TimeTable;
+pub use values::PointValues;
 
 use crate::archive::Checkpointed;
 use crate::parallel::PointSubset;
