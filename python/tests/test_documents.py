@@ -64,12 +64,12 @@ def test_notebooks(path, tmp_path):
     assert done.returncode == 0, done.stderr
 
 
-def test_stubs():
+def test_stubs(tmp_path):
     stubtest = pytest.importorskip("mypy.stubtest")
     assert stubtest
     done = subprocess.run(
         [sys.executable, "-m", "mypy.stubtest", "pericles._pericles", "--ignore-missing-stub"],
-        cwd=ROOT / "python",
+        cwd=tmp_path,
         capture_output=True,
         text=True,
     )

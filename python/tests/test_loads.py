@@ -6,7 +6,7 @@ from conftest import PLATE, changed
 
 import pericles as pc
 
-SCHEMES = ["velocity-verlet", "rk4", "midpoint"]
+SCHEMES = ["velocity-verlet", "rk4", "implicit-midpoint"]
 
 
 def relative(a, b):
@@ -34,7 +34,7 @@ def test_a_function_equals_the_same_expression(scheme):
     assert relative(found, expected) < 1e-14
     # One call for each time that the scheme evaluates: steps, and stages between them.
     steps = 50
-    stages = {"velocity-verlet": 1, "rk4": 2, "midpoint": 2}[scheme]
+    stages = {"velocity-verlet": 1, "rk4": 2, "implicit-midpoint": 2}[scheme]
     assert len(set(calls)) <= stages * steps + 4
     assert len(calls) <= len(set(calls)) + 4
 
