@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-import subprocess
 import sys
-import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +29,8 @@ def call(*arguments: str | os.PathLike[str]) -> Any:
 
     A process of its own ends at Ctrl-C, needs no memory of this one, and has its own threads.
     """
+    import tempfile
+
     with tempfile.TemporaryDirectory(prefix="pericles-") as folder:
         path = Path(folder) / "results.json"
         execute(*arguments, "--json", path)
@@ -39,7 +39,9 @@ def call(*arguments: str | os.PathLike[str]) -> Any:
 
 def execute(*arguments: str | os.PathLike[str]) -> None:
     """Run a command of the program in a process of its own; a failure is an exception."""
-    command = [sys.executable, "-m", "pericles", *map(os.fspath, arguments)]
+    import subprocess
+
+    command = [sys.executable, "-m", "pericles", *(os.fspath(argument) for argument in arguments)]
     done = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, env=_environment())
     if done.returncode not in (0, _COMPARED):
         lines = [line for line in done.stderr.splitlines() if line.strip()]

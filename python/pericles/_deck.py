@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import copy
-import html
 import json
 import os
 import warnings
 from collections.abc import Iterator, Mapping, MutableMapping
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -167,7 +165,7 @@ class Deck(MutableMapping[str, Any]):
         text = self._text if self._text is not None else _toml.dumps(self._tables or {})
         return parsed(text, self._name, self._overrides, sets or [])
 
-    def values(self) -> Any:  # type: ignore[override]
+    def values(self) -> Any:
         """Return all values in SI units, defaults included, as a dict of tables.
 
         Unlike the method of a dict it returns a dict: the deck as the reader understands it.
@@ -226,6 +224,8 @@ class Deck(MutableMapping[str, Any]):
         return f"<pericles.Deck {self._name}: {tables}>"
 
     def _repr_html_(self) -> str:
+        import html
+
         try:
             return self.check()._repr_html_()
         except DeckError as error:
@@ -266,7 +266,7 @@ def parsed(text: str, name: str, overrides: list[str], sets: list[str]) -> Any:
 def located(error: DeckError, text: str, name: str) -> None:
     """Add the key of its line to every problem."""
     error.problems = [
-        replace(problem, path=problem.path or (_toml.path_at(text, problem.line) if problem.file == name else _of_override(problem)))
+        problem._replace(path=problem.path or (_toml.path_at(text, problem.line) if problem.file == name else _of_override(problem)))
         for problem in error.problems
     ]
 

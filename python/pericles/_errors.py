@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 __all__ = [
     "DeckError",
@@ -38,8 +37,7 @@ def _rebuilt(kind: type[PericlesError], args: tuple[Any, ...], attributes: dict[
     return error
 
 
-@dataclass(frozen=True)
-class Problem:
+class Problem(NamedTuple):
     """A problem of a deck.
 
     Attributes
@@ -85,9 +83,7 @@ class DeckError(PericlesError, ValueError):
         super().__init__(message)
         self.problems = []
         for problem in problems:
-            if isinstance(problem, dict):
-                problem = Problem(**{key: value for key, value in problem.items() if key != "offset"})
-            self.problems.append(problem)
+            self.problems.append(Problem(**problem) if isinstance(problem, dict) else problem)
 
 
 class UnstableError(PericlesError, ArithmeticError):

@@ -5,11 +5,9 @@ from __future__ import annotations
 import contextlib
 import json
 import os
-import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-
 
 from . import _pericles
 from ._cli import call, execute
@@ -98,6 +96,12 @@ class Difference(Report):
         return bool(self.equal) and all(row["different"] == 0 for row in self._entries["rows"])
 
 
+def _temporary() -> Any:
+    import tempfile
+
+    return tempfile.TemporaryDirectory(prefix="pericles-")
+
+
 @contextlib.contextmanager
 def _file(deck: Deck) -> Iterator[list[str]]:
     """Return the arguments that give a deck to the program: its file, or a copy with absolute paths."""
@@ -107,7 +111,7 @@ def _file(deck: Deck) -> Iterator[list[str]]:
     tables = deck.to_dict()
     folder = Path(deck.name).parent if deck._text is not None or os.path.exists(deck.name) else Path()
     _absolute(tables, folder)
-    with tempfile.TemporaryDirectory(prefix="pericles-") as place:
+    with _temporary() as place:
         path = Path(place) / "deck.toml"
         Deck.from_dict(tables).write(path)
         yield [str(path)]
@@ -158,14 +162,16 @@ def modes(deck: Any, *, count: int = 12, prestress: bool = False, set: Mapping[s
     """
     deck = as_deck(deck, set)
     dimension = _dimension(deck)
-    with _file(deck) as arguments, tempfile.TemporaryDirectory(prefix="pericles-") as place:
+    with _file(deck) as arguments, _temporary() as place:
         out = Path(place) / "modes"
         flags = ["--prestress"] if prestress else []
         found = Modes(call("modes", *arguments, "--count", str(count), "--out", out, "--quiet", *flags))
         files = [_pericles.OutputFile(path) for path in sorted((out / "modes").glob("mode_*.vtu"))]
-        shapes = [file.field("Mode_Shape")[:, :dimension] for file in files]
-        found.shapes = np.array(shapes)
-        found.points = files[0].field("Points")[:, :dimension] if files else np.zeros((0, dimension))
+        def of(file: Any, name: str) -> Any:
+            return file.field(name)[:, :dimension]
+
+        found.shapes = np.array([of(file, "Mode_Shape") for file in files])
+        found.points = of(files[0], "Points") if files else np.zeros((0, dimension))
         found.frequencies = _pericles_column(out / "modes.csv", "frequency")
     return found
 
@@ -206,7 +212,7 @@ def dispersion(
     """
     deck = as_deck(deck, set)
     deck._core()
-    with _file(deck) as arguments, tempfile.TemporaryDirectory(prefix="pericles-") as place:
+    with _file(deck) as arguments, _temporary() as place:
         out = Path(place) / "dispersion"
         flags = [] if direction is None else [f"--direction={','.join(map(repr, map(float, direction)))}"]
         flags += ["--measure"] if measure else []
@@ -275,7 +281,7 @@ def reproduce(study: str, *, full: bool = False) -> Reproduction:
     full : bool
         Include the rows that take long.
     """
-    with tempfile.TemporaryDirectory(prefix="pericles-") as place:
+    with _temporary() as place:
         flags = ["--full"] if full else []
         return Reproduction(call("reproduce", study, "--out", os.path.join(place, "out"), "--quiet", *flags))
 
@@ -301,7 +307,7 @@ def diff(a: Any, b: Any, *, tolerance: float = 0.0) -> Difference:
         if folder is None:
             raise PericlesError("results in memory cannot be compared by diff; give an output folder, or compare arrays")
         paths.append(folder)
-    return Difference(json.loads(_pericles.compare(*paths, float(tolerance))))
+    return Difference(json.loads(_pericles.compare(paths[0], paths[1], float(tolerance))))
 
 
 def run(

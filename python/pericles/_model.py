@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import html
 import json
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-
 
 from . import _pericles, _toml
 from ._arrays import as_numbers, as_vectors, finite
@@ -107,13 +105,13 @@ class Model:
             return 1.0
         if isinstance(given, str):
             probe = {1: "bar", 2: "plate"}[dimension]
-            size = {"length": 1} if dimension == 1 else {"size": [1, 1]}
+            size: dict[str, Any] = {"length": 1} if dimension == 1 else {"size": [1, 1]}
             tables = {
-                "body": {"shape": probe, **size, "spacing": 0.1, key: given},
+                "body": {"shape": probe, **size, "spacing": 0.1, str(key): given},
                 "material": {"density": 1, "youngs_modulus": 1, "horizon_ratio": 3},
                 "time": {"end": 1},
             }
-            return float(Deck.from_dict(tables).values()["body"][key])
+            return float(Deck.from_dict(tables).values()["body"][str(key)])
         return float(given)
 
     def _add_set(self, name: str, numbers: NDArray[np.uint32]) -> None:
@@ -357,6 +355,8 @@ class Model:
 
 def table_html(title: str, facts: Mapping[str, Any]) -> str:
     """Return facts as a table, with warnings in colour."""
+    import html
+
     rows = []
     for key, value in facts.items():
         if value is None or isinstance(value, (list, dict)):

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import html
 import json
 import os
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-
 
 from . import _pericles
 from ._errors import OutputError, PericlesError
@@ -31,7 +29,7 @@ def optional(name: str, extra: str) -> Any:
         raise PericlesError(f'this needs the package {name}: pip install {name}, or pip install "pericles[{extra}]"') from None
 
 
-class Table(Mapping[str, NDArray[np.float64]]):
+class Table(Mapping[str, "NDArray[np.float64]"]):
     """A table of columns, such as a time history.
 
     Attributes
@@ -114,6 +112,11 @@ class Result:
     """
 
     _folder: Path | None
+    _report: dict[str, Any]
+    _files: list[tuple[float, Path]] | None
+    _recording: Any
+    _positions: Any
+    _cache: dict[int, Any]
 
     def __init__(self) -> None:
         raise TypeError("use pericles.open(folder), pericles.run(deck) or Simulation.result()")
@@ -388,7 +391,7 @@ class Result:
 
         title = f"Result {self._folder or 'in memory'}: {self._report.get('status')}"
         audit = {**(self._report.get("audit") or {}), "warnings": self.warnings}
-        return table_html(html.unescape(title), audit)
+        return table_html(title, audit)
 
 
 def _padded(vectors: NDArray[np.float64]) -> NDArray[np.float64]:

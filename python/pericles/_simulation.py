@@ -9,7 +9,6 @@ import time as clock
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
-
 from . import _pericles
 from ._errors import PericlesError, UnstableError
 from ._result import Result

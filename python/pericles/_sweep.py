@@ -6,10 +6,8 @@ import itertools
 import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from ._deck import as_deck
 from ._errors import PericlesError
@@ -17,8 +15,7 @@ from ._functions import run
 from ._result import Result
 
 
-@dataclass(frozen=True)
-class SweepPoint:
+class SweepPoint(NamedTuple):
     """A run of a sweep.
 
     Attributes
@@ -101,8 +98,10 @@ def sweep(
         for chosen, name in zip(combinations, names):
             yield one(chosen, name)
         return
+    from concurrent.futures import ThreadPoolExecutor
+
     with ThreadPoolExecutor(jobs) as pool:
-        futures: list[Future[SweepPoint]] = [pool.submit(one, *pair) for pair in zip(combinations, names)]
+        futures = [pool.submit(one, *pair) for pair in zip(combinations, names)]
         try:
             for future in futures:
                 yield future.result()

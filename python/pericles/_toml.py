@@ -120,6 +120,18 @@ _HEADER = re.compile(r"\s*(\[\[?)\s*([^\]]+?)\s*\]\]?\s*(#.*)?\Z")
 _ENTRY = re.compile(r'\s*((?:"(?:[^"\\]|\\.)*"|[A-Za-z0-9_.-]+|\s*\.\s*)+?)\s*=')
 
 
+def _numbered(name: str, counts: dict[str, int]) -> str:
+    """Return a path with the numbers of the last entries of its lists."""
+    parts = name.split(".")
+    out: list[str] = []
+    for end, part in enumerate(parts, 1):
+        out.append(part)
+        found = counts.get(".".join(parts[:end]))
+        if found is not None:
+            out.append(str(found))
+    return ".".join(out)
+
+
 def path_at(text: str, line: int | None) -> str | None:
     """Return the dotted path of the key in a line of a deck, such as ``load.0.traction``."""
     if line is None:
@@ -135,9 +147,7 @@ def path_at(text: str, line: int | None) -> str | None:
             name = header.group(2).replace('"', "").replace(" ", "")
             if header.group(1) == "[[":
                 counts[name] = counts.get(name, -1) + 1
-                table = f"{name}.{counts[name]}"
-            else:
-                table = name
+            table = _numbered(name, counts)
             if at == line:
                 return table
     # A value may go on over several lines.

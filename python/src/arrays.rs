@@ -10,9 +10,9 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pericles::space::PointCloud;
 use pyo3::prelude::*;
 
-/// Values that result arrays share.
+/// Values that arrays share: the owner of the views on them.
 #[pyclass(frozen, module = "pericles._pericles")]
-pub struct Block(Arc<Vec<f64>>);
+pub struct Block(#[expect(dead_code, reason = "keeps the values alive")] pub Arc<Vec<f64>>);
 
 /// Returns a read-only array of shape (points, components) that shares component-major values, without copying.
 pub fn view<'py>(
@@ -45,7 +45,11 @@ pub fn owned<'py>(
 /// Returns the values of an array of shape (rows, components), component-major.
 pub fn component_major(array: &PyReadonlyArray2<'_, f64>) -> Vec<f64> {
     let array = array.as_array();
-    array.columns().into_iter().flat_map(|column| column.to_vec()).collect()
+    array
+        .columns()
+        .into_iter()
+        .flat_map(|column| column.to_vec())
+        .collect()
 }
 
 /// Returns the values of all points of an array in the user's order, component-major in the order of the cloud.
@@ -92,7 +96,10 @@ impl Selection {
 
     /// Returns the user numbers in ascending order.
     pub fn numbers(&self, cloud: &PointCloud) -> Vec<u32> {
-        let numbers = self.points.iter().map(|&i| cloud.user_number(i as usize) as u32);
+        let numbers = self
+            .points
+            .iter()
+            .map(|&i| cloud.user_number(i as usize) as u32);
         let mut numbers: Vec<u32> = numbers.collect();
         numbers.sort_unstable();
         numbers

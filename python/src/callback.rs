@@ -65,10 +65,15 @@ pub fn energies<'py>(py: Python<'py>, energies: &Energies) -> PyResult<Bound<'py
 
 /// Returns the field with a name of the package: that in files, in lower case.
 pub fn field_named(name: &str) -> PyResult<Field> {
-    let found = Field::ALL.into_iter().find(|field| field.name().eq_ignore_ascii_case(name));
+    let found = Field::ALL
+        .into_iter()
+        .find(|field| field.name().eq_ignore_ascii_case(name));
     found.ok_or_else(|| {
         let names: Vec<String> = Field::ALL.map(|field| field.name().to_lowercase()).to_vec();
-        plain(&format!("there is no field \"{name}\"; allowed: {}", names.join(", ")))
+        plain(&format!(
+            "there is no field \"{name}\"; allowed: {}",
+            names.join(", ")
+        ))
     })
 }
 
@@ -114,7 +119,9 @@ impl Snapshot {
         let inner = self.inner.lock_py_attached(py);
         let inner = inner.map_err(|_| plain("a callback panicked"))?;
         let Some(Pointer(state)) = &*inner else {
-            return Err(plain("a snapshot ends with its callback; copy what is needed with `field`"));
+            return Err(plain(
+                "a snapshot ends with its callback; copy what is needed with `field`",
+            ));
         };
         // SAFETY: `Callback::observe` clears the pointer under the lock, which is held, before the state ends.
         read(unsafe { &**state })
@@ -154,7 +161,10 @@ impl Snapshot {
     }
 
     fn __repr__(&self) -> String {
-        format!("<pericles.Snapshot: step {}, t = {:.6e} s>", self.step, self.time)
+        format!(
+            "<pericles.Snapshot: step {}, t = {:.6e} s>",
+            self.step, self.time
+        )
     }
 }
 
@@ -189,10 +199,7 @@ impl Callback {
 }
 
 impl Observer for Callback {
-    fn observe(
-        &mut self,
-        snapshot: &pericles::observe::Snapshot<'_>,
-    ) -> Result<(), ObserveError> {
+    fn observe(&mut self, snapshot: &pericles::observe::Snapshot<'_>) -> Result<(), ObserveError> {
         let state = snapshot.state();
         self.live.note(state.step, state.t);
         let called = Python::attach(|py| {

@@ -42,7 +42,9 @@ pub fn after_fork() {
 pub fn set_threads(count: usize) -> PyResult<()> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(count);
     pool.build_global().map_err(|_| {
-        errors::plain("the threads have already started; call set_threads before the first computation")
+        errors::plain(
+            "the threads have already started; call set_threads before the first computation",
+        )
     })
 }
 
@@ -82,7 +84,9 @@ pub fn waiting<T: Send + 'static>(
                 Ok(made) => return made,
                 Err(RecvTimeoutError::Timeout) => Python::attach(|py| py.check_signals())?,
                 Err(RecvTimeoutError::Disconnected) => {
-                    return Err(errors::plain("the thread of a computation ended without a result"));
+                    return Err(errors::plain(
+                        "the thread of a computation ended without a result",
+                    ));
                 }
             }
         }

@@ -4,6 +4,7 @@ use pericles::{PericlesError, SimulationError};
 use pericles_deck::{BuildError, DeckError, Fault, Problem, Subject};
 use pericles_io::{IoError, MeshError};
 use pericles_run::RunError;
+use pericles_run::units::bytes;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
@@ -48,9 +49,9 @@ pub fn check_memory(needed: f64, allowed: u64) -> PyResult<()> {
         return Ok(());
     }
     let message = format!(
-        "the kept fields need {:.3g} GB, but {:.3g} GB are available; keep fewer fields or outputs, or give an output folder",
-        1e-9 * needed,
-        1e-9 * allowed as f64
+        "the kept fields need {}, but {} are available; keep fewer fields or outputs, or give an output folder",
+        bytes(needed as u64),
+        bytes(allowed)
     );
     Err(too_large(&message, Some(needed), Some(allowed)))
 }
@@ -81,7 +82,6 @@ pub fn of_deck(error: DeckError) -> PyErr {
             entry.set_item("file", at.file())?;
             entry.set_item("line", at.line())?;
             entry.set_item("column", at.column())?;
-            entry.set_item("offset", at.span().offset())?;
             entry.set_item("message", problem.to_string())?;
             entry.set_item("help", problem.subject().advice())?;
             entry.set_item("excerpt", at.excerpt())?;
@@ -209,7 +209,9 @@ pub fn of_run(error: RunError) -> PyErr {
         RunError::NoResults { .. } | RunError::NoRun { .. } | RunError::Damaged { .. } => {
             output(&error.to_string())
         }
-        RunError::Unknown { hint, kind, name } => plain(&format!("there is no {kind} \"{name}\"; {hint}")),
+        RunError::Unknown { hint, kind, name } => {
+            plain(&format!("there is no {kind} \"{name}\"; {hint}"))
+        }
         other => plain(&other.to_string()),
     }
 }

@@ -1,8 +1,8 @@
 //! Results in files, and the command line.
 
 use std::ffi::OsString;
-use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::path::PathBuf;
+use std::sync::Arc;
 
 use numpy::ndarray::ArrayView2;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
@@ -10,8 +10,8 @@ use pericles_io::{FieldData, read_csv, read_fields};
 use pericles_run::diff::Comparison;
 use pericles_run::{Results, machine};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList};
 
+use crate::arrays::Block;
 use crate::entry::waiting;
 use crate::errors;
 
@@ -27,10 +27,6 @@ struct Column {
     components: usize,
     values: Arc<Vec<f64>>,
 }
-
-/// Values that arrays of files share.
-#[pyclass(frozen, module = "pericles._pericles")]
-struct Interleaved(Arc<Vec<f64>>);
 
 impl OutputFile {
     fn of(data: FieldData) -> Self {
@@ -69,18 +65,25 @@ impl OutputFile {
 
     /// Names of the fields, "Points" first.
     fn names(&self) -> Vec<&str> {
-        self.fields.iter().map(|field| field.name.as_str()).collect()
+        self.fields
+            .iter()
+            .map(|field| field.name.as_str())
+            .collect()
     }
 
     /// A field as a read-only array of shape (points, components) that shares the values read.
-    fn field<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+    fn field<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+    ) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
         let Some(field) = self.fields.iter().find(|field| field.name == name) else {
             return Ok(None);
         };
         let rows = field.values.len() / field.components.max(1);
         let array = ArrayView2::from_shape((rows, field.components), &field.values[..]);
         let array = array.map_err(|error| errors::plain(&error.to_string()))?;
-        let owner = Bound::new(py, Interleaved(Arc::clone(&field.values)))?.into_any();
+        let owner = Bound::new(py, Block(Arc::clone(&field.values)))?.into_any();
         // SAFETY: the owner keeps the values alive, and nothing writes them.
         let array = unsafe { PyArray2::borrow_from_array(&array, owner) };
         array.readwrite().make_nonwriteable();

@@ -19,6 +19,7 @@ use pyo3::prelude::*;
 
 #[pymodule(gil_used = false)]
 mod _pericles {
+    use super::*;
     #[pymodule_export]
     use crate::callback::Snapshot;
     #[pymodule_export]
@@ -33,7 +34,6 @@ mod _pericles {
     use crate::recorder::Recording;
     #[pymodule_export]
     use crate::simulation::Simulation;
-    use super::*;
 
     /// Sets the version.
     #[pymodule_init]

@@ -11,9 +11,7 @@ use pericles::observe::Schedule;
 use pericles::space::{ListedPoints, PointCloud};
 use pericles_deck::{BuildError, Fault, KeyPath, Remark};
 use pericles_io::{OutputFolder, in_user_order};
-use pericles_run::{
-    Assembled, Discretisation, Means, Resources, Source, assemble, discretise,
-};
+use pericles_run::{Assembled, Discretisation, Means, Resources, Source, assemble, discretise};
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
 
@@ -50,7 +48,10 @@ fn selected(cloud: &PointCloud, name: &str, numbers: &[u32]) -> Result<Vec<u32>,
         let path = KeyPath::from("sets").key(name);
         Err(Remark::new(path, Fault::BadDiscretisation { reason }).into())
     };
-    if let Some(number) = numbers.iter().find(|&&number| number as usize >= cloud.len()) {
+    if let Some(number) = numbers
+        .iter()
+        .find(|&&number| number as usize >= cloud.len())
+    {
         let points = cloud.len();
         return refuse(format!(
             "the set `{name}` has point {number}, but the {points} points are numbered from 0 to {}",
@@ -71,9 +72,7 @@ fn built(
 ) -> PyResult<(Discretisation, Assembled)> {
     let mut kept = None;
     let made = Assembled::made(source, &Means::default(), &mut |_| {}, |resources| {
-        let given = |_: &std::path::Path, _: usize, _: u64| {
-            Ok(listed.cloned().unwrap_or_default())
-        };
+        let given = |_: &std::path::Path, _: usize, _: u64| Ok(listed.cloned().unwrap_or_default());
         let resources = match listed {
             None => *resources,
             Some(_) => Resources {
@@ -198,12 +197,15 @@ impl Model {
     }
 
     /// User numbers of the points of a set, ascending.
-    fn numbers<'py>(&self, py: Python<'py>, set: &str) -> PyResult<Option<Bound<'py, PyArray1<u32>>>> {
+    fn numbers<'py>(
+        &self,
+        py: Python<'py>,
+        set: &str,
+    ) -> PyResult<Option<Bound<'py, PyArray1<u32>>>> {
         let parts = self.parts(py)?;
         let points = parts.discretisation.set(set);
-        let numbers = points.map(|points| {
-            Selection::of_points(&self.cloud, points.clone()).numbers(&self.cloud)
-        });
+        let numbers = points
+            .map(|points| Selection::of_points(&self.cloud, points.clone()).numbers(&self.cloud));
         Ok(numbers.map(|numbers| PyArray1::from_vec(py, numbers)))
     }
 
@@ -216,7 +218,10 @@ impl Model {
         velocity: Option<PyReadonlyArray2<'_, f64>>,
     ) -> PyResult<()> {
         let ordered = |array: &PyReadonlyArray2<'_, f64>| in_cloud_order(&self.cloud, array);
-        let (u, v) = (displacement.as_ref().map(ordered), velocity.as_ref().map(ordered));
+        let (u, v) = (
+            displacement.as_ref().map(ordered),
+            velocity.as_ref().map(ordered),
+        );
         self.change(py, |discretisation| {
             let conditions = &mut discretisation.conditions;
             conditions.displacement = u.or(conditions.displacement.take());
@@ -240,11 +245,15 @@ impl Model {
                 values.resize(3 * selection.points.len(), 0.0);
                 LoadDensity::PerPoint(values)
             }
-            (None, Some(function)) => LoadDensity::Values(self.values(py, vec![function], &selection)?),
+            (None, Some(function)) => {
+                LoadDensity::Values(self.values(py, vec![function], &selection)?)
+            }
             (None, None) => return Err(plain("a load needs values or a function")),
         };
         let load = Load::new(selection.points, density, TimeFunction::Constant);
-        self.change(py, |discretisation| discretisation.conditions.loads.push(load))
+        self.change(py, |discretisation| {
+            discretisation.conditions.loads.push(load)
+        })
     }
 
     /// Prescribes the displacement of points given by user numbers along axes: the displacement and its known time
@@ -274,7 +283,9 @@ impl Model {
             n,
         );
         let motion = motion.map_err(errors::of_engine)?;
-        self.change(py, |discretisation| discretisation.conditions.motions.push(motion))
+        self.change(py, |discretisation| {
+            discretisation.conditions.motions.push(motion)
+        })
     }
 
     /// Makes a simulation: in the folder `out`, in a numbered folder beginning with `stem`, or in memory.
@@ -339,6 +350,8 @@ pub fn schedule_of(kind: &str, value: f64) -> PyResult<Schedule> {
         "time" if value > 0.0 => Ok(Schedule::Interval(value)),
         "count" if value >= 1.0 => Ok(Schedule::Count(value as u64)),
         "never" => Ok(Schedule::Never),
-        _ => Err(plain(&format!("the schedule {kind} = {value} is not positive"))),
+        _ => Err(plain(&format!(
+            "the schedule {kind} = {value} is not positive"
+        ))),
     }
 }

@@ -138,29 +138,51 @@ pub struct Recording {
 impl Recording {
     /// Times of the outputs, s.
     fn times(&self) -> Vec<f64> {
-        locked(&self.kept).frames.iter().map(|frame| frame.time).collect()
+        locked(&self.kept)
+            .frames
+            .iter()
+            .map(|frame| frame.time)
+            .collect()
     }
 
     /// Steps of the outputs.
     fn steps(&self) -> Vec<u64> {
-        locked(&self.kept).frames.iter().map(|frame| frame.step).collect()
+        locked(&self.kept)
+            .frames
+            .iter()
+            .map(|frame| frame.step)
+            .collect()
     }
 
     /// Names of the fields.
     fn names(&self) -> Vec<String> {
         let kept = locked(&self.kept);
-        kept.fields.iter().map(|field| field.name().to_lowercase()).collect()
+        kept.fields
+            .iter()
+            .map(|field| field.name().to_lowercase())
+            .collect()
     }
 
     /// A field of an output as a read-only view.
-    fn field<'py>(&self, py: Python<'py>, name: &str, output: usize) -> PyResult<Option<Bound<'py, PyAny>>> {
+    fn field<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+        output: usize,
+    ) -> PyResult<Option<Bound<'py, PyAny>>> {
         let wanted = field_named(name)?;
         let kept = locked(&self.kept);
         let Some(place) = kept.fields.iter().position(|&field| field == wanted) else {
             return Ok(None);
         };
-        let frame = kept.frames.get(output).ok_or_else(|| plain("there is no such output"))?;
-        let (values, count) = (Arc::clone(&frame.values[place]), components(wanted, kept.dimension));
+        let frame = kept
+            .frames
+            .get(output)
+            .ok_or_else(|| plain("there is no such output"))?;
+        let (values, count) = (
+            Arc::clone(&frame.values[place]),
+            components(wanted, kept.dimension),
+        );
         drop(kept);
         squeezed(view(py, &values, count)?).map(Some)
     }

@@ -102,7 +102,9 @@ impl Simulation {
         };
         for name in plan.keep {
             let snapshot = engine.simulation().snapshot();
-            snapshot.check(field_named(name)?).map_err(errors::of_engine)?;
+            snapshot
+                .check(field_named(name)?)
+                .map_err(errors::of_engine)?;
         }
         Ok(Self {
             engine: Mutex::new(Some(engine)),
@@ -123,7 +125,9 @@ impl Simulation {
             Err(TryLockError::Poisoned(poisoned)) => poisoned.into_inner(),
             Err(TryLockError::WouldBlock) => return Err(plain(BUSY)),
         };
-        act(engine.as_mut().ok_or_else(|| plain("the simulation was closed"))?)
+        act(engine
+            .as_mut()
+            .ok_or_else(|| plain("the simulation was closed"))?)
     }
 
     /// Runs until the end, or until `until` steps are completed; returns whether the end was reached.
@@ -337,7 +341,10 @@ impl Simulation {
                 Ok(())
             })
         });
-        self.spoiled.store(loaded.is_err() && self.spoiled.load(Ordering::Relaxed), Ordering::Relaxed);
+        self.spoiled.store(
+            loaded.is_err() && self.spoiled.load(Ordering::Relaxed),
+            Ordering::Relaxed,
+        );
         loaded
     }
 
