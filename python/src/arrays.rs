@@ -14,6 +14,9 @@ use pyo3::prelude::*;
 #[pyclass(frozen, module = "pericles._pericles")]
 pub struct Block(#[expect(dead_code, reason = "keeps the values alive")] pub Arc<Vec<f64>>);
 
+/// Name, unit and values of a column of a table.
+pub type TableColumn<'py> = (String, String, Bound<'py, PyArray1<f64>>);
+
 /// Returns a read-only array of shape (points, components) that shares component-major values, without copying.
 pub fn view<'py>(
     py: Python<'py>,

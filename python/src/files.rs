@@ -11,7 +11,7 @@ use pericles_run::diff::Comparison;
 use pericles_run::{Results, machine};
 use pyo3::prelude::*;
 
-use crate::arrays::Block;
+use crate::arrays::{Block, TableColumn};
 use crate::entry::waiting;
 use crate::errors;
 
@@ -93,10 +93,7 @@ impl OutputFile {
 
 /// Reads a table: names, units and columns.
 #[pyfunction]
-pub fn read_table<'py>(
-    py: Python<'py>,
-    path: PathBuf,
-) -> PyResult<Vec<(String, String, Bound<'py, PyArray1<f64>>)>> {
+pub fn read_table<'py>(py: Python<'py>, path: PathBuf) -> PyResult<Vec<TableColumn<'py>>> {
     let data = py.detach(|| read_csv(&path)).map_err(errors::of_io)?;
     let columns = data.columns.iter().zip(data.values);
     Ok(columns

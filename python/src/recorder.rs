@@ -9,7 +9,7 @@ use pericles_io::observers::HistoryRows;
 use pericles_io::{Cell, in_user_order};
 use pyo3::prelude::*;
 
-use crate::arrays::view;
+use crate::arrays::{TableColumn, view};
 use crate::callback::{components, field_named, squeezed};
 use crate::errors::plain;
 
@@ -188,7 +188,7 @@ impl Recording {
     }
 
     /// The history: names, units and columns.
-    fn history<'py>(&self, py: Python<'py>) -> Vec<(String, String, Bound<'py, PyArray1<f64>>)> {
+    fn history<'py>(&self, py: Python<'py>) -> Vec<TableColumn<'py>> {
         let Some(course) = &self.course else {
             return Vec::new();
         };
