@@ -19,7 +19,7 @@ deck = pc.Deck.from_dict({
     "title": "Ringing bar",
     "body": {"shape": "bar", "length": "1 m", "spacing": "5 mm"},
     "material": {"density": "7850 kg/m3", "youngs_modulus": "210 GPa", "horizon_ratio": 3},
-    "initial": [{"velocity": ["cos(3.141592653589793 * x / 1 m) * 1 m/s"]}],
+    "initial": [{"velocity": {"expression": "cos(pi*x)"}}],
     "probe": [{"name": "end", "at": ["1 m"]}],
     "time": {"end": "2 ms"},
     "output": {"history": {"count": 400}, "fields": {"count": 20}},

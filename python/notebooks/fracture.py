@@ -35,7 +35,7 @@ def build(spacing):
             "fracture_energy": "10 J/m2", "horizon": 3 * spacing,
         },
         "materials": {"stiff": {
-            "model": "state-based", "density": 3900, "youngs_modulus": "300 GPa", "poisson_ratio": 0.22,
+            "density": 3900, "youngs_modulus": "300 GPa", "poisson_ratio": 0.22,
             "fracture_energy": "40 J/m2",
         }},
         "assign": [{"set": "inclusions", "material": "stiff"}],

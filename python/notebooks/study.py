@@ -14,7 +14,7 @@ import pericles as pc
 bar = {
     "body": {"shape": "bar", "length": "1 m", "spacing": "40 mm"},
     "material": {"density": 7850, "youngs_modulus": "210 GPa", "horizon_ratio": 3},
-    "initial": [{"velocity": ["cos(3.141592653589793 * x / 1 m) * 1 m/s"]}],
+    "initial": [{"velocity": {"expression": "cos(pi*x)"}}],
     "time": {"end": "1 ms"},
     "output": {"history": {"every": 1}},
 }

@@ -6,7 +6,7 @@ Decks are dicts or files, points and conditions are arrays or functions, results
 >>> deck = pc.Deck.from_dict({
 ...     "body": {"shape": "bar", "length": "1 m", "spacing": "1 cm"},
 ...     "material": {"density": 7850, "youngs_modulus": "210 GPa", "horizon_ratio": 3},
-...     "initial": [{"velocity": ["cos(3.14159 * x / 1 m) * 1 m/s"]}],
+...     "initial": [{"velocity": {"expression": "cos(pi*x)"}}],
 ...     "time": {"end": "0.2 ms"},
 ... })
 >>> simulation = deck.build().simulation()

@@ -46,7 +46,7 @@ class Deck(MutableMapping[str, Any]):
     >>> deck = pc.Deck.from_dict({
     ...     "body": {"shape": "bar", "length": "1 m", "spacing": "1 cm"},
     ...     "material": {"density": 7850, "youngs_modulus": "210 GPa", "horizon_ratio": 3},
-    ...     "initial": [{"velocity": ["sin(3.14159 * x / 1 m) * 1 m/s"]}],
+    ...     "initial": [{"velocity": {"expression": "sin(pi*x)"}}],
     ...     "time": {"end": "1 ms"},
     ... })
     >>> deck["time"]["end"]

@@ -220,10 +220,10 @@ class Model:
         body_force : array, function or deck expressions
             Force density, N/m³: an array of shape (k, dimension) or one vector; a function ``f(t, x)`` of the time (s) and
             the positions of the k points (m) that returns such an array; or a list of texts, each an expression of x, y, z
-            and t with unit as in a deck. A function is called once for each time that the scheme evaluates.
+            (m) and t (s) in SI units as in a deck. A function is called once for each time that the scheme evaluates.
         """
         if _is_expressions(body_force):
-            self._deck_entry("load", on, {"body_force": list(body_force)})
+            self._deck_entry("load", on, {"body_force": _expressions(body_force)})
             return
         numbers = self.numbers(on)
         if callable(body_force):
@@ -257,7 +257,7 @@ class Model:
             The prescribed axes, such as ``"x"``; by default all.
         """
         if _is_expressions(displacement):
-            self._deck_entry("constraint", on, {"displacement": list(displacement)})  # type: ignore[arg-type]
+            self._deck_entry("constraint", on, {"displacement": _expressions(displacement)})  # type: ignore[arg-type]
             return
         numbers = self.numbers(on)
         functions = [displacement] if velocity is None else [displacement, velocity]
@@ -371,6 +371,10 @@ def table_html(title: str, facts: Mapping[str, Any]) -> str:
 
 def _is_expressions(given: Any) -> bool:
     return isinstance(given, (list, tuple)) and any(isinstance(entry, str) for entry in given)
+
+
+def _expressions(given: Any) -> list[Any]:
+    return [{"expression": entry} if isinstance(entry, str) else entry for entry in given]
 
 
 def _named(on: Any) -> str:

@@ -119,6 +119,12 @@ pub fn compare(py: Python<'_>, a: PathBuf, b: PathBuf, tolerance: f64) -> PyResu
 
 /// Runs the command line of the program and returns its exit status.
 #[pyfunction]
-pub fn command_line(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
-    py.detach(|| pericles_cli::command(arguments))
+pub fn command_line(py: Python<'_>, arguments: Vec<OsString>) -> PyResult<u8> {
+    #[cfg(feature = "command-line")]
+    return Ok(py.detach(|| pericles_cli::command(arguments)));
+    #[cfg(not(feature = "command-line"))]
+    {
+        let _ = (py, arguments);
+        Err(errors::plain("this package was built without the command line"))
+    }
 }

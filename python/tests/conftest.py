@@ -38,7 +38,7 @@ def changed(deck, **tables):
 
 @pytest.fixture
 def bar():
-    return changed(BAR, initial=[{"velocity": ["cos(3.141592653589793 * x / 1 m) * 1 m/s"]}])
+    return changed(BAR, initial=[{"velocity": {"expression": "cos(pi*x)"}}])
 
 
 @pytest.fixture

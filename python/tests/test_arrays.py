@@ -24,7 +24,7 @@ def own_deck(**tables):
 
 @pytest.fixture
 def stretched():
-    return changed(PLATE, initial=[{"velocity": ["1e3 * x * 1 / s", "0 m/s"]}])
+    return changed(PLATE, initial=[{"velocity": [{"expression": "1e3*x"}, 0]}])
 
 
 def test_own_points_equal_those_of_a_grid():

@@ -72,7 +72,7 @@ WRONG = [
     ({"material": {"youngs_modulus": -1}}, "material.youngs_modulus"),
     ({"time": {"end": "1 m"}}, "time.end"),
     ({"load": [{"set": "nowhere", "body_force": [1]}]}, "load.0.set"),
-    ({"load": [{"set": "all", "body_force": ["sin("]}]}, "load.0.body_force"),
+    ({"load": [{"set": "all", "body_force": [{"expression": "sin("}]}]}, "load.0.body_force"),
     ({"initial": [{"velocity": [1, 2, 3, 4]}]}, "initial.0.velocity"),
 ]
 

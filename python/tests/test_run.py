@@ -131,7 +131,7 @@ def test_unstable_runs(bar):
     bar["time"] = {"end": "1 ms", "dt": "5 us", "allow_unstable": False}
     with pytest.raises(pc.DeckError):
         pc.run(bar)
-    deck = changed(PLATE, initial=[{"velocity": ["1e6 * x / 1 m * 1 m/s", "0 m/s"]}], time={"end": "4 us", "allow_unstable": True, "dt": "300 ns"})
+    deck = changed(PLATE, initial=[{"velocity": [{"expression": "1e6*x"}, 0]}], time={"end": "4 us", "allow_unstable": True, "dt": "300 ns"})
     with pytest.raises(pc.UnstableError) as caught, warnings.catch_warnings():
         warnings.simplefilter("ignore")
         pc.Deck.from_dict(deck).build().simulation().run()
