@@ -21,6 +21,7 @@ mod model;
 mod plate;
 mod plausible;
 mod points;
+mod program;
 mod refined;
 mod schemes;
 mod sense;
