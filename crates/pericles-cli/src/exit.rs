@@ -1,7 +1,5 @@
 //! Exit statuses of the program.
 
-use std::process::ExitCode;
-
 /// Exit statuses; scripts may rely on them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
@@ -69,12 +67,6 @@ impl Exit {
             table += &format!("  {:>3}  {}\n", exit.status(), exit.meaning());
         }
         table
-    }
-}
-
-impl From<Exit> for ExitCode {
-    fn from(exit: Exit) -> Self {
-        ExitCode::from(exit.status())
     }
 }
 

@@ -69,17 +69,18 @@ impl Deck {
     ) -> Result<Survey, DeckError> {
         let document = Document::of(text, "specimen", overrides)?;
         let ledger = Ledger::surveyed(document.sources, survey);
-        let (_, survey) = Self::read_with(ledger, &document.root, document.outdated)?;
+        let (_, survey) = Self::read_with(ledger, &document.root, document.outdated, &[])?;
         Ok(survey)
     }
 
-    /// Reads all tables of a document.
+    /// Reads all tables of a document; `sets` are the names of sets that the deck does not define.
     pub(crate) fn read_with(
         ledger: Ledger,
         root: &Node,
         outdated: Outdated,
+        sets: &[String],
     ) -> Result<(Self, Survey), DeckError> {
-        let model = ledger.root(root).and_then(model);
+        let model = ledger.root(root).and_then(|root| model(root, sets));
         let closed = ledger.close();
         match model {
             Some(model) if closed.problems.is_empty() => {
@@ -179,11 +180,12 @@ impl Deck {
 }
 
 /// Reads the model. All tables are read even after an error, so that all problems are reported.
-fn model(root: Table<'_>) -> Option<Model> {
+fn model(root: Table<'_>, further: &[String]) -> Option<Model> {
     let title = root.maybe("title", |item| item.text());
     let body = body::read(root.required("body").and_then(|item| item.table()));
     let frame = body.frame;
-    let (sets, names) = set::read(root.table_or_empty("sets"), frame, &body.pieces);
+    let further = [&body.pieces[..], further].concat();
+    let (sets, names) = set::read(root.table_or_empty("sets"), frame, &further);
     let (made, gaussian, several, thermal) = match &body.surface {
         Some(read) => {
             let surface = surface_of(&root, read, frame, &names);

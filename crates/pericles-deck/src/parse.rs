@@ -26,9 +26,38 @@ impl Deck {
     /// # Errors
     /// The text has errors; all errors are reported.
     pub fn parse(text: &str, file_name: &str, overrides: &[String]) -> Result<Self, DeckError> {
+        Self::parse_with_sets(text, file_name, overrides, &[])
+    }
+
+    /// Parses a deck of a program that adds sets of points to those of the deck, so that loads, constraints and
+    /// assignments of the deck may name them. Assembly rejects names without points.
+    ///
+    /// ```
+    /// use pericles_deck::Deck;
+    ///
+    /// let text = r#"
+    ///     body = { shape = "bar", length = "1 m", spacing = "1 cm" }
+    ///     material = { density = 7850, youngs_modulus = "210 GPa", horizon_ratio = 3 }
+    ///     initial = [{ set = "struck", velocity = "1 m/s" }]
+    ///     time = { end = "1 ms" }
+    /// "#;
+    /// assert!(Deck::parse(text, "bar.toml", &[]).is_err());
+    /// let deck = Deck::parse_with_sets(text, "bar.toml", &[], &["struck".into()])?;
+    /// assert_eq!(deck.model.initial[0].set, "struck");
+    /// # Ok::<(), pericles_deck::DeckError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// The text has errors; all errors are reported.
+    pub fn parse_with_sets(
+        text: &str,
+        file_name: &str,
+        overrides: &[String],
+        sets: &[String],
+    ) -> Result<Self, DeckError> {
         let document = Document::of(text, file_name, overrides)?;
         let ledger = Ledger::new(document.sources, home_of);
-        let (deck, _) = Self::read_with(ledger, &document.root, document.outdated)?;
+        let (deck, _) = Self::read_with(ledger, &document.root, document.outdated, sets)?;
         deck.refuse_unstable_table()?;
         Ok(deck)
     }

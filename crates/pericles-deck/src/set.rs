@@ -127,15 +127,14 @@ impl SetNames {
     }
 }
 
-/// Reads `[sets]`; `pieces` are the names of the pieces of the body, which are sets too.
+/// Reads `[sets]`; references may also name the `further` sets: pieces of the body, and sets that the program adds.
 pub(crate) fn read(
     table: Option<Table<'_>>,
     frame: Frame,
-    pieces: &[String],
+    further: &[String],
 ) -> (Option<Vec<NamedSet>>, SetNames) {
-    let all = std::iter::once(ALL.to_owned());
     let mut names = SetNames {
-        names: all.chain(pieces.iter().cloned()).collect(),
+        names: [&[ALL.into()], further].concat(),
         open: frame.mesh,
     };
     let mut sets = Some(Vec::new());

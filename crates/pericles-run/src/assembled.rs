@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use pericles::cache::{Cache, NoCache};
+use pericles_deck::BuildError;
 use pericles_io::{
     DiskCache, IoError, MeshError, TextError, read_mesh, read_outline, read_points, read_rows,
     read_surface,
@@ -71,13 +72,29 @@ impl Assembled {
     /// The deck or model is invalid.
     pub fn of(source: &Source, means: &Means, tell: Tell<'_>) -> Result<Self, RunError> {
         let model = source.model();
+        Self::made(source, means, tell, |resources| {
+            assemble(model, discretise(model, resources)?, resources)
+        })
+    }
+
+    /// Assembles the model of a source by `make`, for programs that change or replace its points, sets and conditions;
+    /// as [`Assembled::of`] otherwise. The resources have the cache, the memory limit, the readers of files, and the
+    /// folder of the source.
+    ///
+    /// # Errors
+    /// Those of `make`, with locations in the text of a deck.
+    pub fn made(
+        source: &Source,
+        means: &Means,
+        tell: Tell<'_>,
+        make: impl FnOnce(&Resources<'_>) -> Result<Assembly, BuildError>,
+    ) -> Result<Self, RunError> {
+        let model = source.model();
         let assembly = means.with_resources(tell, |resources| {
-            let resources = Resources {
+            make(&Resources {
                 folder: source.folder(),
                 ..*resources
-            };
-            let discretisation = discretise(model, &resources)?;
-            assemble(model, discretisation, &resources)
+            })
         });
         let assembly = assembly.map_err(|error| source.refusal(error))?;
         let facts = match source {

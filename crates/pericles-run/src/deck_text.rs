@@ -18,6 +18,10 @@ pub struct DeckText {
     /// The input files of the deck.
     #[serde(default, skip_serializing_if = "Inputs::is_empty")]
     pub inputs: Inputs,
+    /// What a program added to the deck: arrays and functions, which have no text. Such a run can be continued only by
+    /// that program.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub amended: Vec<String>,
 }
 
 impl DeckText {
@@ -28,14 +32,21 @@ impl DeckText {
             file,
             source: deck.source().to_owned(),
             overrides: deck.overrides().map(str::to_owned).collect(),
+            amended: Vec::new(),
         }
     }
 
     /// Reads the deck again, independent of the current folder.
     ///
     /// # Errors
-    /// This version no longer accepts the deck, or an input file has changed.
+    /// This version no longer accepts the deck, an input file has changed, or a program added to the deck what it does
+    /// not contain.
     pub fn read(&self) -> Result<Deck, RunError> {
+        if !self.amended.is_empty() {
+            return Err(RunError::Amended {
+                amended: self.amended.join(", "),
+            });
+        }
         let file = self.inputs.located(&self.file);
         let deck = Deck::parse(&self.source, &file, &self.overrides)?;
         self.inputs.check(deck.folder())?;

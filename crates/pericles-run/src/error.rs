@@ -46,6 +46,14 @@ pub enum RunError {
         /// The change.
         reason: String,
     },
+    /// A program added arrays or functions to the deck of the run.
+    #[error(
+        "the deck of the run does not describe it completely: a program added {amended}; build the model again in that program, and load the checkpoint there"
+    )]
+    Amended {
+        /// What the program added.
+        amended: String,
+    },
     /// The folder contains no results.
     #[error("{} is not the output folder of a run: {reason}", path.display())]
     NoResults {

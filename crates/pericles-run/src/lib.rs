@@ -56,6 +56,7 @@ pub mod composition;
 pub mod convergence;
 mod deadline;
 mod deck_text;
+pub mod diff;
 pub mod dispersion;
 mod error;
 mod event;
@@ -81,9 +82,10 @@ mod watch;
 pub use assembled::{Assembled, Caching, Means, readers};
 pub use audit::Audit;
 pub use build::{
-    Assembly, Discretisation, ExactReference, FileError, Grids, Interior, KernelQuality,
-    LoadReport, MaterialConstants, MeshBody, MeshReader, OutlineReader, PlaneWaves, PointsReader,
-    Polygons, Resources, Sets, SurfaceReader, TableReader, assemble, build, discretise,
+    Assembly, Conditions, Discretisation, ExactReference, FileError, Grids, Interior,
+    KernelQuality, LoadReport, MaterialConstants, MeshBody, MeshReader, OutlineReader, PlaneWaves,
+    PointsReader, Polygons, Resources, Sets, SurfaceReader, TableReader, assemble, build,
+    discretise,
 };
 pub use cancel::Cancel;
 pub use deadline::Deadline;
@@ -94,7 +96,7 @@ pub use export::{ExportFormat, export};
 pub use facts::{EndFacts, Facts, LoadFacts, PlaneFacts};
 pub use inputs::Inputs;
 pub use mirror::MirrorError;
-pub use observers::{overlay, picture_of, result_body};
+pub use observers::{history_rows, overlay, picture_of, result_body};
 pub use report::{Report, Span, Status};
 pub use results::{FieldFile, Results, file_name};
 pub use run::{Ending, Run};

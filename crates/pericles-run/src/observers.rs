@@ -1,5 +1,7 @@
 //! Observers that write the output requested by a model.
 
+mod impactors;
+
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -13,9 +15,9 @@ use pericles_deck::{
 };
 use pericles_io::observers::{
     CellMesh, ContactColumns, Cracks, EnergyBoundColumns, ErrorColumns, ExtremeColumns,
-    FieldSelection, FieldSeries, ForceDisplacement, FragmentCourse, History, ImpactorSurfaces,
-    Impactors, InnerColumns, LoadFactorColumn, Overlay, PictureOf, Pictures, PointMark, Probes,
-    Profile, Reactions, ResultFile, ResultFormat, SurfaceCourse,
+    FieldSelection, FieldSeries, ForceDisplacement, FragmentCourse, History, HistoryRows,
+    InnerColumns, LoadFactorColumn, Overlay, PictureOf, Pictures, PointMark, Probes, Profile,
+    Reactions, ResultFile, ResultFormat, SurfaceCourse,
 };
 use pericles_io::{OutputFolder, ResultBody};
 use pericles_manifold::surface::Surface;
@@ -24,6 +26,8 @@ use pericles_manifold::{EnergyInequality, SurfaceMeasure};
 use crate::build::{Assembly, ExactReference, MeshBody, Sets, is_on_grid};
 use crate::checkpoint;
 use crate::error::RunError;
+
+use self::impactors::add_impactors;
 
 /// Creates the simulation of an assembled model with observers that write to a folder.
 ///
@@ -65,28 +69,8 @@ pub fn simulation(
     .to_vec();
     names.push(format!("checkpoints/{}", checkpoint::FAILED));
 
-    let mut history = History::new(folder.file("history.csv"), dimension);
-    if simulation.integrator().inner_iterations().is_some() {
-        history = history.with(match model.time.scheme {
-            Scheme::Relaxation(_) | Scheme::Static(_) => InnerColumns::Residual,
-            _ => InnerColumns::Velocity,
-        });
-    }
-    if follows_events(model) {
-        history = history.with(LoadFactorColumn);
-    }
-    if let Some(ExactReference { solution, points }) = exact {
-        history = history.with(ErrorColumns::new(solution, points));
-    }
-    if let Some(rate) = output.energy_bound {
-        history = history.with(EnergyBoundColumns(EnergyInequality::new(rate)));
-    }
-    if !output.extremes.is_empty() {
-        history = history.with(ExtremeColumns::new(output.extremes.clone(), dimension));
-    }
-    if simulation.system().interactions().next().is_some() {
-        history = history.with(ContactColumns);
-    }
+    let rows = history_rows(model, &simulation, exact);
+    let history = History::new(folder.file("history.csv"), rows);
     simulation.observe(output.history, Box::new(history));
     names.extend(add_impactors(model, folder, &mut simulation)?);
     if let Some(reactions) = reactions {
@@ -133,31 +117,36 @@ pub fn simulation(
     Ok(simulation)
 }
 
-/// Adds the table and the files of impactors; returns their names relative to the folder.
-fn add_impactors(
+/// Returns the rows of the history that a model requests; `exact` is the exact solution of its assembly, if it has one.
+pub fn history_rows(
     model: &Model,
-    folder: &OutputFolder,
-    simulation: &mut Simulation,
-) -> Result<Vec<String>, RunError> {
-    let impactors = model.impactors.iter().map(|impactor| impactor.name.clone());
-    let impactors: Vec<String> = impactors.collect();
-    if impactors.is_empty() {
-        return Ok(Vec::new());
-    }
+    simulation: &Simulation,
+    exact: Option<ExactReference>,
+) -> HistoryRows {
     let (output, dimension) = (&model.output, simulation.system().dimension());
-    let table = Impactors::new(folder.file("impactors.csv"), &impactors, dimension);
-    simulation.observe(output.history, Box::new(table));
-    let mut names = vec!["impactors.csv".to_owned()];
-    if output.fields != Schedule::Never && output.formats.contains(&FieldFormat::Vtu) {
-        let place = ImpactorSurfaces::FOLDER;
-        folder.subfolder(place)?;
-        for name in ImpactorSurfaces::file_names(&impactors) {
-            names.extend([format!("{name}.pvd"), format!("{place}/{name}_*.vtp")]);
-        }
-        let surfaces = ImpactorSurfaces::new(folder.path(), &impactors);
-        simulation.observe(output.fields, Box::new(surfaces));
+    let mut rows = HistoryRows::new(dimension);
+    if simulation.integrator().inner_iterations().is_some() {
+        rows = rows.with(match model.time.scheme {
+            Scheme::Relaxation(_) | Scheme::Static(_) => InnerColumns::Residual,
+            _ => InnerColumns::Velocity,
+        });
     }
-    Ok(names)
+    if follows_events(model) {
+        rows = rows.with(LoadFactorColumn);
+    }
+    if let Some(ExactReference { solution, points }) = exact {
+        rows = rows.with(ErrorColumns::new(solution, points));
+    }
+    if let Some(rate) = output.energy_bound {
+        rows = rows.with(EnergyBoundColumns(EnergyInequality::new(rate)));
+    }
+    if !output.extremes.is_empty() {
+        rows = rows.with(ExtremeColumns::new(output.extremes.clone(), dimension));
+    }
+    if simulation.system().interactions().next().is_some() {
+        rows = rows.with(ContactColumns);
+    }
+    rows
 }
 
 /// Returns a picture requested by a model.

@@ -4,7 +4,8 @@ use std::cell::{Cell, RefCell};
 use std::path::Path;
 use std::time::Instant;
 
-use pericles::{Checkpointed, Control, Interrupt, Outcome, Simulation, SimulationError};
+use pericles::observe::{Observer, Schedule};
+use pericles::{Archive, Checkpointed, Control, Interrupt, Outcome, Simulation, SimulationError};
 use pericles_deck::Model;
 use pericles_io::{OutputFolder, PvdSeries, VtuFile};
 
@@ -111,6 +112,20 @@ impl Run {
     /// Returns the simulation.
     pub fn simulation(&self) -> &Simulation {
         &self.simulation
+    }
+
+    /// Adds an observer of the program to those of the model. It is saved in checkpoints after them, so that a run with
+    /// further observers is resumed with the same ones.
+    pub fn observe(&mut self, schedule: Schedule, observer: Box<dyn Observer>) {
+        self.simulation.observe(schedule, observer);
+    }
+
+    /// Replaces the state of the simulation by that of a checkpoint of the same run.
+    ///
+    /// # Errors
+    /// The archive does not match the run.
+    pub fn restore(&mut self, archive: &Archive) -> Result<(), RunError> {
+        Ok(self.simulation.restore(archive)?)
     }
 
     /// Returns the content of `run.json`.

@@ -8,21 +8,21 @@ use super::HistoryColumns;
 use super::table::{AXES, ObserverTable, step_and_time, whole};
 use crate::csv::{Cell, Column};
 
-/// Energies, momentum and broken bonds: `history.csv`.
+/// The rows of a history: energies, momentum and broken bonds of states.
 ///
 /// Columns: step, time, kinetic, elastic and dissipated energy, external work (loads and supports, since the
 /// start), the correction by which the energy conserved by the time scheme differs, the balance (sum of
 /// energies and correction, minus the work and the initial energy; zero if energy is conserved), momentum
-/// along each axis of the body, broken bonds, and the columns added by [`History::with`].
-pub struct History {
-    table: ObserverTable,
+/// along each axis of the body, broken bonds, and the columns added by [`HistoryRows::with`].
+pub struct HistoryRows {
+    columns: Vec<Column>,
     dimension: usize,
     more: Vec<Box<dyn HistoryColumns>>,
 }
 
-impl History {
-    /// Creates a history for a body of the given dimension.
-    pub fn new(path: impl Into<PathBuf>, dimension: usize) -> Self {
+impl HistoryRows {
+    /// Creates the rows for a body of the given dimension.
+    pub fn new(dimension: usize) -> Self {
         let mut columns = step_and_time();
         for name in [
             "kinetic_energy",
@@ -39,7 +39,7 @@ impl History {
         }
         columns.push(Column::integer("broken_bonds"));
         Self {
-            table: ObserverTable::new(path.into(), "observer/history", columns),
+            columns,
             dimension,
             more: Vec::new(),
         }
@@ -48,14 +48,18 @@ impl History {
     /// Adds columns.
     #[must_use]
     pub fn with(mut self, columns: impl HistoryColumns + 'static) -> Self {
-        self.table.add_columns(columns.columns());
+        self.columns.extend(columns.columns());
         self.more.push(Box::new(columns));
         self
     }
-}
 
-impl Observer for History {
-    fn observe(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), ObserveError> {
+    /// Returns names and units of the columns.
+    pub fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    /// Returns the row of a state.
+    pub fn row(&mut self, snapshot: &Snapshot<'_>) -> Vec<Cell> {
         let (state, system) = (snapshot.state(), snapshot.system());
         let energies = snapshot.energies();
         let mut row = vec![
@@ -74,13 +78,43 @@ impl Observer for History {
         for columns in &mut self.more {
             row.extend(columns.cells(snapshot));
         }
+        row
+    }
+}
+
+pericles::saved! {
+    impl Checkpointed for HistoryRows {
+        more: part,
+        columns, dimension: fixed,
+    }
+}
+
+/// A history in a table: `history.csv`.
+pub struct History {
+    table: ObserverTable,
+    rows: HistoryRows,
+}
+
+impl History {
+    /// Creates a history with the given rows.
+    pub fn new(path: impl Into<PathBuf>, rows: HistoryRows) -> Self {
+        let columns = rows.columns().to_vec();
+        Self {
+            table: ObserverTable::new(path.into(), "observer/history", columns),
+            rows,
+        }
+    }
+}
+
+impl Observer for History {
+    fn observe(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), ObserveError> {
+        let row = self.rows.row(snapshot);
         Ok(self.table.append(&row)?)
     }
 }
 
 pericles::saved! {
     impl Checkpointed for History {
-        table, more: part,
-        dimension: fixed,
+        table, rows: part,
     }
 }

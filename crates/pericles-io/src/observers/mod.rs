@@ -32,7 +32,7 @@
 //! use pericles::space::{Grid, Shape};
 //! use pericles::time::{State, VelocityVerlet};
 //! use pericles::{PointScalar, Simulation, System};
-//! use pericles_io::observers::History;
+//! use pericles_io::observers::{History, HistoryRows};
 //!
 //! let shape = Shape::Box { origin: [0.0; 3], size: vec![1.0] };
 //! let bar = Grid { shape, spacing: 0.1, section: 1.0, holes: vec![] };
@@ -47,7 +47,7 @@
 //! let folder = tempfile::tempdir()?;
 //! let path = folder.path().join("history.csv");
 //! let mut simulation = Simulation::new(system, Box::new(VelocityVerlet), state, 0.05, 100)?;
-//! simulation.observe(Schedule::Every(10), Box::new(History::new(&path, 1)));
+//! simulation.observe(Schedule::Every(10), Box::new(History::new(&path, HistoryRows::new(1))));
 //! simulation.run(|_| pericles::Control::Continue)?;
 //! assert_eq!(pericles_io::read_csv(&path)?.rows(), 11);
 //! # Ok(())
@@ -84,7 +84,7 @@ pub use field_columns::{FieldSelection, PointMark};
 pub use fields::FieldSeries;
 pub use force_displacement::ForceDisplacement;
 pub use fragments::FragmentCourse;
-pub use history::History;
+pub use history::{History, HistoryRows};
 pub use impactors::{ContactColumns, ImpactorSurfaces, Impactors};
 pub use overlay::Overlay;
 pub use pictures::{DrawnState, PictureOf, Pictures};

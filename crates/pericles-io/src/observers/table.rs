@@ -34,11 +34,6 @@ impl ObserverTable {
         }
     }
 
-    /// Adds columns to a table without rows.
-    pub(super) fn add_columns(&mut self, columns: Vec<Column>) {
-        self.columns.extend(columns);
-    }
-
     /// Appends and flushes a row, so that the table can be followed during the run.
     pub(super) fn append(&self, cells: &[Cell]) -> std::result::Result<(), IoError> {
         let open = &mut *self.open.borrow_mut();

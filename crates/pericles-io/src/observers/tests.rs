@@ -101,9 +101,8 @@ fn simulation(folder: &Path) -> Simulation {
     };
     let errors = ErrorColumns::new(Box::new(line), (0..cloud.len() as u32).collect());
     let bound = EnergyBoundColumns(EnergyInequality::new(0.1));
-    let history = History::new(folder.join("history.csv"), 2)
-        .with(errors)
-        .with(bound);
+    let rows = HistoryRows::new(2).with(errors).with(bound);
+    let history = History::new(folder.join("history.csv"), rows);
     let probes = Probes::new(folder.join("probes.csv"), vec![probe], 2);
     simulation.observe(Schedule::Every(4), Box::new(history));
     simulation.observe(Schedule::Every(4), Box::new(reactions));

@@ -67,6 +67,7 @@ pub fn assemble(
     let mut system = System::new(Arc::clone(cloud), bonds.operator, density)
         .map_err(|error| at("material.density", error))?;
     let mut state = assembler.initial_state(cloud, sets, resources)?;
+    discretisation.conditions.start(&mut state)?;
     let exact = assembler.exact_reference(cloud, constants.as_ref(), &mut warnings)?;
     if let (Some(exact), Some(true)) = (&exact, model.exact.map(|exact| exact.start)) {
         exact
@@ -74,7 +75,9 @@ pub fn assemble(
             .displacement_into(0.0, cloud.axis(0), &mut state.u);
     }
     let areas = assembler.add_loads(&mut system, &discretisation, &mut warnings)?;
+    discretisation.conditions.add_loads(&mut system)?;
     assembler.add_motions(&mut system, &state, sets)?;
+    discretisation.conditions.add_motions(&mut system)?;
     assembler.judge_conditions(&system, &mut warnings);
     warnings.extend(assembler.judge_idle_keys(&system));
     warnings.extend(assembler.judge_rest(&state));

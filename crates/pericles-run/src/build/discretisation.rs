@@ -8,6 +8,7 @@ use pericles_deck::{Body, BuildError, Fault, KeyPath, Model, ModelWarning};
 use pericles_manifold::surface::Surface;
 
 use super::mesh_body::MeshBody;
+use super::program::Conditions;
 use super::refusal::at_path;
 
 /// Named sets of points, each in ascending order.
@@ -29,6 +30,8 @@ pub struct Discretisation {
     pub sets: Sets,
     /// The surfaces of the pre-cracks.
     pub cracks: Vec<(Crack, EndRule)>,
+    /// Initial state, loads and motions that a program adds to those of the model.
+    pub conditions: Conditions,
     /// Warnings about the points.
     pub warnings: Vec<ModelWarning>,
 }

@@ -8,6 +8,7 @@ use pericles_deck::{ALL, Body, BuildError, Fault, KeyPath, Members, Model, Remar
 use super::assembler::Assembler;
 use super::discretisation::{Discretisation, Grids, Sets};
 use super::mesh_body::MeshBody;
+use super::program::Conditions;
 use super::refusal::at_path;
 use super::resources::Resources;
 
@@ -75,6 +76,7 @@ pub fn discretise(model: &Model, resources: &Resources<'_>) -> Result<Discretisa
         },
         surface,
         mesh,
+        conditions: Conditions::default(),
         warnings,
     })
 }

@@ -33,6 +33,7 @@ mod mesh_body;
 mod pieces;
 mod plausible;
 mod points;
+mod program;
 mod random;
 mod refusal;
 mod resources;
@@ -56,6 +57,7 @@ pub use discretise::discretise;
 pub use exact::ExactReference;
 pub use loads::LoadReport;
 pub use mesh_body::MeshBody;
+pub use program::Conditions;
 pub use resources::{
     FileError, MeshReader, OutlineReader, PointsReader, Polygons, Resources, SurfaceReader,
     TableReader,

@@ -84,6 +84,7 @@ mod tests {
                 source: String::new(),
                 overrides: vec!["time.end=1".into()],
                 inputs: Inputs::default(),
+                amended: Vec::new(),
             },
             axes: vec![
                 "body.spacing=1 mm,1/mm".parse().unwrap(),

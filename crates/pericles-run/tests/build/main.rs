@@ -24,6 +24,7 @@ mod pieces;
 mod plate;
 mod plausible;
 mod points;
+mod program;
 mod refined;
 mod schemes;
 mod sense;

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use super::TimeFunction;
+use super::{PointValues, TimeFunction};
 use crate::error::{PericlesError, Result, positive};
 use crate::operator::PointSubset;
 use crate::space::{PointCloud, PointSet, check_length, check_set};
@@ -31,6 +31,8 @@ pub enum LoadDensity {
         /// Positions of the loaded points, m.
         places: Vec<[f64; 3]>,
     },
+    /// Values of all loaded points at once, N/m³.
+    Values(Arc<dyn PointValues>),
 }
 
 impl From<[f64; 3]> for LoadDensity {
@@ -106,6 +108,9 @@ impl Load {
             LoadDensity::Field { places, .. } => {
                 check_length("the positions of a load", places.len(), loaded)
             }
+            LoadDensity::Values(values) => {
+                check_length("the values of a load", values.len(), dimension * loaded)
+            }
         }
     }
 
@@ -133,11 +138,17 @@ impl Load {
                 factor,
                 places,
             } => factor * field.value(c, places[k], t),
+            LoadDensity::Values(values) => {
+                let mut value = 0.0;
+                values.at(0, t, &mut |all| value = all[c * self.points.len() + k]);
+                value
+            }
         }
     }
 
     /// Returns whether the force at time t is finite: on all points for a constant amplitude, on the first, middle
-    /// and last point for a field of position and time.
+    /// and last point for a field of position and time. Values computed for all points at once are not evaluated:
+    /// only the run knows the times at which they are given.
     pub fn is_finite_at(&self, t: f64, dimension: usize) -> bool {
         let factor = self.factor(t);
         if factor == 0.0 || self.points.is_empty() {
@@ -151,7 +162,7 @@ impl Load {
                     .into_iter()
                     .flat_map(amplitudes)
                     .all(f64::is_finite),
-                _ => true,
+                LoadDensity::Uniform(_) | LoadDensity::PerPoint(_) | LoadDensity::Values(_) => true,
             }
     }
 
@@ -177,6 +188,10 @@ impl Load {
                         on.common(&self.points, |_, i| component[i] += force);
                     }
                 }
+                LoadDensity::Values(ref values) => values.at(0, t, &mut |all| {
+                    let own = &all[c * self.points.len()..];
+                    on.common(&self.points, |k, i| component[i] += own[k] * factor);
+                }),
                 _ => on.common(&self.points, |k, i| {
                     component[i] += self.amplitude(c, k, t) * factor;
                 }),

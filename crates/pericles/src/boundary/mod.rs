@@ -7,6 +7,7 @@ mod loading;
 mod motion;
 mod rayleigh;
 mod table;
+mod values;
 
 pub use damping::{DampedSteps, DampingLayer, DampingProfile};
 pub use function::{TimeCourse, TimeFunction};
@@ -15,6 +16,7 @@ pub use loading::ProportionalLoading;
 pub use motion::{AxisMotion, MotionKind, PrescribedMotion, Trajectory};
 pub use rayleigh::{RayleighDamping, RayleighRates, Stiffness, StiffnessProduct};
 pub use table::TimeTable;
+pub use values::PointValues;
 
 use crate::archive::Checkpointed;
 use crate::parallel::PointSubset;

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use super::TimeFunction;
+use super::{PointValues, TimeFunction};
 use crate::domain::Domain;
 use crate::error::{PericlesError, Result};
 use crate::operator::PointSubset;
@@ -40,6 +40,9 @@ pub enum AxisMotion {
         /// Positions of the points of the set, m.
         places: Vec<[f64; 3]>,
     },
+    /// Displacements of all points of the set at once; amplitude and g(t) are not used. Component c of the values is
+    /// read along axis c.
+    Values(Arc<dyn PointValues>),
 }
 
 /// Constraint on a set of points along one or more axes, as a closed function of time: displacement and velocity
@@ -200,6 +203,9 @@ impl PrescribedMotion {
                 None | Some(AxisMotion::Uniform(_)) => held,
                 Some(AxisMotion::PerPoint(amplitudes)) => amplitudes.len(),
                 Some(AxisMotion::Trajectory { places, .. }) => places.len(),
+                // The values have components for all axes up to this one.
+                Some(AxisMotion::Values(values)) if values.len() >= (c + 1) * held => held,
+                Some(AxisMotion::Values(values)) => values.len(),
             };
             check_length("the amplitudes or positions of a motion", given, held)?;
         }
@@ -242,6 +248,7 @@ impl PrescribedMotion {
                 AxisMotion::Trajectory { trajectory, places } => [0, last / 2, last]
                     .into_iter()
                     .all(|k| trajectory.derivative(order, places[k], t).is_finite()),
+                AxisMotion::Values(_) => true,
                 _ => self.unit(order, t).is_finite(),
             })
         };
@@ -276,6 +283,15 @@ impl PrescribedMotion {
         let motions = self.along.iter().enumerate();
         let motions = motions.filter_map(|(c, along)| Some((c, along.as_ref()?)));
         for (axis, (c, along)) in motions.enumerate() {
+            if let AxisMotion::Values(values) = along {
+                let n = self.points.len();
+                values.at(order, t, &mut |all| {
+                    on.common(&self.points, |k, i| {
+                        set(c * cloud_len + i, axis * n + k, all[c * n + k]);
+                    });
+                });
+                continue;
+            }
             on.common(&self.points, |k, i| {
                 let number = match along {
                     AxisMotion::Uniform(amplitude) => amplitude * unit,
@@ -283,6 +299,7 @@ impl PrescribedMotion {
                     AxisMotion::Trajectory { trajectory, places } => {
                         trajectory.derivative(order, places[k], t)
                     }
+                    AxisMotion::Values(_) => return,
                 };
                 set(c * cloud_len + i, axis * self.points.len() + k, number);
             });

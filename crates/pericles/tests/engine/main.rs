@@ -24,3 +24,4 @@ mod state_based;
 mod statics;
 mod surface_correction;
 mod two_pass;
+mod values;

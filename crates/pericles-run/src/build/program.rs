@@ -1,0 +1,67 @@
+//! Initial state, loads and prescribed motions given by a program.
+
+use pericles::System;
+use pericles::boundary::{Load, PrescribedMotion};
+use pericles::time::State;
+use pericles_deck::{BuildError, Fault};
+
+use super::refusal::{at, at_path};
+
+/// Initial state, loads and prescribed motions that a program adds to those of a model. The initial state replaces that
+/// of the model; loads add to those of the model; a motion of a point that the model constrains along the same axis is
+/// rejected.
+#[derive(Debug, Clone, Default)]
+pub struct Conditions {
+    /// Initial displacement of all points, component-major, m.
+    pub displacement: Option<Vec<f64>>,
+    /// Initial velocity of all points, component-major, m/s.
+    pub velocity: Option<Vec<f64>>,
+    /// Loads.
+    pub loads: Vec<Load>,
+    /// Prescribed motions.
+    pub motions: Vec<PrescribedMotion>,
+}
+
+impl Conditions {
+    /// Replaces the initial state.
+    pub(super) fn start(&self, state: &mut State) -> Result<(), BuildError> {
+        let fields = [
+            (&self.displacement, &mut state.u, "displacement"),
+            (&self.velocity, &mut state.v, "velocity"),
+        ];
+        for (given, field, what) in fields {
+            let Some(given) = given else { continue };
+            let refuse = |reason| Err(at_path("initial", Fault::BadDiscretisation { reason }));
+            let (found, needed) = (given.len(), field.len());
+            if found != needed {
+                let reason =
+                    format!("the initial {what} has {found} values, the body needs {needed}");
+                return refuse(reason);
+            }
+            if !given.iter().all(|value| value.is_finite()) {
+                let reason = format!("the initial {what} has values that are NaN or infinite");
+                return refuse(reason);
+            }
+            field.copy_from_slice(given);
+        }
+        Ok(())
+    }
+
+    /// Adds the loads.
+    pub(super) fn add_loads(&self, system: &mut System) -> Result<(), BuildError> {
+        for load in &self.loads {
+            let added = system.add_load(load.clone());
+            added.map_err(|error| at("load", error))?;
+        }
+        Ok(())
+    }
+
+    /// Adds the prescribed motions.
+    pub(super) fn add_motions(&self, system: &mut System) -> Result<(), BuildError> {
+        for motion in &self.motions {
+            let added = system.add_motion(motion.clone());
+            added.map_err(|error| at("constraint", error))?;
+        }
+        Ok(())
+    }
+}

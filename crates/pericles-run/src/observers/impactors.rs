@@ -1,0 +1,36 @@
+//! Table and files of impactors.
+
+use pericles::Simulation;
+use pericles::observe::Schedule;
+use pericles_deck::{FieldFormat, Model};
+use pericles_io::OutputFolder;
+use pericles_io::observers::{ImpactorSurfaces, Impactors};
+
+use crate::error::RunError;
+
+/// Adds the table and the files of impactors; returns their names relative to the folder.
+pub(super) fn add_impactors(
+    model: &Model,
+    folder: &OutputFolder,
+    simulation: &mut Simulation,
+) -> Result<Vec<String>, RunError> {
+    let impactors = model.impactors.iter().map(|impactor| impactor.name.clone());
+    let impactors: Vec<String> = impactors.collect();
+    if impactors.is_empty() {
+        return Ok(Vec::new());
+    }
+    let (output, dimension) = (&model.output, simulation.system().dimension());
+    let table = Impactors::new(folder.file("impactors.csv"), &impactors, dimension);
+    simulation.observe(output.history, Box::new(table));
+    let mut names = vec!["impactors.csv".to_owned()];
+    if output.fields != Schedule::Never && output.formats.contains(&FieldFormat::Vtu) {
+        let place = ImpactorSurfaces::FOLDER;
+        folder.subfolder(place)?;
+        for name in ImpactorSurfaces::file_names(&impactors) {
+            names.extend([format!("{name}.pvd"), format!("{place}/{name}_*.vtp")]);
+        }
+        let surfaces = ImpactorSurfaces::new(folder.path(), &impactors);
+        simulation.observe(output.fields, Box::new(surfaces));
+    }
+    Ok(names)
+}

@@ -1,0 +1,370 @@
+"""What the program offers besides runs."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from . import _pericles
+from ._cli import call, execute
+from ._deck import Deck, as_deck
+from ._errors import PericlesError
+from ._model import table_html
+from ._result import Record, Result, Table
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+else:
+    from ._lazy import np
+
+
+class Report(Record):
+    """Results of a command of the program; entries are also attributes, lists of numbers are arrays."""
+
+    def __getitem__(self, name: str) -> Any:
+        value = super().__getitem__(name)
+        if isinstance(value, list) and value and all(isinstance(entry, (int, float)) for entry in value):
+            return np.array(value)
+        if isinstance(value, list):
+            return [Record(entry) if isinstance(entry, dict) else entry for entry in value]
+        return value
+
+    def _repr_html_(self) -> str:
+        return table_html(type(self).__name__, self._entries)
+
+
+class Check(Report):
+    """What a run of a deck needs: size, memory, time step, estimated run time, and warnings."""
+
+
+class Dispersion(Report):
+    """Numerical dispersion and stability of a lattice.
+
+    Attributes
+    ----------
+    curves : Table
+        Frequencies along the contour of wave vectors.
+    polar : Table or None
+        Wave speeds in the long-wave limit by direction.
+    """
+
+    curves: Table
+    polar: Table | None
+
+
+class Modes(Report):
+    """Natural modes.
+
+    Attributes
+    ----------
+    frequencies : array of shape (m,)
+        Frequencies of the modes, Hz, ascending.
+    shapes : array of shape (m, n, dimension)
+        Mode shapes with the largest displacement 1.
+    points : array of shape (n, dimension)
+        Positions of the points, m.
+    """
+
+    frequencies: NDArray[np.float64]
+    shapes: NDArray[np.float64]
+    points: NDArray[np.float64]
+
+
+class Reproduction(Report):
+    """A reproduced study; ``passed`` says whether all rows are within their tolerances."""
+
+    @property
+    def passed(self) -> bool:
+        """Whether all rows with a tolerance are within it."""
+        return bool(self["pass"])
+
+
+class Difference(Report):
+    """The comparison of two results."""
+
+    def __bool__(self) -> bool:
+        raise PericlesError("use `.equal` (within the tolerance) or `.identical` (bitwise)")
+
+    @property
+    def identical(self) -> bool:
+        """Whether all compared values are bitwise equal and nothing is missing."""
+        return bool(self.equal) and all(row["different"] == 0 for row in self._entries["rows"])
+
+
+def _temporary() -> Any:
+    import tempfile
+
+    return tempfile.TemporaryDirectory(prefix="pericles-")
+
+
+@contextlib.contextmanager
+def _file(deck: Deck) -> Iterator[list[str]]:
+    """Return the arguments that give a deck to the program: its file, or a copy with absolute paths."""
+    if deck._text is not None and os.path.exists(deck.name):
+        yield [deck.name, *(word for override in deck._overrides for word in ("--set", override))]
+        return
+    tables = deck.to_dict()
+    folder = Path(deck.name).parent if deck._text is not None or os.path.exists(deck.name) else Path()
+    _absolute(tables, folder)
+    with _temporary() as place:
+        path = Path(place) / "deck.toml"
+        Deck.from_dict(tables).write(path)
+        yield [str(path)]
+
+
+def _absolute(tables: Any, folder: Path) -> None:
+    for key, value in tables.items() if isinstance(tables, dict) else enumerate(tables):
+        if isinstance(value, (dict, list)):
+            _absolute(value, folder)
+        elif key == "file" and isinstance(value, str) and (folder / value).exists():
+            tables[key] = str((folder / value).absolute())
+
+
+def check(deck: Any, *, set: Mapping[str, Any] | None = None) -> Check:
+    """Check a deck and report what its run needs, without running it.
+
+    Parameters
+    ----------
+    deck : Deck, dict or path
+        The deck.
+    set : mapping, optional
+        Values of keys that replace those of the deck.
+
+    Raises
+    ------
+    DeckError
+        The deck is invalid.
+    """
+    deck = as_deck(deck, set)
+    deck._core()
+    with _file(deck) as arguments:
+        return Check(call("check", *arguments))
+
+
+def modes(deck: Any, *, count: int = 12, prestress: bool = False, set: Mapping[str, Any] | None = None) -> Modes:
+    """Compute the lowest natural frequencies and mode shapes of a body.
+
+    Parameters
+    ----------
+    deck : Deck, dict or path
+        The deck.
+    count : int
+        Number of modes.
+    prestress : bool
+        About the last static state of the deck instead of the undeformed body.
+    set : mapping, optional
+        Values of keys that replace those of the deck.
+    """
+    deck = as_deck(deck, set)
+    dimension = _dimension(deck)
+    with _file(deck) as arguments, _temporary() as place:
+        out = Path(place) / "modes"
+        flags = ["--prestress"] if prestress else []
+        found = Modes(call("modes", *arguments, "--count", str(count), "--out", out, "--quiet", *flags))
+        files = [_pericles.OutputFile(path) for path in sorted((out / "modes").glob("mode_*.vtu"))]
+        def of(file: Any, name: str) -> Any:
+            return file.field(name)[:, :dimension]
+
+        found.shapes = np.array([of(file, "Mode_Shape") for file in files])
+        found.points = of(files[0], "Points") if files else np.zeros((0, dimension))
+        found.frequencies = _pericles_column(out / "modes.csv", "frequency")
+    return found
+
+
+def _pericles_column(path: Path, stem: str) -> NDArray[np.float64]:
+    columns = _pericles.read_table(path)
+    return next(values for name, _, values in columns if name.startswith(stem))
+
+
+def _dimension(deck: Deck) -> int:
+    body = deck.values()["body"]
+    if "dimension" in body:
+        return int(body["dimension"])
+    if "size" in body:
+        return len(body["size"])
+    return {"bar": 1, "plate": 2, "disc": 2, "ring": 2, "outline": 2}.get(body.get("shape"), 3)
+
+
+def dispersion(
+    deck: Any,
+    *,
+    direction: Sequence[float] | None = None,
+    measure: bool = False,
+    set: Mapping[str, Any] | None = None,
+) -> Dispersion:
+    """Analyse numerical dispersion and stability of the grid and kernel of a deck.
+
+    Parameters
+    ----------
+    deck : Deck, dict or path
+        The deck.
+    direction : sequence of float, optional
+        Direction of the wave vectors; by default the contour of the irreducible zone.
+    measure : bool
+        Also measure the spectrum in a run.
+    set : mapping, optional
+        Values of keys that replace those of the deck.
+    """
+    deck = as_deck(deck, set)
+    deck._core()
+    with _file(deck) as arguments, _temporary() as place:
+        out = Path(place) / "dispersion"
+        flags = [] if direction is None else [f"--direction={','.join(map(repr, map(float, direction)))}"]
+        flags += ["--measure"] if measure else []
+        execute("dispersion", *arguments, "--out", str(out), "--quiet", *flags)
+        found = Dispersion(json.loads((out / "dispersion.json").read_text(encoding="utf-8")))
+        found.curves = Table(_pericles.read_table(out / "curves.csv"))
+        polar = out / "polar.csv"
+        found.polar = Table(_pericles.read_table(polar)) if polar.exists() else None
+    return found
+
+
+def geodesics(
+    surface: str | os.PathLike[str],
+    horizon: float | str,
+    *,
+    methods: Sequence[str] | None = None,
+    between: Sequence[tuple[int, int]] = (),
+    open: bool = False,
+) -> Report:
+    """Compare accuracy and cost of methods for geodesic distances on a surface.
+
+    Parameters
+    ----------
+    surface : path or str
+        A file, or a shape such as ``"icosphere:4"``.
+    horizon : float or str
+        The horizon, m, or a text with unit.
+    methods : sequence of str, optional
+        The methods; by default all.
+    between : sequence of pairs of int
+        Vertices whose distances are computed too.
+    open : bool
+        Accept a surface with a boundary.
+    """
+    words = [os.fspath(surface), "--horizon", horizon if isinstance(horizon, str) else f"{float(horizon)!r} m"]
+    words += ["--methods", ",".join(methods)] if methods else []
+    words += [word for i, j in between for word in ("--between", f"{i},{j}")]
+    words += ["--open"] if open else []
+    return Report(call("geodesics", *words))
+
+
+def mesh(file: str | os.PathLike[str], *, unit: str = "m", blocks: Sequence[str] = ()) -> Report:
+    """Report the contents of a mesh or surface file: elements, points, volume, sets, problems.
+
+    Parameters
+    ----------
+    file : path
+        The file.
+    unit : str
+        The length unit of the file.
+    blocks : sequence of str
+        Names of the element groups that are used; by default all.
+    """
+    words = [os.fspath(file), "--unit", unit]
+    words += ["--blocks", ",".join(blocks)] if blocks else []
+    return Report(call("mesh", *words))
+
+
+def reproduce(study: str, *, full: bool = False) -> Reproduction:
+    """Recompute published results and compare.
+
+    Parameters
+    ----------
+    study : str
+        The study, such as ``"nonlocal-wave/..."``; ``pericles reproduce --list`` lists all.
+    full : bool
+        Include the rows that take long.
+    """
+    with _temporary() as place:
+        flags = ["--full"] if full else []
+        return Reproduction(call("reproduce", study, "--out", os.path.join(place, "out"), "--quiet", *flags))
+
+
+def diff(a: Any, b: Any, *, tolerance: float = 0.0) -> Difference:
+    """Compare two results field by field and column by column.
+
+    Parameters
+    ----------
+    a, b : Result or path
+        Results in folders.
+    tolerance : float
+        The largest relative difference that counts as equal.
+
+    Returns
+    -------
+    Difference
+        ``equal``, ``identical``, and ``rows`` with the differences of fields and columns.
+    """
+    paths = []
+    for given in (a, b):
+        folder = given.folder if isinstance(given, Result) else Path(given)
+        if folder is None:
+            raise PericlesError("results in memory cannot be compared by diff; give an output folder, or compare arrays")
+        paths.append(folder)
+    return Difference(json.loads(_pericles.compare(paths[0], paths[1], float(tolerance))))
+
+
+def run(
+    deck: Any,
+    *,
+    set: Mapping[str, Any] | None = None,
+    out: str | os.PathLike[str] | None = None,
+    force: bool = False,
+    progress: bool = False,
+) -> Result:
+    """Run a deck as the program does: with its output folder.
+
+    Parameters
+    ----------
+    deck : Deck, dict or path
+        The deck.
+    set : mapping, optional
+        Values of keys that replace those of the deck, such as ``{"time.end": "30 us"}``.
+    out : path, optional
+        The output folder; by default the name of the deck in the current folder, with a number if it exists.
+    force : bool
+        Replace results in the folder.
+    progress : bool
+        Show progress.
+
+    Returns
+    -------
+    Result
+
+    Raises
+    ------
+    DeckError
+        The deck is invalid; ``problems`` lists all problems.
+    UnstableError
+        The run became unstable; ``result`` has the results before.
+    """
+    from ._model import Model
+    from ._simulation import Simulation
+
+    deck = as_deck(deck, set)
+    model = Model(deck, _depth=4)
+    stem = None
+    if out is None:
+        stem = Path(".") / (Path(deck.name).stem if not deck.name.startswith("<") else "run")
+    core = model._core.simulation(None if out is None else Path(out), stem, force, [], ("never", 0.0), [])
+    with Simulation(core, model) as simulation:
+        simulation.run(progress=progress)
+        folder = core.folder
+    return Result.open(folder)
+
+
+def open_(folder: str | os.PathLike[str]) -> Result:
+    """Open the results of a run.
+
+    Parameters
+    ----------
+    folder : path
+        The output folder of the program or of :func:`run`.
+    """
+    return Result.open(folder)

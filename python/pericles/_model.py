@@ -1,0 +1,393 @@
+"""Models: points, bonds, conditions and the time step of a deck."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from . import _pericles, _toml
+from ._arrays import as_numbers, as_vectors, finite
+from ._deck import Deck, located, warn
+from ._errors import DeckError, PericlesError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+    from ._simulation import Simulation
+else:
+    from ._lazy import np
+
+_AXES = "xyz"
+_SECTIONS = {1: "area", 2: "thickness"}
+
+
+class Model:
+    """A body with its conditions, ready to run.
+
+    Made by :meth:`Deck.build`. Arrays have one row for each point in the user's order: that of the array or file of the
+    points, or of the grid.
+
+    Attributes
+    ----------
+    deck : Deck
+        The deck.
+    """
+
+    def __init__(
+        self,
+        deck: Deck,
+        *,
+        points: Any = None,
+        volumes: Any = None,
+        blocks: Any = None,
+        sets: Mapping[str, Any] | None = None,
+        _depth: int = 3,
+    ) -> None:
+        self.deck = deck.copy()
+        self._amended: list[str] = []
+        self._changes: list[tuple[str, tuple[Any, ...]]] = []
+        self._cloud = None
+        if points is not None:
+            self._cloud = self._own_cloud(points, volumes, blocks)
+            self._amended.append("points")
+        elif volumes is not None or blocks is not None:
+            raise PericlesError("volumes and blocks need points")
+        count = None if self._cloud is None else len(self._cloud[0])
+        self._sets: dict[str, NDArray[np.uint32]] = {}
+        for name, given in (sets or {}).items():
+            self._add_set(name, as_numbers(given, count, f"of the set `{name}`"))
+        self._build()
+        warn(self._facts["warnings"], _depth)
+
+    def _own_cloud(self, points: Any, volumes: Any, blocks: Any) -> tuple[Any, Any, Any]:
+        x = np.asarray(points, dtype=float)
+        if x.ndim == 1:
+            x = x.reshape(-1, 1)
+        if x.ndim != 2 or not 1 <= x.shape[1] <= 3 or len(x) == 0:
+            raise PericlesError(f"points have shape {x.shape}; needed: (n, dimension) with n ≥ 1 and 1 to 3 dimensions")
+        x = finite(np.ascontiguousarray(x), "points")
+        n, dimension = x.shape
+        body = dict(self.deck.get("body") or {})
+        for key in ("shape", "file", "dimension"):
+            if key in body and not (key == "shape" and body[key] == "points"):
+                raise PericlesError(f"the body has points from an array; remove `{key}` from [body]")
+        section = self._section(body, dimension)
+        spacing = _length(body.get("spacing"))
+        if volumes is None:
+            if spacing is None:
+                raise PericlesError("give volumes (m³) of the points, or `spacing` in [body] for those of cells with these sides")
+            v = np.full(n, spacing**dimension * section)
+        else:
+            v = np.broadcast_to(np.asarray(volumes, dtype=float), (n,)) if np.ndim(volumes) == 0 else np.asarray(volumes, dtype=float)
+            if v.shape != (n,):
+                raise PericlesError(f"volumes have shape {v.shape}; needed: ({n},), one for each point")
+            v = finite(np.ascontiguousarray(v), "volumes")
+        if spacing is None:
+            spacing = float((v.mean() / section) ** (1 / dimension))
+        if blocks is None:
+            b = np.ones(n, np.uint32)
+        else:
+            b = np.asarray(blocks)
+            if b.shape != (n,) or b.dtype.kind not in "iub" or (b.size and b.min() < 0):
+                raise PericlesError(f"blocks have shape {b.shape} and type {b.dtype}; needed: ({n},) whole numbers of at least 0")
+            b = np.ascontiguousarray(b.astype(np.uint32))
+        body.update(shape="points", file="<array>", dimension=dimension)
+        body.setdefault("spacing", spacing)
+        self.deck["body"] = body
+        return x, v, b
+
+    def _section(self, body: Mapping[str, Any], dimension: int) -> float:
+        key = _SECTIONS.get(dimension)
+        given = body.get(key) if key else None
+        if given is None:
+            return 1.0
+        if isinstance(given, str):
+            probe = {1: "bar", 2: "plate"}[dimension]
+            size: dict[str, Any] = {"length": 1} if dimension == 1 else {"size": [1, 1]}
+            tables = {
+                "body": {"shape": probe, **size, "spacing": 0.1, str(key): given},
+                "material": {"density": 1, "youngs_modulus": 1, "horizon_ratio": 3},
+                "time": {"end": 1},
+            }
+            return float(Deck.from_dict(tables).values()["body"][str(key)])
+        return float(given)
+
+    def _add_set(self, name: str, numbers: NDArray[np.uint32]) -> None:
+        if name in (self.deck.get("sets") or {}) or name in self._sets or name == "all":
+            raise PericlesError(f"there is a set `{name}` already; choose another name")
+        if len(numbers) == 0:
+            raise PericlesError(f"the set `{name}` has no points")
+        self._sets[name] = numbers
+        self._amended.append(f"the set `{name}`")
+
+    def _build(self) -> None:
+        sets = [(name, numbers.tolist()) for name, numbers in self._sets.items()]
+        x, v, b = self._cloud or (None, None, None)
+        try:
+            parsed = self.deck._core(list(self._sets))
+            self._core = _pericles.Model(parsed, x, v, b, sets)
+        except DeckError as error:
+            text = self.deck._text or _toml.dumps(self.deck._tables or {})
+            located(error, text, self.deck.name)
+            raise
+        self._facts = json.loads(self._core.facts())
+        for method, arguments in self._changes:
+            getattr(self._core, method)(*arguments)
+
+    def _change(self, method: str, *arguments: Any) -> None:
+        getattr(self._core, method)(*arguments)
+        self._changes.append((method, arguments))
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """Properties before the first step in SI units: bonds, horizon, stable step, memory, warnings …"""
+        return dict(self._facts)
+
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """Positions of the points, m; shape (n, dimension)."""
+        return self._core.positions()
+
+    @property
+    def volumes(self) -> NDArray[np.float64]:
+        """Volumes of the points, m³; shape (n,)."""
+        return self._core.volumes()
+
+    @property
+    def dimension(self) -> int:
+        """Dimension of the body."""
+        return int(self._facts["dimension"])
+
+    @property
+    def dt(self) -> float:
+        """Time step, s."""
+        return float(self._facts["dt"])
+
+    @property
+    def stable_step(self) -> float | None:
+        """Largest stable time step, s; None for schemes that are stable for any step."""
+        return self._facts["stable_step"]
+
+    @property
+    def sets(self) -> list[str]:
+        """Names of the sets of points, "all" first."""
+        return self._core.sets()
+
+    def __len__(self) -> int:
+        return int(self._facts["points"])
+
+    def numbers(self, of: Any = "all") -> NDArray[np.uint32]:
+        """Return the numbers of the points of a set, a mask or a list of numbers, in ascending order."""
+        if isinstance(of, str):
+            found = self._core.numbers(of)
+            if found is None:
+                raise PericlesError(f"there is no set `{of}`; the model has: {', '.join(self.sets)}")
+            return found
+        return np.unique(as_numbers(of, len(self), "of points"))
+
+    def _field(self, given: Any, what: str) -> NDArray[np.float64] | None:
+        if given is None:
+            return None
+        if callable(given):
+            given = given(self.points)
+        return finite(as_vectors(given, len(self), self.dimension, what), what)
+
+    def set_initial(self, *, displacement: Any = None, velocity: Any = None) -> None:
+        """Replace the initial state of the whole body.
+
+        Parameters
+        ----------
+        displacement, velocity : array of shape (n, dimension) or function, optional
+            Displacements (m) and velocities (m/s), or functions of the positions that return them. What is not given stays
+            as in the deck.
+        """
+        u = self._field(displacement, "initial displacements")
+        v = self._field(velocity, "initial velocities")
+        if u is None and v is None:
+            raise PericlesError("give displacement, velocity or both")
+        self._change("set_initial", u, v)
+        self._amended.append("the initial state")
+
+    def load(self, on: Any = "all", *, body_force: Any) -> None:
+        """Add a body force on points.
+
+        Parameters
+        ----------
+        on : str, mask or point numbers
+            The points.
+        body_force : array, function or deck expressions
+            Force density, N/m³: an array of shape (k, dimension) or one vector; a function ``f(t, x)`` of the time (s) and
+            the positions of the k points (m) that returns such an array; or a list of texts, each an expression of x, y, z
+            (m) and t (s) in SI units as in a deck. A function is called once for each time that the scheme evaluates.
+        """
+        if _is_expressions(body_force):
+            self._deck_entry("load", on, {"body_force": _expressions(body_force)})
+            return
+        numbers = self.numbers(on)
+        if callable(body_force):
+            as_vectors(body_force(0.0, self.points[numbers]), len(numbers), self.dimension, "the body force")
+            self._change("add_load", numbers.tolist(), None, body_force)
+        else:
+            values = finite(as_vectors(body_force, len(numbers), self.dimension, "the body force"), "the body force")
+            self._change("add_load", numbers.tolist(), values, None)
+        self._amended.append(f"a load on {_named(on)}")
+
+    def prescribe(
+        self,
+        on: Any,
+        *,
+        displacement: Callable[[float, NDArray[np.float64]], Any] | Sequence[str],
+        velocity: Callable[[float, NDArray[np.float64]], Any] | None = None,
+        axes: str | None = None,
+    ) -> None:
+        """Prescribe the displacement of points.
+
+        Parameters
+        ----------
+        on : str, mask or point numbers
+            The points.
+        displacement : function or deck expressions
+            A function ``f(t, x)`` of the time (s) and the positions of the k points (m) that returns displacements (m) of
+            shape (k, dimension) or one vector; or a list of texts, each an expression as in a deck.
+        velocity : function, optional
+            Its time derivative, m/s. Derivatives that are not given are central differences over one time step.
+        axes : str, optional
+            The prescribed axes, such as ``"x"``; by default all.
+        """
+        if _is_expressions(displacement):
+            self._deck_entry("constraint", on, {"displacement": _expressions(displacement)})  # type: ignore[arg-type]
+            return
+        numbers = self.numbers(on)
+        functions = [displacement] if velocity is None else [displacement, velocity]
+        for function, what in zip(functions, ("displacement", "velocity")):
+            as_vectors(function(0.0, self.points[numbers]), len(numbers), self.dimension, f"the prescribed {what}")  # type: ignore[operator]
+        wanted = axes if axes is not None else _AXES[: self.dimension]
+        if not wanted or any(axis not in _AXES[: self.dimension] for axis in wanted):
+            raise PericlesError(f'axes = "{axes}"; allowed: some of {", ".join(_AXES[: self.dimension])}, such as "x"')
+        flags = [axis in wanted for axis in _AXES[: self.dimension]]
+        name = on if isinstance(on, str) else f"motion_{len(self._changes) + 1}"
+        self._change("add_motion", name, numbers.tolist(), flags, functions)
+        self._amended.append(f"a prescribed motion of {_named(on)}")
+
+    def no_fail(self, on: Any) -> None:
+        """Exclude the bonds of points from failure.
+
+        Parameters
+        ----------
+        on : str, mask or point numbers
+            The points.
+        """
+        name = self._set_of(on, "no_fail")
+        material = dict(self.deck.get("material") or {})
+        known = material.get("no_fail", [])
+        material["no_fail"] = [*([known] if isinstance(known, str) else known), name]
+        self.deck["material"] = material
+        self._build()
+
+    def _set_of(self, on: Any, stem: str) -> str:
+        if isinstance(on, str):
+            self.numbers(on)
+            return on
+        number = 1
+        while f"{stem}_{number}" in self.sets:
+            number += 1
+        name = f"{stem}_{number}"
+        self._add_set(name, as_numbers(on, len(self), "of points"))
+        return name
+
+    def _deck_entry(self, table: str, on: Any, entry: dict[str, Any]) -> None:
+        """Add an entry with expressions to the deck."""
+        name = self._set_of(on, table)
+        self.deck[table] = [*(self.deck.get(table) or []), {"set": name, **entry}]
+        self._build()
+
+    def simulation(
+        self,
+        *,
+        out: Any = None,
+        force: bool = False,
+        keep: Sequence[str] = ("displacement", "velocity", "damage"),
+        every: int | None = None,
+        time: float | None = None,
+        count: int | None = None,
+    ) -> Simulation:
+        """Make a simulation.
+
+        Parameters
+        ----------
+        out : path, optional
+            The output folder, which receives what the deck requests under ``[output]``; by default results stay in memory.
+        force : bool
+            Replace results in the folder.
+        keep : sequence of str
+            The fields that a simulation in memory keeps.
+        every, time, count : int or float, optional
+            When they are kept: every given number of steps, each given time (s), or the given number of times. By default
+            100 times.
+
+        Returns
+        -------
+        Simulation
+        """
+        from ._simulation import Simulation, schedule
+
+        keep = [keep] if isinstance(keep, str) else list(keep)
+        kind, value = schedule(every, time, count) or ("count", 100)
+        if out is not None:
+            keep, kind, value = [], "never", 0.0
+        core = self._core.simulation(
+            None if out is None else Path(out), None, force, keep, (kind, float(value)), self._amended
+        )
+        return Simulation(core, self)
+
+    def __repr__(self) -> str:
+        facts = self._facts
+        return (
+            f"<pericles.Model: {facts['points']} points in {facts['dimension']}D, {facts['bonds']} bonds, "
+            f"horizon {facts['horizon']:.4g} m, dt {facts['dt']:.4g} s, {facts['steps']} steps>"
+        )
+
+    def _repr_html_(self) -> str:
+        return table_html("Model", self._facts)
+
+
+def table_html(title: str, facts: Mapping[str, Any]) -> str:
+    """Return facts as a table, with warnings in colour."""
+    import html
+
+    rows = []
+    for key, value in facts.items():
+        if value is None or isinstance(value, (list, dict)):
+            continue
+        shown = f"{value:.6g}" if isinstance(value, float) else str(value)
+        rows.append(f"<tr><td>{html.escape(key.replace('_', ' '))}</td><td>{html.escape(shown)}</td></tr>")
+    warnings = "".join(
+        f'<p style="color:#b36b00">warning: {html.escape(text)}</p>' for text in facts.get("warnings") or []
+    )
+    return f"<b>{html.escape(title)}</b><table>{''.join(rows)}</table>{warnings}"
+
+
+def _is_expressions(given: Any) -> bool:
+    return isinstance(given, (list, tuple)) and any(isinstance(entry, str) for entry in given)
+
+
+def _expressions(given: Any) -> list[Any]:
+    return [{"expression": entry} if isinstance(entry, str) else entry for entry in given]
+
+
+def _named(on: Any) -> str:
+    return f"`{on}`" if isinstance(on, str) else "points of an array"
+
+
+def _length(given: Any) -> float | None:
+    """Return a length of a deck in m."""
+    if given is None or isinstance(given, (int, float)):
+        return None if given is None else float(given)
+    tables = {
+        "body": {"shape": "bar", "length": given, "spacing": given},
+        "material": {"density": 1, "youngs_modulus": 1, "horizon_ratio": 3},
+        "time": {"end": 1},
+    }
+    return float(Deck.from_dict(tables).values()["body"]["spacing"])

@@ -1,0 +1,401 @@
+"""Results of runs."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from . import _pericles
+from ._errors import OutputError, PericlesError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+    from ._model import Model
+else:
+    from ._lazy import np
+
+
+def optional(name: str, extra: str) -> Any:
+    """Import an optional package, or say how to install it."""
+    import importlib
+
+    try:
+        return importlib.import_module(name)
+    except ImportError:
+        raise PericlesError(f'this needs the package {name}: pip install {name}, or pip install "pericles[{extra}]"') from None
+
+
+class Table(Mapping[str, "NDArray[np.float64]"]):
+    """A table of columns, such as a time history.
+
+    Attributes
+    ----------
+    units : dict of str to str
+        Units of the columns; empty for dimensionless values.
+    """
+
+    def __init__(self, columns: list[tuple[str, str, NDArray[np.float64]]]) -> None:
+        self._columns = {name: values for name, _, values in columns}
+        self.units = {name: unit for name, unit, _ in columns}
+        for values in self._columns.values():
+            values.flags.writeable = False
+
+    def __getitem__(self, name: str) -> NDArray[np.float64]:
+        try:
+            return self._columns[name]
+        except KeyError:
+            raise PericlesError(f"there is no column `{name}`; the table has: {', '.join(self._columns)}") from None
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._columns)
+
+    def __len__(self) -> int:
+        return len(self._columns)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._columns
+
+    def to_pandas(self) -> Any:
+        """Return a pandas DataFrame that shares the columns."""
+        pandas = optional("pandas", "pandas")
+        columns = {name: pandas.Series(values, copy=False) for name, values in self._columns.items()}
+        return pandas.DataFrame(columns, copy=False)
+
+    def to_polars(self) -> Any:
+        """Return a polars DataFrame."""
+        return optional("polars", "polars").DataFrame(dict(self._columns))
+
+    def __repr__(self) -> str:
+        rows = len(next(iter(self._columns.values()), ()))
+        return f"<pericles.Table: {rows} rows of {', '.join(self._columns)}>"
+
+
+class Record(Mapping[str, Any]):
+    """A part of ``run.json``, whose entries are also attributes."""
+
+    def __init__(self, entries: Mapping[str, Any]) -> None:
+        self._entries = dict(entries)
+
+    def __getitem__(self, name: str) -> Any:
+        value = self._entries[name]
+        return Record(value) if isinstance(value, dict) else value
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        try:
+            return self[name]
+        except KeyError:
+            raise AttributeError(f"there is no entry `{name}`; there are: {', '.join(self._entries)}") from None
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._entries)
+
+    def __len__(self) -> int:
+        return len(self._entries)
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self._entries]
+
+    def __repr__(self) -> str:
+        return f"<pericles.Record: {', '.join(self._entries)}>"
+
+
+class Result:
+    """The results of a run, in a folder or in memory.
+
+    Arrays have one row for each point in the user's order and are read-only views; copy them to change them.
+    """
+
+    _folder: Path | None
+    _report: dict[str, Any]
+    _files: list[tuple[float, Path]] | None
+    _recording: Any
+    _positions: Any
+    _cache: dict[int, Any]
+
+    def __init__(self) -> None:
+        raise TypeError("use pericles.open(folder), pericles.run(deck) or Simulation.result()")
+
+    @classmethod
+    def open(cls, folder: str | os.PathLike[str]) -> Result:
+        """Open the output folder of a run."""
+        result = cls.__new__(cls)
+        result._folder = Path(folder)
+        path = result._folder / "run.json"
+        try:
+            result._report = json.loads(path.read_text(encoding="utf-8"))
+        except FileNotFoundError:
+            raise OutputError(f"{folder} is not the output folder of a run: it has no run.json") from None
+        except (OSError, ValueError) as error:
+            raise OutputError(f"{path} cannot be used: {error}") from None
+        result._files = None
+        result._recording = None
+        result._cache = {}
+        return result
+
+    @classmethod
+    def of_simulation(cls, core: Any, model: Model) -> Result:
+        """Return the results that a simulation keeps in memory."""
+        result = cls.__new__(cls)
+        result._folder, result._files, result._cache = None, None, {}
+        result._recording = core.recording()
+        result._positions = model.points
+        try:
+            energies, broken = core.energies, core.broken_bonds
+        except PericlesError:
+            energies, broken = {}, None
+        result._report = {
+            "status": "finished" if core.step == core.steps else "stopped",
+            "title": (model.deck.get("title")),
+            "model": model.facts,
+            "progress": {"last_step": core.step, "t": core.time},
+            "audit": {**energies, "broken_bonds": broken},
+        }
+        return result
+
+    @property
+    def folder(self) -> Path | None:
+        """The output folder; None for results in memory."""
+        return self._folder
+
+    @property
+    def info(self) -> Record:
+        """The content of ``run.json``: status, model, progress, energy balance, deck."""
+        return Record(self._report)
+
+    @property
+    def audit(self) -> Record:
+        """Balance of energy and momentum at the end."""
+        return Record(self._report.get("audit") or {})
+
+    @property
+    def warnings(self) -> list[str]:
+        """Warnings about the model and the run."""
+        model = (self._report.get("model") or {}).get("warnings") or []
+        return [*model, *((self._report.get("audit") or {}).get("warnings") or [])]
+
+    @property
+    def history(self) -> Table:
+        """Time histories of energies, momentum and broken bonds; further columns as requested by the deck."""
+        if self._recording is not None:
+            return Table(self._recording.history())
+        return self.table("history")
+
+    @property
+    def tables(self) -> list[str]:
+        """Names of the tables, such as "history", "probes" and "reactions"."""
+        if self._folder is None:
+            return ["history"]
+        return sorted(path.stem for path in self._folder.glob("*.csv"))
+
+    def table(self, name: str) -> Table:
+        """Return a table by its name, such as ``"probes"``."""
+        if self._folder is None:
+            if name == "history":
+                return self.history
+            raise PericlesError(f"there is no table `{name}`; results in memory have: history")
+        path = self._folder / f"{name}.csv"
+        if not path.exists():
+            raise PericlesError(f"there is no table `{name}`; the run wrote: {', '.join(self.tables) or 'none'}")
+        return Table(_pericles.read_table(path))
+
+    def scalar(self, name: str) -> float:
+        """Return the last value of a column of any table, such as ``"tip_u_x"``, or a number of run.json, such as ``"audit.balance"``."""
+        if "." in name:
+            value: Any = self._report
+            for key in name.split("."):
+                value = value.get(key) if isinstance(value, Mapping) else None
+            if isinstance(value, (int, float)):
+                return float(value)
+            raise PericlesError(f"run.json has no number `{name}`")
+        known = []
+        for table in self.tables:
+            columns = self.table(table)
+            if name in columns:
+                return float(columns[name][-1])
+            known += [column for column in columns if column not in ("step", "time")]
+        raise PericlesError(f"there is no column `{name}`; the tables have: {', '.join(known)}")
+
+    def _series(self) -> list[tuple[float, Path]]:
+        if self._files is None:
+            assert self._folder is not None
+            import xml.etree.ElementTree as xml
+
+            path = self._folder / "fields.pvd"
+            if not path.exists():
+                self._files = []
+                return []
+            try:
+                sets = xml.parse(path).getroot().iter("DataSet")
+                self._files = [(float(entry.attrib["timestep"]), self._folder / entry.attrib["file"]) for entry in sets]
+            except (OSError, xml.ParseError, KeyError, ValueError) as error:
+                raise OutputError(f"{path} is damaged: {error}") from None
+        return self._files
+
+    @property
+    def times(self) -> NDArray[np.float64]:
+        """Times of the outputs of fields, s."""
+        if self._recording is not None:
+            return np.array(self._recording.times())
+        return np.array([time for time, _ in self._series()])
+
+    def _output(self, time: float | None, output: int | None) -> int:
+        times = self.times
+        if time is not None and output is not None:
+            raise PericlesError("give time or output, not both")
+        if len(times) == 0:
+            raise PericlesError("the run has no outputs of fields; request them under [output] of the deck, or by `keep`")
+        if time is not None:
+            return int(np.argmin(np.abs(times - time)))
+        index = -1 if output is None else int(output)
+        if not -len(times) <= index < len(times):
+            raise PericlesError(f"output {index} does not exist; there are {len(times)}, from 0 to {len(times) - 1}")
+        return index % len(times)
+
+    def _file(self, output: int) -> Any:
+        if output not in self._cache:
+            self._cache.clear()
+            self._cache[output] = _pericles.OutputFile(self._series()[output][1])
+        return self._cache[output]
+
+    @property
+    def fields(self) -> list[str]:
+        """Names of the fields."""
+        if self._recording is not None:
+            return self._recording.names()
+        if not self._series():
+            return []
+        return [name.lower() for name in self._file(self._output(None, None)).names()[1:]]
+
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """Reference positions of the points, m; shape (n, dimension)."""
+        if self._recording is not None:
+            return self._positions
+        return self._file(self._output(None, None)).field("Points")[:, : self._dimension]
+
+    @property
+    def _dimension(self) -> int:
+        return int((self._report.get("model") or {}).get("dimension") or 3)
+
+    def field(self, name: str, *, time: float | None = None, output: int | None = None) -> NDArray[np.float64]:
+        """Return a field of an output.
+
+        Parameters
+        ----------
+        name : str
+            Name in lower case, such as ``"displacement"`` or ``"strain_energy_density"``.
+        time : float, optional
+            The output nearest to this time, s.
+        output : int, optional
+            The number of the output; by default the last one, -1.
+
+        Returns
+        -------
+        array
+            Shape (n, components), or (n,) for scalars; read-only, without a copy.
+        """
+        index = self._output(time, output)
+        if self._recording is not None:
+            found = self._recording.field(name, index)
+            if found is None:
+                raise PericlesError(f"the field `{name}` was not kept; kept: {', '.join(self.fields)}")
+            return found
+        file = self._file(index)
+        names = {known.lower(): known for known in file.names()}
+        if name.lower() not in names or name.lower() == "points":
+            raise PericlesError(f"there is no field `{name}`; the run wrote: {', '.join(sorted(set(names) - {'points'}))}")
+        values = file.field(names[name.lower()])
+        if values.shape[1] == 1:
+            return values.reshape(-1)
+        return values[:, : self._dimension] if values.shape[1] == 3 else values
+
+    def to_pyvista(self, *, time: float | None = None, output: int | None = None) -> Any:
+        """Return the points with all fields of an output as a PyVista data set.
+
+        A run with an output folder is read with its cells; results in memory are points.
+        """
+        pyvista = optional("pyvista", "pyvista")
+        index = self._output(time, output)
+        if self._recording is None:
+            return pyvista.read(self._series()[index][1])
+        mesh = pyvista.PolyData(_padded(self.points))
+        for name in self.fields:
+            values = self.field(name, output=index)
+            shown = "_".join(word.capitalize() for word in name.split("_"))
+            mesh.point_data[shown] = values if values.ndim == 1 or values.shape[1] > 3 else _padded(values)
+        return mesh
+
+    def to_meshio(self, *, time: float | None = None, output: int | None = None) -> Any:
+        """Return the points with all fields of an output as a meshio mesh of vertices."""
+        meshio = optional("meshio", "all")
+        index = self._output(time, output)
+        points = self.points
+        data = {}
+        for name in self.fields:
+            values = np.array(self.field(name, output=index))
+            data[name] = values if values.ndim == 1 or values.shape[1] > 3 else _padded(values)
+        cells = [("vertex", np.arange(len(points)).reshape(-1, 1))]
+        return meshio.Mesh(_padded(points), cells, point_data=data)
+
+    def plot(self, field: str = "damage", *, time: float | None = None, output: int | None = None, scale: float = 1.0, ax: Any = None) -> Any:
+        """Draw a field of a plane body or bar with Matplotlib; return the axes.
+
+        Parameters
+        ----------
+        field : str
+            The field; vectors are drawn by their magnitude.
+        time, output : float or int, optional
+            The output; by default the last.
+        scale : float
+            Factor of the displacements, if they are there.
+        """
+        pyplot = optional("matplotlib.pyplot", "all")
+        values = self.field(field, time=time, output=output)
+        x = np.array(self.points)
+        if "displacement" in self.fields:
+            x = x + scale * np.asarray(self.field("displacement", time=time, output=output)).reshape(len(x), -1)
+        if values.ndim == 2:
+            values = np.linalg.norm(values, axis=1)
+        ax = ax or pyplot.gca()
+        if x.shape[1] == 1:
+            ax.plot(x[:, 0], values, ".")
+            ax.set_xlabel("x (m)")
+            ax.set_ylabel(field)
+            return ax
+        size = max(0.5, 3e4 / len(x))
+        drawn = ax.scatter(x[:, 0], x[:, 1], c=values, s=min(size, 20), marker="s", linewidths=0)
+        ax.set_aspect("equal")
+        ax.set_xlabel("x (m)")
+        ax.set_ylabel("y (m)")
+        ax.figure.colorbar(drawn, ax=ax, label=field)
+        return ax
+
+    def __reduce__(self) -> Any:
+        if self._folder is None:
+            raise PericlesError("results in memory cannot be pickled; give an output folder, whose results are pickled by path")
+        return (Result.open, (os.fspath(self._folder.absolute()),))
+
+    def __repr__(self) -> str:
+        where = str(self._folder) if self._folder is not None else "in memory"
+        count = len(self.times)
+        return f"<pericles.Result {where}: {self._report.get('status')}, {count} outputs of {', '.join(self.fields) or 'no fields'}>"
+
+    def _repr_html_(self) -> str:
+        from ._model import table_html
+
+        title = f"Result {self._folder or 'in memory'}: {self._report.get('status')}"
+        audit = {**(self._report.get("audit") or {}), "warnings": self.warnings}
+        return table_html(title, audit)
+
+
+def _padded(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return vectors with three components."""
+    out = np.zeros((len(vectors), 3))
+    out[:, : vectors.shape[1]] = vectors
+    return out

@@ -1,0 +1,357 @@
+//! Models: the points of a deck or of arrays, with sets, conditions and the time step.
+
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, MutexGuard};
+
+use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
+use pericles::boundary::{
+    AxisMotion, Load, LoadDensity, MotionKind, PrescribedMotion, TimeFunction,
+};
+use pericles::observe::Schedule;
+use pericles::space::{ListedPoints, PointCloud};
+use pericles_deck::{BuildError, Fault, KeyPath, Remark};
+use pericles_io::{OutputFolder, in_user_order};
+use pericles_run::{Assembled, Discretisation, Means, Resources, Source, assemble, discretise};
+use pyo3::prelude::*;
+use pyo3::sync::MutexExt;
+
+use crate::arrays::{Selection, component_major, in_cloud_order, owned};
+use crate::deck::Deck;
+use crate::entry::waiting;
+use crate::errors::{self, plain};
+use crate::simulation::{Plan, Simulation};
+use crate::values::{FunctionValues, Step, Trouble};
+
+/// A body with its conditions.
+#[pyclass(frozen, module = "pericles._pericles")]
+pub struct Model {
+    parts: Mutex<Parts>,
+    source: Source,
+    cloud: Arc<PointCloud>,
+    step: Step,
+    trouble: Trouble,
+}
+
+struct Parts {
+    discretisation: Discretisation,
+    /// The assembly of these parts, until it becomes a simulation or they change.
+    assembled: Option<Assembled>,
+    facts: String,
+}
+
+/// A set given by the user numbers of its points.
+type NumberedSet = (String, Vec<u32>);
+
+/// Selects a set of points.
+fn selected(cloud: &PointCloud, name: &str, numbers: &[u32]) -> Result<Vec<u32>, BuildError> {
+    let refuse = |reason: String| {
+        let path = KeyPath::from("sets").key(name);
+        Err(Remark::new(path, Fault::BadDiscretisation { reason }).into())
+    };
+    if let Some(number) = numbers
+        .iter()
+        .find(|&&number| number as usize >= cloud.len())
+    {
+        let points = cloud.len();
+        return refuse(format!(
+            "the set `{name}` has point {number}, but the {points} points are numbered from 0 to {}",
+            points - 1
+        ));
+    }
+    if numbers.is_empty() {
+        return refuse(format!("the set `{name}` has no points"));
+    }
+    Ok(Selection::of_numbers(cloud, numbers).points)
+}
+
+/// Builds points, sets and assembly.
+fn built(
+    source: &Source,
+    listed: Option<&ListedPoints>,
+    sets: &[NumberedSet],
+) -> PyResult<(Discretisation, Assembled)> {
+    let mut kept = None;
+    let made = Assembled::made(source, &Means::default(), &mut |_| {}, |resources| {
+        let given = |_: &std::path::Path, _: usize, _: u64| Ok(listed.cloned().unwrap_or_default());
+        let resources = match listed {
+            None => *resources,
+            Some(_) => Resources {
+                read_points: &given,
+                ..*resources
+            },
+        };
+        let mut discretisation = discretise(source.model(), &resources)?;
+        for (name, numbers) in sets {
+            let points = selected(&discretisation.cloud, name, numbers)?;
+            discretisation.sets.push((name.clone(), points));
+        }
+        kept = Some(discretisation.clone());
+        assemble(source.model(), discretisation, &resources)
+    });
+    let assembled = made.map_err(errors::of_run)?;
+    let discretisation = kept.ok_or_else(|| plain("the model has no points"))?;
+    Ok((discretisation, assembled))
+}
+
+impl Model {
+    fn parts(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, Parts>> {
+        let locked = self.parts.lock_py_attached(py);
+        locked.map_err(|_| plain("a computation with this model panicked"))
+    }
+
+    fn values(
+        &self,
+        py: Python<'_>,
+        functions: Vec<Py<PyAny>>,
+        selection: &Selection,
+    ) -> PyResult<Arc<FunctionValues>> {
+        let dimension = self.cloud.dimension();
+        let places = owned(py, selection.positions(&self.cloud), dimension)?;
+        // Functions receive rows of consecutive coordinates.
+        let places = places.call_method1("copy", ("C",))?;
+        Ok(Arc::new(FunctionValues::new(
+            functions,
+            places.unbind(),
+            selection.clone(),
+            dimension,
+            (self.step.clone(), self.trouble.clone()),
+        )))
+    }
+
+    fn change(&self, py: Python<'_>, change: impl FnOnce(&mut Discretisation)) -> PyResult<()> {
+        let mut parts = self.parts(py)?;
+        change(&mut parts.discretisation);
+        parts.assembled = None;
+        Ok(())
+    }
+}
+
+#[pymethods]
+impl Model {
+    /// Builds the model of a deck; `points`, `volumes` and `blocks` replace the file of a body of listed points.
+    #[new]
+    #[pyo3(signature = (deck, points, volumes, blocks, sets))]
+    fn new(
+        py: Python<'_>,
+        deck: &Deck,
+        points: Option<PyReadonlyArray2<'_, f64>>,
+        volumes: Option<PyReadonlyArray1<'_, f64>>,
+        blocks: Option<PyReadonlyArray1<'_, u32>>,
+        sets: Vec<NumberedSet>,
+    ) -> PyResult<Self> {
+        let listed = match (points, volumes, blocks) {
+            (Some(points), Some(volumes), Some(blocks)) => {
+                let rows = points.as_array();
+                let place = |row: numpy::ndarray::ArrayView1<'_, f64>| {
+                    std::array::from_fn(|c| row.get(c).copied().unwrap_or(0.0))
+                };
+                Some(ListedPoints {
+                    positions: rows.rows().into_iter().map(place).collect(),
+                    volumes: volumes.as_array().to_vec(),
+                    blocks: blocks.as_array().to_vec(),
+                })
+            }
+            _ => None,
+        };
+        let source = deck.source.clone();
+        let (source, (discretisation, assembled)) = waiting(py, move || {
+            let made = built(&source, listed.as_ref(), &sets)?;
+            Ok((source, made))
+        })?;
+        let facts = serde_json::to_string(&assembled.facts);
+        let step = Step::new(assembled.assembly.dt);
+        Ok(Self {
+            cloud: Arc::clone(&discretisation.cloud),
+            parts: Mutex::new(Parts {
+                discretisation,
+                facts: facts.map_err(|error| plain(&error.to_string()))?,
+                assembled: Some(assembled),
+            }),
+            source,
+            step,
+            trouble: Trouble::default(),
+        })
+    }
+
+    /// Properties of the model, as JSON.
+    fn facts(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(self.parts(py)?.facts.clone())
+    }
+
+    /// Positions of the points, m.
+    fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let positions = in_user_order(&self.cloud, self.cloud.positions()).into_owned();
+        owned(py, positions, self.cloud.dimension())
+    }
+
+    /// Volumes of the points, m³.
+    fn volumes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, &in_user_order(&self.cloud, self.cloud.volumes()))
+    }
+
+    /// Names of the sets.
+    fn sets(&self, py: Python<'_>) -> PyResult<Vec<String>> {
+        let parts = self.parts(py)?;
+        let sets = parts.discretisation.sets.iter();
+        Ok(sets.map(|(name, _)| name.clone()).collect())
+    }
+
+    /// User numbers of the points of a set, ascending.
+    fn numbers<'py>(
+        &self,
+        py: Python<'py>,
+        set: &str,
+    ) -> PyResult<Option<Bound<'py, PyArray1<u32>>>> {
+        let parts = self.parts(py)?;
+        let points = parts.discretisation.set(set);
+        let numbers = points
+            .map(|points| Selection::of_points(&self.cloud, points.clone()).numbers(&self.cloud));
+        Ok(numbers.map(|numbers| PyArray1::from_vec(py, numbers)))
+    }
+
+    /// Replaces the initial state.
+    #[pyo3(signature = (displacement, velocity))]
+    fn set_initial(
+        &self,
+        py: Python<'_>,
+        displacement: Option<PyReadonlyArray2<'_, f64>>,
+        velocity: Option<PyReadonlyArray2<'_, f64>>,
+    ) -> PyResult<()> {
+        let ordered = |array: &PyReadonlyArray2<'_, f64>| in_cloud_order(&self.cloud, array);
+        let (u, v) = (
+            displacement.as_ref().map(ordered),
+            velocity.as_ref().map(ordered),
+        );
+        self.change(py, |discretisation| {
+            let conditions = &mut discretisation.conditions;
+            conditions.displacement = u.or(conditions.displacement.take());
+            conditions.velocity = v.or(conditions.velocity.take());
+        })
+    }
+
+    /// Adds a load, constant or a function, N/m³, on points given by user numbers.
+    fn add_load(
+        &self,
+        py: Python<'_>,
+        numbers: Vec<u32>,
+        density: Option<PyReadonlyArray2<'_, f64>>,
+        function: Option<Py<PyAny>>,
+    ) -> PyResult<()> {
+        let selection = Selection::of_numbers(&self.cloud, &numbers);
+        let density = match (density, function) {
+            (Some(density), _) => {
+                let mut values = selection.ordered(&component_major(&density));
+                // All three axes are given, even for bodies of fewer dimensions.
+                values.resize(3 * selection.points.len(), 0.0);
+                LoadDensity::PerPoint(values)
+            }
+            (None, Some(function)) => {
+                LoadDensity::Values(self.values(py, vec![function], &selection)?)
+            }
+            (None, None) => return Err(plain("a load needs values or a function")),
+        };
+        let load = Load::new(selection.points, density, TimeFunction::Constant);
+        self.change(py, |discretisation| {
+            discretisation.conditions.loads.push(load)
+        })
+    }
+
+    /// Prescribes the displacement of points given by user numbers along axes: the displacement and its known time
+    /// derivatives are functions.
+    fn add_motion(
+        &self,
+        py: Python<'_>,
+        name: String,
+        numbers: Vec<u32>,
+        axes: Vec<bool>,
+        functions: Vec<Py<PyAny>>,
+    ) -> PyResult<()> {
+        let selection = Selection::of_numbers(&self.cloud, &numbers);
+        let values = self.values(py, functions, &selection)?;
+        let along = std::array::from_fn(|c| {
+            let prescribed = axes.get(c).copied().unwrap_or(false);
+            prescribed.then(|| AxisMotion::Values(values.clone()))
+        });
+        let n = self.cloud.len();
+        let motion = PrescribedMotion::along(
+            name,
+            selection.points,
+            MotionKind::Displacement,
+            along,
+            TimeFunction::Constant,
+            &vec![0.0; self.cloud.dimension() * n],
+            n,
+        );
+        let motion = motion.map_err(errors::of_engine)?;
+        self.change(py, |discretisation| {
+            discretisation.conditions.motions.push(motion)
+        })
+    }
+
+    /// Makes a simulation: in the folder `out`, in a numbered folder beginning with `stem`, or in memory.
+    #[pyo3(signature = (out, stem, force, keep, schedule, amended))]
+    #[expect(clippy::too_many_arguments, reason = "called from one place, by name")]
+    fn simulation(
+        &self,
+        py: Python<'_>,
+        out: Option<PathBuf>,
+        stem: Option<PathBuf>,
+        force: bool,
+        keep: Vec<String>,
+        schedule: (String, f64),
+        amended: Vec<String>,
+    ) -> PyResult<Simulation> {
+        let (assembled, discretisation) = {
+            let mut parts = self.parts(py)?;
+            (parts.assembled.take(), parts.discretisation.clone())
+        };
+        let mut source = self.source.clone();
+        if let Source::Deck { text, .. } = &mut source {
+            text.amended = amended;
+        }
+        let (trouble, step) = (self.trouble.clone(), self.step.clone());
+        let schedule = schedule_of(&schedule.0, schedule.1)?;
+        waiting(py, move || {
+            let assembled = match assembled {
+                Some(assembled) => assembled,
+                None => {
+                    let assemble = |resources: &Resources<'_>| {
+                        assemble(source.model(), discretisation, resources)
+                    };
+                    Assembled::made(&source, &Means::default(), &mut |_| {}, assemble)
+                        .map_err(errors::of_run)?
+                }
+            };
+            if let Some(error) = trouble.take() {
+                return Err(error);
+            }
+            step.set(assembled.assembly.dt);
+            let folder = match (&out, &stem) {
+                (Some(out), _) => Some(OutputFolder::create(out, force)),
+                (None, Some(stem)) => Some(OutputFolder::create_numbered(stem)),
+                (None, None) => None,
+            };
+            let folder = folder.transpose().map_err(errors::of_io)?;
+            let plan = Plan {
+                source: &source,
+                keep: &keep,
+                schedule,
+                trouble,
+            };
+            Simulation::of(assembled, folder, plan)
+        })
+    }
+}
+
+/// Returns the schedule of a callback or output.
+pub fn schedule_of(kind: &str, value: f64) -> PyResult<Schedule> {
+    match kind {
+        "steps" if value >= 1.0 => Ok(Schedule::Every(value as u64)),
+        "time" if value > 0.0 => Ok(Schedule::Interval(value)),
+        "count" if value >= 1.0 => Ok(Schedule::Count(value as u64)),
+        "never" => Ok(Schedule::Never),
+        _ => Err(plain(&format!(
+            "the schedule {kind} = {value} is not positive"
+        ))),
+    }
+}

@@ -1,0 +1,131 @@
+"""Speed of the border. Limits are those of the design; a debug build of the extension is not measured."""
+
+import os
+import statistics
+import subprocess
+import sys
+import threading
+import time
+
+import numpy as np
+import pytest
+from conftest import BAR, PLATE, changed
+
+import pericles as pc
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(os.environ.get("PERICLES_GOALS") != "1", reason="measures time: set PERICLES_GOALS=1 on a quiet machine"),
+]
+
+
+def grid(points, **tables):
+    """Return a plate with about so many points."""
+    side = int(points**0.5)
+    return changed(PLATE, body={"size": [side * 1e-3, side * 1e-3], "spacing": 1e-3}, **tables)
+
+
+def test_p1_callbacks():
+    deck = changed(BAR, body={"spacing": "0.25 m"}, material={"horizon_ratio": 1.5}, time={"end": "1 s", "dt": "10 us"})
+    plain = pc.Deck.from_dict(deck).build().simulation(keep=[])
+    began = time.perf_counter()
+    plain.run()
+    without = time.perf_counter() - began
+    called = pc.Deck.from_dict(deck).build().simulation(keep=[])
+    called.every(steps=1)(lambda s: None)
+    began = time.perf_counter()
+    called.run()
+    each = (time.perf_counter() - began - without) / called.steps
+    print(f"P1 callback: {1e6 * each:.2f} us")
+    assert each < 1e-6
+
+
+def test_p1_field_of_a_callback():
+    simulation = pc.Deck.from_dict(grid(1e5)).build().simulation(keep=[])
+    times = []
+
+    @simulation.every(steps=1)
+    def look(s):
+        began = time.perf_counter()
+        s.field("displacement")
+        times.append(time.perf_counter() - began)
+
+    simulation.step(20)
+    print(f"P1 field of 1e5 points: {1e3 * statistics.median(times):.2f} ms")
+    assert statistics.median(times) < 1e-3
+
+
+def test_p4_other_threads_keep_their_speed():
+    def count(stop):
+        number = 0
+        while not stop.is_set():
+            for _ in range(1000):
+                number += 1
+        return number
+
+    def counted(seconds):
+        stop, found = threading.Event(), []
+        thread = threading.Thread(target=lambda: found.append(count(stop)))
+        thread.start()
+        time.sleep(seconds)
+        stop.set()
+        thread.join()
+        return found[0]
+
+    simulation = pc.Deck.from_dict(grid(1e4, time={"end": "1 s"})).build().simulation(keep=[])
+    alone = counted(1.0)
+    runner = threading.Thread(target=simulation.run)
+    runner.start()
+    together = counted(1.0)
+    simulation.stop()
+    runner.join()
+    print(f"P4 other thread: {100 * together / alone:.0f} %")
+    # With as many computing threads as cores a part of the time goes to them, not to the interpreter's lock.
+    assert together > (0.9 if (os.cpu_count() or 1) > 2 else 0.4) * alone
+
+
+def test_p5_result_field():
+    deck = grid(1e6, material={"horizon_ratio": 1.5}, time={"end": "10 us", "dt": "10 us", "allow_unstable": True})
+    result = pc.Deck.from_dict(deck).build().simulation(keep=["displacement"], count=1).run().result()
+    result.field("displacement")
+    times = []
+    recording, output = result._recording, len(result.times) - 1
+    for _ in range(1000):
+        began = time.perf_counter()
+        recording.field("displacement", output)
+        times.append(time.perf_counter() - began)
+    print(f"P5 field of 1e6 points: {1e6 * statistics.median(times):.1f} us")
+    assert statistics.median(times) < 1e-5
+
+
+def test_p6_callable_load():
+    n = 500
+    deck = changed(BAR, body={"spacing": f"{1 / n!r} m"}, time={"end": "1 ms"})
+    plain, loaded = (pc.Deck.from_dict(deck).build() for _ in range(2))
+    loaded.load("all", body_force=lambda t, x: np.sin(1e4 * t) * x)
+    seconds = []
+    for model in (plain, loaded):
+        simulation = model.simulation(keep=[])
+        simulation.step(20)
+        began = time.perf_counter()
+        simulation.step(200)
+        seconds.append((time.perf_counter() - began) / 200)
+    each = seconds[1] - seconds[0]
+    print(f"P6 callable load of {n} points: {1e6 * each:.0f} us")
+    assert each < 6e-5
+
+
+def test_p7_import():
+    def seconds(code):
+        times = []
+        for _ in range(7):
+            began = time.perf_counter()
+            subprocess.run([sys.executable, "-c", code], check=True)
+            times.append(time.perf_counter() - began)
+        return min(times)
+
+    each = seconds("import pericles") - seconds("pass")
+    loaded = subprocess.check_output([sys.executable, "-c", "import pericles, sys; print('numpy' in sys.modules)"], text=True)
+    print(f"P7 import: {1e3 * each:.0f} ms")
+    assert loaded.strip() == "False"
+    assert each < 0.05
