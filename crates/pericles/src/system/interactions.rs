@@ -153,9 +153,30 @@ impl System {
     pub fn contact_frequency(&self, density: &PointScalar) -> f64 {
         /// Ratio of squared frequencies of many contacts and one.
         const SEVERAL: f64 = 1.7;
-        let square = |one: &dyn Interaction| one.contact_frequency(density).powi(2);
-        let largest = self.interactions().map(square).fold(0.0, f64::max);
-        (SEVERAL * largest).sqrt()
+        SEVERAL.sqrt() * self.single_contact_frequency(density)
+    }
+
+    /// Returns the highest frequency (1/s) of a single contact.
+    fn single_contact_frequency(&self, density: &PointScalar) -> f64 {
+        let all = self
+            .interactions()
+            .map(|one| one.contact_frequency(density));
+        all.fold(0.0, f64::max)
+    }
+
+    /// Returns the largest time step (s) with contact, where `stable` is that of the bonds alone under a scheme that is
+    /// stable for ω dt ≤ `limit`: stable with several contacts per point, and with at least five steps per contact of a
+    /// lone pair, 0.63/ω. Its velocity after the contact is then within 4 % of that before; at the limit of stability
+    /// the ratio is between 0.9 and 1.1.
+    pub fn contact_step(&self, stable: f64, limit: f64) -> f64 {
+        /// ω dt at five steps per contact, which lasts π/ω.
+        const RESOLVED: f64 = 0.63;
+        if self.interactions.is_empty() {
+            return stable;
+        }
+        let many = self.contact_frequency(&self.density) / limit;
+        let single = self.single_contact_frequency(&self.density);
+        (1.0 / (1.0 / stable).hypot(many)).min(RESOLVED / single)
     }
 
     fn configuration<'a>(&'a self, t: f64, u: &'a [f64]) -> Configuration<'a> {
