@@ -199,7 +199,7 @@ fn pressed(cut: bool) -> f64 {
             PrescribedMotion::displacement(ends(right), [Some(by), None, None], one.clone());
         system.add_motion(motion).unwrap();
     }
-    let corner = PrescribedMotion::displacement(vec![0].into(), [None, Some(0.0), None], one);
+    let corner = PrescribedMotion::displacement(vec![0], [None, Some(0.0), None], one);
     system.add_motion(corner).unwrap();
     let options = RelaxationOptions {
         tolerance: 1e-6,
