@@ -248,7 +248,8 @@ impl Watched<'_> {
     }
 
     fn look_at_growth(&self) -> Result<(), Alarm> {
-        let energy = self.system.mechanical_energy(self.state);
+        let State { t, u, v, .. } = self.state;
+        let energy = self.system.mechanical_energy(*t, u, v);
         self.compare(energy, PLAIN_GROWTH)
     }
 
@@ -313,7 +314,9 @@ impl Watched<'_> {
     fn look_at_energy(&self) -> Result<(), Alarm> {
         let (system, state) = (self.system, self.state);
         let correction = self.integrator.energy_correction(system, state, self.dt);
-        let conserved = system.mechanical_energy(state) + system.dissipated() + correction;
+        let conserved = system.mechanical_energy(state.t, &state.u, &state.v)
+            + system.dissipated()
+            + correction;
         self.compare(conserved, GROWTH)
     }
 

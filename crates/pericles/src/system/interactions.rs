@@ -7,7 +7,6 @@ use crate::interaction::{Configuration, Interaction, InteractionStep};
 use crate::parallel::PointSubset;
 use crate::scalar::PointScalar;
 use crate::step_end::StepEnd;
-use crate::time::State;
 
 impl System {
     /// Adds an interaction.
@@ -51,10 +50,11 @@ impl System {
         self.operator().energy(t, u) + self.contact_energy(t, u)
     }
 
-    /// Returns the kinetic and stored energy of a state, with contact and the bodies of interactions, J.
-    pub fn mechanical_energy(&self, state: &State) -> f64 {
-        let kinetic = self.kinetic_energy(&state.v) + self.body_kinetic_energy();
-        kinetic + self.stored_energy(state.t, &state.u)
+    /// Returns the kinetic and stored energy at displacement u and velocity v, with contact and
+    /// the bodies of interactions, J.
+    pub fn mechanical_energy(&self, t: f64, u: &[f64], v: &[f64]) -> f64 {
+        let kinetic = self.kinetic_energy(v) + self.body_kinetic_energy();
+        kinetic + self.stored_energy(t, u)
     }
 
     /// Returns the energy stored by contact at displacement u, J.
