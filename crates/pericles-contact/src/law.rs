@@ -231,21 +231,6 @@ pub(crate) fn micromodulus(dimension: usize, young: f64, horizon: f64, section: 
     }
 }
 
-/// Returns the largest time step (s) of velocity Verlet for a body with the highest frequency `body` (1/s) whose contacts
-/// have the frequency `contact` (1/s), with `safety` < 1 for stability.
-///
-/// It is min(2 safety/√(ω_b² + 1.7 ω_c²), 0.63/ω_c): stable with several contacts per point, and at least five steps per
-/// contact of a lone pair, whose velocity after the contact is then within 4 % of the velocity before it. (At the
-/// stability limit alone the ratio is between 0.9 and 1.1.)
-pub fn largest_step(safety: f64, body: f64, contact: f64) -> f64 {
-    let stable = 2.0 * safety / (body * body + 1.7 * contact * contact).sqrt();
-    if contact > 0.0 {
-        stable.min(0.63 / contact)
-    } else {
-        stable
-    }
-}
-
 /// Returns the largest overlap relative to the spacing to be expected when bodies meet with the relative speed `speed`
 /// (m/s): 0.28 N² (v/c) (2.25/χ), with the wave speed c (m/s) and N = δ/dx. It holds for bars, and for bars on walls.
 /// Above one half the points may pass each other.

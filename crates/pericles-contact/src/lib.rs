@@ -21,7 +21,5 @@ pub use error::ContactError;
 pub use impactor::{
     ClosedMesh, Impactor, ImpactorMotion, Inertia, MassProperties, Pose, Reading, Shape,
 };
-pub use law::{
-    ContactLaw, ContactPairs, ContactStiffness, Friction, PairLaw, largest_step, usual_overlap,
-};
+pub use law::{ContactLaw, ContactPairs, ContactStiffness, Friction, PairLaw, usual_overlap};
 pub use points::{PointContact, SearchReport};

@@ -9,6 +9,7 @@
 //! | more energy than the scheme conserves | every [`RARELY`] steps | all bodies |
 //! | a deformation gradient with non-positive determinant | every step | forces that compute one |
 //! | points that have passed each other | every [`OFTEN`] steps | nonlinear bars (linear laws do not depend on the order of points) |
+//! | points about to pass through each other in contact | every [`OFTEN`] steps | bodies with contact |
 //! | a step above the stable step of a body that stiffened | every [`RARELY`] steps, and when energy appears | nonlinear bodies under explicit schemes with one step, unless the step was too long from the start |
 //!
 //! All checks run after the last step. The guard changes nothing, so that results do not depend on it. It costs
@@ -46,6 +47,8 @@ const GROWTH: f64 = 2.0;
 const PLAIN_GROWTH: f64 = 1.7;
 /// The same ratio for the measure of nonlinear bodies, relative to its bound in stable runs.
 const SWING: f64 = 5.0;
+/// Largest overlap of a contact relative to its distance.
+const DEEPEST: f64 = 0.9;
 /// Evaluations of the tangent in a check of the stiffness.
 const APPLICATIONS: usize = 10;
 /// Allowed ratio of the step to the stable step of the linearised motion; nonlinear motion does not grow at once above
@@ -73,6 +76,11 @@ pub enum InstabilityCause {
         /// The determinant J.
         volume_ratio: f64,
     },
+    /// Points overlap so much in contact that they are about to pass through each other.
+    Overlapping {
+        /// Overlap relative to the contact distance.
+        overlap: f64,
+    },
     /// The body has stiffened so much that the step is too long.
     Stiffened {
         /// The time step, s.
@@ -99,6 +107,12 @@ impl fmt::Display for InstabilityCause {
                 f,
                 "the deformation gradient has the determinant {volume_ratio:.3}, but it must be positive: the material is inverted"
             ),
+            Self::Overlapping { overlap } => write!(
+                f,
+                "points overlap in contact by {:.0} % of the contact distance; allowed: up to {:.0} %",
+                100.0 * overlap,
+                100.0 * DEEPEST
+            ),
             Self::Stiffened { dt, limit } => write!(
                 f,
                 "the body has become stiffer: dt is {} s, but steps above {} s are now unstable",
@@ -122,6 +136,9 @@ impl InstabilityCause {
             Self::Inverted { .. } => {
                 "Usual causes: a load or prescribed displacement that is too strong or too fast, a time step above the stable limit. Remedies: a neo-Hookean law, which resists compression, or \
                  bonds that break (`fracture_energy`)"
+            }
+            Self::Overlapping { .. } => {
+                "The impact is too fast for the contact: use a larger stiffness or more points in the body, a smaller horizon, or a lower speed"
             }
             Self::Stiffened { .. } => "Use a smaller dt",
         }
@@ -159,6 +176,7 @@ impl Watched<'_> {
         if due(OFTEN) {
             self.look_at_motion()?;
             self.look_at_order()?;
+            self.look_at_overlap()?;
             self.look_at_swing()?;
         }
         if self.step_ratio.is_some_and(|ratio| ratio > 1.0) {
@@ -230,7 +248,8 @@ impl Watched<'_> {
     }
 
     fn look_at_growth(&self) -> Result<(), Alarm> {
-        let energy = self.system.mechanical_energy(self.state);
+        let State { t, u, v, .. } = self.state;
+        let energy = self.system.mechanical_energy(*t, u, v);
         self.compare(energy, PLAIN_GROWTH)
     }
 
@@ -295,7 +314,9 @@ impl Watched<'_> {
     fn look_at_energy(&self) -> Result<(), Alarm> {
         let (system, state) = (self.system, self.state);
         let correction = self.integrator.energy_correction(system, state, self.dt);
-        let conserved = system.mechanical_energy(state) + system.dissipated() + correction;
+        let conserved = system.mechanical_energy(state.t, &state.u, &state.v)
+            + system.dissipated()
+            + correction;
         self.compare(conserved, GROWTH)
     }
 
@@ -339,6 +360,19 @@ impl Watched<'_> {
                     other: cloud.user_number(point - 1),
                 },
                 point,
+            }),
+        }
+    }
+
+    /// Checks that no contact is so deep that points are about to pass through each other.
+    fn look_at_overlap(&self) -> Result<(), Alarm> {
+        let overlaps = self.system.interactions().map(|one| one.overlap());
+        let overlap = overlaps.fold(0.0, f64::max);
+        match overlap > DEEPEST {
+            false => Ok(()),
+            true => Err(Alarm {
+                cause: InstabilityCause::Overlapping { overlap },
+                point: self.fastest(),
             }),
         }
     }

@@ -85,6 +85,7 @@
 //! | use a state-based material | [`LinearSolid`](material::LinearSolid), [`operator::LinearSolidBody`]; viscous or plastic: [`Inelasticity`](material::Inelasticity), [`operator::InelasticSolidBody`] |
 //! | define pre-cracks | [`family::Crack`], [`Body::crack`] |
 //! | apply loads, constraints and damping | [`boundary`]: [`Load`](boundary::Load), [`PrescribedMotion`](boundary::PrescribedMotion), [`DampingLayer`](boundary::DampingLayer) |
+//! | add contact and rigid bodies | [`Interaction`], [`System::add_interaction`]; `pericles-contact` |
 //! | apply temperatures | [`ThermalExpansion`], [`Temperature`] |
 //! | assemble the equation of motion | [`Body`], or [`operator::BondBody`] and [`System::new`] |
 //! | choose a time integrator | [`time`]: explicit, implicit, static, adaptive, multirate |
@@ -136,7 +137,7 @@
 //! # Ok::<(), PericlesError>(())
 //! ```
 //!
-//! **A force** in addition to the bonds (contact, a foundation, another material model) implements
+//! **A force** in addition to the bonds (a foundation, another material model) implements
 //! [`Force`](operator::Force): force density on a subset of the points, energy, tangent, and an upper bound
 //! of its frequency. Optional features are reported by its [`Capabilities`](operator::Capabilities); a scheme
 //! that needs a missing one is refused with the reason. A force whose bonds depend on other bonds implements

@@ -89,7 +89,7 @@ impl Candidates {
         };
         if let Some(bonds) = bonds(touching, forces) {
             bonds.for_each_broken_count(&mut |_, count| candidates.broken.push(count));
-            candidates.close_bonded(touching, forces, &[0..n]);
+            candidates.close_bonded(touching, forces, std::slice::from_ref(&(0..n)));
         }
         candidates.find_exposed();
         candidates

@@ -70,13 +70,13 @@ fn a_ball_on_a_block_repeats_an_independent_program() {
     .unwrap();
     let expected = [0.3067709549, 0.4150922463, 0.1165318046];
     for (found, expected) in forces.iter().zip(expected) {
-        assert!((found / expected - 1.0).abs() < 1e-7, "{forces:?}");
+        assert!((found / expected - 1.0).abs() < 5e-6, "{forces:?}");
     }
     let velocity = impactor(&run).reading().velocity;
     let expected = [-8.10069782e-4, 9.85012969e-4, 0.0506405014];
     for c in 0..3 {
         assert!(
-            (velocity[c] / expected[c] - 1.0).abs() < 1e-6,
+            (velocity[c] / expected[c] - 1.0).abs() < 5e-6,
             "{velocity:?}"
         );
     }
@@ -199,7 +199,7 @@ fn pressed(cut: bool) -> f64 {
             PrescribedMotion::displacement(ends(right), [Some(by), None, None], one.clone());
         system.add_motion(motion).unwrap();
     }
-    let corner = PrescribedMotion::displacement(vec![0].into(), [None, Some(0.0), None], one);
+    let corner = PrescribedMotion::displacement(vec![0], [None, Some(0.0), None], one);
     system.add_motion(corner).unwrap();
     let options = RelaxationOptions {
         tolerance: 1e-6,

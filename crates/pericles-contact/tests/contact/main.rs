@@ -1,6 +1,7 @@
 //! Tests of contact and rigid bodies.
 
 mod bonded;
+mod disc;
 mod impact;
 mod reference;
 mod runs;

@@ -238,7 +238,8 @@ impl SimulationBuilder {
         match (self.step, limit) {
             (Step::Safety(part), Some((limit, frequency))) => {
                 positive("the fraction of the stable step", part)?;
-                Ok(frequency.stable_step(limit, part))
+                let stable = frequency.stable_step(limit, part);
+                Ok(self.system.contact_step(stable, part * limit))
             }
             (Step::Safety(_), None) => Err(PericlesError::NotGiven {
                 what: "the time step of a scheme that is stable for any step",

@@ -118,7 +118,7 @@ impl Simulation {
         }
         integrator.start(&mut system, &mut state);
         let start = StartEnergy {
-            energy: system.mechanical_energy(&state),
+            energy: system.mechanical_energy(state.t, &state.u, &state.v),
             scheme: integrator.energy_correction(&system, &state, dt),
         };
         Ok(Self {

@@ -7,7 +7,6 @@ use crate::interaction::{Configuration, Interaction, InteractionStep};
 use crate::parallel::PointSubset;
 use crate::scalar::PointScalar;
 use crate::step_end::StepEnd;
-use crate::time::State;
 
 impl System {
     /// Adds an interaction.
@@ -51,10 +50,11 @@ impl System {
         self.operator().energy(t, u) + self.contact_energy(t, u)
     }
 
-    /// Returns the kinetic and stored energy of a state, with contact and the bodies of interactions, J.
-    pub fn mechanical_energy(&self, state: &State) -> f64 {
-        let kinetic = self.kinetic_energy(&state.v) + self.body_kinetic_energy();
-        kinetic + self.stored_energy(state.t, &state.u)
+    /// Returns the kinetic and stored energy at displacement u and velocity v, with contact and
+    /// the bodies of interactions, J.
+    pub fn mechanical_energy(&self, t: f64, u: &[f64], v: &[f64]) -> f64 {
+        let kinetic = self.kinetic_energy(v) + self.body_kinetic_energy();
+        kinetic + self.stored_energy(t, u)
     }
 
     /// Returns the energy stored by contact at displacement u, J.
@@ -153,9 +153,30 @@ impl System {
     pub fn contact_frequency(&self, density: &PointScalar) -> f64 {
         /// Ratio of squared frequencies of many contacts and one.
         const SEVERAL: f64 = 1.7;
-        let square = |one: &dyn Interaction| one.contact_frequency(density).powi(2);
-        let largest = self.interactions().map(square).fold(0.0, f64::max);
-        (SEVERAL * largest).sqrt()
+        SEVERAL.sqrt() * self.single_contact_frequency(density)
+    }
+
+    /// Returns the highest frequency (1/s) of a single contact.
+    fn single_contact_frequency(&self, density: &PointScalar) -> f64 {
+        let all = self
+            .interactions()
+            .map(|one| one.contact_frequency(density));
+        all.fold(0.0, f64::max)
+    }
+
+    /// Returns the largest time step (s) with contact, where `stable` is that of the bonds alone under a scheme that is
+    /// stable for ω dt ≤ `limit`: stable with several contacts per point, and with at least five steps per contact of a
+    /// lone pair, 0.63/ω. Its velocity after the contact is then within 4 % of that before; at the limit of stability
+    /// the ratio is between 0.9 and 1.1.
+    pub fn contact_step(&self, stable: f64, limit: f64) -> f64 {
+        /// ω dt at five steps per contact, which lasts π/ω.
+        const RESOLVED: f64 = 0.63;
+        if self.interactions.is_empty() {
+            return stable;
+        }
+        let many = self.contact_frequency(&self.density) / limit;
+        let single = self.single_contact_frequency(&self.density);
+        (1.0 / (1.0 / stable).hypot(many)).min(RESOLVED / single)
     }
 
     fn configuration<'a>(&'a self, t: f64, u: &'a [f64]) -> Configuration<'a> {
