@@ -123,7 +123,8 @@ fn a_block_breaks_the_plate_of_kalthoff_and_winkler_and_rebounds() {
     assert!((-7.0..-2.0).contains(&last(&block)), "{}", last(&block));
     let history = table(&out, "history.csv");
     let dissipated = last(&column(&history, "dissipated_energy"));
-    assert!((2e3..6e3).contains(&dissipated), "{dissipated}");
+    // Two cracks of about 85 mm from the notches to the edges take 3.8 kJ/m at 22.1 kJ/m²; two more start at the right edge.
+    assert!((3.5e3..9e3).contains(&dissipated), "{dissipated}");
     let balance = column(&history, "balance");
     assert!(balance.iter().all(|error| error.abs() < 0.02 * dissipated));
 }

@@ -13,11 +13,10 @@ mod surface;
 mod types;
 mod unit;
 
-pub use piece::{Piece, Rotation, piece_path};
 pub use positions::Positions;
 pub use sources::{Boundary, FilledCells, FilledShape, MeshFile};
 pub use surface::{SurfaceFormula, SurfaceShape, VertexAreas};
-pub use types::{Lattice, PointsFile, Quadrature, SolidShape};
+pub use types::{Lattice, Piece, PointsFile, Quadrature, Rotation, SolidShape, piece_path};
 pub use unit::length_unit;
 
 pub(crate) use piece::rotation;

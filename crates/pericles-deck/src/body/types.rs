@@ -6,10 +6,10 @@ use pericles::material::StressState;
 use pericles::space::{Finer, Grid, Region};
 use serde::{Deserialize, Serialize};
 
-use super::piece::Piece;
 use super::positions::Positions;
 use super::sources::{FilledShape, MeshFile};
 use super::surface::{SurfaceShape, VertexAreas};
+use crate::key_path::KeyPath;
 use crate::region::Frame;
 
 /// Source of the points of a body.
@@ -202,6 +202,69 @@ impl SolidShape {
             Self::Pieces(_) => self.first()?.rectangular(),
             _ => self.lattice()?.rectangular.as_deref(),
         }
+    }
+}
+
+/// A piece of a body: its points have no bonds with points of other pieces.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Piece {
+    /// Name, which is also that of the set of its points.
+    pub name: String,
+    /// Source of its points.
+    pub shape: SolidShape,
+    /// Position of the origin of a file's coordinates, m; zero for shapes that have a position of their own.
+    #[serde(default)]
+    pub origin: [f64; 3],
+    /// Rotation, applied to the points at their positions.
+    #[serde(default)]
+    pub rotation: Option<Rotation>,
+    /// Name of its material; that of the body if none. Assignments to sets of its points replace it.
+    #[serde(default)]
+    pub material: Option<String>,
+    /// Initial velocity, m/s, to which those of `[[initial]]` are added.
+    #[serde(default)]
+    pub velocity: Option<[f64; 3]>,
+}
+
+/// A rotation about an axis.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Rotation {
+    /// Angle, rad, anticlockwise about the axis.
+    pub angle: f64,
+    /// Direction of the axis, of any length; z in two dimensions.
+    pub axis: [f64; 3],
+    /// A point on the axis, m; the centre of the bounding box of the points if none.
+    #[serde(default)]
+    pub centre: Option<[f64; 3]>,
+}
+
+/// Returns the path of a piece of a body: the first one is `[body]`, the others are `[[body.piece]]`.
+pub fn piece_path(k: usize) -> KeyPath {
+    let body = KeyPath::from("body");
+    match k {
+        0 => body,
+        k => body.key("piece").index(k - 1),
+    }
+}
+
+impl Piece {
+    /// Returns a piece of a shape at its own position and at rest.
+    pub fn new(name: impl Into<String>, shape: SolidShape) -> Self {
+        Self {
+            name: name.into(),
+            shape,
+            origin: [0.0; 3],
+            rotation: None,
+            material: None,
+            velocity: None,
+        }
+    }
+
+    /// Returns whether the points of the piece do not lie on a lattice parallel to the axes.
+    pub fn is_listed(&self) -> bool {
+        self.rotation.is_some() || self.shape.is_listed()
     }
 }
 
