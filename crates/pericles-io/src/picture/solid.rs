@@ -240,9 +240,14 @@ fn draw_cells(raster: &mut Raster, scene: &Scene, placing: &Placing) {
 /// Draws triangles of a surface, lit by their normals.
 fn draw_facets(raster: &mut Raster, scene: &Scene, placing: &Placing) {
     let corners = |facet: &Facet| facet.corners.map(|corner| placing.place(corner));
-    let mut placed: Vec<_> = scene.facets.iter().map(|facet| (corners(facet), facet)).collect();
+    let mut placed: Vec<_> = scene
+        .facets
+        .iter()
+        .map(|facet| (corners(facet), facet))
+        .collect();
     // From front to back, so that few hidden pixels are coloured.
-    let nearest = |corners: &[[f64; 3]; 3]| corners.iter().map(|x| x[2]).fold(f64::INFINITY, f64::min);
+    let nearest =
+        |corners: &[[f64; 3]; 3]| corners.iter().map(|x| x[2]).fold(f64::INFINITY, f64::min);
     placed.sort_by(|(a, _), (b, _)| nearest(a).total_cmp(&nearest(b)));
     for (corners, facet) in placed {
         raster.triangle(corners, |shares| {
