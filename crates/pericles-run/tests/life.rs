@@ -359,3 +359,65 @@ fn result_files_of_a_resumed_run_equal_those_of_an_uninterrupted_one() {
     let theirs = state.field("Displacement").unwrap();
     assert!((0..24).all(|i| ours[i] == theirs.values[3 * i]));
 }
+
+const PULLED: &str = r#"
+[body]
+shape = "plate"
+size = ["24 mm", "12 mm"]
+spacing = "1 mm"
+plane = "stress"
+[material]
+model = "linear"
+youngs_modulus = "72 GPa"
+density = 2440
+horizon_ratio = 3
+critical_stretch = 0.002
+[sets.left]
+layer = { side = "-x", cells = 3 }
+[sets.right]
+layer = { side = "+x", cells = 3 }
+[[crack]]
+segment = [["12 mm", "0 mm"], ["12 mm", "4 mm"]]
+[[constraint]]
+set = "left"
+displacement = [0, 0]
+[[load]]
+set = "right"
+traction = ["1 MPa", 0]
+[time]
+scheme = "static"
+breaking = "event"
+load_steps = 3
+[output]
+history = { every = 1 }
+"#;
+
+#[test]
+fn event_by_event_run_under_loads_writes_load_factors_and_a_load_displacement_curve() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path().join("pulled");
+    let deck = Deck::parse(PULLED, "plate.toml", &[]).unwrap();
+    let mut run = begun_of(&Source::of_deck(deck, "plate.toml".into()), &folder);
+    let ending = run.drive(None, &Cancel::new(), &mut |_| {});
+    assert_eq!(ending.unwrap(), Ending::Finished);
+    let column = |file: &str, name: &str| {
+        let table = pericles_io::read_csv(folder.join(file)).unwrap();
+        let found = table.column(name).map(<[f64]>::to_vec);
+        found.unwrap_or_else(|| panic!("{file} lacks {name}"))
+    };
+    let factors = column("history.csv", "load_factor");
+    let work = column("history.csv", "external_work");
+    let of_curve = |name: &str| column("force_displacement.csv", name);
+    let (u, force) = (of_curve("right_displacement_x"), of_curve("right_force_x"));
+    let reaction = of_curve("left_force_x");
+    assert_eq!(factors.len(), 4);
+    assert_eq!([factors[0], force[0], u[0]], [0.0; 3]);
+    let near = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-5, "{a} {b}");
+    for k in 1..4 {
+        // The load is a multiple of that of the deck, and the support carries it.
+        near(force[k] / factors[k], force[1] / factors[1]);
+        near(reaction[k], -force[k]);
+    }
+    // The load grows from zero.
+    near(work[1], 0.5 * force[1] * u[1]);
+}

@@ -62,8 +62,7 @@ impl HistoryColumns for LoadFactorColumn {
     }
 
     fn cells(&mut self, snapshot: &Snapshot<'_>) -> Vec<Cell> {
-        // The run starts from the body without loads.
-        vec![snapshot.system().load_factor().unwrap_or(0.0).into()]
+        vec![snapshot.system().load_factor().unwrap_or(f64::NAN).into()]
     }
 }
 

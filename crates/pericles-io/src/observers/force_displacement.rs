@@ -138,6 +138,8 @@ impl Observer for ForceDisplacement {
                     let motion = &system.motions()[*k];
                     (&motion.points, motion.reaction(system.cloud())[pair.axis])
                 }
+                // A static run starts from the body without loads, constant ones too.
+                Acting::Loads(loads) if state.step == 0 => (&system.loads()[loads[0]].points, 0.0),
                 Acting::Loads(loads) => {
                     let forces = loads.iter().map(|&k| system.load_resultant(k, state.t));
                     let force: f64 = forces.map(|force| force[pair.axis]).sum();

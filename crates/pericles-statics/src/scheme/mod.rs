@@ -2,7 +2,7 @@
 
 mod event;
 
-use pericles::boundary::Exchange;
+use pericles::boundary::{Exchange, ProportionalLoading};
 use pericles::operator::PointSubset;
 use pericles::time::{InnerIterations, Integrator, State};
 use pericles::{
@@ -255,6 +255,10 @@ impl Integrator for StaticScheme {
     }
 
     fn start(&mut self, system: &mut System, state: &mut State) {
+        if let BreakingRule::Event { reference, .. } = self.options.breaking {
+            let factors = [0.0; 2];
+            system.load_proportionally(ProportionalLoading { reference, factors });
+        }
         state.v.fill(0.0);
         system.note_unloaded(state.t, &state.u, &mut state.a);
         state.a.fill(0.0);
