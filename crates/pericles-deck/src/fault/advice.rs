@@ -46,9 +46,6 @@ impl Subject for Fault {
             Self::EmptySet { .. } => {
                 "make the region larger: it must contain at least one cell centre (a layer must be at least half a spacing deep)".into()
             }
-            Self::ImpactorInBody { .. } => {
-                "move it: contact starts at half of the cell size of a point".into()
-            }
             Self::OverlappingPieces { .. } => {
                 "move one of them: points of different pieces must be at least half of a cell apart; points one cell apart touch".into()
             }
@@ -180,9 +177,7 @@ impl Subject for Fault {
             Self::LostValue { .. } => "not finite",
             Self::NeverStops { .. } => "never met",
             Self::ThinFineSet { .. } => "too thin",
-            Self::FineSetsOverlap { .. }
-            | Self::OverlappingPieces { .. }
-            | Self::ImpactorInBody { .. } => "overlap",
+            Self::FineSetsOverlap { .. } | Self::OverlappingPieces { .. } => "overlap",
             Self::UnknownArea { .. } => "unknown area",
             Self::NoFields { .. } => "not available",
             Self::NoExactSolution { .. } => "does not apply",

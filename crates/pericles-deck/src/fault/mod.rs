@@ -333,20 +333,6 @@ pub enum Fault {
         /// Distance of the points, m.
         distance: f64,
     },
-    /// An impactor that overlaps the body at the start.
-    #[error(
-        "{points} points of the body, such as the one at {} m, are inside the impactor `{}`",
-        spot(place),
-        shortened(impactor)
-    )]
-    ImpactorInBody {
-        /// Its name.
-        impactor: String,
-        /// Number of points inside.
-        points: usize,
-        /// Position of one of them, m.
-        place: Vec<f64>,
-    },
     /// A material that is assigned to no point.
     #[error("no point has the material `{}`", shortened(material))]
     EmptyMaterial {

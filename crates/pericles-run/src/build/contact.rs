@@ -1,8 +1,7 @@
 //! Contact between points, and impactors.
 
-use pericles::space::PointCloud;
 use pericles::time::State;
-use pericles::{Interaction, PointScalar, System};
+use pericles::{PointScalar, System};
 use pericles_contact::{
     ClosedMesh, ContactBodies, ContactLaw, ContactPairs, ContactStiffness, Friction, Impactor,
     ImpactorMotion, Inertia, PairLaw, PointContact, Pose, Shape, usual_overlap,
@@ -74,7 +73,6 @@ impl Assembler<'_> {
                 bodies.clone(),
             )
             .map_err(|error| at(&path, error))?;
-            refuse_points_inside(&path, &one, cloud)?;
             system
                 .add_interaction(Box::new(one))
                 .map_err(|error| at(&path, error))?;
@@ -277,31 +275,6 @@ impl Assembler<'_> {
 pub(super) const CONTACT_PHASE: f64 = 0.63;
 
 const ORIGIN: [f64; 3] = [0.0; 3];
-
-/// Rejects an impactor with points of the body inside: their overlap exceeds half of their cell size.
-fn refuse_points_inside(
-    path: &KeyPath,
-    impactor: &Impactor,
-    cloud: &PointCloud,
-) -> Result<(), BuildError> {
-    let Pose { centre, rotation } = impactor.pose();
-    let is_inside = |&i: &usize| {
-        let y = cloud.point(i);
-        let q = std::array::from_fn(|k| (0..3).map(|c| rotation[c][k] * (y[c] - centre[c])).sum());
-        // Touching bodies may overlap by rounding.
-        impactor.shape().distance(q).0 < -1e-6 * cloud.cell_size(i)
-    };
-    let inside: Vec<usize> = (0..cloud.len()).filter(is_inside).collect();
-    let Some(&first) = inside.first() else {
-        return Ok(());
-    };
-    let fault = Fault::ImpactorInBody {
-        impactor: impactor.name().to_owned(),
-        points: inside.len(),
-        place: cloud.point(first)[..cloud.dimension()].to_vec(),
-    };
-    Err(at_path(path.key("centre"), fault))
-}
 
 /// Converts the table of a deck to the law of the contact forces.
 fn law(contact: &Contact) -> ContactLaw {
