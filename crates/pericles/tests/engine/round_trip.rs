@@ -90,7 +90,7 @@ fn relaxation_resumes(damping: Damping) {
     let make = || {
         let body = torn();
         let points = body.motions()[1].points.clone();
-        let relaxation = |body: &System| -> Box<dyn Integrator> {
+        let relaxation = move |body: &System| -> Box<dyn Integrator> {
             let options = RelaxationOptions {
                 damping,
                 ..RelaxationOptions::default()
