@@ -139,7 +139,7 @@ fn temperatures_of_points_come_from_a_file_and_follow_a_time_function() {
 
 #[test]
 fn thermal_expansion_is_rejected_where_it_is_not_supported() {
-    let heated = PLATE.replace("MODEL", "bonds = \"float-grid\"");
+    let heated = PLATE.replace("MODEL", "bonds = \"grid-f32\"");
     assert!(refusal(&heated).to_string().contains("thermal expansion"));
     let spectral = PLATE.replace("MODEL", "model = \"linear\", bonds = \"convolution\"");
     refusal(&spectral);
