@@ -20,6 +20,7 @@
 
 mod absorbing_boundaries;
 mod common;
+mod contact;
 mod context;
 mod data;
 mod decks;
@@ -46,8 +47,9 @@ pub use table::table;
 
 use study::Topic;
 
-const TOPICS: [&Topic; 9] = [
+const TOPICS: [&Topic; 10] = [
     &absorbing_boundaries::TOPIC,
+    &contact::TOPIC,
     &dispersion::TOPIC,
     &fracture::TOPIC,
     &manifolds::TOPIC,

@@ -72,6 +72,11 @@ fn state_based_studies_are_within_tolerance() {
     hold_all_of(&state_based::TOPIC);
 }
 
+#[test]
+fn contact_studies_are_within_tolerance() {
+    hold_all_of(&contact::TOPIC);
+}
+
 /// The notched plate takes a minute.
 #[test]
 fn statics_studies_are_within_tolerance() {
