@@ -104,7 +104,7 @@ impl Observer for Impactors {
             add(&reading.force[..self.dimension]);
             add(&reading.torque[turns..]);
             add(&reading.impulse[..self.dimension]);
-            row.push(whole(reading.points as u64));
+            row.push(whole(reading.points));
             row.push(reading.overlap.into());
         }
         Ok(self.table.append(&row)?)

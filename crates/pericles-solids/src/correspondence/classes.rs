@@ -33,7 +33,7 @@ impl CorrespondenceClasses {
             of_point: Vec::new(),
             materials: vec![constants.clone()],
             stretch: vec![constants.solid.limits.stretch],
-            criteria: PairCriteria::new(&[constants.solid.criterion.clone()]),
+            criteria: PairCriteria::new(std::slice::from_ref(&constants.solid.criterion)),
             strengths: Vec::new(),
         }
     }

@@ -32,7 +32,7 @@ impl SolidClasses {
             of_point: Vec::new(),
             constants: vec![[constants.dilatational, constants.deviatoric]],
             limits: vec![constants.limits],
-            criteria: PairCriteria::new(&[constants.criterion.clone()]),
+            criteria: PairCriteria::new(std::slice::from_ref(&constants.criterion)),
             strength: Factors::default(),
         }
     }
