@@ -15,8 +15,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::error::{PericlesError, Result};
 
-/// An array of an archive.
-#[derive(Debug, Clone, PartialEq)]
+/// An array of an archive. Arrays are equal if all their bits are: NaN stands for missing values.
+#[derive(Debug, Clone)]
 pub enum Values {
     /// Floating-point numbers.
     F64(Vec<f64>),
@@ -24,6 +24,18 @@ pub enum Values {
     U64(Vec<u64>),
     /// Bytes.
     U8(Vec<u8>),
+}
+
+impl PartialEq for Values {
+    fn eq(&self, other: &Self) -> bool {
+        let bits = |x: &f64| x.to_bits();
+        match (self, other) {
+            (Self::F64(a), Self::F64(b)) => a.iter().map(bits).eq(b.iter().map(bits)),
+            (Self::U64(a), Self::U64(b)) => a == b,
+            (Self::U8(a), Self::U8(b)) => a == b,
+            _ => false,
+        }
+    }
 }
 
 /// Named arrays. `pericles-io` defines their file format.

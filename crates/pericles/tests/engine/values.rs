@@ -106,7 +106,10 @@ fn plate(at_once: bool) -> System {
         &vec![0.0; 2 * n],
         n,
     );
-    let mut system = Body::new(cloud, glass).build().unwrap();
+    let mut system = Body::new(cloud, glass)
+        .stress_state(StressState::PlaneStress)
+        .build()
+        .unwrap();
     system.add_load(load).unwrap();
     system.add_motion(motion.unwrap()).unwrap();
     system
@@ -141,7 +144,10 @@ fn values_of_a_wrong_length_are_rejected() {
     let glass = BondMaterial::new(ElasticModulus::Young(70e9), 2500.0, 3.015e-3);
     let short = LoadDensity::Values(wave(&cloud, &[0, 1]));
     let load = Load::new(vec![0, 1, 2], short, TimeFunction::Constant);
-    let mut system = Body::new(cloud, glass).build().unwrap();
+    let mut system = Body::new(cloud, glass)
+        .stress_state(StressState::PlaneStress)
+        .build()
+        .unwrap();
     let error = system.add_load(load).unwrap_err().to_string();
     assert!(error.contains("the values of a load"), "{error}");
 }

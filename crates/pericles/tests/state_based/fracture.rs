@@ -55,7 +55,7 @@ fn constants(
         ..solid(nu, 3.0 * (1.0 + 1e-6), InfluenceFunction::Conical)
     };
     let criterion = (failure == BondFailure::ByCriterion)
-        .then(|| Criterion::new(PrincipalStress::new(0.1).unwrap()));
+        .then(|| Criterion::new(PrincipalStress::new(0.03).unwrap()));
     LinearSolidConstants {
         criterion,
         ..material.constants(cloud, state).unwrap()
