@@ -17,7 +17,7 @@ def cells(shape=(40, 20), spacing=5e-4):
 
 def own_deck(**tables):
     deck = changed(PLATE, **tables)
-    deck["body"] = {"spacing": "0.5 mm"}
+    deck["body"] = {"spacing": "0.5 mm", "plane": "stress"}
     del deck["sets"]
     return deck
 

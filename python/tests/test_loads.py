@@ -54,7 +54,7 @@ def test_loads_follow_the_order_of_the_points():
     x = np.array([(a, b) for b in np.arange(10) for a in np.arange(20)]) * 5e-4
     x = x[rng.permutation(len(x))]
     deck = changed(PLATE)
-    deck["body"] = {"spacing": "0.5 mm"}
+    deck["body"] = {"spacing": "0.5 mm", "plane": "stress"}
     del deck["sets"]
     push = np.c_[1e10 * x[:, 0], -2e10 * x[:, 1]]
     chosen = x[:, 0] > 5e-3
