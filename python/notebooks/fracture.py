@@ -29,7 +29,7 @@ def build(spacing):
     grip = 2e-3
     sets = {"inclusions": inclusions, "left": x[:, 0] < grip, "right": x[:, 0] > SIZE[0] - grip}
     deck = pc.Deck.from_dict({
-        "body": {"spacing": spacing, "thickness": "1 mm"},
+        "body": {"spacing": spacing, "thickness": "1 mm", "plane": "stress"},
         "material": {
             "model": "state-based", "density": 2440, "youngs_modulus": "72 GPa", "poisson_ratio": 0.22,
             "fracture_energy": "10 J/m2", "horizon": 3 * spacing,

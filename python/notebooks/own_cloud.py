@@ -29,7 +29,7 @@ sets = {
 
 # %%
 deck = pc.Deck.from_dict({
-    "body": {"spacing": spacing, "thickness": "1 mm"},
+    "body": {"spacing": spacing, "thickness": "1 mm", "plane": "stress"},
     "material": {"density": 2440, "youngs_modulus": "72 GPa", "horizon_ratio": 3},
     "materials": {"stiff": {"density": 4000, "youngs_modulus": "300 GPa"}},
     "assign": [{"set": "core", "material": "stiff"}],

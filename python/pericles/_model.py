@@ -105,7 +105,7 @@ class Model:
             return 1.0
         if isinstance(given, str):
             probe = {1: "bar", 2: "plate"}[dimension]
-            size: dict[str, Any] = {"length": 1} if dimension == 1 else {"size": [1, 1]}
+            size: dict[str, Any] = {"length": 1} if dimension == 1 else {"size": [1, 1], "plane": "stress"}
             tables = {
                 "body": {"shape": probe, **size, "spacing": 0.1, str(key): given},
                 "material": {"density": 1, "youngs_modulus": 1, "horizon_ratio": 3},

@@ -157,7 +157,7 @@ impl Snapshot {
     /// A copy of a field: shape (points, components), or (points,) for scalars.
     fn field<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let array = self.with(py, |state| field_of(py, state, name))?;
-        squeezed(array)
+        squeezed(array, name)
     }
 
     fn __repr__(&self) -> String {
@@ -168,14 +168,13 @@ impl Snapshot {
     }
 }
 
-/// Returns a single column as a flat array.
-pub fn squeezed(array: Bound<'_, PyArray2<f64>>) -> PyResult<Bound<'_, PyAny>> {
-    use numpy::PyUntypedArrayMethods;
-    let scalar = array.shape()[1] == 1;
+/// Returns the array of a scalar field as a flat array; vectors keep their components, also the single one of a bar.
+pub fn squeezed<'py>(array: Bound<'py, PyArray2<f64>>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+    let field = field_named(name)?;
     let array = array.into_any();
-    match scalar {
-        false => Ok(array),
-        true => array.call_method1("reshape", (-1,)),
+    match field.is_vector() || field.is_tensor() {
+        true => Ok(array),
+        false => array.call_method1("reshape", (-1,)),
     }
 }
 

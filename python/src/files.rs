@@ -125,6 +125,8 @@ pub fn command_line(py: Python<'_>, arguments: Vec<OsString>) -> PyResult<u8> {
     #[cfg(not(feature = "command-line"))]
     {
         let _ = (py, arguments);
-        Err(errors::plain("this package was built without the command line"))
+        Err(errors::plain(
+            "this package was built without the command line",
+        ))
     }
 }

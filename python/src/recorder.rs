@@ -184,7 +184,7 @@ impl Recording {
             components(wanted, kept.dimension),
         );
         drop(kept);
-        squeezed(view(py, &values, count)?).map(Some)
+        squeezed(view(py, &values, count)?, name).map(Some)
     }
 
     /// The history: names, units and columns.

@@ -304,7 +304,7 @@ impl Simulation {
 
     /// A copy of a field of the current state.
     fn field<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-        self.with(|engine| squeezed(field_of(py, &engine.simulation().snapshot(), name)?))
+        self.with(|engine| squeezed(field_of(py, &engine.simulation().snapshot(), name)?, name))
     }
 
     /// Writes the state to a file.

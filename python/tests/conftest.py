@@ -18,7 +18,7 @@ BAR = {
 }
 
 PLATE = {
-    "body": {"shape": "plate", "size": ["20 mm", "10 mm"], "spacing": "0.5 mm"},
+    "body": {"shape": "plate", "size": ["20 mm", "10 mm"], "spacing": "1 mm", "plane": "stress"},
     "material": {"density": 2440, "youngs_modulus": "72 GPa", "fracture_energy": "3.8 J/m2", "horizon_ratio": 3},
     "sets": {"left": {"layer": {"side": "-x", "cells": 1}}, "right": {"layer": {"side": "+x", "cells": 1}}},
     "time": {"end": "4 us"},

@@ -9,7 +9,7 @@ from conftest import PLATE, changed
 import pericles as pc
 
 
-def cells(shape=(40, 20), spacing=5e-4):
+def cells(shape=(20, 10), spacing=1e-3):
     """Return the centres of the cells of the plate, in the order of its grid: x fastest."""
     x, y = (spacing * (np.arange(n) + 0.5) for n in shape)
     return np.array([(a, b) for b in y for a in x])
@@ -17,7 +17,7 @@ def cells(shape=(40, 20), spacing=5e-4):
 
 def own_deck(**tables):
     deck = changed(PLATE, **tables)
-    deck["body"] = {"spacing": "0.5 mm"}
+    deck["body"] = {"spacing": "1 mm", "plane": "stress"}
     del deck["sets"]
     return deck
 
@@ -40,7 +40,7 @@ def test_own_points_equal_those_of_a_grid():
     velocity = np.empty_like(v0)
     velocity[match] = v0
     grid.set_initial(velocity=velocity)
-    own = pc.Deck.from_dict(own_deck(time={"dt": "40 ns"})).build(points=x[order], volumes=np.full(len(x), 0.25e-6))
+    own = pc.Deck.from_dict(own_deck(time={"dt": "40 ns"})).build(points=x[order], volumes=np.full(len(x), 1e-6))
     own.set_initial(velocity=v0[order])
     assert np.array_equal(own.points, x[order])
     assert own.facts["bonds"] == grid.facts["bonds"]
@@ -54,7 +54,7 @@ def test_volumes_have_a_default():
     deck = own_deck()
     deck["body"]["thickness"] = "2 mm"
     model = pc.Deck.from_dict(deck).build(points=cells())
-    assert model.volumes == pytest.approx(np.full(800, 0.25e-6 * 2e-3))
+    assert model.volumes == pytest.approx(np.full(200, 1e-6 * 2e-3))
     del deck["body"]["spacing"]
     with pytest.raises(pc.PericlesError, match="volumes"):
         pc.Deck.from_dict(deck).build(points=cells())
@@ -69,13 +69,13 @@ def test_sets_blocks_and_materials():
         sets={"second": {"block": 2}},
     )
     deck["sets"] = {"second": {"block": 2}}
-    model = pc.Deck.from_dict(deck).build(points=x, blocks=np.where(x[:, 1] > 0.005, 2, 1), sets={"inclusion": inside, "ends": [0, 799]})
+    model = pc.Deck.from_dict(deck).build(points=x, blocks=np.where(x[:, 1] > 0.005, 2, 1), sets={"inclusion": inside, "ends": [0, 199]})
     assert model.sets == ["all", "second", "inclusion", "ends"]
     assert np.array_equal(model.numbers("inclusion"), np.flatnonzero(inside))
     assert np.array_equal(model.numbers("second"), np.flatnonzero(x[:, 1] > 0.005))
-    assert model.numbers("ends").tolist() == [0, 799]
+    assert model.numbers("ends").tolist() == [0, 199]
     with pytest.raises(pc.PericlesError, match="has no points"):
-        pc.Deck.from_dict(deck).build(points=x, sets={"inclusion": np.zeros(800, bool)})
+        pc.Deck.from_dict(deck).build(points=x, sets={"inclusion": np.zeros(200, bool)})
     with pytest.raises(pc.PericlesError, match="shape"):
         pc.Deck.from_dict(deck).build(points=x, sets={"inclusion": np.zeros(7, bool)})
     with pytest.raises(pc.PericlesError, match="already"):
@@ -107,10 +107,10 @@ def test_arrays_of_any_kind(given):
 def test_wrong_arrays_show_the_shape_needed():
     model = pc.Deck.from_dict(PLATE).build()
     cases = [
-        (np.zeros((3, 2)), r"\(3, 2\); needed: \(800, 2\)"),
-        (np.zeros((800, 3)), r"\(800, 3\); needed: \(800, 2\)"),
+        (np.zeros((3, 2)), r"\(3, 2\); needed: \(200, 2\)"),
+        (np.zeros((200, 3)), r"\(200, 3\); needed: \(200, 2\)"),
         (np.zeros((0, 2)), "needed"),
-        (np.full((800, 2), np.nan), "NaN"),
+        (np.full((200, 2), np.nan), "NaN"),
         ("fast", "not numbers"),
     ]
     for array, says in cases:

@@ -34,7 +34,7 @@ def test_a_function_equals_the_same_expression(scheme):
     assert relative(found, expected) < 1e-14
     # One call for each time that the scheme evaluates: steps, and stages between them.
     steps = 50
-    stages = {"velocity-verlet": 1, "rk4": 2, "implicit-midpoint": 2}[scheme]
+    stages = 2
     assert len(set(calls)) <= stages * steps + 4
     assert len(calls) <= len(set(calls)) + 4
 
@@ -44,17 +44,17 @@ def test_an_array_equals_the_same_vector():
     expected = pc.Deck.from_dict(deck).build().simulation().run().result().field("displacement")
     found = run(PLATE, lambda m: m.load("right", body_force=[1e9, 0]))
     assert relative(found, expected) < 1e-14
-    mask = run(PLATE, lambda m: m.load(m.points[:, 0] > 0.0195, body_force=np.tile([1e9, 0.0], (20, 1))))
+    mask = run(PLATE, lambda m: m.load(m.points[:, 0] > 0.019, body_force=np.tile([1e9, 0.0], (10, 1))))
     assert relative(mask, expected) < 1e-14
 
 
 def test_loads_follow_the_order_of_the_points():
     """Listed points have another order inside; values belong to the rows of the array."""
     rng = np.random.default_rng(3)
-    x = np.array([(a, b) for b in np.arange(10) for a in np.arange(20)]) * 5e-4
+    x = np.array([(a, b) for b in np.arange(10) for a in np.arange(20)]) * 1e-3
     x = x[rng.permutation(len(x))]
     deck = changed(PLATE)
-    deck["body"] = {"spacing": "0.5 mm"}
+    deck["body"] = {"spacing": "1 mm", "plane": "stress"}
     del deck["sets"]
     push = np.c_[1e10 * x[:, 0], -2e10 * x[:, 1]]
     chosen = x[:, 0] > 5e-3

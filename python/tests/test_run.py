@@ -60,7 +60,7 @@ def test_results_of_a_run(plate, tmp_path):
     assert result.folder == Path("a") and result.info.status == "finished"
     u = result.field("displacement")
     n = result.info.model.points
-    assert u.shape == (n, 2) and result.points.shape == (n, 2) and n == 800
+    assert u.shape == (n, 2) and result.points.shape == (n, 2) and n == 200
     assert not u.flags.writeable
     with pytest.raises(ValueError):
         u[0, 0] = 1
@@ -98,9 +98,9 @@ def test_fields_go_to_pyvista_and_meshio(plate):
     folder = pc.run(plate, out="a")
     memory = pc.Deck.from_dict(plate).build().simulation().run().result()
     grid = folder.to_pyvista()
-    assert grid.n_cells == 800 and "Damage" in grid.cell_data
+    assert grid.n_cells == 200 and "Damage" in grid.cell_data
     points = memory.to_pyvista()
-    assert points.n_points == 800
+    assert points.n_points == 200
     assert np.array_equal(points.point_data["Displacement"][:, :2], memory.field("displacement"))
     mesh = memory.to_meshio()
     assert np.array_equal(mesh.point_data["displacement"][:, :2], memory.field("displacement"))

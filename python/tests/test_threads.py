@@ -96,7 +96,7 @@ def test_two_threads_on_one_simulation():
     simulation.stop()
     thread.join(20)
     assert not thread.is_alive() and max(errors) < 1
-    assert simulation.field("damage").shape == (800,)
+    assert simulation.field("damage").shape == (200,)
 
 
 def test_runs_in_a_pool_of_threads(bar):
