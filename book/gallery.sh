@@ -30,7 +30,7 @@ picture contact/ball-through-glass Damage-000003.png ball-through-glass.png
 picture contact/two-rings Velocity_x-000002.png two-rings.png
 picture contact/dropped-sphere Damage-000003.png dropped-sphere.png
 picture contact/closing-crack Displacement_y-000002.png closing-crack.png
-picture contact/taylor-bar Velocity_z-000002.png taylor-bar.png
+picture contact/taylor-bar Velocity_z-000001.png taylor-bar.png
 picture fragmentation/cylinder Damage-000002.png cylinder.png
 picture impact/block Velocity_x-000002.png block.png
 picture multi-time-step/inclusion Velocity_x-000002.png inclusion.png
