@@ -66,7 +66,9 @@ fn the_schema_is_printed_as_json_and_markdown() {
     let place = with_plate();
     let schema = succeed(place.path(), "schema").stdout;
     let schema: serde_json::Value = serde_json::from_slice(&schema).unwrap();
-    assert_eq!(schema["properties"]["body"]["additionalProperties"], false);
+    // Pieces have the keys of the body.
+    assert_eq!(schema["properties"]["body"]["$ref"], "#/$defs/body");
+    assert_eq!(schema["$defs"]["body"]["additionalProperties"], false);
     let page = text(&succeed(place.path(), "schema --markdown").stdout);
     assert!(page.starts_with("# Deck reference") && page.contains("### [[body.refine]]"));
 }

@@ -159,7 +159,11 @@ fn a_checkpoint_that_does_not_match_the_output_files_is_rejected() {
 
 #[test]
 fn static_runs_resume_to_identical_results() {
-    for scheme in ["adaptive-dynamic-relaxation", "fire", "static"] {
+    for scheme in [
+        "'adaptive-dynamic-relaxation'",
+        "'fire'",
+        "'static',rigid_modes='fix'",
+    ] {
         static_run_resumes(scheme);
     }
 }
@@ -167,7 +171,7 @@ fn static_runs_resume_to_identical_results() {
 fn static_run_resumes(scheme: &str) {
     let place = with_plate();
     let time =
-        format!("run plate.toml --quiet --set time={{scheme='{scheme}',load_steps=8,end=4e-6}}");
+        format!("run plate.toml --quiet --set time={{scheme={scheme},load_steps=8,end=4e-6}}");
     let statics = time
         + " --set checkpoint.every=3 --set load.0.traction=[0,0] \
                    --set output.fields.every=2 --set output.history.every=1 --set output.cracks.every=1 --set output.picture.1.every=4";

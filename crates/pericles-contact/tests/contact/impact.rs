@@ -166,7 +166,7 @@ fn pressed(cut: bool) -> f64 {
     let cloud = Arc::new(grid.points().unwrap());
     let n = cloud.len();
     let material = BondMaterial::new(ElasticModulus::Young(1.0), 1.0, 3.0);
-    let mut body = Body::new(cloud.clone(), material);
+    let mut body = Body::new(cloud.clone(), material).stress_state(StressState::PlaneStress);
     if cut {
         let x = 0.5 * long as f64;
         body = body.crack(Crack::Segment {

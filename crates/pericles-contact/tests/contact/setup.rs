@@ -203,6 +203,7 @@ pub fn discs(
     }
     let middle = 0.5 * apart;
     let mut system = Body::new(cloud.clone(), material)
+        .stress_state(StressState::PlaneStress)
         .crack(Crack::Segment {
             from: [middle, -10.0 * radius],
             to: [middle, 10.0 * radius],

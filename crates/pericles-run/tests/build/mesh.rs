@@ -305,7 +305,7 @@ fn invalid_meshes_are_reported_at_their_key() {
         &[
             "deck.toml:12:",
             "`left` cannot be used",
-            "the mesh has a set of this name",
+            "has a set of this name",
         ],
     );
     says(

@@ -149,17 +149,17 @@ fn overlapping_pieces_are_refused_with_their_names() {
 fn rotated_pieces_keep_their_shape() {
     let text = pair(3.0, "linear").replace(
         "velocity = [-2, 0.5]",
-        "rotation = { angle = \"90 deg\", centre = [11, 1] }",
+        "rotation = { angle = \"-90 deg\", centre = [11, 1] }",
     );
     let built = build(&text);
-    // The corner of the block of 5 × 6 cells at (11, 1) becomes that at the lower right.
+    // The lower left corner of the block of 5 × 6 cells at (11, 1) becomes the upper left one.
     let mut found: Vec<[f64; 2]> = (0..built.cloud.len())
         .filter(|&i| built.cloud.piece(i) == 1)
         .map(|i| [built.cloud.point(i)[0], built.cloud.point(i)[1]])
         .collect();
     found.sort_by(|a, b| a.partial_cmp(b).unwrap());
     let mut expected: Vec<[f64; 2]> = (0..6)
-        .flat_map(|i| (0..5).map(move |j| [10.5 - f64::from(i), 1.5 + f64::from(j)]))
+        .flat_map(|i| (0..5).map(move |j| [11.5 + f64::from(i), 0.5 - f64::from(j)]))
         .collect();
     expected.sort_by(|a, b| a.partial_cmp(b).unwrap());
     // Positions are sorted alike to within rounding.
