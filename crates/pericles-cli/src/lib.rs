@@ -2,11 +2,11 @@
 //! the program ([`command`]).
 //!
 //! Each command is one module, which reads its arguments, calls a library and prints the results. `run`, `check`,
-//! `modes`, `dispersion` and `resume` act on decks and output folders; [`sweep`] and [`converge`] on one deck with
-//! several values; `info`, `plot`, `diff`, `export` and `report` ([`page`]) on results; `reproduce` on the built-in
+//! `modes`, `dispersion` and `resume` act on decks and output folders; `sweep` and `converge` on one deck with
+//! several values; `info`, `plot`, `diff`, `export` and `report` (`page`) on results; `reproduce` on the built-in
 //! studies; `geodesics` on surfaces; `mesh` on mesh files; `bench` on fixed bodies. The commands share the console,
-//! the display of a run ([`screen`]), signal handling, and errors, each of which leads to one message and one exit
-//! status ([`exit`]).
+//! the display of a run (`screen`), signal handling, and errors, each of which leads to one message and one exit
+//! status (`exit`).
 
 mod args;
 mod bench;
