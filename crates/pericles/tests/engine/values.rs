@@ -13,6 +13,7 @@ use pericles::time::{Implicit, ImplicitRule};
 /// The same field as a function of a point and as values of all points.
 #[derive(Debug)]
 struct Wave {
+    size: f64,
     places: Vec<[f64; 3]>,
     calls: AtomicUsize,
 }
@@ -36,7 +37,7 @@ impl PointValues for Wave {
         self.calls.fetch_add(1, Ordering::Relaxed);
         let component = |c: usize| {
             let places = self.places.iter();
-            places.map(move |&place| Self::component(c, place, order, t))
+            places.map(move |&place| self.size * Self::component(c, place, order, t))
         };
         read(&component(0).chain(component(1)).collect::<Vec<f64>>());
     }
@@ -53,14 +54,22 @@ impl FieldFunction for Scaled {
 
 impl Trajectory for Scaled {
     fn derivative(&self, order: usize, place: [f64; 3], t: f64) -> f64 {
-        Wave::component(self.1, place, order, t)
+        self.0 * Wave::component(self.1, place, order, t)
     }
 }
 
-fn wave(cloud: &PointCloud, points: &[u32]) -> Arc<Wave> {
+/// Largest force density of the load, N/m³, and displacement of the edge, m, up to a factor of 1.4.
+const LOAD: f64 = 1e9;
+const EDGE: f64 = 1e-6;
+
+fn wave(size: f64, cloud: &PointCloud, points: &[u32]) -> Arc<Wave> {
     let places = points.iter().map(|&i| cloud.point(i as usize)).collect();
     let calls = AtomicUsize::new(0);
-    Arc::new(Wave { places, calls })
+    Arc::new(Wave {
+        size,
+        places,
+        calls,
+    })
 }
 
 /// A plate with a load on its right half and a prescribed displacement on its left edge.
@@ -77,18 +86,18 @@ fn plate(at_once: bool) -> System {
     let (loaded, moved) = (pick(true), pick(false));
     let places = |points: &[u32]| points.iter().map(|&i| cloud.point(i as usize)).collect();
     let density = match at_once {
-        true => LoadDensity::Values(wave(&cloud, &loaded)),
+        true => LoadDensity::Values(wave(LOAD, &cloud, &loaded)),
         false => LoadDensity::Field {
-            field: Arc::new(Scaled(1.0, 0)),
+            field: Arc::new(Scaled(LOAD, 0)),
             factor: 1.0,
             places: places(&loaded),
         },
     };
-    let values = wave(&cloud, &moved);
+    let values = wave(EDGE, &cloud, &moved);
     let along = |c: usize| match at_once {
         true => AxisMotion::Values(values.clone()),
         false => AxisMotion::Trajectory {
-            trajectory: Arc::new(Scaled(1.0, c)),
+            trajectory: Arc::new(Scaled(EDGE, c)),
             places: places(&moved),
         },
     };
@@ -142,7 +151,7 @@ fn values_of_all_points_equal_the_same_field_point_by_point() {
 fn values_of_a_wrong_length_are_rejected() {
     let cloud = Grid::plate([0.01, 0.01], 1e-3, 1e-3).points().unwrap();
     let glass = BondMaterial::new(ElasticModulus::Young(70e9), 2500.0, 3.015e-3);
-    let short = LoadDensity::Values(wave(&cloud, &[0, 1]));
+    let short = LoadDensity::Values(wave(LOAD, &cloud, &[0, 1]));
     let load = Load::new(vec![0, 1, 2], short, TimeFunction::Constant);
     let mut system = Body::new(cloud, glass)
         .stress_state(StressState::PlaneStress)

@@ -61,7 +61,7 @@ fn end(force: &mut dyn Force, u: &[f64], on: PointSubset<'_>) -> Vec<f64> {
 fn the_stencil_has_the_forces_energies_and_failure_of_the_list() {
     for cloud in clouds() {
         for model in on_grid() {
-            for limit in [f64::INFINITY, 0.02] {
+            for limit in [f64::INFINITY, 0.005] {
                 let u = wave(&cloud, 0.05);
                 let d = noise(u.len(), 3.0);
                 let what = format!("{model:?}, {}D, {limit}", cloud.dimension());
@@ -118,9 +118,9 @@ fn failure_does_not_depend_on_the_subset() {
     let n = cloud.len() as u32;
     for model in on_grid() {
         let u = wave(&cloud, 0.05);
-        let [_, mut whole] = pair(&cloud, &model, 0.02);
+        let [_, mut whole] = pair(&cloud, &model, 0.005);
         let forces = end(&mut *whole, &u, PointSubset::All);
-        let [_, mut parts] = pair(&cloud, &model, 0.02);
+        let [_, mut parts] = pair(&cloud, &model, 0.005);
         let set: Vec<u32> = (0..n).filter(|i| i % 3 == 0).collect();
         let rest: Vec<u32> = (0..n).filter(|i| i % 3 != 0).collect();
         end(&mut *parts, &u, PointSubset::Set(&set));
