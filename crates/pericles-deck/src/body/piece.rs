@@ -10,7 +10,7 @@ use crate::set::bad_name;
 /// Name of the piece that `[body]` describes, unless it has another one.
 const MAIN: &str = "main";
 
-/// The pieces of a body besides that of `[body]`, as far as they could be read.
+/// The pieces of a body other than that of `[body]`, as far as they could be read.
 pub(super) struct Pieces<'a> {
     /// Name of the piece of `[body]`.
     main: Option<String>,
@@ -25,7 +25,7 @@ struct PieceRead<'a> {
     rest: Option<Rest>,
 }
 
-/// The keys of a piece besides those of its shape.
+/// The keys of a piece other than those of its shape.
 struct Rest {
     name: String,
     origin: [f64; 3],
