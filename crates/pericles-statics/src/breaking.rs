@@ -89,10 +89,10 @@ fn enlarged(system: &System, u: &[f64], ties: f64) -> Vec<f64> {
 /// Breaks the bonds beyond their limits in `scaled` displacements, at which they dissipate their energy.
 /// Returns the remaining loss of the body at `u`, J.
 fn at(system: &mut System, t: f64, (scaled, u): (&[f64], &[f64]), work: &mut [f64]) -> f64 {
-    let energy = system.operator().energy(t, u);
+    let energy = system.stored_energy(t, u);
     let booked = system.operator().dissipated();
     end_step(system, t, scaled, work);
-    let lost = energy - system.operator().energy(t, u);
+    let lost = energy - system.stored_energy(t, u);
     lost - (system.operator().dissipated() - booked)
 }
 

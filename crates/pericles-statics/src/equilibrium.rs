@@ -18,6 +18,8 @@ use crate::unknowns::Unknowns;
 pub struct Target<'a> {
     /// Time, s.
     pub t: f64,
+    /// Time (s) at which rigid bodies in contact have their positions; within a load step it is before `t`.
+    pub place: f64,
     /// Loads, N/m³.
     pub load: &'a [f64],
     /// Displacements, m; only constrained entries are used.
@@ -172,7 +174,7 @@ impl Equilibrium {
     ) -> Result<Effort> {
         let mut effort = Effort::default();
         let load = self.load_norm(system, target)?;
-        let linear = system.operator().as_linear().is_some();
+        let linear = is_linear(system);
         let mut lifted = self.set_lift(target, u);
         let mut norm = self.evaluate(system, target, u, &mut effort);
         let first = norm;
@@ -220,10 +222,10 @@ impl Equilibrium {
                 interrupt,
             };
             if lifted {
-                self.linearise_lift(system, target.t, u);
+                self.linearise_lift(system, target, u);
                 effort.products += 1;
             }
-            let solved = self.solve(system, target.t, u, &goal)?;
+            let solved = self.solve(system, target, u, &goal)?;
             effort.products += solved.products;
             indefinite |= solved.end == End::Indefinite;
             if lifted {
@@ -305,17 +307,24 @@ impl Equilibrium {
     }
 
     /// Adds the linearised effect of the motion of the supports to the residual.
-    fn linearise_lift(&mut self, system: &System, t: f64, u: &[f64]) {
-        stiffness_into(system, t, u, &self.lift, &mut self.correction);
+    fn linearise_lift(&mut self, system: &System, target: &Target<'_>, u: &[f64]) {
+        let times = [target.t, target.place];
+        stiffness_into(system, times, u, &self.lift, &mut self.correction);
         add_multiple(&mut self.residual, -1.0, &self.correction);
         remove(system, &self.rigid, &mut self.residual);
     }
 
     /// Computes the Newton correction.
-    fn solve(&mut self, system: &System, t: f64, u: &[f64], goal: &Goal<'_>) -> Result<Solution> {
+    fn solve(
+        &mut self,
+        system: &System,
+        target: &Target<'_>,
+        u: &[f64],
+        goal: &Goal<'_>,
+    ) -> Result<Solution> {
         let mut tangent = Tangent {
             system,
-            t,
+            times: [target.t, target.place],
             u,
             unknowns: &self.unknowns,
             multigrid: &mut self.multigrid,
@@ -363,15 +372,26 @@ impl Equilibrium {
 /// Computes `out` = V (f(u) + b), N.
 fn residual_into(system: &System, target: &Target<'_>, u: &[f64], out: &mut [f64]) {
     out.copy_from_slice(target.load);
-    system
-        .operator()
-        .add_force(target.t, u, PointSubset::All, out);
+    add_internal(system, [target.t, target.place], u, out);
     let (n, volumes) = (system.points(), system.cloud().volumes());
     crate::chunks::for_each_chunk(out, &|first, chunk| {
         for (k, out) in chunk.iter_mut().enumerate() {
             *out *= volumes[(first + k) % n];
         }
     });
+}
+
+/// Returns whether residuals are linear in the displacement.
+pub(crate) fn is_linear(system: &System) -> bool {
+    system.operator().as_linear().is_some() && !system.has_interactions()
+}
+
+/// Adds the force density (N/m³) of bonds at the first time and that of contact at the second one.
+pub(crate) fn add_internal(system: &System, times: [f64; 2], u: &[f64], out: &mut [f64]) {
+    system
+        .operator()
+        .add_force(times[0], u, PointSubset::All, out);
+    system.add_contact_force(times[1], u, out);
 }
 
 /// Returns the norm of the free entries of a vector.

@@ -19,6 +19,9 @@ pub(crate) fn check(system: &System, reference: f64) -> Result<()> {
     if capabilities.thermal.is_some() {
         return refuse("thermal strain is not scaled with the loads (remove [thermal])");
     }
+    if system.has_interactions() {
+        return refuse("contact opens and closes between events (remove [contact] and impactors)");
+    }
     if !system.operator().can_break() {
         return refuse(
             "no bond can break (set a fracture energy or a critical stretch of the material)",

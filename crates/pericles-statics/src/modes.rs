@@ -222,7 +222,7 @@ impl<'a> Problem<'a> {
     /// Returns K x on free entries.
     fn product(&mut self, x: &[f64]) -> Vec<f64> {
         let mut out = vec![0.0; x.len()];
-        stiffness_into(self.system, self.t, self.u, x, &mut out);
+        stiffness_into(self.system, [self.t; 2], self.u, x, &mut out);
         out.iter_mut()
             .zip(&self.free)
             .for_each(|(k, free)| *k *= free);

@@ -1,21 +1,32 @@
 //! Load steps: static states along a linear path of loads and supports, and the work done.
 
-use pericles::operator::PointSubset;
 use pericles::{Interrupt, Result, System};
 
-use crate::equilibrium::{Effort, Equilibrium, Target, is_interrupt};
+use crate::equilibrium::{Effort, Equilibrium, Target, add_internal, is_interrupt, is_linear};
 use crate::error::StaticsError;
 
 /// Loads and supports at both ends of a load step, interpolated linearly in between.
 pub struct LoadStep<'a> {
     /// Time at the end, s.
     pub t: f64,
+    /// Time at the start (s), from which rigid bodies in contact move to their positions at the end.
+    pub start: f64,
     /// Loads before and after, N/m³.
     pub loads: [&'a [f64]; 2],
     /// Displacements before and after, m; only constrained entries are used.
     pub supports: [&'a [f64]; 2],
     /// Largest norm of loads or reactions before, N.
     pub largest: f64,
+}
+
+impl LoadStep<'_> {
+    /// Returns the time at a fraction of the step.
+    fn time_at(&self, s: f64) -> f64 {
+        if s == 1.0 {
+            return self.t;
+        }
+        self.start + s * (self.t - self.start)
+    }
 }
 
 /// A static state on the path.
@@ -114,6 +125,7 @@ impl Follower<'_, '_> {
         let (load, supports) = (mix(self.step.loads), mix(self.step.supports));
         let target = Target {
             t: self.step.t,
+            place: self.step.time_at(s),
             load: &load,
             supports: &supports,
             largest: self.step.largest,
@@ -125,8 +137,8 @@ impl Follower<'_, '_> {
     fn station(&self, s: f64, u: Vec<f64>) -> Station {
         let (system, n) = (self.system, self.system.points());
         let mut acting = vec![0.0; u.len()];
-        let operator = system.operator();
-        operator.add_force(self.step.t, &u, PointSubset::All, &mut acting);
+        let times = [self.step.t, self.step.time_at(s)];
+        add_internal(system, times, &u, &mut acting);
         let [before, after] = self.step.loads;
         let free = self.equilibrium.free();
         let volumes = system.cloud().volumes();
@@ -152,7 +164,7 @@ impl Follower<'_, '_> {
         effort: &mut Effort,
     ) -> Result<f64> {
         let whole = self.trapezoid(a, b);
-        if !with_work || self.system.operator().as_linear().is_some() {
+        if !with_work || is_linear(self.system) {
             return Ok(whole);
         }
         let s = 0.5 * (a.s + b.s);
@@ -181,7 +193,21 @@ impl Follower<'_, '_> {
 
     fn trapezoid(&self, a: &Station, b: &Station) -> f64 {
         let term = |k: usize| 0.5 * (a.acting[k] + b.acting[k]) * (b.u[k] - a.u[k]);
-        self.system.domain().sum(a.u.len(), term)
+        self.system.domain().sum(a.u.len(), term) + self.contact_work(a, b)
+    }
+
+    /// Returns the work of moving rigid bodies in contact: the energy Φ of contact changes by ∂Φ/∂t where the points
+    /// stay.
+    fn contact_work(&self, a: &Station, b: &Station) -> f64 {
+        if !self.system.has_interactions() {
+            return 0.0;
+        }
+        let [before, after] = [a, b].map(|station| self.step.time_at(station.s));
+        let change = |u: &[f64]| {
+            let energy = |t: f64| self.system.contact_energy(t, u);
+            energy(after) - energy(before)
+        };
+        0.5 * (change(&a.u) + change(&b.u))
     }
 }
 

@@ -11,8 +11,8 @@ use crate::unknowns::Unknowns;
 pub struct Tangent<'a> {
     /// The body.
     pub system: &'a System,
-    /// Time, s.
-    pub t: f64,
+    /// Times of bonds and of contact, s.
+    pub times: [f64; 2],
     /// Displacement at which the force is linearised, m.
     pub u: &'a [f64],
     /// The free entries.
@@ -27,7 +27,7 @@ pub struct Tangent<'a> {
 
 impl LinearProblem for Tangent<'_> {
     fn multiply_into(&mut self, x: &[f64], out: &mut [f64]) {
-        stiffness_into(self.system, self.t, self.u, x, out);
+        stiffness_into(self.system, self.times, self.u, x, out);
     }
 
     fn precondition_into(&mut self, residual: &[f64], out: &mut [f64]) {
@@ -39,12 +39,14 @@ impl LinearProblem for Tangent<'_> {
     }
 }
 
-/// Computes `out` = −V ∂f/∂u x at displacement u, on all entries.
-pub fn stiffness_into(system: &System, t: f64, u: &[f64], x: &[f64], out: &mut [f64]) {
+/// Computes `out` = −V ∂f/∂u x at displacement u, on all entries, with bonds at the first time and contact at the second
+/// one.
+pub fn stiffness_into(system: &System, times: [f64; 2], u: &[f64], x: &[f64], out: &mut [f64]) {
     match system.operator().as_linear() {
         Some(linear) => linear.apply_into(x, out),
-        None => system.operator().tangent_into(t, u, x, out),
+        None => system.operator().tangent_into(times[0], u, x, out),
     }
+    system.add_contact_tangent(times[1], u, x, out);
     let (n, volumes) = (system.points(), system.cloud().volumes());
     for_each_chunk(out, &|first, chunk| {
         for (k, out) in chunk.iter_mut().enumerate() {

@@ -98,11 +98,11 @@ pub fn assemble(
         &system,
         &state,
         &*integrator,
-        (exterior, damping, contact.frequency),
+        (exterior, damping),
         &mut warnings,
     )?;
     assembler.judge_contact_step(
-        steps.dt,
+        (steps.dt, system.longest_contact_step()),
         contact,
         constants.as_ref(),
         cloud.spacing(),

@@ -78,11 +78,8 @@ impl Assembler<'_> {
                 .map_err(|error| at(&path, error))?;
         }
         let density = &bodies.density;
-        let contacts = system
-            .interactions()
-            .map(|one| one.contact_frequency(density));
         let facts = ContactFacts {
-            frequency: contacts.fold(0.0, f64::max),
+            frequency: system.single_contact_frequency(density),
             speed: self.impact_speed(system, state),
         };
         self.judge_impact(solid, &contact, facts, constants, warnings);
@@ -242,10 +239,10 @@ impl Assembler<'_> {
         }
     }
 
-    /// Warns of steps that resolve contacts badly, and in which a bond is stretched by more than the critical stretch.
+    /// Warns of steps above `longest` (s), which resolve contacts badly, and of steps in which a bond is stretched by more than the critical stretch.
     pub(super) fn judge_contact_step(
         &self,
-        dt: f64,
+        (dt, longest): (f64, f64),
         facts: ContactFacts,
         own: Option<&MaterialConstants>,
         spacing: f64,
@@ -254,7 +251,6 @@ impl Assembler<'_> {
         if self.model.time.scheme.is_static() {
             return;
         }
-        let longest = CONTACT_PHASE / facts.frequency;
         if dt > longest * (1.0 + 1e-9) {
             let caution = Caution::FewContactSteps { dt, longest };
             warnings.push(Remark::new("time.dt", caution));
@@ -270,9 +266,6 @@ impl Assembler<'_> {
         }
     }
 }
-
-/// Phase ω dt of a contact in a step such that a lone contact, which lasts half a period, takes five steps.
-pub(super) const CONTACT_PHASE: f64 = 0.63;
 
 const ORIGIN: [f64; 3] = [0.0; 3];
 

@@ -7,7 +7,6 @@ use pericles::units::{precise, quantity, significant};
 use pericles_deck::{BuildError, Caution, Fault, ModelWarning, Remark, Scheme, TimeStep};
 
 use super::assembler::Assembler;
-use super::contact::CONTACT_PHASE;
 use super::refusal::{at, at_path};
 
 /// Relative tolerance for an integer number of steps.
@@ -25,13 +24,13 @@ pub(super) struct Steps {
 
 impl Assembler<'_> {
     /// Determines the time step, or checks the given one; `exterior` is the highest frequency of the exterior lattices,
-    /// `damped` the largest damping rate of its layers, `contact` the frequency of contacts, 1/s.
+    /// `damped` the largest damping rate of its layers, 1/s.
     pub(super) fn steps(
         &self,
         system: &System,
         state: &State,
         integrator: &dyn Integrator,
-        (exterior, damped, contact): (f64, f64, f64),
+        (exterior, damped): (f64, f64),
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<Steps, BuildError> {
         let end = self.model.time.end;
@@ -65,13 +64,10 @@ impl Assembler<'_> {
                     })
                     .map_err(refuse)?;
                 let undamped =
-                    limited_by_contact(frequency.stable_step(limit, 1.0), limit, contact);
+                    system.stable_contact_step(frequency.stable_step(limit, 1.0), limit);
                 let damped = damped + self.rayleigh_rates().at(limit / undamped);
                 let stable = safety * damped_step(undamped, damped);
-                let stable = match contact > 0.0 {
-                    true => stable.min(CONTACT_PHASE / contact),
-                    false => stable,
-                };
+                let stable = stable.min(system.longest_contact_step());
                 let count = self.count(end, stable)?;
                 Ok(Steps {
                     dt: end / count as f64,
@@ -202,13 +198,6 @@ impl Assembler<'_> {
         // An integer up to rounding.
         Ok((ratio * (1.0 - WHOLE)).ceil().max(1.0) as u64)
     }
-}
-
-/// Returns the largest stable step with contacts of the frequency `contact`, 1/s, from the one without, limit/ω: each point may be in
-/// contact with several others, which together raise ω² by up to 1.7 times the square of the frequency of one contact.
-fn limited_by_contact(stable: f64, limit: f64, contact: f64) -> f64 {
-    const SEVERAL: f64 = 1.7;
-    stable / (1.0 + SEVERAL * (contact * stable / limit).powi(2)).sqrt()
 }
 
 /// Returns the largest stable step of velocity Verlet with a damping rate σ (1/s) applied to the velocity of the

@@ -114,6 +114,7 @@ impl StaticScheme {
         /// Fraction of the largest reactions: a residual below it is sufficient for an almost severed body.
         const SEVERED: f64 = 1e-3;
         let step = LoadStep {
+            start: at.t,
             t: at.t,
             loads: [&at.load; 2],
             supports: [&at.supports; 2],
@@ -209,6 +210,7 @@ impl StaticScheme {
         let loads = factors.map(|factor| scaled(factor, &at.load));
         let supports = factors.map(|factor| scaled(factor, &at.supports));
         let step = LoadStep {
+            start: at.t,
             t: at.t,
             loads: [&loads[0], &loads[1]],
             supports: [&supports[0], &supports[1]],

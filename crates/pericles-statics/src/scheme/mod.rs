@@ -68,10 +68,8 @@ impl StaticScheme {
             need: Need::NoBoundaries,
             reason: "static states have no waves to absorb and no velocities to damp; leave the boundary out",
         },
-        Requirement {
-            need: Need::NoInteractions,
-            reason: "its preconditioner and load steps need bonds that do not open and close; use adaptive-dynamic-relaxation",
-        },
+        Requirement::CONSERVATIVE_CONTACT,
+        Requirement::NO_FREE_BODIES,
     ];
 
     /// Creates the scheme for a system with the supports at the start.
@@ -171,9 +169,10 @@ impl StaticScheme {
             };
             self.released += beyond;
             let before = state.u.clone();
-            let (elastic, work) = (system.operator().energy(t, &before), system.ledger().work);
+            let (elastic, work) = (system.stored_energy(t, &before), system.ledger().work);
             let step = LoadStep {
                 t,
+                start: t,
                 loads: [load; 2],
                 supports: [&before; 2],
                 largest: self.largest,
@@ -181,7 +180,7 @@ impl StaticScheme {
             self.follow(system, step, (&mut state.u, false), interrupt)?;
             system.book_equilibrium(&chord(t, 0.0, &state.u, &before, false), &mut state.a);
             self.released +=
-                elastic - system.operator().energy(t, &state.u) + system.ledger().work - work;
+                elastic - system.stored_energy(t, &state.u) + system.ledger().work - work;
         }
     }
 
@@ -283,7 +282,7 @@ impl Integrator for StaticScheme {
         // An initial displacement is not a static state: the first load step is a jump.
         let displaced = first && before.iter().any(|u| *u != 0.0);
         let elastic = if displaced {
-            system.operator().energy(state.t, &before)
+            system.stored_energy(state.t, &before)
         } else {
             0.0
         };
@@ -297,6 +296,7 @@ impl Integrator for StaticScheme {
         system.place_on(t_next, &PointSubset::All, &mut supports);
         let step = LoadStep {
             t: t_next,
+            start: state.t,
             loads: [&loads[0], &loads[1]],
             supports: [&before, &supports],
             largest: self.largest.max(system.thermal_force(t_next, &before)),
@@ -308,7 +308,7 @@ impl Integrator for StaticScheme {
         system.book_equilibrium(&end, &mut state.a);
         let of_means = system.ledger().work - booked;
         if displaced {
-            self.released += elastic - system.operator().energy(t_next, &state.u) + of_means;
+            self.released += elastic - system.stored_energy(t_next, &state.u) + of_means;
         } else {
             system.book_exchange(Exchange {
                 work: work + heating - of_means,

@@ -53,6 +53,7 @@ pub(super) fn state_of(system: &System) -> Result<(Took, Vec<f64>), RunError> {
     let mut supports = u.clone();
     system.place_on(0.0, &PointSubset::All, &mut supports);
     let target = Target {
+        place: 0.0,
         t: 0.0,
         load: &load,
         supports: &supports,

@@ -238,8 +238,9 @@ impl SimulationBuilder {
         match (self.step, limit) {
             (Step::Safety(part), Some((limit, frequency))) => {
                 positive("the fraction of the stable step", part)?;
-                let stable = frequency.stable_step(limit, part);
-                Ok(self.system.contact_step(stable, part * limit))
+                let stable = frequency.stable_step(limit, 1.0);
+                let stable = part * self.system.stable_contact_step(stable, limit);
+                Ok(stable.min(self.system.longest_contact_step()))
             }
             (Step::Safety(_), None) => Err(PericlesError::NotGiven {
                 what: "the time step of a scheme that is stable for any step",

@@ -87,7 +87,7 @@ impl System {
     /// Sets `out` to the derivative of internal forces and interactions at u in the given direction.
     pub fn internal_tangent_into(&self, t: f64, u: &[f64], direction: &[f64], out: &mut [f64]) {
         self.operator().tangent_into(t, u, direction, out);
-        self.add_interaction_tangent(t, u, direction, out);
+        self.add_contact_tangent(t, u, direction, out);
     }
 
     pub(super) fn add_interactions(
@@ -103,7 +103,8 @@ impl System {
         }
     }
 
-    pub(super) fn add_interaction_tangent(
+    /// Adds the derivative of contact at u in the given direction.
+    pub fn add_contact_tangent(
         &self,
         t: f64,
         u: &[f64],
@@ -156,27 +157,35 @@ impl System {
         SEVERAL.sqrt() * self.single_contact_frequency(density)
     }
 
-    /// Returns the highest frequency (1/s) of a single contact.
-    fn single_contact_frequency(&self, density: &PointScalar) -> f64 {
+    /// Returns the highest frequency (1/s) of a single contact, for the density of each point (kg/m³); zero without
+    /// interactions.
+    pub fn single_contact_frequency(&self, density: &PointScalar) -> f64 {
         let all = self
             .interactions()
             .map(|one| one.contact_frequency(density));
         all.fold(0.0, f64::max)
     }
 
-    /// Returns the largest time step (s) with contact, where `stable` is that of the bonds alone under a scheme that is
-    /// stable for ω dt ≤ `limit`: stable with several contacts per point, and with at least five steps per contact of a
-    /// lone pair, 0.63/ω. Its velocity after the contact is then within 4 % of that before; at the limit of stability
-    /// the ratio is between 0.9 and 1.1.
-    pub fn contact_step(&self, stable: f64, limit: f64) -> f64 {
-        /// ω dt at five steps per contact, which lasts π/ω.
-        const RESOLVED: f64 = 0.63;
+    /// Returns the largest stable time step (s) with several contacts per point, where `stable` is that of the bonds
+    /// alone under a scheme that is stable for ω dt ≤ `limit`.
+    pub fn stable_contact_step(&self, stable: f64, limit: f64) -> f64 {
         if self.interactions.is_empty() {
             return stable;
         }
         let many = self.contact_frequency(&self.density) / limit;
-        let single = self.single_contact_frequency(&self.density);
-        (1.0 / (1.0 / stable).hypot(many)).min(RESOLVED / single)
+        1.0 / (1.0 / stable).hypot(many)
+    }
+
+    /// Returns the longest time step (s) with at least five steps per contact of a lone pair, 0.63/ω; infinite without
+    /// interactions. The velocity after the contact is then within 4 % of that before; at the limit of stability the
+    /// ratio is between 0.9 and 1.1.
+    pub fn longest_contact_step(&self) -> f64 {
+        /// ω dt at five steps per contact, which lasts π/ω.
+        const RESOLVED: f64 = 0.63;
+        match self.single_contact_frequency(&self.density) {
+            0.0 => f64::INFINITY,
+            single => RESOLVED / single,
+        }
     }
 
     fn configuration<'a>(&'a self, t: f64, u: &'a [f64]) -> Configuration<'a> {

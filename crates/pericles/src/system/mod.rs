@@ -406,7 +406,7 @@ impl System {
             Some(linear) => linear.apply_into(direction, out),
             None => self.operator().tangent_into(0.0, u, direction, out),
         }
-        self.add_interaction_tangent(0.0, u, direction, out);
+        self.add_contact_tangent(0.0, u, direction, out);
         self.divide_by_density(&PointSubset::All, out);
         for_each_chunk(out, &|_, chunk| chunk.iter_mut().for_each(|x| *x = -*x));
     }
