@@ -12,9 +12,13 @@ macro_rules! decks {
     };
 }
 
-const DECKS: [(&str, &str); 15] = decks![
+const DECKS: [(&str, &str); 19] = decks![
+    "examples/contact/kalthoff-winkler.toml",
     "examples/fracture/branching.toml",
     "examples/multi-time-step/inclusion.toml",
+    "validation/contact/hertz.toml",
+    "validation/contact/kalthoff-prescribed.toml",
+    "validation/contact/kalthoff-rigid.toml",
     "validation/dispersion-and-fracture/inclined.toml",
     "validation/manifolds/paper-calibrated.toml",
     "validation/manifolds/poles.toml",

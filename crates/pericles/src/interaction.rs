@@ -106,10 +106,6 @@ pub trait Interaction: Any + Checkpointed + Send + Sync {
         [0.0; 3]
     }
 
-    /// Returns an upper bound of the highest angular frequency (1/s) that the contacts of a configuration alone would
-    /// give the points.
-    fn frequency_bound(&self, at: &Configuration<'_>, density: &PointScalar) -> f64;
-
     /// Highest angular frequency (1/s) of a single contact: a pair of points, or a point and a body. A contact lasts π
     /// over this frequency.
     fn contact_frequency(&self, density: &PointScalar) -> f64;

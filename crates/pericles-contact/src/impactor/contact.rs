@@ -295,16 +295,6 @@ impl Interaction for Impactor {
         mass.map_or([0.0; 3], |mass| scaled(mass.mass, self.state.velocity))
     }
 
-    /// Each point touches once, with one direction of stiffness.
-    fn frequency_bound(&self, at: &Configuration<'_>, density: &PointScalar) -> f64 {
-        let touches = self.touches(&self.pose_at(at.t), at.u);
-        let square = |one: &Touch| {
-            let slope = self.touching.law.law.slope(one.force, one.overlap);
-            slope / (density.at(one.point) * self.touching.cloud.volumes()[one.point])
-        };
-        touches.iter().map(square).fold(0.0, f64::max).sqrt()
-    }
-
     fn contact_frequency(&self, density: &PointScalar) -> f64 {
         let inverse = self.mass.as_ref().map_or(0.0, |mass| 1.0 / mass.mass);
         let exponent = self.touching.law.law.exponent();

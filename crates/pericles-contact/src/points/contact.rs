@@ -235,25 +235,6 @@ impl Interaction for PointContact {
         self.dissipated
     }
 
-    /// √max (2/m_i) λ_max(Σ_j k n nᵀ), with the Frobenius norm in place of the largest eigenvalue.
-    fn frequency_bound(&self, at: &Configuration<'_>, density: &PointScalar) -> f64 {
-        let list = self.candidates(at);
-        let squares = self.each(list.exposed(), |i| {
-            let mut sum = [[0.0; 3]; 3];
-            for j in list.row(i) {
-                if let Some(contact) = self.touching.contact(at.u, [i, j]) {
-                    let slope = self.touching.law.law.slope(contact.force, contact.overlap);
-                    for (c, row) in sum.iter_mut().enumerate() {
-                        *row = plus(*row, slope * contact.normal[c], contact.normal);
-                    }
-                }
-            }
-            let norm = sum.iter().flatten().map(|x| x * x).sum::<f64>().sqrt();
-            2.0 * norm / (density.at(i) * self.touching.cloud.volumes()[i])
-        });
-        squares.into_iter().fold(0.0, f64::max).sqrt()
-    }
-
     /// For springs in series, k_ij (1/m_i + 1/m_j) = 2 (1/m_i + 1/m_j)/(1/k_i + 1/k_j) is at most twice the larger k/m.
     fn contact_frequency(&self, density: &PointScalar) -> f64 {
         let touching = &self.touching;

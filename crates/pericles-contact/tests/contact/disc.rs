@@ -61,10 +61,6 @@ impl Interaction for Indenter {
 
     fn add_tangent(&self, _at: &Configuration<'_>, _direction: &[f64], _out: &mut [f64]) {}
 
-    fn frequency_bound(&self, _at: &Configuration<'_>, _density: &PointScalar) -> f64 {
-        0.0
-    }
-
     fn contact_frequency(&self, _density: &PointScalar) -> f64 {
         0.0
     }

@@ -2,6 +2,10 @@
 //! language.
 
 mod bars;
+mod disc;
+mod hertz;
+mod kalthoff;
+mod reference;
 mod rigid;
 
 use crate::study::{Topic, data};
@@ -11,11 +15,22 @@ pub(super) const TOPIC: Topic = Topic {
     studies: &[
         data!("contact/bars"),
         data!("contact/wall"),
+        data!("contact/hertz"),
         data!("contact/rigid"),
+        data!("contact/reference"),
+        data!("contact/impact-disc"),
+        data!("contact/kalthoff-winkler"),
     ],
     measures: &[
         ("bars", bars::bars),
         ("wall", bars::wall),
+        ("hertz", hertz::ball),
         ("ball", rigid::ball),
+        ("points", reference::points),
+        ("shapes", reference::shapes),
+        ("top", reference::top),
+        ("indenter", disc::indenter),
+        ("steel ball", disc::ball),
+        ("projectile", kalthoff::projectile),
     ],
 };

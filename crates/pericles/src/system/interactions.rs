@@ -139,14 +139,6 @@ impl System {
             .sum()
     }
 
-    /// Returns an upper bound of the frequency (1/s) that contacts at displacement u alone would cause; zero without
-    /// interactions.
-    pub fn contact_frequency_bound(&self, t: f64, u: &[f64]) -> f64 {
-        let at = self.configuration(t, u);
-        let square = |one: &dyn Interaction| one.frequency_bound(&at, &self.density).powi(2);
-        self.interactions().map(square).sum::<f64>().sqrt()
-    }
-
     /// Returns a frequency (1/s) that contacts add to those of the bonds, for the density of each point (kg/m³); zero
     /// without interactions. A point of a compact lattice has several contacts at a time, which together reach √1.7
     /// times the frequency of a single one at the upper end of the spectrum (measured on pressed lattice blocks with
