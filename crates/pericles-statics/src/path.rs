@@ -193,21 +193,8 @@ impl Follower<'_, '_> {
 
     fn trapezoid(&self, a: &Station, b: &Station) -> f64 {
         let term = |k: usize| 0.5 * (a.acting[k] + b.acting[k]) * (b.u[k] - a.u[k]);
-        self.system.domain().sum(a.u.len(), term) + self.contact_work(a, b)
-    }
-
-    /// Returns the work of moving rigid bodies in contact: the energy Φ of contact changes by ∂Φ/∂t where the points
-    /// stay.
-    fn contact_work(&self, a: &Station, b: &Station) -> f64 {
-        if !self.system.has_interactions() {
-            return 0.0;
-        }
-        let [before, after] = [a, b].map(|station| self.step.time_at(station.s));
-        let change = |u: &[f64]| {
-            let energy = |t: f64| self.system.contact_energy(t, u);
-            energy(after) - energy(before)
-        };
-        0.5 * (change(&a.u) + change(&b.u))
+        let [from, to] = [a, b].map(|station| (self.step.time_at(station.s), &station.u[..]));
+        self.system.domain().sum(a.u.len(), term) + self.system.contact_work(from, to)
     }
 }
 

@@ -72,6 +72,13 @@ pub trait Interaction: Any + Checkpointed + Send + Sync {
     /// Adds the derivative of the force density in a direction.
     fn add_tangent(&self, at: &Configuration<'_>, direction: &[f64], out: &mut [f64]);
 
+    /// Returns the work (J) of prescribed motions of bodies between two configurations, with the mean of the forces at
+    /// both.
+    fn work_between(&self, from: &Configuration<'_>, to: &Configuration<'_>) -> f64 {
+        let _ = (from, to);
+        0.0
+    }
+
     /// Ends a step: moves free bodies to its end, adds all force densities to `out`, which contains those of bonds and
     /// loads, and returns work and impulse on points and bodies by the outside. Steps of length zero start a run.
     fn end_step(&mut self, end: &InteractionStep<'_>, out: &mut [f64]) -> Exchange {

@@ -179,6 +179,22 @@ impl Interaction for Impactor {
         energies.sum()
     }
 
+    fn work_between(&self, from: &Configuration<'_>, to: &Configuration<'_>) -> f64 {
+        let Some(course) = &self.course else {
+            return 0.0;
+        };
+        let shift = minus(course.place(to.t), course.place(from.t));
+        if shift == [0.0; 3] {
+            return 0.0;
+        }
+        let sum = |at: &Configuration<'_>| {
+            let touches = self.touches(&self.pose_at(at.t), at.u);
+            let add = |sum, touch: &Touch| plus(sum, touch.force, touch.normal);
+            touches.iter().fold([0.0; 3], add)
+        };
+        dot(scaled(0.5, plus(sum(from), 1.0, sum(to))), shift)
+    }
+
     fn add_tangent(&self, at: &Configuration<'_>, direction: &[f64], out: &mut [f64]) {
         /// Step of the difference quotient of the normal, relative to the cell.
         const STEP: f64 = 1e-5;

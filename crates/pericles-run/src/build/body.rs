@@ -6,8 +6,8 @@ use pericles::operator::{BondBody, CompositeBody, Feature};
 use pericles::space::PointSet;
 use pericles::{Need, PericlesError, PointScalar};
 use pericles_deck::{
-    BuildError, Caution, CellChoice, Fault, KeyPath, MaterialModel, ModelWarning, PointNumber,
-    Remark, Scheme, Solid, SurfaceBody,
+    BuildError, Caution, CellChoice, ContactPairs, Fault, KeyPath, MaterialModel, ModelWarning,
+    PointNumber, Remark, Scheme, Solid, SurfaceBody,
 };
 use pericles_manifold::surface::Surface;
 use pericles_waves::{AssembledForce, ForceForm};
@@ -250,6 +250,7 @@ impl Assembler<'_> {
         let scheme = &self.model.time.scheme;
         let needs_bonds = self.model.output.wants_tensors()
             || self.model.thermal.is_some()
+            || self.touches_without_bonds()
             || has_need(scheme, Need::FiniteReach);
         match self.heated_form(solid.material.form)? {
             ForceForm::Fastest if needs_bonds && !is_graded => Ok(composite.fastest_form().into()),
@@ -261,6 +262,12 @@ impl Assembler<'_> {
             }
             form => Ok(form),
         }
+    }
+
+    /// Returns whether the bonds decide which points may touch.
+    fn touches_without_bonds(&self) -> bool {
+        let pairs = self.model.contact.as_ref().map(|contact| contact.pairs);
+        pairs == Some(ContactPairs::Unbonded)
     }
 
     /// Builds the operator; also returns the bonds cut by pre-cracks.

@@ -2,6 +2,7 @@
 
 use pericles::Control;
 use pericles_contact::{Impactor, PointContact};
+use pericles_waves::ForceForm;
 
 use crate::common::Build;
 use crate::common::Built;
@@ -127,6 +128,65 @@ end = 3
         .iter()
         .any(|one| one.to_string().contains("do not interact"));
     assert!(warned);
+}
+
+/// The bar at rest, fixed at its left end and pressed by the wall from the right.
+fn pressed(law: &str, tail: &str) -> String {
+    let start = BAR.find("[[initial]]").unwrap();
+    let body = &BAR[..start].replace(r#"model = "linear""#, law);
+    let supports = "[sets]\nroot = { where = \"x < 0.03\" }\ntip = { where = \"x > 0.99\" }\n\
+         [[constraint]]\nset = \"root\"\ndisplacement = 0\n";
+    format!(
+        "{body}{supports}{tail}[time]\nscheme = \"static\"\nend = 1\nsteps = 3\ntolerance = 1e-11\n"
+    )
+}
+
+#[test]
+fn a_static_wall_presses_like_its_force_on_the_last_point() {
+    for law in [r#"model = "linear""#, r#"model = "bond-stretch""#] {
+        let wall = "[[impactor]]\nname = \"wall\"\nshape = \"half-space\"\nnormal = -1\ncentre = 1\n\
+             displacement = -0.003\nfunction = { kind = \"ramp\", duration = 1 }\n";
+        let end = run(build(&pressed(law, wall)));
+        let reading = end.system().interactions().next().unwrap();
+        let reading = reading.downcast_ref::<Impactor>().unwrap().reading();
+        assert_eq!(reading.points, 1);
+        // The contact carries the stress of a bar with the stiffness of bar and contact in series, about 0.003.
+        assert!((0.002..0.003).contains(&reading.force[0]), "{reading:?}");
+        let energies = end.snapshot().energies();
+        assert!(energies.contact > 0.0 && energies.work > 0.0);
+        let lost = energies.balance().abs() / energies.work;
+        assert!(lost < 1e-7, "{law}: {lost:e}");
+        let density = -reading.force[0] / 0.01;
+        let load = format!("[[load]]\nset = \"tip\"\nbody_force = {density:?}\n");
+        let loaded = run(build(&pressed(law, &load)));
+        let pairs = end.state().u.iter().zip(&loaded.state().u);
+        for (a, b) in pairs {
+            assert!((a - b).abs() < 1e-10 * 0.003, "{law}: {a:e} {b:e}");
+        }
+    }
+}
+
+#[test]
+fn contact_of_unbonded_points_selects_a_kernel_that_lists_its_bonds() {
+    // Without contact a linear plate with this horizon is computed by convolution.
+    let plate = r#"
+[body]
+shape = "plate"
+size = [48, 48]
+spacing = 1
+thickness = 1
+[material]
+model = "linear"
+density = 1
+youngs_modulus = 1
+horizon_ratio = 8
+[time]
+end = 1
+"#;
+    assert_eq!(build(plate).form, ForceForm::Convolution);
+    let touching = build(&plate.replace("[time]", "[contact]\n[time]"));
+    assert_eq!(touching.form, ForceForm::Grid);
+    assert_eq!(touching.system.interactions().count(), 1);
 }
 
 #[test]

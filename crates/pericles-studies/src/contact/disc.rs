@@ -163,7 +163,7 @@ pub(super) fn indenter(case: &Case<'_>) -> Result<Found, RunError> {
     .into())
 }
 
-/// Speed at which a steel ball leaves the disc that it has passed, and relative errors of momentum and energy.
+/// Velocity with which a steel ball rebounds from the disc that it breaks, and relative errors of momentum and energy.
 pub(super) fn ball(case: &Case<'_>) -> Result<Found, RunError> {
     let dt = case.number("dt")?;
     let law = ContactLaw::default();
@@ -191,7 +191,7 @@ pub(super) fn ball(case: &Case<'_>) -> Result<Found, RunError> {
     let mut all = run.system().interactions();
     let reading = all.find_map(|one| one.downcast_ref::<Impactor>().map(Impactor::reading));
     Ok(Found::default()
-        .value("speed", reading.map(|reading| -reading.velocity[1]))
+        .value("velocity", reading.map(|reading| reading.velocity[1]))
         .value("first", first)
         .value("momentum", momentum(&run) / first - 1.0)
         .value("balance", worst)

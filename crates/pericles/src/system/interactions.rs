@@ -63,6 +63,14 @@ impl System {
         self.interactions().map(|one| one.energy(&at)).sum()
     }
 
+    /// Returns the work (J) of prescribed motions of bodies in contact between two times and displacements, with the mean
+    /// of the forces at both.
+    pub fn contact_work(&self, from: (f64, &[f64]), to: (f64, &[f64])) -> f64 {
+        let [from, to] = [from, to].map(|(t, u)| self.configuration(t, u));
+        let works = self.interactions().map(|one| one.work_between(&from, &to));
+        works.sum()
+    }
+
     /// Returns the energy dissipated by the internal forces and by contact so far, J.
     pub fn dissipated(&self) -> f64 {
         self.operator().dissipated() + self.contact_dissipated()
@@ -104,13 +112,7 @@ impl System {
     }
 
     /// Adds the derivative of contact at u in the given direction.
-    pub fn add_contact_tangent(
-        &self,
-        t: f64,
-        u: &[f64],
-        direction: &[f64],
-        out: &mut [f64],
-    ) {
+    pub fn add_contact_tangent(&self, t: f64, u: &[f64], direction: &[f64], out: &mut [f64]) {
         let at = self.configuration(t, u);
         for interaction in &self.interactions {
             interaction.add_tangent(&at, direction, out);
