@@ -16,6 +16,7 @@ fn effort(system: &System) -> Effort {
     let (mut u, mut supports) = (vec![0.0; entries], vec![0.0; entries]);
     system.place_on(0.0, &PointSubset::All, &mut supports);
     let target = Target {
+        place: 0.0,
         t: 0.0,
         load: &load,
         supports: &supports,
