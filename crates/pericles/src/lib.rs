@@ -163,6 +163,7 @@ pub mod boundary;
 mod breaking;
 pub mod cache;
 mod compatibility;
+pub mod division;
 pub mod domain;
 mod error;
 pub mod family;

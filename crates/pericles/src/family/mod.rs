@@ -10,5 +10,6 @@ mod volume;
 
 pub use bonds::{BondCut, BondList};
 pub use crack::{Crack, Cutter, EndRule};
+pub(crate) use search::pairs_of_sites;
 pub use search::{pairs_where, pairs_within};
 pub use volume::VolumeCorrection;

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::space::PointCloud;
+use crate::space::{PointCloud, Sites};
 
 /// Returns, for every point, the other points within `reach` (m), in ascending order, as compressed rows: the
 /// neighbours of i are `neighbours[start[i]..start[i + 1]]`.
@@ -61,6 +61,18 @@ pub(super) fn pairs_of(
         neighbours.extend_from_slice(&row);
     }
     (start, neighbours)
+}
+
+/// As [`pairs_where`] for the sites of some points: the sites within reach of each of the points `wanted`, for which the
+/// condition holds for both sites and their distance.
+pub(crate) fn pairs_of_sites(
+    sites: &Sites,
+    wanted: &[u32],
+    reach: f64,
+    holds: &(dyn Fn(usize, usize, f64) -> bool + Sync),
+) -> (Vec<usize>, Vec<u32>) {
+    let place = |row: usize| sites.of_point(wanted[row] as usize);
+    pairs_of(sites.places(), wanted.len(), &place, reach, holds)
 }
 
 /// Returns the vector from point i to point j; on a lattice an exact multiple of the spacing.

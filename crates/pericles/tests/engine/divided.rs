@@ -3,9 +3,8 @@
 
 use std::sync::Arc;
 
-use crate::processes::on_processes;
 use crate::state_based::{Dilatational, Wall};
-use pericles::domain::{Comm, Domain, Peer};
+use pericles::domain::{Comm, Domain, Peer, Threads};
 use pericles::operator::TwoPassForce;
 use pericles::space::PointCloud;
 use pericles::time::{
@@ -124,7 +123,7 @@ fn run(comm: Arc<dyn Comm>, make: Make) -> (Vec<usize>, End) {
 
 /// The final state computed by several threads, in the order of point numbers.
 fn divided(size: usize, make: Make) -> End {
-    let parts = on_processes(size, |comm| run(comm, make));
+    let parts = Threads::run(size, |comm| run(comm, make));
     let mut whole = vec![[0; 4]; SIDES[0] * SIDES[1]];
     for (own, (values, sums)) in &parts {
         assert_eq!(sums, &parts[0].1.1, "all processes have the same sums");

@@ -4,8 +4,9 @@
 use std::sync::Arc;
 
 use crate::common::{listed, material, points};
-use crate::processes::on_processes;
-use pericles::domain::{Comm, Domain, Peer};
+
+use pericles::division::{Cuts, Points, bisect, part_of};
+use pericles::domain::{Alone, Comm, Threads};
 use pericles::family::{Crack, EndRule, VolumeCorrection};
 use pericles::kernel::InfluenceFunction;
 use pericles::material::{
@@ -23,6 +24,8 @@ use pericles::time::{
 };
 use pericles::{Control, PointScalar, Simulation, System};
 
+/// Largest distance of neighbours: bonds of three cells, and half a cell of their partial volumes.
+const REACH: f64 = 3.5;
 const SIZE: [f64; 2] = [21.0, 13.0];
 const STATE: StressState = StressState::PlaneStress;
 
@@ -56,47 +59,23 @@ fn owner(cloud: &PointCloud, size: usize, k: usize) -> usize {
 
 /// The part of the plate owned by a process, with ghosts up to three and a half cells away.
 fn part(cloud: &PointCloud, comm: Arc<dyn Comm>) -> PointCloud {
-    const REACH: f64 = 3.5;
-    let near = |a: usize, b: usize| {
-        let (p, q) = (cloud.point(a), cloud.point(b));
-        let apart = |c: usize| {
-            let direct = (q[c] - p[c]).abs();
-            if cloud.is_periodic() {
-                direct.min(SIZE[c] - direct)
-            } else {
-                direct
-            }
-        };
-        apart(0).hypot(apart(1)) <= REACH
+    let owners: Vec<u32> = (0..cloud.len())
+        .map(|k| owner(cloud, comm.size(), k) as u32)
+        .collect();
+    part_of(&Arc::new(cloud.clone()), &owners, REACH, comm).unwrap()
+}
+
+/// The part that recursive coordinate bisection gives to a process.
+fn bisected(cloud: &PointCloud, cuts: Cuts, comm: Arc<dyn Comm>) -> PointCloud {
+    let numbers: Vec<u32> = (0..cloud.len() as u32).collect();
+    let points = Points {
+        dimension: 2,
+        positions: cloud.positions(),
+        numbers: &numbers,
+        weights: &vec![1; cloud.len()],
     };
-    let of = |rank: usize| -> Vec<usize> {
-        (0..cloud.len())
-            .filter(|&k| owner(cloud, comm.size(), k) == rank)
-            .collect()
-    };
-    let seen = |from: &[usize], by: &[usize]| -> Vec<usize> {
-        let is_seen = |a: &usize| by.iter().any(|&b| near(*a, b));
-        from.iter().copied().filter(is_seen).collect()
-    };
-    let own = of(comm.rank());
-    let mut numbers: Vec<u32> = own.iter().map(|&k| k as u32).collect();
-    let mut peers = Vec::new();
-    for rank in (0..comm.size()).filter(|&rank| rank != comm.rank()) {
-        let theirs = of(rank);
-        let (ghosts, sent) = (seen(&theirs, &own), seen(&own, &theirs));
-        if ghosts.is_empty() {
-            continue;
-        }
-        let first = numbers.len() - own.len();
-        numbers.extend(ghosts.iter().map(|&k| k as u32));
-        let place = |k: &usize| own.binary_search(k).unwrap() as u32;
-        peers.push(Peer {
-            rank,
-            sent: sent.iter().map(place).collect(),
-            received: first..first + ghosts.len(),
-        });
-    }
-    cloud.part(Domain::new(numbers, own.len(), peers, comm))
+    let owners = bisect(&Alone, &points, comm.size(), cuts);
+    part_of(&Arc::new(cloud.clone()), &owners, REACH, comm).unwrap()
 }
 
 fn glass(law: PairLaw) -> BondMaterial {
@@ -252,7 +231,16 @@ fn run(cloud: PointCloud, make: Make, scheme: MakeScheme) -> End {
 }
 
 fn divided(whole: &PointCloud, size: usize, make: Make, scheme: MakeScheme) -> End {
-    let parts = on_processes(size, |comm| {
+    divided_by(whole, size, (make, scheme), part)
+}
+
+fn divided_by(
+    whole: &PointCloud,
+    size: usize,
+    (make, scheme): (Make, MakeScheme),
+    part: impl Fn(&PointCloud, Arc<dyn Comm>) -> PointCloud + Sync,
+) -> End {
+    let parts = Threads::run(size, |comm| {
         let cloud = part(whole, comm);
         let numbers: Vec<usize> = (0..cloud.len()).map(|i| cloud.domain().number(i)).collect();
         (numbers, run(cloud, make, scheme))
@@ -314,6 +302,28 @@ fn results_of_a_divided_body_of_bonds_are_bitwise_identical() {
 }
 
 #[test]
+fn results_of_bisected_bodies_are_bitwise_identical() {
+    let forces: [Make; 2] = [
+        |cloud| list::<BondStretch>(PairLaw::BondStretch, cloud),
+        |cloud| solid(cloud, BondForm::Grid),
+    ];
+    for periodic in [false, true] {
+        let whole = plate(periodic);
+        for make in forces {
+            let alone = run(whole.clone(), make, VERLET);
+            for (cuts, size) in [(Cuts::Anywhere, 4), (Cuts::Planes, 3), (Cuts::Planes, 8)] {
+                let part = |cloud: &_, comm| bisected(cloud, cuts, comm);
+                let found = divided_by(&whole, size, (make, VERLET), part);
+                assert!(
+                    found == alone,
+                    "{cuts:?}, {size} processes, periodic: {periodic}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
 fn results_of_single_rate_schemes_are_bitwise_identical_on_divided_bodies() {
     let schemes: [(&str, MakeScheme); 3] = [
         ("Runge–Kutta", |system| {
@@ -365,7 +375,7 @@ fn the_highest_frequency_does_not_depend_on_the_division() {
     ];
     for make in forces {
         let alone = of(whole.clone(), make);
-        for found in on_processes(3, |comm| of(part(&whole, comm), make)) {
+        for found in Threads::run(3, |comm| of(part(&whole, comm), make)) {
             assert_eq!(found, alone);
         }
     }

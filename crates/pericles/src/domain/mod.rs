@@ -5,16 +5,21 @@
 //! copies, *ghosts*, as far as its own points interact with them. Ghost values are stored in a separate buffer and
 //! are visible to forces only: a force requests them ([`Domain::ghosts`]) before each of its passes. Sums, maxima
 //! and counts over points go through the domain too, so that no other code depends on the number of processes. A
-//! single process that owns all points ([`Alone`]) is the normal case.
+//! single process that owns all points ([`Alone`]) is the normal case; [`Threads`] are processes within a program.
+//! [`division`](crate::division) decides which process owns which points.
 //!
 //! The number of a point in the whole body is its index in [`PointCloud`](crate::space::PointCloud), for every
 //! division. Rows of bonds and groups of eight follow these numbers, so that the force on a point has the same bits
 //! for every division. Each process stores its own points in ascending order of these numbers.
 
+mod threads;
+
 use std::borrow::Cow;
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
+
+pub use threads::Threads;
 
 use crate::sum::BinnedSum;
 

@@ -1,0 +1,128 @@
+//! Division of a body among processes: which process owns which points, and which points of others it needs.
+//!
+//! [`bisect`] assigns points to processes by recursive coordinate bisection. [`part_of`] makes the part of a body that a
+//! process computes, with its ghosts and its communication; results do not depend on the division, bit for bit
+//! ([`domain`](crate::domain)). [`shares`] predicts points, ghosts and messages of every process.
+
+mod bisection;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+pub use bisection::{Cuts, Points, bisect};
+
+use crate::domain::{Comm, Domain, Peer};
+use crate::error::Result;
+use crate::family::pairs_of_sites;
+use crate::space::{PointCloud, Sites, check_length};
+
+/// Points and messages of a process.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Share {
+    /// Points of the process.
+    pub owned: usize,
+    /// Points of others whose values it receives in each exchange.
+    pub ghosts: usize,
+    /// Own points that interact with points of others.
+    pub boundary: usize,
+    /// Number of processes with which it exchanges messages.
+    pub peers: usize,
+}
+
+/// Returns the owners of the points of others within reach of each of the points `wanted`, and those points.
+fn foreign(
+    whole: &Arc<PointCloud>,
+    owners: &[u32],
+    reach: f64,
+    wanted: &[u32],
+) -> Result<Vec<BTreeSet<(u32, u32)>>> {
+    check_length("the owners of the points", owners.len(), whole.len())?;
+    let sites = Sites::new(whole, reach)?;
+    let is_foreign = |i: usize, j: usize| owners[sites.point(i)] != owners[sites.point(j)];
+    let (starts, near) = pairs_of_sites(&sites, wanted, reach, &|i, j, distance| {
+        distance <= reach && is_foreign(i, j)
+    });
+    let of_row = |k: usize| {
+        let row = near[starts[k]..starts[k + 1]].iter();
+        row.map(|&site| sites.point(site as usize))
+            .map(|point| (owners[point], point as u32))
+            .collect()
+    };
+    Ok((0..wanted.len()).into_par_iter().map(of_row).collect())
+}
+
+/// Returns the part of a body that the calling process owns, with ghosts as far as bonds of length up to `reach` (m) lead.
+/// `owners` has the process of each point.
+///
+/// Every process needs the whole body to make its part.
+///
+/// # Errors
+/// Owners that are not one per point; bonds that span too many periods of the body.
+pub fn part_of(
+    whole: &Arc<PointCloud>,
+    owners: &[u32],
+    reach: f64,
+    comm: Arc<dyn Comm>,
+) -> Result<PointCloud> {
+    let rank = comm.rank() as u32;
+    let all = 0..whole.len() as u32;
+    let own: Vec<u32> = all
+        .filter(|&i| owners.get(i as usize) == Some(&rank))
+        .collect();
+    let found = foreign(whole, owners, reach, &own)?;
+    // Own points that each peer needs, by local number, and points of the peer, both ascending.
+    let mut peers: BTreeMap<u32, (Vec<u32>, BTreeSet<u32>)> = BTreeMap::new();
+    for (local, foreign) in found.iter().enumerate() {
+        for &(owner, point) in foreign {
+            let (sent, ghosts) = peers.entry(owner).or_default();
+            // A point has several neighbours of the same owner.
+            if sent.last() != Some(&(local as u32)) {
+                sent.push(local as u32);
+            }
+            ghosts.insert(point);
+        }
+    }
+    let (owned, mut numbers) = (own.len(), own);
+    let peers = peers.into_iter().map(|(rank, (sent, ghosts))| {
+        let first = numbers.len() - owned;
+        numbers.extend(&ghosts);
+        Peer {
+            rank: rank as usize,
+            sent,
+            received: first..first + ghosts.len(),
+        }
+    });
+    let peers = peers.collect();
+    Ok(whole.part(Domain::new(numbers, owned, peers, comm)))
+}
+
+/// Returns points, ghosts and messages of each of `processes` processes for bonds of length up to `reach` (m).
+///
+/// # Errors
+/// Those of [`part_of`].
+pub fn shares(
+    whole: &Arc<PointCloud>,
+    owners: &[u32],
+    processes: usize,
+    reach: f64,
+) -> Result<Vec<Share>> {
+    let all: Vec<u32> = (0..whole.len() as u32).collect();
+    let mut shares = vec![Share::default(); processes];
+    let mut peers = vec![BTreeSet::new(); processes];
+    for (i, foreign) in foreign(whole, owners, reach, &all)?.iter().enumerate() {
+        let own = &mut shares[owners[i] as usize];
+        own.owned += 1;
+        own.boundary += usize::from(!foreign.is_empty());
+        let others: BTreeSet<u32> = foreign.iter().map(|&(owner, _)| owner).collect();
+        for &other in &others {
+            shares[other as usize].ghosts += 1;
+            peers[other as usize].insert(owners[i]);
+        }
+    }
+    for (share, peers) in shares.iter_mut().zip(peers) {
+        share.peers = peers.len();
+    }
+    Ok(shares)
+}

@@ -1,0 +1,174 @@
+//! Division of bodies among processes.
+
+use std::sync::Arc;
+
+use pericles::division::{Cuts, Points, Share, bisect, shares};
+use pericles::domain::{Alone, Comm, Threads};
+use pericles::family::pairs_within;
+use pericles::space::{Grid, PointCloud, Shape};
+
+fn block(size: &[f64]) -> PointCloud {
+    let grid = Grid {
+        shape: Shape::Box {
+            origin: [0.0; 3],
+            size: size.to_vec(),
+        },
+        spacing: 1.0,
+        section: 1.0,
+        holes: vec![],
+    };
+    grid.points().unwrap()
+}
+
+/// Numbers of bonds of length up to the horizon of three cells.
+fn bonds(cloud: &PointCloud) -> Vec<u32> {
+    let (starts, _) = pairs_within(cloud, HORIZON);
+    starts
+        .windows(2)
+        .map(|row| (row[1] - row[0]) as u32)
+        .collect()
+}
+
+const HORIZON: f64 = 3.015;
+
+fn owners(cloud: &PointCloud, weights: &[u32], parts: usize, cuts: Cuts) -> Vec<u32> {
+    let numbers: Vec<u32> = (0..cloud.len() as u32).collect();
+    let points = Points {
+        dimension: cloud.dimension(),
+        positions: cloud.positions(),
+        numbers: &numbers,
+        weights,
+    };
+    bisect(&Alone, &points, parts, cuts)
+}
+
+fn shares_of(size: &[f64], parts: usize) -> (Vec<Share>, f64) {
+    let cloud = Arc::new(block(size));
+    let weights = bonds(&cloud);
+    let owners = owners(&cloud, &weights, parts, Cuts::Anywhere);
+    let mut work = vec![0u64; parts];
+    for (&owner, &weight) in owners.iter().zip(&weights) {
+        work[owner as usize] += u64::from(weight);
+    }
+    let mean = work.iter().sum::<u64>() as f64 / parts as f64;
+    let imbalance = work
+        .iter()
+        .map(|&work| work as f64 / mean)
+        .fold(0.0, f64::max);
+    (shares(&cloud, &owners, parts, HORIZON).unwrap(), imbalance)
+}
+
+#[test]
+fn shares_of_ghosts_equal_those_of_an_independent_program() {
+    // Mean ratio of ghosts and own points, largest share of points at a boundary, mean and largest number of messages.
+    let cases: [(&[f64], usize, f64, f64, [f64; 2]); 3] = [
+        (&[46.0; 3], 8, 0.415, 0.34, [7.0, 7.0]),
+        (&[46.0; 3], 64, 1.40, 0.78, [14.0, 26.0]),
+        (&[1000.0; 2], 64, 0.085, f64::NAN, [f64::NAN; 2]),
+    ];
+    for (size, parts, ghosts, boundary, messages) in cases {
+        let (shares, imbalance) = shares_of(size, parts);
+        let mean = |of: &dyn Fn(&Share) -> f64| shares.iter().map(of).sum::<f64>() / parts as f64;
+        let most = |of: &dyn Fn(&Share) -> f64| shares.iter().map(of).fold(0.0, f64::max);
+        let ratio = mean(&|share| share.ghosts as f64 / share.owned as f64);
+        assert!(
+            (ratio / ghosts - 1.0).abs() < 0.02,
+            "{size:?}, {parts}: {ratio}"
+        );
+        assert!(imbalance < 1.002, "{size:?}, {parts}: {imbalance}");
+        if boundary.is_nan() {
+            continue;
+        }
+        let found = most(&|share| share.boundary as f64 / share.owned as f64);
+        assert!(
+            (found - boundary).abs() < 0.006,
+            "{size:?}, {parts}: {found}"
+        );
+        let found = [
+            mean(&|share| share.peers as f64),
+            most(&|share| share.peers as f64),
+        ];
+        assert!(
+            (found[0] - messages[0]).abs() < 0.6,
+            "{size:?}, {parts}: {found:?}"
+        );
+        assert_eq!(found[1], messages[1], "{size:?}, {parts}");
+    }
+}
+
+#[test]
+fn bisection_does_not_depend_on_how_the_points_are_spread() {
+    let bodies: [(PointCloud, fn(usize) -> u32); 3] = [
+        (block(&[9.0, 7.0, 5.0]), |i| (i % 5) as u32),
+        // All points in one place.
+        (
+            PointCloud::new(2, vec![1.0; 80], vec![1.0; 40], 1.0).unwrap(),
+            |_| 0,
+        ),
+        (block(&[2.0, 2.0]), |_| 7),
+    ];
+    for (cloud, weight) in bodies {
+        let (n, d) = (cloud.len(), cloud.dimension());
+        let weights: Vec<u32> = (0..n).map(weight).collect();
+        for (parts, cuts) in [
+            (2, Cuts::Anywhere),
+            (5, Cuts::Planes),
+            (7, Cuts::Anywhere),
+            (8, Cuts::Anywhere),
+        ] {
+            let expected = owners(&cloud, &weights, parts, cuts);
+            assert!(expected.iter().all(|&part| (part as usize) < parts));
+            for size in [2, 3, 5] {
+                let of = |comm: Arc<dyn Comm>| {
+                    // Every third, with a rank that has no points if there are few.
+                    let own: Vec<u32> = (0..n as u32)
+                        .filter(|i| (i * i + i) as usize % size == comm.rank())
+                        .collect();
+                    let positions: Vec<f64> = (0..d)
+                        .flat_map(|c| own.iter().map(move |&i| (c, i)))
+                        .map(|(c, i)| cloud.axis(c)[i as usize])
+                        .collect();
+                    let weights: Vec<u32> = own.iter().map(|&i| weights[i as usize]).collect();
+                    let points = Points {
+                        dimension: d,
+                        positions: &positions,
+                        numbers: &own,
+                        weights: &weights,
+                    };
+                    let found = bisect(&*comm, &points, parts, cuts);
+                    own.into_iter().zip(found).collect::<Vec<_>>()
+                };
+                for (i, part) in Threads::run(size, of).into_iter().flatten() {
+                    assert_eq!(
+                        part, expected[i as usize],
+                        "{parts} parts, {size} processes"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn cuts_at_planes_divide_lattices_into_boxes() {
+    let cloud = block(&[24.0, 16.0, 10.0]);
+    let owners = owners(&cloud, &vec![1; cloud.len()], 12, Cuts::Planes);
+    for part in 0..12 {
+        let own: Vec<usize> = (0..cloud.len()).filter(|&i| owners[i] == part).collect();
+        let cells: f64 = (0..3)
+            .map(|c| {
+                let x = own.iter().map(|&i| cloud.axis(c)[i]);
+                let (low, high) = x.fold((f64::INFINITY, 0.0f64), |(low, high), x| {
+                    (low.min(x), high.max(x))
+                });
+                high - low + 1.0
+            })
+            .product();
+        assert_eq!(own.len() as f64, cells, "part {part} is a box");
+        assert!(
+            (own.len() as f64 / 320.0 - 1.0).abs() < 0.3,
+            "{}",
+            own.len()
+        );
+    }
+}
