@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -234,41 +234,48 @@ class Model:
             self._change("add_load", numbers.tolist(), values, None)
         self._amended.append(f"a load on {_named(on)}")
 
-    def prescribe(
-        self,
-        on: Any,
-        *,
-        displacement: Callable[[float, NDArray[np.float64]], Any] | Sequence[str],
-        velocity: Callable[[float, NDArray[np.float64]], Any] | None = None,
-        axes: str | None = None,
-    ) -> None:
-        """Prescribe the displacement of points.
+    def prescribe(self, on: Any, *, displacement: Any = None, velocity: Any = None, axes: str | None = None) -> None:
+        """Prescribe the displacement or velocity of points.
 
         Parameters
         ----------
         on : str, mask or point numbers
             The points.
-        displacement : function or deck expressions
-            A function ``f(t, x)`` of the time (s) and the positions of the k points (m) that returns displacements (m) of
-            shape (k, dimension) or one vector; or a list of texts, each an expression as in a deck.
-        velocity : function, optional
-            Its time derivative, m/s. Derivatives that are not given are central differences over one time step.
+        displacement : list, function or array
+            One entry per axis as in a deck: a number (m), a text, which is an expression of x, y, z (m) and t (s), or None
+            for a free axis; such as ``[0, None]`` or ``["1e-6 * sin(1e6 * t)", 0]``. Or a function ``f(t, x)`` of the time
+            (s) and the positions of the k points (m) that returns displacements (m) of shape (k, dimension) or one vector;
+            or a constant array of shape (k, dimension).
+        velocity : list or function, optional
+            With a function as displacement: its time derivative, m/s. Derivatives that are not given are differences over one
+            time step. Alone: a list of constant velocities (m/s), such as ``[2.0, None]``.
         axes : str, optional
             The prescribed axes, such as ``"x"``; by default all.
         """
-        if _is_expressions(displacement):
-            self._deck_entry("constraint", on, {"displacement": _expressions(displacement)})  # type: ignore[arg-type]
+        known = _AXES[: self.dimension]
+        wanted = known if axes is None else axes
+        if not wanted or any(axis not in known for axis in wanted):
+            raise PericlesError(f'axes = "{axes}"; allowed: some of {", ".join(known)}, such as "x"')
+        if displacement is None and velocity is None:
+            raise PericlesError("give displacement, velocity or both")
+        if displacement is None or _is_vector(displacement):
+            if displacement is not None and velocity is not None:
+                raise PericlesError("a velocity besides a displacement is for functions; expressions have exact derivatives")
+            given, quantity = (velocity, "velocity") if displacement is None else (displacement, "displacement")
+            if not _is_vector(given) or len(given) != self.dimension:
+                raise PericlesError(f"the {quantity} alone is a list with one entry per axis: {self.dimension} numbers, texts or None")
+            entries = [entry if axis in wanted else None for axis, entry in zip(known, _expressions(given))]
+            self._deck_entry("constraint", on, {quantity: ["free" if entry is None else entry for entry in entries]})
             return
         numbers = self.numbers(on)
+        if not callable(displacement):
+            values = finite(as_vectors(displacement, len(numbers), self.dimension, "the displacement"), "the displacement")
+            displacement, velocity = (lambda t, x: values), (lambda t, x: np.zeros_like(values))
         functions = [displacement] if velocity is None else [displacement, velocity]
         for function, what in zip(functions, ("displacement", "velocity")):
-            as_vectors(function(0.0, self.points[numbers]), len(numbers), self.dimension, f"the prescribed {what}")  # type: ignore[operator]
-        wanted = axes if axes is not None else _AXES[: self.dimension]
-        if not wanted or any(axis not in _AXES[: self.dimension] for axis in wanted):
-            raise PericlesError(f'axes = "{axes}"; allowed: some of {", ".join(_AXES[: self.dimension])}, such as "x"')
-        flags = [axis in wanted for axis in _AXES[: self.dimension]]
+            as_vectors(function(0.0, self.points[numbers]), len(numbers), self.dimension, f"the prescribed {what}")
         name = on if isinstance(on, str) else f"motion_{len(self._changes) + 1}"
-        self._change("add_motion", name, numbers.tolist(), flags, functions)
+        self._change("add_motion", name, numbers.tolist(), [axis in wanted for axis in known], functions)
         self._amended.append(f"a prescribed motion of {_named(on)}")
 
     def no_fail(self, on: Any) -> None:
@@ -373,8 +380,13 @@ def _is_expressions(given: Any) -> bool:
     return isinstance(given, (list, tuple)) and any(isinstance(entry, str) for entry in given)
 
 
+def _is_vector(given: Any) -> bool:
+    """Return whether a value has one entry per axis, as in a deck."""
+    return isinstance(given, (list, tuple)) or getattr(given, "ndim", None) == 1
+
+
 def _expressions(given: Any) -> list[Any]:
-    return [{"expression": entry} if isinstance(entry, str) else entry for entry in given]
+    return [{"expression": entry} if isinstance(entry, str) and entry != "free" else entry for entry in given]
 
 
 def _named(on: Any) -> str:

@@ -2,7 +2,6 @@
 
 use std::cell::Cell;
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, TryLockError};
 use std::time::Instant;
 
@@ -42,8 +41,6 @@ pub struct Simulation {
     engine: Mutex<Option<Engine>>,
     live: Arc<Live>,
     trouble: Trouble,
-    /// Whether a function of a load or motion failed, so that the state is not valid.
-    spoiled: AtomicBool,
     recording: (Arc<Mutex<Kept>>, Option<Arc<Mutex<Course>>>),
     folder: Option<PathBuf>,
     steps: u64,
@@ -110,7 +107,6 @@ impl Simulation {
             engine: Mutex::new(Some(engine)),
             live: Arc::default(),
             trouble: plan.trouble,
-            spoiled: AtomicBool::new(false),
             recording: (kept, course),
             folder: path,
             steps,
@@ -132,11 +128,6 @@ impl Simulation {
 
     /// Runs until the end, or until `until` steps are completed; returns whether the end was reached.
     fn advance(&self, engine: &mut Engine, until: Option<u64>) -> PyResult<bool> {
-        if self.spoiled.load(Ordering::Relaxed) {
-            return Err(plain(
-                "a function of a load or prescribed motion failed, so that the state is not valid; load a checkpoint, or make a new simulation",
-            ));
-        }
         self.live.ask_to_stop(false);
         let watch = Watch {
             live: &self.live,
@@ -152,7 +143,6 @@ impl Simulation {
         let state = engine.simulation().state();
         self.live.note(state.step, state.t);
         if let Some(error) = self.trouble.take() {
-            self.spoiled.store(true, Ordering::Relaxed);
             return Err(error);
         }
         if let Some(error) = watch.raised.take() {
@@ -326,7 +316,7 @@ impl Simulation {
 
     /// Reads the state from a file.
     fn load(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        let loaded = py.detach(|| {
+        py.detach(|| {
             self.with(|engine| {
                 let container = Container::read(&path, machine::memory()).map_err(errors::of_io)?;
                 let (_, archive) = container.into_archive().map_err(|reason| plain(&reason))?;
@@ -340,12 +330,7 @@ impl Simulation {
                 self.live.note(state.step, state.t);
                 Ok(())
             })
-        });
-        self.spoiled.store(
-            loaded.is_err() && self.spoiled.load(Ordering::Relaxed),
-            Ordering::Relaxed,
-        );
-        loaded
+        })
     }
 
     /// The results kept in memory.
