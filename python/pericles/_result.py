@@ -116,7 +116,7 @@ class Result:
     _files: list[tuple[float, Path]] | None
     _recording: Any
     _positions: Any
-    _volumes: Any
+    _sides: Any
     _cache: dict[int, Any]
 
     def __init__(self) -> None:
@@ -146,7 +146,7 @@ class Result:
         result._folder, result._files, result._cache = None, None, {}
         result._recording = core.recording()
         result._positions = model.points
-        result._volumes = model.volumes
+        result._sides = model._core.cell_sides()
         try:
             energies, broken = core.energies, core.broken_bonds
         except PericlesError:
@@ -317,20 +317,36 @@ class Result:
             return values.reshape(-1)
         return values[:, : self._dimension] if values.shape[1] == 3 else values
 
-    def to_pyvista(self, *, time: float | None = None, output: int | None = None) -> Any:
-        """Return the points with all fields of an output as a PyVista data set.
+    def to_pyvista(self, *, time: float | None = None, output: int | None = None, cells: bool = True) -> Any:
+        """Return all fields of an output as a PyVista data set.
 
-        A run with an output folder is read with its cells; results in memory are points.
+        Parameters
+        ----------
+        time, output : float or int, optional
+            The output; by default the last.
+        cells : bool
+            For results in memory: fields on the cells of the points, as lines, squares or cubes, or on the points alone.
+            Results in a folder are returned as the run wrote them: on cells for grids and meshes.
         """
         pyvista = optional("pyvista", "pyvista")
         index = self._output(time, output)
         if self._recording is None:
             return pyvista.read(self._series()[index][1])
-        mesh = pyvista.PolyData(_padded(self.points))
+        if cells and self._sides is not None:
+            dimension = self._dimension
+            signs = np.array(_SIGNS[: 2**dimension])[:, :dimension]
+            corners = self.points[:, None, :] + self._sides[:, None, :] / 2 * signs
+            numbers = np.arange(corners.shape[0] * len(signs)).reshape(-1, len(signs))
+            kind = {1: pyvista.CellType.LINE, 2: pyvista.CellType.QUAD, 3: pyvista.CellType.HEXAHEDRON}[dimension]
+            mesh = pyvista.UnstructuredGrid({kind: numbers}, _padded(corners.reshape(-1, dimension)))
+            data = mesh.cell_data
+        else:
+            mesh = pyvista.PolyData(_padded(self.points))
+            data = mesh.point_data
         for name in self.fields:
             values = self.field(name, output=index)
             shown = "_".join(word.capitalize() for word in name.split("_"))
-            mesh.point_data[shown] = values if values.ndim == 1 or values.shape[1] > 3 else _padded(values)
+            data[shown] = values if values.ndim == 1 or values.shape[1] > 3 else _padded(values)
         return mesh
 
     def to_meshio(self, *, time: float | None = None, output: int | None = None) -> Any:
@@ -401,8 +417,7 @@ class Result:
         from matplotlib.collections import PolyCollection
 
         half = factor * self._cell_sides() / 2
-        corners = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
-        squares = x[:, None, :] + half[:, None, None] * corners
+        squares = x[:, None, :] + half[:, None, :] * np.array(_SIGNS[:4])[:, :2]
         low, high = range or ((0.0, 1.0) if field == "damage" else (float(values.min()), float(values.max())))
         # Rasterised: a PDF of 100 000 squares would be slow to show.
         drawn = PolyCollection(squares, array=values, cmap=cmap, edgecolors="none", antialiaseds=False, rasterized=True)
@@ -419,19 +434,14 @@ class Result:
         return ax
 
     def _cell_sides(self) -> NDArray[np.float64]:
-        """The sides of the cells of the points of a plane body, m."""
-        facts = self._report.get("model") or {}
-        n = len(self.points)
-        spacing = float(facts.get("spacing") or 0.0)
-        volumes = None
-        if self._recording is not None:
-            volumes = self._volumes
-        elif "volume" in self.fields:
-            volumes = np.asarray(self.field("volume"))
-        if volumes is None:
-            return np.full(n, spacing)
-        # The thickness is the same everywhere.
-        return spacing * np.sqrt(volumes / np.median(volumes))
+        """The sides of the cells of the points, m."""
+        if self._recording is not None and self._sides is not None:
+            return self._sides
+        shape = (len(self.points), self._dimension)
+        spacing = float((self._report.get("model") or {}).get("spacing") or 0.0)
+        if "radius" in self.fields:
+            return np.broadcast_to(2 * np.asarray(self.field("radius"))[:, None], shape)
+        return np.full(shape, spacing)
 
     def __reduce__(self) -> Any:
         if self._folder is None:
@@ -449,6 +459,10 @@ class Result:
         title = f"Result {self._folder or 'in memory'}: {self._report.get('status')}"
         audit = {**(self._report.get("audit") or {}), "warnings": self.warnings}
         return table_html(title, audit)
+
+
+#: Signs of the corners of a line (2), square (4) or cube (8), in the order of VTK.
+_SIGNS = ((-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1), (-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, 1, 1))
 
 
 def _component(values: Any, field: str, component: int | str | None) -> tuple[Any, str]:

@@ -250,6 +250,24 @@ impl Model {
         PyArray1::from_slice(py, &in_user_order(&self.cloud, self.cloud.volumes()))
     }
 
+    /// Sides of the cells of the points, m: shape (points, dimension). None for surfaces, whose points are vertices.
+    fn cell_sides<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        let cloud = &self.cloud;
+        if self.source.model().body.solid().is_none() {
+            return Ok(None);
+        }
+        let along = |c: usize| {
+            let side = move |i: usize| match cloud.cell_sides() {
+                Some(sides) => sides[c],
+                None => cloud.cell_size(i),
+            };
+            (0..cloud.len()).map(side)
+        };
+        let sides: Vec<f64> = (0..cloud.dimension()).flat_map(along).collect();
+        let sides = in_user_order(cloud, &sides).into_owned();
+        owned(py, sides, cloud.dimension()).map(Some)
+    }
+
     /// Names of the sets.
     fn sets(&self, py: Python<'_>) -> PyResult<Vec<String>> {
         let parts = self.parts(py)?;

@@ -9,7 +9,7 @@ import time
 
 import numpy as np
 import pytest
-from conftest import BAR, PLATE, changed
+from conftest import BAR, PLATE, changed, program
 
 import pericles as pc
 
@@ -53,6 +53,36 @@ def test_p1_field_of_a_callback():
     simulation.step(20)
     print(f"P1 field of 1e5 points: {1e3 * statistics.median(times):.2f} ms")
     assert statistics.median(times) < 1e-3
+
+
+def test_p2_a_run_takes_the_time_of_the_program(tmp_path):
+    """The seconds of the time loop according to run.json. Runs alternate, and the shortest count."""
+    deck = grid(2e4, time={"end": "40 us"}, initial=[{"set": "left", "velocity": [-1, 0]}])
+    path = tmp_path / "plate.toml"
+    pc.Deck.from_dict(deck).write(path)
+    own, others = [], []
+    for number in range(7):
+        own.append(pc.run(path, out=f"a{number}").info.progress.wall_seconds)
+        subprocess.run([*program(), "run", str(path), "--out", f"b{number}", "--quiet"], check=True)
+        others.append(pc.open(f"b{number}").info.progress.wall_seconds)
+    print(f"P2 run: {min(own):.3f} s, program: {min(others):.3f} s, {100 * (min(own) / min(others) - 1):+.1f} %")
+    assert min(own) < 1.01 * min(others)
+
+
+def test_a_function_costs_little_of_a_run():
+    """A run with functions copies its state before every step, so that it can undo the step."""
+    plain, loaded = (pc.Deck.from_dict(grid(2e4)).build() for _ in range(2))
+    loaded.load([0], body_force=lambda t, x: [0, 0])
+    seconds = {}
+    for _ in range(3):
+        for name, model in (("plain", plain), ("loaded", loaded)):
+            simulation = model.simulation(keep=[])
+            simulation.step(5)
+            began = time.perf_counter()
+            simulation.step(40)
+            seconds[name] = min(seconds.get(name, 1e9), (time.perf_counter() - began) / 40)
+    print(f"copies for undoing steps: {100 * (seconds['loaded'] / seconds['plain'] - 1):+.0f} % of a step of {1e3 * seconds['plain']:.2f} ms")
+    assert seconds["loaded"] < 1.5 * seconds["plain"]
 
 
 def test_p4_other_threads_keep_their_speed():
