@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -58,8 +59,18 @@ class Model:
         self._sets: dict[str, NDArray[np.uint32]] = {}
         for name, given in (sets or {}).items():
             self._add_set(name, as_numbers(given, count, f"of the set `{name}`"))
-        self._build()
-        warn(self._facts["warnings"], _depth)
+        self._shown: set[str] = set()
+        self._deck = self._parsed()
+        self._built: Any = self._build()
+        #: The body, which later changes of conditions do not change.
+        self._body = self._built
+        self._warn(_depth + 1)
+
+    def _warn(self, depth: int) -> None:
+        """Issue the warnings that were not issued before."""
+        new = [text for text in self._facts["warnings"] if text not in self._shown]
+        self._shown.update(new)
+        warn(new, depth)
 
     def _own_cloud(self, points: Any, volumes: Any, blocks: Any) -> tuple[Any, Any, Any]:
         x = np.asarray(points, dtype=float)
@@ -122,22 +133,50 @@ class Model:
         self._sets[name] = numbers
         self._amended.append(f"the set `{name}`")
 
-    def _build(self) -> None:
-        sets = [(name, numbers.tolist()) for name, numbers in self._sets.items()]
-        x, v, b = self._cloud or (None, None, None)
+    @contextlib.contextmanager
+    def _locating(self) -> Iterator[None]:
+        """Add their keys to the problems of a deck."""
         try:
-            parsed = self.deck._core(list(self._sets))
-            self._core = _pericles.Model(parsed, x, v, b, sets)
+            yield
         except DeckError as error:
             text = self.deck._text or _toml.dumps(self.deck._tables or {})
             located(error, text, self.deck.name)
             raise
-        self._facts = json.loads(self._core.facts())
+
+    def _parsed(self) -> Any:
+        """Read the deck, which finds its problems, without building points and bonds."""
+        with self._locating():
+            return self.deck._core(list(self._sets))
+
+    def _build(self) -> Any:
+        sets = [(name, numbers.tolist()) for name, numbers in self._sets.items()]
+        x, v, b = self._cloud or (None, None, None)
+        with self._locating():
+            core = _pericles.Model(self._deck, x, v, b, sets)
+        self._facts_of_built = json.loads(core.facts())
         for method, arguments in self._changes:
-            getattr(self._core, method)(*arguments)
+            getattr(core, method)(*arguments)
+        return core
+
+    @property
+    def _core(self) -> Any:
+        """The model of the present deck, which is built when it is needed."""
+        if self._built is None:
+            self._built = self._build()
+        return self._built
+
+    @property
+    def _facts(self) -> dict[str, Any]:
+        assert self._core is not None
+        return self._facts_of_built
+
+    def _deck_changed(self) -> None:
+        self._deck = self._parsed()
+        self._built = None
 
     def _change(self, method: str, *arguments: Any) -> None:
-        getattr(self._core, method)(*arguments)
+        if self._built is not None:
+            getattr(self._built, method)(*arguments)
         self._changes.append((method, arguments))
 
     @property
@@ -148,17 +187,17 @@ class Model:
     @property
     def points(self) -> NDArray[np.float64]:
         """Positions of the points, m; shape (n, dimension)."""
-        return self._core.positions()
+        return self._body.positions()
 
     @property
     def volumes(self) -> NDArray[np.float64]:
         """Volumes of the points, m³; shape (n,)."""
-        return self._core.volumes()
+        return self._body.volumes()
 
     @property
     def dimension(self) -> int:
         """Dimension of the body."""
-        return int(self._facts["dimension"])
+        return int(self._facts_of_built["dimension"])
 
     @property
     def dt(self) -> float:
@@ -173,15 +212,15 @@ class Model:
     @property
     def sets(self) -> list[str]:
         """Names of the sets of points, "all" first."""
-        return self._core.sets()
+        return [*self._body.sets(), *(name for name in self._sets if name not in self._body.sets())]
 
     def __len__(self) -> int:
-        return int(self._facts["points"])
+        return int(self._facts_of_built["points"])
 
     def numbers(self, of: Any = "all") -> NDArray[np.uint32]:
         """Return the numbers of the points of a set, a mask or a list of numbers, in ascending order."""
         if isinstance(of, str):
-            found = self._core.numbers(of)
+            found = self._sets[of] if of in self._sets else self._body.numbers(of)
             if found is None:
                 raise PericlesError(f"there is no set `{of}`; the model has: {', '.join(self.sets)}")
             return found
@@ -291,7 +330,7 @@ class Model:
         known = material.get("no_fail", [])
         material["no_fail"] = [*([known] if isinstance(known, str) else known), name]
         self.deck["material"] = material
-        self._build()
+        self._deck_changed()
 
     def _set_of(self, on: Any, stem: str) -> str:
         if isinstance(on, str):
@@ -307,8 +346,17 @@ class Model:
     def _deck_entry(self, table: str, on: Any, entry: dict[str, Any]) -> None:
         """Add an entry with expressions to the deck."""
         name = self._set_of(on, table)
-        self.deck[table] = [*(self.deck.get(table) or []), {"set": name, **entry}]
-        self._build()
+        before = self.deck.get(table)
+        self.deck[table] = [*(before or []), {"set": name, **entry}]
+        try:
+            self._deck_changed()
+        except DeckError:
+            # The model stays as it was.
+            if before is None:
+                del self.deck[table]
+            else:
+                self.deck[table] = before
+            raise
 
     def simulation(
         self,
@@ -344,7 +392,9 @@ class Model:
         kind, value = schedule(every, time, count) or ("count", 100)
         if out is not None:
             keep, kind, value = [], "never", 0.0
-        core = self._core.simulation(
+        built = self._core
+        self._warn(4)
+        core = built.simulation(
             None if out is None else Path(out), None, force, keep, (kind, float(value)), self._amended
         )
         return Simulation(core, self)

@@ -146,7 +146,7 @@ class Result:
         result._folder, result._files, result._cache = None, None, {}
         result._recording = core.recording()
         result._positions = model.points
-        result._sides = model._core.cell_sides()
+        result._sides = model._body.cell_sides()
         try:
             energies, broken = core.energies, core.broken_bonds
         except PericlesError:
