@@ -44,7 +44,6 @@ class Model:
         volumes: Any = None,
         blocks: Any = None,
         sets: Mapping[str, Any] | None = None,
-        _depth: int = 3,
     ) -> None:
         self.deck = deck.copy()
         self._amended: list[str] = []
@@ -59,18 +58,10 @@ class Model:
         self._sets: dict[str, NDArray[np.uint32]] = {}
         for name, given in (sets or {}).items():
             self._add_set(name, as_numbers(given, count, f"of the set `{name}`"))
-        self._shown: set[str] = set()
         self._deck = self._parsed()
         self._built: Any = self._build()
         #: The body, which later changes of conditions do not change.
         self._body = self._built
-        self._warn(_depth + 1)
-
-    def _warn(self, depth: int) -> None:
-        """Issue the warnings that were not issued before."""
-        new = [text for text in self._facts["warnings"] if text not in self._shown]
-        self._shown.update(new)
-        warn(new, depth)
 
     def _own_cloud(self, points: Any, volumes: Any, blocks: Any) -> tuple[Any, Any, Any]:
         x = np.asarray(points, dtype=float)
@@ -181,7 +172,7 @@ class Model:
 
     @property
     def facts(self) -> dict[str, Any]:
-        """Properties before the first step in SI units: bonds, horizon, stable step, memory, warnings …"""
+        """Properties before the first step in SI units: bonds, horizon, stable step, memory, warnings about the deck …"""
         return dict(self._facts)
 
     @property
@@ -392,11 +383,10 @@ class Model:
         kind, value = schedule(every, time, count) or ("count", 100)
         if out is not None:
             keep, kind, value = [], "never", 0.0
-        built = self._core
-        self._warn(4)
-        core = built.simulation(
+        core = self._core.simulation(
             None if out is None else Path(out), None, force, keep, (kind, float(value)), self._amended
         )
+        warn(core.warnings)
         return Simulation(core, self)
 
     def __repr__(self) -> str:

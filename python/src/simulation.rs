@@ -43,6 +43,7 @@ pub struct Simulation {
     trouble: Trouble,
     recording: (Arc<Mutex<Kept>>, Option<Arc<Mutex<Course>>>),
     folder: Option<PathBuf>,
+    warnings: Vec<String>,
     steps: u64,
     dt: f64,
 }
@@ -66,6 +67,7 @@ impl Simulation {
     ) -> PyResult<Self> {
         let (steps, dt) = (assembled.assembly.steps, assembled.assembly.dt);
         let points = assembled.assembly.cloud.len();
+        let warnings = assembled.facts.warnings.clone();
         let fields: PyResult<Vec<_>> = plan.keep.iter().map(|name| field_named(name)).collect();
         let kept = Kept::new(fields?, assembled.assembly.cloud.dimension());
         let needed = kept.bytes(points) * plan.schedule.most(dt, steps) as f64;
@@ -109,6 +111,7 @@ impl Simulation {
             trouble: plan.trouble,
             recording: (kept, course),
             folder: path,
+            warnings,
             steps,
             dt,
         })
@@ -271,6 +274,12 @@ impl Simulation {
     #[getter]
     fn folder(&self) -> Option<PathBuf> {
         self.folder.clone()
+    }
+
+    /// Warnings about the model with its conditions.
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.warnings.clone()
     }
 
     /// The energy balance, J.

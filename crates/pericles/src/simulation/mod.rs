@@ -290,8 +290,7 @@ impl Simulation {
     fn step(&mut self, t_next: f64, interrupt: Interrupt<'_>) -> Result<(), PericlesError> {
         let evaluated = self.system.evaluated_points();
         let fallible = self.system.can_fail();
-        let copied =
-            fallible || (interrupt.is_possible() && self.integrator.changes_within_step());
+        let copied = fallible || (interrupt.is_possible() && self.integrator.changes_within_step());
         let copy = copied.then(|| {
             let mut archive = Archive::default();
             self.save_motion(&mut archive);
