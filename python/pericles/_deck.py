@@ -194,6 +194,8 @@ class Deck(MutableMapping[str, Any]):
     ) -> Model:
         """Build points, bonds and the time step.
 
+        Warnings are issued when the model becomes a simulation, with all its conditions.
+
         Parameters
         ----------
         points : array of shape (n, dimension), optional
@@ -211,7 +213,7 @@ class Deck(MutableMapping[str, Any]):
         """
         from ._model import Model
 
-        return Model(self, points=points, volumes=volumes, blocks=blocks, sets=sets, _depth=4)
+        return Model(self, points=points, volumes=volumes, blocks=blocks, sets=sets)
 
     def __deepcopy__(self, memo: Any) -> Deck:
         deck = type(self).__new__(type(self))
@@ -264,11 +266,20 @@ def parsed(text: str, name: str, overrides: list[str], sets: list[str]) -> Any:
 
 
 def located(error: DeckError, text: str, name: str) -> None:
-    """Add the key of its line to every problem."""
-    error.problems = [
-        problem._replace(path=problem.path or (_toml.path_at(text, problem.line) if problem.file == name else _of_override(problem)))
-        for problem in error.problems
-    ]
+    """Add its key to every problem, and to the message if nobody has seen the text: that of a dict."""
+    problems = []
+    for problem in error.problems:
+        path = problem.path or (_toml.path_at(text, problem.line) if problem.file == name else _of_override(problem))
+        problem = problem._replace(path=path)
+        if name.startswith("<dict") and problem.file == name and path:
+            place = f"{name}:{problem.line}:{problem.column}: "
+            problem = problem._replace(text=problem.text.replace(place, f"{place}{path}: ", 1))
+        problems.append(problem)
+    message = str(error)
+    for old, new in zip(error.problems, problems):
+        message = message.replace(old.text, new.text, 1)
+    error.args = (message,)
+    error.problems = problems
 
 
 def _of_override(problem: Any) -> str | None:

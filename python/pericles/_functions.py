@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import _pericles
 from ._cli import call, execute
-from ._deck import Deck, as_deck
+from ._deck import Deck, as_deck, warn
 from ._errors import PericlesError
 from ._model import table_html
 from ._result import Record, Result, Table
@@ -237,7 +237,7 @@ def geodesics(
     Parameters
     ----------
     surface : path or str
-        A file, or a shape such as ``"icosphere:4"``.
+        A file, or a shape such as ``"icosphere(4)"``.
     horizon : float or str
         The horizon, m, or a text with unit.
     methods : sequence of str, optional
@@ -348,11 +348,12 @@ def run(
     from ._simulation import Simulation
 
     deck = as_deck(deck, set)
-    model = Model(deck, _depth=4)
+    model = Model(deck)
     stem = None
     if out is None:
         stem = Path(".") / (Path(deck.name).stem if not deck.name.startswith("<") else "run")
     core = model._core.simulation(None if out is None else Path(out), stem, force, [], ("never", 0.0), [])
+    warn(core.warnings)
     with Simulation(core, model) as simulation:
         simulation.run(progress=progress)
         folder = core.folder

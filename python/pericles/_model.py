@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -43,7 +44,6 @@ class Model:
         volumes: Any = None,
         blocks: Any = None,
         sets: Mapping[str, Any] | None = None,
-        _depth: int = 3,
     ) -> None:
         self.deck = deck.copy()
         self._amended: list[str] = []
@@ -58,8 +58,10 @@ class Model:
         self._sets: dict[str, NDArray[np.uint32]] = {}
         for name, given in (sets or {}).items():
             self._add_set(name, as_numbers(given, count, f"of the set `{name}`"))
-        self._build()
-        warn(self._facts["warnings"], _depth)
+        self._deck = self._parsed()
+        self._built: Any = self._build()
+        #: The body, which later changes of conditions do not change.
+        self._body = self._built
 
     def _own_cloud(self, points: Any, volumes: Any, blocks: Any) -> tuple[Any, Any, Any]:
         x = np.asarray(points, dtype=float)
@@ -122,43 +124,71 @@ class Model:
         self._sets[name] = numbers
         self._amended.append(f"the set `{name}`")
 
-    def _build(self) -> None:
-        sets = [(name, numbers.tolist()) for name, numbers in self._sets.items()]
-        x, v, b = self._cloud or (None, None, None)
+    @contextlib.contextmanager
+    def _locating(self) -> Iterator[None]:
+        """Add their keys to the problems of a deck."""
         try:
-            parsed = self.deck._core(list(self._sets))
-            self._core = _pericles.Model(parsed, x, v, b, sets)
+            yield
         except DeckError as error:
             text = self.deck._text or _toml.dumps(self.deck._tables or {})
             located(error, text, self.deck.name)
             raise
-        self._facts = json.loads(self._core.facts())
+
+    def _parsed(self) -> Any:
+        """Read the deck, which finds its problems, without building points and bonds."""
+        with self._locating():
+            return self.deck._core(list(self._sets))
+
+    def _build(self) -> Any:
+        sets = [(name, numbers.tolist()) for name, numbers in self._sets.items()]
+        x, v, b = self._cloud or (None, None, None)
+        with self._locating():
+            core = _pericles.Model(self._deck, x, v, b, sets)
+        self._facts_of_built = json.loads(core.facts())
         for method, arguments in self._changes:
-            getattr(self._core, method)(*arguments)
+            getattr(core, method)(*arguments)
+        return core
+
+    @property
+    def _core(self) -> Any:
+        """The model of the present deck, which is built when it is needed."""
+        if self._built is None:
+            self._built = self._build()
+        return self._built
+
+    @property
+    def _facts(self) -> dict[str, Any]:
+        assert self._core is not None
+        return self._facts_of_built
+
+    def _deck_changed(self) -> None:
+        self._deck = self._parsed()
+        self._built = None
 
     def _change(self, method: str, *arguments: Any) -> None:
-        getattr(self._core, method)(*arguments)
+        if self._built is not None:
+            getattr(self._built, method)(*arguments)
         self._changes.append((method, arguments))
 
     @property
     def facts(self) -> dict[str, Any]:
-        """Properties before the first step in SI units: bonds, horizon, stable step, memory, warnings …"""
+        """Properties before the first step in SI units: bonds, horizon, stable step, memory, warnings about the deck …"""
         return dict(self._facts)
 
     @property
     def points(self) -> NDArray[np.float64]:
         """Positions of the points, m; shape (n, dimension)."""
-        return self._core.positions()
+        return self._body.positions()
 
     @property
     def volumes(self) -> NDArray[np.float64]:
         """Volumes of the points, m³; shape (n,)."""
-        return self._core.volumes()
+        return self._body.volumes()
 
     @property
     def dimension(self) -> int:
         """Dimension of the body."""
-        return int(self._facts["dimension"])
+        return int(self._facts_of_built["dimension"])
 
     @property
     def dt(self) -> float:
@@ -173,15 +203,15 @@ class Model:
     @property
     def sets(self) -> list[str]:
         """Names of the sets of points, "all" first."""
-        return self._core.sets()
+        return [*self._body.sets(), *(name for name in self._sets if name not in self._body.sets())]
 
     def __len__(self) -> int:
-        return int(self._facts["points"])
+        return int(self._facts_of_built["points"])
 
     def numbers(self, of: Any = "all") -> NDArray[np.uint32]:
         """Return the numbers of the points of a set, a mask or a list of numbers, in ascending order."""
         if isinstance(of, str):
-            found = self._core.numbers(of)
+            found = self._sets[of] if of in self._sets else self._body.numbers(of)
             if found is None:
                 raise PericlesError(f"there is no set `{of}`; the model has: {', '.join(self.sets)}")
             return found
@@ -234,41 +264,48 @@ class Model:
             self._change("add_load", numbers.tolist(), values, None)
         self._amended.append(f"a load on {_named(on)}")
 
-    def prescribe(
-        self,
-        on: Any,
-        *,
-        displacement: Callable[[float, NDArray[np.float64]], Any] | Sequence[str],
-        velocity: Callable[[float, NDArray[np.float64]], Any] | None = None,
-        axes: str | None = None,
-    ) -> None:
-        """Prescribe the displacement of points.
+    def prescribe(self, on: Any, *, displacement: Any = None, velocity: Any = None, axes: str | None = None) -> None:
+        """Prescribe the displacement or velocity of points.
 
         Parameters
         ----------
         on : str, mask or point numbers
             The points.
-        displacement : function or deck expressions
-            A function ``f(t, x)`` of the time (s) and the positions of the k points (m) that returns displacements (m) of
-            shape (k, dimension) or one vector; or a list of texts, each an expression as in a deck.
-        velocity : function, optional
-            Its time derivative, m/s. Derivatives that are not given are central differences over one time step.
+        displacement : list, function or array
+            One entry per axis as in a deck: a number (m), a text, which is an expression of x, y, z (m) and t (s), or None
+            for a free axis; such as ``[0, None]`` or ``["1e-6 * sin(1e6 * t)", 0]``. Or a function ``f(t, x)`` of the time
+            (s) and the positions of the k points (m) that returns displacements (m) of shape (k, dimension) or one vector;
+            or a constant array of shape (k, dimension).
+        velocity : list or function, optional
+            With a function as displacement: its time derivative, m/s. Derivatives that are not given are differences over one
+            time step. Alone: a list of constant velocities (m/s), such as ``[2.0, None]``.
         axes : str, optional
             The prescribed axes, such as ``"x"``; by default all.
         """
-        if _is_expressions(displacement):
-            self._deck_entry("constraint", on, {"displacement": _expressions(displacement)})  # type: ignore[arg-type]
+        known = _AXES[: self.dimension]
+        wanted = known if axes is None else axes
+        if not wanted or any(axis not in known for axis in wanted):
+            raise PericlesError(f'axes = "{axes}"; allowed: some of {", ".join(known)}, such as "x"')
+        if displacement is None and velocity is None:
+            raise PericlesError("give displacement, velocity or both")
+        if displacement is None or _is_vector(displacement):
+            if displacement is not None and velocity is not None:
+                raise PericlesError("a velocity besides a displacement is for functions; expressions have exact derivatives")
+            given, quantity = (velocity, "velocity") if displacement is None else (displacement, "displacement")
+            if not _is_vector(given) or len(given) != self.dimension:
+                raise PericlesError(f"the {quantity} alone is a list with one entry per axis: {self.dimension} numbers, texts or None")
+            entries = [entry if axis in wanted else None for axis, entry in zip(known, _expressions(given))]
+            self._deck_entry("constraint", on, {quantity: ["free" if entry is None else entry for entry in entries]})
             return
         numbers = self.numbers(on)
+        if not callable(displacement):
+            values = finite(as_vectors(displacement, len(numbers), self.dimension, "the displacement"), "the displacement")
+            displacement, velocity = (lambda t, x: values), (lambda t, x: np.zeros_like(values))
         functions = [displacement] if velocity is None else [displacement, velocity]
         for function, what in zip(functions, ("displacement", "velocity")):
-            as_vectors(function(0.0, self.points[numbers]), len(numbers), self.dimension, f"the prescribed {what}")  # type: ignore[operator]
-        wanted = axes if axes is not None else _AXES[: self.dimension]
-        if not wanted or any(axis not in _AXES[: self.dimension] for axis in wanted):
-            raise PericlesError(f'axes = "{axes}"; allowed: some of {", ".join(_AXES[: self.dimension])}, such as "x"')
-        flags = [axis in wanted for axis in _AXES[: self.dimension]]
+            as_vectors(function(0.0, self.points[numbers]), len(numbers), self.dimension, f"the prescribed {what}")
         name = on if isinstance(on, str) else f"motion_{len(self._changes) + 1}"
-        self._change("add_motion", name, numbers.tolist(), flags, functions)
+        self._change("add_motion", name, numbers.tolist(), [axis in wanted for axis in known], functions)
         self._amended.append(f"a prescribed motion of {_named(on)}")
 
     def no_fail(self, on: Any) -> None:
@@ -284,7 +321,7 @@ class Model:
         known = material.get("no_fail", [])
         material["no_fail"] = [*([known] if isinstance(known, str) else known), name]
         self.deck["material"] = material
-        self._build()
+        self._deck_changed()
 
     def _set_of(self, on: Any, stem: str) -> str:
         if isinstance(on, str):
@@ -300,8 +337,17 @@ class Model:
     def _deck_entry(self, table: str, on: Any, entry: dict[str, Any]) -> None:
         """Add an entry with expressions to the deck."""
         name = self._set_of(on, table)
-        self.deck[table] = [*(self.deck.get(table) or []), {"set": name, **entry}]
-        self._build()
+        before = self.deck.get(table)
+        self.deck[table] = [*(before or []), {"set": name, **entry}]
+        try:
+            self._deck_changed()
+        except DeckError:
+            # The model stays as it was.
+            if before is None:
+                del self.deck[table]
+            else:
+                self.deck[table] = before
+            raise
 
     def simulation(
         self,
@@ -340,6 +386,7 @@ class Model:
         core = self._core.simulation(
             None if out is None else Path(out), None, force, keep, (kind, float(value)), self._amended
         )
+        warn(core.warnings)
         return Simulation(core, self)
 
     def __repr__(self) -> str:
@@ -373,8 +420,13 @@ def _is_expressions(given: Any) -> bool:
     return isinstance(given, (list, tuple)) and any(isinstance(entry, str) for entry in given)
 
 
+def _is_vector(given: Any) -> bool:
+    """Return whether a value has one entry per axis, as in a deck."""
+    return isinstance(given, (list, tuple)) or getattr(given, "ndim", None) == 1
+
+
 def _expressions(given: Any) -> list[Any]:
-    return [{"expression": entry} if isinstance(entry, str) else entry for entry in given]
+    return [{"expression": entry} if isinstance(entry, str) and entry != "free" else entry for entry in given]
 
 
 def _named(on: Any) -> str:

@@ -116,6 +116,7 @@ class Result:
     _files: list[tuple[float, Path]] | None
     _recording: Any
     _positions: Any
+    _sides: Any
     _cache: dict[int, Any]
 
     def __init__(self) -> None:
@@ -145,6 +146,7 @@ class Result:
         result._folder, result._files, result._cache = None, None, {}
         result._recording = core.recording()
         result._positions = model.points
+        result._sides = model._body.cell_sides()
         try:
             energies, broken = core.energies, core.broken_bonds
         except PericlesError:
@@ -315,20 +317,36 @@ class Result:
             return values.reshape(-1)
         return values[:, : self._dimension] if values.shape[1] == 3 else values
 
-    def to_pyvista(self, *, time: float | None = None, output: int | None = None) -> Any:
-        """Return the points with all fields of an output as a PyVista data set.
+    def to_pyvista(self, *, time: float | None = None, output: int | None = None, cells: bool = True) -> Any:
+        """Return all fields of an output as a PyVista data set.
 
-        A run with an output folder is read with its cells; results in memory are points.
+        Parameters
+        ----------
+        time, output : float or int, optional
+            The output; by default the last.
+        cells : bool
+            For results in memory: fields on the cells of the points, as lines, squares or cubes, or on the points alone.
+            Results in a folder are returned as the run wrote them: on cells for grids and meshes.
         """
         pyvista = optional("pyvista", "pyvista")
         index = self._output(time, output)
         if self._recording is None:
             return pyvista.read(self._series()[index][1])
-        mesh = pyvista.PolyData(_padded(self.points))
+        if cells and self._sides is not None:
+            dimension = self._dimension
+            signs = np.array(_SIGNS[: 2**dimension])[:, :dimension]
+            corners = self.points[:, None, :] + self._sides[:, None, :] / 2 * signs
+            numbers = np.arange(corners.shape[0] * len(signs)).reshape(-1, len(signs))
+            kind = {1: pyvista.CellType.LINE, 2: pyvista.CellType.QUAD, 3: pyvista.CellType.HEXAHEDRON}[dimension]
+            mesh = pyvista.UnstructuredGrid({kind: numbers}, _padded(corners.reshape(-1, dimension)))
+            data = mesh.cell_data
+        else:
+            mesh = pyvista.PolyData(_padded(self.points))
+            data = mesh.point_data
         for name in self.fields:
             values = self.field(name, output=index)
             shown = "_".join(word.capitalize() for word in name.split("_"))
-            mesh.point_data[shown] = values if values.ndim == 1 or values.shape[1] > 3 else _padded(values)
+            data[shown] = values if values.ndim == 1 or values.shape[1] > 3 else _padded(values)
         return mesh
 
     def to_meshio(self, *, time: float | None = None, output: int | None = None) -> Any:
@@ -343,38 +361,87 @@ class Result:
         cells = [("vertex", np.arange(len(points)).reshape(-1, 1))]
         return meshio.Mesh(_padded(points), cells, point_data=data)
 
-    def plot(self, field: str = "damage", *, time: float | None = None, output: int | None = None, scale: float = 1.0, ax: Any = None) -> Any:
-        """Draw a field of a plane body or bar with Matplotlib; return the axes.
+    def plot(
+        self,
+        field: str = "damage",
+        *,
+        component: int | str | None = None,
+        time: float | None = None,
+        output: int | None = None,
+        scale: float = 1.0,
+        range: tuple[float, float] | None = None,
+        cmap: str | None = None,
+        ax: Any = None,
+    ) -> Any:
+        """Draw a field of a bar or plane body with Matplotlib; return the axes.
+
+        The points of a plane body are drawn as squares with the sides of their cells.
 
         Parameters
         ----------
         field : str
-            The field; vectors are drawn by their magnitude.
+            The field.
+        component : int or str, optional
+            The component of a vector or tensor, such as ``0`` or ``"x"``; by default the magnitude.
         time, output : float or int, optional
             The output; by default the last.
         scale : float
-            Factor of the displacements, if they are there.
+            Factor of the displacements by which the points are moved, if they are there; 0 draws the undeformed body.
+        range : pair of float, optional
+            Values at the ends of the colours; by default the least and the largest value, 0 and 1 for damage.
+        cmap : str, optional
+            The colour map of Matplotlib.
+        ax : matplotlib.axes.Axes, optional
+            The axes to draw in; by default the current ones.
         """
         pyplot = optional("matplotlib.pyplot", "all")
-        values = self.field(field, time=time, output=output)
+        values, label = _component(self.field(field, time=time, output=output), field, component)
         x = np.array(self.points)
-        if "displacement" in self.fields:
-            x = x + scale * np.asarray(self.field("displacement", time=time, output=output)).reshape(len(x), -1)
-        if values.ndim == 2:
-            values = np.linalg.norm(values, axis=1)
+        if x.shape[1] == 3:
+            raise PericlesError("plot draws bars and plane bodies; draw three-dimensional bodies with to_pyvista()")
+        if scale and "displacement" in self.fields:
+            x = x + scale * np.asarray(self.field("displacement", time=time, output=output)).reshape(x.shape)
         ax = ax or pyplot.gca()
+        factor, unit = _length_unit(x)
+        x = factor * x
+        unit_of_values = _pericles.field_unit(field)
+        label = f"{label} ({unit_of_values})" if unit_of_values else label
+        at = self.times[self._output(time, output)]
+        ax.set_title(f"t = {_engineering(at, 's')}", fontsize="medium")
+        ax.set_xlabel(f"x ({unit})")
         if x.shape[1] == 1:
-            ax.plot(x[:, 0], values, ".")
-            ax.set_xlabel("x (m)")
-            ax.set_ylabel(field)
+            order = np.argsort(x[:, 0])
+            ax.plot(x[order, 0], values[order], ".-", markersize=3, linewidth=0.8)
+            ax.set_ylabel(label)
             return ax
-        size = max(0.5, 3e4 / len(x))
-        drawn = ax.scatter(x[:, 0], x[:, 1], c=values, s=min(size, 20), marker="s", linewidths=0)
+        from matplotlib.collections import PolyCollection
+
+        half = factor * self._cell_sides() / 2
+        squares = x[:, None, :] + half[:, None, :] * np.array(_SIGNS[:4])[:, :2]
+        low, high = range or ((0.0, 1.0) if field == "damage" else (float(values.min()), float(values.max())))
+        # Rasterised: a PDF of 100 000 squares would be slow to show.
+        drawn = PolyCollection(squares, array=values, cmap=cmap, edgecolors="none", antialiaseds=False, rasterized=True)
+        drawn.set_clim(low, high)
+        ax.add_collection(drawn, autolim=False)
+        margin = half.max() + 0.02 * np.ptp(x, axis=0).max()
+        ax.set_xlim(x[:, 0].min() - margin, x[:, 0].max() + margin)
+        ax.set_ylim(x[:, 1].min() - margin, x[:, 1].max() + margin)
         ax.set_aspect("equal")
-        ax.set_xlabel("x (m)")
-        ax.set_ylabel("y (m)")
-        ax.figure.colorbar(drawn, ax=ax, label=field)
+        ax.set_ylabel(f"y ({unit})")
+        # As high as the axes, whose height follows from that of the body.
+        beside = ax.inset_axes((1.03, 0.0, 0.03, 1.0))
+        ax.figure.colorbar(drawn, cax=beside, label=label)
         return ax
+
+    def _cell_sides(self) -> NDArray[np.float64]:
+        """The sides of the cells of the points, m."""
+        if self._recording is not None and self._sides is not None:
+            return self._sides
+        shape = (len(self.points), self._dimension)
+        spacing = float((self._report.get("model") or {}).get("spacing") or 0.0)
+        if "radius" in self.fields:
+            return np.broadcast_to(2 * np.asarray(self.field("radius"))[:, None], shape)
+        return np.full(shape, spacing)
 
     def __reduce__(self) -> Any:
         if self._folder is None:
@@ -392,6 +459,40 @@ class Result:
         title = f"Result {self._folder or 'in memory'}: {self._report.get('status')}"
         audit = {**(self._report.get("audit") or {}), "warnings": self.warnings}
         return table_html(title, audit)
+
+
+#: Signs of the corners of a line (2), square (4) or cube (8), in the order of VTK.
+_SIGNS = ((-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1), (-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, 1, 1))
+
+
+def _component(values: Any, field: str, component: int | str | None) -> tuple[Any, str]:
+    """Return a component, or the magnitude, of a field with its name."""
+    name = field.replace("_", " ")
+    if values.ndim == 1:
+        return values, name
+    if component is None:
+        return (values[:, 0], name) if values.shape[1] == 1 else (np.linalg.norm(values, axis=1), f"{name}, magnitude")
+    number = "xyz".find(component) if isinstance(component, str) and len(component) == 1 else component
+    if not isinstance(number, int) or not 0 <= number < values.shape[1]:
+        raise PericlesError(f"the field `{field}` has no component {component!r}; it has {values.shape[1]}, from 0")
+    return values[:, number], f"{name}, {component}"
+
+
+def _length_unit(x: Any) -> tuple[float, str]:
+    """Return factor and unit in which a body has a size between 1 and 1000."""
+    size = float(np.ptp(x, axis=0).max())
+    for factor, unit in ((1.0, "m"), (1e3, "mm"), (1e6, "µm"), (1e9, "nm")):
+        if size * factor >= 1.0:
+            return factor, unit
+    return 1.0, "m"
+
+
+def _engineering(value: float, unit: str) -> str:
+    """Return a number with a prefix of its unit."""
+    for factor, prefix in ((1.0, ""), (1e3, "m"), (1e6, "µ"), (1e9, "n")):
+        if abs(value) * factor >= 1.0:
+            return f"{value * factor:.4g} {prefix}{unit}"
+    return f"{value:.4g} {unit}"
 
 
 def _padded(vectors: NDArray[np.float64]) -> NDArray[np.float64]:

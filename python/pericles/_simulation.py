@@ -125,6 +125,11 @@ class Simulation:
         return self._core.dt
 
     @property
+    def warnings(self) -> list[str]:
+        """Warnings about the model with its conditions."""
+        return self._core.warnings
+
+    @property
     def energies(self) -> dict[str, float]:
         """The energy balance of the current state, J."""
         return self._core.energies

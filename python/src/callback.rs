@@ -77,6 +77,15 @@ pub fn field_named(name: &str) -> PyResult<Field> {
     })
 }
 
+/// Returns the unit of a field, empty for dimensionless fields and those that only files have.
+#[pyfunction]
+pub fn field_unit(name: &str) -> &'static str {
+    let found = Field::ALL
+        .into_iter()
+        .find(|field| field.name().eq_ignore_ascii_case(name));
+    found.map_or("", Field::unit)
+}
+
 /// Number of components of a field.
 pub fn components(field: Field, dimension: usize) -> usize {
     field.components(dimension).len().max(1)

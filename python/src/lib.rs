@@ -21,7 +21,7 @@ use pyo3::prelude::*;
 mod _pericles {
     use super::*;
     #[pymodule_export]
-    use crate::callback::Snapshot;
+    use crate::callback::{Snapshot, field_unit};
     #[pymodule_export]
     use crate::deck::Deck;
     #[pymodule_export]

@@ -20,7 +20,7 @@ use crate::deck::Deck;
 use crate::entry::waiting;
 use crate::errors::{self, plain};
 use crate::simulation::{Plan, Simulation};
-use crate::values::{FunctionValues, Step, Trouble};
+use crate::values::{FunctionValues, Functions, Step, Trouble};
 
 /// A body with its conditions.
 #[pyclass(frozen, module = "pericles._pericles")]
@@ -28,15 +28,77 @@ pub struct Model {
     parts: Mutex<Parts>,
     source: Source,
     cloud: Arc<PointCloud>,
-    step: Step,
-    trouble: Trouble,
+    dt: f64,
 }
 
 struct Parts {
     discretisation: Discretisation,
+    /// Loads and prescribed motions by functions. Every simulation has values and errors of its own.
+    additions: Vec<Addition>,
     /// The assembly of these parts, until it becomes a simulation or they change.
     assembled: Option<Assembled>,
     facts: String,
+}
+
+/// A load or prescribed motion by functions.
+#[derive(Clone)]
+enum Addition {
+    Load(Arc<Functions>),
+    Motion {
+        name: String,
+        axes: Vec<bool>,
+        functions: Arc<Functions>,
+    },
+}
+
+impl Addition {
+    /// Adds it to a discretisation, for one simulation.
+    fn apply(
+        self,
+        discretisation: &mut Discretisation,
+        (step, trouble): (&Step, &Trouble),
+    ) -> PyResult<()> {
+        let conditions = &mut discretisation.conditions;
+        let values = |functions: Arc<Functions>| {
+            Arc::new(FunctionValues::new(
+                functions,
+                step.clone(),
+                trouble.clone(),
+            ))
+        };
+        match self {
+            Self::Load(functions) => {
+                let points = functions.selection.points.clone();
+                let density = LoadDensity::Values(values(functions));
+                let load = Load::new(points, density, TimeFunction::Constant);
+                conditions.loads.push(load);
+            }
+            Self::Motion {
+                name,
+                axes,
+                functions,
+            } => {
+                let (points, dimension) = (functions.selection.points.clone(), functions.dimension);
+                let values = values(functions);
+                let along = std::array::from_fn(|c| {
+                    let prescribed = axes.get(c).copied().unwrap_or(false);
+                    prescribed.then(|| AxisMotion::Values(values.clone()))
+                });
+                let n = discretisation.cloud.len();
+                let motion = PrescribedMotion::along(
+                    name,
+                    points,
+                    MotionKind::Displacement,
+                    along,
+                    TimeFunction::Constant,
+                    &vec![0.0; dimension * n],
+                    n,
+                );
+                conditions.motions.push(motion.map_err(errors::of_engine)?);
+            }
+        }
+        Ok(())
+    }
 }
 
 /// A set given by the user numbers of its points.
@@ -99,28 +161,28 @@ impl Model {
         locked.map_err(|_| plain("a computation with this model panicked"))
     }
 
-    fn values(
+    /// Functions for the points of a selection.
+    fn functions(
         &self,
         py: Python<'_>,
         functions: Vec<Py<PyAny>>,
-        selection: &Selection,
-    ) -> PyResult<Arc<FunctionValues>> {
+        selection: Selection,
+    ) -> PyResult<Arc<Functions>> {
         let dimension = self.cloud.dimension();
         let places = owned(py, selection.positions(&self.cloud), dimension)?;
         // Functions receive rows of consecutive coordinates.
         let places = places.call_method1("copy", ("C",))?;
-        Ok(Arc::new(FunctionValues::new(
+        Ok(Arc::new(Functions {
             functions,
-            places.unbind(),
-            selection.clone(),
+            places: places.unbind(),
+            selection,
             dimension,
-            (self.step.clone(), self.trouble.clone()),
-        )))
+        }))
     }
 
-    fn change(&self, py: Python<'_>, change: impl FnOnce(&mut Discretisation)) -> PyResult<()> {
+    fn change(&self, py: Python<'_>, change: impl FnOnce(&mut Parts)) -> PyResult<()> {
         let mut parts = self.parts(py)?;
-        change(&mut parts.discretisation);
+        change(&mut parts);
         parts.assembled = None;
         Ok(())
     }
@@ -159,17 +221,16 @@ impl Model {
             Ok((source, made))
         })?;
         let facts = serde_json::to_string(&assembled.facts);
-        let step = Step::new(assembled.assembly.dt);
         Ok(Self {
+            dt: assembled.assembly.dt,
             cloud: Arc::clone(&discretisation.cloud),
             parts: Mutex::new(Parts {
                 discretisation,
                 facts: facts.map_err(|error| plain(&error.to_string()))?,
                 assembled: Some(assembled),
+                additions: Vec::new(),
             }),
             source,
-            step,
-            trouble: Trouble::default(),
         })
     }
 
@@ -187,6 +248,24 @@ impl Model {
     /// Volumes of the points, m³.
     fn volumes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, &in_user_order(&self.cloud, self.cloud.volumes()))
+    }
+
+    /// Sides of the cells of the points, m: shape (points, dimension). None for surfaces, whose points are vertices.
+    fn cell_sides<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        let cloud = &self.cloud;
+        if self.source.model().body.solid().is_none() {
+            return Ok(None);
+        }
+        let along = |c: usize| {
+            let side = move |i: usize| match cloud.cell_sides() {
+                Some(sides) => sides[c],
+                None => cloud.cell_size(i),
+            };
+            (0..cloud.len()).map(side)
+        };
+        let sides: Vec<f64> = (0..cloud.dimension()).flat_map(along).collect();
+        let sides = in_user_order(cloud, &sides).into_owned();
+        owned(py, sides, cloud.dimension()).map(Some)
     }
 
     /// Names of the sets.
@@ -222,8 +301,8 @@ impl Model {
             displacement.as_ref().map(ordered),
             velocity.as_ref().map(ordered),
         );
-        self.change(py, |discretisation| {
-            let conditions = &mut discretisation.conditions;
+        self.change(py, |parts| {
+            let conditions = &mut parts.discretisation.conditions;
             conditions.displacement = u.or(conditions.displacement.take());
             conditions.velocity = v.or(conditions.velocity.take());
         })
@@ -238,22 +317,21 @@ impl Model {
         function: Option<Py<PyAny>>,
     ) -> PyResult<()> {
         let selection = Selection::of_numbers(&self.cloud, &numbers);
-        let density = match (density, function) {
+        match (density, function) {
             (Some(density), _) => {
                 let mut values = selection.ordered(&component_major(&density));
                 // All three axes are given, even for bodies of fewer dimensions.
                 values.resize(3 * selection.points.len(), 0.0);
-                LoadDensity::PerPoint(values)
+                let density = LoadDensity::PerPoint(values);
+                let load = Load::new(selection.points, density, TimeFunction::Constant);
+                self.change(py, |parts| parts.discretisation.conditions.loads.push(load))
             }
             (None, Some(function)) => {
-                LoadDensity::Values(self.values(py, vec![function], &selection)?)
+                let functions = self.functions(py, vec![function], selection)?;
+                self.change(py, |parts| parts.additions.push(Addition::Load(functions)))
             }
-            (None, None) => return Err(plain("a load needs values or a function")),
-        };
-        let load = Load::new(selection.points, density, TimeFunction::Constant);
-        self.change(py, |discretisation| {
-            discretisation.conditions.loads.push(load)
-        })
+            (None, None) => Err(plain("a load needs values or a function")),
+        }
     }
 
     /// Prescribes the displacement of points given by user numbers along axes: the displacement and its known time
@@ -267,25 +345,13 @@ impl Model {
         functions: Vec<Py<PyAny>>,
     ) -> PyResult<()> {
         let selection = Selection::of_numbers(&self.cloud, &numbers);
-        let values = self.values(py, functions, &selection)?;
-        let along = std::array::from_fn(|c| {
-            let prescribed = axes.get(c).copied().unwrap_or(false);
-            prescribed.then(|| AxisMotion::Values(values.clone()))
-        });
-        let n = self.cloud.len();
-        let motion = PrescribedMotion::along(
+        let functions = self.functions(py, functions, selection)?;
+        let addition = Addition::Motion {
             name,
-            selection.points,
-            MotionKind::Displacement,
-            along,
-            TimeFunction::Constant,
-            &vec![0.0; self.cloud.dimension() * n],
-            n,
-        );
-        let motion = motion.map_err(errors::of_engine)?;
-        self.change(py, |discretisation| {
-            discretisation.conditions.motions.push(motion)
-        })
+            axes,
+            functions,
+        };
+        self.change(py, |parts| parts.additions.push(addition))
     }
 
     /// Makes a simulation: in the folder `out`, in a numbered folder beginning with `stem`, or in memory.
@@ -301,15 +367,20 @@ impl Model {
         schedule: (String, f64),
         amended: Vec<String>,
     ) -> PyResult<Simulation> {
+        let (trouble, step) = (Trouble::default(), Step::new(self.dt));
         let (assembled, discretisation) = {
             let mut parts = self.parts(py)?;
-            (parts.assembled.take(), parts.discretisation.clone())
+            let mut discretisation = parts.discretisation.clone();
+            for addition in &parts.additions {
+                let addition = addition.clone();
+                addition.apply(&mut discretisation, (&step, &trouble))?;
+            }
+            (parts.assembled.take(), discretisation)
         };
         let mut source = self.source.clone();
         if let Source::Deck { text, .. } = &mut source {
             text.amended = amended;
         }
-        let (trouble, step) = (self.trouble.clone(), self.step.clone());
         let schedule = schedule_of(&schedule.0, schedule.1)?;
         waiting(py, move || {
             let assembled = match assembled {
@@ -336,9 +407,11 @@ impl Model {
                 source: &source,
                 keep: &keep,
                 schedule,
-                trouble,
+                trouble: trouble.clone(),
             };
-            Simulation::of(assembled, folder, plan)
+            let simulation = Simulation::of(assembled, folder, plan)?;
+            // The initial state has values too.
+            trouble.take().map_or(Ok(simulation), Err)
         })
     }
 }

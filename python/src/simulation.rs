@@ -2,7 +2,6 @@
 
 use std::cell::Cell;
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, TryLockError};
 use std::time::Instant;
 
@@ -42,10 +41,9 @@ pub struct Simulation {
     engine: Mutex<Option<Engine>>,
     live: Arc<Live>,
     trouble: Trouble,
-    /// Whether a function of a load or motion failed, so that the state is not valid.
-    spoiled: AtomicBool,
     recording: (Arc<Mutex<Kept>>, Option<Arc<Mutex<Course>>>),
     folder: Option<PathBuf>,
+    warnings: Vec<String>,
     steps: u64,
     dt: f64,
 }
@@ -69,6 +67,7 @@ impl Simulation {
     ) -> PyResult<Self> {
         let (steps, dt) = (assembled.assembly.steps, assembled.assembly.dt);
         let points = assembled.assembly.cloud.len();
+        let warnings = assembled.facts.warnings.clone();
         let fields: PyResult<Vec<_>> = plan.keep.iter().map(|name| field_named(name)).collect();
         let kept = Kept::new(fields?, assembled.assembly.cloud.dimension());
         let needed = kept.bytes(points) * plan.schedule.most(dt, steps) as f64;
@@ -110,9 +109,9 @@ impl Simulation {
             engine: Mutex::new(Some(engine)),
             live: Arc::default(),
             trouble: plan.trouble,
-            spoiled: AtomicBool::new(false),
             recording: (kept, course),
             folder: path,
+            warnings,
             steps,
             dt,
         })
@@ -132,11 +131,6 @@ impl Simulation {
 
     /// Runs until the end, or until `until` steps are completed; returns whether the end was reached.
     fn advance(&self, engine: &mut Engine, until: Option<u64>) -> PyResult<bool> {
-        if self.spoiled.load(Ordering::Relaxed) {
-            return Err(plain(
-                "a function of a load or prescribed motion failed, so that the state is not valid; load a checkpoint, or make a new simulation",
-            ));
-        }
         self.live.ask_to_stop(false);
         let watch = Watch {
             live: &self.live,
@@ -152,7 +146,6 @@ impl Simulation {
         let state = engine.simulation().state();
         self.live.note(state.step, state.t);
         if let Some(error) = self.trouble.take() {
-            self.spoiled.store(true, Ordering::Relaxed);
             return Err(error);
         }
         if let Some(error) = watch.raised.take() {
@@ -283,6 +276,12 @@ impl Simulation {
         self.folder.clone()
     }
 
+    /// Warnings about the model with its conditions.
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.warnings.clone()
+    }
+
     /// The energy balance, J.
     #[getter]
     fn energies<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
@@ -326,7 +325,7 @@ impl Simulation {
 
     /// Reads the state from a file.
     fn load(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        let loaded = py.detach(|| {
+        py.detach(|| {
             self.with(|engine| {
                 let container = Container::read(&path, machine::memory()).map_err(errors::of_io)?;
                 let (_, archive) = container.into_archive().map_err(|reason| plain(&reason))?;
@@ -340,12 +339,7 @@ impl Simulation {
                 self.live.note(state.step, state.t);
                 Ok(())
             })
-        });
-        self.spoiled.store(
-            loaded.is_err() && self.spoiled.load(Ordering::Relaxed),
-            Ordering::Relaxed,
-        );
-        loaded
+        })
     }
 
     /// The results kept in memory.

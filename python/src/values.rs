@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 use crate::arrays::{Selection, component_major};
 use crate::errors::plain;
 
-/// The first error of a function of a load or motion; the run that met it ends with it.
+/// The first error of a function of a load or motion; the run that met it undoes its step and ends with it.
 #[derive(Debug, Clone, Default)]
 pub struct Trouble(Arc<Stored>);
 
@@ -63,20 +63,26 @@ impl Step {
     }
 }
 
-/// Values of the points of a set, from functions of time and position, `f(t, x)`.
-///
-/// `functions` are the values and their known time derivatives: further derivatives are central differences over the time
-/// step of the run.
+/// Values of the points of a set in one simulation, from functions of time and position, `f(t, x)`. Derivatives without
+/// a function are differences over the time step of the run.
 pub struct FunctionValues {
-    functions: Vec<Py<PyAny>>,
-    /// Positions of the points in the user's order.
-    places: Py<PyAny>,
-    selection: Selection,
-    dimension: usize,
+    given: Arc<Functions>,
     step: Step,
     trouble: Trouble,
     /// The last values, most recent last: (order, bits of t, values).
     kept: Mutex<Vec<Kept>>,
+}
+
+/// Functions with the points that they receive.
+pub struct Functions {
+    /// The values and their known time derivatives.
+    pub functions: Vec<Py<PyAny>>,
+    /// Positions of the points in the user's order.
+    pub places: Py<PyAny>,
+    /// The points.
+    pub selection: Selection,
+    /// Dimension of the body.
+    pub dimension: usize,
 }
 
 type Kept = (usize, u64, Arc<Vec<f64>>);
@@ -85,19 +91,10 @@ impl FunctionValues {
     /// Number of kept arrays: a step of a motion needs three derivatives at two times.
     const KEPT: usize = 8;
 
-    /// Makes values for the points of a selection.
-    pub fn new(
-        functions: Vec<Py<PyAny>>,
-        places: Py<PyAny>,
-        selection: Selection,
-        dimension: usize,
-        (step, trouble): (Step, Trouble),
-    ) -> Self {
+    /// Makes the values of one simulation.
+    pub fn new(given: Arc<Functions>, step: Step, trouble: Trouble) -> Self {
         Self {
-            functions,
-            places,
-            selection,
-            dimension,
+            given,
             step,
             trouble,
             kept: Mutex::default(),
@@ -106,12 +103,13 @@ impl FunctionValues {
 
     /// Calls a function at time t and checks what it returns.
     fn called(&self, py: Python<'_>, function: &Py<PyAny>, t: f64) -> PyResult<Vec<f64>> {
-        let given = function.call1(py, (t, self.places.bind(py)))?;
+        let known = &*self.given;
+        let given = function.call1(py, (t, known.places.bind(py)))?;
         let asarray = py.import("pericles._arrays")?.getattr("as_vectors")?;
-        let n = self.selection.points.len();
-        let array = asarray.call1((given, n, self.dimension))?;
+        let n = known.selection.points.len();
+        let array = asarray.call1((given, n, known.dimension))?;
         let array: PyReadonlyArray2<'_, f64> = array.cast::<numpy::PyArray2<f64>>()?.readonly();
-        let values = self.selection.ordered(&component_major(&array));
+        let values = known.selection.ordered(&component_major(&array));
         match values.iter().position(|value| !value.is_finite()) {
             None => Ok(values),
             Some(_) => Err(plain(&format!(
@@ -122,20 +120,17 @@ impl FunctionValues {
 
     /// The derivative of order `order` at time t.
     fn derivative(&self, py: Python<'_>, order: usize, t: f64) -> PyResult<Vec<f64>> {
-        let known = order.min(self.functions.len() - 1);
-        let at = |t: f64| self.called(py, &self.functions[known], t);
+        let known = order.min(self.given.functions.len() - 1);
         let h = self.step.get();
-        let zip = |a: Vec<f64>, b: Vec<f64>, f: &dyn Fn(f64, f64) -> f64| -> Vec<f64> {
-            a.into_iter().zip(b).map(|(a, b)| f(a, b)).collect()
-        };
-        match order - known {
-            0 => at(t),
-            1 => Ok(zip(at(t + h)?, at(t - h)?, &|a, b| (a - b) / (2.0 * h))),
-            _ => {
-                let outer = zip(at(t + h)?, at(t - h)?, &|a, b| a + b);
-                Ok(zip(outer, at(t)?, &|a, b| (a - 2.0 * b) / (h * h)))
+        let mut sum = vec![0.0; self.len()];
+        for &(place, weight) in stencil(order - known, t < h) {
+            let values = self.called(py, &self.given.functions[known], t + place * h)?;
+            let weight = weight / h.powi((order - known) as i32);
+            for (sum, value) in sum.iter_mut().zip(values) {
+                *sum += weight * value;
             }
         }
+        Ok(sum)
     }
 
     fn values(&self, order: usize, t: f64) -> Arc<Vec<f64>> {
@@ -145,11 +140,18 @@ impl FunctionValues {
             return Arc::clone(values);
         }
         drop(kept);
-        let made = Python::attach(|py| self.derivative(py, order, t));
-        let values = Arc::new(made.unwrap_or_else(|error| {
-            self.trouble.note(error);
-            vec![f64::NAN; self.len()]
-        }));
+        // The step of a failed evaluation is undone: what it computes further does not matter.
+        let unknown = || Arc::new(vec![f64::NAN; self.len()]);
+        if self.trouble.is_some() {
+            return unknown();
+        }
+        let values = match Python::attach(|py| self.derivative(py, order, t)) {
+            Ok(values) => Arc::new(values),
+            Err(error) => {
+                self.trouble.note(error);
+                return unknown();
+            }
+        };
         kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         if kept.len() == Self::KEPT {
             kept.remove(0);
@@ -161,16 +163,36 @@ impl FunctionValues {
 
 impl fmt::Debug for FunctionValues {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "FunctionValues({} points)", self.selection.points.len())
+        write!(f, "FunctionValues({} values)", self.len())
     }
 }
 
 impl PointValues for FunctionValues {
     fn len(&self) -> usize {
-        self.selection.points.len() * self.dimension
+        self.given.selection.points.len() * self.given.dimension
     }
 
     fn at(&self, order: usize, t: f64, read: &mut dyn FnMut(&[f64])) {
         read(&self.values(order, t));
+    }
+
+    fn can_fail(&self) -> bool {
+        true
+    }
+
+    fn has_failed(&self) -> bool {
+        self.trouble.is_some()
+    }
+}
+
+/// Places and weights of the finite differences of second order for a derivative; `forward` uses no earlier times, for
+/// functions that begin at t = 0.
+fn stencil(order: usize, forward: bool) -> &'static [(f64, f64)] {
+    match (order, forward) {
+        (0, _) => &[(0.0, 1.0)],
+        (1, false) => &[(-1.0, -0.5), (1.0, 0.5)],
+        (1, true) => &[(0.0, -1.5), (1.0, 2.0), (2.0, -0.5)],
+        (_, false) => &[(-1.0, 1.0), (0.0, -2.0), (1.0, 1.0)],
+        (_, true) => &[(0.0, 2.0), (1.0, -5.0), (2.0, 4.0), (3.0, -1.0)],
     }
 }

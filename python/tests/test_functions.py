@@ -32,7 +32,7 @@ def test_dispersion_of_a_plate():
 def test_mesh_and_geodesics():
     found = pc.mesh(ROOT / "examples/geometry/dogbone.msh", unit="mm")
     assert found.points > 0 and found.volume > 0
-    spheres = pc.geodesics("icosphere:2", 0.8)
+    spheres = pc.geodesics("icosphere(2)", 0.8)
     # The area of a polyhedron in the unit sphere approaches 4 pi from below.
     assert 0.9 * 4 * np.pi < spheres.area < 4 * np.pi
     assert spheres.methods[0].mean_error >= 0

@@ -99,7 +99,14 @@ def test_fields_go_to_pyvista_and_meshio(plate):
     memory = pc.Deck.from_dict(plate).build().simulation().run().result()
     grid = folder.to_pyvista()
     assert grid.n_cells == 200 and "Damage" in grid.cell_data
-    points = memory.to_pyvista()
+    # Cells where the program's are, with the same fields.
+    cells = memory.to_pyvista()
+    assert cells.n_cells == 200
+    for mine, theirs in zip(range(200), range(200)):
+        assert cells.get_cell(mine).bounds == pytest.approx(grid.get_cell(theirs).bounds, abs=1e-15)
+    assert np.array_equal(cells.cell_data["Displacement"], grid.cell_data["Displacement"])
+    assert cells.compute_cell_sizes()["Area"] == pytest.approx(np.full(200, 1e-6))
+    points = memory.to_pyvista(cells=False)
     assert points.n_points == 200
     assert np.array_equal(points.point_data["Displacement"][:, :2], memory.field("displacement"))
     mesh = memory.to_meshio()

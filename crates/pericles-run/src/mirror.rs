@@ -7,6 +7,7 @@
 
 use std::fmt;
 
+use pericles::boundary::{AxisMotion, LoadDensity};
 use pericles::noise::SplitMix64;
 use pericles::operator::PointSubset;
 use pericles::space::PointCloud;
@@ -69,13 +70,31 @@ impl fmt::Display for MirrorError {
     }
 }
 
+/// Returns whether loads or prescribed motions are functions of a program, which are called at the times of the scheme
+/// only.
+fn has_functions(system: &System) -> bool {
+    let mut loads = system.loads().iter();
+    let mut axes = system
+        .motions()
+        .iter()
+        .flat_map(|motion| motion.along.iter().flatten());
+    loads.any(|load| match &load.density {
+        LoadDensity::Values(values) => values.can_fail(),
+        _ => false,
+    }) || axes.any(|along| match along {
+        AxisMotion::Values(values) => values.can_fail(),
+        _ => false,
+    })
+}
+
 impl Symmetries {
     /// Detects the symmetries of a simulation before its first step.
     pub fn of(simulation: &Simulation) -> Self {
         let system = simulation.system();
         // Absorbing boundaries, damping layers and impactors are not compared.
         let struck = impactors(system).next().is_some();
-        if system.points() > MOST_POINTS || system.has_boundaries() || struck {
+        let skipped = system.has_boundaries() || struck || has_functions(system);
+        if system.points() > MOST_POINTS || skipped {
             return Self::default();
         }
         let signs: &[f64] = if system.dimension() == 1 {

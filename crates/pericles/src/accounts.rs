@@ -34,7 +34,12 @@ impl Ledger {
         cloud: &PointCloud,
     ) {
         let (n, volumes) = (cloud.len(), cloud.volumes());
-        let mut times = [step.t - step.dt, step.t - 0.5 * step.dt, step.t];
+        // Paths other than the cubic do not use the middle: no values are computed for it.
+        let middle = match step.path {
+            Path::Cubic { .. } => step.t - 0.5 * step.dt,
+            Path::MeanVelocity(_) | Path::Chord { .. } | Path::SubStep => step.t,
+        };
+        let mut times = [step.t - step.dt, middle, step.t];
         let mut shares = [1.0; 3];
         if let Some(loading) = loading {
             let [first, last] = loading.factors;
@@ -49,18 +54,18 @@ impl Ledger {
         if factors == [0.0; 3] {
             return;
         }
-        for c in (0..cloud.dimension()).filter(|&c| !load.is_free_of(c)) {
-            let push_and_work = |k: usize| {
-                let i = load.points[k] as usize;
-                let forces: [f64; 3] = std::array::from_fn(|m| {
-                    load.amplitude(c, k, times[m]) * factors[m] * volumes[i]
-                });
-                step.push_and_work(forces, c * n + i)
-            };
-            let (domain, points) = (cloud.domain(), load.points.len());
-            work += domain.sum(points, |k| push_and_work(k).1);
-            impulse[c] = domain.sum(points, |k| push_and_work(k).0);
-        }
+        load.with_amplitudes(times, |amplitude| {
+            for c in (0..cloud.dimension()).filter(|&c| !load.is_free_of(c)) {
+                let push_and_work = |k: usize| {
+                    let (i, amplitude) = (load.points[k] as usize, amplitude(c, k));
+                    let forces = std::array::from_fn(|m| amplitude[m] * factors[m] * volumes[i]);
+                    step.push_and_work(forces, c * n + i)
+                };
+                let (domain, points) = (cloud.domain(), load.points.len());
+                work += domain.sum(points, |k| push_and_work(k).1);
+                impulse[c] = domain.sum(points, |k| push_and_work(k).0);
+            }
+        });
         self.book(work, impulse);
     }
 }

@@ -80,7 +80,9 @@ pub fn assemble(
     discretisation.conditions.add_motions(&mut system)?;
     assembler.judge_conditions(&system, &mut warnings);
     warnings.extend(assembler.judge_idle_keys(&system));
-    warnings.extend(assembler.judge_rest(&state));
+    if discretisation.conditions.is_empty() {
+        warnings.extend(assembler.judge_rest(&state));
+    }
     let contact = assembler.add_contact(
         &mut system,
         (&discretisation, &state),

@@ -23,6 +23,11 @@ pub struct Conditions {
 }
 
 impl Conditions {
+    /// Returns whether there are no loads and prescribed motions.
+    pub(super) fn is_empty(&self) -> bool {
+        self.loads.is_empty() && self.motions.is_empty()
+    }
+
     /// Replaces the initial state.
     pub(super) fn start(&self, state: &mut State) -> Result<(), BuildError> {
         let fields = [

@@ -146,6 +146,34 @@ impl Load {
         }
     }
 
+    /// Passes a function that returns the amplitudes at several times along axis c on the k-th loaded point.
+    /// Values of all points at once are asked for once per time.
+    pub(crate) fn with_amplitudes<const M: usize>(
+        &self,
+        times: [f64; M],
+        read: impl FnOnce(&(dyn Fn(usize, usize) -> [f64; M] + Sync)),
+    ) {
+        let LoadDensity::Values(values) = &self.density else {
+            read(&|c, k| times.map(|t| self.amplitude(c, k, t)));
+            return;
+        };
+        let all = times.map(|t| {
+            let mut copy = Vec::new();
+            values.at(0, t, &mut |all| copy.extend_from_slice(all));
+            copy
+        });
+        let n = self.points.len();
+        read(&|c, k| std::array::from_fn(|m| all[m][c * n + k]));
+    }
+
+    /// Returns the values of all points at once, if the load is given by them.
+    pub(crate) fn values(&self) -> Option<&dyn PointValues> {
+        match &self.density {
+            LoadDensity::Values(values) => Some(&**values),
+            _ => None,
+        }
+    }
+
     /// Returns whether the force at time t is finite: on all points for a constant amplitude, on the first, middle
     /// and last point for a field of position and time. Values computed for all points at once are not evaluated:
     /// only the run knows the times at which they are given.
@@ -206,18 +234,21 @@ impl Load {
         if factor == 0.0 {
             return sum;
         }
-        for (c, sum) in sum.iter_mut().enumerate().take(cloud.dimension()) {
-            *sum = match self.density {
-                LoadDensity::Uniform(density) => density[c] * factor * volume(cloud, &self.points),
-                _ => {
-                    let each = self.points.iter().enumerate();
-                    each.map(|(k, &i)| {
-                        self.amplitude(c, k, t) * factor * cloud.volumes()[i as usize]
-                    })
-                    .sum()
-                }
-            };
+        if let LoadDensity::Uniform(density) = self.density {
+            let volume = volume(cloud, &self.points);
+            for c in 0..cloud.dimension() {
+                sum[c] = density[c] * factor * volume;
+            }
+            return sum;
         }
+        self.with_amplitudes([t], |amplitude| {
+            for (c, sum) in sum.iter_mut().enumerate().take(cloud.dimension()) {
+                let each = self.points.iter().enumerate();
+                *sum = each
+                    .map(|(k, &i)| amplitude(c, k)[0] * factor * cloud.volumes()[i as usize])
+                    .sum();
+            }
+        });
         sum
     }
 }

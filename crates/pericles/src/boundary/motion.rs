@@ -306,6 +306,14 @@ impl PrescribedMotion {
         }
     }
 
+    /// Returns the values of all points at once by which axes are prescribed.
+    pub(crate) fn values(&self) -> impl Iterator<Item = &dyn PointValues> {
+        self.along.iter().filter_map(|along| match along {
+            Some(AxisMotion::Values(values)) => Some(&**values),
+            _ => None,
+        })
+    }
+
     /// Sets the displacements at time t.
     pub(crate) fn place(&self, t: f64, on: &PointSubset<'_>, cloud_len: usize, u: &mut [f64]) {
         if self.holds(t) {

@@ -20,4 +20,16 @@ pub trait PointValues: fmt::Debug + Send + Sync {
     /// k-th point of the set is entry c · (points of the set) + k. Loads ask for order 0 (N/m³); prescribed motions for
     /// displacements (order 0, m), velocities (order 1, m/s) and accelerations (order 2, m/s²).
     fn at(&self, order: usize, t: f64, read: &mut dyn FnMut(&[f64]));
+
+    /// Returns whether an evaluation may fail, such as that of a user's function. The time loop then copies state and
+    /// system before every step, so that a step with a failed evaluation is undone.
+    fn can_fail(&self) -> bool {
+        false
+    }
+
+    /// Returns whether an evaluation has failed. The run then stops as if it had been interrupted: before the step of
+    /// the failed evaluation, from where it can be continued. The values passed on do not matter.
+    fn has_failed(&self) -> bool {
+        false
+    }
 }

@@ -246,7 +246,8 @@ impl Simulation {
 
     /// Runs as [`Simulation::run`]; iterative schemes also poll `interrupt` within a step, which may take much
     /// longer than an explicit step. An interrupted step is undone: the run stops at the last complete step and
-    /// continues from there bit for bit as if it had not been interrupted.
+    /// continues from there bit for bit as if it had not been interrupted. So is a step in which the evaluation of a
+    /// load or prescribed motion [fails](crate::boundary::PointValues::has_failed).
     ///
     /// # Errors
     /// Those of [`Simulation::run`].
@@ -285,18 +286,22 @@ impl Simulation {
         Ok(Outcome::Finished)
     }
 
-    /// Performs one step; undoes it if it is interrupted.
+    /// Performs one step; undoes it if it is interrupted, or if the evaluation of a load or motion has failed.
     fn step(&mut self, t_next: f64, interrupt: Interrupt<'_>) -> Result<(), PericlesError> {
         let evaluated = self.system.evaluated_points();
-        let copied = interrupt.is_possible() && self.integrator.changes_within_step();
+        let fallible = self.system.can_fail();
+        let copied = fallible || (interrupt.is_possible() && self.integrator.changes_within_step());
         let copy = copied.then(|| {
             let mut archive = Archive::default();
             self.save_motion(&mut archive);
             archive
         });
-        let stepped = self
-            .integrator
-            .step(&mut self.system, &mut self.state, t_next, interrupt);
+        let mut stepped =
+            self.integrator
+                .step(&mut self.system, &mut self.state, t_next, interrupt);
+        if fallible && self.system.has_failed() {
+            stepped = Err(PericlesError::Interrupted);
+        }
         if matches!(stepped, Err(PericlesError::Interrupted)) {
             self.system.set_evaluated_points(evaluated);
             if let Some(copy) = copy {

@@ -1,7 +1,7 @@
 //! Loads of a system.
 
 use super::System;
-use crate::boundary::{Load, ProportionalLoading};
+use crate::boundary::{Load, PointValues, PrescribedMotion, ProportionalLoading};
 use crate::error::Result;
 use crate::parallel::PointSubset;
 
@@ -43,6 +43,22 @@ impl System {
     pub fn load_density_into(&self, t: f64, out: &mut [f64]) {
         self.zero(&PointSubset::All, out);
         self.add_loads(t, &PointSubset::All, out);
+    }
+
+    /// The values of loads and prescribed motions that are computed for all points at once.
+    fn point_values(&self) -> impl Iterator<Item = &dyn PointValues> {
+        let loads = self.loads.iter().filter_map(Load::values);
+        loads.chain(self.motions.iter().flat_map(PrescribedMotion::values))
+    }
+
+    /// Returns whether an evaluation of a load or prescribed motion may fail.
+    pub(crate) fn can_fail(&self) -> bool {
+        self.point_values().any(|values| values.can_fail())
+    }
+
+    /// Returns whether an evaluation of a load or prescribed motion has failed.
+    pub(crate) fn has_failed(&self) -> bool {
+        self.point_values().any(|values| values.has_failed())
     }
 
     pub(super) fn add_loads(&self, t: f64, on: &PointSubset<'_>, out: &mut [f64]) {
