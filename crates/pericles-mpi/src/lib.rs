@@ -1,0 +1,158 @@
+//! Communication between the processes of an MPI job.
+//!
+//! [`Mpi`] implements [`Comm`]. A program divides its body with [`division`](pericles::division) and computes the part of its
+//! process; the results are those of a single process, bit for bit. `examples/plate.rs` is a complete program.
+//!
+//! The crate needs an MPI library with its compiler wrapper `mpicc`, and libclang while it is built.
+
+use std::panic;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use mpi::Threading;
+use mpi::collective::SystemOperation;
+use mpi::environment::Universe;
+use mpi::request::multiple_scope;
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::{Communicator, CommunicatorCollectives, Destination, Source};
+use pericles::domain::Comm;
+
+/// Exit status of a job that a panic of one of its processes ends.
+pub const PANICKED: i32 = 70;
+
+/// The communicator of all processes of a job.
+pub struct Mpi {
+    rank: usize,
+    size: usize,
+    world: Mutex<World>,
+    // Ends MPI when it is dropped, after all calls.
+    _universe: Universe,
+}
+
+struct World(SimpleCommunicator);
+
+// SAFETY: MPI is initialised for calls from any thread of the process, one at a time, and the mutex around the handle
+// ensures that they are made one at a time.
+unsafe impl Send for World {}
+
+impl Mpi {
+    /// Starts MPI; `None` if it has been started before, or if the library does not allow calls from several threads.
+    ///
+    /// Replaces the panic hook: a panic prints its message and ends all processes of the job with the status
+    /// [`PANICKED`]. Without it the others would wait for ever.
+    pub fn start() -> Option<Self> {
+        let (universe, threading) = mpi::initialize_with_threading(Threading::Serialized)?;
+        if threading < Threading::Serialized {
+            return None;
+        }
+        let world = universe.world();
+        let (rank, size) = (world.rank() as usize, world.size() as usize);
+        let usual = panic::take_hook();
+        panic::set_hook(Box::new(move |info| {
+            eprint!("process {rank} of {size}: ");
+            usual(info);
+            SimpleCommunicator::world().abort(PANICKED);
+        }));
+        Some(Self {
+            rank,
+            size,
+            world: Mutex::new(World(world)),
+            _universe: universe,
+        })
+    }
+
+    fn world(&self) -> MutexGuard<'_, World> {
+        self.world.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Number of pieces of an integer in a sum.
+const PIECES: usize = 4;
+/// Bits of a piece; sums of pieces over up to 2³¹ processes do not overflow.
+const BITS: u32 = 32;
+
+/// Splits an integer into unsigned pieces and a signed highest one.
+fn pieces(number: i128) -> [i64; PIECES] {
+    std::array::from_fn(|k| {
+        let rest = number >> (BITS * k as u32);
+        match k + 1 < PIECES {
+            true => (rest & i128::from(u32::MAX)) as i64,
+            false => rest as i64,
+        }
+    })
+}
+
+/// Returns the integer with the given sums of pieces.
+fn joined(sums: &[i64]) -> i128 {
+    let pieces = sums.iter().enumerate();
+    pieces.fold(0, |number: i128, (k, &piece)| {
+        number.wrapping_add(i128::from(piece) << (BITS * k as u32))
+    })
+}
+
+impl Comm for Mpi {
+    fn rank(&self) -> usize {
+        self.rank
+    }
+
+    fn size(&self) -> usize {
+        self.size
+    }
+
+    fn exchange(&self, peers: &[usize], sent: &[Vec<f64>], received: &mut [Vec<f64>]) {
+        let world = &self.world().0;
+        let process = |&peer: &usize| world.process_at_rank(peer as i32);
+        multiple_scope(sent.len(), |scope, requests| {
+            for (peer, message) in peers.iter().zip(sent) {
+                requests.add(process(peer).immediate_send(scope, &message[..]));
+            }
+            for (peer, place) in peers.iter().zip(received) {
+                (*place, _) = process(peer).receive_vec();
+            }
+            requests.wait_all(&mut Vec::new());
+        });
+    }
+
+    fn sum(&self, numbers: &mut [i128]) {
+        let own: Vec<i64> = numbers.iter().copied().flat_map(pieces).collect();
+        let mut sums = vec![0; own.len()];
+        let operation = SystemOperation::sum();
+        self.world().0.all_reduce_into(&own, &mut sums, operation);
+        for (number, sums) in numbers.iter_mut().zip(sums.chunks(PIECES)) {
+            *number = joined(sums);
+        }
+    }
+
+    fn max(&self, numbers: &mut [f64]) {
+        let own = numbers.to_vec();
+        let operation = SystemOperation::max();
+        self.world().0.all_reduce_into(&own, numbers, operation);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_of_pieces_are_sums_of_integers() {
+        let numbers = [
+            0,
+            -1,
+            i128::from(u64::MAX),
+            -(1 << 100),
+            1 << 90,
+            i128::MAX / 8,
+            i128::MIN / 8,
+        ];
+        for a in numbers {
+            for b in numbers {
+                let sums: Vec<i64> = pieces(a)
+                    .iter()
+                    .zip(pieces(b))
+                    .map(|(a, b)| a + b)
+                    .collect();
+                assert_eq!(joined(&sums), a + b);
+            }
+        }
+    }
+}
