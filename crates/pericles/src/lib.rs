@@ -179,6 +179,7 @@ pub mod parallel;
 pub mod prelude;
 pub mod round_trip;
 mod scalar;
+mod secondary;
 mod simulation;
 pub mod solve;
 pub mod space;
@@ -200,6 +201,7 @@ pub use guard::InstabilityCause;
 pub use interaction::{Configuration, Interaction, InteractionStep};
 pub use interrupt::{Interrupt, IterationProgress};
 pub use scalar::PointScalar;
+pub use secondary::SecondaryField;
 pub use simulation::{
     Control, Outcome, Simulation, SimulationBuilder, SimulationError, check_compatibility,
 };

@@ -77,6 +77,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
                 .with("loads_not_listed", more),
         );
     }
+    lines.extend(heat(&facts));
     lines.extend(contact(&facts));
     lines.extend(probes(&assembly));
     for end in &facts.ends {
@@ -165,6 +166,26 @@ fn run_time(
     Ok(Line::new("run time", text)
         .with("run_seconds", seconds)
         .with("threads", count_of_threads))
+}
+
+/// Returns the line about heat conduction.
+fn heat(facts: &Facts) -> Option<Line> {
+    let heat = facts.heat.as_ref()?;
+    let limit = quantity(heat.explicit_limit, "s");
+    let step = heat.step.unwrap_or(facts.dt);
+    let steps = match heat.scheme {
+        "explicit" if step > heat.explicit_limit => {
+            let parts = (step / heat.explicit_limit).ceil();
+            format!(", about {} sub-steps per step", significant(parts, 3))
+        }
+        _ => String::new(),
+    };
+    let text = format!(
+        "{}, step {}{steps}; limit of the explicit scheme {limit}",
+        heat.scheme,
+        quantity(step, "s")
+    );
+    Some(Line::new("heat conduction", text).with("thermal_step", step))
 }
 
 /// Returns the lines about pieces, contact and impactors.

@@ -10,6 +10,7 @@ use pericles_deck::{
     BuildError, Caution, Fault, FineRegion, FineStep, Interface, KeyPath, ModelWarning, Remark,
     Scheme,
 };
+use pericles_heat::FixedBody;
 use pericles_waves::Trigonometric;
 
 use super::assembler::Assembler;
@@ -62,6 +63,7 @@ impl Assembler<'_> {
                 Box::new(Relaxation::new(*options, system).map_err(|error| self.at_scheme(error))?)
             }
             Scheme::Static(options) => self.statics(options, system)?,
+            Scheme::Thermal => Box::new(FixedBody),
             Scheme::Respa { fine } => {
                 let region = self.fine_points(fine, system, sets)?;
                 Box::new(

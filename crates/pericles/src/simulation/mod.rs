@@ -296,7 +296,8 @@ impl Simulation {
         });
         let stepped = self
             .integrator
-            .step(&mut self.system, &mut self.state, t_next, interrupt);
+            .step(&mut self.system, &mut self.state, t_next, interrupt)
+            .and_then(|()| self.system.end_fields(t_next));
         if matches!(stepped, Err(PericlesError::Interrupted)) {
             self.system.set_evaluated_points(evaluated);
             if let Some(copy) = copy {
