@@ -1,16 +1,34 @@
 //! Time integrator of a body that does not move.
 
 use pericles::time::{Integrator, State};
-use pericles::{Interrupt, Result, System};
+use pericles::{Interrupt, Need, Requirement, Result, System};
 
 /// Keeps displacements constant, so that only secondary fields change with time: heat conduction without mechanics.
 /// No force is evaluated.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct FixedBody;
 
+impl FixedBody {
+    /// Requirements on a system.
+    pub const REQUIREMENTS: &'static [Requirement] = &[
+        Requirement {
+            need: Need::NoBoundaries,
+            reason: "the body does not move; leave the boundary out",
+        },
+        Requirement {
+            need: Need::NoInteractions,
+            reason: "the body does not move; leave contact and impactors out",
+        },
+    ];
+}
+
 impl Integrator for FixedBody {
     fn name(&self) -> &'static str {
         "thermal"
+    }
+
+    fn requirements(&self) -> &'static [Requirement] {
+        Self::REQUIREMENTS
     }
 
     fn order(&self) -> u32 {
