@@ -171,21 +171,26 @@ fn run_time(
 /// Returns the line about heat conduction.
 fn heat(facts: &Facts) -> Option<Line> {
     let heat = facts.heat.as_ref()?;
-    let limit = quantity(heat.explicit_limit, "s");
     let step = heat.step.unwrap_or(facts.dt);
-    let steps = match heat.scheme {
-        "explicit" if step > heat.explicit_limit => {
-            let parts = (step / heat.explicit_limit).ceil();
-            format!(", about {} sub-steps per step", significant(parts, 3))
-        }
-        _ => String::new(),
+    let parts = match heat.scheme {
+        "explicit" => (step / heat.explicit_limit).ceil().max(1.0),
+        _ => 1.0,
+    };
+    let sub_steps = match parts {
+        1.0 => String::new(),
+        parts => format!(", about {} sub-steps per step", significant(parts, 3)),
     };
     let text = format!(
-        "{}, step {}{steps}; limit of the explicit scheme {limit}",
+        "{}, step {}{sub_steps}; limit of the explicit scheme {}",
         heat.scheme,
-        quantity(step, "s")
+        quantity(step, "s"),
+        quantity(heat.explicit_limit, "s")
     );
-    Some(Line::new("heat conduction", text).with("thermal_step", step))
+    let line = Line::new("heat conduction", text);
+    Some(
+        line.with("thermal_step", step)
+            .with("thermal_sub_steps", parts),
+    )
 }
 
 /// Returns the lines about pieces, contact and impactors.
