@@ -135,7 +135,12 @@ impl Interval {
 impl State {
     /// Makes sure that the accepted interval or the one ahead contains a time.
     fn reach(&mut self, t: f64) -> Result<()> {
-        if t <= self.accepted.to.t || self.ahead.as_ref().is_some_and(|ahead| ahead.contains(t)) {
+        let is_known = |ahead: &Interval| match self.options.step {
+            // Steps of the body: the field advances to the time itself.
+            None => ahead.to.t == t,
+            Some(_) => ahead.contains(t),
+        };
+        if t <= self.accepted.to.t || self.ahead.as_ref().is_some_and(is_known) {
             return Ok(());
         }
         let mut from = self.accepted.to.clone();

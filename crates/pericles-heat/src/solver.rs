@@ -1,6 +1,8 @@
 //! Solution of the implicit equations: conjugate gradients with the multigrid of a sparse network of springs between
 //! neighbouring points, here conductors.
 
+use std::hash::{DefaultHasher, Hasher};
+
 use pericles::parallel::for_each_point;
 use pericles::{Interrupt, Result};
 use pericles_statics::krylov::{Goal, KrylovWork, LinearProblem, conjugate_gradients};
@@ -25,9 +27,32 @@ pub struct Effort {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Key {
     changes: u64,
-    /// Weight of the capacity, 1/s, to a few digits: the preconditioner need not be exact, and steps of equal length
-    /// differ by rounding.
-    rate: u64,
+    rate: f64,
+    share: f64,
+    slopes: u64,
+}
+
+impl Key {
+    fn of(equations: &Equations<'_>) -> Self {
+        let mut slopes = DefaultHasher::new();
+        for slope in equations.slope.iter().filter(|slope| **slope != 0.0) {
+            slopes.write_u64(coarse(*slope).to_bits());
+        }
+        Self {
+            changes: equations.problem.diffusion.changes(),
+            rate: coarse(equations.rate),
+            share: equations.share,
+            slopes: slopes.finish(),
+        }
+    }
+}
+
+/// Returns a number to three or four digits. The preconditioner need not be exact, and steps of equal length differ by
+/// rounding; made from such numbers, it depends on the equations only.
+fn coarse(number: f64) -> f64 {
+    /// Bits of the mantissa that are dropped.
+    const DROPPED: u32 = 42;
+    f64::from_bits(number.to_bits() >> DROPPED << DROPPED)
 }
 
 /// Solver of (rate C + slope − G) x = r on points without prescribed values.
@@ -79,10 +104,7 @@ impl Solver {
         scale: f64,
     ) -> Result<(Vec<f64>, u64, f64)> {
         let problem = equations.problem;
-        let key = Key {
-            changes: problem.diffusion.changes(),
-            rate: (equations.rate / equations.share).to_bits() >> 40,
-        };
+        let key = Key::of(equations);
         if self.made_for != Some(key) || self.multigrid.is_none() {
             self.multigrid = Some(preconditioner(equations));
             self.made_for = Some(key);
@@ -168,7 +190,7 @@ fn preconditioner(equations: &Equations<'_>) -> Multigrid {
     let n = problem.len();
     let diffusion = &problem.diffusion;
     let rows = near_network(diffusion);
-    let own = |i: usize| rate * problem.capacity()[i] + slope[i];
+    let own = |i: usize| coarse(*rate) * problem.capacity()[i] + coarse(slope[i]);
     let typical = (0..n).map(|i| own(i) + share * rows[i].iter().map(|(_, g)| g).sum::<f64>());
     let typical = (typical.sum::<f64>() / n as f64).max(f64::MIN_POSITIVE);
     let matrix = SparseMatrix::from_rows(n, n, &|i, add| {

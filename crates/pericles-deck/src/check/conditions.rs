@@ -57,14 +57,15 @@ impl Check {
         if let Some(conduction) = &thermal.conduction {
             self.conduction(&key, thermal, conduction);
         }
-        let reference = thermal.reference;
         let allowed = "allowed: a finite temperature in K";
-        self.within(
-            reference.is_finite(),
-            key.key("reference"),
-            reference,
-            allowed,
-        );
+        if let Some(reference) = thermal.reference {
+            self.within(
+                reference.is_finite(),
+                key.key("reference"),
+                reference,
+                allowed,
+            );
+        }
     }
 
     fn conduction(&mut self, key: &KeyPath, thermal: &Thermal, conduction: &Conduction) {

@@ -115,7 +115,11 @@ fn a_crack_insulates() {
             to: [1.0, 0.01],
         };
         let plate = Grid::plate([0.02, 0.02], dx, 1e-3).points().unwrap();
-        let mut system = Body::new(plate, steel).crack(crack).build().unwrap();
+        let mut system = Body::new(plate, steel)
+            .stress_state(StressState::PlaneStress)
+            .crack(crack)
+            .build()
+            .unwrap();
         let cloud = Arc::clone(system.cloud());
         let start: Vec<f64> = cloud
             .axis(1)

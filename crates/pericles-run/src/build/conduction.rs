@@ -7,8 +7,8 @@ use pericles::boundary::TimeFunction;
 use pericles::parallel::for_each_point;
 use pericles::space::PointCloud;
 use pericles_deck::{
-    Body, BuildError, Caution, Component, Conduction, ConductionScheme, ConductivityMean, Fault,
-    KeyPath, MaterialModel, ModelWarning, Remark, Solid, SolidShape, Thermal, ThermalAmplitude,
+    Body, BuildError, Caution, Component, ConductionScheme, ConductivityMean, Fault, KeyPath,
+    MaterialModel, ModelWarning, Remark, Solid, SolidShape, Thermal, ThermalAmplitude,
     ThermalCondition,
 };
 use pericles_heat::{
@@ -53,7 +53,7 @@ impl Assembler<'_> {
             |own| own.specific_heat,
             (solid, discretisation),
         )?;
-        let horizons = self.horizons(solid, discretisation)?;
+        let horizons = self.conducting_horizons(solid, discretisation)?;
         let influence = match (&solid.material.model, &parts.constants) {
             (MaterialModel::Bonds(bonds), _) => bonds.influence.clone(),
             (_, constants) => constants
@@ -132,7 +132,7 @@ impl Assembler<'_> {
     }
 
     /// Returns the horizon of each point, if they differ: those of the materials, divided by refinement ratios.
-    fn horizons(
+    fn conducting_horizons(
         &self,
         solid: &Solid,
         discretisation: &Discretisation,
