@@ -9,6 +9,7 @@ use std::time::Instant;
 
 use pericles::family::VolumeCorrection;
 use pericles::kernel::Influence;
+use pericles::material::StressState;
 use pericles::prelude::*;
 use pericles::{PointScalar, Temperature};
 use pericles_heat::{
@@ -54,7 +55,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let heat = per_bond(bonds, &mut || diffusion.add_flow(&values, &mut out));
 
         let steel = BondMaterial::new(ElasticModulus::Young(210e9), 7850.0, 3.0 * dx);
-        let system = Body::new(cloud.clone(), steel).build()?;
+        let mut system = Body::new(cloud.clone(), steel);
+        if dimension == 2 {
+            system = system.stress_state(StressState::PlaneStress);
+        }
+        let system = system.build()?;
         let u: Vec<f64> = (0..dimension * cloud.len())
             .map(|k| 1e-9 * (k as f64).sin())
             .collect();

@@ -63,6 +63,13 @@ impl Assembler<'_> {
                 Box::new(Relaxation::new(*options, system).map_err(|error| self.at_scheme(error))?)
             }
             Scheme::Static(options) => self.statics(options, system)?,
+            Scheme::Thermal if system.fields().next().is_none() => {
+                let error = PericlesError::SchemeNotUsable {
+                    scheme: "thermal",
+                    reason: "it computes the temperature of a body that does not move, and this body does not conduct heat; set `conductivity` and `specific_heat` in [thermal]",
+                };
+                return Err(self.at_scheme(error));
+            }
             Scheme::Thermal => Box::new(FixedBody),
             Scheme::Respa { fine } => {
                 let region = self.fine_points(fine, system, sets)?;

@@ -154,3 +154,37 @@ fn a_flux_through_a_set_without_a_face_needs_an_area() {
     let text = refusal(&deck).to_string();
     assert!(text.contains("area"), "{text}");
 }
+
+#[test]
+fn the_thermal_scheme_needs_heat_conduction() {
+    let deck = BAR.split("[thermal]").next().unwrap().replace(
+        "names = [\"Temperature\", \"Heat_Flux\"]",
+        "names = [\"Displacement\"]",
+    );
+    let text = refusal(&deck).to_string();
+    assert!(text.contains("conductivity"), "{text}");
+}
+
+/// The stress of a bar between fixed ends that is heated by 10 K is −E α ΔT.
+#[test]
+fn a_constrained_bar_has_the_stress_of_the_prevented_expansion() {
+    let deck = r#"
+body = { shape = "bar", length = 1, spacing = 0.02, area = 1 }
+material = { model = "linear", modulus = "lattice", density = 1, youngs_modulus = 1e9, horizon_ratio = 3, volume_correction = "none" }
+sets = { left = { layer = { side = "-x", cells = 3 } }, right = { layer = { side = "+x", cells = 3 } } }
+constraint = [{ set = "left", displacement = 0 }, { set = "right", displacement = 0 }]
+thermal = { expansion = 1e-5, temperature = 293, reference = 293, conductivity = 1, specific_heat = 1, scheme = "steady", condition = [{ set = "left", temperature = 303 }] }
+time = { scheme = "static", tolerance = 1e-10 }
+"#;
+    let mut run = build(deck).simulation();
+    run.run(|_| Control::Continue).unwrap();
+    let snapshot = run.snapshot();
+    let stress = snapshot.field(Field::Stress);
+    let middle = stress.len() / 2;
+    let expected = -1e9 * 1e-5 * 10.0;
+    assert!(
+        (stress[middle] / expected - 1.0).abs() < 1e-9,
+        "{} {expected}",
+        stress[middle]
+    );
+}
