@@ -192,7 +192,7 @@ fn model(root: Table<'_>, further: &[String]) -> Option<Model> {
             let several = surface_assignments(&root, &names);
             root.forbid(
                 "thermal",
-                "thermal expansion of 2-manifolds is not supported",
+                "thermal expansion and heat conduction of 2-manifolds are not supported",
             );
             (surface.map(Body::Surface), Some(None), several, Some(None))
         }
@@ -204,7 +204,7 @@ fn model(root: Table<'_>, further: &[String]) -> Option<Model> {
             let materials = material::read(&root, &body, &names);
             let gaussian = materials.own.as_ref().map(exact::gaussian_length);
             let several = several_of(&root, &materials, &body, &names);
-            let thermal = thermal_of(&root, &materials, &body);
+            let thermal = thermal_of(&root, &materials, &body, &names);
             root.place_as("material", materials.place);
             let solid = solid_of(&body, materials.own);
             (solid.map(Body::Solid), gaussian, several, thermal)
@@ -332,9 +332,18 @@ fn several_of(
 }
 
 /// Reads `[thermal]`, if the deck has it.
-fn thermal_of(root: &Table<'_>, materials: &Materials, body: &BodyRead) -> Option<Option<Thermal>> {
+fn thermal_of(
+    root: &Table<'_>,
+    materials: &Materials,
+    body: &BodyRead,
+    sets: &SetNames,
+) -> Option<Option<Thermal>> {
     root.maybe("thermal", |item| {
-        thermal::read(item.table()?, body.frame.dimension, &materials.names)
+        thermal::read(
+            item.table()?,
+            body.frame.dimension,
+            (&materials.names, sets),
+        )
     })
 }
 

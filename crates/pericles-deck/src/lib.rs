@@ -177,5 +177,8 @@ pub use statics::{RigidModes, StaticBreaking, Statics};
 pub use stop::{StopCondition, StopWhen};
 pub use subject::Subject;
 pub use surface::SurfaceBody;
-pub use thermal::{MaterialExpansion, Thermal};
+pub use thermal::{
+    Conduction, ConductionScheme, ConductivityMean, MaterialThermal, Thermal, ThermalAmplitude,
+    ThermalCondition,
+};
 pub use time::{Time, TimeStep};

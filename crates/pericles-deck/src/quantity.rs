@@ -19,6 +19,11 @@ pub(crate) enum Quantity {
     ForceDensity,
     Temperature,
     Expansion,
+    Conductivity,
+    SpecificHeat,
+    HeatFlux,
+    HeatSource,
+    HeatTransfer,
     Rate,
     Stiffness,
     Mass,
@@ -43,6 +48,11 @@ impl Quantity {
             Self::Rate => Dimension::new(0, 0, -1),
             Self::Temperature => Dimension::kelvin(1),
             Self::Expansion => Dimension::kelvin(-1),
+            Self::Conductivity => Dimension::new(1, 1, -3).per_kelvin(),
+            Self::SpecificHeat => Dimension::new(0, 2, -2).per_kelvin(),
+            Self::HeatFlux => Dimension::new(1, 0, -3),
+            Self::HeatSource => Dimension::new(1, -1, -3),
+            Self::HeatTransfer => Dimension::new(1, 0, -3).per_kelvin(),
         }
     }
 
@@ -67,6 +77,11 @@ impl Quantity {
             Self::Inertia => "a moment of inertia",
             Self::Temperature => "a temperature",
             Self::Expansion => "a coefficient of thermal expansion",
+            Self::Conductivity => "a thermal conductivity",
+            Self::SpecificHeat => "a specific heat capacity",
+            Self::HeatFlux => "a heat flux",
+            Self::HeatSource => "a heat source per volume",
+            Self::HeatTransfer => "a heat transfer coefficient",
         }
     }
 
@@ -102,6 +117,11 @@ impl Quantity {
             Self::Inertia => "0.2 kg·m2",
             Self::Temperature => "293.15 K",
             Self::Expansion => "12e-6 1/K",
+            Self::Conductivity => "45 W/m/K",
+            Self::SpecificHeat => "460 J/kg/K",
+            Self::HeatFlux => "5 kW/m2",
+            Self::HeatSource => "2 MW/m3",
+            Self::HeatTransfer => "25 W/m2/K",
         }
     }
 
@@ -125,6 +145,11 @@ impl Quantity {
             Self::Inertia => "kg·m2",
             Self::Temperature => "K",
             Self::Expansion => "1/K",
+            Self::Conductivity => "W/m/K",
+            Self::SpecificHeat => "J/kg/K",
+            Self::HeatFlux => "W/m2",
+            Self::HeatSource => "W/m3",
+            Self::HeatTransfer => "W/m2/K",
         }
     }
 
@@ -183,6 +208,11 @@ mod tests {
             ForceDensity,
             Temperature,
             Expansion,
+            Conductivity,
+            SpecificHeat,
+            HeatFlux,
+            HeatSource,
+            HeatTransfer,
             Rate,
             Stiffness,
             Mass,

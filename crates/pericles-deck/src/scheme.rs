@@ -72,6 +72,8 @@ pub enum Scheme {
     Relaxation(#[serde(with = "crate::form")] RelaxationOptions),
     /// Static states by Newton's method.
     Static(Statics),
+    /// Heat conduction in a body that does not move.
+    Thermal,
     /// Multirate r-RESPA.
     Respa {
         /// Fine time step.
@@ -139,6 +141,7 @@ enum Kind {
     Relaxation,
     Fire,
     Static,
+    Thermal,
 }
 
 /// Reads the name of the scheme.
@@ -168,6 +171,7 @@ fn kind(table: &Table<'_>) -> Option<Kind> {
             ("adaptive-dynamic-relaxation", Kind::Relaxation),
             ("fire", Kind::Fire),
             ("static", Kind::Static),
+            ("thermal", Kind::Thermal),
         ],
     );
     if kind.is_none() {
@@ -314,6 +318,7 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
         },
         Kind::Relaxation | Kind::Fire => Scheme::Relaxation(relaxation?),
         Kind::Static => Scheme::Static(statics?),
+        Kind::Thermal => Scheme::Thermal,
     })
 }
 

@@ -74,6 +74,16 @@ pub(crate) fn read(table: Table<'_>, names: &SetNames) -> Option<Time> {
             table.or("end", relaxation::END, |item| item.positive(Quantity::Time)),
             relaxation::load_steps(&table).map(TimeStep::Equal),
         ),
+        Some(Scheme::Thermal) => {
+            table.forbid("safety", "scheme = \"thermal\" has no automatic step");
+            let dt = table
+                .required("dt")
+                .and_then(|item| item.positive(Quantity::Time));
+            let end = table
+                .required("end")
+                .and_then(|item| item.positive(Quantity::Time));
+            (end, dt.map(TimeStep::Fixed))
+        }
         _ => (
             table
                 .required("end")

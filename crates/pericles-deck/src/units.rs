@@ -31,6 +31,14 @@ impl Dimension {
         }
     }
 
+    /// The dimension per kelvin.
+    pub(crate) const fn per_kelvin(self) -> Self {
+        Self {
+            k: self.k - 1,
+            ..self
+        }
+    }
+
     fn add(&mut self, other: Self, power: i32) {
         self.kg += other.kg * power;
         self.m += other.m * power;

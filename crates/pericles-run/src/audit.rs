@@ -8,6 +8,7 @@ use pericles_io::{IoError, read_csv};
 use serde::Serialize;
 
 use crate::facts::Facts;
+use crate::heat::HeatBalance;
 use crate::mirror::{MirrorError, Symmetries};
 use crate::refinement::RefinementAudit;
 use crate::static_balance::StaticBalance;
@@ -80,6 +81,9 @@ pub struct Audit {
     /// Residual and resultant of loads and reactions of static states.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub static_balance: Option<StaticBalance>,
+    /// Heat balance of bodies with heat conduction.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub heat: Option<HeatBalance>,
     /// Results of multirate schemes; `None` for other schemes.
     pub refinement: Option<RefinementAudit>,
     /// Warnings about the results.
@@ -147,6 +151,7 @@ impl Audit {
             force_rounding: system.operator().rounding(&simulation.state().u),
             mirror_errors: start.symmetries.errors(simulation),
             static_balance: StaticBalance::of(simulation),
+            heat: HeatBalance::of(simulation),
             refinement: simulation
                 .integrator()
                 .refinement()

@@ -10,6 +10,7 @@ use pericles::time::{
 };
 use pericles::{Need, Requirement, StepKind};
 use pericles_deck::Scheme as DeckScheme;
+use pericles_heat::FixedBody;
 use pericles_statics::StaticScheme;
 use pericles_waves::absorbing::LatticeScheme;
 use pericles_waves::{ForceForm, Trigonometric};
@@ -44,7 +45,7 @@ pub struct Form {
 const OF_FORMS: [Need; 3] = [Need::DoublePrecision, Need::FiniteReach, Need::SumOverBonds];
 
 /// All schemes.
-pub const SCHEMES: [Scheme; 13] = [
+pub const SCHEMES: [Scheme; 14] = [
     Scheme {
         words: "velocity Verlet",
         names: &["velocity-verlet"],
@@ -62,6 +63,12 @@ pub const SCHEMES: [Scheme; 13] = [
         names: &["static"],
         kind: StepKind::Stages,
         requirements: StaticScheme::REQUIREMENTS,
+    },
+    Scheme {
+        words: "fixed body (heat conduction only)",
+        names: &["thermal"],
+        kind: StepKind::Stages,
+        requirements: FixedBody::REQUIREMENTS,
     },
     Scheme {
         words: "Runge–Kutta of orders 3 and 4",
@@ -218,6 +225,7 @@ pub fn requirements(scheme: &DeckScheme) -> &'static [Requirement] {
         DeckScheme::Trigonometric(_) => Trigonometric::REQUIREMENTS,
         DeckScheme::Relaxation(_) => Relaxation::REQUIREMENTS,
         DeckScheme::Static(_) => StaticScheme::REQUIREMENTS,
+        DeckScheme::Thermal => FixedBody::REQUIREMENTS,
     }
 }
 

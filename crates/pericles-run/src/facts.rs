@@ -6,6 +6,7 @@ use pericles_waves::absorbing::{EndReport, KernelMethod, Side};
 use serde::Serialize;
 
 use crate::build::{Assembly, LoadReport, MaterialConstants};
+use crate::heat::HeatFacts;
 use crate::refinement::RefinementFacts;
 use crate::units::{bytes, count, quantity, significant};
 
@@ -95,6 +96,9 @@ pub struct Facts {
     /// The highest frequency of a contact of two points, or of a point and an impactor, 1/s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contact_frequency: Option<f64>,
+    /// Heat conduction.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub heat: Option<HeatFacts>,
     /// Names of the impactors.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub impactors: Vec<String>,
@@ -293,6 +297,7 @@ impl Facts {
                 .map(|solid| solid.shape.pieces().len())
                 .filter(|&pieces| pieces > 0),
             contact_frequency: assembly.contact_frequency,
+            heat: assembly.temperature.as_ref().map(HeatFacts::of),
             impactors: model.impactors.iter().map(|one| one.name.clone()).collect(),
             ends: assembly.ends.iter().map(EndFacts::of).collect(),
             instruction_set: operator.instruction_set().name(),

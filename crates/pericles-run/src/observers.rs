@@ -26,6 +26,7 @@ use pericles_manifold::{EnergyInequality, SurfaceMeasure};
 use crate::build::{Assembly, ExactReference, MeshBody, Sets, is_on_grid};
 use crate::checkpoint;
 use crate::error::RunError;
+use crate::heat::HeatColumns;
 
 use self::impactors::add_impactors;
 
@@ -142,6 +143,9 @@ pub fn history_rows(
     }
     if !output.extremes.is_empty() {
         rows = rows.with(ExtremeColumns::new(output.extremes.clone(), dimension));
+    }
+    if let Some(columns) = HeatColumns::of(simulation) {
+        rows = rows.with(columns);
     }
     if simulation.system().interactions().next().is_some() {
         rows = rows.with(ContactColumns);

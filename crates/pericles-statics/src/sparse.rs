@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use crate::chunks::for_each_chunk;
 
 /// Receives the column and value of an entry.
-type Push<'a> = dyn FnMut(usize, f64) + 'a;
+pub type Push<'a> = dyn FnMut(usize, f64) + 'a;
 
 /// Sparse matrix in compressed rows: row i has the entries `start[i]` to `start[i + 1]`, with ascending columns.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -90,7 +90,7 @@ impl SparseMatrix {
 
     /// Creates a matrix row by row: `fill(row, entries)` pushes the columns and values of a row in any order;
     /// values of the same column are added in the order of their calls.
-    pub(crate) fn from_rows(
+    pub fn from_rows(
         rows: usize,
         columns: usize,
         fill: &(dyn Fn(usize, &mut Push<'_>) + Sync),

@@ -180,6 +180,7 @@ pub mod parallel;
 pub mod prelude;
 pub mod round_trip;
 mod scalar;
+mod secondary;
 mod simulation;
 pub mod solve;
 pub mod space;
@@ -201,6 +202,7 @@ pub use guard::InstabilityCause;
 pub use interaction::{Configuration, Interaction, InteractionStep};
 pub use interrupt::{Interrupt, IterationProgress};
 pub use scalar::PointScalar;
+pub use secondary::SecondaryField;
 pub use simulation::{
     Control, Outcome, Simulation, SimulationBuilder, SimulationError, check_compatibility,
 };

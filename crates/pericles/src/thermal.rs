@@ -16,6 +16,12 @@ pub trait Temperature: fmt::Debug + Send + Sync {
     fn is_steady(&self) -> bool {
         false
     }
+
+    /// Returns a number that changes when the temperature at a given time may have changed: that of a computed field
+    /// depends on its last accepted state.
+    fn revision(&self) -> u64 {
+        0
+    }
 }
 
 /// The thermal stretch τ = α (T − T₀) of every point (dimensionless): forces are zero if all bonds have this
@@ -36,6 +42,7 @@ pub struct ThermalExpansion {
 #[derive(Debug)]
 struct Kept {
     t: f64,
+    revision: u64,
     stretches: Arc<Vec<f64>>,
 }
 
@@ -98,13 +105,16 @@ impl ThermalExpansion {
         if t == f64::NEG_INFINITY {
             return Arc::new(self.unheated());
         }
+        let revision = self.temperature.revision();
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_valid = |known: &Kept| known.t == t && known.revision == revision;
         match &*kept {
-            Some(known) if known.t == t || self.is_steady() => known.stretches.clone(),
+            Some(known) if is_valid(known) || self.is_steady() => known.stretches.clone(),
             _ => {
                 let stretches = Arc::new(self.stretches_at(t));
                 *kept = Some(Kept {
                     t,
+                    revision,
                     stretches: stretches.clone(),
                 });
                 stretches

@@ -77,6 +77,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
                 .with("loads_not_listed", more),
         );
     }
+    lines.extend(heat(&facts));
     lines.extend(contact(&facts));
     lines.extend(probes(&assembly));
     for end in &facts.ends {
@@ -165,6 +166,31 @@ fn run_time(
     Ok(Line::new("run time", text)
         .with("run_seconds", seconds)
         .with("threads", count_of_threads))
+}
+
+/// Returns the line about heat conduction.
+fn heat(facts: &Facts) -> Option<Line> {
+    let heat = facts.heat.as_ref()?;
+    let step = heat.step.unwrap_or(facts.dt);
+    let parts = match heat.scheme {
+        "explicit" => (step / heat.explicit_limit).ceil().max(1.0),
+        _ => 1.0,
+    };
+    let sub_steps = match parts {
+        1.0 => String::new(),
+        parts => format!(", about {} sub-steps per step", significant(parts, 3)),
+    };
+    let text = format!(
+        "{}, step {}{sub_steps}; limit of the explicit scheme {}",
+        heat.scheme,
+        quantity(step, "s"),
+        quantity(heat.explicit_limit, "s")
+    );
+    let line = Line::new("heat conduction", text);
+    Some(
+        line.with("thermal_step", step)
+            .with("thermal_sub_steps", parts),
+    )
 }
 
 /// Returns the lines about pieces, contact and impactors.

@@ -32,6 +32,7 @@ const CRATES: &[(&str, &[&str])] = &[
     ("pericles-solids", &["pericles"]),
     ("pericles-contact", &["pericles"]),
     ("pericles-statics", &["pericles"]),
+    ("pericles-heat", &["pericles", "pericles-statics"]),
     (
         "pericles-deck",
         &[
@@ -65,6 +66,7 @@ const CRATES: &[(&str, &[&str])] = &[
             "pericles-solids",
             "pericles-contact",
             "pericles-statics",
+            "pericles-heat",
             "pericles-deck",
             "pericles-io",
         ],
@@ -80,6 +82,7 @@ const CRATES: &[(&str, &[&str])] = &[
             "pericles-solids",
             "pericles-contact",
             "pericles-statics",
+            "pericles-heat",
             "pericles-deck",
             "pericles-io",
             "pericles-run",
@@ -97,6 +100,7 @@ const CRATES: &[(&str, &[&str])] = &[
             "pericles-solids",
             "pericles-contact",
             "pericles-statics",
+            "pericles-heat",
             "pericles-deck",
             "pericles-io",
             "pericles-run",

@@ -6,7 +6,7 @@ use crate::conditions::LoadAmplitude;
 use crate::exact::{Exact, KnownSolution, Pulse};
 use crate::key_path::KeyPath;
 use crate::model::Model;
-use crate::thermal::LARGEST;
+use crate::thermal::{Conduction, LARGEST, Thermal, ThermalAmplitude};
 
 impl Check {
     pub(super) fn conditions(&mut self, model: &Model) {
@@ -42,22 +42,89 @@ impl Check {
             return;
         };
         let key = KeyPath::from("thermal");
-        let own = thermal.materials.iter().enumerate().map(|(k, material)| {
+        let own = thermal.materials.iter().enumerate();
+        let own = own.filter_map(|(k, material)| {
             let key = key.key("material").index(k).key("expansion");
-            (key, material.expansion)
+            Some((key, material.expansion?))
         });
-        let all = std::iter::once((key.key("expansion"), thermal.expansion));
+        let all = thermal
+            .expansion
+            .iter()
+            .map(|value| (key.key("expansion"), *value));
         for (key, value) in all.chain(own) {
             self.within(value.abs() <= LARGEST, key, value, ALLOWED);
         }
-        let reference = thermal.reference;
+        if let Some(conduction) = &thermal.conduction {
+            self.conduction(&key, thermal, conduction);
+        }
         let allowed = "allowed: a finite temperature in K";
+        if let Some(reference) = thermal.reference {
+            self.within(
+                reference.is_finite(),
+                key.key("reference"),
+                reference,
+                allowed,
+            );
+        }
+    }
+
+    fn conduction(&mut self, key: &KeyPath, thermal: &Thermal, conduction: &Conduction) {
+        let not_negative = "allowed: zero or a positive number";
+        let k = conduction.conductivity;
         self.within(
-            reference.is_finite(),
-            key.key("reference"),
-            reference,
-            allowed,
+            k >= 0.0 && k.is_finite(),
+            key.key("conductivity"),
+            k,
+            not_negative,
         );
+        self.positive(key.key("specific_heat"), conduction.specific_heat);
+        if let Some(step) = conduction.step {
+            self.positive(key.key("step"), step);
+        }
+        self.between(
+            key.key("broken_conductance"),
+            conduction.broken_conductance,
+            [0.0, 1.0],
+        );
+        for (number, material) in thermal.materials.iter().enumerate() {
+            let key = key.key("material").index(number);
+            if let Some(k) = material.conductivity {
+                self.within(
+                    k >= 0.0 && k.is_finite(),
+                    key.key("conductivity"),
+                    k,
+                    not_negative,
+                );
+            }
+            if let Some(c) = material.specific_heat {
+                self.positive(key.key("specific_heat"), c);
+            }
+        }
+        for (number, condition) in conduction.conditions.iter().enumerate() {
+            let key = key.key("condition").index(number);
+            if let Some(area) = condition.area {
+                self.positive(key.key("area"), area);
+            }
+            match condition.amplitude {
+                ThermalAmplitude::Convection { coefficient, .. } => {
+                    let key = key.key("convection").key("coefficient");
+                    self.within(
+                        coefficient >= 0.0 && coefficient.is_finite(),
+                        key,
+                        coefficient,
+                        not_negative,
+                    );
+                }
+                ThermalAmplitude::Radiation { emissivity, .. } => {
+                    self.between(
+                        key.key("radiation").key("emissivity"),
+                        emissivity,
+                        [0.0, 1.0],
+                    );
+                }
+                _ => {}
+            }
+        }
     }
 
     pub(super) fn damping(&mut self, model: &Model) {

@@ -45,6 +45,7 @@ impl Check {
                 self.count(key.key("newton_steps"), options.newton_steps);
             }
             Scheme::VelocityVerlet
+            | Scheme::Thermal
             | Scheme::RungeKutta4
             | Scheme::Implicit { .. }
             | Scheme::Trigonometric(_) => {}

@@ -333,5 +333,6 @@ pub(super) fn quantity(field: Field) -> Quantity {
         Field::StrainEnergyDensity | Field::KineticEnergyDensity => Quantity::EnergyDensity,
         Field::Volume => Quantity::Number,
         Field::Temperature => Quantity::Temperature,
+        Field::HeatFlux => Quantity::HeatFlux,
     }
 }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use pericles::{System, check_compatibility};
 use pericles_deck::{Body, BuildError, Deck, DeckError, Fault, Model};
+use pericles_heat::DiffusingField;
 
 use super::assembler::Assembler;
 use super::assembly::Assembly;
@@ -53,7 +54,8 @@ pub fn assemble(
         }
         (Body::Solid(solid), _) => assembler.grid_parts(solid, &discretisation, &mut warnings)?,
     };
-    assembler.heat(&mut parts, &discretisation, resources)?;
+    let field = assembler.conduct(&parts, &discretisation, resources, &mut warnings)?;
+    assembler.heat(&mut parts, &discretisation, resources, field.as_ref())?;
     let BodyParts {
         constants,
         others,
@@ -66,6 +68,11 @@ pub fn assemble(
     assembler.check_point_numbers(sets)?;
     let mut system = System::new(Arc::clone(cloud), bonds.operator, density)
         .map_err(|error| at("material.density", error))?;
+    let temperature = field.as_ref().map(DiffusingField::shared);
+    if let Some(field) = field {
+        let added = system.add_field(Box::new(field));
+        added.map_err(|error| at("thermal", error))?;
+    }
     let mut state = assembler.initial_state(cloud, sets, resources)?;
     discretisation.conditions.start(&mut state)?;
     let exact = assembler.exact_reference(cloud, constants.as_ref(), &mut warnings)?;
@@ -151,6 +158,7 @@ pub fn assemble(
         exact,
         stops,
         loads,
+        temperature,
         warnings,
         damping,
         allow_unstable: model.time.allow_unstable,

@@ -7,6 +7,7 @@ use pericles::space::PointCloud;
 use pericles::time::{HighestFrequency, Integrator, State};
 use pericles::{PericlesError, Simulation, StopWhen, System};
 use pericles_deck::ModelWarning;
+use pericles_heat::SharedField;
 use pericles_manifold::surface::Surface;
 use pericles_waves::ForceForm;
 use pericles_waves::absorbing::{EndReport, Side};
@@ -65,6 +66,8 @@ pub struct Assembly {
     pub loads: Vec<LoadReport>,
     /// Conditions that end the run before its last step.
     pub stops: Vec<StopWhen>,
+    /// The computed temperature; `None` without heat conduction.
+    pub temperature: Option<SharedField>,
     /// Warnings of the assembly.
     pub warnings: Vec<ModelWarning>,
     /// The strongest damping of layers, 1/s.

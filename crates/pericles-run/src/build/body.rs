@@ -164,7 +164,16 @@ impl Assembler<'_> {
                 "only materials with a `yield_stress` have a plastic strain",
             );
         }
-        if capabilities.thermal.is_none() && wants(Field::Temperature) {
+        let conducts =
+            (self.model.thermal.as_ref()).is_some_and(|thermal| thermal.conduction.is_some());
+        if !conducts && wants(Field::HeatFlux) {
+            return refuse(
+                |field| field == Field::HeatFlux,
+                "the field Heat_Flux is",
+                "only bodies with heat conduction have a heat flux; set `conductivity` and `specific_heat` in [thermal]",
+            );
+        }
+        if !conducts && capabilities.thermal.is_none() && wants(Field::Temperature) {
             return refuse(
                 |field| field == Field::Temperature,
                 "the field Temperature is",
@@ -249,7 +258,7 @@ impl Assembler<'_> {
     ) -> Result<ForceForm, BuildError> {
         let scheme = &self.model.time.scheme;
         let needs_bonds = self.model.output.wants_tensors()
-            || self.model.thermal.is_some()
+            || self.expands()
             || self.touches_without_bonds()
             || has_need(scheme, Need::FiniteReach);
         match self.heated_form(solid.material.form)? {

@@ -1,5 +1,6 @@
 //! Constants of materials of all models.
 
+use pericles::kernel::Influence;
 use pericles::material::{
     BondConstants, CrackPlane, Criterion, ElasticWaves, FractureCalibration, LinearSolidConstants,
     StressState,
@@ -33,6 +34,11 @@ impl MaterialConstants {
             Self::StateBased(constants) => Some(constants),
             Self::Correspondence(constants) => Some(&constants.solid),
         }
+    }
+
+    /// Returns the influence function of a state-based or correspondence material.
+    pub fn influence(&self) -> Option<&Influence> {
+        self.state_based().map(|constants| &constants.influence)
     }
 
     /// Returns Young's modulus, Pa.

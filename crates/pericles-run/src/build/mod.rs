@@ -10,6 +10,7 @@ mod body;
 mod boundary;
 mod breaking;
 mod conditions;
+mod conduction;
 mod constants;
 mod contact;
 mod content;

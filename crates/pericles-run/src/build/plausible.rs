@@ -78,7 +78,8 @@ impl Assembler<'_> {
             !fixed && (motion.moves() || motion.kind == MotionKind::Displacement)
         });
         let struck = !self.model.impactors.is_empty();
-        let acts = loaded || moved || struck || !self.model.boundaries.is_empty();
+        let heated = self.model.thermal.is_some();
+        let acts = loaded || moved || struck || heated || !self.model.boundaries.is_empty();
         (at_rest && !acts).then(|| Remark::new("time", Caution::NothingActs))
     }
 }

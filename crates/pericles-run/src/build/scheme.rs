@@ -10,6 +10,7 @@ use pericles_deck::{
     BuildError, Caution, Fault, FineRegion, FineStep, Interface, KeyPath, ModelWarning, Remark,
     Scheme,
 };
+use pericles_heat::FixedBody;
 use pericles_waves::Trigonometric;
 
 use super::assembler::Assembler;
@@ -62,6 +63,14 @@ impl Assembler<'_> {
                 Box::new(Relaxation::new(*options, system).map_err(|error| self.at_scheme(error))?)
             }
             Scheme::Static(options) => self.statics(options, system)?,
+            Scheme::Thermal if system.fields().next().is_none() => {
+                let error = PericlesError::SchemeNotUsable {
+                    scheme: "thermal",
+                    reason: "it computes the temperature of a body that does not move, and this body does not conduct heat; set `conductivity` and `specific_heat` in [thermal]",
+                };
+                return Err(self.at_scheme(error));
+            }
+            Scheme::Thermal => Box::new(FixedBody),
             Scheme::Respa { fine } => {
                 let region = self.fine_points(fine, system, sets)?;
                 Box::new(

@@ -1,4 +1,4 @@
-//! Thermal expansion by a prescribed temperature.
+//! Thermal expansion by a prescribed or computed temperature.
 
 use std::sync::Arc;
 
@@ -9,7 +9,8 @@ use pericles::parallel::for_each_point;
 use pericles::space::PointCloud;
 use pericles::units::quantity;
 use pericles::{PointScalar, Temperature, ThermalExpansion};
-use pericles_deck::{Body, BuildError, Component, Fault, KeyPath, Solid, Thermal};
+use pericles_deck::{Body, BuildError, Component, Fault, KeyPath, Scheme, Solid, Thermal};
+use pericles_heat::DiffusingField;
 use pericles_waves::{AssembledForce, ForceForm};
 
 use super::assembler::Assembler;
@@ -30,7 +31,7 @@ struct Prescribed {
 
 /// The temperature T.
 #[derive(Debug)]
-enum Given {
+pub(super) enum Given {
     Formula(Component),
     OfPoints(Vec<f64>),
 }
@@ -63,10 +64,16 @@ impl Temperature for Prescribed {
 }
 
 impl Assembler<'_> {
+    /// Returns whether the forces depend on the temperature.
+    pub(super) fn expands(&self) -> bool {
+        let thermal = self.model.thermal.as_ref();
+        let coefficient = thermal.is_some_and(|thermal| thermal.expansion.is_some());
+        coefficient && self.model.time.scheme != Scheme::Thermal
+    }
+
     /// Rejects force kernels that do not support thermal expansion, for models that have it.
     pub(super) fn heated_form(&self, form: ForceForm) -> Result<ForceForm, BuildError> {
-        let expands =
-            Features::default().with(Feature::ThermalExpansion, self.model.thermal.is_some());
+        let expands = Features::default().with(Feature::ThermalExpansion, self.expands());
         form.check(expands).map_err(at_material)?;
         Ok(form)
     }
@@ -77,24 +84,35 @@ impl Assembler<'_> {
         parts: &mut BodyParts,
         discretisation: &Discretisation,
         resources: &Resources<'_>,
+        field: Option<&DiffusingField>,
     ) -> Result<(), BuildError> {
         let (Some(thermal), Body::Solid(solid)) = (&self.model.thermal, &self.model.body) else {
             return Ok(());
         };
+        self.check_thermal_materials(thermal, solid)?;
+        let Some(expansion) = thermal.expansion.filter(|_| self.expands()) else {
+            return Ok(());
+        };
+        let path = KeyPath::from("thermal");
+        let Some(reference) = thermal.reference else {
+            let (table, allowed) = ("[thermal]".into(), vec!["reference".into()]);
+            return Err(at_path(path, Fault::MissingChoice { table, allowed }));
+        };
         let cloud = &discretisation.cloud;
-        let value = self.temperature(thermal, cloud, resources)?;
-        let path = KeyPath::from("thermal").key("function");
-        let function = thermal.function.function();
-        let function = function.map_err(|fault| at_path(path, fault))?;
-        let coefficient = self.coefficients(thermal, solid, parts, discretisation)?;
-        let temperature = Arc::new(Prescribed {
-            cloud: cloud.clone(),
-            value,
-            function,
-            reference: thermal.reference,
-        });
-        let expansion =
-            ThermalExpansion::new(cloud.clone(), temperature, thermal.reference, coefficient);
+        let coefficient = self.coefficients((thermal, expansion), solid, parts, discretisation)?;
+        let temperature: Arc<dyn Temperature> = match field {
+            Some(field) => Arc::new(field.shared()),
+            None => {
+                let function = thermal.function.function();
+                Arc::new(Prescribed {
+                    cloud: cloud.clone(),
+                    value: self.temperature(thermal, cloud, resources)?,
+                    function: function.map_err(|fault| at_path(path.key("function"), fault))?,
+                    reference,
+                })
+            }
+        };
+        let expansion = ThermalExpansion::new(cloud.clone(), temperature, reference, coefficient);
         let expansion = expansion.map_err(|error| at("thermal", error))?;
         let AssembledForce { operator, .. } = &mut parts.bonds;
         operator
@@ -106,15 +124,52 @@ impl Assembler<'_> {
     /// that the in-plane thermal stretch is larger by the factor 1 + ν for bond-based and state-based materials.
     fn coefficients(
         &self,
-        thermal: &Thermal,
+        (thermal, expansion): (&Thermal, f64),
         solid: &Solid,
         parts: &BodyParts,
         discretisation: &Discretisation,
     ) -> Result<PointScalar, BuildError> {
+        let constants = parts.constants.iter().chain(&parts.others);
+        let of_material = |(name, constants): (&str, &MaterialConstants)| {
+            let own = thermal.materials.iter().find(|own| own.name == name);
+            let alpha = own.and_then(|own| own.expansion).unwrap_or(expansion);
+            alpha * in_plane(constants, solid.state)
+        };
+        let names = self.material_names(solid).into_iter();
+        let all: Vec<f64> = names.zip(constants).map(of_material).collect();
+        self.of_materials(&all, solid, discretisation)
+    }
+
+    /// Returns the names of all materials, that of the body first.
+    pub(super) fn material_names<'s>(&'s self, solid: &'s Solid) -> Vec<&'s str> {
         let others = self.model.materials.iter().map(|other| other.name.as_str());
-        let names: Vec<&str> = std::iter::once(solid.material.name())
+        std::iter::once(solid.material.name())
             .chain(others)
-            .collect();
+            .collect()
+    }
+
+    /// Returns a constant of every point from those of all materials.
+    pub(super) fn of_materials(
+        &self,
+        all: &[f64],
+        solid: &Solid,
+        discretisation: &Discretisation,
+    ) -> Result<PointScalar, BuildError> {
+        let place = (&*discretisation.cloud, &discretisation.sets);
+        // Assignments have been checked before.
+        let (of_point, _) = self.points_of_materials(&solid.material, place, &mut Vec::new())?;
+        Ok(match of_point {
+            Some(of_point) if all.iter().any(|value| *value != all[0]) => {
+                let of = |&number: &u8| all.get(usize::from(number)).copied().unwrap_or(all[0]);
+                PointScalar::PerPoint(of_point.iter().map(of).collect())
+            }
+            _ => PointScalar::Uniform(all.first().copied().unwrap_or_default()),
+        })
+    }
+
+    /// Rejects constants of materials that do not exist.
+    fn check_thermal_materials(&self, thermal: &Thermal, solid: &Solid) -> Result<(), BuildError> {
+        let names = self.material_names(solid);
         for (k, own) in thermal.materials.iter().enumerate() {
             if !names.contains(&own.name.as_str()) {
                 let fault = Fault::UnknownWord {
@@ -127,30 +182,11 @@ impl Assembler<'_> {
                 return Err(at_path(key.key("name"), fault));
             }
         }
-        let constants = parts.constants.iter().chain(&parts.others);
-        let of_material = |(name, constants): (&&str, &MaterialConstants)| {
-            let mut own = thermal.materials.iter();
-            let own = own.find(|own| own.name == **name);
-            let alpha = own.map_or(thermal.expansion, |own| own.expansion);
-            alpha * in_plane(constants, solid.state)
-        };
-        let all: Vec<f64> = names.iter().zip(constants).map(of_material).collect();
-        let sets = &discretisation.sets;
-        let place = (&*discretisation.cloud, sets);
-        // Assignments have been checked before.
-        let (of_point, _) = self.points_of_materials(&solid.material, place, &mut Vec::new())?;
-        Ok(match (of_point, &all[..]) {
-            (Some(of_point), all) if all.iter().any(|alpha| *alpha != all[0]) => {
-                let of = |&number: &u8| all.get(usize::from(number)).copied().unwrap_or(all[0]);
-                PointScalar::PerPoint(of_point.iter().map(of).collect())
-            }
-            (_, [first, ..]) => PointScalar::Uniform(*first),
-            (_, []) => PointScalar::Uniform(thermal.expansion),
-        })
+        Ok(())
     }
 
     /// Returns the temperature; rejects an expression that is not finite at a point at t = 0.
-    fn temperature(
+    pub(super) fn temperature(
         &self,
         thermal: &Thermal,
         cloud: &PointCloud,

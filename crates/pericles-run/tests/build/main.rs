@@ -13,6 +13,7 @@ mod criterion;
 mod ends;
 mod extremes;
 mod fields;
+mod heat;
 mod inelastic;
 mod initial;
 mod material;

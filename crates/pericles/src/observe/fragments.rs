@@ -1,6 +1,7 @@
 //! Fragments: sets of points connected by unbroken bonds.
 
 use crate::operator::Force;
+use crate::system::System;
 
 /// The connected pieces of a body: two points belong to the same piece if a chain of unbroken bonds connects them.
 /// A single bond is enough, so that pieces connected by one bond count as one. Cost: a pass over all bonds (10 ns
@@ -89,4 +90,29 @@ fn root(first: &mut [u32], mut i: u32) -> u32 {
         i = next;
     }
     i
+}
+
+impl Fragments {
+    /// Numbers of the fragments of all points, from 0 in the order of the lowest user number in each.
+    pub(super) fn numbers(system: &System) -> Vec<f64> {
+        let operator = system.operator();
+        if operator.capabilities().breaking.is_none() {
+            return vec![0.0; system.points()];
+        }
+        let cloud = system.cloud();
+        let fragments = Self::of(operator);
+        let mut in_order: Vec<u32> = (0..cloud.len() as u32).collect();
+        in_order.sort_unstable_by_key(|&i| cloud.user_number(i as usize));
+        let mut numbers = vec![f64::NAN; cloud.len()];
+        let mut count = 0.0;
+        for i in in_order {
+            let first = fragments.first()[i as usize] as usize;
+            if numbers[first].is_nan() {
+                numbers[first] = count;
+                count += 1.0;
+            }
+        }
+        let first = fragments.first().iter();
+        first.map(|&first| numbers[first as usize]).collect()
+    }
 }

@@ -49,8 +49,10 @@ pub enum Field {
     PlasticStrain,
     /// 1 where a point has yielded, else 0; NaN for materials that do not yield.
     YieldFlag,
-    /// Temperature, K; NaN for materials without thermal expansion.
+    /// Temperature, K; NaN for bodies without thermal expansion and heat conduction.
     Temperature,
+    /// Heat flux, W/m²; NaN for bodies without heat conduction.
+    HeatFlux,
     /// Von Mises stress, Pa: the same numbers as [`Field::EquivalentStress`].
     VonMisesStress,
     /// Principal stresses, Pa: eigenvalues of the virial stress in descending order, as many as the body has dimensions. As stress.
@@ -74,7 +76,7 @@ impl Field {
     ];
 
     /// All fields.
-    pub const ALL: [Self; 22] = [
+    pub const ALL: [Self; 23] = [
         Self::Displacement,
         Self::Velocity,
         Self::ForceDensity,
@@ -92,6 +94,7 @@ impl Field {
         Self::PlasticStrain,
         Self::YieldFlag,
         Self::Temperature,
+        Self::HeatFlux,
         Self::VonMisesStress,
         Self::PrincipalStress,
         Self::Radius,
@@ -119,6 +122,7 @@ impl Field {
             Self::PlasticStrain => "Plastic_Strain",
             Self::YieldFlag => "Yield_Flag",
             Self::Temperature => "Temperature",
+            Self::HeatFlux => "Heat_Flux",
             Self::VonMisesStress => "Von_Mises_Stress",
             Self::PrincipalStress => "Principal_Stress",
             Self::Radius => "Radius",
@@ -149,6 +153,7 @@ impl Field {
             Self::StrainEnergyDensity | Self::KineticEnergyDensity => "J/m³",
             Self::Volume => "m³",
             Self::Temperature => "K",
+            Self::HeatFlux => "W/m²",
         }
     }
 
@@ -162,6 +167,7 @@ impl Field {
                 | Self::ExternalForce
                 | Self::Reaction
                 | Self::ContactForce
+                | Self::HeatFlux
                 | Self::PrincipalStress
         )
     }
@@ -226,6 +232,7 @@ pub struct Snapshot<'a> {
     plastic_strain: OnceCell<Vec<f64>>,
     yielded: OnceCell<Vec<f64>>,
     temperature: OnceCell<Vec<f64>>,
+    heat_flux: OnceCell<Vec<f64>>,
     principal_stress: OnceCell<Vec<f64>>,
     radius: OnceCell<Vec<f64>>,
     numbers: OnceCell<Vec<f64>>,
@@ -256,6 +263,7 @@ impl<'a> Snapshot<'a> {
             plastic_strain: OnceCell::new(),
             yielded: OnceCell::new(),
             temperature: OnceCell::new(),
+            heat_flux: OnceCell::new(),
             principal_stress: OnceCell::new(),
             radius: OnceCell::new(),
             numbers: OnceCell::new(),
@@ -286,7 +294,7 @@ impl<'a> Snapshot<'a> {
 
     /// Checks that a field is available for this body. Stress and strain are sums over single bonds, which
     /// convolutions, plane waves and surfaces do not provide; dilatation requires a state-based material, plastic
-    /// strain a material that yields, temperature a body with thermal expansion.
+    /// strain a material that yields, temperature a body with thermal expansion or conduction, flux one with conduction.
     ///
     /// # Errors
     /// A field that is not available.
@@ -299,8 +307,11 @@ impl<'a> Snapshot<'a> {
             Field::PlasticStrain | Field::YieldFlag if capabilities.plastic.is_none() => {
                 Some("materials with a `yield_stress`")
             }
-            Field::Temperature if capabilities.thermal.is_none() => {
-                Some("bodies with thermal expansion ([thermal])")
+            Field::Temperature if capabilities.thermal.is_none() && !self.conducts() => {
+                Some("bodies with thermal expansion or conduction ([thermal])")
+            }
+            Field::HeatFlux if !self.conducts() => {
+                Some("bodies with heat conduction ([thermal] conductivity)")
             }
             _ => None,
         };
@@ -314,6 +325,10 @@ impl<'a> Snapshot<'a> {
             });
         }
         Ok(())
+    }
+
+    fn conducts(&self) -> bool {
+        self.system.fields().next().is_some()
     }
 
     /// Returns a field, vectors component-major; NaN if [`Snapshot::check`] refuses it.
@@ -388,10 +403,22 @@ impl<'a> Snapshot<'a> {
             }),
             Field::Temperature => self.temperature.get_or_init(|| {
                 let mut temperatures = vec![f64::NAN; self.system.points()];
-                if let Some(thermal) = self.system.operator().capabilities().thermal {
-                    thermal.temperatures_into(t, &mut temperatures);
+                match self.system.fields().next() {
+                    Some(field) => field.values_into(t, &mut temperatures),
+                    None => {
+                        if let Some(thermal) = self.system.operator().capabilities().thermal {
+                            thermal.temperatures_into(t, &mut temperatures);
+                        }
+                    }
                 }
                 temperatures
+            }),
+            Field::HeatFlux => self.heat_flux.get_or_init(|| {
+                let mut flux = vec![f64::NAN; u.len()];
+                if let Some(field) = self.system.fields().next() {
+                    field.flux_into(t, &mut flux);
+                }
+                flux
             }),
             Field::PrincipalStress => self.principal_stress.get_or_init(|| {
                 let dimension = self.system.cloud().dimension();
@@ -407,7 +434,9 @@ impl<'a> Snapshot<'a> {
                 let number = |i: usize| cloud.user_number(i) as f64;
                 (0..cloud.len()).map(number).collect()
             }),
-            Field::FragmentId => self.fragments.get_or_init(|| self.fragment_numbers()),
+            Field::FragmentId => self
+                .fragments
+                .get_or_init(|| Fragments::numbers(self.system)),
             Field::Volume => self.system.cloud().volumes(),
             Field::KineticEnergyDensity => self
                 .kinetic_density
@@ -424,29 +453,6 @@ impl<'a> Snapshot<'a> {
             Some(bonds) => of_bonds(cloud, bonds, &self.state.u),
             None => vec![f64::NAN; places(cloud.dimension()).len() * cloud.len()],
         }
-    }
-
-    /// Numbers of the fragments of all points, from 0 in the order of the lowest user number in each.
-    fn fragment_numbers(&self) -> Vec<f64> {
-        let operator = self.system.operator();
-        if operator.capabilities().breaking.is_none() {
-            return vec![0.0; self.system.points()];
-        }
-        let cloud = self.system.cloud();
-        let fragments = Fragments::of(operator);
-        let mut in_order: Vec<u32> = (0..cloud.len() as u32).collect();
-        in_order.sort_unstable_by_key(|&i| cloud.user_number(i as usize));
-        let mut numbers = vec![f64::NAN; cloud.len()];
-        let mut count = 0.0;
-        for i in in_order {
-            let first = fragments.first()[i as usize] as usize;
-            if numbers[first].is_nan() {
-                numbers[first] = count;
-                count += 1.0;
-            }
-        }
-        let first = fragments.first().iter();
-        first.map(|&first| numbers[first as usize]).collect()
     }
 
     /// Kinetic energy density ½ ρ |v|² of every point, J/m³ (J/m² on surfaces).

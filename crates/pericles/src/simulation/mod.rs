@@ -296,9 +296,10 @@ impl Simulation {
             self.save_motion(&mut archive);
             archive
         });
-        let mut stepped =
-            self.integrator
-                .step(&mut self.system, &mut self.state, t_next, interrupt);
+        let mut stepped = self
+            .integrator
+            .step(&mut self.system, &mut self.state, t_next, interrupt)
+            .and_then(|()| self.system.end_fields(t_next));
         if fallible && self.system.has_failed() {
             stepped = Err(PericlesError::Interrupted);
         }

@@ -3,6 +3,7 @@
 mod booking;
 mod interactions;
 mod loading;
+mod secondary;
 mod stored;
 mod supports;
 
@@ -19,6 +20,7 @@ use crate::interaction::Interaction;
 use crate::operator::{Force, Forces, PointSubset};
 use crate::parallel::{for_each_chunk, for_each_entry};
 use crate::scalar::PointScalar;
+use crate::secondary::SecondaryField;
 use crate::space::{PointCloud, check_length};
 use crate::step_end::StepEnd;
 
@@ -35,6 +37,7 @@ pub struct System {
     motions: Vec<PrescribedMotion>,
     boundaries: Vec<Box<dyn Boundary>>,
     interactions: Vec<Box<dyn Interaction>>,
+    fields: Vec<Box<dyn SecondaryField>>,
     ledger: Ledger,
     evaluated: Counter,
     pub(crate) coarse_breaks: Counter,
@@ -71,6 +74,7 @@ impl System {
             motions: Vec::new(),
             boundaries: Vec::new(),
             interactions: Vec::new(),
+            fields: Vec::new(),
             ledger: Ledger::default(),
             evaluated: Counter::default(),
             coarse_breaks: Counter::default(),

@@ -9,6 +9,7 @@ crate::saved! {
         motions: under("motion"),
         boundaries: part,
         interactions: part,
+        fields: part,
         ledger: array("ledger"),
         loading: array("loading"),
         evaluated: array("evaluated"),

@@ -1,0 +1,168 @@
+//! Neighbour list of conductances, for any body.
+
+use pericles::family::BondList;
+use pericles::lanes::{InstructionSet, LANES};
+use pericles::parallel::{for_each_chunk, for_each_point};
+use pericles::{PericlesError, Result};
+
+use super::{Bond, Bonds, DiffusionBody, surface};
+use crate::calibration::PairConductivity;
+
+/// A neighbour list with the conductance of each entry.
+pub(super) struct ListBonds {
+    list: BondList,
+    /// Conductance of each entry, W/K; zero for padding.
+    whole: Vec<f64>,
+    /// Present conductance of each entry, W/K.
+    present: Vec<f64>,
+    /// Intact bonds, one byte per group.
+    intact: Vec<u8>,
+    share: f64,
+}
+
+impl ListBonds {
+    pub fn new(body: &DiffusionBody, list: BondList) -> Result<Self> {
+        let cloud = list.sites().cloud();
+        let n = cloud.len();
+        let horizons = body.horizons.as_deref();
+        // Points have few different horizons.
+        let mut values: Vec<f64> = horizons.map_or(vec![body.horizon], <[f64]>::to_vec);
+        values.sort_unstable_by(f64::total_cmp);
+        values.dedup();
+        let calibrations: Result<Vec<PairConductivity>> = values
+            .iter()
+            .map(|&horizon| body.calibration(horizon))
+            .collect();
+        let calibrations = calibrations?;
+        let of_point = |i: usize| match horizons {
+            None => &calibrations[0],
+            Some(horizons) => &calibrations[values.partition_point(|h| *h < horizons[i])],
+        };
+        // κ of a bond for unit conductivity, with the partial volume: the mean of the values of both ends.
+        let kappa = |i: usize, site: usize| {
+            let (here, j) = (list.site(i), list.sites().point(site));
+            let xi = list.vector(here, site);
+            let kappa = match horizons {
+                None => list.volume_factor(here, site) * of_point(i).value(xi),
+                Some(_) => {
+                    let ends = [(i, here, site), (j, site, here)];
+                    let of_end = |(point, a, b)| list.end_factor(a, b) * of_point(point).value(xi);
+                    0.5 * ends.map(of_end).iter().sum::<f64>()
+                }
+            };
+            (kappa, xi, j)
+        };
+        let moments = for_each_point(n, &|i| {
+            let terms = list.family(i).map(|(_, site)| {
+                let (kappa, xi, _) = kappa(i, site);
+                kappa * xi.iter().map(|x| x * x).sum::<f64>() * list.volume(site)
+            });
+            terms.sum::<f64>()
+        });
+        let factors = match body.surface_correction {
+            true => surface::factors(cloud, &moments),
+            false => vec![1.0; n],
+        };
+        let rows = for_each_point(n, &|i| {
+            let mut row = vec![0.0; list.groups(i).len() * LANES];
+            let first = list.groups(i).start * LANES;
+            for (entry, site) in list.family(i) {
+                let (kappa, _, j) = kappa(i, site);
+                let k = body
+                    .interface
+                    .mean(body.conductivity.at(i), body.conductivity.at(j));
+                let factor = 0.5 * (factors[i] + factors[j]);
+                let volumes = cloud.volumes()[i] * cloud.volumes()[j];
+                row[entry - first] = kappa * k * factor * volumes;
+            }
+            row
+        });
+        let whole = rows.concat();
+        Ok(Self {
+            present: whole.clone(),
+            intact: list.geometric().to_vec(),
+            whole,
+            list,
+            share: body.broken_share,
+        })
+    }
+
+    fn set(&mut self, entry: usize, intact: bool) {
+        let bit = 1 << (entry % LANES);
+        let byte = &mut self.intact[entry / LANES];
+        *byte = if intact { *byte | bit } else { *byte & !bit };
+        self.present[entry] = match intact {
+            true => self.whole[entry],
+            false => self.share * self.whole[entry],
+        };
+    }
+}
+
+impl Bonds for ListBonds {
+    fn add_flow(&self, values: &[f64], _set: InstructionSet, out: &mut [f64]) {
+        let at_sites = self.list.sites().spread(values);
+        for_each_chunk(out, &|first, out| {
+            for (k, out) in out.iter_mut().enumerate() {
+                let i = first + k;
+                let here = values[i];
+                let mut sum = [0.0; LANES];
+                for group in self.list.groups(i) {
+                    let there = self.list.group(group);
+                    let conductance = &self.present[group * LANES..(group + 1) * LANES];
+                    for lane in 0..LANES {
+                        sum[lane] += conductance[lane] * (at_sites[there[lane]] - here);
+                    }
+                }
+                *out += ((sum[0] + sum[4]) + (sum[2] + sum[6]))
+                    + ((sum[1] + sum[5]) + (sum[3] + sum[7]));
+            }
+        });
+    }
+
+    fn for_each_bond(&self, i: usize, visit: &mut dyn FnMut(Bond)) {
+        for (entry, site) in self.list.family(i) {
+            visit(Bond {
+                neighbour: self.list.sites().point(site),
+                xi: self.list.vector(self.list.site(i), site),
+                conductance: self.present[entry],
+            });
+        }
+    }
+
+    fn set_intact(&mut self, i: usize, is_intact: &dyn Fn(usize) -> bool) {
+        let family: Vec<_> = self.list.family(i).collect();
+        for (entry, site) in family {
+            let intact = is_intact(self.list.sites().point(site));
+            self.set(entry, intact);
+        }
+    }
+
+    fn intact(&self) -> &[u8] {
+        &self.intact
+    }
+
+    fn restore_intact(&mut self, intact: &[u8]) -> Result<()> {
+        let family = self.list.geometric();
+        let fits =
+            intact.len() == family.len() && intact.iter().zip(family).all(|(a, b)| a & !b == 0);
+        if !fits {
+            let reason = "its conducting bonds are not bonds of the body".into();
+            return Err(PericlesError::BadArchive { reason });
+        }
+        for i in 0..self.list.len() {
+            let family: Vec<_> = self.list.family(i).collect();
+            for (entry, _) in family {
+                self.set(entry, intact[entry / LANES] >> (entry % LANES) & 1 == 1);
+            }
+        }
+        Ok(())
+    }
+
+    fn directed_bonds(&self) -> u64 {
+        self.list.directed_bonds()
+    }
+
+    fn bytes(&self) -> usize {
+        self.list.bytes() + 2 * size_of_val(&self.whole[..]) + self.intact.len()
+    }
+}

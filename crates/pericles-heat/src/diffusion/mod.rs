@@ -1,0 +1,307 @@
+//! Conductances of all bonds of a body: the linear operator of diffusion.
+
+mod grid;
+mod kernels;
+mod list;
+mod surface;
+
+use std::sync::Arc;
+
+use pericles::family::{BondList, VolumeCorrection};
+use pericles::kernel::Influence;
+use pericles::lanes::InstructionSet;
+use pericles::operator::Force;
+use pericles::parallel::for_each_point;
+use pericles::space::{PointCloud, check_length};
+use pericles::{PericlesError, PointScalar, Result};
+
+use crate::calibration::PairConductivity;
+use crate::error::HeatError;
+use grid::GridBonds;
+use list::ListBonds;
+
+/// Mean of the conductivities of the two ends of a bond.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Interface {
+    /// 2 k₁ k₂/(k₁ + k₂): conductors in series.
+    #[default]
+    Harmonic,
+    /// (k₁ + k₂)/2.
+    Arithmetic,
+}
+
+impl Interface {
+    fn mean(self, a: f64, b: f64) -> f64 {
+        match self {
+            Self::Harmonic if a > 0.0 && b > 0.0 => 2.0 / (1.0 / a + 1.0 / b),
+            Self::Harmonic => 0.0,
+            Self::Arithmetic => 0.5 * (a + b),
+        }
+    }
+}
+
+/// Description of a body that conducts.
+#[derive(Debug, Clone)]
+pub struct DiffusionBody {
+    /// The points.
+    pub cloud: Arc<PointCloud>,
+    /// Influence function.
+    pub influence: Influence,
+    /// Horizon, m; the largest if there are several.
+    pub horizon: f64,
+    /// Horizon of each point, m, if they differ.
+    pub horizons: Option<Vec<f64>>,
+    /// Volume correction.
+    pub correction: VolumeCorrection,
+    /// Conductivity k of the points, W/(m K) for heat.
+    pub conductivity: PointScalar,
+    /// Mean conductivity of bonds between different materials.
+    pub interface: Interface,
+    /// Whether bonds of points with incomplete families conduct more, so that unit gradients have the energy of the
+    /// continuum.
+    pub surface_correction: bool,
+    /// Part of its conductance that a broken bond keeps, 0 … 1.
+    pub broken_share: f64,
+}
+
+/// A bond seen from one of its ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Bond {
+    /// The other end; a point can be a neighbour several times through periodic faces.
+    pub neighbour: usize,
+    /// Reference vector to the other end, m.
+    pub xi: [f64; 3],
+    /// Present conductance G, W/K.
+    pub conductance: f64,
+}
+
+/// Bonds that conduct.
+trait Bonds: Send + Sync {
+    fn add_flow(&self, values: &[f64], set: InstructionSet, out: &mut [f64]);
+    fn for_each_bond(&self, i: usize, visit: &mut dyn FnMut(Bond));
+    /// Sets the intact bonds of a point by a function of the other end.
+    fn set_intact(&mut self, i: usize, is_intact: &dyn Fn(usize) -> bool);
+    fn intact(&self) -> &[u8];
+    fn restore_intact(&mut self, intact: &[u8]) -> Result<()>;
+    fn directed_bonds(&self) -> u64;
+    fn bytes(&self) -> usize;
+}
+
+/// The conductances of all bonds: T ↦ Σ_j G_ij (T_j − T_i), the flow into each point (W for heat).
+///
+/// Every point adds the flows of its bonds in a fixed order, so that results do not depend on the number of threads.
+pub struct Diffusion {
+    cloud: Arc<PointCloud>,
+    bonds: Box<dyn Bonds>,
+    set: InstructionSet,
+    /// Directed broken bonds in each range of points when bonds were last read.
+    read: Vec<u64>,
+    /// Number of changes of bonds so far.
+    changes: u64,
+}
+
+impl DiffusionBody {
+    /// Makes the operator: a stencil for lattices, a neighbour list for other bodies.
+    ///
+    /// # Errors
+    /// Invalid horizons, influence functions, conductivities and shares; bodies divided among processes.
+    pub fn build(&self) -> Result<Diffusion> {
+        self.build_as(self.cloud.lattice().is_some() && self.horizons.is_none())
+    }
+
+    /// Makes the operator with a neighbour list, for comparison.
+    ///
+    /// # Errors
+    /// Those of [`DiffusionBody::build`].
+    pub fn build_list(&self) -> Result<Diffusion> {
+        self.build_as(false)
+    }
+
+    fn build_as(&self, on_grid: bool) -> Result<Diffusion> {
+        let cloud = &self.cloud;
+        if cloud.domain().is_divided() {
+            return Err(HeatError::Divided.into());
+        }
+        let within = |quantity, value: f64, holds: bool, allowed| match holds {
+            true => Ok(()),
+            false => Err(PericlesError::OutOfRange {
+                quantity,
+                value,
+                allowed,
+            }),
+        };
+        if let PointScalar::PerPoint(values) = &self.conductivity {
+            check_length(
+                "the conductivities of the points",
+                values.len(),
+                cloud.len(),
+            )?;
+        }
+        for i in 0..cloud.len() {
+            let k = self.conductivity.at(i);
+            within(
+                "the conductivity",
+                k,
+                k.is_finite() && k >= 0.0,
+                "zero or positive",
+            )?;
+        }
+        let share = self.broken_share;
+        let allowed = "from 0 to 1";
+        within(
+            "the conductance of broken bonds",
+            share,
+            (0.0..=1.0).contains(&share),
+            allowed,
+        )?;
+        let bonds: Box<dyn Bonds> = match on_grid {
+            true => Box::new(GridBonds::new(self, self.calibration(self.horizon)?)?),
+            false => {
+                let list = match &self.horizons {
+                    None => BondList::new(cloud, self.horizon, self.correction)?,
+                    Some(horizons) => {
+                        BondList::with_horizons(cloud, horizons.clone(), self.correction)?
+                    }
+                };
+                Box::new(ListBonds::new(self, list)?)
+            }
+        };
+        Ok(Diffusion {
+            cloud: Arc::clone(cloud),
+            bonds,
+            set: InstructionSet::detect(),
+            read: Vec::new(),
+            changes: 0,
+        })
+    }
+
+    /// Returns the pair conductivity for a horizon: by sums over the lattice where there is one.
+    fn calibration(&self, horizon: f64) -> Result<PairConductivity> {
+        PairConductivity::of_lattice(&self.influence, horizon, self.correction, &self.cloud)
+    }
+}
+
+impl Diffusion {
+    /// Returns the points.
+    pub fn cloud(&self) -> &Arc<PointCloud> {
+        &self.cloud
+    }
+
+    /// Selects another instruction set for the loops, for tests and benchmarks.
+    pub fn use_instruction_set(&mut self, set: InstructionSet) {
+        if InstructionSet::available().contains(&set) {
+            self.set = set;
+        }
+    }
+
+    /// Adds the flow into each point (W for heat) to `out`.
+    pub fn add_flow(&self, values: &[f64], out: &mut [f64]) {
+        self.bonds.add_flow(values, self.set, out);
+    }
+
+    /// Returns Σ_j G_ij of each point, W/K for heat.
+    pub fn diagonal(&self) -> Vec<f64> {
+        for_each_point(self.cloud.len(), &|i| {
+            let mut sum = 0.0;
+            self.for_each_bond(i, &mut |bond| {
+                if bond.neighbour != i {
+                    sum += bond.conductance;
+                }
+            });
+            sum
+        })
+    }
+
+    /// Sets `out` (component-major) to the flux −½ Σ_j κ_ij V_j ξ (T_j − T_i), W/m² for heat: −k ∇T of a linear field.
+    pub fn flux_into(&self, values: &[f64], out: &mut [f64]) {
+        let (n, d) = (self.cloud.len(), self.cloud.dimension());
+        let volumes = self.cloud.volumes();
+        let of_points = for_each_point(n, &|i| {
+            let mut flux = [0.0; 3];
+            self.for_each_bond(i, &mut |bond| {
+                let flow = bond.conductance * (values[bond.neighbour] - values[i]);
+                for c in 0..d {
+                    flux[c] -= 0.5 * flow * bond.xi[c];
+                }
+            });
+            flux.map(|component| component / volumes[i])
+        });
+        for (i, flux) in of_points.iter().enumerate() {
+            for c in 0..d {
+                out[c * n + i] = flux[c];
+            }
+        }
+    }
+
+    /// Calls `visit` for each bond of a point that conducts.
+    pub(crate) fn for_each_bond(&self, i: usize, visit: &mut dyn FnMut(Bond)) {
+        self.bonds.for_each_bond(i, &mut |bond| {
+            if bond.conductance > 0.0 {
+                visit(bond);
+            }
+        });
+    }
+
+    /// Reads from the forces of the body which bonds are intact; returns whether bonds changed.
+    pub fn read_bonds(&mut self, forces: &dyn Force) -> bool {
+        let Some(breaking) = forces.capabilities().breaking else {
+            return false;
+        };
+        let mut changed = Vec::new();
+        let (mut k, first) = (0, self.read.is_empty());
+        let read = &mut self.read;
+        breaking.for_each_broken_count(&mut |range, count| {
+            if k == read.len() {
+                read.push(0);
+            }
+            // Pre-cracks are no broken bonds: all points are read once.
+            if first || read[k] != count {
+                changed.push(range);
+                read[k] = count;
+            }
+            k += 1;
+        });
+        let any = !changed.is_empty();
+        let mut near = Vec::new();
+        for i in changed.into_iter().flatten() {
+            near.clear();
+            breaking.for_each_intact_of(i, &mut |j| near.push(j));
+            near.sort_unstable();
+            // A bond to an image of the point itself does not break.
+            let is_intact = |j: usize| j == i || near.binary_search(&j).is_ok();
+            self.bonds.set_intact(i, &is_intact);
+        }
+        self.changes += u64::from(any);
+        any
+    }
+
+    /// Returns a number that changes when bonds change.
+    pub fn changes(&self) -> u64 {
+        self.changes
+    }
+
+    /// Returns the intact bonds as bits, for checkpoints.
+    pub fn intact(&self) -> &[u8] {
+        self.bonds.intact()
+    }
+
+    /// Restores the intact bonds.
+    ///
+    /// # Errors
+    /// Bits of another body.
+    pub fn restore_intact(&mut self, intact: &[u8]) -> Result<()> {
+        self.read.clear();
+        self.changes += 1;
+        self.bonds.restore_intact(intact)
+    }
+
+    /// Returns the number of family entries in the loops: each bond counts twice.
+    pub fn directed_bonds(&self) -> u64 {
+        self.bonds.directed_bonds()
+    }
+
+    /// Returns the memory use, bytes.
+    pub fn bytes(&self) -> usize {
+        self.bonds.bytes()
+    }
+}

@@ -1,0 +1,369 @@
+//! A diffusing field as a secondary field of a system.
+
+use std::fmt;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use pericles::operator::Force;
+use pericles::space::check_length;
+use pericles::{
+    Archive, Checkpointed, PericlesError, Result, SecondaryField, Temperature, Values, positive,
+};
+
+use crate::advance::{Flows, Scheme, advance};
+use crate::problem::Problem;
+use crate::solver::{Effort, Solver};
+
+/// Options of a computed field.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct FieldOptions {
+    /// Time integration scheme.
+    pub scheme: Scheme,
+    /// Length of the steps of the field, s, which may be shorter or longer than those of the body; between their ends
+    /// the field is linear in time. If `None`, the field advances with the steps of the body.
+    pub step: Option<f64>,
+}
+
+/// A state of the field.
+#[derive(Debug, Clone, PartialEq)]
+struct Accepted {
+    t: f64,
+    values: Vec<f64>,
+    /// Content that has flowed in by each condition since the start.
+    flows: Flows,
+}
+
+/// The field between two states, linear in time.
+#[derive(Debug, Clone, PartialEq)]
+struct Interval {
+    from: Accepted,
+    to: Accepted,
+}
+
+struct State {
+    problem: Problem,
+    options: FieldOptions,
+    solver: Solver,
+    /// The last accepted interval; a single state at the start.
+    accepted: Interval,
+    /// The interval after the accepted one that was computed last.
+    ahead: Option<Interval>,
+    /// Content at the start.
+    initial: f64,
+    /// Number of changes of the accepted state.
+    revision: u64,
+    failure: Option<PericlesError>,
+}
+
+/// A computed field, shared by the system and the forces that depend on it.
+#[derive(Clone)]
+pub struct SharedField(Arc<Mutex<State>>);
+
+/// A computed field as a part of a system; see [`SecondaryField`].
+pub struct DiffusingField {
+    shared: SharedField,
+}
+
+impl DiffusingField {
+    /// Makes a field from its values at the time t.
+    ///
+    /// # Errors
+    /// Values that are not one per point or not finite; a step that is not positive.
+    pub fn new(problem: Problem, options: FieldOptions, t: f64, values: Vec<f64>) -> Result<Self> {
+        check_length(
+            "the temperatures of the points",
+            values.len(),
+            problem.len(),
+        )?;
+        if let Some(step) = options.step {
+            positive("the thermal step", step)?;
+        }
+        let first = Accepted {
+            t,
+            flows: vec![0.0; problem.conditions().len()],
+            values,
+        };
+        let state = State {
+            solver: Solver::new(&problem),
+            initial: problem.content(&first.values),
+            problem,
+            options,
+            accepted: Interval {
+                from: first.clone(),
+                to: first,
+            },
+            ahead: None,
+            revision: 0,
+            failure: None,
+        };
+        Ok(Self {
+            shared: SharedField(Arc::new(Mutex::new(state))),
+        })
+    }
+
+    /// Returns the field as forces and observers share it.
+    pub fn shared(&self) -> SharedField {
+        self.shared.clone()
+    }
+}
+
+impl Interval {
+    fn contains(&self, t: f64) -> bool {
+        t <= self.to.t && (t > self.from.t || self.from.t == self.to.t)
+    }
+
+    /// Returns the weight of the later state at a time, exact at both ends.
+    fn weight(&self, t: f64) -> f64 {
+        match t {
+            t if t >= self.to.t => 1.0,
+            t if t <= self.from.t => 0.0,
+            t => (t - self.from.t) / (self.to.t - self.from.t),
+        }
+    }
+
+    fn mix(&self, t: f64, of: impl Fn(&Accepted) -> &[f64], out: &mut [f64]) {
+        let weight = self.weight(t);
+        for ((out, from), to) in out.iter_mut().zip(of(&self.from)).zip(of(&self.to)) {
+            *out = if weight == 1.0 {
+                *to
+            } else {
+                from + weight * (to - from)
+            };
+        }
+    }
+}
+
+impl State {
+    /// Makes sure that the accepted interval or the one ahead contains a time.
+    fn reach(&mut self, t: f64) -> Result<()> {
+        let is_known = |ahead: &Interval| match self.options.step {
+            // Steps of the body: the field advances to the time itself.
+            None => ahead.to.t == t,
+            Some(_) => ahead.contains(t),
+        };
+        if t <= self.accepted.to.t || self.ahead.as_ref().is_some_and(is_known) {
+            return Ok(());
+        }
+        let mut from = self.accepted.to.clone();
+        loop {
+            let start = from.t;
+            let end = match self.options.step {
+                None => t,
+                // Multiples of the step, so that rounding errors of the time do not add up.
+                Some(step) => ((start / step * (1.0 + 1e-12)).floor() + 1.0) * step,
+            };
+            let mut to = from.clone();
+            to.t = end;
+            let (problem, solver) = (&self.problem, &mut self.solver);
+            let scheme = self.options.scheme;
+            advance(
+                problem,
+                scheme,
+                solver,
+                [start, end],
+                &mut to.values,
+                &mut to.flows,
+            )?;
+            let interval = Interval { from, to };
+            if interval.contains(t) {
+                self.ahead = Some(interval);
+                return Ok(());
+            }
+            from = interval.to;
+        }
+    }
+
+    /// Returns the interval that contains a time; the failure is kept for the end of the step.
+    fn interval(&mut self, t: f64) -> Option<&Interval> {
+        match self.reach(t) {
+            Ok(()) if t <= self.accepted.to.t => Some(&self.accepted),
+            Ok(()) => self.ahead.as_ref(),
+            Err(error) => {
+                self.failure = Some(error);
+                None
+            }
+        }
+    }
+
+    fn mix_into(&mut self, t: f64, of: impl Fn(&Accepted) -> &[f64], out: &mut [f64]) {
+        match self.interval(t) {
+            Some(interval) => interval.mix(t, of, out),
+            None => out.fill(f64::NAN),
+        }
+    }
+
+    fn values_at(&mut self, t: f64) -> Vec<f64> {
+        let mut values = vec![0.0; self.problem.len()];
+        self.mix_into(t, |state| &state.values, &mut values);
+        values
+    }
+}
+
+impl SharedField {
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Calls `read` with the problem.
+    pub fn with_problem<R>(&self, read: impl FnOnce(&Problem) -> R) -> R {
+        read(&self.state().problem)
+    }
+
+    /// Returns the options.
+    pub fn options(&self) -> FieldOptions {
+        self.state().options
+    }
+
+    /// Returns the content at a time, J for heat.
+    pub fn content(&self, t: f64) -> f64 {
+        let mut state = self.state();
+        let values = state.values_at(t);
+        state.problem.content(&values)
+    }
+
+    /// Returns the content at the start, J for heat.
+    pub fn initial_content(&self) -> f64 {
+        self.state().initial
+    }
+
+    /// Returns the content that has flowed in by each condition until a time, J for heat.
+    pub fn flows(&self, t: f64) -> Flows {
+        let mut state = self.state();
+        let mut flows = vec![0.0; state.problem.conditions().len()];
+        state.mix_into(t, |state| &state.flows, &mut flows);
+        flows
+    }
+
+    /// Returns the smallest and the largest value at a time.
+    pub fn range(&self, t: f64) -> [f64; 2] {
+        let values = self.state().values_at(t);
+        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        [low, high]
+    }
+
+    /// Returns the largest stable step of the explicit scheme at a time, s.
+    pub fn explicit_limit(&self, t: f64) -> f64 {
+        let mut state = self.state();
+        let values = state.values_at(t);
+        state.problem.explicit_limit(&values)
+    }
+
+    /// Returns the number of products with the conductances.
+    pub fn effort(&self) -> Effort {
+        self.state().solver.effort
+    }
+}
+
+impl Temperature for SharedField {
+    fn temperatures_into(&self, t: f64, out: &mut [f64]) {
+        self.state().mix_into(t, |state| &state.values, out);
+    }
+
+    fn revision(&self) -> u64 {
+        self.state().revision
+    }
+}
+
+impl fmt::Debug for SharedField {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("SharedField").finish_non_exhaustive()
+    }
+}
+
+impl SecondaryField for DiffusingField {
+    fn name(&self) -> &'static str {
+        "temperature"
+    }
+
+    fn start(&mut self, forces: &dyn Force) -> Result<()> {
+        let mut state = self.shared.state();
+        check_length(
+            "the points of the temperature field",
+            state.problem.len(),
+            forces.points(),
+        )?;
+        state.problem.diffusion.read_bonds(forces);
+        let t = state.accepted.to.t;
+        let sampled = state.problem.sample(t)?;
+        let mut values = state.accepted.to.values.clone();
+        state.problem.prescribe(&sampled, &mut values);
+        state.initial = state.problem.content(&values);
+        state.accepted.from.values.copy_from_slice(&values);
+        state.accepted.to.values = values;
+        state.ahead = None;
+        state.revision += 1;
+        Ok(())
+    }
+
+    fn end_step(&mut self, t: f64, forces: &dyn Force) -> Result<()> {
+        let mut state = self.shared.state();
+        if let Some(failure) = state.failure.take() {
+            return Err(failure);
+        }
+        state.reach(t)?;
+        if t > state.accepted.to.t
+            && let Some(ahead) = state.ahead.take()
+        {
+            state.accepted = ahead;
+        }
+        if state.problem.diffusion.read_bonds(forces) {
+            state.ahead = None;
+        }
+        state.revision += 1;
+        Ok(())
+    }
+
+    fn values_into(&self, t: f64, out: &mut [f64]) {
+        self.shared.temperatures_into(t, out);
+    }
+
+    fn flux_into(&self, t: f64, out: &mut [f64]) {
+        let mut state = self.shared.state();
+        let values = state.values_at(t);
+        state.problem.diffusion.flux_into(&values, out);
+    }
+}
+
+/// Names of arrays in checkpoints.
+const TIMES: &str = "temperature/t";
+const CONTENT: &str = "temperature/initial content";
+const INTACT: &str = "temperature/conducting bonds";
+const VALUES: [&str; 2] = ["temperature/from", "temperature/to"];
+const FLOWS: [&str; 2] = ["temperature/flows from", "temperature/flows to"];
+
+impl Checkpointed for DiffusingField {
+    fn save(&self, archive: &mut Archive) {
+        let state = self.shared.state();
+        let Interval { from, to } = &state.accepted;
+        archive.put(TIMES, Values::F64(vec![from.t, to.t]));
+        archive.put(CONTENT, Values::F64(vec![state.initial]));
+        archive.put(
+            INTACT,
+            Values::U8(state.problem.diffusion.intact().to_vec()),
+        );
+        for (k, one) in [from, to].into_iter().enumerate() {
+            archive.put(VALUES[k], Values::F64(one.values.clone()));
+            archive.put(FLOWS[k], Values::F64(one.flows.clone()));
+        }
+    }
+
+    fn restore(&mut self, archive: &Archive) -> Result<()> {
+        let mut state = self.shared.state();
+        let state = &mut *state;
+        let mut times = [0.0; 2];
+        archive.f64_into(TIMES, &mut times)?;
+        archive.f64_into(CONTENT, std::slice::from_mut(&mut state.initial))?;
+        let Interval { from, to } = &mut state.accepted;
+        for (k, one) in [from, to].into_iter().enumerate() {
+            one.t = times[k];
+            archive.f64_into(VALUES[k], &mut one.values)?;
+            archive.f64_into(FLOWS[k], &mut one.flows)?;
+        }
+        let intact: &[u8] = archive.numbers(INTACT)?;
+        state.problem.diffusion.restore_intact(intact)?;
+        state.ahead = None;
+        state.failure = None;
+        state.revision += 1;
+        Ok(())
+    }
+}

@@ -1,0 +1,262 @@
+//! A diffusion problem: capacity, conductances and conditions.
+
+use pericles::space::{check_length, check_points};
+use pericles::{Result, positive};
+
+use crate::condition::{Condition, Kind};
+use crate::diffusion::Diffusion;
+use crate::error::HeatError;
+
+/// Capacity, conductances and conditions of a field that diffuses.
+pub struct Problem {
+    pub(crate) diffusion: Diffusion,
+    /// Capacity of each point, J/K for heat.
+    capacity: Vec<f64>,
+    conditions: Vec<Condition>,
+    /// Whether the value of a point is prescribed.
+    is_prescribed: Vec<bool>,
+}
+
+/// Values of all conditions at a time, point by point.
+pub(crate) struct Sampled {
+    values: Vec<Vec<f64>>,
+}
+
+impl Problem {
+    /// Makes a problem; capacities (J/K for heat) are those of whole points.
+    ///
+    /// # Errors
+    /// Capacities that are not positive, or not one per point; conditions on points that do not exist; two prescribed
+    /// values at a point.
+    pub fn new(
+        diffusion: Diffusion,
+        capacity: Vec<f64>,
+        conditions: Vec<Condition>,
+    ) -> Result<Self> {
+        let n = diffusion.cloud().len();
+        check_length("the heat capacities of the points", capacity.len(), n)?;
+        for &value in &capacity {
+            positive("the heat capacity", value)?;
+        }
+        let mut is_prescribed = vec![false; n];
+        for condition in &conditions {
+            check_points("the points of a thermal condition", &condition.points, n)?;
+            match &condition.kind {
+                Kind::Prescribed(_) => {
+                    for &i in &condition.points {
+                        if std::mem::replace(&mut is_prescribed[i as usize], true) {
+                            let point = diffusion.cloud().user_number(i as usize);
+                            return Err(HeatError::PrescribedTwice { point }.into());
+                        }
+                    }
+                }
+                Kind::Inflow { measure, .. } | Kind::Exchange { area: measure, .. } => {
+                    let what = "the areas of a thermal condition";
+                    check_length(what, measure.len(), condition.points.len())?;
+                }
+            }
+        }
+        Ok(Self {
+            diffusion,
+            capacity,
+            conditions,
+            is_prescribed,
+        })
+    }
+
+    /// Number of points.
+    pub fn len(&self) -> usize {
+        self.capacity.len()
+    }
+
+    /// Returns false: every body has points.
+    pub fn is_empty(&self) -> bool {
+        self.capacity.is_empty()
+    }
+
+    /// Returns the conductances.
+    pub fn diffusion(&self) -> &Diffusion {
+        &self.diffusion
+    }
+
+    /// Returns the capacity of each point, J/K for heat.
+    pub fn capacity(&self) -> &[f64] {
+        &self.capacity
+    }
+
+    /// Returns the conditions.
+    pub fn conditions(&self) -> &[Condition] {
+        &self.conditions
+    }
+
+    /// Returns whether the value of a point is prescribed.
+    pub fn is_prescribed(&self, i: usize) -> bool {
+        self.is_prescribed[i]
+    }
+
+    /// Returns the content Σ C_i T_i, J for heat.
+    pub fn content(&self, values: &[f64]) -> f64 {
+        let domain = self.diffusion.cloud().domain();
+        domain.sum(values.len(), |i| self.capacity[i] * values[i])
+    }
+
+    /// Evaluates all conditions at a time.
+    pub(crate) fn sample(&self, t: f64) -> Result<Sampled> {
+        let of_condition = |condition: &Condition| -> Result<Vec<f64>> {
+            let value = condition.value();
+            let values: Vec<f64> = condition
+                .points
+                .iter()
+                .map(|&i| value(i as usize, t))
+                .collect();
+            match values.iter().position(|value| !value.is_finite()) {
+                None => Ok(values),
+                Some(k) => {
+                    let point = self
+                        .diffusion
+                        .cloud()
+                        .user_number(condition.points[k] as usize);
+                    let what = condition.quantity();
+                    Err(HeatError::NotFinite { what, point, t }.into())
+                }
+            }
+        };
+        let values = self
+            .conditions
+            .iter()
+            .map(of_condition)
+            .collect::<Result<_>>()?;
+        Ok(Sampled { values })
+    }
+
+    /// Sets prescribed values.
+    pub(crate) fn prescribe(&self, sampled: &Sampled, values: &mut [f64]) {
+        for (condition, prescribed) in self.conditions.iter().zip(&sampled.values) {
+            if condition.is_prescribed() {
+                for (&i, &value) in condition.points.iter().zip(prescribed) {
+                    values[i as usize] = value;
+                }
+            }
+        }
+    }
+
+    /// Adds the inflow of all conditions into each point (W for heat) to `out`, and the inflow of each condition times
+    /// `duration` to its entry of `booked`.
+    pub(crate) fn add_inflow(
+        &self,
+        sampled: &Sampled,
+        values: &[f64],
+        out: &mut [f64],
+        (booked, duration): (&mut [f64], f64),
+    ) {
+        for ((condition, sample), booked) in self.conditions.iter().zip(&sampled.values).zip(booked)
+        {
+            let mut total = 0.0;
+            let mut add = |i: u32, inflow: f64| {
+                out[i as usize] += inflow;
+                total += inflow;
+            };
+            let points = condition.points.iter().zip(sample);
+            match &condition.kind {
+                Kind::Prescribed(_) => {}
+                Kind::Inflow { measure, .. } => {
+                    for ((&i, density), measure) in points.zip(measure) {
+                        add(i, density * measure);
+                    }
+                }
+                Kind::Exchange {
+                    law,
+                    coefficient,
+                    area,
+                    ..
+                } => {
+                    for ((&i, &ambient), area) in points.zip(area) {
+                        let difference = law.value(ambient) - law.value(values[i as usize]);
+                        add(i, coefficient * area * difference);
+                    }
+                }
+            }
+            *booked += duration * total;
+        }
+    }
+
+    /// Adds −∂(inflow)/∂T of each point, which is not negative, to `out`.
+    pub(crate) fn add_exchange_slope(&self, values: &[f64], out: &mut [f64]) {
+        for condition in &self.conditions {
+            if let Kind::Exchange {
+                law,
+                coefficient,
+                area,
+                ..
+            } = &condition.kind
+            {
+                for (&i, area) in condition.points.iter().zip(area) {
+                    let slope = law.derivative(values[i as usize]);
+                    out[i as usize] += coefficient * area * slope;
+                }
+            }
+        }
+    }
+
+    /// Returns whether conditions depend on the values nonlinearly.
+    pub(crate) fn is_nonlinear(&self) -> bool {
+        let nonlinear = |condition: &Condition| match &condition.kind {
+            Kind::Exchange { law, .. } => *law != crate::condition::Exchange::Linear,
+            _ => false,
+        };
+        self.conditions.iter().any(nonlinear)
+    }
+
+    /// Adds to `booked` the inflow that prescribed values cause: the change of content of each of their points minus
+    /// what flows into it by bonds and other conditions, `inflow` (J).
+    pub(crate) fn book_prescribed(
+        &self,
+        change: &(dyn Fn(usize) -> f64 + Sync),
+        inflow: &(dyn Fn(usize) -> f64 + Sync),
+        booked: &mut [f64],
+    ) {
+        let domain = self.diffusion.cloud().domain();
+        for (condition, booked) in self.conditions.iter().zip(booked) {
+            if condition.is_prescribed() {
+                let points = &condition.points;
+                *booked += domain.sum(points.len(), |k| {
+                    let i = points[k] as usize;
+                    self.capacity[i] * change(i) - inflow(i)
+                });
+            }
+        }
+    }
+
+    /// Returns the largest stable step of the explicit scheme at given values, s: 1/max_i (Σ_j G_ij + h_i)/C_i, at most
+    /// 2/λ by Gershgorin's theorem. Values then remain between the extremes of their neighbours.
+    pub fn explicit_limit(&self, values: &[f64]) -> f64 {
+        let mut rates = self.diffusion.diagonal();
+        self.add_exchange_slope(values, &mut rates);
+        let free = (0..self.len()).filter(|&i| !self.is_prescribed[i]);
+        let largest = free
+            .map(|i| rates[i] / self.capacity[i])
+            .fold(0.0, f64::max);
+        1.0 / largest
+    }
+
+    /// Returns the number of points whose steady value no condition determines.
+    pub(crate) fn undetermined_points(&self) -> usize {
+        let n = self.len();
+        let mut reached = vec![false; n];
+        let mut waiting: Vec<u32> = Vec::new();
+        let determining = self.conditions.iter().filter(|one| one.determines_level());
+        for &i in determining.flat_map(|one| &one.points) {
+            if !std::mem::replace(&mut reached[i as usize], true) {
+                waiting.push(i);
+            }
+        }
+        while let Some(i) = waiting.pop() {
+            self.diffusion.for_each_bond(i as usize, &mut |bond| {
+                if !std::mem::replace(&mut reached[bond.neighbour], true) {
+                    waiting.push(bond.neighbour as u32);
+                }
+            });
+        }
+        reached.iter().filter(|reached| !**reached).count()
+    }
+}

@@ -1,0 +1,7 @@
+//! Heat conduction: operator, schemes, conservation, closed forms.
+
+mod closed_forms;
+mod operator;
+mod schemes;
+mod support;
+mod system;

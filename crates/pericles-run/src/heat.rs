@@ -1,0 +1,165 @@
+//! Facts, history columns and heat balance of bodies with heat conduction.
+
+use pericles::observe::Snapshot;
+use pericles::{Archive, Checkpointed, Result, Simulation};
+use pericles_heat::{DiffusingField, SharedField};
+use pericles_io::observers::HistoryColumns;
+use pericles_io::{Cell, Column};
+use serde::Serialize;
+
+/// Properties of heat conduction before the first step; SI units.
+#[derive(Debug, Clone, Serialize)]
+pub struct HeatFacts {
+    /// Time integration scheme.
+    pub scheme: &'static str,
+    /// Thermal step, s; `None` if the temperature advances with the steps of the body.
+    pub step: Option<f64>,
+    /// Largest stable step of the explicit scheme at the start, s.
+    pub explicit_limit: f64,
+    /// Heat content ρ c V T of the initial temperature, J.
+    pub content: f64,
+    /// Conducting bonds, each counted from both ends.
+    pub directed_bonds: u64,
+}
+
+impl HeatFacts {
+    pub(crate) fn of(field: &SharedField) -> Self {
+        let options = field.options();
+        Self {
+            scheme: options.scheme.name(),
+            step: options.step,
+            explicit_limit: field.explicit_limit(0.0),
+            content: field.initial_content(),
+            directed_bonds: field.with_problem(|problem| problem.diffusion().directed_bonds()),
+        }
+    }
+}
+
+/// Heat that has flowed into the body through the conditions of a set.
+#[derive(Debug, Clone, Serialize)]
+pub struct Inflow {
+    /// The set.
+    pub set: String,
+    /// Heat since the start, J.
+    pub heat: f64,
+}
+
+/// Heat balance at the end of a run.
+#[derive(Debug, Clone, Serialize)]
+pub struct HeatBalance {
+    /// Heat content ρ c V T at the end, J.
+    pub content: f64,
+    /// Heat content at the start, J.
+    pub initial_content: f64,
+    /// Heat through the conditions of each set.
+    pub inflows: Vec<Inflow>,
+    /// Content minus initial content minus all inflows, J; `None` for steady states, whose change of content is not
+    /// followed.
+    pub balance: Option<f64>,
+    /// The balance relative to the heat content.
+    pub balance_relative: Option<f64>,
+    /// Lowest temperature, K.
+    pub lowest: f64,
+    /// Highest temperature, K.
+    pub highest: f64,
+    /// Products with the conductances since the start or the last resume.
+    pub products: u64,
+    /// Largest number of products of the solution of a linear system.
+    pub most_products: u64,
+}
+
+impl HeatBalance {
+    pub(crate) fn of(simulation: &Simulation) -> Option<Self> {
+        let field = of_system(simulation.system())?;
+        let t = simulation.state().t;
+        let (content, initial_content) = (field.content(t), field.initial_content());
+        let inflows = inflows(&field, t);
+        let total: f64 = inflows.iter().map(|inflow| inflow.heat).sum();
+        let balance = content - initial_content - total;
+        let is_steady = field.options().scheme == pericles_heat::Scheme::Steady;
+        let scale = inflows.iter().map(|inflow| inflow.heat.abs()).sum::<f64>();
+        let scale = scale.max(content.abs()).max(f64::MIN_POSITIVE);
+        let [lowest, highest] = field.range(t);
+        let effort = field.effort();
+        Some(Self {
+            content,
+            initial_content,
+            inflows,
+            balance: (!is_steady).then_some(balance),
+            balance_relative: (!is_steady).then_some(balance / scale),
+            lowest,
+            highest,
+            products: effort.total,
+            most_products: effort.most,
+        })
+    }
+}
+
+/// Returns the computed temperature of a system.
+fn of_system(system: &pericles::System) -> Option<SharedField> {
+    let mut fields = system.fields();
+    fields.find_map(|field| {
+        field
+            .downcast_ref::<DiffusingField>()
+            .map(DiffusingField::shared)
+    })
+}
+
+/// Returns the inflow through the conditions of each set, in the order of their first condition.
+fn inflows(field: &SharedField, t: f64) -> Vec<Inflow> {
+    let mut inflows: Vec<Inflow> = Vec::new();
+    let flows = field.flows(t);
+    let sets = field.with_problem(|problem| {
+        let names = problem.conditions().iter().map(|one| one.name.clone());
+        names.collect::<Vec<_>>()
+    });
+    for (set, heat) in sets.into_iter().zip(flows) {
+        match inflows.iter_mut().find(|inflow| inflow.set == set) {
+            Some(inflow) => inflow.heat += heat,
+            None => inflows.push(Inflow { set, heat }),
+        }
+    }
+    inflows
+}
+
+/// Columns of bodies with heat conduction: heat content, heat through the conditions of each set since the start, and the
+/// extremes of the temperature.
+pub(crate) struct HeatColumns(SharedField);
+
+impl HeatColumns {
+    /// Returns the columns of a simulation, if its body conducts heat.
+    pub(crate) fn of(simulation: &Simulation) -> Option<Self> {
+        of_system(simulation.system()).map(Self)
+    }
+}
+
+impl HistoryColumns for HeatColumns {
+    fn columns(&self) -> Vec<Column> {
+        let mut columns = vec![Column::real("heat_content", "J")];
+        for inflow in inflows(&self.0, 0.0) {
+            columns.push(Column::real(format!("heat_through_{}", inflow.set), "J"));
+        }
+        columns.extend(
+            ["lowest_temperature", "highest_temperature"].map(|name| Column::real(name, "K")),
+        );
+        columns
+    }
+
+    fn cells(&mut self, snapshot: &Snapshot<'_>) -> Vec<Cell> {
+        let t = snapshot.state().t;
+        let heats = inflows(&self.0, t).into_iter().map(|inflow| inflow.heat);
+        let mut cells = vec![Cell::Real(self.0.content(t))];
+        cells.extend(heats.map(Cell::Real));
+        cells.extend(self.0.range(t).map(Cell::Real));
+        cells
+    }
+}
+
+/// Columns without state.
+impl Checkpointed for HeatColumns {
+    fn save(&self, _archive: &mut Archive) {}
+
+    fn restore(&mut self, _archive: &Archive) -> Result<()> {
+        Ok(())
+    }
+}

@@ -1,0 +1,42 @@
+//! Secondary fields: scalars of the body that change with time besides its motion, such as temperature.
+
+use std::any::Any;
+
+use crate::archive::Checkpointed;
+use crate::error::Result;
+use crate::operator::Force;
+
+/// A computed scalar field of a body, such as its temperature.
+///
+/// The field is accepted up to the end of the last step. Forces that depend on it evaluate it at any later time, as a
+/// function of the accepted state only, through a shared [`Temperature`](crate::Temperature); rejected steps need no
+/// action. [`SecondaryField::end_step`] then moves the accepted state to the end of a step.
+pub trait SecondaryField: Any + Checkpointed + Send + Sync {
+    /// Name in reports.
+    fn name(&self) -> &str;
+
+    /// Prepares a run: checks that the field belongs to the body and reads which bonds exist.
+    ///
+    /// # Errors
+    /// A body of another size; conditions that are not finite.
+    fn start(&mut self, forces: &dyn Force) -> Result<()>;
+
+    /// Moves the accepted state to the end of a step and reads which bonds have broken.
+    ///
+    /// # Errors
+    /// Equations that could not be solved.
+    fn end_step(&mut self, t: f64, forces: &dyn Force) -> Result<()>;
+
+    /// Sets the values of all points at a time.
+    fn values_into(&self, t: f64, out: &mut [f64]);
+
+    /// Sets the flux of all points at a time, component-major.
+    fn flux_into(&self, t: f64, out: &mut [f64]);
+}
+
+impl dyn SecondaryField {
+    /// Returns the field as one of the given type.
+    pub fn downcast_ref<T: SecondaryField>(&self) -> Option<&T> {
+        (self as &dyn Any).downcast_ref()
+    }
+}
