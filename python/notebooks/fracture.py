@@ -15,17 +15,17 @@ import pericles as pc
 # ## Points, sets and constraints
 #
 # The points are a NumPy array. The inclusions are discs whose centres do not depend on the spacing, so that refinement compares
-# the same body; a mask becomes a set that the deck refers to. The ends move apart with 2 m/s each, and the plate starts in uniform
+# the same body; a mask becomes a set that the deck refers to. The ends move apart with 1 m/s each, and the plate starts in uniform
 # extension, so that no shock runs ahead of them.
 
 # %%
 LENGTH, WIDTH, THICKNESS = 20e-3, 10e-3, 1e-3
-GRIP, SPEED, HORIZON = 2e-3, 2.0, 1.5e-3
+GRIP, SPEED = 2e-3, 1.0
 random = np.random.default_rng(7)
 centres = random.uniform([4e-3, 1.5e-3], [16e-3, 8.5e-3], (12, 2))
 
 
-def build(spacing, end="16 us"):
+def build(spacing, end="20 us"):
     axes = (np.arange(spacing / 2, side, spacing) for side in (LENGTH, WIDTH))
     x = np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 2)
     distance = np.linalg.norm(x[:, None] - centres, axis=-1)
@@ -38,10 +38,10 @@ def build(spacing, end="16 us"):
         "body": {"spacing": spacing, "thickness": THICKNESS, "plane": "stress"},
         "material": {
             "model": "state-based", "density": 2440, "youngs_modulus": "72 GPa", "poisson_ratio": 0.22,
-            "fracture_energy": "10 J/m2", "horizon": HORIZON,
+            "fracture_energy": "30 J/m2", "horizon_ratio": 3,
         },
         "materials": {"stiff": {
-            "density": 3900, "youngs_modulus": "300 GPa", "poisson_ratio": 0.22, "fracture_energy": "40 J/m2",
+            "density": 3900, "youngs_modulus": "300 GPa", "poisson_ratio": 0.22, "fracture_energy": "100 J/m2",
         }},
         "assign": [{"set": "inclusions", "material": "stiff"}],
         "time": {"end": end},
@@ -78,7 +78,7 @@ def bond_failure(state):
 
 simulation.run()
 print(f"first failure at {1e6 * simulation.time:.2f} µs: {simulation.broken_bonds} bonds, then", simulation)
-assert 0 < simulation.time < 16e-6 and simulation.broken_bonds > 0
+assert 0 < simulation.time < 20e-6 and simulation.broken_bonds > 0
 simulation.run()
 result = simulation.result()
 print(result, f"{simulation.broken_bonds} broken bonds")
@@ -87,7 +87,7 @@ assert result.info.status == "finished"
 # %% [markdown]
 # ## Pictures
 #
-# PyVista draws the cells of the points, moved by ten times the displacement. `plot` draws the same with Matplotlib.
+# PyVista draws the cells of the points. `plot` draws them with Matplotlib, moved by the displacement.
 
 # %%
 try:
@@ -95,33 +95,35 @@ try:
 
     mesh = result.to_pyvista()
     plotter = pyvista.Plotter(off_screen=True, window_size=(1200, 700))
-    plotter.add_mesh(mesh, scalars="Damage", cmap="inferno", clim=(0, 1))
+    bar = {"vertical": True, "position_x": 0.9, "position_y": 0.2}
+    plotter.add_mesh(mesh, scalars="Damage", cmap="inferno", clim=(0, 1), scalar_bar_args=bar)
     plotter.view_xy()
+    plotter.camera.tight(padding=0.25, adjust_render_window=False)
     plotter.screenshot("damage-pyvista.png")
 except ImportError as error:
     print(f"no picture by PyVista: {error}")
 
 # %%
 plt.figure(figsize=(7, 3.4))
-result.plot("damage", scale=10, cmap="inferno")
+result.plot("damage", scale=10, cmap="inferno")  # displacements ten times enlarged
 plt.savefig("damage.png", dpi=150, bbox_inches="tight")
 
 # %% [markdown]
 # ## Convergence of the effective stiffness
 #
-# At a fixed horizon the elastic energy converges with the spacing. The effective modulus is that of a homogeneous plate with the same
-# energy at the same mean strain; it lies below the Voigt bound, the mean of the moduli.
+# The elastic energy converges with spacing and horizon to that of the local theory. The effective modulus is that of a homogeneous
+# plate with the same energy at the same mean strain; it lies below the Voigt bound, the mean of the moduli.
 
 # %%
-spacings = [0.75e-3, 0.5e-3, 0.25e-3]
+spacings = [0.5e-3, 0.25e-3, 0.125e-3]
 moduli = []
 for spacing in spacings:
-    plate = build(spacing, end="4 us")
+    plate = build(spacing, end="3 us")
+    plate.no_fail("all")
     state = plate.simulation(keep=[]).run()
     strain = 2 * SPEED * state.time / (LENGTH - 2 * GRIP)
     volume = (LENGTH - 2 * GRIP) * WIDTH * THICKNESS
     moduli.append(2 * state.energies["elastic_energy"] / (strain**2 * volume))
-    assert state.broken_bonds == 0
     fraction = plate.volumes[plate.numbers("inclusions")].sum() / volume
     voigt = fraction * 300e9 + (1 - fraction) * 72e9
     print(f"spacing {1e3 * spacing:.2f} mm: {1e-9 * moduli[-1]:.2f} GPa, Voigt bound {1e-9 * voigt:.1f} GPa")

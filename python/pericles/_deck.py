@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import _pericles, _toml
-from ._errors import DeckError, OutputError, PericlesWarning
+from ._errors import DeckError, OutputError, PericlesError, PericlesWarning
 
 if TYPE_CHECKING:
     from ._functions import Check
@@ -110,8 +110,7 @@ class Deck(MutableMapping[str, Any]):
             self._core()  # errors of syntax with their location
             self._tables = _toml.loads(self._text or "")
             for override in self._overrides:
-                key, value = override.split("=", 1)
-                _set(self._tables, key.strip().split("."), value)
+                _apply(self._tables, override)
             self._source, self._text, self._overrides = self._text, None, []
         return self._tables
 
@@ -142,7 +141,12 @@ class Deck(MutableMapping[str, Any]):
     def with_(self, changes: Mapping[str, Any]) -> Deck:
         """Return a copy with other values of keys, such as ``{"body.spacing": "0.5 mm"}``."""
         deck = self.copy()
-        deck._overrides = deck._overrides + _overrides(changes)
+        overrides = _overrides(changes)
+        if deck._tables is None:
+            deck._overrides = deck._overrides + overrides
+        else:
+            for override in overrides:
+                _apply(deck._tables, override)
         return deck
 
     def to_dict(self) -> dict[str, Any]:
@@ -235,25 +239,27 @@ class Deck(MutableMapping[str, Any]):
             return f'<b>{html.escape(self._name)}</b><ul style="color:#b00020">{rows}</ul>'
 
 
-def _set(tables: Any, path: list[str], text: str) -> None:
-    """Apply an override to tables."""
+def _apply(tables: Any, override: str) -> None:
+    """Apply an override, ``key=value``, to tables."""
+    key, text = override.split("=", 1)
+    path = key.strip().split(".")
     try:
         value = _toml.loads(f"x = {text}")["x"]
     except Exception:
         value = text.strip()
-    for step, following in zip(path[:-1], path[1:]):
-        if isinstance(tables, list):
-            tables = tables[int(step)]
-        else:
-            tables = tables.setdefault(step, [] if following.isdigit() else {})
-    last = path[-1]
-    if isinstance(tables, list):
-        if int(last) == len(tables):
+    try:
+        for step, following in zip(path[:-1], path[1:]):
+            if isinstance(tables, list):
+                tables = tables[int(step)]
+            else:
+                tables = tables.setdefault(step, [] if following.isdigit() else {})
+        last = path[-1]
+        if isinstance(tables, list) and int(last) == len(tables):
             tables.append(value)
         else:
-            tables[int(last)] = value
-    else:
-        tables[last] = value
+            tables[int(last) if isinstance(tables, list) else last] = value
+    except (AttributeError, IndexError, TypeError, ValueError):
+        raise PericlesError(f"the deck has no place for the key `{key.strip()}`") from None
 
 
 def parsed(text: str, name: str, overrides: list[str], sets: list[str]) -> Any:

@@ -125,7 +125,12 @@ def test_numpy_values_and_copies(bar):
     copy = deck.copy()
     copy["body"]["spacing"] = "1 cm"
     assert deck["body"]["spacing"] == 0.125
-    assert deck.with_({"body.spacing": "1 cm"}).values()["body"]["spacing"] == 0.01
+    finer = deck.with_({"body.spacing": "1 cm", "load.0": {"set": "all", "body_force": [1]}})
+    assert finer["body"]["spacing"] == "1 cm" and finer.values()["body"]["spacing"] == 0.01
+    assert pc.Deck.from_toml(finer.to_toml()).values()["load"] == finer.values()["load"] != []
+    with pytest.raises(pc.PericlesError, match="load.7.set"):
+        deck.with_({"load.7.set": "all"})
+    assert pc.modes(finer, count=1).points.shape == (100, 1)
     assert pickle.loads(pickle.dumps(deck)) == deck
     with pytest.raises(pc.PericlesError, match="is a function"):
         pc.Deck.from_dict({"load": [{"body_force": lambda t: 1}]})

@@ -69,7 +69,7 @@ def test_stubs(tmp_path):
     stubtest = pytest.importorskip("mypy.stubtest")
     assert stubtest
     done = subprocess.run(
-        [sys.executable, "-m", "mypy.stubtest", "pericles"],
+        [sys.executable, "-m", "mypy.stubtest", "pericles", "--mypy-config-file", str(ROOT / "pyproject.toml")],
         cwd=tmp_path,
         capture_output=True,
         text=True,

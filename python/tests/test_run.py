@@ -1,5 +1,6 @@
 """Runs of decks, and their results."""
 
+import json
 import pickle
 import subprocess
 import warnings
@@ -15,17 +16,29 @@ EXAMPLES = [path for path in sorted((ROOT / "examples").rglob("*.toml")) if path
 
 
 def short(path: Path) -> dict[str, str]:
-    """Return overrides that cut an example to few steps."""
+    """Return overrides that cut an example to 20 steps, at most two seconds of computing; a static run has few steps."""
     deck = pc.Deck.read(path)
     facts = deck.build().facts
     return {"time.end": f"{min(facts['steps'], 20) * facts['dt']!r} s"}
 
 
+#: Entries of run.json that measure the machine.
+VOLATILE = {"wall_seconds", "directed_bond_updates_per_second", "peak_memory"}
+
+
+def lasting(value):
+    """Return the content of run.json without the entries that differ between two runs of the program."""
+    if isinstance(value, dict):
+        return {key: lasting(entry) for key, entry in value.items() if key not in VOLATILE}
+    return [lasting(entry) for entry in value] if isinstance(value, list) else value
+
+
 def files(folder: Path) -> dict[str, bytes]:
-    """Return the files of a run, except those with clock times or the name of the machine."""
-    skipped = {"run.json", "report.html", ".manifest", ".lock"}
-    found = (path for path in folder.rglob("*") if path.is_file() and path.name not in skipped)
-    return {str(path.relative_to(folder)): path.read_bytes() for path in found}
+    """Return the files of a run; of run.json what two runs of the program have in common."""
+    found = (path for path in folder.rglob("*") if path.is_file() and path.name != ".lock")
+    out = {str(path.relative_to(folder)): path.read_bytes() for path in found}
+    out["run.json"] = json.dumps(lasting(json.loads(out["run.json"]))).encode()
+    return out
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: str(path.relative_to(ROOT / "examples")))
@@ -33,15 +46,8 @@ def files(folder: Path) -> dict[str, bytes]:
 def test_a_run_writes_the_bytes_of_the_program(path, tmp_path):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        deck = pc.Deck.read(path)
-        if pc.Deck.read(path).values()["time"].get("scheme") in ("static", "adr"):
-            changes = {}
-        else:
-            changes = short(path)
-        try:
-            result = pc.run(path, set=changes, out=tmp_path / "python")
-        except pc.PericlesError as error:
-            pytest.skip(f"the example does not run when cut: {error}")
+        changes = short(path)
+        result = pc.run(path, set=changes, out=tmp_path / "python")
     sets = [word for key, value in changes.items() for word in ("--set", f"{key}={value}")]
     done = subprocess.run([*program(), "run", str(path), *sets, "--out", str(tmp_path / "program"), "--quiet"], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
@@ -50,7 +56,6 @@ def test_a_run_writes_the_bytes_of_the_program(path, tmp_path):
     different = [name for name in ours if ours[name] != theirs[name]]
     assert not different
     assert result.info.status == "finished"
-    assert deck.name == str(path)
 
 
 def test_results_of_a_run(plate, tmp_path):
