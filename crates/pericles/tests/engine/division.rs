@@ -60,7 +60,7 @@ fn shares_of(size: &[f64], parts: usize) -> (Vec<Share>, f64) {
 
 #[test]
 fn shares_of_ghosts_equal_those_of_an_independent_program() {
-    // Mean ratio of ghosts and own points, largest share of points at a boundary, mean and largest number of messages.
+    // Mean ratio of ghosts and own points, mean share of points at a boundary, mean and largest number of messages.
     let cases: [(&[f64], usize, f64, f64, [f64; 2]); 3] = [
         (&[46.0; 3], 8, 0.415, 0.34, [7.0, 7.0]),
         (&[46.0; 3], 64, 1.40, 0.78, [14.0, 26.0]),
@@ -79,7 +79,7 @@ fn shares_of_ghosts_equal_those_of_an_independent_program() {
         if boundary.is_nan() {
             continue;
         }
-        let found = most(&|share| share.boundary as f64 / share.owned as f64);
+        let found = mean(&|share| share.boundary as f64 / share.owned as f64);
         assert!(
             (found - boundary).abs() < 0.006,
             "{size:?}, {parts}: {found}"
