@@ -137,7 +137,7 @@ fn pressed(law: &str, tail: &str) -> String {
     let supports = "[sets]\nroot = { where = \"x < 0.03\" }\ntip = { where = \"x > 0.99\" }\n\
          [[constraint]]\nset = \"root\"\ndisplacement = 0\n";
     format!(
-        "{body}{supports}{tail}[time]\nscheme = \"static\"\nend = 1\nsteps = 3\ntolerance = 1e-11\n"
+        "{body}{supports}{tail}[time]\nscheme = \"static\"\nend = 1\nload_steps = 3\ntolerance = 1e-11\n"
     )
 }
 
@@ -174,6 +174,7 @@ fn contact_of_unbonded_points_selects_a_kernel_that_lists_its_bonds() {
 shape = "plate"
 size = [48, 48]
 spacing = 1
+plane = "stress"
 thickness = 1
 [material]
 model = "linear"
