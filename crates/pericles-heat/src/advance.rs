@@ -52,7 +52,7 @@ pub(crate) fn advance(
     scheme: Scheme,
     solver: &mut Solver,
     [t0, t1]: [f64; 2],
-    values: &mut Vec<f64>,
+    values: &mut [f64],
     flows: &mut [f64],
 ) -> Result<()> {
     solver.effort.last = 0;
