@@ -38,7 +38,9 @@ def test_an_interrupted_run_goes_on(out):
     sent = interrupt_after(0.5)
     with pytest.raises(KeyboardInterrupt):
         simulation.run()
-    assert time.monotonic() - sent[0] < 0.2 * (3 if out else 1)
+    late = time.monotonic() - sent[0]
+    print(f"P3 interrupt: {1e3 * late:.0f} ms")
+    assert late < 0.2
     step = simulation.steps_done
     assert 0 < step < simulation.steps
     simulation.step(10)
