@@ -38,7 +38,7 @@ impl Mpi {
     /// Starts MPI; `None` if it has been started before, or if the library does not allow calls from several threads.
     ///
     /// Replaces the panic hook: a panic prints its message and ends all processes of the job with the status
-    /// [`PANICKED`]. Without it the others would wait for ever.
+    /// [`PANICKED`]. Without it the others would never end.
     pub fn start() -> Option<Self> {
         let (universe, threading) = mpi::initialize_with_threading(Threading::Serialized)?;
         if threading < Threading::Serialized {

@@ -31,6 +31,7 @@ const CRATES: &[(&str, &[&str])] = &[
     ("pericles-mesh", &[]),
     ("pericles-solids", &["pericles"]),
     ("pericles-contact", &["pericles"]),
+    ("pericles-mpi", &["pericles"]),
     ("pericles-statics", &["pericles"]),
     ("pericles-heat", &["pericles", "pericles-statics"]),
     (

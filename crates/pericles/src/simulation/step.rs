@@ -1,0 +1,52 @@
+//! One step of a simulation, and its reversal.
+
+use super::Simulation;
+use crate::archive::{Archive, Checkpointed};
+use crate::error::PericlesError;
+use crate::interrupt::Interrupt;
+
+impl Simulation {
+    /// Performs one step; undoes it if it is interrupted, or if the evaluation of a load or motion has failed.
+    pub(super) fn step(
+        &mut self,
+        t_next: f64,
+        interrupt: Interrupt<'_>,
+    ) -> Result<(), PericlesError> {
+        let evaluated = self.system.evaluated_points();
+        let fallible = self.system.can_fail();
+        let copied = fallible || (interrupt.is_possible() && self.integrator.changes_within_step());
+        let copy = copied.then(|| {
+            let mut archive = Archive::default();
+            self.save_motion(&mut archive);
+            archive
+        });
+        let mut stepped = self
+            .integrator
+            .step(&mut self.system, &mut self.state, t_next, interrupt)
+            .and_then(|()| self.system.end_fields(t_next));
+        if fallible && self.system.has_failed() {
+            stepped = Err(PericlesError::Interrupted);
+        }
+        if matches!(stepped, Err(PericlesError::Interrupted)) {
+            self.system.set_evaluated_points(evaluated);
+            if let Some(copy) = copy {
+                self.restore_motion(&copy)?;
+            }
+        }
+        stepped
+    }
+
+    /// Saves everything that a step changes.
+    pub(super) fn save_motion(&self, archive: &mut Archive) {
+        self.state.save(archive);
+        self.system.save(archive);
+        self.integrator.save(archive);
+    }
+
+    pub(super) fn restore_motion(&mut self, archive: &Archive) -> Result<(), PericlesError> {
+        self.state.restore(archive)?;
+        self.check_time()?;
+        self.system.restore(archive)?;
+        self.integrator.restore(archive)
+    }
+}
