@@ -189,7 +189,7 @@ fn newton(
     rounding: f64,
 ) -> Result<()> {
     /// Largest residual relative to the first one.
-    const REACHED: f64 = 1e-11;
+    const REACHED: f64 = 2e-10;
     let n = values.len();
     let domain = problem.diffusion.cloud().domain();
     let norm = |r: &[f64]| {

@@ -273,3 +273,44 @@ fn a_steady_state_without_a_given_temperature_is_refused() {
     let error = pericles::SecondaryField::end_step(&mut field, 1.0, force.operator()).unwrap_err();
     assert!(error.to_string().contains("not unique"), "{error}");
 }
+
+/// Largest number of products of a linear solution for the steady state between two faces.
+fn products(dimension: usize, cells: usize) -> u64 {
+    let cloud = box_of(dimension, cells, 1e-3);
+    let side = cells as f64 * 1e-3;
+    let layer = |low: f64, high: f64| -> Vec<u32> {
+        let inside = |i: &u32| (low..high).contains(&cloud.axis(0)[*i as usize]);
+        (0..cloud.len() as u32).filter(inside).collect()
+    };
+    let conditions = vec![
+        prescribed("left", layer(0.0, 3e-3), 400.0),
+        prescribed("right", layer(side - 3e-3, side), 300.0),
+    ];
+    let diffusion = body(cloud.clone(), 3e-3, 45.0).build().unwrap();
+    let capacity = cloud
+        .volumes()
+        .iter()
+        .map(|volume| 3.6e6 * volume)
+        .collect();
+    let problem = Problem::new(diffusion, capacity, conditions).unwrap();
+    let options = FieldOptions {
+        scheme: Scheme::Steady,
+        step: None,
+    };
+    let start = noise(cloud.len());
+    let field = DiffusingField::new(problem, options, 0.0, start).unwrap();
+    let shared = field.shared();
+    shared.content(1.0);
+    shared.effort().most
+}
+
+#[test]
+fn the_products_of_a_steady_state_do_not_grow_with_the_body() {
+    let plates = [40, 80, 160].map(|cells| products(2, cells));
+    let blocks = [12, 24].map(|cells| products(3, cells));
+    eprintln!("products: {plates:?} {blocks:?}");
+    assert!(
+        plates.iter().chain(&blocks).all(|products| *products <= 20),
+        "{plates:?} {blocks:?}"
+    );
+}
