@@ -4,6 +4,23 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import NDArray
 
+__all__ = [
+    "Snapshot",
+    "field_unit",
+    "Deck",
+    "after_fork",
+    "set_threads",
+    "threads",
+    "OutputFile",
+    "command_line",
+    "compare",
+    "read_table",
+    "Model",
+    "Recording",
+    "Simulation",
+    "__version__",
+]
+
 __version__: str
 
 _Path = str | PathLike[str]
