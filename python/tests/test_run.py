@@ -52,8 +52,10 @@ def test_a_run_writes_the_bytes_of_the_program(path, tmp_path):
     done = subprocess.run([*program(), "run", str(path), *sets, "--out", str(tmp_path / "program"), "--quiet"], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     ours, theirs = files(tmp_path / "python"), files(tmp_path / "program")
-    assert ours.keys() == theirs.keys()
-    different = [name for name in ours if ours[name] != theirs[name]]
+    # The clock decides at which steps a run writes checkpoints.
+    unpaired = [name for name in ours.keys() ^ theirs.keys() if not name.startswith("checkpoints/")]
+    assert not unpaired
+    different = [name for name in ours.keys() & theirs.keys() if ours[name] != theirs[name]]
     assert not different
     assert result.info.status == "finished"
 
