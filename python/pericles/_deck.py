@@ -277,7 +277,7 @@ def located(error: DeckError, text: str, name: str) -> None:
     for problem in error.problems:
         path = problem.path or (_toml.path_at(text, problem.line) if problem.file == name else _of_override(problem))
         problem = problem._replace(path=path)
-        if name.startswith("<dict") and problem.file == name and path:
+        if name.startswith("<dict") and problem.file == name and path and not problem.message.startswith(path):
             place = f"{name}:{problem.line}:{problem.column}: "
             problem = problem._replace(text=problem.text.replace(place, f"{place}{path}: ", 1))
         problems.append(problem)
