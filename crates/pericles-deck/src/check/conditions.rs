@@ -81,10 +81,12 @@ impl Check {
         if let Some(step) = conduction.step {
             self.positive(key.key("step"), step);
         }
-        self.between(
+        let share = conduction.broken_conductance;
+        self.within(
+            (0.0..=1.0).contains(&share),
             key.key("broken_conductance"),
-            conduction.broken_conductance,
-            [0.0, 1.0],
+            share,
+            "allowed: a number from 0 to 1",
         );
         for (number, material) in thermal.materials.iter().enumerate() {
             let key = key.key("material").index(number);

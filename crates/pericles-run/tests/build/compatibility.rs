@@ -237,7 +237,8 @@ fn the_number_of_incompatible_cells_does_not_grow() {
             .count()
     };
     let bodies: usize = FORMS.iter().map(features).sum();
-    // The current numbers: 25 cells of forms and of conditions other than contact, 30 of the three kinds of contact.
-    assert!(cells <= 55, "{cells}");
+    // The current numbers: 25 cells of forms and of conditions other than contact, 29 of the three kinds of contact, and 5 of the
+    // scheme for heat conduction only, whose points do not move.
+    assert!(cells <= 59, "{cells}");
     assert!(bodies <= 57, "{bodies}");
 }
