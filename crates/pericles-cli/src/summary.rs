@@ -47,7 +47,11 @@ pub(crate) fn closing(report: &Report, place: &Path) -> Result<(), IoError> {
         console::print(format_args!("stop condition reached: {reason}"))?;
     }
     if let Some(audit) = &report.audit {
-        energies(audit)?;
+        // A body that does not move, with heat conduction only, has neither.
+        if audit.momentum.is_some() || audit.static_balance.is_some() {
+            energies(audit)?;
+        }
+        heat(audit)?;
         if let Some(error) = audit.force_rounding {
             console::print(format_args!(
                 "rounding error of single-precision forces at the end: {} of the largest force",
@@ -78,6 +82,29 @@ pub(crate) fn closing(report: &Report, place: &Path) -> Result<(), IoError> {
     console::print(format_args!(
         "Results in {folder}: {}. List them with `pericles info {folder}`.",
         written.join(", ")
+    ))
+}
+
+fn heat(audit: &Audit) -> Result<(), IoError> {
+    let Some(heat) = &audit.heat else {
+        return Ok(());
+    };
+    let through: f64 = heat.inflows.iter().map(|one| one.heat).sum();
+    let balance = match (heat.balance, heat.balance_relative) {
+        (Some(error), Some(relative)) => format!(
+            "; heat balance: error {} ({})",
+            quantity(error, "J"),
+            percent(relative)
+        ),
+        _ => String::new(),
+    };
+    console::print(format_args!(
+        "heat: content {}, initially {}; {} through conditions{balance}; temperature {} to {}",
+        quantity(heat.content, "J"),
+        quantity(heat.initial_content, "J"),
+        quantity(through, "J"),
+        quantity(heat.lowest, "K"),
+        quantity(heat.highest, "K"),
     ))
 }
 
