@@ -61,7 +61,8 @@ fn shares_of(size: &[f64], parts: usize) -> (Vec<Share>, f64) {
 #[test]
 fn shares_of_ghosts_equal_those_of_an_independent_program() {
     // Mean ratio of ghosts and own points, mean share of points at a boundary, mean and largest number of messages.
-    let cases: [(&[f64], usize, f64, f64, [f64; 2]); 3] = [
+    type Case<'a> = (&'a [f64], usize, f64, f64, [f64; 2]);
+    let cases: [Case<'_>; 3] = [
         (&[46.0; 3], 8, 0.415, 0.34, [7.0, 7.0]),
         (&[46.0; 3], 64, 1.40, 0.78, [14.0, 26.0]),
         (&[1000.0; 2], 64, 0.085, f64::NAN, [f64::NAN; 2]),
@@ -98,7 +99,8 @@ fn shares_of_ghosts_equal_those_of_an_independent_program() {
 
 #[test]
 fn bisection_does_not_depend_on_how_the_points_are_spread() {
-    let bodies: [(PointCloud, fn(usize) -> u32); 3] = [
+    type Weight = fn(usize) -> u32;
+    let bodies: [(PointCloud, Weight); 3] = [
         (block(&[9.0, 7.0, 5.0]), |i| (i % 5) as u32),
         // All points in one place.
         (
