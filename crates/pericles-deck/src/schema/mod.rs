@@ -192,7 +192,9 @@ mod tests {
             ("youngs_modulus", Some("[material]")),
             ("density", Some("[material]")),
             ("segment", Some("[[crack]]")),
-            ("scheme", Some("[time]")),
+            // A key of [time] and of [thermal].
+            ("scheme", None),
+            ("end", Some("[time]")),
             ("animation", Some("[[output.picture]]")),
             ("set", None),
             ("radius", Some("[body]")),
