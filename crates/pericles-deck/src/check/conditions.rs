@@ -8,6 +8,9 @@ use crate::key_path::KeyPath;
 use crate::model::Model;
 use crate::thermal::{Conduction, LARGEST, Thermal, ThermalAmplitude};
 
+/// What a fraction may be.
+const FRACTION: &str = "allowed: a number from 0 to 1";
+
 impl Check {
     pub(super) fn conditions(&mut self, model: &Model) {
         for (k, initial) in model.initial.iter().enumerate() {
@@ -86,7 +89,7 @@ impl Check {
             (0.0..=1.0).contains(&share),
             key.key("broken_conductance"),
             share,
-            "allowed: a number from 0 to 1",
+            FRACTION,
         );
         for (number, material) in thermal.materials.iter().enumerate() {
             let key = key.key("material").index(number);
@@ -118,10 +121,11 @@ impl Check {
                     );
                 }
                 ThermalAmplitude::Radiation { emissivity, .. } => {
-                    self.between(
+                    self.within(
+                        (0.0..=1.0).contains(&emissivity),
                         key.key("radiation").key("emissivity"),
                         emissivity,
-                        [0.0, 1.0],
+                        FRACTION,
                     );
                 }
                 _ => {}

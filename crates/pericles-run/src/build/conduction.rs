@@ -6,6 +6,7 @@ use pericles::PointScalar;
 use pericles::boundary::TimeFunction;
 use pericles::parallel::for_each_point;
 use pericles::space::PointCloud;
+use pericles::units::precise;
 use pericles_deck::{
     Body, BuildError, Caution, Component, ConductionScheme, ConductivityMean, Fault, KeyPath,
     MaterialModel, ModelWarning, Remark, Solid, SolidShape, Thermal, ThermalAmplitude,
@@ -91,6 +92,7 @@ impl Assembler<'_> {
         let conditions = conditions.collect::<Result<Vec<_>, _>>()?;
         let problem = Problem::new(diffusion, capacity, conditions);
         let problem = problem.map_err(|error| at("thermal.condition", error))?;
+        self.check_thermal_step(conduction.step)?;
         let options = FieldOptions {
             scheme: match conduction.scheme {
                 ConductionScheme::Explicit => Scheme::Explicit,
@@ -108,6 +110,25 @@ impl Assembler<'_> {
         };
         let field = DiffusingField::new(problem, options, 0.0, start);
         field.map(Some).map_err(|error| at("thermal", error))
+    }
+
+    /// Rejects thermal steps of which a run would need very many.
+    fn check_thermal_step(&self, step: Option<f64>) -> Result<(), BuildError> {
+        const MOST: f64 = 1e9;
+        let end = self.model.time.end;
+        match step {
+            Some(step) if end / step > MOST => {
+                let fault = Fault::OutOfRange {
+                    value: precise(step, "s"),
+                    allowed: format!(
+                        "allowed: at least {}, a billionth of time.end",
+                        precise(end / MOST, "s")
+                    ),
+                };
+                Err(at_path("thermal.step", fault))
+            }
+            _ => Ok(()),
+        }
     }
 
     fn thermal_constant(
