@@ -92,7 +92,6 @@ impl Assembler<'_> {
         let conditions = conditions.collect::<Result<Vec<_>, _>>()?;
         let problem = Problem::new(diffusion, capacity, conditions);
         let problem = problem.map_err(|error| at("thermal.condition", error))?;
-        self.check_thermal_step(conduction.step)?;
         let options = FieldOptions {
             scheme: match conduction.scheme {
                 ConductionScheme::Explicit => Scheme::Explicit,
@@ -109,26 +108,32 @@ impl Assembler<'_> {
             }
         };
         let field = DiffusingField::new(problem, options, 0.0, start);
-        field.map(Some).map_err(|error| at("thermal", error))
+        let field = field.map_err(|error| at("thermal", error))?;
+        if let Some(step) = conduction.step {
+            self.check_thermal_steps(step, "step", "a longer thermal step")?;
+        }
+        if conduction.scheme == ConductionScheme::Explicit {
+            let limit = field.shared().explicit_limit(0.0);
+            self.check_thermal_steps(limit, "scheme", "an implicit scheme")?;
+        }
+        Ok(Some(field))
     }
 
-    /// Rejects thermal steps of which a run would need very many.
-    fn check_thermal_step(&self, step: Option<f64>) -> Result<(), BuildError> {
+    /// Rejects thermal steps (s) of which a run would need very many.
+    fn check_thermal_steps(&self, step: f64, key: &str, remedy: &str) -> Result<(), BuildError> {
         const MOST: f64 = 1e9;
         let end = self.model.time.end;
-        match step {
-            Some(step) if end / step > MOST => {
-                let fault = Fault::OutOfRange {
-                    value: precise(step, "s"),
-                    allowed: format!(
-                        "allowed: at least {}, a billionth of time.end",
-                        precise(end / MOST, "s")
-                    ),
-                };
-                Err(at_path("thermal.step", fault))
-            }
-            _ => Ok(()),
+        if end / step <= MOST {
+            return Ok(());
         }
+        let fault = Fault::OutOfRange {
+            value: format!("a thermal step of {}", precise(step, "s")),
+            allowed: format!(
+                "allowed: at least {}, a billionth of time.end; use {remedy}",
+                precise(end / MOST, "s")
+            ),
+        };
+        Err(at_path(KeyPath::from("thermal").key(key), fault))
     }
 
     fn thermal_constant(
