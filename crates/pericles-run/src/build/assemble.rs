@@ -117,6 +117,7 @@ pub fn assemble(
         cloud.spacing(),
         &mut warnings,
     );
+    assembler.check_thermal_steps(&system, steps.dt)?;
     assembler.judge_two_steps(&*integrator, &steps, &mut warnings);
     assembler.judge_breaking(&system, &state, constants.as_ref(), &steps, &mut warnings);
     let ends = assembler.add_ends(&mut system, ends, &state, &steps, resources, &mut warnings)?;

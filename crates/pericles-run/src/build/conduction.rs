@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use pericles::PointScalar;
 use pericles::boundary::TimeFunction;
 use pericles::parallel::for_each_point;
 use pericles::space::PointCloud;
 use pericles::units::precise;
+use pericles::{PointScalar, System};
 use pericles_deck::{
     Body, BuildError, Caution, Component, ConductionScheme, ConductivityMean, Fault, KeyPath,
     MaterialModel, ModelWarning, Remark, Solid, SolidShape, Thermal, ThermalAmplitude,
@@ -108,32 +108,36 @@ impl Assembler<'_> {
             }
         };
         let field = DiffusingField::new(problem, options, 0.0, start);
-        let field = field.map_err(|error| at("thermal", error))?;
-        if let Some(step) = conduction.step {
-            self.check_thermal_steps(step, "step", "a longer thermal step")?;
-        }
-        if conduction.scheme == ConductionScheme::Explicit {
-            let limit = field.shared().explicit_limit(0.0);
-            self.check_thermal_steps(limit, "scheme", "an implicit scheme")?;
-        }
-        Ok(Some(field))
+        field.map(Some).map_err(|error| at("thermal", error))
     }
 
-    /// Rejects thermal steps (s) of which a run would need very many.
-    fn check_thermal_steps(&self, step: f64, key: &str, remedy: &str) -> Result<(), BuildError> {
-        const MOST: f64 = 1e9;
-        let end = self.model.time.end;
-        if end / step <= MOST {
+    /// Rejects heat conduction that would need very many of its own steps within a step of the run, `dt` (s): a step cannot
+    /// be interrupted.
+    pub(super) fn check_thermal_steps(&self, system: &System, dt: f64) -> Result<(), BuildError> {
+        const MOST: f64 = 1e5;
+        let mut fields = system.fields();
+        let Some(field) = fields.find_map(|field| field.downcast_ref::<DiffusingField>()) else {
+            return Ok(());
+        };
+        let field = field.shared();
+        let own = field.options().step;
+        let explicit = field.options().scheme == Scheme::Explicit;
+        let limit = explicit.then(|| field.explicit_limit(0.0));
+        let whole = own.map_or(dt, |own| own.max(dt));
+        let shortest = [own, limit].into_iter().flatten();
+        let shortest = shortest.fold(f64::INFINITY, f64::min);
+        if whole / shortest <= MOST {
             return Ok(());
         }
         let fault = Fault::OutOfRange {
-            value: format!("a thermal step of {}", precise(step, "s")),
+            value: format!("a thermal step of {}", precise(shortest, "s")),
             allowed: format!(
-                "allowed: at least {}, a billionth of time.end; use {remedy}",
-                precise(end / MOST, "s")
+                "allowed: at least {}, as a step of the run can contain {MOST:e} thermal steps; use a smaller dt, a \
+                 longer thermal step or an implicit scheme",
+                precise(whole / MOST, "s")
             ),
         };
-        Err(at_path(KeyPath::from("thermal").key(key), fault))
+        Err(at_path("thermal.scheme", fault))
     }
 
     fn thermal_constant(
