@@ -6,13 +6,17 @@ use pericles::boundary::Exchange;
 use pericles::operator::{Force, PointSubset};
 use pericles::{Configuration, Interaction, InteractionStep, PointScalar, Result, StepEnd};
 
+use super::search::Candidates;
 use super::{Listed, PointContact};
 use crate::bodies::Touching;
 use crate::law::PairLaw;
-use crate::vector::{V3, dot, plus, scaled};
+use crate::vector::{V3, dot, minus, plus, scaled};
 
 /// Points per task.
 const TASK: usize = 128;
+
+/// Relative margin of the first test of a pair, far above the rounding errors of differences of positions.
+const MARGIN: f64 = 1e-6;
 
 /// A pair in contact, seen from its first point.
 #[derive(Debug, Clone, Copy)]
@@ -32,23 +36,42 @@ struct Contact {
 
 /// Sums over the contacts of a point.
 #[derive(Debug, Clone, Copy, Default)]
-struct OfPoint {
+pub(super) struct OfPoint {
     force: V3,
     drag: V3,
     contacts: u64,
     overlap: f64,
 }
 
+/// Memory of the evaluation at the end of a step.
+#[derive(Debug, Default)]
+pub(super) struct Work {
+    places: Vec<V3>,
+    sums: Vec<OfPoint>,
+}
+
 impl Touching {
-    /// Returns the contact of two points at displacement u, if they touch.
-    #[inline]
-    fn contact(&self, u: &[f64], [i, j]: [usize; 2]) -> Option<Contact> {
+    /// Returns the vector (m) from one point to another in the reference configuration and at displacement u.
+    #[inline(always)]
+    fn apart<const D: usize>(&self, u: &[f64], [i, j]: [usize; 2]) -> [V3; 2] {
         let (n, x) = (self.cloud.len(), self.cloud.positions());
         let (mut xi, mut y) = ([0.0; 3], [0.0; 3]);
-        for c in 0..self.cloud.dimension() {
+        for c in 0..D {
             xi[c] = x[c * n + j] - x[c * n + i];
             y[c] = xi[c] + (u[c * n + j] - u[c * n + i]);
         }
+        [xi, y]
+    }
+
+    /// Returns the contact of two points at displacement u, if they touch.
+    #[inline(always)]
+    fn contact(&self, u: &[f64], [i, j]: [usize; 2]) -> Option<Contact> {
+        // Loops over components of known number are unrolled.
+        let [xi, y] = match self.cloud.dimension() {
+            1 => self.apart::<1>(u, [i, j]),
+            2 => self.apart::<2>(u, [i, j]),
+            _ => self.apart::<3>(u, [i, j]),
+        };
         let square = dot(y, y);
         let size = self.law.distance * (0.5 * (self.size[i] + self.size[j]));
         // Points at the same place have no direction of contact.
@@ -63,7 +86,7 @@ impl Touching {
         }
         let stiffness = self.pair_stiffness(i, j);
         Some(Contact {
-            normal: y.map(|y| y / distance),
+            normal: scaled(1.0 / distance, y),
             distance,
             overlap,
             limit,
@@ -95,22 +118,72 @@ impl Touching {
 }
 
 impl PointContact {
-    /// Evaluates `of_point` for the given points in parallel, in their order.
-    fn each<T: Send>(&self, points: &[u32], of_point: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
-        let points = points.par_iter().with_min_len(TASK);
-        points.map(|&i| of_point(i as usize)).collect()
+    /// Determines the positions (m) of the points that may touch others; other entries of `places` are unchanged.
+    fn place(&self, list: &Candidates, u: &[f64], places: &mut Vec<V3>) {
+        let (n, x) = (self.touching.cloud.len(), self.touching.cloud.positions());
+        places.resize(n, [0.0; 3]);
+        let tasks = places.par_chunks_mut(TASK).enumerate();
+        tasks.for_each(|(task, places)| {
+            for &i in within(list.exposed(), task).1 {
+                let i = i as usize;
+                for c in 0..self.touching.cloud.dimension() {
+                    places[i - task * TASK][c] = x[c * n + i] + u[c * n + i];
+                }
+            }
+        });
     }
 
-    /// Adds vectors (N) at points as force densities.
-    fn add_at(&self, points: &[u32], vectors: impl Iterator<Item = V3>, out: &mut [f64]) {
-        let (n, volumes) = (self.touching.cloud.len(), self.touching.cloud.volumes());
-        for (&i, vector) in points.iter().zip(vectors) {
-            let i = i as usize;
-            for c in 0..self.touching.cloud.dimension() {
-                out[c * n + i] += vector[c] / volumes[i];
+    /// Calls `found` for the contacts of point i at displacement u, in ascending order of the other points.
+    #[inline(always)]
+    fn visit(
+        &self,
+        list: &Candidates,
+        (u, places): (&[f64], &[V3]),
+        i: usize,
+        mut found: impl FnMut(&Contact, usize),
+    ) {
+        let size = &self.touching.size;
+        let factor = 0.5 * self.touching.law.distance * (1.0 + MARGIN);
+        let (place, half) = (places[i], size[i]);
+        for j in list.row(i) {
+            let apart = minus(places[j], place);
+            let reach = factor * (half + size[j]);
+            if dot(apart, apart) < reach * reach
+                && let Some(contact) = self.touching.contact(u, [i, j])
+            {
+                found(&contact, j);
             }
         }
     }
+
+    /// Adds vectors (N) at points, given in ascending order, as force densities.
+    fn add_at(&self, points: &[u32], vector: impl Fn(usize) -> V3 + Sync, out: &mut [f64]) {
+        let volumes = self.touching.cloud.volumes();
+        for (c, out) in out.chunks_mut(volumes.len()).enumerate() {
+            out.par_chunks_mut(TASK)
+                .enumerate()
+                .for_each(|(task, out)| {
+                    let (first, own) = within(points, task);
+                    for (k, &i) in own.iter().enumerate() {
+                        let i = i as usize;
+                        out[i - task * TASK] += vector(first + k)[c] / volumes[i];
+                    }
+                });
+        }
+    }
+}
+
+/// Evaluates `of_point` for the given points in parallel, in their order.
+fn each<T: Send>(points: &[u32], of_point: impl Fn(usize) -> T + Sync + Send, into: &mut Vec<T>) {
+    let points = points.par_iter().with_min_len(TASK);
+    points.map(|&i| of_point(i as usize)).collect_into_vec(into);
+}
+
+/// Returns those of the given points, in ascending order, that belong to a task, and the place of the first.
+fn within(points: &[u32], task: usize) -> (usize, &[u32]) {
+    let place = |point: usize| points.partition_point(|&i| (i as usize) < point);
+    let first = place(task * TASK);
+    (first, &points[first..place((task + 1) * TASK)])
 }
 
 impl Interaction for PointContact {
@@ -133,41 +206,41 @@ impl Interaction for PointContact {
                 &wanted
             }
         };
-        let forces = self.each(points, |i| {
+        let (mut places, mut forces) = (Vec::new(), Vec::new());
+        self.place(&list, at.u, &mut places);
+        let force = |i| {
             let mut sum = [0.0; 3];
-            for j in list.row(i) {
-                if let Some(contact) = self.touching.contact(at.u, [i, j]) {
-                    sum = plus(sum, -contact.force, contact.normal);
-                }
-            }
+            self.visit(&list, (at.u, &places), i, |contact, _| {
+                sum = plus(sum, -contact.force, contact.normal);
+            });
             sum
-        });
-        self.add_at(points, forces.into_iter(), out);
+        };
+        each(points, force, &mut forces);
+        self.add_at(points, |k| forces[k], out);
     }
 
     fn energy(&self, at: &Configuration<'_>) -> f64 {
         let list = self.candidates(at);
         let (law, points) = (self.touching.law.law, list.exposed());
+        let mut places = Vec::new();
+        self.place(&list, at.u, &mut places);
         pericles::sum::sum(points.len(), |k| {
-            let i = points[k] as usize;
-            let contacts = list
-                .row(i)
-                .filter_map(|j| self.touching.contact(at.u, [i, j]));
-            0.5 * contacts
-                .map(|one| law.energy(one.force, one.overlap))
-                .sum::<f64>()
+            let mut sum = 0.0;
+            self.visit(&list, (at.u, &places), points[k] as usize, |contact, _| {
+                sum += law.energy(contact.force, contact.overlap);
+            });
+            0.5 * sum
         })
     }
 
     fn add_tangent(&self, at: &Configuration<'_>, direction: &[f64], out: &mut [f64]) {
         let list = self.candidates(at);
         let n = self.touching.cloud.len();
-        let changes = self.each(list.exposed(), |i| {
+        let (mut places, mut changes) = (Vec::new(), Vec::new());
+        self.place(&list, at.u, &mut places);
+        let change = |i| {
             let mut sum = [0.0; 3];
-            for j in list.row(i) {
-                let Some(contact) = self.touching.contact(at.u, [i, j]) else {
-                    continue;
-                };
+            self.visit(&list, (at.u, &places), i, |contact, j| {
                 let mut d = [0.0; 3];
                 for c in 0..self.touching.cloud.dimension() {
                     d[c] = direction[c * n + j] - direction[c * n + i];
@@ -177,36 +250,41 @@ impl Interaction for PointContact {
                 let turned = contact.force / contact.distance;
                 sum = plus(sum, (slope + turned) * along, contact.normal);
                 sum = plus(sum, -turned, d);
-            }
+            });
             sum
-        });
-        self.add_at(list.exposed(), changes.into_iter(), out);
+        };
+        each(list.exposed(), change, &mut changes);
+        self.add_at(list.exposed(), |k| changes[k], out);
     }
 
     fn end_step(&mut self, end: &InteractionStep<'_>, out: &mut [f64]) -> Exchange {
         let step = end.step;
         let list = self.candidates(&end.configuration());
         let with_drag = !self.drag.is_empty();
-        let sums = self.each(list.exposed(), |i| {
+        // Kept for the next step, because new memory costs as much as the contacts.
+        let Work {
+            mut places,
+            mut sums,
+        } = std::mem::take(&mut self.work);
+        self.place(&list, step.u, &mut places);
+        let of_point = |i| {
             let mut sum = OfPoint::default();
-            for j in list.row(i) {
-                let Some(contact) = self.touching.contact(step.u, [i, j]) else {
-                    continue;
-                };
+            self.visit(&list, (step.u, &places), i, |contact, j| {
                 sum.force = plus(sum.force, -contact.force, contact.normal);
                 sum.contacts += 1;
                 sum.overlap = sum.overlap.max(contact.overlap / contact.limit);
                 if with_drag {
-                    let drag = self.touching.drag(&contact, [i, j], step);
+                    let drag = self.touching.drag(contact, [i, j], step);
                     sum.drag = plus(sum.drag, 1.0, drag);
                 }
-            }
+            });
             sum
-        });
+        };
+        each(list.exposed(), of_point, &mut sums);
         self.pairs = sums.iter().map(|sum| sum.contacts).sum::<u64>() / 2;
         self.overlap = sums.iter().map(|sum| sum.overlap).fold(0.0, f64::max);
-        let forces = sums.iter().map(|sum| plus(sum.force, 1.0, sum.drag));
-        self.add_at(list.exposed(), forces, out);
+        let force = |k: usize| plus(sums[k].force, 1.0, sums[k].drag);
+        self.add_at(list.exposed(), force, out);
         if with_drag {
             let (n, dimension) = (self.touching.cloud.len(), self.touching.cloud.dimension());
             let mut drag = vec![0.0; self.drag.len()];
@@ -221,6 +299,7 @@ impl Interaction for PointContact {
             self.dissipated -= 0.5 * step.dt * power;
             self.drag = drag;
         }
+        self.work = Work { places, sums };
         Exchange::default()
     }
 
@@ -268,5 +347,6 @@ pericles::saved! {
         overlap: array("contact/overlap"),
         touching, pieces, skin: fixed,
         list: set(std::sync::Mutex::new(Listed::default())),
+        work: set(Work::default()),
     }
 }

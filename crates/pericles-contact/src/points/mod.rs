@@ -1,5 +1,6 @@
 //! Contact between points.
 
+mod cells;
 mod contact;
 mod ranges;
 mod search;
@@ -13,6 +14,7 @@ use pericles::{Configuration, PointScalar, Result};
 use crate::bodies::{ContactBodies, Touching};
 use crate::error::ContactError;
 use crate::law::{ContactLaw, ContactPairs};
+use contact::Work;
 use search::Candidates;
 
 /// Skin of the search relative to the mean size of the cells.
@@ -36,6 +38,7 @@ pub struct PointContact {
     pairs: u64,
     /// Largest overlap at the last accepted state, relative to the contact distance.
     overlap: f64,
+    work: Work,
 }
 
 /// The present candidates.
@@ -80,6 +83,7 @@ impl PointContact {
             dissipated: 0.0,
             pairs: 0,
             overlap: 0.0,
+            work: Work::default(),
         })
     }
 

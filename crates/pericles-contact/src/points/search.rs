@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use pericles::operator::{Breakable, Force};
 use pericles::parallel::BLOCK;
 
+use super::cells::Cells;
 use super::ranges::Ranges;
 use crate::bodies::Touching;
 use crate::law::ContactPairs;
@@ -51,15 +52,17 @@ impl Candidates {
         let largest = touching.size.iter().copied().fold(0.0, f64::max);
         let reach = touching.law.distance * largest;
         let ranges = Ranges::new(pieces, &places, u, skin, reach);
-        let cells = Cells::new(&places, touching.cloud.dimension(), reach + skin);
+        let most = reach + skin;
+        let cells = Cells::new(&places, touching.cloud.dimension(), most);
         let of_block = |block: usize| {
             let (mut near, mut lengths) = (Vec::new(), Vec::new());
             for i in block * BLOCK..((block + 1) * BLOCK).min(n) {
                 let first = near.len();
-                cells.visit(places[i], |j| {
-                    let j = j as usize;
-                    if j != i && may_touch(touching, &places, [i, j], skin) {
-                        near.push(j as u32);
+                cells.visit(places[i], |other| {
+                    let apart = minus(other.place, places[i]);
+                    let (square, j) = (dot(apart, apart), other.point as usize);
+                    if square < most * most && j != i && may_touch(touching, [i, j], square, skin) {
+                        near.push(other.point);
                     }
                 });
                 near[first..].sort_unstable();
@@ -80,7 +83,7 @@ impl Candidates {
             near.extend(own);
         }
         let mut candidates = Self {
-            open: vec![true; near.len()],
+            open: vec![bonds(touching, forces).is_none(); near.len()],
             starts,
             near,
             exposed: Vec::new(),
@@ -129,7 +132,7 @@ impl Candidates {
         self.find_exposed();
     }
 
-    /// Decides for the rows of ranges of points which pairs are open.
+    /// Decides for the rows of ranges of points which pairs are open. Pairs that are open remain so: bonds do not heal.
     fn close_bonded(
         &mut self,
         touching: &Touching,
@@ -146,16 +149,21 @@ impl Candidates {
                     .map(move |first| first..(first + BLOCK).min(end))
             })
             .collect();
-        let (starts, near) = (&self.starts, &self.near);
+        let (starts, near, before) = (&self.starts, &self.near, &self.open);
         let of_block = |block: &std::ops::Range<usize>| {
-            let mut open = vec![true; starts[block.end] - starts[block.start]];
+            let mut open = before[starts[block.start]..starts[block.end]].to_vec();
             if let Some(bonds) = bonds(touching, forces) {
                 for i in block.clone() {
                     let row = &near[starts[i]..starts[i + 1]];
+                    let own = starts[i] - starts[block.start];
+                    let own = &mut open[own..own + row.len()];
                     let (Some(&low), Some(&high)) = (row.first(), row.last()) else {
                         continue;
                     };
-                    let own = &mut open[starts[i] - starts[block.start]..];
+                    if !own.contains(&false) {
+                        continue;
+                    }
+                    own.fill(true);
                     bonds.for_each_intact_of(i, &mut |j| {
                         let j = j as u32;
                         if (low..=high).contains(&j)
@@ -216,87 +224,11 @@ fn places(touching: &Touching, u: &[f64]) -> Vec<V3> {
     pericles::parallel::for_each_point(n, &place)
 }
 
-fn may_touch(touching: &Touching, places: &[V3], [i, j]: [usize; 2], skin: f64) -> bool {
-    let apart = minus(places[j], places[i]);
+/// Returns whether two points at a distance with the square `square` (m²) may touch before they have moved relative to
+/// each other by the skin (m).
+fn may_touch(touching: &Touching, [i, j]: [usize; 2], square: f64, skin: f64) -> bool {
     let reach = touching.law.distance * 0.5 * (touching.size[i] + touching.size[j]) + skin;
     let piece = &touching.bodies.piece;
     let wanted = touching.law.pairs != ContactPairs::Pieces || piece[i] != piece[j];
-    wanted && dot(apart, apart) < reach * reach
-}
-
-/// Points sorted into cells. Cells share buckets by a hash function, so that the memory does not depend on how far
-/// fragments fly apart.
-struct Cells {
-    side: f64,
-    dimension: usize,
-    mask: u64,
-    starts: Vec<u32>,
-    order: Vec<u32>,
-}
-
-impl Cells {
-    fn new(places: &[V3], dimension: usize, side: f64) -> Self {
-        let buckets = (2 * places.len()).next_power_of_two().max(2);
-        let mut cells = Self {
-            side,
-            dimension,
-            mask: buckets as u64 - 1,
-            starts: vec![0; buckets + 1],
-            order: vec![0; places.len()],
-        };
-        let bucket: Vec<u32> = places
-            .par_iter()
-            .map(|&y| cells.bucket(cells.cell(y)) as u32)
-            .collect();
-        for &b in &bucket {
-            cells.starts[b as usize + 1] += 1;
-        }
-        for b in 0..buckets {
-            cells.starts[b + 1] += cells.starts[b];
-        }
-        let mut next = cells.starts.clone();
-        for (i, &b) in bucket.iter().enumerate() {
-            cells.order[next[b as usize] as usize] = i as u32;
-            next[b as usize] += 1;
-        }
-        cells
-    }
-
-    fn cell(&self, y: V3) -> [i64; 3] {
-        y.map(|x| (x / self.side).floor() as i64)
-    }
-
-    fn bucket(&self, cell: [i64; 3]) -> u64 {
-        /// Large odd numbers, as in Teschner et al. (2003).
-        const FACTORS: [u64; 3] = [73_856_093, 19_349_663, 83_492_791];
-        let mut hash = 0;
-        for (x, factor) in cell.iter().zip(FACTORS) {
-            hash ^= (*x as u64).wrapping_mul(factor);
-        }
-        hash & self.mask
-    }
-
-    /// Calls `found` once for each point in the cell of y and in the cells around it, and for others that share their
-    /// buckets.
-    fn visit(&self, y: V3, mut found: impl FnMut(u32)) {
-        let centre = self.cell(y);
-        let span = |c: usize| if c < self.dimension { -1..=1 } else { 0..=0 };
-        let (mut seen, mut count) = ([0u64; 27], 0);
-        for dx in span(0) {
-            for dy in span(1) {
-                for dz in span(2) {
-                    let cell = [centre[0] + dx, centre[1] + dy, centre[2] + dz];
-                    let bucket = self.bucket(cell);
-                    if seen[..count].contains(&bucket) {
-                        continue;
-                    }
-                    seen[count] = bucket;
-                    count += 1;
-                    let own = self.starts[bucket as usize]..self.starts[bucket as usize + 1];
-                    let own = &self.order[own.start as usize..own.end as usize];
-                    own.iter().for_each(|&j| found(j));
-                }
-            }
-        }
-    }
+    wanted && square < reach * reach
 }
