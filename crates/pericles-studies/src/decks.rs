@@ -12,9 +12,11 @@ macro_rules! decks {
     };
 }
 
-const DECKS: [(&str, &str); 19] = decks![
+const DECKS: [(&str, &str); 21] = decks![
     "examples/contact/kalthoff-winkler.toml",
     "examples/fracture/branching.toml",
+    "examples/heat/bimaterial-strip.toml",
+    "examples/heat/thermal-shock.toml",
     "examples/multi-time-step/inclusion.toml",
     "validation/contact/hertz.toml",
     "validation/contact/kalthoff-prescribed.toml",

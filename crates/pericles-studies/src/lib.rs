@@ -26,6 +26,7 @@ mod data;
 mod decks;
 mod dispersion;
 mod fracture;
+mod heat;
 mod manifolds;
 mod multi_time_step;
 mod nonlocal_wave;
@@ -47,11 +48,12 @@ pub use table::table;
 
 use study::Topic;
 
-const TOPICS: [&Topic; 10] = [
+const TOPICS: [&Topic; 11] = [
     &absorbing_boundaries::TOPIC,
     &contact::TOPIC,
     &dispersion::TOPIC,
     &fracture::TOPIC,
+    &heat::TOPIC,
     &manifolds::TOPIC,
     &multi_time_step::TOPIC,
     &nonlocal_wave::TOPIC,

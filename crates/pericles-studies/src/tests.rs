@@ -77,6 +77,11 @@ fn contact_studies_are_within_tolerance() {
     hold_all_of(&contact::TOPIC);
 }
 
+#[test]
+fn heat_studies_are_within_tolerance() {
+    hold_all_of(&heat::TOPIC);
+}
+
 /// The notched plate takes a minute.
 #[test]
 fn statics_studies_are_within_tolerance() {
