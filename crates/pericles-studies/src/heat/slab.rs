@@ -65,20 +65,23 @@ impl Ends {
         };
         let q = PI / LENGTH;
         let rate = |n: f64| (n * q).powi(2) * DIFFUSIVITY;
-        let series = format!(
-            "300 + 100*sin({q:?}*x)*exp(-{:?}*t) + 30*sin({:?}*x)*exp(-{:?}*t)",
-            rate(1.0),
-            3.0 * q,
-            rate(3.0)
-        );
+        let series = |decay: [String; 2]| {
+            let [first, third] = decay;
+            format!(
+                "300 + 100*sin({q:?}*x){first} + 30*sin({:?}*x){third}",
+                3.0 * q
+            )
+        };
+        let start = series([String::new(), String::new()]);
+        let course = series([1.0, 3.0].map(|n| format!("*exp(-{:?}*t)", rate(n))));
         let (start, conditions) = match self {
             Self::Fixed => {
                 let of = |set: &str| {
                     format!(
-                        "[[thermal.condition]]\nset = \"{set}\"\ntemperature = {{ expression = \"{series}\" }}\n"
+                        "[[thermal.condition]]\nset = \"{set}\"\ntemperature = {{ expression = \"{course}\" }}\n"
                     )
                 };
-                (series.clone(), of("left") + &of("right"))
+                (start, of("left") + &of("right"))
             }
             Self::Insulated => (format!("300 + 100*cos({q:?}*x)"), String::new()),
             Self::Convection => (
