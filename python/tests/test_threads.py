@@ -16,6 +16,7 @@ from conftest import PLATE, changed
 
 import pericles as pc
 
+# Long enough that a run has not ended when it is interrupted: 40 ms take more than a second on the machines tried.
 LONG = changed(PLATE, time={"end": "40 ms"}, initial=[{"set": "left", "velocity": [-1, 0]}])
 
 

@@ -81,6 +81,13 @@ fn branching() {
     }
 }
 
+#[test]
+fn cooling_bar() {
+    let (_place, out) = check("heat", "cooling-bar");
+    let heat = &report(&out)["audit"]["heat"];
+    assert!(heat["balance_relative"].as_f64().unwrap().abs() < 1e-12);
+}
+
 /// Returns time, x, y and advance of the tip of the first crack, for the rows in which it has grown.
 fn tip(out: &Path) -> Vec<[f64; 4]> {
     let cracks = table(out, "cracks.csv");

@@ -130,7 +130,7 @@ surface_correction = {corrected}
 }
 
 /// Error of a slab with `cells` cells and m points in the horizon, and the order of convergence from the case with
-/// `coarse` cells and `coarse m` points.
+/// `coarse` cells and `coarse_m` points.
 pub(super) fn slab(case: &Case<'_>) -> Result<Found, RunError> {
     let ends = case.one_of(
         "ends",
@@ -142,7 +142,7 @@ pub(super) fn slab(case: &Case<'_>) -> Result<Found, RunError> {
     )?;
     let corrected = case.one_of("correction", &[("none", false), ("surface", true)])?;
     let cells = [case.count("coarse")?, case.count("cells")?];
-    let points = [case.count("coarse m")?, case.count("m")?];
+    let points = [case.count("coarse_m")?, case.count("m")?];
     let coarse = ends.error(cells[0], points[0], corrected)?;
     let fine = ends.error(cells[1], points[1], corrected)?;
     let refinement = cells[1] as f64 / cells[0] as f64;
