@@ -16,7 +16,7 @@ from conftest import PLATE, changed
 
 import pericles as pc
 
-# Long enough that a run has not ended when it is interrupted: 40 ms take more than a second on the machines tried.
+# Long enough that no run ends within the half second before it is interrupted.
 LONG = changed(PLATE, time={"end": "40 ms"}, initial=[{"set": "left", "velocity": [-1, 0]}])
 
 
