@@ -1,5 +1,7 @@
 //! Cracks in a quenched plate: their spacing against depth at several severities of the quench.
 
+use std::rc::Rc;
+
 use pericles_run::{Resources, RunError, build};
 
 use crate::common::finish;
@@ -23,6 +25,11 @@ struct Quenched {
 }
 
 impl Quenched {
+    /// Returns the end of a quench, which is computed once per study.
+    fn of(case: &Case<'_>, change: f64) -> Result<Rc<Self>, RunError> {
+        case.once(format!("quench by {change}"), || Self::run(case, change))
+    }
+
     fn run(case: &Case<'_>, change: f64) -> Result<Self, RunError> {
         let cold = format!("thermal.condition.0.temperature={:?}", HOT - change);
         let deck = deck(case, &[cold])?;
@@ -71,7 +78,7 @@ fn decrease(values: &[f64]) -> f64 {
 /// One severity: the decrease of the crack spacing with depth, which is zero if crack arrest leaves fewer cracks at
 /// greater depths.
 pub(super) fn one(case: &Case<'_>) -> Result<Found, RunError> {
-    let quenched = Quenched::run(case, case.number("change")?)?;
+    let quenched = Quenched::of(case, case.number("change")?)?;
     Ok(Found::default()
         .value("decrease", decrease(&quenched.spacings))
         .value("near", quenched.spacings[0])
@@ -85,7 +92,7 @@ pub(super) fn one(case: &Case<'_>) -> Result<Found, RunError> {
 pub(super) fn several(case: &Case<'_>) -> Result<Found, RunError> {
     let mut all = Vec::new();
     for change in ["strong", "middle", "weak"] {
-        all.push(Quenched::run(case, case.number(change)?)?.spacings);
+        all.push(Quenched::of(case, case.number(change)?)?.spacings);
     }
     let at = |depth: usize| decrease(&all.iter().map(|one| one[depth]).collect::<Vec<_>>());
     let most = (0..DEPTHS.len()).map(at).fold(0.0, f64::max);
