@@ -26,9 +26,12 @@ TIMERS = []
 @pytest.fixture(autouse=True)
 def _no_late_signal():
     """A test that failed before its signal must not interrupt the following ones."""
+    # Programs that a shell starts in the background ignore SIGINT, and Python then installs no handler.
+    handler = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     while TIMERS:
         TIMERS.pop().cancel()
+    signal.signal(signal.SIGINT, handler)
 
 
 def interrupt_after(seconds):

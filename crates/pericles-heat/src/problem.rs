@@ -15,6 +15,9 @@ pub struct Problem {
     conditions: Vec<Condition>,
     /// Whether the value of a point is prescribed.
     is_prescribed: Vec<bool>,
+    /// Σ_j G_ij of each point with all bonds intact, W/K for heat. The stable step follows from it, whichever bonds have
+    /// broken: otherwise it would have to be evaluated after each break.
+    rates: Vec<f64>,
 }
 
 /// Values of all conditions at a time, point by point.
@@ -57,6 +60,7 @@ impl Problem {
             }
         }
         Ok(Self {
+            rates: diffusion.diagonal(),
             diffusion,
             capacity,
             conditions,
@@ -227,10 +231,11 @@ impl Problem {
         }
     }
 
-    /// Returns the largest stable step of the explicit scheme at given values, s: 1/max_i (Σ_j G_ij + h_i)/C_i, at most
-    /// 2/λ by Gershgorin's theorem. Values then remain between the extremes of their neighbours.
+    /// Returns the largest stable step of the explicit scheme at given values with all bonds intact, s:
+    /// 1/max_i (Σ_j G_ij + h_i)/C_i, at most 2/λ by Gershgorin's theorem. Values then remain between the extremes of their
+    /// neighbours, also after bonds have broken.
     pub fn explicit_limit(&self, values: &[f64]) -> f64 {
-        let mut rates = self.diffusion.diagonal();
+        let mut rates = self.rates.clone();
         self.add_exchange_slope(values, &mut rates);
         let free = (0..self.len()).filter(|&i| !self.is_prescribed[i]);
         let largest = free
