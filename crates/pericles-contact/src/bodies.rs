@@ -8,6 +8,7 @@ use pericles::{PointScalar, Result};
 
 use crate::error::ContactError;
 use crate::law::{ContactLaw, ContactStiffness, PairLaw, micromodulus};
+use crate::vector::V3;
 
 /// Numbers of the pieces and materials of the points.
 #[derive(Debug, Clone, PartialEq)]
@@ -145,6 +146,17 @@ impl Touching {
             return Ok(());
         };
         Err(ContactError::NotPossible { reason }.into())
+    }
+
+    /// Position of a point at displacement u, m.
+    #[inline]
+    pub(crate) fn place(&self, u: &[f64], i: usize) -> V3 {
+        let (n, x) = (self.cloud.len(), self.cloud.positions());
+        let mut place = [0.0; 3];
+        for c in 0..self.cloud.dimension() {
+            place[c] = x[c * n + i] + u[c * n + i];
+        }
+        place
     }
 
     /// Mass of a point, kg.

@@ -120,15 +120,12 @@ impl Touching {
 impl PointContact {
     /// Determines the positions (m) of the points that may touch others; other entries of `places` are unchanged.
     fn place(&self, list: &Candidates, u: &[f64], places: &mut Vec<V3>) {
-        let (n, x) = (self.touching.cloud.len(), self.touching.cloud.positions());
-        places.resize(n, [0.0; 3]);
+        places.resize(self.touching.cloud.len(), [0.0; 3]);
         let tasks = places.par_chunks_mut(TASK).enumerate();
         tasks.for_each(|(task, places)| {
             for &i in within(list.exposed(), task).1 {
                 let i = i as usize;
-                for c in 0..self.touching.cloud.dimension() {
-                    places[i - task * TASK][c] = x[c * n + i] + u[c * n + i];
-                }
+                places[i - task * TASK] = self.touching.place(u, i);
             }
         });
     }
@@ -144,10 +141,10 @@ impl PointContact {
     ) {
         let size = &self.touching.size;
         let factor = 0.5 * self.touching.law.distance * (1.0 + MARGIN);
-        let (place, half) = (places[i], size[i]);
+        let (place, own) = (places[i], size[i]);
         for j in list.row(i) {
             let apart = minus(places[j], place);
-            let reach = factor * (half + size[j]);
+            let reach = factor * (own + size[j]);
             if dot(apart, apart) < reach * reach
                 && let Some(contact) = self.touching.contact(u, [i, j])
             {

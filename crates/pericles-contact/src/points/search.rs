@@ -3,13 +3,13 @@
 use rayon::prelude::*;
 
 use pericles::operator::{Breakable, Force};
-use pericles::parallel::BLOCK;
+use pericles::parallel::{BLOCK, for_each_point};
 
 use super::cells::Cells;
 use super::ranges::Ranges;
 use crate::bodies::Touching;
 use crate::law::ContactPairs;
-use crate::vector::{V3, dot, minus};
+use crate::vector::{dot, minus};
 
 /// Pairs closer than the contact distance plus a skin at the time of the search. While no point moves relative to another
 /// by more than the skin, they contain all pairs in contact.
@@ -48,7 +48,7 @@ impl Candidates {
         forces: &dyn Force,
     ) -> Self {
         let n = touching.cloud.len();
-        let places = places(touching, u);
+        let places = for_each_point(n, &|i| touching.place(u, i));
         let largest = touching.size.iter().copied().fold(0.0, f64::max);
         let reach = touching.law.distance * largest;
         let ranges = Ranges::new(pieces, &places, u, skin, reach);
@@ -208,20 +208,6 @@ impl Candidates {
     pub(super) fn pairs(&self) -> u64 {
         self.open.iter().filter(|open| **open).count() as u64 / 2
     }
-}
-
-/// Returns the positions of all points at displacement u.
-fn places(touching: &Touching, u: &[f64]) -> Vec<V3> {
-    let cloud = &touching.cloud;
-    let (n, x) = (cloud.len(), cloud.positions());
-    let place = |i: usize| {
-        let mut place = [0.0; 3];
-        for c in 0..cloud.dimension() {
-            place[c] = x[c * n + i] + u[c * n + i];
-        }
-        place
-    };
-    pericles::parallel::for_each_point(n, &place)
 }
 
 /// Returns whether two points at a distance with the square `square` (m²) may touch before they have moved relative to
