@@ -69,7 +69,8 @@ pub struct HeatBalance {
 }
 
 impl HeatBalance {
-    pub(crate) fn of(simulation: &Simulation) -> Option<Self> {
+    /// Returns the heat balance of a simulation, if its body conducts heat.
+    pub fn of(simulation: &Simulation) -> Option<Self> {
         let field = of_system(simulation.system())?;
         let t = simulation.state().t;
         let (content, initial_content) = (field.content(t), field.initial_content());

@@ -3,7 +3,7 @@
 use pericles::observe::Field;
 use pericles_run::RunError;
 
-use super::{ran, simulation};
+use super::{ran, read, simulation};
 use crate::data::{Case, Found};
 
 const YOUNG: f64 = 210e9;
@@ -25,7 +25,7 @@ pub(super) fn free(case: &Case<'_>) -> Result<Found, RunError> {
             1e-3,
         ),
     };
-    let run = simulation(&format!(
+    let run = simulation(&read(&format!(
         r#"
 body = {{ {body} }}
 material = {{ density = 7850, youngs_modulus = {YOUNG:?}, horizon_ratio = 3, {model} }}
@@ -33,7 +33,7 @@ thermal = {{ expansion = {EXPANSION:?}, temperature = {:?}, reference = 293 }}
 time = {{ end = 1e-9, dt = 1e-9 }}
 "#,
         293.0 + HEATING,
-    ))?;
+    ))?)?;
     let system = run.system();
     let strain = EXPANSION * HEATING;
     let u: Vec<f64> = system
@@ -51,7 +51,7 @@ time = {{ end = 1e-9, dt = 1e-9 }}
 /// Stress in the middle of a bar between fixed ends, over −E α ΔT.
 pub(super) fn constrained(case: &Case<'_>) -> Result<Found, RunError> {
     let m = case.count("m")?;
-    let run = ran(&format!(
+    let run = ran(&read(&format!(
         r#"
 body = {{ shape = "bar", length = 1, spacing = 0.02, area = 1 }}
 material = {{ model = "linear", modulus = "lattice", density = 1, youngs_modulus = {YOUNG:?}, horizon_ratio = {m}, volume_correction = "none" }}
@@ -61,7 +61,7 @@ thermal = {{ expansion = {EXPANSION:?}, temperature = 293, reference = 293, cond
 time = {{ scheme = "static", tolerance = 1e-10 }}
 "#,
         293.0 + HEATING,
-    ))?;
+    ))?)?;
     let snapshot = run.snapshot();
     let stress = snapshot.field(Field::Stress);
     let middle = stress[stress.len() / 2];

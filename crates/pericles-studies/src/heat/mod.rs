@@ -8,8 +8,7 @@ mod strip;
 
 use pericles::Simulation;
 use pericles_deck::Deck;
-use pericles_heat::{DiffusingField, SharedField};
-use pericles_run::{Resources, RunError, build};
+use pericles_run::{HeatBalance, Resources, RunError, build};
 
 use crate::common::finish;
 use crate::data::{Case, Found};
@@ -37,32 +36,21 @@ pub(super) const TOPIC: Topic = Topic {
     ],
 };
 
+/// Reads the text of a deck.
+fn read(text: &str) -> Result<Deck, RunError> {
+    Ok(Deck::parse(text, "study.toml", &[])?)
+}
+
 /// Builds the simulation of a deck.
-fn simulation(text: &str) -> Result<Simulation, RunError> {
-    let deck = Deck::parse(text, "study.toml", &[])?;
-    Ok(build(&deck, &Resources::default())?.simulation()?)
+fn simulation(deck: &Deck) -> Result<Simulation, RunError> {
+    Ok(build(deck, &Resources::default())?.simulation()?)
 }
 
 /// Runs a deck to its end.
-fn ran(text: &str) -> Result<Simulation, RunError> {
-    let mut run = simulation(text)?;
+fn ran(deck: &Deck) -> Result<Simulation, RunError> {
+    let mut run = simulation(deck)?;
     finish(&mut run)?;
     Ok(run)
-}
-
-/// Returns the temperature field of a simulation.
-fn field_of(run: &Simulation) -> Option<SharedField> {
-    let mut fields = run.system().fields();
-    let field = fields.find_map(|field| field.downcast_ref::<DiffusingField>());
-    field.map(DiffusingField::shared)
-}
-
-/// Returns the change of the heat content less the heat through all conditions, relative to the content.
-fn heat_error(run: &Simulation) -> Option<f64> {
-    let (t, field) = (run.state().t, field_of(run)?);
-    let inflow: f64 = field.flows(t).iter().sum();
-    let content = field.content(t);
-    Some((content - field.initial_content() - inflow) / content)
 }
 
 /// Error of the heat balance of a plate of two materials with a condition and a time integration scheme.
@@ -72,7 +60,7 @@ fn balance(case: &Case<'_>) -> Result<Found, RunError> {
         true => String::new(),
         false => format!("[[thermal.condition]]\nset = \"edge\"\n{condition}"),
     };
-    let run = ran(&format!(
+    let run = ran(&read(&format!(
         r#"
 body = {{ shape = "plate", size = [0.06, 0.04], spacing = 0.002, thickness = 0.001, plane = "stress" }}
 material = {{ density = 7850, youngs_modulus = 210e9, horizon_ratio = 3 }}
@@ -88,6 +76,7 @@ scheme = "{scheme}"
 material = [{{ name = "copper", conductivity = 400, specific_heat = 385 }}]
 {condition}
 "#
-    ))?;
-    Ok(Found::default().value("error", heat_error(&run)))
+    ))?)?;
+    let balance = HeatBalance::of(&run);
+    Ok(Found::default().value("error", balance.and_then(|one| one.balance_relative)))
 }

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use pericles::observe::Field;
 use pericles_run::RunError;
 
-use super::ran;
+use super::{ran, read};
 use crate::data::{Case, Found};
 
 /// Cells of 1 m along each axis.
@@ -78,7 +78,7 @@ scheme = "{scheme}"
         f64::from(STEPS) * dt,
         phase.join(" + "),
     );
-    let run = ran(&text)?;
+    let run = ran(&read(&text)?)?;
     let factor = match &scheme[..] {
         "explicit" => 1.0 - STEP,
         "backward-euler" => 1.0 / (1.0 + STEP),

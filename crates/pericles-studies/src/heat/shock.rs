@@ -2,9 +2,9 @@
 
 use std::rc::Rc;
 
-use pericles_run::{Resources, RunError, build};
+use pericles_run::RunError;
 
-use crate::common::finish;
+use super::ran;
 use crate::data::{Case, Found};
 use crate::decks::deck;
 
@@ -32,9 +32,7 @@ impl Quenched {
 
     fn run(case: &Case<'_>, change: f64) -> Result<Self, RunError> {
         let cold = format!("thermal.condition.0.temperature={:?}", HOT - change);
-        let deck = deck(case, &[cold])?;
-        let mut run = build(&deck, &Resources::default())?.simulation()?;
-        finish(&mut run)?;
+        let run = ran(&deck(case, &[cold])?)?;
         let cloud = run.system().cloud();
         let mut damage = vec![0.0; cloud.len()];
         run.system().operator().damage_into(&mut damage);
@@ -81,8 +79,6 @@ pub(super) fn one(case: &Case<'_>) -> Result<Found, RunError> {
     let quenched = Quenched::of(case, case.number("change")?)?;
     Ok(Found::default()
         .value("decrease", decrease(&quenched.spacings))
-        .value("near", quenched.spacings[0])
-        .value("far", quenched.spacings[DEPTHS.len() - 1])
         .value("balance", quenched.balance)
         .value("bonds", quenched.bonds as f64)
         .text("spacings", quenched.shown()))

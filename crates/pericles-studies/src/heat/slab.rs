@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use pericles::observe::Field;
 use pericles_run::RunError;
 
-use super::ran;
+use super::{ran, read};
 use crate::data::{Case, Found};
 
 /// Conductivity (W/m/K), density (kg/m³), specific heat (J/kg/K), length (m).
@@ -118,7 +118,7 @@ surface_correction = {corrected}
 
     /// Largest error within the slab, relative to 100 K.
     fn error(self, cells: usize, m: usize, corrected: bool) -> Result<f64, RunError> {
-        let run = ran(&self.deck(cells, m, corrected))?;
+        let run = ran(&read(&self.deck(cells, m, corrected))?)?;
         let t = run.state().t;
         let temperatures = run.snapshot().field(Field::Temperature).to_vec();
         let places = run.system().cloud().axis(0).iter().zip(&temperatures);

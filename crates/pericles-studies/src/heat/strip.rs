@@ -1,8 +1,8 @@
 //! Bending of a strip of two metals.
 
-use pericles_run::{Resources, RunError, build};
+use pericles_run::RunError;
 
-use crate::common::finish;
+use super::ran;
 use crate::data::{Case, Found};
 use crate::decks::deck;
 
@@ -18,9 +18,7 @@ fn timoshenko() -> f64 {
 /// Curvature of the deck's strip around its middle, from the vertical displacements of a row of points next to the
 /// interface, relative to Timoshenko's.
 pub(super) fn curvature(case: &Case<'_>) -> Result<Found, RunError> {
-    let deck = deck(case, &[])?;
-    let mut run = build(&deck, &Resources::default())?.simulation()?;
-    finish(&mut run)?;
+    let run = ran(&deck(case, &[])?)?;
     let cloud = run.system().cloud();
     let (n, dx) = (cloud.len(), cloud.spacing());
     let [x, y] = [cloud.axis(0), cloud.axis(1)];
