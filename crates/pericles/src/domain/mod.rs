@@ -42,6 +42,40 @@ pub trait Comm: Send + Sync {
     fn max(&self, numbers: &mut [f64]);
 }
 
+/// Sends a message to the first process, which receives those of all processes in the order of ranks; `None` on the others.
+/// All processes must call it together.
+pub fn collect(comm: &dyn Comm, message: Vec<f64>) -> Option<Vec<Vec<f64>>> {
+    if comm.rank() > 0 {
+        comm.exchange(&[0], &[message], &mut [Vec::new()]);
+        return None;
+    }
+    let others: Vec<usize> = (1..comm.size()).collect();
+    let mut messages = vec![message];
+    messages.resize(comm.size(), Vec::new());
+    let nothing = vec![Vec::new(); others.len()];
+    comm.exchange(&others, &nothing, &mut messages[1..]);
+    Some(messages)
+}
+
+/// Sends `messages[k]` from the first process, which passes one per process, to process k, and returns the message of this
+/// process. All processes must call it together.
+///
+/// # Panics
+/// If the first process does not pass one message per process.
+pub fn distribute(comm: &dyn Comm, messages: Option<Vec<Vec<f64>>>) -> Vec<f64> {
+    if comm.rank() > 0 {
+        let mut received = [Vec::new()];
+        comm.exchange(&[0], &[Vec::new()], &mut received);
+        return std::mem::take(&mut received[0]);
+    }
+    let mut messages = messages.unwrap_or_default();
+    assert_eq!(messages.len(), comm.size(), "one message per process");
+    let others: Vec<usize> = (1..comm.size()).collect();
+    let mut received = vec![Vec::new(); others.len()];
+    comm.exchange(&others, &messages[1..], &mut received);
+    messages.swap_remove(0)
+}
+
 /// One process that owns all points.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Alone;
@@ -264,6 +298,57 @@ impl Domain {
         received
     }
 
+    /// Sends a message to the first process, which receives those of all processes in the order of ranks; `None` on the
+    /// others. All processes must call it together.
+    pub fn collect(&self, message: Vec<f64>) -> Option<Vec<Vec<f64>>> {
+        collect(&*self.comm, message)
+    }
+
+    /// Sends `messages[k]` from the first process, which passes one per process, to process k, and returns the message of
+    /// this process. All processes must call it together.
+    pub fn distribute(&self, messages: Option<Vec<Vec<f64>>>) -> Vec<f64> {
+        distribute(&*self.comm, messages)
+    }
+
+    /// Returns a component-major vector on the points of the whole body, in the order of their numbers, on the first process;
+    /// `None` on the others. All processes must call it together.
+    pub fn gather<'a>(&self, owned: &'a [f64]) -> Option<Cow<'a, [f64]>> {
+        if !self.is_divided() {
+            return Some(Cow::Borrowed(owned));
+        }
+        let own = self.owned;
+        let components = self.max((owned.len() / own.max(1)) as f64) as usize;
+        let numbers = (0..own).map(|k| self.number(k) as f64);
+        let messages = self.collect(numbers.chain(owned.iter().copied()).collect())?;
+        let points = |message: &Vec<f64>| message.len() / (components + 1);
+        let whole: usize = messages.iter().map(points).sum();
+        let mut gathered = vec![0.0; components * whole];
+        for message in &messages {
+            let (numbers, values) = message.split_at(points(message));
+            for (c, values) in values.chunks(numbers.len().max(1)).enumerate() {
+                for (&number, &value) in numbers.iter().zip(values) {
+                    gathered[c * whole + number as usize] = value;
+                }
+            }
+        }
+        Some(Cow::Owned(gathered))
+    }
+
+    /// Returns whether this is the first of the processes, which writes files and messages for all.
+    pub fn is_first(&self) -> bool {
+        self.comm.rank() == 0
+    }
+
+    /// Returns the communication with the other processes.
+    pub fn comm(&self) -> &Arc<dyn Comm> {
+        &self.comm
+    }
+
+    /// Number of points of the whole body. All processes must call it together.
+    pub fn whole_points(&self) -> usize {
+        self.count(self.owned as u64) as usize
+    }
+
     /// Returns whether a condition holds on all processes.
     pub fn all(&self, holds: bool) -> bool {
         self.max(f64::from(u8::from(!holds))) == 0.0
@@ -362,5 +447,31 @@ impl Domain {
         let mut numbers = [i128::from(own)];
         self.comm.sum(&mut numbers);
         u64::try_from(numbers[0]).unwrap_or(u64::MAX)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn vectors_of_all_points_are_gathered_in_the_order_of_their_numbers() {
+        // Point k belongs to process k modulo 3; the last of four processes has no points.
+        let found = Threads::run(4, |comm| {
+            let rank = comm.rank() as u32;
+            let numbers: Vec<u32> = (0..11).filter(|k| k % 3 == rank).collect();
+            let own = numbers.len();
+            let domain = Domain::new(numbers.clone(), own, vec![], comm);
+            assert_eq!(domain.whole_points(), 11);
+            let axis = |c: u32| numbers.iter().map(move |&k| f64::from(k + 100 * c));
+            let values: Vec<f64> = axis(0).chain(axis(1)).collect();
+            let whole = domain.gather(&values).map(Cow::into_owned);
+            let each = (0..4).map(|k| vec![f64::from(k); k as usize]).collect();
+            let own = domain.distribute(domain.is_first().then_some(each));
+            assert_eq!(own, vec![f64::from(rank); rank as usize]);
+            whole
+        });
+        let expected: Vec<f64> = (0..11).chain(100..111).map(f64::from).collect();
+        assert_eq!(found, [Some(expected), None, None, None]);
     }
 }
