@@ -107,11 +107,14 @@ impl HistoryColumns for ErrorColumns {
         let pick = |field: &[f64]| -> Vec<f64> {
             self.points.iter().map(|&i| field[i as usize]).collect()
         };
-        let places = pick(snapshot.system().cloud().axis(0));
+        let Some(u) = snapshot.whole(Field::Displacement) else {
+            return [f64::NAN; 3].map(Cell::from).to_vec();
+        };
+        let places = pick(snapshot.whole_cloud().axis(0));
         let mut exact = vec![0.0; places.len()];
         self.solution
             .displacement_into(state.t, &places, &mut exact);
-        let miss = Miss::between(&pick(&state.u), &exact);
+        let miss = Miss::between(&pick(&u), &exact);
         self.largest = if miss.largest.is_nan() {
             f64::NAN
         } else {
@@ -167,9 +170,10 @@ impl HistoryColumns for ExtremeColumns {
                         false => pick(found, value),
                     })
             };
+            let domain = snapshot.system().domain();
             [
-                fold(f64::INFINITY, f64::min),
-                fold(f64::NEG_INFINITY, f64::max),
+                -domain.max(-fold(f64::INFINITY, f64::min)),
+                domain.max(fold(f64::NEG_INFINITY, f64::max)),
             ]
         });
         extremes.map(Cell::from).collect()

@@ -39,11 +39,12 @@ impl Cracks {
 
 impl Observer for Cracks {
     fn observe(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), ObserveError> {
-        self.table.touch()?;
-        let state = snapshot.state();
-        let damage = snapshot.field(Field::Damage);
-        let cloud = snapshot.system().cloud();
-        let tips = self.tracker.tips(cloud, damage);
+        self.table.touch(snapshot)?;
+        let Some(damage) = snapshot.whole(Field::Damage) else {
+            return Ok(());
+        };
+        let (state, cloud) = (snapshot.state(), snapshot.whole_cloud());
+        let tips = self.tracker.tips(cloud, &damage);
         for (tip, number) in tips.into_iter().zip(1..) {
             let tip = tip.filter(|tip| tip.advance > cloud.spacing());
             let mut row = vec![whole(state.step), state.t.into(), whole(number)];
@@ -52,7 +53,7 @@ impl Observer for Cracks {
             }
             row.push(tip.map_or(0.0, |tip| tip.advance).into());
             row.push(whole(tip.map_or(0, |tip| tip.points as u64)));
-            self.table.append(&row)?;
+            self.table.append(snapshot, &row)?;
         }
         Ok(())
     }

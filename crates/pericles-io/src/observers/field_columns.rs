@@ -33,14 +33,25 @@ impl FieldSelection {
         Ok(())
     }
 
-    /// The columns of a snapshot in the user's order of points.
-    pub(super) fn columns(&self, snapshot: &Snapshot<'_>, numbering: &Numbering) -> Vec<Column> {
-        let of_fields = self.fields.iter().map(|&field| Column {
-            name: field.name().to_owned(),
-            kind: Kind::of(field),
-            unit: field.unit(),
-            values: numbering.apply(snapshot.field(field)).into_owned(),
-        });
+    /// The columns of a snapshot in the user's order of points; `None` if another process writes them.
+    pub(super) fn columns(
+        &self,
+        snapshot: &Snapshot<'_>,
+        numbering: &Numbering,
+    ) -> Option<Vec<Column>> {
+        let column = |&field: &Field| {
+            let whole = snapshot.whole(field)?;
+            Some(Column {
+                name: field.name().to_owned(),
+                kind: Kind::of(field),
+                unit: field.unit(),
+                values: numbering.apply(&whole).into_owned(),
+            })
+        };
+        // All fields are gathered before the first missing one ends the output.
+        let of_fields: Vec<Option<Column>> = self.fields.iter().map(column).collect();
+        let of_fields: Option<Vec<Column>> = of_fields.into_iter().collect();
+        let of_fields = of_fields.filter(|_| snapshot.is_written())?;
         let of_marks = self.marks.iter().map(|mark| {
             let numbers: Vec<f64> = mark.numbers.iter().copied().map(f64::from).collect();
             Column {
@@ -50,7 +61,7 @@ impl FieldSelection {
                 values: numbering.apply(&numbers).into_owned(),
             }
         });
-        of_fields.chain(of_marks).collect()
+        Some(of_fields.into_iter().chain(of_marks).collect())
     }
 
     /// The arrays of a file that keeps each component of a tensor as an array of its own, in the order of [`Column::arrays`].

@@ -88,6 +88,9 @@ impl FieldSeries {
     }
 
     fn write(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), IoError> {
+        let Some(output) = self.output(snapshot) else {
+            return Ok(());
+        };
         let series = match &self.series {
             Some(series) => series,
             None => {
@@ -96,7 +99,6 @@ impl FieldSeries {
             }
         };
         let series = Arc::clone(series);
-        let output = self.output(snapshot);
         let name = self.name.file(self.outputs);
         let path = self.folder.join(&name);
         self.background.start(move || {
@@ -112,20 +114,21 @@ impl FieldSeries {
         self.folder.join(self.name.series())
     }
 
-    fn output(&mut self, snapshot: &Snapshot<'_>) -> Output {
-        let (state, cloud) = (snapshot.state(), snapshot.system().cloud());
+    /// Returns the content of the next file; `None` if another process writes it.
+    fn output(&mut self, snapshot: &Snapshot<'_>) -> Option<Output> {
+        let (state, cloud) = (snapshot.state(), snapshot.whole_cloud());
         let surface = self.surface.as_deref();
         let body = self
             .body
             .get_or_insert_with(|| Arc::new(FixedPart::of(cloud, surface)));
-        let columns = self.wanted.columns(snapshot, &body.numbering);
-        Output {
+        let columns = self.wanted.columns(snapshot, &body.numbering)?;
+        Some(Output {
             body: Arc::clone(body),
             cells: self.cells.clone(),
             time: state.t,
             columns,
             single_precision: self.single_precision,
-        }
+        })
     }
 }
 

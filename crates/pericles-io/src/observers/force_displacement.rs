@@ -70,7 +70,7 @@ impl ForceDisplacement {
 
     /// Draws the chart from the table.
     fn draw(&self) -> Result<(), IoError> {
-        if !self.path.exists() {
+        if !self.table.is_open() {
             return Ok(());
         }
         let table = read_csv(&self.path)?;
@@ -148,10 +148,11 @@ impl Observer for ForceDisplacement {
             };
             let entry = |k: usize| pair.axis * n + points[k] as usize;
             let sum = domain.sum(points.len(), |k| state.u[entry(k)]);
-            row.push(Cell::Real(sum / points.len() as f64));
+            let points = domain.count(points.len() as u64);
+            row.push(Cell::Real(sum / points as f64));
             row.push(Cell::Real(force));
         }
-        Ok(self.table.append(&row)?)
+        Ok(self.table.append(snapshot, &row)?)
     }
 
     fn finish(&mut self) -> std::result::Result<(), ObserveError> {

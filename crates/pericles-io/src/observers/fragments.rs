@@ -39,16 +39,19 @@ impl Observer for FragmentCourse {
         let (state, system) = (snapshot.state(), snapshot.system());
         let count = Fragments::of(system.operator())
             .count(&system.masses()[..system.points()], self.smallest);
-        self.table.append(&[
-            whole(state.step),
-            state.t.into(),
-            whole(count.fragments),
-            count.largest.into(),
-            whole(count.small),
-            count.small_mass.into(),
-            whole(count.single),
-            count.single_mass.into(),
-        ])?;
+        self.table.append(
+            snapshot,
+            &[
+                whole(state.step),
+                state.t.into(),
+                whole(count.fragments),
+                count.largest.into(),
+                whole(count.small),
+                count.small_mass.into(),
+                whole(count.single),
+                count.single_mass.into(),
+            ],
+        )?;
         Ok(())
     }
 }

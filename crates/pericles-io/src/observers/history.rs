@@ -109,7 +109,7 @@ impl History {
 impl Observer for History {
     fn observe(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), ObserveError> {
         let row = self.rows.row(snapshot);
-        Ok(self.table.append(&row)?)
+        Ok(self.table.append(snapshot, &row)?)
     }
 }
 

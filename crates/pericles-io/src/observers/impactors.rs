@@ -107,7 +107,7 @@ impl Observer for Impactors {
             row.push(whole(reading.points));
             row.push(reading.overlap.into());
         }
-        Ok(self.table.append(&row)?)
+        Ok(self.table.append(snapshot, &row)?)
     }
 }
 
@@ -202,10 +202,11 @@ impl ImpactorSurfaces {
             self.series = series.collect::<std::result::Result<_, _>>()?;
         }
         let (system, t) = (snapshot.system(), snapshot.state().t);
+        let cloud = snapshot.whole_cloud();
         let all = impactors(system).zip(&self.names).zip(&mut self.series);
         for ((impactor, name), series) in all {
             let file = format!("{}/{name}_{:06}.vtp", Self::FOLDER, self.outputs);
-            let mesh = RigidMesh::of(impactor, system.cloud());
+            let mesh = RigidMesh::of(impactor, cloud);
             let polygon: Vec<u32> = (0..mesh.vertices.len() as u32).collect();
             let (polygons, lines): (Vec<&[u32]>, Vec<&[u32]>) = match mesh.triangles.is_empty() {
                 false => (mesh.triangles.iter().map(|one| &one[..]).collect(), vec![]),
@@ -230,7 +231,10 @@ impl ImpactorSurfaces {
 
 impl Observer for ImpactorSurfaces {
     fn observe(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), ObserveError> {
-        Ok(self.write(snapshot)?)
+        match snapshot.is_written() {
+            true => Ok(self.write(snapshot)?),
+            false => Ok(()),
+        }
     }
 }
 

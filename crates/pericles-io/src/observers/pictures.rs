@@ -144,7 +144,7 @@ impl PictureOf {
         self.range.is_none() && self.field != Field::Damage
     }
 
-    /// Draws the picture of a state into a file.
+    /// Draws the picture of a state into a file, unless another process writes it.
     ///
     /// # Errors
     /// Returns an error if the file cannot be written.
@@ -153,15 +153,21 @@ impl PictureOf {
         snapshot: &Snapshot<'_>,
         path: impl AsRef<Path>,
     ) -> std::result::Result<(), IoError> {
-        let (state, cloud) = (snapshot.state(), snapshot.system().cloud());
-        let field = snapshot.field(self.field);
-        let values = self.numbers(field, cloud.len());
+        let (state, cloud) = (snapshot.state(), snapshot.whole_cloud());
+        let (field, displacement) = (
+            snapshot.whole(self.field),
+            snapshot.whole(Field::Displacement),
+        );
+        let (Some(field), Some(displacement)) = (field, displacement) else {
+            return Ok(());
+        };
+        let values = self.numbers(&field, cloud.len());
         let drawn = DrawnState {
             t: state.t,
-            displacement: &state.u,
+            displacement: &displacement,
             values: &values,
-            extent: Some(self.extent(field, &values)),
-            impactors: &rigid_meshes(snapshot.system()),
+            extent: Some(self.extent(&field, &values)),
+            impactors: &rigid_meshes(snapshot),
         };
         self.draw_state(cloud, &drawn, path)
     }
@@ -273,17 +279,21 @@ struct DrawnFile {
 }
 
 impl DrawnFile {
-    fn of(what: &PictureOf, snapshot: &Snapshot<'_>) -> Self {
-        let state = snapshot.state();
-        let field = snapshot.field(what.field);
-        let values = what.numbers(field, snapshot.system().points());
-        Self {
-            t: state.t,
-            size: what.extent(field, &values).size(),
-            displacement: state.u.clone(),
+    /// Returns the state of a snapshot; `None` if another process writes it.
+    fn of(what: &PictureOf, snapshot: &Snapshot<'_>) -> Option<Self> {
+        let (field, displacement) = (
+            snapshot.whole(what.field),
+            snapshot.whole(Field::Displacement),
+        );
+        let field = field?;
+        let values = what.numbers(&field, snapshot.whole_cloud().len());
+        Some(Self {
+            t: snapshot.state().t,
+            size: what.extent(&field, &values).size(),
+            displacement: displacement?.into_owned(),
             values: values.into_owned(),
-            impactors: rigid_meshes(snapshot.system()),
-        }
+            impactors: rigid_meshes(snapshot),
+        })
     }
 
     fn write(self, path: &Path) -> std::result::Result<(), IoError> {
@@ -412,13 +422,14 @@ impl Observer for Pictures {
     fn observe(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), ObserveError> {
         snapshot.check(self.what.field)?;
         self.what.draw(snapshot, self.still(self.drawn))?;
-        if self.cloud.is_some() {
-            let drawn = DrawnFile::of(&self.what, snapshot);
+        if self.cloud.is_some()
+            && let Some(drawn) = DrawnFile::of(&self.what, snapshot)
+        {
             let extent = drawn.extent();
             self.extent = Some(self.extent.map_or(extent, |whole| whole.union(extent)));
             drawn.write(&self.state(self.drawn))?;
         }
-        self.drawn += 1;
+        self.drawn += u64::from(snapshot.is_written());
         Ok(())
     }
 

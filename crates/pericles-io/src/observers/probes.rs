@@ -48,7 +48,7 @@ impl Observer for Probes {
                 row.extend(vector[..self.dimension].iter().map(|&x| Cell::Real(x)));
             }
         }
-        Ok(self.table.append(&row)?)
+        Ok(self.table.append(snapshot, &row)?)
     }
 }
 

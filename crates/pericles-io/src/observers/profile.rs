@@ -129,11 +129,12 @@ impl Observer for Profile {
     fn observe(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), ObserveError> {
         snapshot.check(self.what.field)?;
         let (system, t) = (snapshot.system(), snapshot.state().t);
+        let Some(field) = snapshot.whole(self.what.field) else {
+            return Ok(());
+        };
         let name = self.what.name(system.dimension());
         let unit = self.what.field.unit();
-        let numbers = self
-            .what
-            .numbers(snapshot.field(self.what.field), system.points());
+        let numbers = self.what.numbers(&field, snapshot.whole_cloud().len());
         let mean = |station: &Station| {
             let sum: f64 = station.points.iter().map(|&i| numbers[i as usize]).sum();
             sum / station.points.len() as f64

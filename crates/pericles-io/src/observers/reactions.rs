@@ -38,7 +38,7 @@ impl Observer for Reactions {
             let force = motion.reaction(system.cloud());
             row.extend(motion.axes().map(|axis| Cell::Real(force[axis])));
         }
-        Ok(self.table.append(&row)?)
+        Ok(self.table.append(snapshot, &row)?)
     }
 }
 

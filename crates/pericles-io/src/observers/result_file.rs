@@ -127,6 +127,10 @@ impl ResultFile {
     }
 
     fn write(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), IoError> {
+        let numbering = &self.body.numbering;
+        let Some(columns) = self.wanted.columns(snapshot, numbering) else {
+            return Ok(());
+        };
         let failed = |error| write_error(&self.path, error);
         let writer = match &self.writer {
             Some(writer) => Arc::clone(writer),
@@ -135,9 +139,7 @@ impl ResultFile {
                 Arc::clone(self.writer.insert(Arc::new(Mutex::new(writer))))
             }
         };
-        let numbering = &self.body.numbering;
-        let columns = self.wanted.columns(snapshot, numbering);
-        let points = snapshot.system().points();
+        let points = snapshot.whole_cloud().len();
         let (time, path) = (snapshot.state().t, self.path.clone());
         self.background.start(move || {
             let arrays = columns.iter().flat_map(|column| column.arrays(points));

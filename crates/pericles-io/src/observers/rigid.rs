@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use pericles::System;
+use pericles::observe::Snapshot;
 use pericles::space::PointCloud;
 use pericles_contact::{Impactor, Pose, Shape};
 
@@ -29,10 +30,10 @@ pub fn impactors(system: &System) -> impl Iterator<Item = &Impactor> {
         .filter_map(|one| one.downcast_ref::<Impactor>())
 }
 
-/// Returns the impactors of a system at their present places, for pictures.
-pub(super) fn rigid_meshes(system: &System) -> Vec<RigidMesh> {
-    impactors(system)
-        .map(|one| RigidMesh::of(one, system.cloud()))
+/// Returns the impactors of a snapshot at their present places, for pictures.
+pub(super) fn rigid_meshes(snapshot: &Snapshot<'_>) -> Vec<RigidMesh> {
+    impactors(snapshot.system())
+        .map(|one| RigidMesh::of(one, snapshot.whole_cloud()))
         .collect()
 }
 

@@ -66,7 +66,7 @@ impl Observer for SurfaceCourse {
         row.extend(centre.map(Cell::Real));
         row.push(whole(reading.inverted_triangles as u64));
         row.push(whole(reading.overstretched_edges as u64));
-        Ok(self.table.append(&row)?)
+        Ok(self.table.append(snapshot, &row)?)
     }
 }
 

@@ -3,6 +3,7 @@
 use std::cell::RefCell;
 use std::path::PathBuf;
 
+use pericles::observe::Snapshot;
 use pericles::{Archive, Checkpointed, PericlesError, Result, Values};
 
 use crate::csv::{Cell, Column, CsvTable};
@@ -34,8 +35,16 @@ impl ObserverTable {
         }
     }
 
-    /// Appends and flushes a row, so that the table can be followed during the run.
-    pub(super) fn append(&self, cells: &[Cell]) -> std::result::Result<(), IoError> {
+    /// Appends and flushes the row of a snapshot, so that the table can be followed during the run; of several processes, one
+    /// writes.
+    pub(super) fn append(
+        &self,
+        snapshot: &Snapshot<'_>,
+        cells: &[Cell],
+    ) -> std::result::Result<(), IoError> {
+        if !snapshot.is_written() {
+            return Ok(());
+        }
         let open = &mut *self.open.borrow_mut();
         if let Some(trouble) = open.trouble.take() {
             return Err(trouble);
@@ -48,8 +57,16 @@ impl ObserverTable {
         table.flush()
     }
 
+    /// Returns whether this process has written rows.
+    pub(super) fn is_open(&self) -> bool {
+        self.open.borrow().table.is_some()
+    }
+
     /// Creates the file with its header if it does not exist, for tables that may have no rows.
-    pub(super) fn touch(&self) -> std::result::Result<(), IoError> {
+    pub(super) fn touch(&self, snapshot: &Snapshot<'_>) -> std::result::Result<(), IoError> {
+        if !snapshot.is_written() {
+            return Ok(());
+        }
         let open = &mut *self.open.borrow_mut();
         if open.table.is_none() {
             open.table = Some(CsvTable::create(&self.path, &self.columns)?);

@@ -371,6 +371,9 @@ pub enum PericlesError {
         /// The likely cause.
         cause: &'static str,
     },
+    /// An error that another process has reported.
+    #[error("another process has failed")]
+    OnAnotherProcess,
     /// A step was interrupted on request.
     #[error("the step was interrupted")]
     Interrupted,

@@ -1,5 +1,6 @@
 //! Snapshots: read-only views of a run at one time.
 
+use std::borrow::Cow;
 use std::cell::OnceCell;
 
 use super::energies::{Energies, StartEnergy};
@@ -218,6 +219,7 @@ pub struct Snapshot<'a> {
     start: StartEnergy,
     scheme: f64,
     inner: Option<InnerIterations>,
+    whole: Option<&'a PointCloud>,
     force: OnceCell<Vec<f64>>,
     damage: OnceCell<Vec<f64>>,
     energy_density: OnceCell<Vec<f64>>,
@@ -249,6 +251,7 @@ impl<'a> Snapshot<'a> {
             start,
             scheme,
             inner: None,
+            whole: None,
             force: OnceCell::new(),
             damage: OnceCell::new(),
             energy_density: OnceCell::new(),
@@ -275,6 +278,29 @@ impl<'a> Snapshot<'a> {
     pub fn with_inner(mut self, inner: Option<InnerIterations>) -> Self {
         self.inner = inner;
         self
+    }
+
+    /// Sets the points of the whole body, of which the system has a part.
+    pub fn with_whole(mut self, whole: Option<&'a PointCloud>) -> Self {
+        self.whole = whole;
+        self
+    }
+
+    /// Returns whether this process writes the results. Observers run on all processes that share a body, because their values
+    /// require communication, and only the first one writes files.
+    pub fn is_written(&self) -> bool {
+        self.system.domain().is_first()
+    }
+
+    /// Returns the points of the whole body on the process that writes the results, and own points on the others.
+    pub fn whole_cloud(&self) -> &'a PointCloud {
+        self.whole.unwrap_or(self.system.cloud())
+    }
+
+    /// Returns a field on the points of the whole body, as [`Snapshot::field`] for a body that is not divided, on the process
+    /// that writes the results; `None` on the others. All processes must call it together.
+    pub fn whole(&self, field: Field) -> Option<Cow<'_, [f64]>> {
+        self.system.domain().gather(self.field(field))
     }
 
     /// Returns the statistics of the inner iterations, for schemes that iterate.

@@ -4,7 +4,7 @@ mod builder;
 mod failure;
 mod step;
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 pub use builder::SimulationBuilder;
 pub use failure::SimulationError;
@@ -14,8 +14,8 @@ use crate::compatibility::require;
 use crate::error::{PericlesError, positive};
 use crate::guard::{Alarm, Watched};
 use crate::interrupt::Interrupt;
-use crate::observe::{Observer, Schedule, Snapshot, StartEnergy};
-use crate::space::check_length;
+use crate::observe::{ObserveError, Observer, Schedule, Snapshot, StartEnergy};
+use crate::space::{PointCloud, check_length};
 use crate::stop::{StopReason, StopWhen};
 use crate::system::System;
 use crate::time::{HighestFrequency, Integrator, State, highest_frequency};
@@ -82,6 +82,8 @@ pub struct Simulation {
     observers: Vec<Scheduled>,
     stops: Vec<StopWhen>,
     stopped: Option<StopReason>,
+    /// The points of the whole body on the process that writes the results of a divided body.
+    whole: Option<Arc<PointCloud>>,
     start: StartEnergy,
     /// The frequency that limits the step, if known.
     frequency: Option<HighestFrequency>,
@@ -131,6 +133,7 @@ impl Simulation {
             observers: Vec::new(),
             stops: Vec::new(),
             stopped: None,
+            whole: None,
             start,
             frequency: None,
             step_ratio: OnceLock::new(),
@@ -155,6 +158,12 @@ impl Simulation {
             allow_unstable: true,
             ..self
         }
+    }
+
+    /// Sets the points of the whole body, which observers use on the process that writes the results of a divided body.
+    #[must_use]
+    pub fn of_whole(self, whole: Option<Arc<PointCloud>>) -> Self {
+        Self { whole, ..self }
     }
 
     /// Returns the first instability of a run that continued nevertheless.
@@ -219,6 +228,7 @@ impl Simulation {
             .energy_correction(&self.system, &self.state, self.dt);
         Snapshot::new(&self.system, &self.state, self.start, scheme)
             .with_inner(self.integrator.inner_iterations())
+            .with_whole(self.whole.as_deref())
     }
 
     /// Runs to the end.
@@ -280,10 +290,11 @@ impl Simulation {
                 return Ok(Outcome::Stopped);
             }
         }
-        for scheduled in &mut self.observers {
-            let finished = scheduled.observer.finish();
-            finished.map_err(SimulationError::Observe)?;
-        }
+        let observers = &mut self.observers;
+        let finished = observers
+            .iter_mut()
+            .try_for_each(|scheduled| scheduled.observer.finish());
+        self.agreed(finished)?;
         Ok(Outcome::Finished)
     }
 
@@ -293,11 +304,20 @@ impl Simulation {
     /// # Errors
     /// An error of an observer.
     pub fn settle(&self) -> Result<(), SimulationError> {
-        for scheduled in &self.observers {
-            let settled = scheduled.observer.settle();
-            settled.map_err(SimulationError::Observe)?;
+        let settled = (self.observers.iter()).try_for_each(|scheduled| scheduled.observer.settle());
+        self.agreed(settled)
+    }
+
+    /// Returns the result of the observers, or an error if those of another process have failed.
+    fn agreed(&self, observed: Result<(), ObserveError>) -> Result<(), SimulationError> {
+        let all = self.system.domain().all(observed.is_ok());
+        observed.map_err(SimulationError::Observe)?;
+        match all {
+            true => Ok(()),
+            false => Err(SimulationError::Observe(Box::new(
+                PericlesError::OnAnotherProcess,
+            ))),
         }
-        Ok(())
     }
 
     /// Evaluates all conditions and returns the first that the current state meets.
@@ -325,15 +345,13 @@ impl Simulation {
         }
         let mut observers = std::mem::take(&mut self.observers);
         let snapshot = self.snapshot();
+        // All observers are called, because other processes may have no error.
         let mut shown = Ok(());
         for scheduled in observers.iter_mut().filter(|s| due(s)) {
-            shown = scheduled.observer.observe(&snapshot);
-            if shown.is_err() {
-                break;
-            }
+            shown = shown.and(scheduled.observer.observe(&snapshot));
         }
         self.observers = observers;
-        shown.map_err(SimulationError::Observe)
+        self.agreed(shown)
     }
 
     /// Checks that step number and time of the state belong to this run.
@@ -443,6 +461,7 @@ impl Checkpointed for Simulation {
             frequency: _,
             allow_unstable: _,
             stopped: _,
+            whole: _,
             step_ratio: _,
             instability: _,
         } = self;
@@ -454,7 +473,11 @@ impl Checkpointed for Simulation {
     fn restore(&mut self, archive: &Archive) -> crate::Result<()> {
         self.restore_motion(archive)?;
         self.stops.restore(archive)?;
-        self.observers.restore(archive)
+        // Observers of the other processes write no files that they could continue.
+        match self.system.domain().is_first() {
+            true => self.observers.restore(archive),
+            false => Ok(()),
+        }
     }
 }
 
