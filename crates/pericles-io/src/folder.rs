@@ -39,7 +39,8 @@ const SUBFOLDERS: [&str; 3] = ["fields", "pictures", "checkpoints"];
 #[derive(Debug)]
 pub struct OutputFolder {
     path: PathBuf,
-    _lock: File,
+    /// `None` if another process writes the folder.
+    lock: Option<File>,
 }
 
 impl OutputFolder {
@@ -102,6 +103,14 @@ impl OutputFolder {
         Ok(folder)
     }
 
+    /// The folder of a run that another process writes.
+    pub fn following(path: impl Into<PathBuf>) -> Self {
+        Self {
+            path: path.into(),
+            lock: None,
+        }
+    }
+
     /// Returns the path of the folder.
     pub fn path(&self) -> &Path {
         &self.path
@@ -112,9 +121,12 @@ impl OutputFolder {
         self.path.join(name)
     }
 
-    /// Returns a sub-folder, created if it does not exist.
+    /// Returns a sub-folder, created if it does not exist, unless another process writes the folder.
     pub fn subfolder(&self, name: &str) -> Result<PathBuf, IoError> {
         let path = self.path.join(name);
+        if self.lock.is_none() {
+            return Ok(path);
+        }
         match fs::create_dir(&path) {
             Err(error) if !path.is_dir() => Err(IoError::writing(&path, error)),
             _ => Ok(path),
@@ -127,6 +139,9 @@ impl OutputFolder {
     /// # Errors
     /// Returns an error if the manifest cannot be written.
     pub fn claim(&self, names: &[String]) -> Result<(), IoError> {
+        if self.lock.is_none() {
+            return Ok(());
+        }
         Manifest::add(&self.path, names)
     }
 
@@ -141,7 +156,10 @@ impl OutputFolder {
             .open(&lock)
             .map_err(|source| IoError::writing(&lock, source))?;
         match file.try_lock() {
-            Ok(()) => Ok(Self { path, _lock: file }),
+            Ok(()) => Ok(Self {
+                path,
+                lock: Some(file),
+            }),
             Err(TryLockError::WouldBlock) => Err(IoError::Locked { path }),
             Err(TryLockError::Error(source)) => Err(IoError::writing(&lock, source)),
         }

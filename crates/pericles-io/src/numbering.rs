@@ -9,8 +9,11 @@ use pericles::space::PointCloud;
 pub(crate) struct Numbering(Option<Vec<usize>>);
 
 impl Numbering {
-    /// Returns the numbering of a cloud.
+    /// Returns the numbering of a cloud. The part of a divided body, whose numbers are those of the whole body, keeps its order.
     pub(crate) fn of(cloud: &PointCloud) -> Self {
+        if cloud.domain().is_divided() {
+            return Self(None);
+        }
         let numbers: Vec<usize> = (0..cloud.len()).map(|i| cloud.user_number(i)).collect();
         let same = numbers.iter().enumerate().all(|(i, &number)| i == number);
         Self((!same).then_some(numbers))

@@ -1,9 +1,13 @@
 //! Assembly of a deck or model with a cache, a memory limit, and readers of input files.
 
+use std::fmt;
 use std::path::PathBuf;
+use std::sync::Arc;
 
+use pericles::PericlesError;
 use pericles::cache::{Cache, NoCache};
-use pericles_deck::BuildError;
+use pericles::domain::{Alone, Comm};
+use pericles_deck::{BuildError, Fault};
 use pericles_io::{
     DiskCache, IoError, MeshError, TextError, read_mesh, read_outline, read_points, read_rows,
     read_surface,
@@ -16,21 +20,36 @@ use crate::facts::Facts;
 use crate::machine;
 use crate::source::Source;
 
-/// Cache and memory limit for building a model.
-#[derive(Debug, Clone)]
+/// Cache, memory limit and processes for building and running a model.
+#[derive(Clone)]
 pub struct Means {
     /// Where expensive results are cached.
     pub caching: Caching,
     /// Memory limit, bytes.
     pub memory: u64,
+    /// Communication with the processes among which the body is divided.
+    pub comm: Arc<dyn Comm>,
+}
+
+impl fmt::Debug for Means {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            caching,
+            memory,
+            comm,
+        } = self;
+        let (rank, size) = (comm.rank(), comm.size());
+        write!(f, "{caching:?}, {memory} bytes, process {rank} of {size}")
+    }
 }
 
 impl Default for Means {
-    /// The user's cache, and the available memory.
+    /// The user's cache, the available memory, and a single process.
     fn default() -> Self {
         Self {
             caching: Caching::User,
             memory: machine::memory(),
+            comm: Arc::new(Alone),
         }
     }
 }
@@ -96,13 +115,23 @@ impl Assembled {
                 ..*resources
             })
         });
-        let assembly = assembly.map_err(|error| source.refusal(error))?;
+        let assembly = assembly.map_err(|error| match is_elsewhere(&error) {
+            true => PericlesError::OnAnotherProcess.into(),
+            false => source.refusal(error),
+        })?;
         let facts = match source {
             Source::Deck { deck, .. } => Facts::of_deck(deck, &assembly),
             Source::Model(_) => Facts::of(model, &assembly),
         };
         Ok(Self { assembly, facts })
     }
+}
+
+/// Returns whether another process has found an error of the model.
+fn is_elsewhere(error: &BuildError) -> bool {
+    let problems = error.problems().iter();
+    let mut faults = problems.map(|problem| problem.subject());
+    faults.any(|fault| matches!(fault, Fault::Model(PericlesError::OnAnotherProcess)))
 }
 
 impl Means {
@@ -113,6 +142,7 @@ impl Means {
         let made = make(&Resources {
             cache: cache.as_ref().map_or(&NoCache as &dyn Cache, |cache| cache),
             memory: self.memory,
+            comm: Some(&self.comm),
             ..readers()
         });
         for note in cache.iter().flat_map(DiskCache::notes) {

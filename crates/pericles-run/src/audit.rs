@@ -116,13 +116,12 @@ impl Audit {
                 .sum::<f64>()
                 .sqrt()
         };
-        let volumes = system.cloud().volumes();
-        let mass: f64 = (0..system.points())
-            .map(|i| system.density().at(i) * volumes[i])
-            .sum();
-        let damage = snapshot.field(Field::Damage);
+        let (domain, volumes) = (system.domain(), system.cloud().volumes());
+        let mass = domain.sum(system.points(), |i| system.density().at(i) * volumes[i]);
+        let damage = snapshot.field(Field::Damage).iter().copied();
         // A run may write no history.
-        let table = history.exists().then(|| read_csv(history)).transpose()?;
+        let written = domain.is_first() && history.exists();
+        let table = written.then(|| read_csv(history)).transpose()?;
         let rows = table.as_ref().and_then(|table| table.column("balance"));
         Ok(Self {
             kinetic_energy: energies.kinetic,
@@ -144,7 +143,7 @@ impl Audit {
             momentum_error_relative: error / (2.0 * energies.kinetic * mass).sqrt(),
             broken_bonds: system.operator().broken_bonds(),
             coarse_breaks: system.coarse_breaks(),
-            largest_damage: damage.iter().fold(0.0, |most: f64, &d| most.max(d)),
+            largest_damage: domain.max(damage.fold(0.0, f64::max)),
             energy_drift: balance / energies.work.abs().max(energies.initial.abs()),
             omega_dt: facts.limiting_frequency.map(|omega| omega * facts.dt),
             evaluated_points: system.evaluated_points(),

@@ -15,6 +15,7 @@ use pericles_io::{CheckpointFolder, Container, IoError, OutputFolder};
 use serde::{Deserialize, Serialize};
 
 use crate::error::RunError;
+use crate::processes::agreed;
 use crate::source::SourceRecord;
 
 /// File of the state of a run that became unstable.
@@ -88,8 +89,12 @@ impl Checkpoints {
     /// The file cannot be written.
     pub fn write(&mut self, simulation: &Simulation) -> Result<PathBuf, RunError> {
         let began = Instant::now();
-        let container = self.container(simulation)?;
-        let path = self.folder.write(simulation.state().step, &container)?;
+        let step = simulation.state().step;
+        let written = match self.container(simulation)? {
+            Some(container) => self.folder.write(step, &container).map_err(RunError::from),
+            None => Ok(self.folder.file(step)),
+        };
+        let path = agreed(&**simulation.system().domain().comm(), written)?;
         self.last = Instant::now();
         self.cost = self.last - began;
         Ok(path)
@@ -101,7 +106,9 @@ impl Checkpoints {
     /// The file cannot be written.
     pub fn write_failed(&self, simulation: &Simulation) -> Result<PathBuf, RunError> {
         let path = self.folder.path().join(FAILED);
-        self.container(simulation)?.write(&path)?;
+        if let Some(container) = self.container(simulation)? {
+            container.write(&path)?;
+        }
         Ok(path)
     }
 
@@ -116,7 +123,8 @@ impl Checkpoints {
         self.folder.steps().ok()?.last().copied()
     }
 
-    fn container(&self, simulation: &Simulation) -> Result<Container, RunError> {
+    /// Returns the content of a checkpoint on the process that writes it; `None` on the others.
+    fn container(&self, simulation: &Simulation) -> Result<Option<Container>, RunError> {
         simulation
             .settle()
             .map_err(|error| RunError::of_run(error, String::new))?;
@@ -129,10 +137,11 @@ impl Checkpoints {
         };
         let mut archive = Archive::default();
         simulation.save(&mut archive);
-        Ok(Container::from_archive(
-            serde_json::to_value(metadata)?,
-            archive,
-        ))
+        let Some(archive) = archive.gathered(simulation.system().domain())? else {
+            return Ok(None);
+        };
+        let metadata = serde_json::to_value(metadata)?;
+        Ok(Some(Container::from_archive(metadata, archive)))
     }
 }
 

@@ -129,6 +129,18 @@ impl RunError {
         }
     }
 
+    /// Returns whether another of the processes that share the run has reported the error.
+    pub fn is_elsewhere(&self) -> bool {
+        let is = |error: &PericlesError| matches!(error, PericlesError::OnAnotherProcess);
+        match self {
+            Self::Library(error) => is(error),
+            Self::Simulation(SimulationError::Observe(source)) => {
+                source.downcast_ref().is_some_and(is)
+            }
+            _ => false,
+        }
+    }
+
     /// Converts an error of a simulation; for unstable runs `left` describes the saved state and checkpoints.
     pub fn of_run(error: SimulationError, left: impl FnOnce() -> String) -> Self {
         match error {

@@ -227,7 +227,7 @@ impl Facts {
     fn with(model: &Model, assembly: &Assembly, warnings: Vec<String>) -> Self {
         let operator = assembly.system.operator();
         let (points, dimension) = (assembly.cloud.len(), assembly.cloud.dimension());
-        let directed_bonds = operator.directed_bonds();
+        let directed_bonds = assembly.system.domain().count(operator.directed_bonds());
         let constants = assembly.constants.as_ref();
         let finite = |x: f64| x.is_finite().then_some(x);
         let bonds = constants.and_then(MaterialConstants::bonds);

@@ -91,10 +91,10 @@ impl Symmetries {
     /// Detects the symmetries of a simulation before its first step.
     pub fn of(simulation: &Simulation) -> Self {
         let system = simulation.system();
-        // Absorbing boundaries, damping layers and impactors are not compared.
+        // Absorbing boundaries, damping layers and impactors are not compared, nor are the parts of a divided body.
         let struck = impactors(system).next().is_some();
         let skipped = system.has_boundaries() || struck || has_functions(system);
-        if system.points() > MOST_POINTS || skipped {
+        if system.points() > MOST_POINTS || skipped || system.domain().is_divided() {
             return Self::default();
         }
         let signs: &[f64] = if system.dimension() == 1 {

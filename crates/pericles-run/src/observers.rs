@@ -107,13 +107,7 @@ pub fn simulation(
     }
     names.extend(add_fields(model, folder, &body, &mut simulation)?);
     names.extend(add_profiles(model, folder, &cloud, &mut simulation)?);
-    names.extend(add_pictures(
-        model,
-        folder,
-        surface.as_ref(),
-        &body.sets,
-        &mut simulation,
-    )?);
+    names.extend(add_pictures(model, folder, &body, &mut simulation)?);
     folder.claim(&names)?;
     Ok(simulation)
 }
@@ -417,8 +411,7 @@ fn add_profiles(
 fn add_pictures(
     model: &Model,
     folder: &OutputFolder,
-    surface: Option<&Arc<Surface>>,
-    sets: &Sets,
+    body: &FieldBody,
     simulation: &mut Simulation,
 ) -> Result<Vec<String>, RunError> {
     if model.output.pictures.is_empty() {
@@ -426,14 +419,19 @@ fn add_pictures(
     }
     let mut names = Vec::new();
     let place = folder.subfolder("pictures")?;
-    let dimension = simulation.system().dimension();
-    let cloud = simulation.system().cloud().clone();
-    let overlay = overlay(model, &cloud, sets).map(Arc::new);
+    let FieldBody {
+        cloud,
+        sets,
+        surface,
+        ..
+    } = body;
+    let dimension = cloud.dimension();
+    let overlay = overlay(model, cloud, sets).map(Arc::new);
     let mut uses: HashMap<String, u32> = HashMap::new();
     for picture in &model.output.pictures {
         let what = PictureOf {
             overlay: overlay.clone(),
-            ..picture_of(model, picture, surface)
+            ..picture_of(model, picture, surface.as_ref())
         };
         // Several pictures of one field get distinct names.
         let uses = uses.entry(what.name(dimension)).or_default();

@@ -2,10 +2,13 @@
 
 use std::cell::{Cell, RefCell};
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 
 use pericles::observe::{Observer, Schedule};
-use pericles::{Archive, Checkpointed, Control, Interrupt, Outcome, Simulation, SimulationError};
+use pericles::{
+    Archive, Checkpointed, Control, Interrupt, Outcome, PericlesError, Simulation, SimulationError,
+};
 use pericles_deck::Model;
 use pericles_io::{OutputFolder, PvdSeries, VtuFile};
 
@@ -19,8 +22,9 @@ use crate::error::RunError;
 use crate::event::{Event, Tell};
 use crate::facts::Facts;
 use crate::observers;
+use crate::processes::{agreed, any, on_first};
 use crate::report::{Report, Status};
-use crate::source::Source;
+use crate::source::{Source, SourceRecord};
 use crate::units::quantity;
 use crate::watch::{self, Breakage};
 
@@ -72,34 +76,48 @@ impl Run {
     /// # Errors
     /// There is no usable checkpoint, or it does not match its deck.
     pub fn resume(path: &Path, means: &Means, tell: Tell<'_>) -> Result<Option<Self>, RunError> {
-        if path.is_dir() && !path.join("checkpoints").is_dir() {
-            return Err(RunError::NoRun { path: path.into() });
-        }
-        let folder = OutputFolder::open(path)?;
-        if is_finished(&folder) {
+        // The first process reads the checkpoint; the others need the deck only.
+        let words = |opened: &Option<(OutputFolder, Stored)>| match opened {
+            Some((_, stored)) => serde_json::to_string(&stored.metadata.source).unwrap_or_default(),
+            None => String::new(),
+        };
+        let open = || opened(path, means);
+        let (opened, source) = on_first(&*means.comm, open, words)?;
+        if source.is_empty() {
             return Ok(None);
         }
-        let stored = Stored::latest(&folder, means.memory)?;
-        let source = stored.metadata.source.clone().read()?;
+        let source: SourceRecord = serde_json::from_str(&source)?;
+        let source = agreed(&*means.comm, source.read())?;
+        let (folder, stored) = opened.flatten().unzip();
+        let folder = folder.unwrap_or_else(|| OutputFolder::following(path));
         let model = source.model();
         let Assembled {
             assembly,
             mut facts,
         } = Assembled::of(&source, means, tell)?;
-        facts.warnings.extend(doubts(&stored, model, &facts));
-        facts.warnings.extend(incomplete(&folder)?);
+        if let Some(stored) = &stored {
+            facts.warnings.extend(doubts(stored, model, &facts));
+            facts.warnings.extend(incomplete(&folder)?);
+        }
         let mut simulation = observers::simulation(model, assembly, &folder)?;
         // The state is still the initial state.
         let start = Start::of(&simulation);
-        simulation
-            .restore(&stored.archive)
-            .map_err(|error| RunError::Checkpoint {
-                path: stored.path.clone(),
+        let place = stored.as_ref().map_or(path, |stored| &stored.path);
+        let unusable = |error: PericlesError| match error {
+            PericlesError::OnAnotherProcess => error.into(),
+            error => RunError::Checkpoint {
+                path: place.into(),
                 reason: error.to_string(),
-            })?;
+            },
+        };
+        let whole = stored.as_ref().map(|stored| &stored.archive);
+        let restored = restore(&mut simulation, whole).map_err(unusable);
+        agreed(&*means.comm, restored)?;
         let step = simulation.state().step;
         let checkpoints = Checkpoints::new(&folder, model.checkpoint, source.record());
-        checkpoints.forget_failed();
+        if stored.is_some() {
+            checkpoints.forget_failed();
+        }
         Ok(Some(Self {
             checkpoints,
             start,
@@ -154,7 +172,7 @@ impl Run {
             report: &self.report,
             folder: self.folder.path(),
         });
-        self.write_report()?;
+        self.write_agreed_report()?;
         let began = Instant::now();
         let ended = self.integrate(deadline, cancel, tell);
         self.report
@@ -172,7 +190,19 @@ impl Run {
     }
 
     fn write_report(&self) -> Result<(), RunError> {
-        self.report.write(&self.folder.file("run.json"))
+        let domain = self.simulation.system().domain();
+        match domain.is_first() {
+            true => self.report.write(&self.folder.file("run.json")),
+            false => Ok(()),
+        }
+    }
+
+    /// Writes the report, or returns an error if this fails on any process.
+    fn write_agreed_report(&self) -> Result<(), RunError> {
+        agreed(
+            &**self.simulation.system().domain().comm(),
+            self.write_report(),
+        )
     }
 
     fn integrate(
@@ -200,9 +230,12 @@ impl Run {
         let cost = Cell::new(checkpoints.cost());
         let end = deadline.as_ref().map(Deadline::end);
         // Checked within iterative steps, which may take longer than any other part of a run.
+        // All processes stop together.
+        let comm = Arc::clone(self.simulation.system().domain().comm());
+        let any = |holds: bool| any(&*comm, holds);
         let is_over = || {
             let late = |end: Instant| Instant::now() + 2 * cost.get() >= end;
-            cancel.is_cancelled() || end.is_some_and(late)
+            any(cancel.is_cancelled() || end.is_some_and(late))
         };
         let tell = RefCell::new(tell);
         let tell = |event: Event<'_>| (*tell.borrow_mut())(event);
@@ -223,10 +256,12 @@ impl Run {
                 warnings.push(warning);
             }
             let late = |deadline: &mut Deadline| deadline.is_near(checkpoints.cost());
-            if cancel.is_cancelled() || deadline.as_mut().is_some_and(late) {
+            if any(cancel.is_cancelled() || deadline.as_mut().is_some_and(late)) {
                 return Control::Stop;
             }
-            if checkpoints.is_due(simulation)
+            // The clock of the first process decides.
+            let due = comm.rank() == 0 && checkpoints.is_due(simulation);
+            if any(due)
                 && let Err(error) = checkpoints.write(simulation)
             {
                 trouble = Some(error);
@@ -265,25 +300,55 @@ impl Run {
 
     fn close(&mut self, outcome: Outcome, cancel: &Cancel) -> Result<Ending, RunError> {
         let history = self.folder.file("history.csv");
-        let mut audit = Audit::of(&self.simulation, &self.start, &history, &self.report.model)?;
+        let domain = self.simulation.system().domain();
+        let audit = Audit::of(&self.simulation, &self.start, &history, &self.report.model);
+        let mut audit = agreed(&**domain.comm(), audit.map_err(RunError::from))?;
         audit.warnings = watch::warnings(&self.simulation, &audit);
-        audit
-            .warnings
-            .extend(animations::gaps(&self.folder.file("pictures")));
+        if domain.is_first() {
+            let gaps = animations::gaps(&self.folder.file("pictures"));
+            audit.warnings.extend(gaps);
+        }
         self.report.audit = Some(audit);
         self.report.stop_reason = self.simulation.stop_reason().map(ToString::to_string);
+        let comm = self.simulation.system().domain().comm();
+        let cancelled = any(&**comm, cancel.is_cancelled());
         let ending = match outcome {
             Outcome::Finished => Ending::Finished,
-            Outcome::Stopped if cancel.is_cancelled() => Ending::Cancelled,
+            Outcome::Stopped if cancelled => Ending::Cancelled,
             Outcome::Stopped => Ending::Deadline,
         };
         self.report.status = match ending {
             Ending::Finished => Status::Finished,
             Ending::Cancelled | Ending::Deadline => Status::Stopped,
         };
-        self.write_report()?;
+        self.write_agreed_report()?;
         Ok(ending)
     }
+}
+
+/// Opens the folder of a run and reads its last checkpoint; `None` if it has finished.
+fn opened(path: &Path, means: &Means) -> Result<Option<(OutputFolder, Stored)>, RunError> {
+    if path.is_dir() && !path.join("checkpoints").is_dir() {
+        return Err(RunError::NoRun { path: path.into() });
+    }
+    let folder = OutputFolder::open(path)?;
+    if is_finished(&folder) {
+        return Ok(None);
+    }
+    let stored = Stored::latest(&folder, means.memory)?;
+    Ok(Some((folder, stored)))
+}
+
+/// Restores a simulation from the archive of the whole body, which the first process has.
+fn restore(simulation: &mut Simulation, whole: Option<&Archive>) -> Result<(), PericlesError> {
+    let domain = simulation.system().domain();
+    if let (false, Some(whole)) = (domain.is_divided(), whole) {
+        return simulation.restore(whole);
+    }
+    let mut own = Archive::default();
+    simulation.save(&mut own);
+    let own = Archive::scattered(&own, whole, domain)?;
+    simulation.restore(&own)
 }
 
 /// Returns whether the run has finished according to `run.json`. If it cannot be read, the checkpoints decide.

@@ -63,7 +63,8 @@ fn arms(snapshot: &Snapshot<'_>) -> Vec<[f64; 3]> {
         }
         place
     };
-    let mean = |c: usize| system.domain().sum(n, |i| place(i)[c]) / n as f64;
+    let points = system.domain().whole_points() as f64;
+    let mean = |c: usize| system.domain().sum(n, |i| place(i)[c]) / points;
     let middle: [f64; 3] = std::array::from_fn(mean);
     (0..n)
         .map(|i| std::array::from_fn(|c| place(i)[c] - middle[c]))

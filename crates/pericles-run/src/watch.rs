@@ -56,7 +56,11 @@ impl Breakage {
     /// Starts monitoring at the current state of a run.
     pub fn from(simulation: &Simulation) -> Self {
         let operator = simulation.system().operator();
-        let (bonds, broken) = (operator.directed_bonds() / 2, operator.broken_bonds());
+        let directed = simulation
+            .system()
+            .domain()
+            .count(operator.directed_bonds());
+        let (bonds, broken) = (directed / 2, operator.broken_bonds());
         // The warning was given before the run was resumed.
         let warned = broken as f64 > BROKEN_IN_ALL * bonds as f64;
         Self {
@@ -141,7 +145,8 @@ fn momentum(simulation: &Simulation, audit: &Audit) -> Option<String> {
         return None;
     }
     let system = simulation.system();
-    let mass: f64 = system.masses().iter().sum::<f64>() / system.dimension() as f64;
+    let masses = system.masses();
+    let mass = system.domain().sum(masses.len(), |k| masses[k]) / system.dimension() as f64;
     // Not the energy at the end: waves may have left the body, and static states have no kinetic energy.
     let energy = audit.initial_energy.abs() + system.ledger().exchanged;
     let error = audit.momentum_error / (2.0 * energy * mass).sqrt();
@@ -186,22 +191,14 @@ fn reactions(simulation: &Simulation) -> Option<String> {
         return None;
     }
     let snapshot = simulation.snapshot();
-    let (n, volumes) = (system.points(), system.cloud().volumes());
+    let (n, volumes, domain) = (system.points(), system.cloud().volumes(), system.domain());
     let sum = |field: Field, c: usize| -> f64 {
         let component = &snapshot.field(field)[c * n..(c + 1) * n];
-        component
-            .iter()
-            .zip(volumes)
-            .map(|(f, volume)| f * volume)
-            .sum()
+        domain.sum(n, |i| component[i] * volumes[i])
     };
     // Reactions of opposite constraints cancel: compare with the sum of their magnitudes.
-    let size: f64 = snapshot
-        .field(Field::Reaction)
-        .chunks(n)
-        .flat_map(|component| component.iter().zip(volumes))
-        .map(|(f, volume)| (f * volume).abs())
-        .sum();
+    let reactions = snapshot.field(Field::Reaction);
+    let size = domain.sum(reactions.len(), |k| (reactions[k] * volumes[k % n]).abs());
     let left = (0..system.dimension())
         .map(|c| (sum(Field::Reaction, c) + sum(Field::ExternalForce, c)).abs())
         .fold(0.0, f64::max);
@@ -224,7 +221,9 @@ fn endangered(simulation: &Simulation, audit: &Audit) -> Option<String> {
         .capabilities()
         .breaking?
         .mark_endangered(&state.u, NEAR, &mut marks);
-    let share = marks.iter().filter(|mark| **mark).count() as f64 / marks.len() as f64;
+    let domain = system.domain();
+    let marked = domain.count(marks.iter().filter(|mark| **mark).count() as u64);
+    let share = marked as f64 / domain.whole_points() as f64;
     (share > ENDANGERED).then(|| {
         format!(
             "{} of the points have bonds above {} of the critical stretch, but no bond broke; a slightly larger load would break bonds",

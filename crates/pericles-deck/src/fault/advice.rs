@@ -126,6 +126,10 @@ impl Subject for Fault {
             Self::LongHistory { .. } => {
                 "use fewer time steps, or exponentials (set `tolerance`)".into()
             }
+            Self::Undivided { .. } => "run it without mpirun, with threads on one machine".into(),
+            Self::TooManyProcesses { .. } => {
+                "use fewer processes; parts of a lattice are boxes of whole cells".into()
+            }
             // The message says what is allowed.
             Self::WrongKind { .. } | Self::BadDiscretisation { .. } | Self::Model(_) => {
                 return None;
@@ -174,6 +178,8 @@ impl Subject for Fault {
             Self::NoMaterial { .. } => "incomplete",
             Self::NotShared { .. } => "differs",
             Self::BadDiscretisation { .. } => "inconsistent",
+            Self::Undivided { .. } => "not divisible",
+            Self::TooManyProcesses { .. } => "too small",
             Self::LostValue { .. } => "not finite",
             Self::NeverStops { .. } => "never met",
             Self::ThinFineSet { .. } => "too thin",

@@ -316,6 +316,20 @@ pub enum Fault {
         /// What is inconsistent.
         reason: String,
     },
+    /// A model that a single process computes.
+    #[error("this model cannot be divided among several processes: {reason}")]
+    Undivided {
+        /// The reason.
+        reason: &'static str,
+    },
+    /// More processes than parts of the body.
+    #[error("{points} points cannot be divided among {processes} processes")]
+    TooManyProcesses {
+        /// Number of processes.
+        processes: usize,
+        /// Number of points.
+        points: usize,
+    },
     /// A set without points.
     #[error("the set `{}` selects no point", shortened(set))]
     EmptySet {

@@ -44,6 +44,7 @@ pub fn assemble(
         sets,
         ..
     } = &discretisation;
+    let part = assembler.part(&discretisation, resources.comm)?;
     let mut parts = match (&model.body, surface) {
         (Body::Surface(body), Some(surface)) => {
             assembler.surface_parts(body, surface, &discretisation, resources, &mut warnings)?
@@ -52,10 +53,13 @@ pub fn assemble(
             let reason = "the points do not belong to a surface".into();
             return Err(at_path("body", Fault::BadDiscretisation { reason }));
         }
-        (Body::Solid(solid), _) => assembler.grid_parts(solid, &discretisation, &mut warnings)?,
+        (Body::Solid(solid), _) => {
+            assembler.grid_parts(solid, &discretisation, &part, &mut warnings)?
+        }
     };
     let field = assembler.conduct(&parts, &discretisation, resources, &mut warnings)?;
-    assembler.heat(&mut parts, &discretisation, resources, field.as_ref())?;
+    let place = (&discretisation, &part);
+    assembler.heat(&mut parts, place, resources, field.as_ref())?;
     let BodyParts {
         constants,
         others,
@@ -66,8 +70,12 @@ pub fn assemble(
     assembler.refuse_fields(&bonds)?;
     assembler.check_cells(&discretisation)?;
     assembler.check_point_numbers(sets)?;
-    let mut system = System::new(Arc::clone(cloud), bonds.operator, density)
-        .map_err(|error| at("material.density", error))?;
+    let mut system = System::new(
+        Arc::clone(&part.cloud),
+        bonds.operator,
+        part.scalar(density.clone()),
+    )
+    .map_err(|error| at("material.density", error))?;
     let temperature = field.as_ref().map(DiffusingField::shared);
     if let Some(field) = field {
         let added = system.add_field(Box::new(field));
@@ -81,27 +89,30 @@ pub fn assemble(
             .solution
             .displacement_into(0.0, cloud.axis(0), &mut state.u);
     }
-    let areas = assembler.add_loads(&mut system, &discretisation, &mut warnings)?;
+    let whole_state = state;
+    let state = part.state(&whole_state);
+    let areas = assembler.add_loads(&mut system, place, &mut warnings)?;
     discretisation.conditions.add_loads(&mut system)?;
-    assembler.add_motions(&mut system, &state, sets)?;
+    assembler.add_motions(&mut system, place, &state)?;
     discretisation.conditions.add_motions(&mut system)?;
-    assembler.judge_conditions(&system, &mut warnings);
+    assembler.judge_conditions(&system, cloud, &mut warnings);
     warnings.extend(assembler.judge_idle_keys(&system));
     if discretisation.conditions.is_empty() {
-        warnings.extend(assembler.judge_rest(&state));
+        warnings.extend(assembler.judge_rest(&whole_state));
     }
     let contact = assembler.add_contact(
         &mut system,
-        (&discretisation, &state),
+        (&discretisation, &part, &whole_state),
         (constants.as_ref(), &others),
         resources,
         &mut warnings,
     )?;
-    let probes = assembler.point_probes(cloud, sets, &mut warnings)?;
-    let integrator = assembler.integrator(&system, sets)?;
+    let probes = assembler.point_probes(place, &mut warnings)?;
+    let own_sets = part.sets(sets);
+    let integrator = assembler.integrator(&system, &own_sets)?;
     let ends = assembler.ends(&system, &state, sets, &*integrator, resources)?;
     let exterior = exterior_frequency(&ends);
-    let layers = assembler.damping_layers(&system, constants.as_ref())?;
+    let layers = assembler.damping_layers(&density, constants.as_ref())?;
     let damping = strongest(&layers, cloud);
     let steps = assembler.steps(
         &system,
@@ -119,15 +130,19 @@ pub fn assemble(
     );
     assembler.check_thermal_steps(&system, steps.dt)?;
     assembler.judge_two_steps(&*integrator, &steps, &mut warnings);
-    assembler.judge_breaking(&system, &state, constants.as_ref(), &steps, &mut warnings);
+    let states = (&state, &whole_state);
+    assembler.judge_breaking(&system, states, constants.as_ref(), &steps, &mut warnings);
     let ends = assembler.add_ends(&mut system, ends, &state, &steps, resources, &mut warnings)?;
     assembler.add_damping_layers(&mut system, layers, integrator.step_kind(), &steps)?;
     assembler.add_rayleigh_damping(&mut system, &*integrator)?;
     check_compatibility(&system, &*integrator, steps.count)
         .map_err(|error| at("time.scheme", error))?;
-    assembler.refuse_lost_values(&system, &steps)?;
-    assembler.judge_supports(&system, steps.count as f64 * steps.dt, &mut warnings);
-    let stops = assembler.stops(&system, sets)?;
+    part.agreed(assembler.refuse_lost_values(&system, &steps))?;
+    if !part.is_divided() {
+        assembler.judge_supports(&system, steps.count as f64 * steps.dt, &mut warnings);
+    }
+    let stops = assembler.stops(&system, &own_sets)?;
+    drop(own_sets);
     let loads = assembler.load_reports(&system, areas, steps.count as f64 * steps.dt);
     let Discretisation {
         cloud,
@@ -136,6 +151,11 @@ pub fn assemble(
         sets,
         ..
     } = discretisation;
+    // The process that writes the results needs the whole body; the others have their parts.
+    let (cloud, sets) = match system.domain().is_first() {
+        true => (cloud, sets),
+        false => (Arc::clone(&part.cloud), part.sets(&sets).into_owned()),
+    };
     Ok(Assembly {
         cloud,
         surface,

@@ -21,9 +21,9 @@ use super::step::damped_step;
 
 /// An assembled model, ready to run.
 pub struct Assembly {
-    /// The points.
+    /// The points of the whole body; on all but the first of several processes, own points.
     pub cloud: Arc<PointCloud>,
-    /// The sets with their names, "all" first.
+    /// The sets of these points with their names, "all" first.
     pub sets: Sets,
     /// The surface, if the body is one.
     pub surface: Option<Arc<Surface>>,
@@ -97,6 +97,7 @@ impl Assembly {
             self.dt,
             self.steps,
         )?;
+        simulation = simulation.of_whole(Some(self.cloud));
         for stop in self.stops {
             simulation.stop_when(stop)?;
         }

@@ -18,7 +18,7 @@ impl Assembler<'_> {
     pub(super) fn judge_breaking(
         &self,
         system: &System,
-        state: &State,
+        (state, whole): (&State, &State),
         constants: Option<&MaterialConstants>,
         steps: &Steps,
         warnings: &mut Vec<ModelWarning>,
@@ -36,7 +36,7 @@ impl Assembler<'_> {
         let first = |key: &str| KeyPath::from(key).index(0);
         // Velocities relative to the mean: a translation of the whole body breaks no bonds.
         let speed = largest_speed(
-            &about_mean(&state.v, system.dimension()),
+            &about_mean(&whole.v, system.dimension()),
             system.dimension(),
         );
         if speed > limit {
@@ -44,7 +44,9 @@ impl Assembler<'_> {
             warnings.push(Remark::new(first("initial"), caution));
         }
         for (k, speed) in prescribed_speeds(system, steps).into_iter().enumerate() {
-            if speed > limit && system.motions()[k].points.len() < system.points() {
+            let points = system.motions()[k].points.len();
+            let everywhere = system.domain().all(points == system.points());
+            if speed > limit && !everywhere {
                 let caution = fast("prescribed motion", speed, limit, system.dimension());
                 warnings.push(Remark::new(KeyPath::from("constraint").index(k), caution));
             }
@@ -63,7 +65,7 @@ impl Assembler<'_> {
         if torn > 0 {
             let caution = Caution::TornAtOnce {
                 points: torn,
-                of: system.points(),
+                of: system.domain().whole_points(),
                 dt: steps.dt,
             };
             warnings.push(Remark::new(&path, caution));
@@ -90,6 +92,9 @@ fn prescribed_speeds(system: &System, steps: &Steps) -> Vec<f64> {
             *largest = largest.max(fastest.sqrt());
         }
     }
+    for largest in &mut largest {
+        *largest = system.domain().max(*largest);
+    }
     largest
 }
 
@@ -106,14 +111,15 @@ fn fast(what: &'static str, speed: f64, limit: f64, dimension: usize) -> Caution
     }
 }
 
-/// Returns the number of points with bonds beyond the critical stretch.
+/// Returns the number of points of the whole body with bonds beyond the critical stretch.
 fn torn(system: &System, u: &[f64]) -> usize {
     let Some(breaking) = system.operator().capabilities().breaking else {
         return 0;
     };
     let mut marks = vec![false; system.points()];
     breaking.mark_endangered(u, 1.0, &mut marks);
-    marks.iter().filter(|mark| **mark).count()
+    let own = marks.iter().filter(|mark| **mark).count();
+    system.domain().count(own as u64) as usize
 }
 
 /// Returns the largest norm of a component-major vector field.

@@ -13,7 +13,8 @@ use pericles_deck::{
 };
 
 use super::assembler::Assembler;
-use super::discretisation::Sets;
+use super::discretisation::{Discretisation, Sets};
+use super::part::Part;
 use super::refusal::{at, at_path};
 use super::resources::Resources;
 
@@ -121,9 +122,10 @@ impl Assembler<'_> {
     pub(super) fn add_motions(
         &self,
         system: &mut System,
+        (discretisation, part): (&Discretisation, &Part),
         state: &State,
-        sets: &Sets,
     ) -> Result<(), BuildError> {
+        let Discretisation { cloud, sets, .. } = discretisation;
         let mut names: Vec<String> = Vec::new();
         for (k, motion) in self.model.constraints.iter().enumerate() {
             // Several motions of one set (along different axes) need distinct names in tables.
@@ -139,7 +141,8 @@ impl Assembler<'_> {
             let function = motion.function.smooth_function();
             let function = function.map_err(|fault| at_path(path.key("function"), fault))?;
             self.refuse_second_motion(k, &points, sets)?;
-            let along = self.axis_motions(&path, motion, system.cloud(), &points)?;
+            let along = self.axis_motions(&path, motion, cloud, &points)?;
+            let (points, along) = part.motions(&points, along);
             let prescribed = PrescribedMotion::along(
                 name,
                 points,
@@ -189,10 +192,10 @@ impl Assembler<'_> {
 
     pub(super) fn point_probes(
         &self,
-        cloud: &PointCloud,
-        sets: &Sets,
+        (discretisation, part): (&Discretisation, &Part),
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<Vec<PointProbe>, BuildError> {
+        let Discretisation { cloud, sets, .. } = discretisation;
         let mut probes = Vec::new();
         for (k, probe) in self.model.probes.iter().enumerate() {
             let path = KeyPath::from("probe").index(k);
@@ -212,7 +215,7 @@ impl Assembler<'_> {
             };
             probes.push(PointProbe {
                 name: probe.name.clone(),
-                points,
+                points: part.set(&points),
             });
         }
         Ok(probes)

@@ -1,5 +1,6 @@
 //! Contact between points, and impactors.
 
+use pericles::space::PointCloud;
 use pericles::time::State;
 use pericles::{PointScalar, System};
 use pericles_contact::{
@@ -14,6 +15,7 @@ use pericles_deck::{
 use super::assembler::Assembler;
 use super::constants::MaterialConstants;
 use super::discretisation::Discretisation;
+use super::part::Part;
 use super::refusal::{at, at_path};
 use super::resources::Resources;
 use super::rotation::{UNIT, matrix, product, times, upright};
@@ -35,7 +37,7 @@ impl Assembler<'_> {
     pub(super) fn add_contact(
         &self,
         system: &mut System,
-        (discretisation, state): (&Discretisation, &State),
+        (discretisation, part, state): (&Discretisation, &Part, &State),
         constants: AllConstants<'_>,
         resources: &Resources<'_>,
         warnings: &mut Vec<ModelWarning>,
@@ -52,8 +54,14 @@ impl Assembler<'_> {
         }
         let contact = self.model.contact.unwrap_or_default();
         let law = law(&contact);
-        let bodies = self.contact_bodies(solid, discretisation, constants, system)?;
-        let cloud = &discretisation.cloud;
+        let bodies = self.contact_bodies(solid, discretisation, constants)?;
+        let bodies = ContactBodies {
+            piece: part.own(&bodies.piece).into_owned(),
+            young: part.scalar(bodies.young),
+            horizon: part.scalar(bodies.horizon),
+            density: part.scalar(bodies.density),
+        };
+        let cloud = &part.cloud;
         if self.model.contact.is_some() {
             PointContact::new(cloud.clone(), law, bodies.clone())
                 .and_then(|points| system.add_interaction(Box::new(points)))
@@ -80,7 +88,7 @@ impl Assembler<'_> {
         let density = &bodies.density;
         let facts = ContactFacts {
             frequency: system.single_contact_frequency(density),
-            speed: self.impact_speed(system, state),
+            speed: self.impact_speed(system, &discretisation.cloud, state),
         };
         self.judge_impact(solid, &contact, facts, constants, warnings);
         Ok(facts)
@@ -92,7 +100,6 @@ impl Assembler<'_> {
         solid: &Solid,
         discretisation: &Discretisation,
         (own, others): AllConstants<'_>,
-        system: &System,
     ) -> Result<ContactBodies, BuildError> {
         let Discretisation {
             cloud, grids, sets, ..
@@ -111,7 +118,7 @@ impl Assembler<'_> {
             .chain(others.map(|other| other.model.horizon()))
             .collect();
         let material = |i: usize| of_point.as_ref().map_or(0, |all| usize::from(all[i]));
-        let points = system.points();
+        let points = cloud.len();
         let ratio = |i: usize| f64::from(grids.ratios[usize::from(grids.of_point[i])]);
         let horizon = |i: usize| horizons[material(i)] / ratio(i);
         let modulus = |i: usize| young.get(material(i)).copied().unwrap_or(young[0]);
@@ -177,9 +184,8 @@ impl Assembler<'_> {
         Ok((shape, Pose { centre, rotation }))
     }
 
-    /// Returns the largest relative speed of pieces and impactors at the start.
-    fn impact_speed(&self, system: &System, state: &State) -> f64 {
-        let cloud = system.cloud();
+    /// Returns the largest relative speed of pieces and impactors at the start, from the state of the whole body.
+    fn impact_speed(&self, system: &System, cloud: &PointCloud, state: &State) -> f64 {
         let pieces = cloud.pieces().iter().max().map_or(1, |most| most + 1) as usize;
         let mut momentum = vec![[0.0; 3]; pieces];
         let mut mass = vec![0.0; pieces];

@@ -16,6 +16,7 @@ use super::body::BodyParts;
 use super::constants::MaterialConstants;
 use super::discretisation::Discretisation;
 use super::materials::PairRule;
+use super::part::Part;
 use super::refusal::{at, at_material, at_path};
 
 impl Assembler<'_> {
@@ -24,7 +25,7 @@ impl Assembler<'_> {
         &self,
         solid: &Solid,
         own: &Correspondence,
-        discretisation: &Discretisation,
+        (discretisation, part): (&Discretisation, &Part),
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<BodyParts, BuildError> {
         self.refuse_correspondence_features(solid)?;
@@ -63,6 +64,7 @@ impl Assembler<'_> {
         let classes = match of_point {
             None => None,
             Some(of_point) => {
+                let of_point = part.own(&of_point).into_owned();
                 let classes = CorrespondenceClasses::new(of_point, &all);
                 let mut classes = classes.map_err(|error| at("materials", error))?;
                 for (pair, limits) in self.stretches_between(solid, &materials, cloud)? {
@@ -75,12 +77,12 @@ impl Assembler<'_> {
             None => classes,
             Some(factors) => {
                 let classes = classes.unwrap_or_else(|| CorrespondenceClasses::uniform(&all[0]));
-                Some(classes.with_strengths(factors))
+                Some(classes.with_strengths(part.own(&factors).into_owned()))
             }
         };
-        let no_fail = self.union_of(sets, &material.no_fail)?;
+        let no_fail = part.set(&self.union_of(sets, &material.no_fail)?);
         let body = CorrespondenceBody {
-            cloud,
+            cloud: &part.cloud,
             constants: &all[0],
             classes: classes.as_ref(),
             volume_correction: own.solid.volume_correction,
@@ -94,7 +96,7 @@ impl Assembler<'_> {
             .of_bonds()
             .unwrap_or_default();
         let bonds = body.operator(form).map_err(at_material)?;
-        let cracks = self.tracked_cracks(self.cracks, &bonds.cuts, cloud, warnings);
+        let cracks = self.tracked_cracks(&bonds.cuts, (discretisation, part), warnings);
         let mut all = all.into_iter().map(MaterialConstants::Correspondence);
         let constants = all.next();
         if let Some(constants) = &constants {

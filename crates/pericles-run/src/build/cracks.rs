@@ -2,10 +2,11 @@
 
 use pericles::family::{BondCut, Crack, EndRule};
 use pericles::observe::TrackedCrack;
-use pericles::space::PointCloud;
 use pericles_deck::{BuildError, CrackSurface, Fault, KeyPath, ModelWarning, Remark};
 
 use super::assembler::Assembler;
+use super::discretisation::Discretisation;
+use super::part::Part;
 use super::refusal::at_path;
 use super::resources::Resources;
 
@@ -51,20 +52,19 @@ impl Assembler<'_> {
     /// Returns the pre-cracks with the points at which they cut bonds; warns of those that cut none.
     pub(super) fn tracked_cracks(
         &self,
-        surfaces: &[(Crack, EndRule)],
         cuts: &[BondCut],
-        cloud: &PointCloud,
+        (discretisation, part): (&Discretisation, &Part),
         warnings: &mut Vec<ModelWarning>,
     ) -> Vec<TrackedCrack> {
         let mut tracked = Vec::new();
-        for (k, ((surface, _), cut)) in surfaces.iter().zip(cuts).enumerate() {
+        for (k, ((surface, _), cut)) in self.cracks.iter().zip(cuts).enumerate() {
             if cut.bonds == 0 {
-                let caution = Self::useless_crack(surface, cloud);
+                let caution = Self::useless_crack(surface, &discretisation.cloud);
                 warnings.push(Remark::new(KeyPath::from("crack").index(k), caution));
             }
             tracked.push(TrackedCrack {
                 crack: surface.clone(),
-                points: cut.points.clone(),
+                points: part.gathered_points(cut.points.clone()),
             });
         }
         tracked

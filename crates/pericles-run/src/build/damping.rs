@@ -5,7 +5,7 @@ use pericles::boundary::{
 };
 use pericles::space::{Face, PointCloud};
 use pericles::time::Integrator;
-use pericles::{PericlesError, StepKind, System};
+use pericles::{PericlesError, PointScalar, StepKind, System};
 use pericles_deck::{BoundaryCondition, BuildError, KeyPath};
 
 use super::assembler::Assembler;
@@ -20,7 +20,7 @@ impl Assembler<'_> {
     /// The body is a surface.
     pub(super) fn damping_layers(
         &self,
-        system: &System,
+        density: &PointScalar,
         constants: Option<&MaterialConstants>,
     ) -> Result<Vec<(usize, Face, DampingProfile)>, BuildError> {
         let is_layer = |boundary: &BoundaryCondition| {
@@ -38,7 +38,7 @@ impl Assembler<'_> {
         };
         // The first of several materials.
         let modulus = constants.longitudinal_modulus(solid.state);
-        let speed = (modulus / system.density().at(0)).sqrt();
+        let speed = (modulus / density.at(0)).sqrt();
         let layer = |(k, boundary): (usize, &BoundaryCondition)| {
             let BoundaryCondition::DampingLayer {
                 face,

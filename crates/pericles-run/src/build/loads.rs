@@ -11,6 +11,7 @@ use pericles_deck::{
 use super::area;
 use super::assembler::Assembler;
 use super::discretisation::Discretisation;
+use super::part::Part;
 use super::refusal::{at, at_path};
 use super::step::Steps;
 
@@ -34,7 +35,7 @@ impl Assembler<'_> {
     pub(super) fn add_loads(
         &self,
         system: &mut System,
-        discretisation: &Discretisation,
+        (discretisation, part): (&Discretisation, &Part),
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<Vec<Option<f64>>, BuildError> {
         let cloud = &*discretisation.cloud;
@@ -79,6 +80,7 @@ impl Assembler<'_> {
                 function,
                 window: load.window(),
             };
+            let load = part.load(load);
             system.add_load(load).map_err(|error| at(&path, error))?;
         }
         Ok(areas)
@@ -161,10 +163,11 @@ impl Assembler<'_> {
     ) -> Vec<LoadReport> {
         let loads = self.model.loads.iter().zip(system.loads()).zip(areas);
         let report = |((given, load), area): ((&Load, &BodyLoad), Option<f64>)| {
-            let (force, at) = largest(load, system.cloud(), end);
+            let points = system.domain().count(load.points.len() as u64) as usize;
+            let (force, at) = largest((load, points), system, end);
             LoadReport {
                 set: given.set.clone(),
-                points: load.points.len(),
+                points,
                 area,
                 force,
                 at,
@@ -200,13 +203,14 @@ fn first_lost(steps: &Steps, is_finite: &dyn Fn(f64) -> bool) -> Option<f64> {
 }
 
 /// Returns the largest resultant of a load between 0 and `end`, N, over evenly spaced times, and its first time, s.
-fn largest(load: &BodyLoad, cloud: &PointCloud, end: f64) -> ([f64; 3], f64) {
+fn largest((load, points): (&BodyLoad, usize), system: &System, end: f64) -> ([f64; 3], f64) {
     /// Number of samples, with many divisors, so that ends and peaks of common ramps and pulses are sampled.
     const MOST: usize = 240;
     /// Maximum number of evaluations per load; fields that depend on time are evaluated at every sample.
     const BUDGET: usize = 2_000_000;
-    let samples = (BUDGET / load.points.len().max(1)).clamp(4, MOST);
+    let samples = (BUDGET / points.max(1)).clamp(4, MOST);
     let size = |force: &[f64; 3]| force.iter().map(|f| f * f).sum::<f64>();
+    let cloud = system.cloud();
     let mut best = (load.resultant(0.0, cloud), 0.0);
     for k in 1..=samples {
         let t = end * k as f64 / samples as f64;

@@ -12,7 +12,8 @@ use pericles_deck::{
 use pericles_waves::ForceForm;
 
 use super::assembler::Assembler;
-use super::discretisation::Sets;
+use super::discretisation::{Discretisation, Sets};
+use super::part::Part;
 use super::refusal::{at, at_path};
 
 /// The materials of a body.
@@ -44,9 +45,10 @@ impl<'m> Assembler<'m> {
         &self,
         solid: &Solid,
         (bonds, constants): (&BondMaterial, &BondConstants),
-        (cloud, sets): (&PointCloud, &Sets),
+        (discretisation, part): (&Discretisation, &Part),
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<Composition, BuildError> {
+        let Discretisation { cloud, sets, .. } = discretisation;
         let path = KeyPath::from("material");
         let judged = judged_key(&bonds.fracture, &path);
         self.judge_stretch(constants.critical_stretch, judged, warnings);
@@ -76,6 +78,7 @@ impl<'m> Assembler<'m> {
         let classes = match of_point {
             None => None,
             Some(of_point) => {
+                let of_point = part.own(&of_point).into_owned();
                 let classes = MaterialPairs::new(of_point, &all, InterfaceRule::default());
                 let mut classes = classes.map_err(|error| at("materials", error))?;
                 for (between, path) in self.interfaces(&solid.material)? {
@@ -93,7 +96,7 @@ impl<'m> Assembler<'m> {
                 }
                 if let Some(strengths) = strengths {
                     classes = classes
-                        .with_strengths(strengths)
+                        .with_strengths(part.own(&strengths).into_owned())
                         .map_err(|error| at("material.scatter", error))?;
                 }
                 Some(classes)

@@ -271,7 +271,7 @@ impl Assembler<'_> {
     }
 
     fn memory_estimate(self, assembly: &Assembly) -> u64 {
-        let (points, dimension) = (assembly.cloud.len() as f64, assembly.cloud.dimension());
+        let (points, dimension) = (assembly.system.points() as f64, assembly.cloud.dimension());
         let operator = assembly.system.operator();
         let bonds = operator.directed_bonds() as f64;
         let list = |solid: &Solid| self.bytes_of_listed_bond(solid) * bonds;

@@ -31,6 +31,7 @@ mod materials;
 mod memory;
 mod mesh;
 mod mesh_body;
+mod part;
 mod pieces;
 mod plausible;
 mod points;

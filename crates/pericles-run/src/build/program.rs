@@ -28,6 +28,11 @@ impl Conditions {
         self.loads.is_empty() && self.motions.is_empty()
     }
 
+    /// Returns whether the program adds nothing.
+    pub(super) fn are_none(&self) -> bool {
+        self.is_empty() && self.displacement.is_none() && self.velocity.is_none()
+    }
+
     /// Replaces the initial state.
     pub(super) fn start(&self, state: &mut State) -> Result<(), BuildError> {
         let fields = [

@@ -1,8 +1,10 @@
 //! Resources for building a model: cache, memory limit, readers of files.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use pericles::cache::{Cache, NoCache};
+use pericles::domain::Comm;
 use pericles::space::ListedPoints;
 use pericles_deck::Fault;
 use pericles_manifold::surface::Surface;
@@ -71,6 +73,8 @@ pub struct Resources<'a> {
     pub read_table: &'a TableReader<'a>,
     /// The base folder of relative paths of the model; empty for the current folder.
     pub folder: &'a Path,
+    /// Communication with the processes among which the body is divided; `None` for a single process.
+    pub comm: Option<&'a Arc<dyn Comm>>,
     /// Memory limit in bytes: models with a larger estimate are rejected before large allocations.
     pub memory: u64,
 }
@@ -93,6 +97,7 @@ impl Default for Resources<'_> {
             read_outline: &|_, _| Err(no_reader("outlines")),
             read_table: &|_, _, _, _| Err(no_reader("tables")),
             folder: Path::new(""),
+            comm: None,
             memory: u64::MAX,
         }
     }

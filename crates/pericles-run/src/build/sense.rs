@@ -15,7 +15,12 @@ use super::refusal::HORIZON;
 
 impl Assembler<'_> {
     /// Warns of loads on constrained points, and of disconnected bodies.
-    pub(super) fn judge_conditions(&self, system: &System, warnings: &mut Vec<ModelWarning>) {
+    pub(super) fn judge_conditions(
+        &self,
+        system: &System,
+        whole: &Arc<PointCloud>,
+        warnings: &mut Vec<ModelWarning>,
+    ) {
         self.judge_held_loads(system, warnings);
         let Some(solid) = self.model.body.solid() else {
             return;
@@ -25,7 +30,7 @@ impl Assembler<'_> {
         }
         // Constraints of static bodies are checked with their loads.
         if !self.model.time.scheme.is_static() {
-            self.judge_pieces(solid, system, warnings);
+            self.judge_pieces(solid, whole, warnings);
         }
     }
 
@@ -130,10 +135,9 @@ impl Assembler<'_> {
                 continue;
             }
             let resisted = |&i: &u32| (0..3).all(|c| !acts(c) || held[i as usize] >> c & 1 == 1);
-            let (held, points) = (
-                load.points.iter().filter(|i| resisted(i)).count(),
-                load.points.len(),
-            );
+            let whole = |points: usize| system.domain().count(points as u64) as usize;
+            let held = whole(load.points.iter().filter(|i| resisted(i)).count());
+            let points = whole(load.points.len());
             // Sets may share corner points.
             if 2 * held > points {
                 let caution = Caution::LoadOnHeld { held, points };
@@ -144,10 +148,14 @@ impl Assembler<'_> {
 
     /// Warns of bodies that are disconnected at the start. Only bodies with pre-cracks, holes or listed points are
     /// checked, up to a maximum size.
-    fn judge_pieces(&self, solid: &Solid, system: &System, warnings: &mut Vec<ModelWarning>) {
+    fn judge_pieces(
+        &self,
+        solid: &Solid,
+        cloud: &Arc<PointCloud>,
+        warnings: &mut Vec<ModelWarning>,
+    ) {
         /// Maximum number of points: the neighbour search takes as long as several steps of the run.
         const MOST: usize = 50_000;
-        let cloud = system.cloud();
         let holes = &solid.shape.holes();
         let whole = self.model.cracks.is_empty() && holes.is_empty() && !solid.shape.is_listed();
         let joined = self.model.contact.is_some();

@@ -17,6 +17,7 @@ use super::assembler::Assembler;
 use super::body::BodyParts;
 use super::constants::MaterialConstants;
 use super::discretisation::Discretisation;
+use super::part::Part;
 use super::refusal::{at, at_material, at_path};
 use super::resources::Resources;
 
@@ -82,7 +83,7 @@ impl Assembler<'_> {
     pub(super) fn heat(
         &self,
         parts: &mut BodyParts,
-        discretisation: &Discretisation,
+        (discretisation, part): (&Discretisation, &Part),
         resources: &Resources<'_>,
         field: Option<&DiffusingField>,
     ) -> Result<(), BuildError> {
@@ -98,15 +99,20 @@ impl Assembler<'_> {
             let (table, allowed) = ("[thermal]".into(), vec!["reference".into()]);
             return Err(at_path(path, Fault::MissingChoice { table, allowed }));
         };
-        let cloud = &discretisation.cloud;
+        let cloud = &part.cloud;
         let coefficient = self.coefficients((thermal, expansion), solid, parts, discretisation)?;
+        let coefficient = part.scalar(coefficient);
         let temperature: Arc<dyn Temperature> = match field {
             Some(field) => Arc::new(field.shared()),
             None => {
                 let function = thermal.function.function();
+                let value = match self.temperature(thermal, &discretisation.cloud, resources)? {
+                    Given::OfPoints(values) => Given::OfPoints(part.own(&values).into_owned()),
+                    formula @ Given::Formula(_) => formula,
+                };
                 Arc::new(Prescribed {
                     cloud: cloud.clone(),
-                    value: self.temperature(thermal, cloud, resources)?,
+                    value,
                     function: function.map_err(|fault| at_path(path.key("function"), fault))?,
                     reference,
                 })

@@ -130,6 +130,7 @@ impl Sweep {
         let means = Means {
             caching: settings.means.caching.clone(),
             memory: settings.means.memory / at_once as u64,
+            comm: settings.means.comm.clone(),
         };
         tell(SweepEvent::Begins {
             runs: self.sweep.members.len(),

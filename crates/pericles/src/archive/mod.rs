@@ -120,6 +120,26 @@ impl Archive {
         names.into_iter().filter(differs).cloned().collect()
     }
 
+    /// Returns the archive of the whole body on the first process; `None` on the others.
+    ///
+    /// # Errors
+    /// None for a single process.
+    pub fn gathered(&self, domain: &crate::domain::Domain) -> Result<Option<Self>> {
+        Ok(domain.is_first().then(|| self.clone()))
+    }
+
+    /// Returns the part of an archive of the whole body that a process restores.
+    ///
+    /// # Errors
+    /// None for a single process.
+    pub fn scattered(
+        own: &Self,
+        whole: Option<&Self>,
+        _domain: &crate::domain::Domain,
+    ) -> Result<Self> {
+        Ok(whole.unwrap_or(own).clone())
+    }
+
     /// Copies the numbers stored under `name` to `target`.
     pub fn f64_into(&self, name: &str, target: &mut [f64]) -> Result<()> {
         copy(name, self.numbers(name)?, target)

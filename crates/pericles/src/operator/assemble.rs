@@ -149,11 +149,12 @@ pub(super) fn fastest_form(cloud: &PointCloud, features: Features) -> BondForm {
     }
 }
 
-/// Returns whether the points lie on a lattice and fill enough of its bounding box for a stencil.
+/// Returns whether the points of the whole body lie on a lattice and fill enough of its bounding box for a stencil. All
+/// processes must call it together.
 pub(super) fn fills_lattice(cloud: &PointCloud) -> bool {
     cloud.lattice().is_some_and(|lattice| {
         let [x, y, z] = lattice.shape;
         let places = x.next_multiple_of(LANES) * y * z;
-        places <= SPARSE * cloud.len().max(LANES)
+        places <= SPARSE * cloud.domain().whole_points().max(LANES)
     })
 }
