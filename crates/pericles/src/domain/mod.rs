@@ -13,13 +13,16 @@
 //! for every division. Each process stores its own points in ascending order of these numbers.
 
 mod threads;
+mod timed;
 
 use std::borrow::Cow;
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
+use std::time::Duration;
 
 pub use threads::Threads;
+pub use timed::Timed;
 
 use crate::sum::BinnedSum;
 
@@ -40,6 +43,11 @@ pub trait Comm: Send + Sync {
 
     /// Replaces each number by its maximum over all processes.
     fn max(&self, numbers: &mut [f64]);
+
+    /// Time that this process has spent in communication; zero if it is not measured. See [`Timed`].
+    fn waited(&self) -> Duration {
+        Duration::ZERO
+    }
 }
 
 /// Sends a message to the first process, which receives those of all processes in the order of ranks; `None` on the others.
