@@ -8,17 +8,26 @@ use crate::exit::Exit;
 /// Ends the program at the first panic of any thread. Files are written under a temporary name and renamed, so that
 /// incomplete files do not replace complete ones.
 pub(crate) fn end_at_panics() {
+    end(String::new(), std::process::exit);
+}
+
+/// Ends all processes that share a run at the first panic of any of them: the others would wait for it.
+pub(crate) fn end_job_at_panics(rank: usize, size: usize, abort: fn(i32) -> !) {
+    end(format!("process {rank} of {size}: "), abort);
+}
+
+fn end(process: String, exit: fn(i32) -> !) {
     static SPOKEN: AtomicBool = AtomicBool::new(false);
-    std::panic::set_hook(Box::new(|panic| {
+    std::panic::set_hook(Box::new(move |panic| {
         // Threads that do the same work fail together; one message is enough.
         while SPOKEN.swap(true, Ordering::Relaxed) {
             std::thread::park();
         }
         console::note(format_args!(
-            "pericles: {panic}\nThis is a bug in Pericles {}. Please report it with the deck and the command line.",
+            "pericles: {process}{panic}\nThis is a bug in Pericles {}. Please report it with the deck and the command line.",
             env!("CARGO_PKG_VERSION")
         ));
-        std::process::exit(i32::from(Exit::Internal.status()));
+        exit(i32::from(Exit::Internal.status()));
     }));
 }
 

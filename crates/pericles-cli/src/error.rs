@@ -122,6 +122,52 @@ pub(crate) enum CliError {
         /// Number of vertices.
         vertices: usize,
     },
+    /// Several processes were started for a command that runs as a single one.
+    #[error("{processes} processes were started, but this command runs as a single process")]
+    #[diagnostic(help(
+        "start it without mpirun or srun; `pericles run` and `pericles resume` divide a run among several processes"
+    ))]
+    OneProcess {
+        /// Number of processes.
+        processes: usize,
+    },
+    /// Several processes were started, and the program cannot connect them.
+    #[error(
+        "{processes} processes were started, but this program was built without MPI: each of them would make the whole run"
+    )]
+    #[diagnostic(help(
+        "build it with MPI, `cargo build --release -p pericles-cli --features mpi`, or start one process and use --threads"
+    ))]
+    NoMpi {
+        /// Number of processes.
+        processes: usize,
+    },
+    /// The launcher and the MPI library belong to different MPI implementations.
+    #[error(
+        "the launcher has started {launched} processes, but the MPI library of this program ({library}) connects {connected}"
+    )]
+    #[diagnostic(help(
+        "start the program with the mpirun of this library, or build it with the library of the launcher: MPICC=mpicc of that library"
+    ))]
+    OtherMpi {
+        /// Number of processes according to the launcher.
+        launched: usize,
+        /// Number of processes according to the library.
+        connected: usize,
+        /// Name of the library.
+        library: String,
+    },
+    /// The MPI library does not support threads.
+    #[error(
+        "the MPI library of this program ({library}) does not allow calls from several threads"
+    )]
+    #[diagnostic(help(
+        "build the program with an MPI library that supports MPI_THREAD_SERIALIZED"
+    ))]
+    OneThread {
+        /// Name of the library.
+        library: String,
+    },
     /// Signal handlers cannot be installed.
     #[error("cannot install handlers for Ctrl-C and SIGTERM: {0}")]
     Signals(#[source] std::io::Error),
@@ -143,8 +189,17 @@ impl CliError {
                 Exit::Usage
             }
             Self::OutExists { .. } | Self::FileExists { .. } => Exit::Output,
+            Self::OneProcess { .. }
+            | Self::NoMpi { .. }
+            | Self::OtherMpi { .. }
+            | Self::OneThread { .. } => Exit::Processes,
             Self::Signals(_) => Exit::Internal,
         }
+    }
+
+    /// Returns whether another of the processes that share a run reports the error.
+    pub(crate) fn is_elsewhere(&self) -> bool {
+        matches!(self, Self::Run(OfRun(error)) if error.is_elsewhere())
     }
 
     /// Reports the error on standard error.

@@ -13,6 +13,7 @@ pub(crate) enum Exit {
     Output = 6,
     StoppedEarly = 7,
     Memory = 8,
+    Processes = 9,
     HungUp = 129,
     Interrupted = 130,
     Warned = 138,
@@ -21,7 +22,7 @@ pub(crate) enum Exit {
 
 impl Exit {
     /// All statuses in ascending order.
-    const ALL: [Self; 13] = [
+    const ALL: [Self; 14] = [
         Self::Done,
         Self::Internal,
         Self::Usage,
@@ -31,6 +32,7 @@ impl Exit {
         Self::Output,
         Self::StoppedEarly,
         Self::Memory,
+        Self::Processes,
         Self::HungUp,
         Self::Interrupted,
         Self::Warned,
@@ -53,6 +55,9 @@ impl Exit {
             Self::Output => "output cannot be written: disk full, or folder exists or in use",
             Self::StoppedEarly => "stopped at the --wall-time limit, with a checkpoint",
             Self::Memory => "estimated memory exceeds --max-memory or the available memory",
+            Self::Processes => {
+                "several processes (mpirun, srun) without MPI support, or for a command of one process"
+            }
             Self::Interrupted => "Ctrl-C, with a checkpoint (a second Ctrl-C exits immediately)",
             Self::HungUp => "SIGHUP (terminal closed), with a checkpoint",
             Self::Warned => "SIGUSR1 (for example from a batch system), with a checkpoint",
@@ -77,7 +82,7 @@ mod tests {
     #[test]
     fn help_lists_every_exit_status_once() {
         let table = Exit::table();
-        for status in [0, 1, 2, 3, 4, 5, 6, 7, 8, 129, 130, 138, 143] {
+        for status in [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 129, 130, 138, 143] {
             let line = format!("\n  {status:>3}  ");
             assert_eq!(table.matches(&line).count(), 1, "{status}");
         }

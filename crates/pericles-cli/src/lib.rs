@@ -5,7 +5,8 @@
 //! `modes`, `dispersion` and `resume` act on decks and output folders; `sweep` and `converge` on one deck with
 //! several values; `info`, `plot`, `diff`, `export` and `report` (`page`) on results; `reproduce` on the built-in
 //! studies; `geodesics` on surfaces; `mesh` on mesh files; `bench` on fixed bodies. The commands share the console,
-//! the display of a run (`screen`), signal handling, and errors, each of which leads to one message and one exit
+//! the display of a run (`screen`), signal handling, the processes that share a run
+//! (`processes`), and errors, each of which leads to one message and one exit
 //! status (`exit`).
 
 mod args;
@@ -34,6 +35,7 @@ mod modes;
 mod new;
 mod page;
 mod plot;
+mod processes;
 mod progress;
 mod reproduce;
 mod run;
@@ -52,6 +54,7 @@ use pericles::operator::InstructionSet;
 
 use args::{Cli, Command};
 use exit::Exit;
+use processes::Processes;
 
 /// Parses the command line. If a deck is given without a command, advises `pericles run`.
 ///
@@ -87,10 +90,14 @@ pub fn command(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         ));
         return Exit::Usage.status();
     }
+    let processes = match Processes::start(cli.command.is_shared()) {
+        Ok(processes) => processes,
+        Err(error) => return processes::refused(&error),
+    };
     let outcome = match cli.command {
-        Command::Run(args) => run::run(&args),
+        Command::Run(args) => run::run(&args, &processes),
         Command::Check(args) => check::check(&args),
-        Command::Resume(args) => run::resume(&args),
+        Command::Resume(args) => run::resume(&args, &processes),
         Command::Info(args) => info::info(&args),
         Command::Report(args) => page::report(&args),
         Command::Plot(args) => plot::plot(&args),
@@ -108,10 +115,5 @@ pub fn command(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Completions(args) => manual::completions(&args),
         Command::Man(args) => manual::man(&args),
     };
-    let exit = outcome.unwrap_or_else(|error| {
-        let exit = error.exit();
-        error.report();
-        exit
-    });
-    exit.status()
+    processes.conclude(outcome)
 }

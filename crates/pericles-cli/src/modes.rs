@@ -61,6 +61,7 @@ pub(crate) fn modes(args: &ModesArgs) -> Result<Exit, CliError> {
     let means = Means {
         caching: args.caching.wanted(),
         memory: args.memory.bytes(),
+        ..Means::default()
     };
     let assembled = Assembled::of(&source, &means, &mut |_| {})?;
     let integrator = &assembled.assembly.integrator;

@@ -2,7 +2,7 @@
 
 use pericles_run::sweep::is_sweep;
 use pericles_run::units::{count, quantity};
-use pericles_run::{Assembled, Deadline, Run, Source};
+use pericles_run::{Assembled, Deadline, Means, Run, Source, shared_folder};
 
 use crate::args::{ResumeArgs, RunArgs};
 use crate::charts;
@@ -11,6 +11,7 @@ use crate::error::CliError;
 use crate::exit::Exit;
 use crate::folder::output_folder;
 use crate::given;
+use crate::processes::Processes;
 use crate::screen::Screen;
 use crate::signals::Signals;
 use crate::summary;
@@ -21,43 +22,54 @@ use crate::text_chart::TextChart;
 ///
 /// # Errors
 /// The deck is invalid, output cannot be written, or the run becomes unstable.
-pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
+pub(crate) fn run(args: &RunArgs, processes: &Processes) -> Result<Exit, CliError> {
     if !args.sweep.is_empty() {
+        processes.require_one()?;
         return sweep::run(args);
     }
     let deadline = Deadline::from_now(args.options.limits.wall_time);
-    args.options.execution.threads.start()?;
+    let quiet = args.options.execution.quiet;
+    processes.start_threads(&args.options.execution.threads, quiet)?;
     let deck = given::deck(&args.deck, &args.overrides.set)?;
     let file = args.deck.display().to_string();
-    let quiet = args.options.execution.quiet;
-    if !quiet {
+    if !quiet && processes.is_first() {
         console::note(format_args!("{file}: building the model"));
     }
     let source = Source::of_deck(deck, file);
     // The folder is created only after the deck has been validated.
-    let mut screen = Screen::new(quiet);
-    let means = args.options.means();
+    let mut screen = Screen::shared(quiet, processes.is_first());
+    let means = Means {
+        comm: processes.comm(),
+        ..args.options.means()
+    };
     let assembled = Assembled::of(&source, &means, &mut |event| screen.show(event))?;
-    let folder = output_folder(args.out.as_deref(), Some(args.force), &args.deck, "")?;
+    let folder = shared_folder(&*means.comm, || {
+        output_folder(args.out.as_deref(), Some(args.force), &args.deck, "")
+    })?;
     let run = Run::begin(&source, assembled, folder)?;
-    drive(run, deadline, quiet, args.chart)
+    drive(run, deadline, (quiet, args.chart), processes)
 }
 
 /// Resumes a run from its last checkpoint.
 ///
 /// # Errors
 /// No usable checkpoint, and the errors of [`run`].
-pub(crate) fn resume(args: &ResumeArgs) -> Result<Exit, CliError> {
+pub(crate) fn resume(args: &ResumeArgs, processes: &Processes) -> Result<Exit, CliError> {
     if is_sweep(&args.dir) {
+        processes.require_one()?;
         return sweep::resume(args);
     }
     let deadline = Deadline::from_now(args.options.limits.wall_time);
-    args.options.execution.threads.start()?;
     let quiet = args.options.execution.quiet;
-    let mut screen = Screen::new(quiet);
-    let means = args.options.means();
+    processes.start_threads(&args.options.execution.threads, quiet)?;
+    let shows = !quiet && processes.is_first();
+    let mut screen = Screen::shared(quiet, processes.is_first());
+    let means = Means {
+        comm: processes.comm(),
+        ..args.options.means()
+    };
     let Some(run) = Run::resume(&args.dir, &means, &mut |event| screen.show(event))? else {
-        if !quiet {
+        if shows {
             let path = args.dir.display();
             console::print(format_args!(
                 "{path}: the run has finished; there is nothing to resume"
@@ -65,7 +77,7 @@ pub(crate) fn resume(args: &ResumeArgs) -> Result<Exit, CliError> {
         }
         return Ok(Exit::Done);
     };
-    if !quiet {
+    if shows {
         let path = run.folder().display();
         let (state, steps) = (run.simulation().state(), run.simulation().steps());
         console::note(format_args!(
@@ -75,7 +87,7 @@ pub(crate) fn resume(args: &ResumeArgs) -> Result<Exit, CliError> {
             quantity(state.t, "s")
         ));
     }
-    drive(run, deadline, quiet, args.chart)
+    drive(run, deadline, (quiet, args.chart), processes)
 }
 
 /// Drives a run to its end, a signal or the deadline, and prints a summary.
@@ -85,13 +97,16 @@ pub(crate) fn resume(args: &ResumeArgs) -> Result<Exit, CliError> {
 fn drive(
     mut run: Run,
     deadline: Option<Deadline>,
-    quiet: bool,
-    chart: bool,
+    (quiet, chart): (bool, bool),
+    processes: &Processes,
 ) -> Result<Exit, CliError> {
     let signals = Signals::watch().map_err(CliError::Signals)?;
-    let mut screen = Screen::new(quiet);
+    let mut screen = Screen::shared(quiet, processes.is_first());
     let ending = run.drive(deadline, signals.cancel(), &mut |event| screen.show(event))?;
     let exit = signals.exit_of(ending);
+    if !processes.is_first() {
+        return Ok(exit);
+    }
     if !quiet {
         summary::closing(run.report(), run.folder())?;
     }

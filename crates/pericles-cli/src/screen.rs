@@ -9,6 +9,7 @@ use crate::summary;
 /// Shows the events of a run on standard error.
 pub(crate) struct Screen {
     quiet: bool,
+    silent: bool,
     progress: Option<Progress>,
 }
 
@@ -17,13 +18,23 @@ impl Screen {
     pub(crate) fn new(quiet: bool) -> Self {
         Self {
             quiet,
+            silent: false,
             progress: None,
+        }
+    }
+
+    /// Creates the display of a run that several processes share: the first one shows it.
+    pub(crate) fn shared(quiet: bool, first: bool) -> Self {
+        Self {
+            silent: !first,
+            ..Self::new(quiet)
         }
     }
 
     /// Shows an event.
     pub(crate) fn show(&mut self, event: Event<'_>) {
         match event {
+            _ if self.silent => {}
             Event::CacheNote(note) => console::note(format_args!("{note}")),
             _ if self.quiet => {}
             Event::Opening { report, folder } => {

@@ -140,6 +140,7 @@ fn main() -> Result<()> {
                 eprintln!("MPI does not start");
                 std::process::exit(1);
             };
+            mpi.end_at_panics();
             let rank = mpi.rank();
             (rank, reports(Arc::new(mpi))?)
         }

@@ -6,7 +6,9 @@
 //! The crate needs an MPI library with its compiler wrapper `mpicc`, and libclang while it is built.
 
 use std::panic;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread;
+use std::time::Duration;
 
 use mpi::Threading;
 use mpi::collective::SystemOperation;
@@ -16,52 +18,103 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, CommunicatorCollectives, Destination, Source};
 use pericles::domain::Comm;
 
-/// Exit status of a job that a panic of one of its processes ends.
+/// Exit status of a job that a panic of one of its processes ends ([`Mpi::end_at_panics`]).
 pub const PANICKED: i32 = 70;
 
-/// The communicator of all processes of a job.
+/// The processes of a job, or some of them.
 pub struct Mpi {
     rank: usize,
     size: usize,
     world: Mutex<World>,
-    // Ends MPI when it is dropped, after all calls.
-    _universe: Universe,
+    /// For [`Mpi::agree_at_end`]: reductions on it cannot be taken for others that a process still waits for.
+    end: Mutex<World>,
+    // Ends MPI when the last copy is dropped, after all calls.
+    universe: Arc<Universe>,
 }
 
 struct World(SimpleCommunicator);
 
-// SAFETY: MPI is initialised for calls from any thread of the process, one at a time, and the mutex around the handle
-// ensures that they are made one at a time.
+// SAFETY: MPI is initialised for calls from any thread of the process, one at a time, and the mutexes around the handles
+// ensure that the calls of a communicator are made one at a time. Two communicators are not used at the same time.
 unsafe impl Send for World {}
+
+fn locked(world: &Mutex<World>) -> MutexGuard<'_, World> {
+    world.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Ends all processes of the job at once. They leave no checkpoint.
+pub fn abort(status: i32) -> ! {
+    SimpleCommunicator::world().abort(status)
+}
+
+/// Returns the name and version of the MPI library, on one line.
+pub fn library() -> String {
+    let name = mpi::environment::library_version().unwrap_or_default();
+    let line = name.lines().next().unwrap_or_default();
+    let first = line.split(',').next().unwrap_or_default();
+    first.trim_end_matches('\0').trim().replace('\t', " ")
+}
 
 impl Mpi {
     /// Starts MPI; `None` if it has been started before, or if the library does not allow calls from several threads.
     ///
-    /// Replaces the panic hook: a panic prints its message and ends all processes of the job with the status
-    /// [`PANICKED`]. Without it the others would never end.
+    /// A panic of one process leaves the others waiting: see [`Mpi::end_at_panics`].
     pub fn start() -> Option<Self> {
         let (universe, threading) = mpi::initialize_with_threading(Threading::Serialized)?;
         if threading < Threading::Serialized {
             return None;
         }
         let world = universe.world();
-        let (rank, size) = (world.rank() as usize, world.size() as usize);
+        Some(Self::of(world, Arc::new(universe)))
+    }
+
+    fn of(world: SimpleCommunicator, universe: Arc<Universe>) -> Self {
+        Self {
+            rank: world.rank() as usize,
+            size: world.size() as usize,
+            end: Mutex::new(World(world.duplicate())),
+            world: Mutex::new(World(world)),
+            universe,
+        }
+    }
+
+    /// Replaces the panic hook: a panic prints its message and ends all processes of the job with the status
+    /// [`PANICKED`]. Without it the others would never end.
+    pub fn end_at_panics(&self) {
+        let (rank, size) = (self.rank, self.size);
         let usual = panic::take_hook();
         panic::set_hook(Box::new(move |info| {
             eprint!("process {rank} of {size}: ");
             usual(info);
-            SimpleCommunicator::world().abort(PANICKED);
+            abort(PANICKED);
         }));
-        Some(Self {
-            rank,
-            size,
-            world: Mutex::new(World(world)),
-            _universe: universe,
-        })
     }
 
-    fn world(&self) -> MutexGuard<'_, World> {
-        self.world.lock().unwrap_or_else(PoisonError::into_inner)
+    /// Returns the processes that run on the same machine. All processes must call it together.
+    pub fn of_machine(&self) -> Self {
+        let world = locked(&self.world).0.split_shared(self.rank as i32);
+        Self::of(world, Arc::clone(&self.universe))
+    }
+
+    /// Returns the largest of the numbers of all processes, as the last call of each of them. Calls `waiting` from time to
+    /// time until all have called it, so that a process can [`abort`] the job if others never do, because they wait for a
+    /// message that this process does not send.
+    pub fn agree_at_end(&self, own: f64, waiting: &mut dyn FnMut()) -> f64 {
+        /// Between two looks at the state of the reduction.
+        const PAUSE: Duration = Duration::from_millis(1);
+        let end = &locked(&self.end).0;
+        let (own, mut largest) = ([own], [0.0]);
+        mpi::request::scope(|scope| {
+            let operation = SystemOperation::max();
+            let mut request =
+                end.immediate_all_reduce_into(scope, &own[..], &mut largest[..], operation);
+            while let Err(pending) = request.test() {
+                request = pending;
+                waiting();
+                thread::sleep(PAUSE);
+            }
+        });
+        largest[0]
     }
 }
 
@@ -99,7 +152,7 @@ impl Comm for Mpi {
     }
 
     fn exchange(&self, peers: &[usize], sent: &[Vec<f64>], received: &mut [Vec<f64>]) {
-        let world = &self.world().0;
+        let world = &locked(&self.world).0;
         let process = |&peer: &usize| world.process_at_rank(peer as i32);
         multiple_scope(sent.len(), |scope, requests| {
             for (peer, message) in peers.iter().zip(sent) {
@@ -116,7 +169,9 @@ impl Comm for Mpi {
         let own: Vec<i64> = numbers.iter().copied().flat_map(pieces).collect();
         let mut sums = vec![0; own.len()];
         let operation = SystemOperation::sum();
-        self.world().0.all_reduce_into(&own, &mut sums, operation);
+        locked(&self.world)
+            .0
+            .all_reduce_into(&own, &mut sums, operation);
         for (number, sums) in numbers.iter_mut().zip(sums.chunks(PIECES)) {
             *number = joined(sums);
         }
@@ -125,7 +180,9 @@ impl Comm for Mpi {
     fn max(&self, numbers: &mut [f64]) {
         let own = numbers.to_vec();
         let operation = SystemOperation::max();
-        self.world().0.all_reduce_into(&own, numbers, operation);
+        locked(&self.world)
+            .0
+            .all_reduce_into(&own, numbers, operation);
     }
 }
 

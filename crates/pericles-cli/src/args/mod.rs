@@ -190,6 +190,13 @@ Save it where the shell looks for completions, for example:
     Man(ManArgs),
 }
 
+impl Command {
+    /// Returns whether several processes can share the command.
+    pub(crate) fn is_shared(&self) -> bool {
+        matches!(self, Self::Run(_) | Self::Resume(_))
+    }
+}
+
 #[derive(Debug, Args)]
 pub(crate) struct ManArgs {
     /// The command whose page is printed; by default one page with all commands

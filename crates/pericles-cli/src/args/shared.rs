@@ -34,6 +34,7 @@ impl RunOptions {
         Means {
             caching: self.caching.wanted(),
             memory: self.limits.memory.bytes(),
+            ..Means::default()
         }
     }
 }
@@ -101,7 +102,7 @@ pub(crate) struct Execution {
 /// The number of threads.
 #[derive(Debug, Args)]
 pub(crate) struct Threads {
-    /// Number of threads; results do not depend on it [default: one per core]
+    /// Number of threads of each process; results do not depend on it [default: one per core]
     #[arg(long = "threads", value_name = "N", value_parser = threads)]
     count: Option<NonZeroUsize>,
 }
@@ -114,7 +115,13 @@ impl Threads {
 
     /// Starts the thread pool; by default one thread per core.
     pub(crate) fn start(&self) -> Result<usize, RunError> {
-        let count = self.count.map_or(0, NonZeroUsize::get);
+        // The library counts the cores.
+        self.start_or(0)
+    }
+
+    /// Starts the thread pool; by default with `other` threads.
+    pub(crate) fn start_or(&self, other: usize) -> Result<usize, RunError> {
+        let count = self.count_or(other);
         rayon::ThreadPoolBuilder::new()
             .num_threads(count)
             .build_global()?;

@@ -40,6 +40,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
     let means = Means {
         caching: args.caching.wanted(),
         memory: args.memory.bytes(),
+        ..Means::default()
     };
     let source = Source::of_deck(deck, args.deck.display().to_string());
     let mut screen = Screen::new(false);

@@ -100,6 +100,7 @@ const CRATES: &[(&str, &[&str])] = &[
             "pericles-mesh",
             "pericles-solids",
             "pericles-contact",
+            "pericles-mpi",
             "pericles-statics",
             "pericles-heat",
             "pericles-deck",
