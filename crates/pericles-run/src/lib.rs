@@ -85,10 +85,10 @@ mod watch;
 pub use assembled::{Assembled, Caching, Means, readers};
 pub use audit::Audit;
 pub use build::{
-    Assembly, Conditions, Discretisation, ExactReference, FileError, Grids, Interior,
-    KernelQuality, LoadReport, MaterialConstants, MeshBody, MeshReader, OutlineReader, PlaneWaves,
-    PointsReader, Polygons, Resources, Sets, SurfaceReader, TableReader, assemble, build,
-    discretise,
+    Assembly, BANDWIDTH, Conditions, Discretisation, ExactReference, FileError, Forecast, Grids,
+    Interior, KernelQuality, LATENCY, LoadReport, MaterialConstants, MeshBody, MeshReader,
+    OutlineReader, PlaneWaves, PointsReader, Polygons, Resources, Sets, Spread, SurfaceReader,
+    TableReader, assemble, build, discretise,
 };
 pub use cancel::Cancel;
 pub use deadline::Deadline;

@@ -261,6 +261,10 @@ pub(crate) struct CheckArgs {
     /// Draw the body at rest, coloured by its sets, with pre-cracks and interfaces, into a PNG or SVG file
     #[arg(long, value_name = "FILE")]
     pub(crate) picture: Option<PathBuf>,
+    /// Predict runs on several processes (MPI ranks), such as 1,2,8,64: points, ghosts, messages, memory and time per step of
+    /// each process, without MPI
+    #[arg(long, value_name = "COUNTS", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) ranks: Vec<u32>,
     #[command(flatten)]
     pub(crate) overrides: Overrides,
     #[command(flatten)]

@@ -4,6 +4,7 @@
 mod line;
 mod material;
 mod mesh;
+mod ranks;
 mod refinement;
 mod waves;
 
@@ -87,14 +88,18 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
     for changed in &facts.changed_defaults {
         lines.push(Line::new("changed default", changed.clone()));
     }
+    let divided = ranks::forecasts(&source, &assembly, &args.ranks)?;
+    let mut cost = None;
     if model.time.scheme.is_static() {
         // A step leads from one static state to the next: timing one would be the whole run.
         let note = "not estimated: it depends on the iterations per static state";
         lines.push(Line::new("run time", note));
     } else {
-        let time = run_time(model, &facts, assembly, count_of_threads, &mut lines)?;
+        let (time, found) = run_time(model, &facts, assembly, count_of_threads, &mut lines)?;
         lines.push(time);
+        cost = Some(found);
     }
+    lines.extend(ranks::lines(&divided, cost));
     if let Some(path) = &args.json {
         let results = json_of(&args.deck, model, &facts, &lines)?;
         console::write_json(path, &results)?;
@@ -130,6 +135,15 @@ fn json_of(path: &Path, model: &Model, facts: &Facts, lines: &[Line]) -> Result<
     Ok(json)
 }
 
+/// The cost of a step of the whole body on this machine.
+#[derive(Debug, Clone, Copy)]
+struct StepCost {
+    /// Time, s.
+    seconds: f64,
+    /// Number of force evaluations of the whole body.
+    evaluations: f64,
+}
+
 /// Estimates the run time from a few steps; for multirate schemes it also adds the lines about their speed-up.
 fn run_time(
     model: &Model,
@@ -137,10 +151,11 @@ fn run_time(
     mut assembly: Assembly,
     count_of_threads: usize,
     lines: &mut Vec<Line>,
-) -> Result<Line, CliError> {
+) -> Result<(Line, StepCost), CliError> {
     assembly
         .integrator
         .start(&mut assembly.system, &mut assembly.state);
+    let before = (assembly.state.step, assembly.system.evaluated_points());
     let comparison = Comparison::measure(model, &mut assembly)?;
     if let (Some(two), Some(comparison)) = (&facts.refinement, &comparison) {
         lines.extend(refinement::lines(two, facts.scheme, facts.dt, comparison));
@@ -157,6 +172,12 @@ fn run_time(
             LONGEST,
         )?,
     };
+    let steps = (assembly.state.step - before.0).max(1) as f64;
+    let evaluated = (assembly.system.evaluated_points() - before.1) as f64;
+    let cost = StepCost {
+        seconds: step,
+        evaluations: evaluated / (steps * facts.points as f64),
+    };
     let seconds = step * facts.steps as f64;
     let text = format!(
         "about {} on {} ({}), without output",
@@ -164,9 +185,10 @@ fn run_time(
         threads(count_of_threads),
         facts.instruction_set
     );
-    Ok(Line::new("run time", text)
+    let line = Line::new("run time", text)
         .with("run_seconds", seconds)
-        .with("threads", count_of_threads))
+        .with("threads", count_of_threads);
+    Ok((line, cost))
 }
 
 /// Returns the line about heat conduction.

@@ -243,7 +243,7 @@ impl Assembler<'_> {
     }
 
     /// Returns the reason why a model runs on a single process only, with the key that causes it.
-    fn undivided(&self, whole: &Discretisation) -> Option<(Keys, &'static str)> {
+    pub(super) fn undivided(&self, whole: &Discretisation) -> Option<(Keys, &'static str)> {
         let Body::Solid(solid) = &self.model.body else {
             return Some((
                 "body.shape".into(),

@@ -195,6 +195,11 @@ impl Force for Forces {
         self.list.iter().map(|force| force.bytes()).sum()
     }
 
+    fn values_between_passes(&self) -> usize {
+        let values = self.list.iter().map(|force| force.values_between_passes());
+        values.sum()
+    }
+
     fn instruction_set(&self) -> InstructionSet {
         self.list[0].instruction_set()
     }

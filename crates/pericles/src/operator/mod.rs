@@ -193,6 +193,12 @@ pub trait Force: Checkpointed + Send + Sync {
         0
     }
 
+    /// Returns the number of values per point that the processes that share a body exchange between the passes of an
+    /// evaluation, besides the displacements; zero for forces with a single pass.
+    fn values_between_passes(&self) -> usize {
+        0
+    }
+
     /// Returns the instruction set of the loops.
     fn instruction_set(&self) -> InstructionSet {
         InstructionSet::Baseline

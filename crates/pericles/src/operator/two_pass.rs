@@ -315,6 +315,10 @@ impl<F: TwoPass> Force for TwoPassForce<F> {
         self.force.bytes() + values * size_of::<f64>()
     }
 
+    fn values_between_passes(&self) -> usize {
+        self.force.values_per_point()
+    }
+
     fn instruction_set(&self) -> InstructionSet {
         self.force.instruction_set()
     }

@@ -380,3 +380,43 @@ fn the_highest_frequency_does_not_depend_on_the_division() {
         }
     }
 }
+
+/// Above [`SMALL`](pericles::time::frequency::SMALL) unknowns the bound is that of the plane waves of the stiffest and lightest
+/// lattice: some processes may have softer and heavier points only, and fewer unknowns.
+#[test]
+fn the_highest_frequency_of_a_large_body_does_not_depend_on_the_division() {
+    use pericles::time::highest_frequency;
+    let grid = Grid {
+        shape: Shape::Box {
+            origin: [0.0; 3],
+            size: vec![110.0, 60.0],
+        },
+        spacing: 1.0,
+        section: 1.0,
+        holes: vec![],
+    };
+    let whole = grid.points().unwrap();
+    let of = |cloud: PointCloud, make: Make| {
+        let cloud = Arc::new(cloud);
+        let density = (0..cloud.len()).map(|i| 1.0 + cloud.axis(0)[i]).collect();
+        let density = PointScalar::PerPoint(density);
+        let system = System::new(cloud.clone(), make(&cloud), density).unwrap();
+        let u = vec![0.0; 2 * cloud.len()];
+        let found = highest_frequency(&system, &u).unwrap();
+        [found.estimate, found.bound].map(f64::to_bits)
+    };
+    let forces: [Make; 3] = [
+        |cloud| list::<BondStretch>(PairLaw::BondStretch, cloud),
+        |cloud| self::grid::<BondStretch>(PairLaw::BondStretch, cloud),
+        |cloud| composite(cloud, BondForm::Grid),
+    ];
+    for make in forces {
+        let alone = of(whole.clone(), make);
+        for size in [2, 3] {
+            let of_part = |comm| of(bisected(&whole, Cuts::Planes, comm), make);
+            for found in Threads::run(size, of_part) {
+                assert_eq!(found, alone, "{size} processes");
+            }
+        }
+    }
+}

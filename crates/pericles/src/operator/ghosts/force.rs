@@ -246,6 +246,10 @@ impl Force for GhostForce {
         self.inner.bytes() + whole + self.extrapolation.bytes() + vectors
     }
 
+    fn values_between_passes(&self) -> usize {
+        self.inner.values_between_passes()
+    }
+
     fn instruction_set(&self) -> InstructionSet {
         self.inner.instruction_set()
     }

@@ -141,9 +141,15 @@ impl<L: VectorLaw, const D: usize> Force for GridForce<L, D> {
         if !lattice.is_some_and(|lattice| lattice.is_cubic(D)) {
             return None;
         }
+        // Of the whole body; infinite stiffnesses are rejected below.
+        let finite = |x: f64| if x.is_nan() { f64::INFINITY } else { x };
+        let mut stiffest: Vec<f64> = (0..self.stencil.len())
+            .map(|k| finite(self.largest_stiffness(k)))
+            .collect();
+        self.cloud.domain().max_each(&mut stiffest);
         let spring = |k: usize| LatticeSpring {
             offset: cells[k],
-            stiffness: self.largest_stiffness(k) / lengths[k],
+            stiffness: stiffest[k] / lengths[k],
         };
         LatticeSprings::new(D, (0..self.stencil.len()).map(spring))
     }

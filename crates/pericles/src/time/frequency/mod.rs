@@ -192,12 +192,13 @@ impl<'a> Search<'a> {
 
     fn run(&self) -> Result<HighestFrequency> {
         let operator = self.system.operator();
+        let domain = self.system.domain();
         // Bounds at rest hold at other displacements only for linear forces.
-        let known = self.system.is_linear() || self.u.iter().all(|u| *u == 0.0);
+        let known = self.system.is_linear() || domain.all(self.u.iter().all(|u| *u == 0.0));
         if !known {
             return self.iterate(f64::INFINITY);
         }
-        if self.u.len() > SMALL
+        if self.unknowns() > SMALL
             && let Some((bound, wave)) = self.lattice_bound()
         {
             return match self.confirm(bound, &wave) {
@@ -209,12 +210,18 @@ impl<'a> Search<'a> {
         self.iterate(gershgorin * gershgorin * (1.0 + 1e-12))
     }
 
+    /// Number of unknowns of the whole body.
+    fn unknowns(&self) -> usize {
+        self.system.domain().count(self.u.len() as u64) as usize
+    }
+
     /// Returns the bound of ω² by the plane waves of the infinite lattice, and the wave with the highest frequency.
     fn lattice_bound(&self) -> Option<(f64, PlaneWave)> {
         let springs = self.system.operator().lattice_springs()?;
-        let least = (0..self.system.points())
+        let own = (0..self.system.points())
             .map(self.density())
             .fold(f64::INFINITY, f64::min);
+        let least = -self.system.domain().max(-own);
         let found = zone_maximum(&springs);
         Some((found.bound / least, found.wave))
     }
@@ -270,8 +277,8 @@ impl<'a> Search<'a> {
 
     /// Lanczos iteration from a random vector; `bound` is a known bound of ω², or infinite.
     fn iterate(&self, bound: f64) -> Result<HighestFrequency> {
-        let entries = self.u.len();
-        let effort = EFFORT.iter().find(|(most, ..)| entries <= *most);
+        let (entries, unknowns) = (self.u.len(), self.unknowns());
+        let effort = EFFORT.iter().find(|(most, ..)| unknowns <= *most);
         let &(_, tolerance, most) = effort.unwrap_or(&EFFORT[EFFORT.len() - 1]);
         let hold = |vector: &mut [f64]| (self.hold)(vector);
         self.with_problem(|problem| {

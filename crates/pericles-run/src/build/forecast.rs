@@ -1,0 +1,148 @@
+//! Prediction of a run divided among several processes, without starting any.
+
+use std::sync::Arc;
+
+use pericles::division::{Share, shares};
+use pericles_deck::{BuildError, Fault, Model};
+use serde::Serialize;
+
+use super::assembler::Assembler;
+use super::assembly::Assembly;
+use super::discretisation::{Discretisation, Grids};
+use super::program::Conditions;
+use super::refusal::{at, at_path};
+use crate::division::owners;
+
+/// Mean and largest value over the processes.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Spread {
+    /// The mean.
+    pub mean: f64,
+    /// The largest value.
+    pub largest: f64,
+}
+
+impl Spread {
+    fn of(values: impl Iterator<Item = f64> + Clone) -> Self {
+        let (count, sum) = values
+            .clone()
+            .fold((0.0, 0.0), |(count, sum), value| (count + 1.0, sum + value));
+        Self {
+            mean: sum / count,
+            largest: values.fold(0.0, f64::max),
+        }
+    }
+}
+
+/// A body divided among several processes: what each of them computes, stores and sends.
+#[derive(Debug, Clone, Serialize)]
+pub struct Forecast {
+    /// Number of processes.
+    pub processes: usize,
+    /// Own points.
+    pub points: Spread,
+    /// Ghosts per own point.
+    pub halo: Spread,
+    /// Share of own points that interact with points of other processes.
+    pub boundary: Spread,
+    /// Messages sent in each exchange.
+    pub messages: Spread,
+    /// Estimated peak memory, bytes.
+    pub memory: Spread,
+    /// Bytes received per force evaluation.
+    pub bytes: Spread,
+    /// Exchanges per force evaluation.
+    pub exchanges: usize,
+    /// Points of the whole body.
+    #[serde(skip)]
+    whole: f64,
+}
+
+/// Time between sending a message and its arrival, s: a fast network.
+pub const LATENCY: f64 = 2e-6;
+/// Bytes per second that a process receives: a fast network shared by the processes of a machine.
+pub const BANDWIDTH: f64 = 10e9;
+
+const NUMBER: f64 = 8.0;
+/// Bytes per point of the whole body and dimension, and per point, while a process takes its part: positions and initial state;
+/// volume, number, owner, weight, cell. Every process creates the whole body.
+const WHOLE: [f64; 2] = [40.0, 60.0];
+
+impl Forecast {
+    /// Returns the time of a step, s: that of the largest part and of its exchanges, which are not overlapped.
+    ///
+    /// `alone` is the time of a step of the whole body on one process with the same number of threads, and `evaluations` the
+    /// number of force evaluations in it.
+    pub fn step(&self, alone: f64, evaluations: f64) -> f64 {
+        let compute = alone * self.points.largest / self.whole;
+        let messages = self.exchanges as f64 * self.messages.largest * LATENCY;
+        compute + evaluations * (messages + self.bytes.largest / BANDWIDTH)
+    }
+}
+
+impl Assembly {
+    /// Predicts a run of this body divided among several processes. The body itself must not be divided.
+    ///
+    /// # Errors
+    /// A model that cannot be divided, with the reason; more processes than parts.
+    pub fn forecast(&self, model: &Model, processes: usize) -> Result<Forecast, BuildError> {
+        let assembler = Assembler::new(model);
+        let cloud = &self.cloud;
+        if processes > 1
+            && let Some((keys, reason)) = assembler.undivided(&self.as_discretised())
+        {
+            return Err(at_path(keys, Fault::Undivided { reason }));
+        }
+        let reach = assembler.reach(cloud);
+        let of_processes = || shares(cloud, &owners(cloud, reach, processes)?, processes, reach);
+        let shares = of_processes().map_err(|error| at("body", error))?;
+        if shares.iter().any(|share| share.owned == 0) {
+            let fault = Fault::TooManyProcesses {
+                processes,
+                points: cloud.len(),
+            };
+            return Err(at_path("body", fault));
+        }
+        let dimension = cloud.dimension() as f64;
+        // Forces in two passes also exchange the values of the points between the passes.
+        let values = self.system.operator().values_between_passes();
+        let numbers = dimension + values as f64;
+        let whole = cloud.len() as f64;
+        let of_point = self.memory_estimate(model) as f64 / whole;
+        let created = match processes {
+            1 => 0.0,
+            _ => whole * (WHOLE[0] * dimension + WHOLE[1]),
+        };
+        let spread = |of: &dyn Fn(&Share) -> f64| Spread::of(shares.iter().map(of));
+        let per_own = |count: usize, share: &Share| count as f64 / share.owned as f64;
+        Ok(Forecast {
+            processes,
+            points: spread(&|share| share.owned as f64),
+            halo: spread(&|share| per_own(share.ghosts, share)),
+            boundary: spread(&|share| per_own(share.boundary, share)),
+            messages: spread(&|share| share.peers as f64),
+            memory: spread(&|share| {
+                created
+                    + of_point * share.owned as f64
+                    + 2.0 * NUMBER * numbers * share.ghosts as f64
+            }),
+            bytes: spread(&|share| NUMBER * numbers * share.ghosts as f64),
+            exchanges: 1 + usize::from(values > 0),
+            whole,
+        })
+    }
+
+    /// Returns the points and sets of the assembly.
+    fn as_discretised(&self) -> Discretisation {
+        Discretisation {
+            cloud: Arc::clone(&self.cloud),
+            grids: Grids::one(self.cloud.len()),
+            surface: self.surface.clone(),
+            mesh: self.mesh.clone(),
+            sets: self.sets.clone(),
+            cracks: Vec::new(),
+            conditions: Conditions::default(),
+            warnings: Vec::new(),
+        }
+    }
+}
