@@ -2,7 +2,7 @@
 
 use super::layout::GridLayout;
 use crate::archive::{Archive, Layout, Storage, Values};
-use crate::error::{PericlesError, Result};
+use crate::error::Result;
 use crate::operator::damage::{BlockDamage, restore_tallies, save_tallies};
 
 /// Saves the intact bonds of each point, one bit per offset of the stencil. Unlike chunks, points and offsets do not
@@ -55,16 +55,6 @@ impl Storage<Vec<BlockDamage>> for StencilStorage<'_> {
     fn restore(&self, blocks: &mut Vec<BlockDamage>, archive: &Archive) -> Result<()> {
         let bytes = self.offsets.div_ceil(BITS);
         let bits: &[u8] = archive.exactly(&self.array(), bytes * self.points())?;
-        // Bits behind the last offset.
-        let unused = bytes * BITS - self.offsets;
-        let last = &bits[bytes.saturating_sub(1) * self.points()..];
-        if unused > 0 && last.iter().any(|byte| byte >> (BITS - unused) != 0) {
-            let reason = format!(
-                "the array \"{}\" has bonds that the body does not",
-                self.array()
-            );
-            return Err(PericlesError::BadArchive { reason });
-        }
         for (block, damage) in blocks.iter_mut().enumerate() {
             damage.intact.fill(0);
             self.for_each(block, |entry, bit, group, lane| {
