@@ -373,7 +373,7 @@ impl<const D: usize> CorrespondenceForce<D> {
             }
         });
         let points = &points;
-        out.par_chunks_mut(n)
+        out.par_chunks_mut(n.max(1))
             .enumerate()
             .for_each(|(slot, values)| {
                 on.for_each(n, |i| {

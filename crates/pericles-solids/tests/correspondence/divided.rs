@@ -13,7 +13,7 @@ use crate::{fracture, plastic};
 /// Bonds of three cells.
 const REACH: f64 = 3.5;
 
-/// The part of a process: oblique stripes.
+/// The part of a process: oblique stripes. The last of three processes has no points of the smaller body.
 fn part(whole: &Arc<PointCloud>, comm: Arc<dyn Comm>) -> Arc<PointCloud> {
     let size = comm.size();
     let owner = |k: usize| {

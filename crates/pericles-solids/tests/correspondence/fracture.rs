@@ -92,14 +92,7 @@ fn dissipated_energy_of_a_closing_deformation_is_the_calibrated_energy() {
     );
 }
 
-/// A plate with a notch.
-fn plate() -> (Arc<PointCloud>, Box<dyn Force>) {
-    let cloud = lattice(&[18.0, 16.0]);
-    let force = notched(&cloud);
-    (cloud, force)
-}
-
-/// The force of the plate, or of a part of it.
+/// The force of a plate with a notch, or of a part of it.
 fn notched(cloud: &Arc<PointCloud>) -> Box<dyn Force> {
     let material = breaking(FractureCalibration::Lattice);
     let constants = material.constants(cloud, StressState::PlaneStrain).unwrap();

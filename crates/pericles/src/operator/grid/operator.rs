@@ -221,7 +221,7 @@ impl<L: VectorLaw, const D: usize> LinearOperator for GridForce<L, D> {
 
 crate::saved! {
     impl<L: VectorLaw, const D: usize> Checkpointed for GridForce<L, D> {
-        blocks: by(StencilStorage { name: "operator/grid", layout: &*layout, offsets: stencil.len() }),
+        blocks: by(StencilStorage { name: "operator/grid", layout, offsets: stencil.len() }),
         cloud, sites, layout, stencil, held, geometric, cuts, precut, directed_bonds, critical_stretch, pairs, damage: fixed,
         expansion: fixed,
         instruction_set, law: fixed,

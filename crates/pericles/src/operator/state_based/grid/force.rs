@@ -69,7 +69,7 @@ pub struct LinearSolidGrid<L: Kinematics, const D: usize> {
 
 crate::saved! {
     impl<L: Kinematics, const D: usize> Checkpointed for LinearSolidGrid<L, D> {
-        blocks: by(StencilStorage { name: "operator/grid", layout: &**layout, offsets: stencil.len() }),
+        blocks: by(StencilStorage { name: "operator/grid", layout, offsets: stencil.len() }),
         cloud, layout, stencil, offsets, geometric, held, precut, states, stiffness, classes, weakest: fixed,
         damage, directed_bonds, instruction_set, kinematics: fixed,
         heat: rebuilt,
