@@ -3,6 +3,7 @@
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use pericles::archive::Layout;
 use pericles::operator::Force;
 use pericles::space::check_length;
 use pericles::{
@@ -342,7 +343,8 @@ impl Checkpointed for DiffusingField {
             Values::U8(state.problem.diffusion.intact().to_vec()),
         );
         for (k, one) in [from, to].into_iter().enumerate() {
-            archive.put(VALUES[k], Values::F64(one.values.clone()));
+            let values = Values::F64(one.values.clone());
+            archive.put_as(VALUES[k], values, Layout::Points);
             archive.put(FLOWS[k], Values::F64(one.flows.clone()));
         }
     }

@@ -342,11 +342,10 @@ fn opened(path: &Path, means: &Means) -> Result<Option<(OutputFolder, Stored)>, 
 /// Restores a simulation from the archive of the whole body, which the first process has.
 fn restore(simulation: &mut Simulation, whole: Option<&Archive>) -> Result<(), PericlesError> {
     let domain = simulation.system().domain();
-    if let (false, Some(whole)) = (domain.is_divided(), whole) {
-        return simulation.restore(whole);
-    }
     let mut own = Archive::default();
-    simulation.save(&mut own);
+    if domain.is_divided() {
+        simulation.save(&mut own);
+    }
     let own = Archive::scattered(&own, whole, domain)?;
     simulation.restore(&own)
 }

@@ -161,7 +161,7 @@ pub(crate) fn for_each_entry(
     out: &mut [f64],
     set: &(impl Fn(usize, &mut f64) + Sync),
 ) {
-    for component in out.chunks_mut(n) {
+    for component in out.chunks_mut(n.max(1)) {
         match on {
             PointSubset::All => in_range(0, component, set),
             PointSubset::Range(range) => in_range(range.start, &mut component[range.clone()], set),

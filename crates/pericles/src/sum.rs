@@ -9,7 +9,7 @@
 
 use rayon::prelude::*;
 
-use crate::archive::{Archive, SavedUnder, Values};
+use crate::archive::{Archive, Layout, SavedUnder, Values};
 use crate::error::{PericlesError, Result};
 use crate::lanes::{InstructionSet, for_each_instruction_set};
 use crate::parallel::BLOCK;
@@ -18,6 +18,8 @@ use crate::parallel::BLOCK;
 const WIDTH: i32 = 40;
 /// Number of bins that are kept.
 const KEPT: usize = 3;
+/// Number of numbers in archives.
+const STORED: usize = 1 + 2 * (KEPT + 3);
 /// Number of terms that are split in parallel lanes.
 const LANES: usize = 8;
 /// Terms in bins beyond ±[`SAFE`] are scaled by 2^(40 · [`SHIFT`]) or its inverse, so that no unit over- or
@@ -187,34 +189,47 @@ impl BinnedSum {
 }
 
 /// Stored as the index of the highest bin followed by the integers, each in two halves.
-impl SavedUnder for BinnedSum {
-    fn save_under(&self, name: &str, archive: &mut Archive) {
+impl BinnedSum {
+    /// Returns the stored numbers.
+    pub(crate) fn stored(&self) -> Vec<u64> {
         let halves = |integer: i128| [integer as u64, (integer >> 64) as u64];
         let mut numbers = vec![i64::from(self.top) as u64];
         numbers.extend(self.integers(self.top).into_iter().flat_map(halves));
-        archive.put(name, Values::U64(numbers));
+        numbers
     }
 
-    fn restore_under(&mut self, name: &str, archive: &Archive) -> Result<()> {
+    /// Returns the sum from its stored numbers; `None` if they are not those of a sum.
+    pub(crate) fn of_stored(numbers: &[u64]) -> Option<Self> {
         /// Far larger than the integers of any run and far below overflow.
         const MOST: u128 = 1 << 100;
-        let numbers = archive.exactly::<u64>(name, 1 + 2 * (KEPT + 3))?;
+        if numbers.len() != STORED {
+            return None;
+        }
         let integer = |k: usize| {
             let [low, high] = [numbers[1 + 2 * k], numbers[2 + 2 * k]];
             i128::from(high as i64) << 64 | i128::from(low)
         };
         let integers: [i128; KEPT + 3] = std::array::from_fn(integer);
-        let top = i32::try_from(numbers[0] as i64).ok();
+        let top = i32::try_from(numbers[0] as i64).ok()?;
         let bins = bin_of(f64::MIN_POSITIVE * f64::EPSILON)..=bin_of(f64::MAX);
-        match top.filter(|top| *top == i32::MIN || bins.contains(top)) {
-            Some(top) if integers.iter().all(|k| k.unsigned_abs() < MOST) => {
-                *self = Self::of_integers(top, integers);
-                Ok(())
-            }
-            _ => Err(PericlesError::BadArchive {
-                reason: format!("{name} is not a valid sum"),
-            }),
-        }
+        let valid = (top == i32::MIN || bins.contains(&top))
+            && integers.iter().all(|k| k.unsigned_abs() < MOST);
+        valid.then(|| Self::of_integers(top, integers))
+    }
+}
+
+/// The terms of this process; see [`Layout::Sum`].
+impl SavedUnder for BinnedSum {
+    fn save_under(&self, name: &str, archive: &mut Archive) {
+        archive.put_as(name, Values::U64(self.stored()), Layout::Sum);
+    }
+
+    fn restore_under(&mut self, name: &str, archive: &Archive) -> Result<()> {
+        let numbers = archive.exactly::<u64>(name, STORED)?;
+        *self = Self::of_stored(numbers).ok_or_else(|| PericlesError::BadArchive {
+            reason: format!("{name} is not a valid sum"),
+        })?;
+        Ok(())
     }
 }
 

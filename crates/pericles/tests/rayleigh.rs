@@ -1,6 +1,7 @@
 //! Rayleigh damping.
 
 use pericles::boundary::{PrescribedMotion, RayleighDamping, RayleighRates, TimeFunction};
+use pericles::domain::Domain;
 use pericles::material::{BondMaterial, ElasticModulus, PairLaw};
 use pericles::prelude::*;
 use pericles::round_trip::check_resume;
@@ -18,7 +19,7 @@ fn bar(rates: RayleighRates, stages: bool, dt: f64, end: f64) -> Simulation {
         true => StepKind::Stages,
         false => StepKind::EndOfStep,
     };
-    let damping = RayleighDamping::new(rates, kind, system.masses(), 1).unwrap();
+    let damping = RayleighDamping::new(rates, kind, system.masses(), system.domain()).unwrap();
     system.add_boundary(Box::new(damping));
     let mut start = State::of(&system);
     for i in 0..system.points() {
@@ -124,7 +125,8 @@ fn constrained_points_are_not_damped() {
         mass: 0.05,
         stiffness: 0.1,
     };
-    let damping = RayleighDamping::new(rates, StepKind::EndOfStep, system.masses(), 2).unwrap();
+    let damping =
+        RayleighDamping::new(rates, StepKind::EndOfStep, system.masses(), system.domain()).unwrap();
     system.add_boundary(Box::new(damping));
     let start = State::of(&system);
     let mut run = Simulation::new(system, Box::new(VelocityVerlet), start, 0.1, 300).unwrap();
@@ -139,7 +141,7 @@ fn constrained_points_are_not_damped() {
 fn invalid_damping_factors_and_unsupported_schemes_are_errors() {
     let new = |mass, stiffness, kind| {
         let rates = RayleighRates { mass, stiffness };
-        RayleighDamping::new(rates, kind, vec![1.0; 4], 1).map(|_| ())
+        RayleighDamping::new(rates, kind, vec![1.0; 4], &Domain::alone(4)).map(|_| ())
     };
     let error = new(-1.0, 0.0, StepKind::EndOfStep).unwrap_err();
     assert!(error.to_string().contains("-1"), "{error}");
@@ -155,7 +157,8 @@ fn invalid_damping_factors_and_unsupported_schemes_are_errors() {
             stiffness: 1.0,
         };
         let masses = system.masses();
-        let damping = RayleighDamping::new(rates, StepKind::Stages, masses, 1).unwrap();
+        let damping =
+            RayleighDamping::new(rates, StepKind::Stages, masses, system.domain()).unwrap();
         system.add_boundary(Box::new(damping));
         system
     };

@@ -343,7 +343,7 @@ pericles::saved! {
     impl Checkpointed for Impactor {
         state: array("impactor/{name}/state"),
         impulse, work, dissipated: array("impactor/{name}/account"),
-        drag: array("impactor/{name}/drag"),
+        drag: points("impactor/{name}/drag"),
         drag_sum: array("impactor/{name}/drag sum"),
         points: array("impactor/{name}/points"),
         overlap: array("impactor/{name}/overlap"),

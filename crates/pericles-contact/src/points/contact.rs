@@ -338,7 +338,7 @@ impl Interaction for PointContact {
 
 pericles::saved! {
     impl Checkpointed for PointContact {
-        drag: array("contact/drag"),
+        drag: points("contact/drag"),
         dissipated: array("contact/dissipated"),
         pairs: array("contact/pairs"),
         overlap: array("contact/overlap"),

@@ -85,8 +85,7 @@ impl Assembler<'_> {
             };
             return Err(at_path("damping", error.into()));
         }
-        let dimension = system.dimension();
-        let damping = RayleighDamping::new(rates, kind, system.masses(), dimension);
+        let damping = RayleighDamping::new(rates, kind, system.masses(), system.domain());
         let damping = damping.map_err(|error| at_path("damping", error.into()))?;
         system.add_boundary(Box::new(damping));
         Ok(())

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use pericles::archive::{Laid, Layout};
 use pericles::domain::Field;
 use pericles::lanes::{LANES, Row};
 use pericles::operator::pool::{Lent, Pool};
@@ -69,9 +70,10 @@ pub struct CorrespondenceForce<const D: usize> {
 
 saved! {
     impl<const D: usize> Checkpointed for CorrespondenceForce<D> {
-        intact: array("operator/intact"),
-        history: array("operator/plastic-history"),
-        broken, dropped: array("operator/broken"),
+        intact: by(Laid::rows("operator/intact", bonds.list.start(), intact.len())),
+        history: by(Laid::per_point("operator/plastic-history", cloud.len(), history.len())),
+        broken: by(Laid::new("operator/broken", Layout::Count)),
+        dropped: by(Laid::new("operator/dropped", Layout::Count)),
         dissipated: under("operator/dissipated"),
         plastic_work: under("operator/plastic-work"),
         cloud, bonds, classes, limits, weakest, breakable, damage, spring, expansion: fixed,
@@ -371,7 +373,7 @@ impl<const D: usize> CorrespondenceForce<D> {
             }
         });
         let points = &points;
-        out.par_chunks_mut(n)
+        out.par_chunks_mut(n.max(1))
             .enumerate()
             .for_each(|(slot, values)| {
                 on.for_each(n, |i| {

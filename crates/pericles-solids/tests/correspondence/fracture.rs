@@ -92,13 +92,10 @@ fn dissipated_energy_of_a_closing_deformation_is_the_calibrated_energy() {
     );
 }
 
-/// A plate with a notch.
-fn plate() -> (Arc<PointCloud>, Box<dyn Force>) {
-    let cloud = lattice(&[18.0, 16.0]);
+/// The force of a plate with a notch, or of a part of it.
+fn notched(cloud: &Arc<PointCloud>) -> Box<dyn Force> {
     let material = breaking(FractureCalibration::Lattice);
-    let constants = material
-        .constants(&cloud, StressState::PlaneStrain)
-        .unwrap();
+    let constants = material.constants(cloud, StressState::PlaneStrain).unwrap();
     let notch = Crack::Segment {
         from: [0.0, 8.0],
         to: [5.0, 8.0],
@@ -109,15 +106,19 @@ fn plate() -> (Arc<PointCloud>, Box<dyn Force>) {
     let body = CorrespondenceBody {
         cracks: &[(notch, EndRule::Closed)],
         no_fail: &no_fail,
-        ..CorrespondenceBody::new(&cloud, &constants, VolumeCorrection::None)
+        ..CorrespondenceBody::new(cloud, &constants, VolumeCorrection::None)
     };
-    let operator = body.operator(BondForm::List).unwrap().operator;
-    (cloud, operator)
+    body.operator(BondForm::List).unwrap().operator
 }
 
 /// The plate in tension: initial velocities of the upper and lower half are opposite.
 fn torn(part: f64) -> Simulation {
-    let (cloud, operator) = plate();
+    torn_on(lattice(&[18.0, 16.0]), part)
+}
+
+/// The plate in tension, or a part of it.
+pub fn torn_on(cloud: Arc<PointCloud>, part: f64) -> Simulation {
+    let operator = notched(&cloud);
     let system = System::new(cloud.clone(), operator, PointScalar::Uniform(1.0)).unwrap();
     let n = cloud.len();
     let mut start = State::at_rest(2 * n);

@@ -1,6 +1,7 @@
 //! Correspondence materials: reference values, identities, bond failure and plastic flow.
 
 mod bodies;
+mod divided;
 mod fracture;
 mod heat;
 mod identities;

@@ -1,8 +1,11 @@
 //! J2 plasticity: closed forms of homogeneous paths, dissipation, and resumed runs.
 
+use std::sync::Arc;
+
 use pericles::material::StressState;
 use pericles::operator::PointSubset;
 use pericles::round_trip::check_resume;
+use pericles::space::PointCloud;
 use pericles::time::{State, VelocityVerlet, highest_frequency};
 use pericles::{Control, PointScalar, Simulation, StepEnd, System};
 use pericles_solids::correspondence::{
@@ -177,7 +180,11 @@ fn plastic_work_of_a_body_matches_the_closed_form() {
 
 /// A plate with initial velocities that cause yielding in tension.
 fn thrown(part: f64) -> Simulation {
-    let cloud = lattice(&[10.0, 8.0]);
+    thrown_on(lattice(&[10.0, 8.0]), part)
+}
+
+/// The plate, or a part of it.
+pub fn thrown_on(cloud: Arc<PointCloud>, part: f64) -> Simulation {
     let operator = operator(
         &cloud,
         &yielding(Stabilisation::Isotropic),

@@ -6,10 +6,12 @@
 
 mod counter;
 mod entry;
+mod layout;
 mod registered;
 
 pub(crate) use counter::Counter;
 pub use entry::{Entry, Number};
+pub use layout::{Laid, Layout, Storage};
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -39,9 +41,20 @@ impl PartialEq for Values {
 }
 
 /// Named arrays. `pericles-io` defines their file format.
-#[derive(Debug, Clone, PartialEq, Default)]
+///
+/// Arrays that are not equal on all processes of a divided body have a [`Layout`]. Archives are equal if their arrays
+/// are; files contain no layouts.
+#[derive(Debug, Clone, Default)]
 pub struct Archive {
-    arrays: BTreeMap<String, Values>,
+    pub(crate) arrays: BTreeMap<String, Values>,
+    /// Layouts other than [`Layout::Shared`].
+    pub(crate) layouts: BTreeMap<String, Layout>,
+}
+
+impl PartialEq for Archive {
+    fn eq(&self, other: &Self) -> bool {
+        self.arrays == other.arrays
+    }
 }
 
 /// A type that may have state from step to step: an operator (damage), boundary, integrator or observer.
@@ -75,9 +88,36 @@ pub trait SavedUnder {
 }
 
 impl Archive {
-    /// Adds an array, replacing an array of the same name.
+    /// Adds an array that is equal on all processes, replacing an array of the same name.
     pub fn put(&mut self, name: impl Into<String>, values: Values) {
-        self.arrays.insert(name.into(), values);
+        self.put_as(name, values, Layout::Shared);
+    }
+
+    /// Adds an array with a layout, replacing an array of the same name.
+    pub fn put_as(&mut self, name: impl Into<String>, values: Values, layout: Layout) {
+        let name = name.into();
+        match layout {
+            Layout::Shared => self.layouts.remove(&name),
+            layout => self.layouts.insert(name.clone(), layout),
+        };
+        self.arrays.insert(name, values);
+    }
+
+    /// Adds the arrays of another archive; `prefix` is put before their names.
+    pub fn put_all(&mut self, prefix: &str, other: Self) {
+        let Self {
+            arrays,
+            mut layouts,
+        } = other;
+        for (name, values) in arrays {
+            let layout = layouts.remove(&name).unwrap_or_default();
+            self.put_as(format!("{prefix}{name}"), values, layout);
+        }
+    }
+
+    /// Returns the layout of an array.
+    pub fn layout(&self, name: &str) -> &Layout {
+        self.layouts.get(name).unwrap_or(&Layout::Shared)
     }
 
     /// Returns all arrays by name.
@@ -118,26 +158,6 @@ impl Archive {
             _ => true,
         };
         names.into_iter().filter(differs).cloned().collect()
-    }
-
-    /// Returns the archive of the whole body on the first process; `None` on the others.
-    ///
-    /// # Errors
-    /// None for a single process.
-    pub fn gathered(&self, domain: &crate::domain::Domain) -> Result<Option<Self>> {
-        Ok(domain.is_first().then(|| self.clone()))
-    }
-
-    /// Returns the part of an archive of the whole body that a process restores.
-    ///
-    /// # Errors
-    /// None for a single process.
-    pub fn scattered(
-        own: &Self,
-        whole: Option<&Self>,
-        _domain: &crate::domain::Domain,
-    ) -> Result<Self> {
-        Ok(whole.unwrap_or(own).clone())
     }
 
     /// Copies the numbers stored under `name` to `target`.
@@ -266,13 +286,13 @@ impl<S: SavedUnder + ?Sized> SavedUnder for Box<S> {
     }
 }
 
-fn missing(name: &str) -> PericlesError {
+pub(crate) fn missing(name: &str) -> PericlesError {
     PericlesError::BadArchive {
         reason: format!("the array \"{name}\" is missing or of another type"),
     }
 }
 
-fn check_length(name: &str, found: usize, needed: usize) -> Result<()> {
+pub(crate) fn check_length(name: &str, found: usize, needed: usize) -> Result<()> {
     if found == needed {
         return Ok(());
     }

@@ -8,6 +8,8 @@
 /// | treatment | the field |
 /// |---|---|
 /// | `array("name")` | is an [`Entry`](crate::archive::Entry) stored in the array of this name; several fields share one array. The name is a format string with its arguments, which may use other fields |
+/// | `points("name")` | is an entry like that of `array`, a component-major vector on the own points of a body that may be divided among processes |
+/// | `by(storage)` | is saved by the expression `storage`, a [`Storage`](crate::archive::Storage), which may use other fields |
 /// | `part` | implements [`Checkpointed`](crate::Checkpointed) |
 /// | `under("name")` | implements [`SavedUnder`](crate::archive::SavedUnder) and is saved under this name |
 /// | `fixed` | does not change after construction |
@@ -205,18 +207,36 @@ macro_rules! saved {
     };
 
     // Fields.
-    (@save $archive:ident [$($field:ident),+] array($($name:tt)*)) => {{
+    (@save $archive:ident [$($field:ident),+] array($($name:tt)*)) => {
+        $crate::saved! { @put $archive [$($field),+] Shared $($name)* }
+    };
+    (@save $archive:ident [$($field:ident),+] points($($name:tt)*)) => {
+        $crate::saved! { @put $archive [$($field),+] Points $($name)* }
+    };
+    (@put $archive:ident [$($field:ident),+] $layout:ident $($name:tt)*) => {{
         let mut numbers = ::std::vec::Vec::with_capacity(0 $(+ $crate::archive::Entry::count($field))+);
         $($crate::archive::Entry::append_to($field, &mut numbers);)+
         let name = ::std::fmt::format(::std::format_args!($($name)*));
-        $archive.put(name, $crate::archive::Number::values(numbers));
+        let layout = $crate::archive::Layout::$layout;
+        $archive.put_as(name, $crate::archive::Number::values(numbers), layout);
     }};
+    (@restore $archive:ident [$($field:ident),+] points($($name:tt)*)) => {
+        $crate::saved! { @restore $archive [$($field),+] array($($name)*) }
+    };
     (@restore $archive:ident [$($field:ident),+] array($($name:tt)*)) => {{
         let name = ::std::fmt::format(::std::format_args!($($name)*));
         let count = 0 $(+ $crate::archive::Entry::count(&*$field))+;
         let numbers = $archive.exactly(&name, count)?;
         $(let numbers = $crate::archive::Entry::take_from(&mut *$field, numbers);)+
         let _ = numbers;
+    }};
+    (@save $archive:ident [$field:ident] by($storage:expr)) => {{
+        let storage = $storage;
+        $crate::archive::Storage::save(&storage, $field, $archive);
+    }};
+    (@restore $archive:ident [$field:ident] by($storage:expr)) => {{
+        let storage = $storage;
+        $crate::archive::Storage::restore(&storage, &mut *$field, $archive)?;
     }};
     (@save $archive:ident [$($field:ident),+] part) => {
         $($crate::Checkpointed::save($field, $archive);)+

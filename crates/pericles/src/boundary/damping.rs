@@ -1,6 +1,8 @@
 //! Damping layers: approximate absorbing boundaries for bodies of any dimension.
 
 use super::{Boundary, Exchange, ImplicitBoundary, Stage};
+use crate::archive::Laid;
+use crate::domain::Domain;
 use crate::error::{PericlesError, Result};
 use crate::scalar::PointScalar;
 use crate::space::{Face, PointCloud, PointSet, check_length};
@@ -85,6 +87,7 @@ pub struct DampingLayer {
     /// Displacements of the layer at the start of the step, for schemes whose equation includes the damping.
     place: Vec<f64>,
     name: String,
+    domain: Domain,
 }
 
 impl DampingLayer {
@@ -127,6 +130,7 @@ impl DampingLayer {
             pull_before: vec![0.0; entries],
             place: vec![0.0; remembered],
             name: format!("damping/{}", face_name(face)),
+            domain: cloud.domain().clone(),
             points,
         })
     }
@@ -144,6 +148,11 @@ impl DampingLayer {
                 visit(c * self.total + i as usize, c * self.points.len() + p, p);
             }
         }
+    }
+
+    /// Returns the totals of one impulse and work per entry of the layer.
+    fn total(&self, impulses: &[f64], works: &[f64]) -> Exchange {
+        Exchange::total(&self.domain, self.points.len(), impulses, works)
     }
 
     fn acts_between_steps(&self) -> bool {
@@ -209,12 +218,13 @@ fn check(
     Ok(())
 }
 
-/// Lower and upper end of a body along an axis, m.
+/// Lower and upper end of a body along an axis, m. All processes must call it together.
 fn extent(cloud: &PointCloud, axis: usize) -> [f64; 2] {
+    let domain = cloud.domain();
     let (axis, half) = (cloud.axis(axis), 0.5 * cloud.cell_side(axis));
     let low = axis.iter().fold(f64::INFINITY, |a, x| a.min(*x));
     let high = axis.iter().fold(f64::NEG_INFINITY, |a, x| a.max(*x));
-    [low - half, high + half]
+    [-domain.max(-low) - half, domain.max(high) + half]
 }
 
 /// Returns the depth of each point below the inner face of a layer, m; not positive outside the layer.
@@ -227,35 +237,34 @@ fn depths(cloud: &PointCloud, face: Face, thickness: f64) -> Vec<f64> {
 
 impl Boundary for DampingLayer {
     fn accept(&mut self, step: &StepEnd<'_>) -> Exchange {
-        let mut exchange = Exchange::default();
         if self.acts_between_steps() {
-            return exchange;
+            return Exchange::default();
         }
         if self.kind == StepKind::EndOfStep {
             std::mem::swap(&mut self.pull, &mut self.pull_before);
         }
         let mut pull = std::mem::take(&mut self.pull);
         let mut place = std::mem::take(&mut self.place);
+        let [mut impulses, mut works] = [const { Vec::new() }; 2];
         self.each(|entry, k, p| {
-            let c = entry / self.total;
             let (mass, damping) = (self.mass[p], self.damping[p]);
             if self.kind == StepKind::EndOfStep {
                 let velocity = step.mean_velocity(entry);
                 pull[k] = -damping * velocity;
                 let impulse = 0.5 * mass * (pull[k] + self.pull_before[k]) * step.dt;
-                exchange.work += impulse * velocity;
-                exchange.impulse[c] += impulse;
+                works.push(impulse * velocity);
+                impulses.push(impulse);
             } else {
                 let (path, square) = self.integrals(step, entry);
-                exchange.work -= mass * damping * square;
-                exchange.impulse[c] -= mass * damping * path;
+                works.push(-mass * damping * square);
+                impulses.push(-mass * damping * path);
             }
             if let Some(place) = place.get_mut(k) {
                 *place = step.u[entry];
             }
         });
         (self.pull, self.place) = (pull, place);
-        exchange
+        self.total(&impulses, &works)
     }
 
     fn after_stage(&mut self, stage: &Stage<'_>, acceleration: &mut [f64]) {
@@ -279,16 +288,17 @@ impl Boundary for DampingLayer {
     }
 
     fn damp(&self, dt: f64, v: &mut [f64]) -> Exchange {
-        let mut exchange = Exchange::default();
-        if self.acts_between_steps() {
-            self.each(|entry, _, p| {
-                let (mass, before) = (self.mass[p], v[entry]);
-                v[entry] *= (-self.damping[p] * dt).exp();
-                exchange.work += 0.5 * mass * (v[entry] * v[entry] - before * before);
-                exchange.impulse[entry / self.total] += mass * (v[entry] - before);
-            });
+        if !self.acts_between_steps() {
+            return Exchange::default();
         }
-        exchange
+        let [mut impulses, mut works] = [const { Vec::new() }; 2];
+        self.each(|entry, _, p| {
+            let (mass, before) = (self.mass[p], v[entry]);
+            v[entry] *= (-self.damping[p] * dt).exp();
+            works.push(0.5 * mass * (v[entry] * v[entry] - before * before));
+            impulses.push(mass * (v[entry] - before));
+        });
+        self.total(&impulses, &works)
     }
 
     fn step_kinds(&self) -> &'static [StepKind] {
@@ -328,9 +338,9 @@ impl ImplicitBoundary for DampingLayer {
 
 crate::saved! {
     impl Checkpointed for DampingLayer {
-        pull: array("{name}/pull"),
-        place: array("{name}/place"),
-        kind, points, damping, mass, total, dimension, dt, name: fixed,
+        pull: by(Laid::on(format!("{name}/pull"), points)),
+        place: by(Laid::on(format!("{name}/place"), points)),
+        kind, points, damping, mass, total, dimension, dt, name, domain: fixed,
         pull_before: scratch,
     }
 }

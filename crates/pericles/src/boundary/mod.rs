@@ -19,6 +19,7 @@ pub use table::TimeTable;
 pub use values::PointValues;
 
 use crate::archive::Checkpointed;
+use crate::domain::Domain;
 use crate::parallel::PointSubset;
 use crate::step_end::StepEnd;
 use crate::step_kind::StepKind;
@@ -38,6 +39,19 @@ impl Exchange {
         self.work += other.work;
         for (sum, impulse) in self.impulse.iter_mut().zip(other.impulse) {
             *sum += impulse;
+        }
+    }
+
+    /// Returns the totals over all processes of a component-major vector of impulses (N s) on `points` points and of the
+    /// work (J) of each. All processes must call it together.
+    fn total(domain: &Domain, points: usize, impulse: &[f64], work: &[f64]) -> Self {
+        let along = |c: usize| {
+            let axis = impulse.chunks(points.max(1)).nth(c).unwrap_or(&[]);
+            domain.sum(axis.len(), |k| axis[k])
+        };
+        Self {
+            work: domain.sum(work.len(), |k| work[k]),
+            impulse: std::array::from_fn(along),
         }
     }
 }

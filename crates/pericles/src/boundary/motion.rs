@@ -4,6 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use super::{PointValues, TimeFunction};
+use crate::archive::Laid;
 use crate::domain::Domain;
 use crate::error::{PericlesError, Result};
 use crate::operator::PointSubset;
@@ -488,7 +489,7 @@ impl PrescribedMotion {
 
 crate::saved! {
     impl SavedUnder(place) for PrescribedMotion {
-        reaction: array("{place}/reaction"),
+        reaction: by(Laid::on(format!("{place}/reaction"), points)),
         name, points, kind, along, function, until, start: fixed,
     }
 }

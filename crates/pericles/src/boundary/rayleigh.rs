@@ -1,6 +1,7 @@
 //! Rayleigh damping, proportional to mass and stiffness.
 
 use super::{Boundary, Exchange, Stage};
+use crate::domain::Domain;
 use crate::error::{PericlesError, Result};
 use crate::parallel::for_each_entry;
 use crate::step_end::{Path, StepEnd};
@@ -18,7 +19,7 @@ pub struct RayleighDamping {
     kind: StepKind,
     /// Masses by entry, kg.
     masses: Vec<f64>,
-    points: usize,
+    domain: Domain,
     /// Accelerations due to the damping, and those of the previous step.
     pull: Vec<f64>,
     pull_before: Vec<f64>,
@@ -51,7 +52,7 @@ impl RayleighRates {
 
 impl RayleighDamping {
     /// Damping for a scheme with the given steps and a body with the given masses by entry
-    /// ([`System::masses`](crate::System::masses)) and dimension.
+    /// ([`System::masses`](crate::System::masses)) and points.
     ///
     /// # Errors
     /// Coefficients that are negative or not finite.
@@ -59,7 +60,7 @@ impl RayleighDamping {
         rates: RayleighRates,
         kind: StepKind,
         masses: Vec<f64>,
-        dimension: usize,
+        domain: &Domain,
     ) -> Result<Self> {
         for (quantity, value) in [
             ("the mass-proportional damping", rates.mass),
@@ -76,7 +77,7 @@ impl RayleighDamping {
         Ok(Self {
             rates,
             kind,
-            points: masses.len() / dimension,
+            domain: domain.clone(),
             pull: vec![0.0; masses.len()],
             pull_before: vec![0.0; masses.len()],
             masses,
@@ -102,11 +103,11 @@ impl RayleighDamping {
 
     /// Adds impulse and work of the accelerations p over a time dt at velocity v: Σ m p dt and Σ m p·v dt.
     fn exchange(&self, pull: &[f64], v: &[f64], dt: f64, exchange: &mut Exchange) {
-        for (entry, pull) in pull.iter().enumerate() {
-            let impulse = self.masses[entry] * pull * dt;
-            exchange.impulse[entry / self.points] += impulse;
-            exchange.work += impulse * v[entry];
-        }
+        let impulses = self.masses.iter().zip(pull);
+        let impulses: Vec<f64> = impulses.map(|(mass, pull)| mass * pull * dt).collect();
+        let works: Vec<f64> = impulses.iter().zip(v).map(|(p, v)| p * v).collect();
+        let points = self.domain.owned_points();
+        exchange.add(Exchange::total(&self.domain, points, &impulses, &works));
     }
 }
 
@@ -185,8 +186,8 @@ impl Boundary for RayleighDamping {
         if self.kind != StepKind::EndOfStep {
             self.set_pull(stage.u, stage.v, stiffness);
         }
-        let (n, pull) = (self.points, &self.pull);
-        for (c, acceleration) in acceleration.chunks_mut(n).enumerate() {
+        let (n, pull) = (self.domain.owned_points(), &self.pull);
+        for (c, acceleration) in acceleration.chunks_mut(n.max(1)).enumerate() {
             let pull = &pull[c * n..(c + 1) * n];
             for_each_entry(&stage.on, n, acceleration, &|i, x| *x += pull[i]);
         }
@@ -206,8 +207,8 @@ impl Boundary for RayleighDamping {
 
 crate::saved! {
     impl Checkpointed for RayleighDamping {
-        pull: array("rayleigh/pull"),
-        rates, kind, masses, points: fixed,
+        pull: points("rayleigh/pull"),
+        rates, kind, masses, domain: fixed,
         pull_before: scratch,
     }
 }

@@ -3,8 +3,12 @@
 //! [`bisect`] assigns points to processes by recursive coordinate bisection. [`part_of`] makes the part of a body that a
 //! process computes, with its ghosts and its communication; results do not depend on the division, bit for bit
 //! ([`domain`](crate::domain)). [`shares`] predicts points, ghosts and messages of every process.
+//! [`Archive::gathered`](crate::Archive::gathered) makes the checkpoint of the whole body,
+//! [`Archive::scattered`](crate::Archive::scattered) the checkpoints of its parts.
 
+mod archives;
 mod bisection;
+mod message;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;

@@ -487,7 +487,7 @@ impl<'a> Snapshot<'a> {
         let square = |i: usize| -> f64 {
             self.state
                 .v
-                .chunks(n)
+                .chunks(n.max(1))
                 .map(|component| component[i].powi(2))
                 .sum()
         };

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::archive::{Archive, Counter, SavedUnder, Values};
+use crate::archive::{Archive, Counter, Layout, SavedUnder, Storage, Values};
 use crate::domain::Domain;
 use crate::error::Result;
 use crate::step_end::{BreakingBond, StepEnd};
@@ -189,44 +189,69 @@ pub(super) fn bonds_left(blocks: &[BlockDamage]) -> u64 {
     bytes.map(|byte| u64::from(byte.count_ones())).sum()
 }
 
-impl SavedUnder for Vec<BlockDamage> {
-    fn save_under(&self, name: &str, archive: &mut Archive) {
-        let groups = self.iter().map(|block| block.intact.len()).sum();
-        let mut all = Vec::with_capacity(groups);
-        let mut directed = Vec::new();
-        for BlockDamage { intact, tally } in self {
-            let Tally {
-                broken,
-                dissipated: _,
-                coarse: _,
-                events: _,
-            } = tally;
-            all.extend_from_slice(intact);
-            directed.push(broken.get());
-        }
-        archive.put(format!("{name}/intact"), Values::U8(all));
-        archive.put(format!("{name}/broken"), Values::U64(directed));
-        own_dissipation(self).save_under(&format!("{name}/dissipated"), archive);
+/// Saves the bonds of a neighbour list: one row of groups of eight bonds per point.
+pub(super) struct ListStorage<'a> {
+    /// Begins the names of the arrays.
+    pub name: &'static str,
+    /// First group of each point, and at the end the number of groups.
+    pub start: &'a [usize],
+}
+
+impl Storage<Vec<BlockDamage>> for ListStorage<'_> {
+    fn save(&self, blocks: &Vec<BlockDamage>, archive: &mut Archive) {
+        let all: Vec<u8> = blocks
+            .iter()
+            .flat_map(|block| &block.intact)
+            .copied()
+            .collect();
+        let layout = Layout::rows(self.start, all.len());
+        archive.put_as(format!("{}/intact", self.name), Values::U8(all), layout);
+        save_tallies(self.name, blocks, archive);
     }
 
-    fn restore_under(&mut self, name: &str, archive: &Archive) -> Result<()> {
-        let groups = self.iter().map(|block| block.intact.len()).sum();
-        let mut rest = archive.exactly(&format!("{name}/intact"), groups)?;
-        let broken = archive.exactly::<u64>(&format!("{name}/broken"), self.len())?;
-        let mut dissipated = BinnedSum::default();
-        let energies = format!("{name}/dissipated");
-        match archive.numbers::<f64>(&energies) {
-            // Earlier versions saved one value per block.
-            Ok(of_blocks) => of_blocks.iter().for_each(|&energy| dissipated.add(energy)),
-            Err(_) => dissipated.restore_under(&energies, archive)?,
-        }
-        for (k, block) in self.iter_mut().enumerate() {
+    fn restore(&self, blocks: &mut Vec<BlockDamage>, archive: &Archive) -> Result<()> {
+        let groups = blocks.iter().map(|block| block.intact.len()).sum();
+        let mut rest = archive.exactly(&format!("{}/intact", self.name), groups)?;
+        for block in blocks.iter_mut() {
             let (own, after) = rest.split_at(block.intact.len());
             block.intact.copy_from_slice(own);
             rest = after;
-            block.tally.broken = Counter::from(broken[k]);
-            block.tally.dissipated = std::mem::take(&mut dissipated);
         }
-        Ok(())
+        restore_tallies(self.name, blocks, archive)
     }
+}
+
+/// Saves the number of broken directed bonds of all blocks, and the energy that they dissipated.
+pub(super) fn save_tallies(name: &str, blocks: &[BlockDamage], archive: &mut Archive) {
+    let of_block = |block: &BlockDamage| {
+        let Tally {
+            broken,
+            dissipated: _,
+            coarse: _,
+            events: _,
+        } = block.tally;
+        broken
+    };
+    let broken: Counter = blocks.iter().map(of_block).sum();
+    let broken = Values::U64(vec![broken.get()]);
+    archive.put_as(format!("{name}/broken"), broken, Layout::Count);
+    own_dissipation(blocks).save_under(&format!("{name}/dissipated"), archive);
+}
+
+/// Restores the number of broken bonds and the dissipated energy; the first block gets those of all blocks.
+pub(super) fn restore_tallies(
+    name: &str,
+    blocks: &mut [BlockDamage],
+    archive: &Archive,
+) -> Result<()> {
+    let mut broken = [0];
+    archive.u64_into(&format!("{name}/broken"), &mut broken)?;
+    let mut dissipated = BinnedSum::default();
+    dissipated.restore_under(&format!("{name}/dissipated"), archive)?;
+    let mut broken = Counter::from(broken[0]);
+    for block in blocks {
+        block.tally.broken = std::mem::take(&mut broken);
+        block.tally.dissipated = std::mem::take(&mut dissipated);
+    }
+    Ok(())
 }

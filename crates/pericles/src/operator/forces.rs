@@ -362,9 +362,7 @@ impl Checkpointed for Forces {
         for (k, force) in self.list.iter().enumerate() {
             let mut own = Archive::default();
             force.save(&mut own);
-            for (name, values) in own.into_arrays() {
-                archive.put(format!("force/{k}/{name}"), values);
-            }
+            archive.put_all(&format!("force/{k}/"), own);
         }
     }
 

@@ -2,6 +2,7 @@
 
 use super::System;
 use crate::accounts::Ledger;
+use crate::archive::{Laid, Layout};
 
 crate::saved! {
     impl Checkpointed for System {
@@ -12,8 +13,8 @@ crate::saved! {
         fields: part,
         ledger: array("ledger"),
         loading: array("loading"),
-        evaluated: array("evaluated"),
-        coarse_breaks: array("coarse breaks"),
+        evaluated: by(Laid::new("evaluated", Layout::Count)),
+        coarse_breaks: by(Laid::new("coarse breaks", Layout::Count)),
         cloud, density, loads: fixed,
     }
 }

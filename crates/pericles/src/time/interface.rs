@@ -4,7 +4,7 @@
 use super::Tableau;
 use super::runge_kutta::Stages;
 use super::zone::Sum;
-use crate::archive::{Archive, Checkpointed, Values};
+use crate::archive::{Archive, Checkpointed, Layout, Values};
 use crate::error::Result;
 
 /// Prediction of the displacements of fine points at the stages of the coarse step. For order r an error of O(dt^r)
@@ -213,7 +213,8 @@ impl Checkpointed for History {
         let Self { levels, known } = self;
         archive.put("scheme/levels", Values::U64(vec![*known as u64]));
         for (k, Level { array, dt }) in levels.iter().enumerate() {
-            archive.put(format!("scheme/level/{k}"), Values::F64(array.clone()));
+            let values = Values::F64(array.clone());
+            archive.put_as(format!("scheme/level/{k}"), values, Layout::Points);
             archive.put(format!("scheme/level_step/{k}"), Values::F64(vec![*dt]));
         }
     }

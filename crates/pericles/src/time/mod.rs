@@ -115,9 +115,9 @@ crate::saved! {
     impl Checkpointed for State {
         t: array("state/t"),
         step: array("state/step"),
-        u: array("state/u"),
-        v: array("state/v"),
-        a: array("state/a"),
+        u: points("state/u"),
+        v: points("state/v"),
+        a: points("state/a"),
     }
 }
 

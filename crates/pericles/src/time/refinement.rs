@@ -5,7 +5,7 @@ use super::fine_region::{Fine, Follow, check, mark_regions};
 use super::frequency::{HighestFrequency, highest_frequency_on};
 use super::refinement_report::RefinementReport;
 use super::zones::{Zones, grow};
-use crate::archive::{Archive, Checkpointed, Counter, Values};
+use crate::archive::{Archive, Checkpointed, Counter, Layout, Values};
 use crate::compatibility::{Need, Requirement, require};
 use crate::error::{PericlesError, Result};
 use crate::operator::LocalForce;
@@ -232,7 +232,7 @@ impl Checkpointed for Refinement {
         archive.put("scheme/refinement", Values::U64(counts.to_vec()));
         if let Some(looking) = follow {
             let marks = zones.is_fine.iter().map(|&fine| u8::from(fine));
-            archive.put("scheme/fine", Values::U8(marks.collect()));
+            archive.put_as("scheme/fine", Values::U8(marks.collect()), Layout::Points);
             looking.save(archive);
         }
     }
@@ -261,8 +261,8 @@ impl Checkpointed for Refinement {
 
 crate::saved! {
     impl Checkpointed for Looking {
-        left: array("scheme/hold"),
-        damage: array("scheme/damage"),
+        left: points("scheme/hold"),
+        damage: points("scheme/damage"),
         follow: fixed,
         now, marks: scratch,
     }

@@ -260,8 +260,8 @@ impl Integrator for Respa {
 crate::saved! {
     impl Checkpointed for Respa {
         refinement: part,
-        slow: array("scheme/slow"),
-        fast: array("scheme/fast"),
+        slow: points("scheme/slow"),
+        fast: points("scheme/fast"),
         everywhere: fixed,
         mean, damped: scratch,
     }

@@ -80,7 +80,7 @@ impl Zone {
         out: &mut [f64],
         work: &(dyn Fn(&mut [f64], Range<usize>) + Sync),
     ) {
-        for (c, component) in out.chunks_mut(n).enumerate() {
+        for (c, component) in out.chunks_mut(n.max(1)).enumerate() {
             let place = Place {
                 first: 0,
                 offset: c * n,

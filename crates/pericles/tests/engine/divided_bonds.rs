@@ -25,11 +25,11 @@ use pericles::time::{
 use pericles::{Control, PointScalar, Simulation, System};
 
 /// Largest distance of neighbours: bonds of three cells, and half a cell of their partial volumes.
-const REACH: f64 = 3.5;
+pub(super) const REACH: f64 = 3.5;
 const SIZE: [f64; 2] = [21.0, 13.0];
-const STATE: StressState = StressState::PlaneStress;
+pub(super) const STATE: StressState = StressState::PlaneStress;
 
-fn plate(periodic: bool) -> PointCloud {
+pub(super) fn plate(periodic: bool) -> PointCloud {
     let hole = Region::Ball {
         centre: [13.0, 7.0, 0.0],
         radius: 1.6,
@@ -58,7 +58,7 @@ fn owner(cloud: &PointCloud, size: usize, k: usize) -> usize {
 }
 
 /// The part of the plate owned by a process, with ghosts up to three and a half cells away.
-fn part(cloud: &PointCloud, comm: Arc<dyn Comm>) -> PointCloud {
+pub(super) fn part(cloud: &PointCloud, comm: Arc<dyn Comm>) -> PointCloud {
     let owners: Vec<u32> = (0..cloud.len())
         .map(|k| owner(cloud, comm.size(), k) as u32)
         .collect();
@@ -78,7 +78,7 @@ fn bisected(cloud: &PointCloud, cuts: Cuts, comm: Arc<dyn Comm>) -> PointCloud {
     part_of(&Arc::new(cloud.clone()), &owners, REACH, comm).unwrap()
 }
 
-fn glass(law: PairLaw) -> BondMaterial {
+pub(super) fn glass(law: PairLaw) -> BondMaterial {
     BondMaterial {
         law,
         ..material(
@@ -91,7 +91,7 @@ fn glass(law: PairLaw) -> BondMaterial {
     }
 }
 
-fn notch() -> Crack {
+pub(super) fn notch() -> Crack {
     Crack::Segment {
         from: [0.0, 6.0],
         to: [6.0, 6.0],
@@ -102,14 +102,14 @@ fn held(cloud: &PointCloud) -> Vec<u32> {
     points(cloud, |x, y, _| x > 16.0 && y > 9.0)
 }
 
-type Make = fn(&Arc<PointCloud>) -> Box<dyn Force>;
+pub(super) type Make = fn(&Arc<PointCloud>) -> Box<dyn Force>;
 
-fn list<L: VectorLaw>(law: PairLaw, cloud: &Arc<PointCloud>) -> Box<dyn Force> {
+pub(super) fn list<L: VectorLaw>(law: PairLaw, cloud: &Arc<PointCloud>) -> Box<dyn Force> {
     let force = listed::<L, 2>(cloud, &glass(law), STATE, Some(notch()), &held(cloud));
     Box::new(force)
 }
 
-fn grid<L: VectorLaw>(law: PairLaw, cloud: &Arc<PointCloud>) -> Box<dyn Force> {
+pub(super) fn grid<L: VectorLaw>(law: PairLaw, cloud: &Arc<PointCloud>) -> Box<dyn Force> {
     let glass = glass(law);
     let constants = glass.constants(cloud, STATE).unwrap();
     let cracks = [(notch(), EndRule::Closed)];
@@ -121,7 +121,7 @@ fn grid<L: VectorLaw>(law: PairLaw, cloud: &Arc<PointCloud>) -> Box<dyn Force> {
 }
 
 /// Two materials, an inclusion and corrected surfaces.
-fn composite(cloud: &Arc<PointCloud>, form: BondForm) -> Box<dyn Force> {
+pub(super) fn composite(cloud: &Arc<PointCloud>, form: BondForm) -> Box<dyn Force> {
     let glass = glass(PairLaw::BondStretch);
     let constants = glass.constants(cloud, STATE).unwrap();
     let softer = BondMaterial {
@@ -156,7 +156,7 @@ fn composite(cloud: &Arc<PointCloud>, form: BondForm) -> Box<dyn Force> {
 }
 
 /// Two state-based materials in a given form; with corrected surfaces for a neighbour list.
-fn solid(cloud: &Arc<PointCloud>, form: BondForm) -> Box<dyn Force> {
+pub(super) fn solid(cloud: &Arc<PointCloud>, form: BondForm) -> Box<dyn Force> {
     let material = |young: f64, poisson_ratio: f64| LinearSolid {
         density: 1.0,
         elastic: GivenConstants {

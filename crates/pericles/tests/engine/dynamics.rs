@@ -508,7 +508,7 @@ fn counters_of_any_size_in_a_checkpoint_are_accepted() {
             counts += 1;
         }
     }
-    // Broken bonds by block, evaluated points, and bonds broken in coarse steps.
+    // Broken bonds, evaluated points, and bonds broken in coarse steps.
     assert_eq!(counts, 3);
     let mut second = breaking_plate(600);
     second.restore(&archive).unwrap();

@@ -528,12 +528,12 @@ fn stop_and_resume_equals_the_uninterrupted_run() {
 
     // A bond to a position without a point, or a bond that a crack removed.
     let mut strange = archive(&first);
-    let intact = strange.arrays()["operator/grid/intact"].clone();
+    let intact = strange.arrays()["operator/grid/bonds"].clone();
     let Values::U8(mut intact) = intact else {
         panic!("bytes");
     };
     intact.fill(0xFF);
-    strange.put("operator/grid/intact", Values::U8(intact));
+    strange.put("operator/grid/bonds", Values::U8(intact));
     let told = run().restore(&strange).unwrap_err().to_string();
     assert!(told.contains("bonds near point"), "{told}");
 }

@@ -6,6 +6,7 @@ mod builder;
 mod common;
 mod divided;
 mod divided_bonds;
+mod divided_checkpoints;
 mod division;
 mod dynamics;
 mod ends;

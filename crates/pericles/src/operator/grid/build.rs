@@ -61,7 +61,9 @@ impl<const D: usize> LatticeBonds<D> {
         };
         check_points("the points whose bonds never break", no_fail, cloud.len())?;
         let spacing = cloud.spacing();
-        let volume = cloud.volumes()[0];
+        // A process may have no points.
+        let volume = cloud.volumes().first().copied().unwrap_or(0.0);
+        let volume = cloud.domain().max(volume);
         let rule = BondRule {
             reach: correction.reach(horizon, spacing),
             volume: &|r| correction.factor(r, horizon, spacing) * volume,

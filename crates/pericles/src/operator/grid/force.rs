@@ -311,7 +311,7 @@ impl<L: VectorLaw, const D: usize> GridForce<L, D> {
             threshold: L::threshold(self.critical_stretch),
             critical_stretch: self.critical_stretch,
             pairs: self.pairs.as_ref(),
-            volume: self.cloud.volumes()[0],
+            volume: self.cloud.volumes().first().copied().unwrap_or(0.0),
             breakable: &|chunk: &Chunk, offset: usize| self.families().breakable(chunk, offset),
             point_at: &|place| self.layout.point_at(place),
             step,

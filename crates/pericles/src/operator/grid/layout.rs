@@ -453,6 +453,9 @@ impl GridLayout {
 
 /// Returns the bounding box of a lattice: its corner, and the number of nodes along each axis.
 fn bounding_box(lattice: &Lattice) -> ([i32; 3], [usize; 3]) {
+    if lattice.node.is_empty() {
+        return ([0; 3], [1; 3]);
+    }
     let (mut low, mut high) = ([i32::MAX; 3], [i32::MIN; 3]);
     for &node in &lattice.node {
         let at = lattice.coordinates(node);

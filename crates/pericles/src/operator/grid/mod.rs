@@ -16,6 +16,7 @@ mod operator;
 pub(in crate::operator) mod padded;
 mod rows;
 pub(in crate::operator) mod stencil;
+pub(in crate::operator) mod stored;
 mod thresholds;
 mod view;
 pub(in crate::operator) mod wanted;

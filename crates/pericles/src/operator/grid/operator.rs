@@ -5,6 +5,7 @@ use std::sync::PoisonError;
 use super::force::GridForce;
 use super::kernels::{energy_chunks, force_chunks, force_chunks_in_floats, tangent_chunks};
 use super::padded::Frame;
+use super::stored::StencilStorage;
 use super::thresholds::PlaceThresholds;
 use crate::domain::Field;
 use crate::operator::fast_law::VectorLaw;
@@ -226,7 +227,7 @@ impl<L: VectorLaw, const D: usize> LinearOperator for GridForce<L, D> {
 
 crate::saved! {
     impl<L: VectorLaw, const D: usize> Checkpointed for GridForce<L, D> {
-        blocks: under("operator/grid"),
+        blocks: by(StencilStorage { name: "operator/grid", layout, offsets: stencil.len() }),
         cloud, sites, layout, stencil, held, geometric, cuts, precut, directed_bonds, critical_stretch, pairs, damage: fixed,
         expansion: fixed,
         instruction_set, law: fixed,

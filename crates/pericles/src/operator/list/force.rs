@@ -15,7 +15,7 @@ use crate::family::BondList;
 use crate::lanes::LANES;
 use crate::lanes::Row;
 use crate::material::{BondConstants, BondMaterial, MaterialPairs};
-use crate::operator::damage::{BlockDamage, Breaking, DamageMeasure};
+use crate::operator::damage::{BlockDamage, Breaking, DamageMeasure, ListStorage};
 use crate::operator::fast_law::VectorLaw;
 use crate::operator::pool::Pool;
 use crate::operator::records::Records;
@@ -59,7 +59,7 @@ pub struct BondForce<L: VectorLaw, const D: usize> {
 
 crate::saved! {
     impl<L: VectorLaw, const D: usize> Checkpointed for BondForce<L, D> {
-        blocks: under("operator"),
+        blocks: by(ListStorage { name: "operator", start: bonds.start() }),
         cloud, bonds, reference, unit, stiffness, breakable, critical_stretch, pairs, damage: fixed,
         heat, reach, instruction_set, law: fixed,
         packed: scratch,

@@ -43,7 +43,7 @@ impl Layout {
             reference: (0..cloud.len()).map(row).collect(),
             own: (!alike).then(|| (0..cloud.len()).map(own).collect()),
             unit: cloud.lattice().map_or([1.0; 3], |lattice| lattice.spacing),
-            volume: volumes[0],
+            volume: volumes.first().copied().unwrap_or(0.0),
             cell: first,
         }
     }

@@ -9,12 +9,13 @@ use super::heat::Heat;
 use super::kernels::{accept_rows, dilatation_rows};
 use super::kinematics::Kinematics;
 use super::weight::Weight;
+use crate::archive::Laid;
 use crate::domain::Field;
 use crate::family::BondList;
 use crate::kernel::Influence;
 use crate::lanes::{LANES, Row, dot};
 use crate::material::{BondLimits, PairForce, SolidClasses, SolidSurface, SurfaceFactors};
-use crate::operator::damage::{BlockDamage, DamageMeasure};
+use crate::operator::damage::{BlockDamage, DamageMeasure, ListStorage};
 use crate::operator::list::other_ends::other_ends;
 use crate::operator::list::stiffness::Stiffness;
 use crate::operator::pool::{Lent, Pool};
@@ -63,8 +64,8 @@ pub struct LinearSolidForce<L: Kinematics, const D: usize> {
 
 crate::saved! {
     impl<L: Kinematics, const D: usize> Checkpointed for LinearSolidForce<L, D> {
-        blocks: under("operator"),
-        work: array("operator/bond-work"),
+        blocks: by(ListStorage { name: "operator", start: bonds.start() }),
+        work: by(Laid::rows("operator/bond-work", bonds.start(), work.len())),
         cloud, bonds, layout, weight, factor, states, classes, weakest, breakable, damage, influence: fixed,
         instruction_set, kinematics: fixed,
         heat: rebuilt,

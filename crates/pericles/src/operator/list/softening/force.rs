@@ -3,6 +3,7 @@
 use super::advance::{Advance, Part, advance_rows};
 use super::curves::Curves;
 use super::kernels::Softened;
+use crate::archive::Laid;
 use crate::error::{PericlesError, Result};
 use crate::lanes::LANES;
 use crate::material::{MaterialPairs, Softening};
@@ -33,7 +34,7 @@ pub struct SofteningForce<L: VectorLaw, const D: usize> {
 crate::saved! {
     impl<L: VectorLaw, const D: usize> Checkpointed for SofteningForce<L, D> {
         list: part,
-        largest: array("softening/largest"),
+        largest: by(Laid::rows("softening/largest", list.bonds.start(), largest.len())),
         curves: fixed,
     }
 }

@@ -18,6 +18,7 @@ use crate::operator::grid::families::Families;
 use crate::operator::grid::layout::GridLayout;
 use crate::operator::grid::padded::{Frame, Padded};
 use crate::operator::grid::stencil::Stencil;
+use crate::operator::grid::stored::StencilStorage;
 use crate::operator::grid::wanted::WantedPoints;
 use crate::operator::pool::Pool;
 use crate::operator::state_based::breaking::States;
@@ -68,7 +69,7 @@ pub struct LinearSolidGrid<L: Kinematics, const D: usize> {
 
 crate::saved! {
     impl<L: Kinematics, const D: usize> Checkpointed for LinearSolidGrid<L, D> {
-        blocks: under("operator/grid"),
+        blocks: by(StencilStorage { name: "operator/grid", layout, offsets: stencil.len() }),
         cloud, layout, stencil, offsets, geometric, held, precut, states, stiffness, classes, weakest: fixed,
         damage, directed_bonds, instruction_set, kinematics: fixed,
         heat: rebuilt,

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::laws::{Laws, Relaxation, weighted};
+use crate::archive::Laid;
 use crate::error::{PericlesError, Result};
 use crate::family::BondList;
 use crate::lanes::{F64x8, LANES};
@@ -35,19 +36,21 @@ pub(super) struct History {
     pub multiplier: Vec<f64>,
     /// Reverse entry of each entry; itself for padding.
     pub opposite: Vec<u32>,
+    /// First group of each point, and at the end the number of groups.
+    start: Vec<usize>,
 }
 
 crate::saved! {
     impl Checkpointed for History {
-        inelastic: array("inelastic/stretch"),
-        last: array("inelastic/last"),
-        back: array("inelastic/back"),
-        time: array("inelastic/time"),
-        volume: array("inelastic/volume"),
-        sums: array("inelastic/sums"),
-        plastic_strain: array("inelastic/plastic-strain"),
-        multiplier: array("inelastic/multiplier"),
-        terms, opposite: fixed,
+        inelastic: by(Laid::rows("inelastic/stretch", start, inelastic.len())),
+        last: by(Laid::rows("inelastic/last", start, last.len())),
+        back: by(Laid::rows("inelastic/back", start, back.len())),
+        time: points("inelastic/time"),
+        volume: points("inelastic/volume"),
+        sums: by(Laid::per_point("inelastic/sums", time.len(), sums.len())),
+        plastic_strain: points("inelastic/plastic-strain"),
+        multiplier: points("inelastic/multiplier"),
+        terms, opposite, start: fixed,
     }
 }
 
@@ -75,6 +78,7 @@ impl History {
             plastic_strain: vec![0.0; n],
             multiplier: vec![0.0; n],
             opposite: opposites(bonds)?,
+            start: bonds.start().to_vec(),
         })
     }
 
@@ -197,7 +201,7 @@ impl History {
             &self.multiplier,
         ];
         let numbers: usize = numbers.iter().map(|array| size_of_val(&array[..])).sum();
-        numbers + size_of_val(&self.opposite[..])
+        numbers + size_of_val(&self.opposite[..]) + size_of_val(&self.start[..])
     }
 }
 
