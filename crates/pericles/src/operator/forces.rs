@@ -117,6 +117,10 @@ impl Force for Forces {
         self.list.iter().map(|force| force.energy(t, u)).sum()
     }
 
+    fn heating(&self, step: &StepEnd<'_>) -> f64 {
+        self.list.iter().map(|force| force.heating(step)).sum()
+    }
+
     /// ω² of a sum of stiffnesses is at most the sum of their ω².
     fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {
         let square = |force: &dyn Force| force.frequency_bound(density).powi(2);
