@@ -55,9 +55,9 @@ const GEODESIC: f64 = 84.0;
 /// work arrays of a step; conductivity and surface factor.
 const HEAT: f64 = 24.0;
 /// Bytes per conducting bond of a list: list and conductances.
-const CONDUCTOR: f64 = 36.0;
+const CONDUCTOR: f64 = 20.0;
 /// Bytes per conductor between neighbouring points in the multigrid of implicit steps and steady states.
-const NEAR: f64 = 80.0;
+const NEAR: f64 = 96.0;
 /// Conductors of a point in one, two and three dimensions.
 const CONDUCTORS: [f64; 3] = [4.0, 12.0, 32.0];
 /// Bytes per cell of the bounding box of a filled surface: inside flag and node.
