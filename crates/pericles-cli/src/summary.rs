@@ -90,6 +90,10 @@ fn heat(audit: &Audit) -> Result<(), IoError> {
         return Ok(());
     };
     let through: f64 = heat.inflows.iter().map(|one| one.heat).sum();
+    let generated = match heat.from_dissipation {
+        Some(heat) => format!(", {} from dissipation", quantity(heat, "J")),
+        None => String::new(),
+    };
     let balance = match (heat.balance, heat.balance_relative) {
         (Some(error), Some(relative)) => format!(
             "; heat balance: error {} ({})",
@@ -99,7 +103,7 @@ fn heat(audit: &Audit) -> Result<(), IoError> {
         _ => String::new(),
     };
     console::print(format_args!(
-        "heat: content {}, initially {}; {} through conditions{balance}; temperature {} to {}",
+        "heat: content {}, initially {}; {} through conditions{generated}{balance}; temperature {} to {}",
         quantity(heat.content, "J"),
         quantity(heat.initial_content, "J"),
         quantity(through, "J"),

@@ -79,6 +79,9 @@ pub struct Conduction {
     /// Part of its conductance that a broken bond keeps.
     #[serde(default)]
     pub broken_conductance: f64,
+    /// Share of the energy dissipated by fracture and inelastic deformation that becomes heat.
+    #[serde(default)]
+    pub dissipation: f64,
     /// `[[thermal.condition]]`
     #[serde(default, rename = "condition")]
     pub conditions: Vec<ThermalCondition>,
@@ -165,6 +168,9 @@ const CONDUCTION: &[&str] = &["conductivity", "specific_heat"];
 /// Largest allowed coefficient, above that of any solid, 1/K.
 pub(crate) const LARGEST: f64 = 0.01;
 
+/// Why steady states have no heat from dissipated energy.
+pub(crate) const STORES_NO_HEAT: &str = "with scheme = \"steady\" the temperature stores no heat; use scheme = \"explicit\", \"trapezoidal\" or \"backward-euler\"";
+
 const NEEDS: &str = "it requires `conductivity` and `specific_heat`";
 
 pub(crate) fn read(
@@ -217,6 +223,7 @@ pub(crate) fn read(
                 "interface",
                 "surface_correction",
                 "broken_conductance",
+                "dissipation",
                 "condition",
             ] {
                 table.forbid(key, NEEDS);
@@ -296,6 +303,17 @@ fn conduction(
             (0.0..=1.0).contains(&share)
         })
     });
+    let dissipation = match scheme {
+        Some(ConductionScheme::Steady) => {
+            table.forbid("dissipation", STORES_NO_HEAT);
+            Some(0.0)
+        }
+        _ => table.or("dissipation", 0.0, |item| {
+            item.within(Quantity::Number, "a number from 0 to 1", |share| {
+                (0.0..=1.0).contains(&share)
+            })
+        }),
+    };
     let conditions: Vec<Option<ThermalCondition>> = table
         .tables("condition")
         .into_iter()
@@ -309,6 +327,7 @@ fn conduction(
         interface: interface?,
         surface_correction: surface_correction?,
         broken_conductance: broken_conductance?,
+        dissipation: dissipation?,
         conditions: conditions.into_iter().collect::<Option<_>>()?,
     })
 }

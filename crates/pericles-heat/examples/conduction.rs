@@ -91,6 +91,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let options = FieldOptions {
             scheme: Scheme::Steady,
             step: None,
+            dissipation: 0.0,
         };
         let field = DiffusingField::new(problem, options, 0.0, vec![300.0; cloud.len()])?.shared();
         field.temperatures_into(1.0, &mut out);

@@ -46,16 +46,26 @@ pub type Flows = Vec<f64>;
 /// Part of the limit of stability that explicit sub-steps use at most.
 const SAFETY: f64 = 0.95;
 
-/// Advances values from t₀ to t₁ and adds the inflow of each condition to `flows`.
+/// A time interval of a field.
+#[derive(Clone, Copy)]
+pub(crate) struct Span<'a> {
+    /// Start and end, s.
+    pub times: [f64; 2],
+    /// Constant inflow into each point within the interval besides that of conditions, W for heat; none if empty.
+    pub power: &'a [f64],
+}
+
+/// Advances values over a time interval and adds the inflow of each condition to `flows`.
 pub(crate) fn advance(
     problem: &Problem,
     scheme: Scheme,
     solver: &mut Solver,
-    [t0, t1]: [f64; 2],
+    span: Span<'_>,
     values: &mut [f64],
     flows: &mut [f64],
 ) -> Result<()> {
     solver.effort.last = 0;
+    let [t0, t1] = span.times;
     match scheme {
         Scheme::Explicit => {
             let limit = problem.explicit_limit(values);
@@ -72,7 +82,12 @@ pub(crate) fn advance(
             for k in 0..parts as u64 {
                 let next = problem.sample(time((k + 1) as f64))?;
                 let dt = (t1 - t0) / parts;
-                let before = rate(problem, (&sampled, values), (flows, dt), &mut rates);
+                let before = rate(
+                    (problem, span.power),
+                    (&sampled, values),
+                    (flows, dt),
+                    &mut rates,
+                );
                 finish(problem, (&next, before, dt), &rates, values, flows);
                 solver.effort.last += 1;
                 sampled = next;
@@ -80,16 +95,16 @@ pub(crate) fn advance(
             solver.effort.total += solver.effort.last;
             Ok(())
         }
-        Scheme::Trapezoidal => implicit(problem, 0.5, solver, [t0, t1], values, flows),
-        Scheme::BackwardEuler => implicit(problem, 1.0, solver, [t0, t1], values, flows),
-        Scheme::Steady => steady(problem, solver, [t0, t1], values, flows),
+        Scheme::Trapezoidal => implicit(problem, 0.5, solver, span, values, flows),
+        Scheme::BackwardEuler => implicit(problem, 1.0, solver, span, values, flows),
+        Scheme::Steady => steady(problem, solver, span, values, flows),
     }
 }
 
-/// Sets `rates` to the flow by bonds and conditions into each point at given values, books the inflow of conditions
-/// over a duration, and returns a copy of the values.
+/// Sets `rates` to the flow by bonds, conditions and the given power into each point at given values, books the inflow
+/// of conditions over a duration, and returns a copy of the values.
 fn rate(
-    problem: &Problem,
+    (problem, power): (&Problem, &[f64]),
     (sampled, values): (&Sampled, &[f64]),
     (flows, duration): (&mut [f64], f64),
     rates: &mut [f64],
@@ -97,6 +112,9 @@ fn rate(
     rates.fill(0.0);
     problem.diffusion.add_flow(values, rates);
     problem.add_inflow(sampled, values, rates, (flows, duration));
+    for (rate, power) in rates.iter_mut().zip(power) {
+        *rate += power;
+    }
     values.to_vec()
 }
 
@@ -125,7 +143,10 @@ fn implicit(
     problem: &Problem,
     theta: f64,
     solver: &mut Solver,
-    [t0, t1]: [f64; 2],
+    Span {
+        times: [t0, t1],
+        power,
+    }: Span<'_>,
     values: &mut [f64],
     flows: &mut [f64],
 ) -> Result<()> {
@@ -135,7 +156,7 @@ fn implicit(
     let before = if theta < 1.0 {
         let now = problem.sample(t0)?;
         let before = rate(
-            problem,
+            (problem, power),
             (&now, values),
             (flows, (1.0 - theta) * dt),
             &mut explicit,
@@ -149,7 +170,7 @@ fn implicit(
     let capacity = problem.capacity();
     let residual = |values: &[f64], out: &mut [f64]| {
         let mut unbooked = vec![0.0; problem.conditions().len()];
-        rate(problem, (&next, values), (&mut unbooked, 0.0), out);
+        rate((problem, power), (&next, values), (&mut unbooked, 0.0), out);
         for i in 0..n {
             out[i] = explicit[i] + theta * out[i] - capacity[i] * (values[i] - before[i]) / dt;
         }
@@ -171,7 +192,12 @@ fn implicit(
     )?;
     // With the rates at the solution the balance is exact, whatever the residual is.
     let mut rates = vec![0.0; n];
-    rate(problem, (&next, values), (flows, theta * dt), &mut rates);
+    rate(
+        (problem, power),
+        (&next, values),
+        (flows, theta * dt),
+        &mut rates,
+    );
     for (rate, explicit) in rates.iter_mut().zip(&explicit) {
         *rate = explicit + theta * *rate;
     }
@@ -252,7 +278,10 @@ fn newton(
 fn steady(
     problem: &Problem,
     solver: &mut Solver,
-    [t0, t1]: [f64; 2],
+    Span {
+        times: [t0, t1],
+        power,
+    }: Span<'_>,
     values: &mut [f64],
     flows: &mut [f64],
 ) -> Result<()> {
@@ -265,7 +294,12 @@ fn steady(
     problem.prescribe(&sampled, values);
     let residual = |values: &[f64], out: &mut [f64]| {
         let mut unbooked = vec![0.0; problem.conditions().len()];
-        rate(problem, (&sampled, values), (&mut unbooked, 0.0), out);
+        rate(
+            (problem, power),
+            (&sampled, values),
+            (&mut unbooked, 0.0),
+            out,
+        );
     };
     let domain = problem.diffusion.cloud().domain();
     let most = values
@@ -276,7 +310,12 @@ fn steady(
     // Flows of the steady state: the change of content is not followed.
     let mut rates = vec![0.0; values.len()];
     let duration = t1 - t0;
-    rate(problem, (&sampled, values), (flows, duration), &mut rates);
+    rate(
+        (problem, power),
+        (&sampled, values),
+        (flows, duration),
+        &mut rates,
+    );
     problem.book_prescribed(&|_| 0.0, &|i| duration * rates[i], flows);
     Ok(())
 }

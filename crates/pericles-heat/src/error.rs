@@ -62,6 +62,19 @@ pub enum HeatError {
     /// A body divided among processes.
     #[error("fields that diffuse need all points on one process; this body is divided")]
     Divided,
+    /// A share of the dissipated energy outside of its range.
+    #[error(
+        "the share of dissipated energy that becomes heat is {share}; allowed: a number from 0 to 1"
+    )]
+    Share {
+        /// The share.
+        share: f64,
+    },
+    /// Heat from dissipated energy in steady states.
+    #[error(
+        "a steady state stores no heat, and heat from dissipated energy needs a heat content that it adds to; use an unsteady scheme"
+    )]
+    SteadyDissipation,
     /// Two prescribed values at a point.
     #[error(
         "the temperature of point {point} is prescribed by two conditions; allowed: one prescribed temperature per point"

@@ -7,10 +7,13 @@ use pericles::archive::Layout;
 use pericles::operator::Force;
 use pericles::space::check_length;
 use pericles::{
-    Archive, Checkpointed, PericlesError, Result, SecondaryField, Temperature, Values, positive,
+    Archive, BodyStep, Checkpointed, PericlesError, Result, SecondaryField, Temperature, Values,
+    positive,
 };
 
-use crate::advance::{Flows, Scheme, advance};
+use crate::advance::{Flows, Scheme, Span, advance};
+use crate::dissipation::Dissipation;
+use crate::error::HeatError;
 use crate::problem::Problem;
 use crate::solver::{Effort, Solver};
 
@@ -22,6 +25,9 @@ pub struct FieldOptions {
     /// Length of the steps of the field, s, which may be shorter or longer than those of the body; between their ends
     /// the field is linear in time. If `None`, the field advances with the steps of the body.
     pub step: Option<f64>,
+    /// Share of the energy that the body dissipates by fracture and inelastic deformation which becomes heat at the
+    /// points that dissipate it, 0 to 1.
+    pub dissipation: f64,
 }
 
 /// A state of the field.
@@ -31,6 +37,8 @@ struct Accepted {
     values: Vec<f64>,
     /// Content that has flowed in by each condition since the start.
     flows: Flows,
+    /// Heat from dissipated energy of each point that has not entered the values, J; empty without this heat.
+    pending: Vec<f64>,
 }
 
 /// The field between two states, linear in time.
@@ -53,6 +61,8 @@ struct State {
     /// Number of changes of the accepted state.
     revision: u64,
     failure: Option<PericlesError>,
+    /// Heat from dissipated energy, if any.
+    dissipation: Option<Dissipation>,
 }
 
 /// A computed field, shared by the system and the forces that depend on it.
@@ -68,7 +78,8 @@ impl DiffusingField {
     /// Makes a field from its values at the time t.
     ///
     /// # Errors
-    /// Values that are not one per point or not finite; a step that is not positive.
+    /// Values that are not one per point or not finite; a step that is not positive; a share of dissipated energy
+    /// outside of its range or with steady states.
     pub fn new(problem: Problem, options: FieldOptions, t: f64, values: Vec<f64>) -> Result<Self> {
         check_length(
             "the temperatures of the points",
@@ -78,8 +89,13 @@ impl DiffusingField {
         if let Some(step) = options.step {
             positive("the thermal step", step)?;
         }
+        let dissipation = Dissipation::new(options.dissipation, t)?;
+        if dissipation.is_some() && options.scheme == Scheme::Steady {
+            return Err(HeatError::SteadyDissipation.into());
+        }
         let first = Accepted {
             t,
+            pending: vec![0.0; dissipation.map_or(0, |_| values.len())],
             flows: vec![0.0; problem.conditions().len()],
             values,
         };
@@ -95,6 +111,7 @@ impl DiffusingField {
             ahead: None,
             revision: 0,
             failure: None,
+            dissipation,
         };
         Ok(Self {
             shared: SharedField(Arc::new(Mutex::new(state))),
@@ -156,14 +173,18 @@ impl State {
             to.t = end;
             let (problem, solver) = (&self.problem, &mut self.solver);
             let scheme = self.options.scheme;
-            advance(
-                problem,
-                scheme,
-                solver,
-                [start, end],
-                &mut to.values,
-                &mut to.flows,
-            )?;
+            let times = [start, end];
+            let part = self.dissipation.map_or(0.0, |heat| heat.part(times));
+            let rate = |pending: &f64| part * pending / (end - start);
+            let power: Vec<f64> = from.pending.iter().map(rate).collect();
+            let span = Span {
+                times,
+                power: &power,
+            };
+            advance(problem, scheme, solver, span, &mut to.values, &mut to.flows)?;
+            for pending in &mut to.pending {
+                *pending -= part * *pending;
+            }
             let interval = Interval { from, to };
             if interval.contains(t) {
                 self.ahead = Some(interval);
@@ -192,10 +213,43 @@ impl State {
         }
     }
 
+    /// Returns the values including pending heat.
     fn values_at(&mut self, t: f64) -> Vec<f64> {
         let mut values = vec![0.0; self.problem.len()];
         self.mix_into(t, |state| &state.values, &mut values);
+        if self.dissipation.is_some() {
+            let mut pending = vec![0.0; values.len()];
+            self.mix_into(t, |state| &state.pending, &mut pending);
+            let capacity = self.problem.capacity().iter();
+            for ((value, heat), capacity) in values.iter_mut().zip(&pending).zip(capacity) {
+                *value += heat / capacity;
+            }
+        }
         values
+    }
+
+    /// Turns the energy that each point has dissipated in a step of the body into pending heat. Prescribed values are
+    /// unaffected: their conditions take the heat.
+    fn heat_up(&mut self, t: f64, dissipated: &[f64]) {
+        let Some(dissipation) = &mut self.dissipation else {
+            return;
+        };
+        let heat = |i: usize| dissipation.share * dissipated[i];
+        let domain = self.problem.diffusion.cloud().domain();
+        let total = domain.sum(dissipated.len(), heat);
+        let Interval { from, to } = &mut self.accepted;
+        for state in [from, to] {
+            for (i, pending) in state.pending.iter_mut().enumerate() {
+                if !self.problem.is_prescribed(i) {
+                    *pending += heat(i);
+                }
+            }
+            let flows = &mut state.flows;
+            self.problem.book_prescribed(&|_| 0.0, &heat, flows);
+        }
+        dissipation.add(t, total);
+        // Computed without this heat.
+        self.ahead = None;
     }
 }
 
@@ -232,6 +286,12 @@ impl SharedField {
         let mut flows = vec![0.0; state.problem.conditions().len()];
         state.mix_into(t, |state| &state.flows, &mut flows);
         flows
+    }
+
+    /// Returns the heat from dissipated energy since the start, J; `None` if dissipated energy does not become heat.
+    pub fn heat_from_dissipation(&self) -> Option<f64> {
+        let dissipation = self.state().dissipation;
+        dissipation.map(|dissipation| dissipation.heat)
     }
 
     /// Returns the smallest and the largest value at a time.
@@ -296,7 +356,16 @@ impl SecondaryField for DiffusingField {
         Ok(())
     }
 
-    fn end_step(&mut self, t: f64, forces: &dyn Force) -> Result<()> {
+    fn reads_dissipation(&self) -> bool {
+        self.shared.state().dissipation.is_some()
+    }
+
+    fn end_step(&mut self, body: BodyStep<'_>) -> Result<()> {
+        let BodyStep {
+            t,
+            forces,
+            dissipated,
+        } = body;
         let mut state = self.shared.state();
         if let Some(failure) = state.failure.take() {
             return Err(failure);
@@ -307,6 +376,7 @@ impl SecondaryField for DiffusingField {
         {
             state.accepted = ahead;
         }
+        state.heat_up(t, dissipated);
         if state.problem.diffusion.read_bonds(forces) {
             state.ahead = None;
         }
@@ -315,7 +385,7 @@ impl SecondaryField for DiffusingField {
     }
 
     fn values_into(&self, t: f64, out: &mut [f64]) {
-        self.shared.temperatures_into(t, out);
+        out.copy_from_slice(&self.shared.state().values_at(t));
     }
 
     fn flux_into(&self, t: f64, out: &mut [f64]) {
@@ -331,6 +401,7 @@ const CONTENT: &str = "temperature/initial content";
 const INTACT: &str = "temperature/conducting bonds";
 const VALUES: [&str; 2] = ["temperature/from", "temperature/to"];
 const FLOWS: [&str; 2] = ["temperature/flows from", "temperature/flows to"];
+const PENDING: [&str; 2] = ["temperature/pending from", "temperature/pending to"];
 
 impl Checkpointed for DiffusingField {
     fn save(&self, archive: &mut Archive) {
@@ -347,6 +418,12 @@ impl Checkpointed for DiffusingField {
             archive.put_as(VALUES[k], values, Layout::Points);
             archive.put(FLOWS[k], Values::F64(one.flows.clone()));
         }
+        if let Some(dissipation) = state.dissipation {
+            dissipation.save(archive);
+            for (k, one) in [from, to].into_iter().enumerate() {
+                archive.put(PENDING[k], Values::F64(one.pending.clone()));
+            }
+        }
     }
 
     fn restore(&mut self, archive: &Archive) -> Result<()> {
@@ -360,6 +437,12 @@ impl Checkpointed for DiffusingField {
             one.t = times[k];
             archive.f64_into(VALUES[k], &mut one.values)?;
             archive.f64_into(FLOWS[k], &mut one.flows)?;
+            if state.dissipation.is_some() {
+                archive.f64_into(PENDING[k], &mut one.pending)?;
+            }
+        }
+        if let Some(dissipation) = &mut state.dissipation {
+            dissipation.restore(archive)?;
         }
         let intact: &[u8] = archive.numbers(INTACT)?;
         state.problem.diffusion.restore_intact(intact)?;

@@ -27,6 +27,7 @@ mod advance;
 mod calibration;
 mod condition;
 mod diffusion;
+mod dissipation;
 mod error;
 mod field;
 mod fixed_body;

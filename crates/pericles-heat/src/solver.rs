@@ -247,6 +247,8 @@ fn near_network(diffusion: &Diffusion) -> Vec<Vec<(u32, f64)>> {
             None => nearest,
         };
         all.truncate(near.max(2 * d));
+        // All points together would keep the memory of whole families.
+        all.shrink_to_fit();
         let own: f64 = all.iter().map(|bond| bond.conductance * square(bond)).sum();
         let coefficient = if own > 0.0 { moment / own } else { 0.0 };
         (all, coefficient)

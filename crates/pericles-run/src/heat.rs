@@ -18,6 +18,8 @@ pub struct HeatFacts {
     pub explicit_limit: f64,
     /// Heat content ρ c V T of the initial temperature, J.
     pub content: f64,
+    /// Share of the dissipated energy that becomes heat.
+    pub dissipation: f64,
     /// Conducting bonds, each counted from both ends.
     pub directed_bonds: u64,
 }
@@ -30,6 +32,7 @@ impl HeatFacts {
             step: options.step,
             explicit_limit: field.explicit_limit(0.0),
             content: field.initial_content(),
+            dissipation: options.dissipation,
             directed_bonds: field.with_problem(|problem| problem.diffusion().directed_bonds()),
         }
     }
@@ -53,7 +56,9 @@ pub struct HeatBalance {
     pub initial_content: f64,
     /// Heat through the conditions of each set.
     pub inflows: Vec<Inflow>,
-    /// Content minus initial content minus all inflows, J; `None` for steady states, whose change of content is not
+    /// Heat from energy dissipated by the body, J; `None` if dissipated energy does not become heat.
+    pub from_dissipation: Option<f64>,
+    /// Content minus initial content minus all inflows and heat from dissipation, J; `None` for steady states, whose change of content is not
     /// followed.
     pub balance: Option<f64>,
     /// The balance relative to the heat content.
@@ -76,16 +81,20 @@ impl HeatBalance {
         let (content, initial_content) = (field.content(t), field.initial_content());
         let inflows = inflows(&field, t);
         let total: f64 = inflows.iter().map(|inflow| inflow.heat).sum();
-        let balance = content - initial_content - total;
+        let from_dissipation = field.heat_from_dissipation();
+        let generated = from_dissipation.unwrap_or_default();
+        let balance = content - initial_content - total - generated;
         let is_steady = field.options().scheme == pericles_heat::Scheme::Steady;
         let scale = inflows.iter().map(|inflow| inflow.heat.abs()).sum::<f64>();
-        let scale = scale.max(content.abs()).max(f64::MIN_POSITIVE);
+        let scale = scale.max(content.abs()).max(generated.abs());
+        let scale = scale.max(f64::MIN_POSITIVE);
         let [lowest, highest] = field.range(t);
         let effort = field.effort();
         Some(Self {
             content,
             initial_content,
             inflows,
+            from_dissipation,
             balance: (!is_steady).then_some(balance),
             balance_relative: (!is_steady).then_some(balance / scale),
             lowest,
@@ -123,8 +132,8 @@ fn inflows(field: &SharedField, t: f64) -> Vec<Inflow> {
     inflows
 }
 
-/// Columns of bodies with heat conduction: heat content, heat through the conditions of each set since the start, and the
-/// extremes of the temperature.
+/// Columns of bodies with heat conduction: heat content, heat through the conditions of each set and from dissipated
+/// energy since the start, and the extremes of the temperature.
 pub(crate) struct HeatColumns(SharedField);
 
 impl HeatColumns {
@@ -140,6 +149,9 @@ impl HistoryColumns for HeatColumns {
         for inflow in inflows(&self.0, 0.0) {
             columns.push(Column::real(format!("heat_through_{}", inflow.set), "J"));
         }
+        if self.0.heat_from_dissipation().is_some() {
+            columns.push(Column::real("heat_from_dissipation", "J"));
+        }
         columns.extend(
             ["lowest_temperature", "highest_temperature"].map(|name| Column::real(name, "K")),
         );
@@ -151,6 +163,7 @@ impl HistoryColumns for HeatColumns {
         let heats = inflows(&self.0, t).into_iter().map(|inflow| inflow.heat);
         let mut cells = vec![Cell::Real(self.0.content(t))];
         cells.extend(heats.map(Cell::Real));
+        cells.extend(self.0.heat_from_dissipation().map(Cell::Real));
         cells.extend(self.0.range(t).map(Cell::Real));
         cells
     }

@@ -85,6 +85,7 @@ impl System {
             return 0.0;
         }
         let mut given = Vec::with_capacity(pushed.len());
+        let points: Vec<usize> = pushed.iter().map(|entry| entry % n).collect();
         let (mut supports, mut reaction) = (Vec::new(), [const { Vec::new() }; 3]);
         for entry in pushed {
             let push = scale * impulse[entry];
@@ -104,7 +105,9 @@ impl System {
         self.book_reaction(sum(&supports), reaction.each_ref().map(|terms| sum(terms)));
         if let Some(breaking) = self.operator_mut().breaking_mut() {
             // Added one by one, so that the sum over all processes does not depend on the division.
-            given.iter().for_each(|given| breaking.dissipate(-given));
+            for (i, given) in points.into_iter().zip(&given) {
+                breaking.dissipate(i, -given);
+            }
         }
         taken
     }

@@ -202,7 +202,7 @@ pub use guard::InstabilityCause;
 pub use interaction::{Configuration, Interaction, InteractionStep};
 pub use interrupt::{Interrupt, IterationProgress};
 pub use scalar::PointScalar;
-pub use secondary::SecondaryField;
+pub use secondary::{BodyStep, SecondaryField};
 pub use simulation::{
     Control, Outcome, Simulation, SimulationBuilder, SimulationError, check_compatibility,
 };

@@ -6,6 +6,18 @@ use crate::archive::Checkpointed;
 use crate::error::Result;
 use crate::operator::Force;
 
+/// The end of a step of the body, for its secondary fields.
+#[derive(Clone, Copy)]
+pub struct BodyStep<'a> {
+    /// Time at the end of the step, s.
+    pub t: f64,
+    /// The forces with the bonds that are intact now.
+    pub forces: &'a dyn Force,
+    /// Energy that each point has dissipated in the step by fracture and inelastic deformation, J; empty if no field
+    /// [needs it](SecondaryField::reads_dissipation).
+    pub dissipated: &'a [f64],
+}
+
 /// A computed scalar field of a body, such as its temperature.
 ///
 /// The field is accepted up to the end of the last step. Forces that depend on it evaluate it at any later time, as a
@@ -21,11 +33,16 @@ pub trait SecondaryField: Any + Checkpointed + Send + Sync {
     /// A body of another size; conditions that are not finite.
     fn start(&mut self, forces: &dyn Force) -> Result<()>;
 
+    /// Returns whether [`BodyStep::dissipated`] is needed.
+    fn reads_dissipation(&self) -> bool {
+        false
+    }
+
     /// Moves the accepted state to the end of a step and reads which bonds have broken.
     ///
     /// # Errors
     /// Equations that could not be solved.
-    fn end_step(&mut self, t: f64, forces: &dyn Force) -> Result<()>;
+    fn end_step(&mut self, body: BodyStep<'_>) -> Result<()>;
 
     /// Sets the values of all points at a time.
     fn values_into(&self, t: f64, out: &mut [f64]);

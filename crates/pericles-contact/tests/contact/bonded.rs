@@ -76,7 +76,11 @@ impl Breakable for Bonded {
         0.0
     }
 
-    fn dissipate(&mut self, _energy: f64) {}
+    fn dissipate(&mut self, _i: usize, _energy: f64) {}
+
+    fn follow_dissipation(&mut self) {}
+
+    fn take_dissipated(&mut self, _out: &mut [f64]) {}
 
     fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {
         Vec::new()

@@ -51,6 +51,12 @@ impl Subject for Caution {
             Self::NothingBreaks { .. } => {
                 "set `fracture_energy` or `critical_stretch`, or remove the key"
             }
+            Self::NothingDissipates { moves: true } => {
+                "set `fracture_energy`, `critical_stretch`, `softening`, `yield_stress` or `viscosity` in [material], or remove the key"
+            }
+            Self::NothingDissipates { moves: false } => {
+                "use another scheme than \"thermal\" in [time], or remove the key"
+            }
             Self::NothingActs => "add [[load]], [[constraint]] or [[initial]]",
             Self::StiffnessError { .. } => {
                 "use modulus = \"lattice\", which is exact on a grid (\"continuum\" for spectral forces and Gauss nodes), or a larger horizon ratio"
@@ -163,7 +169,9 @@ impl Subject for Caution {
             Self::TinySpacing { .. } => "small spacing",
             Self::ClosePoints { .. } => "close points",
             Self::UnusedCoordinate { .. } => "not used",
-            Self::IdleHole | Self::NothingBreaks { .. } => "no effect",
+            Self::IdleHole | Self::NothingBreaks { .. } | Self::NothingDissipates { .. } => {
+                "no effect"
+            }
             Self::Mesh { .. } => "unusual mesh",
             Self::FilledVolume { .. } => "volume differs",
             Self::NothingActs => "no load",

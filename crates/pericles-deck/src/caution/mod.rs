@@ -162,6 +162,12 @@ pub enum Caution {
         /// The key.
         key: &'static str,
     },
+    /// Heat from dissipated energy in a body that dissipates none.
+    #[error("`dissipation` has no effect: {}", if *moves { "no material of this body breaks, yields or relaxes" } else { "the body does not move" })]
+    NothingDissipates {
+        /// Whether the body moves.
+        moves: bool,
+    },
     /// A run without loads, prescribed motion and initial fields.
     #[error("nothing acts on the body: no loads, no prescribed motion, and it starts at rest")]
     NothingActs,

@@ -6,7 +6,9 @@ use crate::conditions::LoadAmplitude;
 use crate::exact::{Exact, KnownSolution, Pulse};
 use crate::key_path::KeyPath;
 use crate::model::Model;
-use crate::thermal::{Conduction, LARGEST, Thermal, ThermalAmplitude};
+use crate::thermal::{
+    Conduction, ConductionScheme, LARGEST, STORES_NO_HEAT, Thermal, ThermalAmplitude,
+};
 
 /// What a fraction may be.
 const FRACTION: &str = "allowed: a number from 0 to 1";
@@ -91,6 +93,16 @@ impl Check {
             share,
             FRACTION,
         );
+        let share = conduction.dissipation;
+        self.within(
+            (0.0..=1.0).contains(&share),
+            key.key("dissipation"),
+            share,
+            FRACTION,
+        );
+        if conduction.scheme == ConductionScheme::Steady {
+            self.within(share <= 0.0, key.key("dissipation"), share, STORES_NO_HEAT);
+        }
         for (number, material) in thermal.materials.iter().enumerate() {
             let key = key.key("material").index(number);
             if let Some(k) = material.conductivity {

@@ -422,7 +422,7 @@ pub(super) const SPECIMENS: &[Specimen] = &[
     specimen(BAR, &["damping={ mass = 1, stiffness = 1e-3 }"]),
     specimen(BAR, &["damping={ stiffness = 1e-3 }"]),
     specimen(BAR, &["thermal={ expansion = 1e-5, temperature = { expression = '300 + t' }, reference = 293 }"]),
-    specimen(BAR, &["thermal={ conductivity = 45, specific_heat = 460, temperature = 300, expansion = 1e-5, reference = 293, scheme = 'trapezoidal', step = 1, interface = 'arithmetic', surface_correction = false, broken_conductance = 0.5, material = [{ name = 'default', conductivity = 40, specific_heat = 400, expansion = 2e-5 }] }"]),
+    specimen(BAR, &["thermal={ conductivity = 45, specific_heat = 460, temperature = 300, expansion = 1e-5, reference = 293, scheme = 'trapezoidal', step = 1, interface = 'arithmetic', surface_correction = false, broken_conductance = 0.5, dissipation = 0.9, material = [{ name = 'default', conductivity = 40, specific_heat = 400, expansion = 2e-5 }] }"]),
     specimen(BAR, &["thermal={ conductivity = 45, specific_heat = 460, temperature = { expression = '300 + x' }, condition = [{ set = 'left', temperature = 1 }, { set = 'left', flux = { expression = 't' }, area = 1, function = { kind = 'ramp', duration = 1 } }, { set = 'left', source = 1 }, { set = 'left', convection = { coefficient = 1, ambient = 300 } }, { set = 'left', radiation = { emissivity = 1, ambient = { expression = '300 + t' } } }] }", "time={ end = 1, dt = 1, scheme = 'thermal' }"]),
     specimen(BAR, &["thermal={ conductivity = 45, specific_heat = 460, file = 'temperatures.txt' }"]),
     specimen(BAR, &["time={ scheme = 'adaptive-dynamic-relaxation' }"]),

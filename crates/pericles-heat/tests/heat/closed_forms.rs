@@ -29,6 +29,7 @@ fn field(
     let options = FieldOptions {
         scheme: Scheme::Trapezoidal,
         step: Some(step),
+        dissipation: 0.0,
     };
     let values = cloud.axis(0).iter().map(|&x| start(x)).collect();
     DiffusingField::new(problem, options, 0.0, values).unwrap()

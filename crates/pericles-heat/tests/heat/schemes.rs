@@ -31,6 +31,7 @@ fn advanced(scheme: Scheme, steps: u32, end: f64) -> (Vec<f64>, f64) {
     let options = FieldOptions {
         scheme,
         step: Some(end / f64::from(steps)),
+        dissipation: 0.0,
     };
     let field = DiffusingField::new(problem, options, 0.0, values.clone())
         .unwrap()
@@ -71,6 +72,7 @@ fn explicit_sub_steps_remain_stable_and_within_the_initial_range_for_any_step() 
     let options = FieldOptions {
         scheme: Scheme::Explicit,
         step: None,
+        dissipation: 0.0,
     };
     let start = noise(24);
     let low = start.iter().copied().fold(f64::INFINITY, f64::min);
@@ -151,7 +153,11 @@ fn plate(scheme: Scheme, step: Option<f64>) -> DiffusingField {
     let problem = Problem::new(diffusion, capacity, conditions).unwrap();
     DiffusingField::new(
         problem,
-        FieldOptions { scheme, step },
+        FieldOptions {
+            scheme,
+            step,
+            dissipation: 0.0,
+        },
         0.0,
         noise(cloud.len()),
     )
@@ -236,7 +242,11 @@ fn a_steady_state_is_the_limit_of_implicit_steps() {
         let problem = Problem::new(diffusion, capacity, conditions).unwrap();
         DiffusingField::new(
             problem,
-            FieldOptions { scheme, step },
+            FieldOptions {
+                scheme,
+                step,
+                dissipation: 0.0,
+            },
             0.0,
             vec![300.0; cloud.len()],
         )
@@ -264,13 +274,19 @@ fn a_steady_state_without_a_given_temperature_is_refused() {
     let options = FieldOptions {
         scheme: Scheme::Steady,
         step: None,
+        dissipation: 0.0,
     };
     let mut field = DiffusingField::new(problem, options, 0.0, values).unwrap();
     let mut out = vec![0.0; 24];
     field.shared().temperatures_into(1.0, &mut out);
     assert!(out.iter().all(|value| value.is_nan()));
     let force = crate::system::bar(24, 1e-3);
-    let error = pericles::SecondaryField::end_step(&mut field, 1.0, force.operator()).unwrap_err();
+    let body = pericles::BodyStep {
+        t: 1.0,
+        forces: force.operator(),
+        dissipated: &[],
+    };
+    let error = pericles::SecondaryField::end_step(&mut field, body).unwrap_err();
     assert!(error.to_string().contains("not unique"), "{error}");
 }
 
@@ -296,6 +312,7 @@ fn products(dimension: usize, cells: usize) -> u64 {
     let options = FieldOptions {
         scheme: Scheme::Steady,
         step: None,
+        dissipation: 0.0,
     };
     let start = noise(cloud.len());
     let field = DiffusingField::new(problem, options, 0.0, start).unwrap();

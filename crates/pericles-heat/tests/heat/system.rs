@@ -39,7 +39,11 @@ fn coupled(scheme: Scheme, step: Option<f64>) -> Simulation {
     .unwrap();
     let field = DiffusingField::new(
         problem,
-        FieldOptions { scheme, step },
+        FieldOptions {
+            scheme,
+            step,
+            dissipation: 0.0,
+        },
         0.0,
         vec![300.0; cloud.len()],
     )
@@ -90,6 +94,7 @@ fn a_fixed_body_only_conducts() {
     let options = FieldOptions {
         scheme: Scheme::Trapezoidal,
         step: None,
+        dissipation: 0.0,
     };
     let field = DiffusingField::new(problem, options, 0.0, noise(cloud.len())).unwrap();
     let shared = field.shared();
@@ -139,6 +144,7 @@ fn a_crack_insulates() {
         let options = FieldOptions {
             scheme: Scheme::Explicit,
             step: None,
+            dissipation: 0.0,
         };
         let field = DiffusingField::new(problem, options, 0.0, start.clone()).unwrap();
         let shared = field.shared();

@@ -5,9 +5,8 @@ use rayon::prelude::*;
 use super::bonds::SurfaceBonds;
 use super::law::SurfaceLaw;
 use pericles::lanes::{F64x8, Real};
-use pericles::operator::CoarseBreak;
-use pericles::operator::PointSubset;
 use pericles::operator::records::Records;
+use pericles::operator::{CoarseBreak, PointDissipation, PointSubset};
 use pericles::parallel::BLOCK;
 use pericles::{Archive, BreakingBond, StepEnd, Values};
 use pericles::{PericlesError, Result};
@@ -20,6 +19,8 @@ pub(super) struct Breaking {
     pub broken: Vec<(usize, f64)>,
     /// Dissipated energy, J.
     pub dissipated: f64,
+    /// Its terms by points, half for each end of a bond.
+    pub of_points: PointDissipation,
     /// Bonds broken in steps too coarse to resolve them, since the list was last taken.
     pub coarse: Vec<CoarseBreak>,
 }
@@ -123,6 +124,9 @@ impl Breaking {
             };
             let dissipated = step.end.dissipated(&bond);
             self.dissipated += dissipated;
+            for end in bond.ends {
+                self.of_points.add(end, 0.5 * dissipated);
+            }
             self.coarse.extend(CoarseBreak::of(&bond, dissipated));
             self.cut(bonds, entry);
             let back = bonds.row(j).find(|&(_, other)| other == i);
@@ -142,6 +146,8 @@ impl Breaking {
             broken,
             dissipated,
             limits: _,
+            // Empty between steps.
+            of_points: _,
             // Handled in every step; not saved.
             coarse: _,
         } = self;
@@ -156,6 +162,7 @@ impl Breaking {
             "operator/dissipated",
             std::slice::from_mut(&mut self.dissipated),
         )?;
+        self.of_points.clear();
         // In reverse order: for an entry listed twice, the first weight is the original one.
         for (entry, weight) in self.broken.drain(..).rev() {
             bonds.weights_mut()[entry] = weight;

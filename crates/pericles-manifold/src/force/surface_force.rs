@@ -18,7 +18,7 @@ use pericles::operator::{
     Breakable, Capabilities, Force, InstructionSet, LinearOperator, Linearity, LocalForce,
     PointSubset, SplitForce,
 };
-use pericles::operator::{CoarseBreak, each_once};
+use pericles::operator::{CoarseBreak, PointDissipation, each_once};
 use pericles::parallel::{BLOCK, components_mut, for_each_block};
 use pericles::space::PointCloud;
 use pericles::{Archive, Checkpointed, StepEnd};
@@ -62,6 +62,7 @@ impl<L: SurfaceLaw> SurfaceForce<L> {
                 limits,
                 broken: Vec::new(),
                 dissipated: 0.0,
+                of_points: PointDissipation::default(),
                 coarse: Vec::new(),
             }),
             records: Pool::new(1, move || vec![Row::default(); n]),
@@ -243,9 +244,22 @@ impl<L: SurfaceLaw> Breakable for SurfaceForce<L> {
             .map_or(0.0, |breaking| breaking.dissipated)
     }
 
-    fn dissipate(&mut self, energy: f64) {
+    fn dissipate(&mut self, i: usize, energy: f64) {
         if let Some(breaking) = &mut self.breaking {
             breaking.dissipated += energy;
+            breaking.of_points.add(i, energy);
+        }
+    }
+
+    fn follow_dissipation(&mut self) {
+        if let Some(breaking) = &mut self.breaking {
+            breaking.of_points.follow();
+        }
+    }
+
+    fn take_dissipated(&mut self, out: &mut [f64]) {
+        if let Some(breaking) = &mut self.breaking {
+            breaking.of_points.take_into(out);
         }
     }
 

@@ -97,6 +97,7 @@ pub fn assemble(
     discretisation.conditions.add_motions(&mut system)?;
     assembler.judge_conditions(&system, cloud, &mut warnings);
     warnings.extend(assembler.judge_idle_keys(&system));
+    warnings.extend(assembler.judge_dissipation(&system));
     if discretisation.conditions.is_empty() {
         warnings.extend(assembler.judge_rest(&whole_state));
     }

@@ -100,6 +100,7 @@ impl Assembler<'_> {
                 ConductionScheme::Steady => Scheme::Steady,
             },
             step: conduction.step,
+            dissipation: conduction.dissipation,
         };
         let start = match self.temperature(thermal, cloud, resources)? {
             Given::OfPoints(values) => values,

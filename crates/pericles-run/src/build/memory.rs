@@ -10,6 +10,8 @@
 //! | a bond of a correspondence material | [`NUMBER`] in addition |
 //! | a bond that breaks by its energy | [`WORKED`] in addition |
 //! | a Fourier transform | [`TRANSFORM`] per entry of a D × D matrix on the doubled box |
+//! | a point that conducts heat | [`HEAT`] numbers in addition; [`NEAR`] per conductor of the multigrid with implicit and steady schemes |
+//! | a bond that conducts heat | two bits on a lattice, [`CONDUCTOR`] in a list |
 //! | a cell in field files | [`WRITTEN`]: its corners, its share of the nodes, and the search for common nodes |
 //! | a vertex of a surface | [`VERTEX`] in addition, for its triangles and their neighbours |
 //! | a bond of a surface | [`GEODESIC`] |
@@ -22,7 +24,8 @@
 use pericles::material::BondFailure;
 use pericles::space::{GradedGrid, PointCloud, Shape};
 use pericles_deck::{
-    BuildError, Fault, InterfaceFailure, KeyPath, Keys, MaterialModel, Model, Scheme, Solid,
+    BuildError, ConductionScheme, Fault, InterfaceFailure, KeyPath, Keys, MaterialModel, Model,
+    Scheme, Solid,
 };
 use pericles_waves::ForceForm;
 
@@ -48,6 +51,15 @@ const HISTORY: f64 = 20.0;
 const TRANSFORM: f64 = 4.0;
 const VERTEX: f64 = 400.0;
 const GEODESIC: f64 = 84.0;
+/// Numbers per point of heat conduction: temperatures at both ends of the accepted and the next step, capacity, flows,
+/// work arrays of a step; conductivity and surface factor.
+const HEAT: f64 = 24.0;
+/// Bytes per conducting bond of a list: list and conductances.
+const CONDUCTOR: f64 = 20.0;
+/// Bytes per conductor between neighbouring points in the multigrid of implicit steps and steady states.
+const NEAR: f64 = 96.0;
+/// Conductors of a point in one, two and three dimensions.
+const CONDUCTORS: [f64; 3] = [4.0, 12.0, 32.0];
 /// Bytes per cell of the bounding box of a filled surface: inside flag and node.
 const CELL: f64 = 30.0;
 /// Bytes per cell of field files on cells.
@@ -251,7 +263,30 @@ impl Assembler<'_> {
             true => WRITTEN,
             false => 0.0,
         };
-        self.bytes_of_state(dimension) + own + bonds + cells
+        self.bytes_of_state(dimension)
+            + own
+            + bonds
+            + cells
+            + self.bytes_of_heat(solid, dimension, neighbours)
+    }
+
+    /// Returns the bytes of heat conduction of a point with this number of neighbours.
+    fn bytes_of_heat(&self, solid: &Solid, dimension: usize, neighbours: f64) -> f64 {
+        let thermal = self.model.thermal.as_ref();
+        let Some(conduction) = thermal.and_then(|thermal| thermal.conduction.as_ref()) else {
+            return 0.0;
+        };
+        let listed =
+            solid.shape.is_refined() || solid.shape.is_listed() || self.has_several_horizons(solid);
+        let bonds = match listed {
+            true => CONDUCTOR * neighbours,
+            false => neighbours / 4.0,
+        };
+        let multigrid = match conduction.scheme {
+            ConductionScheme::Explicit => 0.0,
+            _ => NEAR * CONDUCTORS[dimension - 1],
+        };
+        HEAT * NUMBER + bonds + multigrid
     }
 
     /// Returns the bytes of the bonds of a point on a stencil.
@@ -285,7 +320,9 @@ impl Assembler<'_> {
         };
         let ends: usize = assembly.ends.iter().map(|(_, end)| end.bytes).sum();
         let kept = operator.bytes() as f64;
-        (points * self.bytes_of_state(dimension) + found.max(kept)) as u64 + ends as u64
+        let heat = |solid| points * self.bytes_of_heat(solid, dimension, bonds / points);
+        let heat = self.model.body.solid().map_or(0.0, heat);
+        (points * self.bytes_of_state(dimension) + found.max(kept) + heat) as u64 + ends as u64
     }
 
     /// Returns the bytes per bond of a list during the neighbour search.

@@ -4,7 +4,7 @@ use pericles::System;
 use pericles::boundary::MotionKind;
 use pericles::observe::Schedule;
 use pericles::time::State;
-use pericles_deck::{Caution, Model, ModelWarning, Remark, Solid};
+use pericles_deck::{Caution, Model, ModelWarning, Remark, Scheme, Solid};
 
 use super::assembler::Assembler;
 use super::constants::MaterialConstants;
@@ -60,6 +60,16 @@ impl Assembler<'_> {
         given
             .map(|(key, _)| Remark::new(key, Caution::NothingBreaks { key }))
             .collect()
+    }
+
+    /// Warns of heat from dissipated energy in a body that dissipates none.
+    pub(super) fn judge_dissipation(&self, system: &System) -> Option<ModelWarning> {
+        let conduction = self.model.thermal.as_ref()?.conduction.as_ref()?;
+        let force = system.operator();
+        let moves = self.model.time.scheme != Scheme::Thermal;
+        let dissipates = moves && (force.can_break() || force.capabilities().path_dependent);
+        (conduction.dissipation > 0.0 && !dissipates)
+            .then(|| Remark::new("thermal.dissipation", Caution::NothingDissipates { moves }))
     }
 
     /// Warns of a run without loads, constraints and initial motion.

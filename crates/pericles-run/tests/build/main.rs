@@ -10,6 +10,7 @@ mod composition;
 mod conditions;
 mod contact;
 mod criterion;
+mod dissipation;
 mod ends;
 mod extremes;
 mod fields;

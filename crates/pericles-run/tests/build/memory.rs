@@ -212,3 +212,35 @@ dt = 0.1
     // The largest number of steps.
     assert!(built(text, ["1e9", "8e14"], u64::MAX).is_err());
 }
+
+/// Temperatures and conductances count, and the multigrid of implicit steps.
+#[test]
+fn heat_conduction_counts() {
+    let conducting = |scheme: &str| {
+        format!(
+            "{BLOCK}\n[thermal]\nconductivity = 1\nspecific_heat = 1\ntemperature = 300\nscheme = \"{scheme}\"\n"
+        )
+    };
+    let estimate = |text: &str| {
+        let deck = Deck::parse(text, "a.toml", &[]).unwrap();
+        deck.build().unwrap().memory_estimate(&deck.model) as f64
+    };
+    let [without, explicit, implicit] = [
+        BLOCK.to_owned(),
+        conducting("explicit"),
+        conducting("trapezoidal"),
+    ]
+    .map(|text| estimate(&text));
+    assert!(explicit > without + 150e3, "{without} {explicit}");
+    assert!(implicit > explicit + 2e6, "{explicit} {implicit}");
+    let limit = 4_000_000;
+    let same = ["spacing = 0.1", "spacing = 0.1"];
+    assert!(built(BLOCK, same, limit).is_ok());
+    refusal(
+        &conducting("trapezoidal"),
+        same,
+        limit,
+        "a.toml:4:",
+        "the limit is 4.0 MB",
+    );
+}

@@ -183,6 +183,7 @@ impl<const D: usize> CorrespondenceForce<D> {
             let lost =
                 step.dissipated_energy(volume * (more - energy), volume * (stronger - power));
             self.dissipated.add(lost);
+            self.of_points.add(i, lost);
             let count = |bits: &[u8]| -> u64 {
                 let ones = bits.iter().map(|byte| u64::from(byte.count_ones()));
                 ones.sum()
@@ -230,13 +231,13 @@ impl<const D: usize> CorrespondenceForce<D> {
         let (n, heat) = (self.cloud.len(), self.heat_at(t));
         let mut history = std::mem::take(&mut self.history);
         let rows = self.packed(u);
-        let sums: Vec<BinnedSum> = history
+        let of_blocks: Vec<(BinnedSum, Vec<(usize, f64)>)> = history
             .par_chunks_mut(BLOCK * History::KEPT)
             .enumerate()
             .map(|(block, kept)| {
-                let (first, mut sum) = (block * BLOCK, BinnedSum::default());
+                let (first, mut sum, mut works) = (block * BLOCK, BinnedSum::default(), Vec::new());
                 let Some(wanted) = Rows::of_block(on, first, BLOCK.min(n - first)) else {
-                    return sum;
+                    return (sum, works);
                 };
                 for i in (0..wanted.count()).map(|k| wanted.at(k)) {
                     let kept = &mut kept[(i - first) * History::KEPT..][..History::KEPT];
@@ -246,16 +247,21 @@ impl<const D: usize> CorrespondenceForce<D> {
                     let (next, work) = solid.advanced(&f, &History::of(kept));
                     next.keep(kept);
                     if work != 0.0 {
-                        sum.add(work * self.cloud.volumes()[i]);
+                        let work = work * self.cloud.volumes()[i];
+                        sum.add(work);
+                        works.push((i, work));
                     }
                 }
-                sum
+                (sum, works)
             })
             .collect();
         drop(rows);
         self.history = history;
-        for sum in sums {
+        for (sum, works) in of_blocks {
             self.plastic_work = self.plastic_work.merged(sum);
+            for (i, work) in works {
+                self.of_points.add(i, work);
+            }
         }
     }
 }
@@ -279,8 +285,17 @@ impl<const D: usize> Breakable for CorrespondenceForce<D> {
         self.cloud.domain().total(all)
     }
 
-    fn dissipate(&mut self, energy: f64) {
+    fn dissipate(&mut self, i: usize, energy: f64) {
         self.dissipated.add(energy);
+        self.of_points.add(i, energy);
+    }
+
+    fn follow_dissipation(&mut self) {
+        self.of_points.follow();
+    }
+
+    fn take_dissipated(&mut self, out: &mut [f64]) {
+        self.of_points.take_into(out);
     }
 
     /// Returns no breaks, because the energy of a bond at its critical stretch depends on the other bonds of

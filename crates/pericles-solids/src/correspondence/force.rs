@@ -8,7 +8,7 @@ use pericles::lanes::{LANES, Row};
 use pericles::operator::pool::{Lent, Pool};
 use pericles::operator::records::pack_sites;
 use pericles::operator::rows::Rows;
-use pericles::operator::{DamageMeasure, PointSubset};
+use pericles::operator::{DamageMeasure, PointDissipation, PointSubset};
 use pericles::parallel::{BLOCK, components_mut, for_each_block, for_each_chunk};
 use pericles::space::PointCloud;
 use pericles::sum::BinnedSum;
@@ -55,6 +55,8 @@ pub struct CorrespondenceForce<const D: usize> {
     /// Energy dissipated by bond failure, J.
     pub(super) dissipated: BinnedSum,
     pub(super) plastic_work: BinnedSum,
+    /// Terms of both by points.
+    pub(super) of_points: PointDissipation,
     /// Number of broken directed bonds.
     pub(super) broken: u64,
     /// Number of points whose remaining bonds did not span the space.
@@ -79,8 +81,9 @@ saved! {
         cloud, bonds, classes, limits, weakest, breakable, damage, spring, expansion: fixed,
         shapes: rebuilt,
         inverted: set(None),
-        displaced, sites, points: scratch,
+        of_points, displaced, sites, points: scratch,
     } then |force| {
+        force.of_points.clear();
         force.rebuild_shapes();
         Ok(())
     }
@@ -148,6 +151,7 @@ impl<const D: usize> CorrespondenceForce<D> {
             history,
             dissipated: BinnedSum::default(),
             plastic_work: BinnedSum::default(),
+            of_points: PointDissipation::default(),
             broken: 0,
             dropped: 0,
             inverted: None,

@@ -21,8 +21,15 @@ pub trait Breakable {
     /// Returns the energy dissipated by breaking bonds and by plastic flow, J.
     fn dissipated(&self) -> f64;
 
-    /// Adds to the dissipated energy a correction for bonds that are already broken, J.
-    fn dissipate(&mut self, energy: f64);
+    /// Adds to the energy dissipated by point i a correction for bonds that are already broken, J.
+    fn dissipate(&mut self, i: usize, energy: f64);
+
+    /// Records which points dissipate the energy from now on, for [`Breakable::take_dissipated`].
+    fn follow_dissipation(&mut self);
+
+    /// Adds the energy that each point has dissipated since the last call to `out`, J. The sum over all points is the
+    /// change of [`Breakable::dissipated`] to rounding.
+    fn take_dissipated(&mut self, out: &mut [f64]);
 
     /// Returns and clears the bonds that broke, since the last call, in steps too large for them; each once,
     /// in an order that depends on the bonds only.

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::dissipation::PointDissipation;
 use crate::archive::{Archive, Counter, Layout, SavedUnder, Storage, Values};
 use crate::domain::Domain;
 use crate::error::Result;
@@ -63,7 +64,9 @@ pub(super) struct Tally {
     /// because each step corrects its own.
     pub coarse: Vec<CoarseBreak>,
     /// Σ over broken directed bonds of V/2 times the dissipated energy, J.
-    pub dissipated: BinnedSum,
+    dissipated: BinnedSum,
+    /// Its terms by points.
+    of_points: PointDissipation,
     /// Number of broken directed bonds.
     pub broken: Counter,
     /// Entries broken in the last sweep, if requested.
@@ -94,12 +97,18 @@ impl CoarseBreak {
 }
 
 impl Tally {
-    /// Records half of the energy that a bond dissipates at the end of a step, for one of its ends, and
-    /// returns that half, J.
+    /// Adds energy dissipated by point i, J.
+    pub fn dissipate(&mut self, i: usize, energy: f64) {
+        self.dissipated.add(energy);
+        self.of_points.add(i, energy);
+    }
+
+    /// Records half of the energy that a bond dissipates at the end of a step, for its first end, and returns
+    /// that half, J.
     pub fn book<const D: usize>(&mut self, step: &StepEnd<'_>, bond: &BreakingBond<D>) -> f64 {
         let dissipated = step.dissipated(bond);
         let half = 0.5 * dissipated;
-        self.dissipated.add(half);
+        self.dissipate(bond.ends[0], half);
         self.broken.add(1);
         self.coarse.extend(CoarseBreak::of(bond, dissipated));
         half
@@ -123,10 +132,24 @@ pub fn each_once(mut coarse: Vec<CoarseBreak>) -> Vec<CoarseBreak> {
     coarse
 }
 
-/// Adds dissipated energy, J.
-pub(super) fn dissipate(blocks: &mut [BlockDamage], energy: f64) {
+/// Adds energy dissipated by point i, J.
+pub(super) fn dissipate(blocks: &mut [BlockDamage], i: usize, energy: f64) {
     if let Some(block) = blocks.first_mut() {
-        block.tally.dissipated.add(energy);
+        block.tally.dissipate(i, energy);
+    }
+}
+
+/// Records the dissipated energy by points from now on.
+pub(super) fn follow_dissipation(blocks: &mut [BlockDamage]) {
+    for block in blocks {
+        block.tally.of_points.follow();
+    }
+}
+
+/// Adds the energy that each point has dissipated since the last call to `out`, J.
+pub(super) fn take_dissipated(blocks: &mut [BlockDamage], out: &mut [f64]) {
+    for block in blocks {
+        block.tally.of_points.take_into(out);
     }
 }
 
@@ -139,13 +162,13 @@ impl BlockDamage {
         }
     }
 
-    /// Breaks a bond at its second end: clears the entry and records its half of the energy, unless this is
-    /// already done.
-    pub fn break_other_end(&mut self, group: usize, lane: usize, dissipated: f64) {
+    /// Breaks a bond at its second end, point i: clears the entry and records its half of the energy, unless this
+    /// is already done.
+    pub fn break_other_end(&mut self, i: usize, group: usize, lane: usize, dissipated: f64) {
         if self.intact[group] >> lane & 1 == 1 {
             self.intact[group] &= !(1 << lane);
             self.tally.broken.add(1);
-            self.tally.dissipated.add(dissipated);
+            self.tally.dissipate(i, dissipated);
         }
     }
 }
@@ -216,6 +239,7 @@ impl Storage<Vec<BlockDamage>> for ListStorage<'_> {
             let (own, after) = rest.split_at(block.intact.len());
             block.intact.copy_from_slice(own);
             rest = after;
+            block.tally.of_points.clear();
         }
         restore_tallies(self.name, blocks, archive)
     }
@@ -227,10 +251,11 @@ pub(super) fn save_tallies(name: &str, blocks: &[BlockDamage], archive: &mut Arc
         let Tally {
             broken,
             dissipated: _,
+            of_points: _,
             coarse: _,
             events: _,
-        } = block.tally;
-        broken
+        } = &block.tally;
+        *broken
     };
     let broken: Counter = blocks.iter().map(of_block).sum();
     let broken = Values::U64(vec![broken.get()]);

@@ -117,6 +117,10 @@ impl Force for Forces {
         self.list.iter().map(|force| force.energy(t, u)).sum()
     }
 
+    fn heating(&self, step: &StepEnd<'_>) -> f64 {
+        self.list.iter().map(|force| force.heating(step)).sum()
+    }
+
     /// ω² of a sum of stiffnesses is at most the sum of their ω².
     fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {
         let square = |force: &dyn Force| force.frequency_bound(density).powi(2);
@@ -231,13 +235,27 @@ impl Breakable for Forces {
         self.breaking().map(|breaking| breaking.dissipated()).sum()
     }
 
-    fn dissipate(&mut self, energy: f64) {
+    fn dissipate(&mut self, i: usize, energy: f64) {
         let mut breaking = self
             .list
             .iter_mut()
             .filter_map(|force| force.breaking_mut());
         if let Some(first) = breaking.find(|breaking| breaking.can_break()) {
-            first.dissipate(energy);
+            first.dissipate(i, energy);
+        }
+    }
+
+    fn follow_dissipation(&mut self) {
+        let forces = self.list.iter_mut();
+        for breaking in forces.filter_map(|force| force.breaking_mut()) {
+            breaking.follow_dissipation();
+        }
+    }
+
+    fn take_dissipated(&mut self, out: &mut [f64]) {
+        let forces = self.list.iter_mut();
+        for breaking in forces.filter_map(|force| force.breaking_mut()) {
+            breaking.take_dissipated(out);
         }
     }
 

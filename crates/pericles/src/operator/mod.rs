@@ -23,12 +23,14 @@ mod by_law;
 mod capabilities;
 mod composite;
 mod damage;
+mod dissipation;
 mod fast_law;
 mod forces;
 mod form;
 mod ghosts;
 mod graded;
 mod grid;
+mod heating;
 mod limits;
 mod linearisation;
 mod list;
@@ -50,6 +52,7 @@ pub use by_law::{ByLaw, by_law};
 pub use capabilities::{Capabilities, Linearity};
 pub use composite::CompositeBody;
 pub use damage::{Breaking, CoarseBreak, DamageMeasure, each_once};
+pub use dissipation::PointDissipation;
 pub use fast_law::{FixedBond, VectorLaw};
 pub use forces::Forces;
 pub use form::BondForm;
@@ -72,8 +75,9 @@ pub use zoned::{LocalForce, SplitForce};
 pub use crate::lanes::InstructionSet;
 pub use crate::parallel::PointSubset;
 
+use self::heating::heating_of;
 use crate::archive::Checkpointed;
-use crate::step_end::{Path, StepEnd};
+use crate::step_end::StepEnd;
 use crate::thermal::Expandable;
 
 /// The internal force density on the points of a body as a function of their displacements.
@@ -140,27 +144,7 @@ pub trait Force: Checkpointed + Send + Sync {
     /// energies that are quadratic in displacements and temperatures. The work is zero for a step without a
     /// known path.
     fn heating(&self, step: &StepEnd<'_>) -> f64 {
-        let thermal = self.capabilities().thermal;
-        let Some(before) = thermal.and_then(|_| step.displacement_before()) else {
-            return 0.0;
-        };
-        // The path to the first static state starts at the unheated body.
-        let first = matches!(step.path, Path::Chord { first: true, .. });
-        let cold = match first {
-            true => f64::NEG_INFINITY,
-            false => step.t - step.dt,
-        };
-        let steady = thermal.is_none_or(|thermal| thermal.is_steady());
-        if !first && (steady || step.dt == 0.0) {
-            return 0.0;
-        }
-        let gain = |u: &[f64]| self.energy(step.t, u) - self.energy(cold, u);
-        let mean = 0.5 * (gain(&before) + gain(step.u));
-        match first {
-            // The energy of the state before is that of the heated body.
-            true => mean + self.energy(cold, &before) - self.energy(step.t - step.dt, &before),
-            false => mean,
-        }
+        heating_of(self.capabilities().thermal, step, &|t, u| self.energy(t, u))
     }
 
     /// Returns the springs of an infinite lattice that contains the body at rest, for a bound of its highest

@@ -137,7 +137,9 @@ impl System {
     /// # Errors
     /// A force on another number of points or in another dimension.
     pub fn add_force(&mut self, force: Box<dyn Force>) -> Result<()> {
-        self.forces.add(force)
+        self.forces.add(force)?;
+        self.follow_dissipation();
+        Ok(())
     }
 
     /// The sum of the internal forces as one force.

@@ -293,11 +293,12 @@ impl Breakable for GhostForce {
         0.0
     }
 
-    fn dissipate(&mut self, energy: f64) {
-        if let Some(breaking) = self.inner.breaking_mut() {
-            breaking.dissipate(energy);
-        }
-    }
+    /// Does nothing: without broken bonds there is nothing to correct.
+    fn dissipate(&mut self, _i: usize, _energy: f64) {}
+
+    fn follow_dissipation(&mut self) {}
+
+    fn take_dissipated(&mut self, _out: &mut [f64]) {}
 
     fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {
         Vec::new()

@@ -425,7 +425,7 @@ impl<L: VectorLaw, const D: usize> GridForce<L, D> {
             let block = self.layout.block_of(chunk);
             let first = self.layout.chunks_of(block).start;
             let group = (chunk - first) * m + offset as usize;
-            self.blocks[block].break_other_end(group, lane, dissipated);
+            self.blocks[block].break_other_end(letter.to, group, lane, dissipated);
         }
     }
 }

@@ -331,7 +331,7 @@ impl<L: VectorLaw, const D: usize> BondForce<L, D> {
         for (j, back, dissipated) in other_ends(&self.bonds, &mut self.blocks) {
             let block = j / BLOCK;
             let group = back / LANES - self.bonds.start()[block * BLOCK];
-            self.blocks[block].break_other_end(group, back % LANES, dissipated);
+            self.blocks[block].break_other_end(j, group, back % LANES, dissipated);
         }
     }
 

@@ -178,9 +178,7 @@ pub(super) fn take_bonds<L: Kinematics, const D: usize>(
         return false;
     }
     tally.broken.add(u64::from(count));
-    tally
-        .dissipated
-        .add(dissipated::<L, D>(bonds, rule, u, i, intact, broken));
+    tally.dissipate(i, dissipated::<L, D>(bonds, rule, u, i, intact, broken));
     let first = bonds.list.start()[i];
     for (k, (intact, broken)) in intact.iter_mut().zip(broken).enumerate() {
         *intact &= !broken;

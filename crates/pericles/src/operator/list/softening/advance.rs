@@ -104,7 +104,7 @@ fn soften_row<L: VectorLaw, const D: usize>(
             };
             let length = dot(xi, xi).sqrt();
             let dissipated = rule.dissipated((curve, factor), [before, now], &bond, length);
-            tally.dissipated.add(0.5 * dissipated);
+            tally.dissipate(i, 0.5 * dissipated);
             if now >= factor * curve.end() {
                 intact[k] &= !(1 << lane);
                 tally.broken.add(1);

@@ -14,8 +14,16 @@ impl<L: VectorLaw, const D: usize> Breakable for SofteningForce<L, D> {
         self.list.dissipated()
     }
 
-    fn dissipate(&mut self, energy: f64) {
-        self.list.dissipate(energy);
+    fn dissipate(&mut self, i: usize, energy: f64) {
+        self.list.dissipate(i, energy);
+    }
+
+    fn follow_dissipation(&mut self) {
+        self.list.follow_dissipation();
+    }
+
+    fn take_dissipated(&mut self, out: &mut [f64]) {
+        self.list.take_dissipated(out);
     }
 
     fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {

@@ -80,6 +80,7 @@ impl<L: VectorLaw, const D: usize> SofteningForce<L, D> {
             largest: &self.largest,
             first: 0,
             breakable: self.list.breakable.as_deref(),
+            is_frozen: false,
         }
     }
 
@@ -107,6 +108,7 @@ impl<L: VectorLaw, const D: usize> SofteningForce<L, D> {
                 largest: &[],
                 first: 0,
                 breakable: list.breakable.as_deref(),
+                is_frozen: false,
             },
             volumes: list.cloud.volumes(),
             step,

@@ -19,6 +19,8 @@ pub(super) struct Softened<'a> {
     pub first: usize,
     /// Bits of the bonds that may soften; `None`: all.
     pub breakable: Option<&'a [u8]>,
+    /// Whether bonds keep the damage at the end of the last step.
+    pub is_frozen: bool,
 }
 
 impl Softened<'_> {
@@ -56,8 +58,8 @@ fn softened_lanes<T: Lanes, L: VectorLaw, const D: usize>(
     (stretch, largest, either & kept.candidates(group, intact))
 }
 
-/// Returns 1 − d of the bonds of a group in the given lanes, for the larger of current and stored stretch; 1
-/// in other lanes.
+/// Returns 1 − d of the bonds of a group in the given lanes, for the larger of current and stored stretch, or
+/// the stored one if they are frozen; 1 in other lanes.
 #[cold]
 #[inline(never)]
 fn retained_of(
@@ -70,7 +72,10 @@ fn retained_of(
     std::array::from_fn(|lane| match lanes >> lane & 1 {
         0 => 1.0,
         _ => {
-            let reached = stretch[lane].max(largest[lane]);
+            let reached = match kept.is_frozen {
+                true => largest[lane],
+                false => stretch[lane].max(largest[lane]),
+            };
             kept.curves.retained(here, neighbours[lane], reached)
         }
     })

@@ -1,14 +1,36 @@
 //! [`Force`] for softening bonds.
 
 use super::force::SofteningForce;
-use super::kernels::{energy_rows, force_rows, tangent_rows};
+use super::kernels::{Softened, energy_rows, force_rows, tangent_rows};
 use crate::domain::Field;
 use crate::operator::fast_law::VectorLaw;
+use crate::operator::heating::heating_of;
 use crate::operator::{
     BondAt, BondView, Breakable, Capabilities, Force, InstructionSet, LatticeSprings, PointSubset,
 };
 use crate::step_end::StepEnd;
 use crate::thermal::Expandable;
+
+impl<L: VectorLaw, const D: usize> SofteningForce<L, D> {
+    fn add_energy_density_of(&self, kept: &Softened<'_>, (t, u): (f64, &[f64]), out: &mut [f64]) {
+        let list = &self.list;
+        let heat = list.heat_at(t);
+        let bonds = list.view().heated(heat.as_deref().map(Vec::as_slice));
+        list.with_packed(u, &PointSubset::All, |u| {
+            list.sweep::<1>(&PointSubset::All, out, |intact, rows, out| {
+                energy_rows::<L, D>(list.instruction_set, &bonds, kept, u, intact, rows, out);
+            });
+        });
+    }
+
+    fn energy_of(&self, kept: &Softened<'_>, t: f64, u: &[f64]) -> f64 {
+        let mut density = vec![0.0; self.points()];
+        self.add_energy_density_of(kept, (t, u), &mut density);
+        let volumes = self.list.cloud.volumes();
+        let energy = |i: usize| density[i] * volumes[i];
+        self.list.cloud.domain().sum(self.points(), energy)
+    }
+}
 
 impl<L: VectorLaw, const D: usize> Force for SofteningForce<L, D> {
     fn points(&self) -> usize {
@@ -31,22 +53,23 @@ impl<L: VectorLaw, const D: usize> Force for SofteningForce<L, D> {
     }
 
     fn add_energy_density(&self, t: f64, u: &[f64], out: &mut [f64]) {
-        let (list, kept) = (&self.list, self.kept());
-        let heat = list.heat_at(t);
-        let bonds = list.view().heated(heat.as_deref().map(Vec::as_slice));
-        list.with_packed(u, &PointSubset::All, |u| {
-            list.sweep::<1>(&PointSubset::All, out, |intact, rows, out| {
-                energy_rows::<L, D>(list.instruction_set, &bonds, &kept, u, intact, rows, out);
-            });
-        });
+        self.add_energy_density_of(&self.kept(), (t, u), out);
     }
 
     fn energy(&self, t: f64, u: &[f64]) -> f64 {
-        let mut density = vec![0.0; self.points()];
-        self.add_energy_density(t, u, &mut density);
-        let volumes = self.list.cloud.volumes();
-        let energy = |i: usize| density[i] * volumes[i];
-        self.list.cloud.domain().sum(self.points(), energy)
+        self.energy_of(&self.kept(), t, u)
+    }
+
+    /// Dissipated energy is counted as that of lost stiffness; the remaining energy changes with the temperature at
+    /// the stiffness before the step.
+    fn heating(&self, step: &StepEnd<'_>) -> f64 {
+        let frozen = Softened {
+            is_frozen: true,
+            ..self.kept()
+        };
+        heating_of(self.list.capabilities().thermal, step, &|t, u| {
+            self.energy_of(&frozen, t, u)
+        })
     }
 
     /// Softening does not increase the stiffness of a bond.

@@ -107,9 +107,7 @@ pub(super) fn take_bonds<L: Kinematics, const D: usize>(
             [intact[k], broken[k]]
         });
         let volume = rule.volumes[i];
-        tally
-            .dissipated
-            .add(loss.dissipated(rule.states, [i, i], volume, rule.step));
+        tally.dissipate(i, loss.dissipated(rule.states, [i, i], volume, rule.step));
     }
     for (k, (intact, broken)) in intact.iter_mut().zip(broken).enumerate() {
         *intact &= !broken;

@@ -199,8 +199,16 @@ impl<L: Kinematics, const D: usize> Breakable for LinearSolidGrid<L, D> {
         damage::dissipated(self.cloud.domain(), &self.blocks)
     }
 
-    fn dissipate(&mut self, energy: f64) {
-        damage::dissipate(&mut self.blocks, energy);
+    fn dissipate(&mut self, i: usize, energy: f64) {
+        damage::dissipate(&mut self.blocks, i, energy);
+    }
+
+    fn follow_dissipation(&mut self) {
+        damage::follow_dissipation(&mut self.blocks);
+    }
+
+    fn take_dissipated(&mut self, out: &mut [f64]) {
+        damage::take_dissipated(&mut self.blocks, out);
     }
 
     /// Always empty: the energy of a bond at its critical stretch depends on the other bonds of its ends.

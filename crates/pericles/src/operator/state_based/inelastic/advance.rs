@@ -102,7 +102,7 @@ fn advance_rows_body<T: Lanes, L: Kinematics, const D: usize>(
         };
         if !rule.starts {
             let factor = rule.states.stiffness[bonds.list.site(i)] * rule.volumes[i];
-            part.damage.tally.dissipated.add(factor * dissipated);
+            part.damage.tally.dissipate(i, factor * dissipated);
         }
         out[0][at] = rule.t;
     }

@@ -186,8 +186,16 @@ impl<L: Kinematics, const D: usize> Breakable for InelasticSolidForce<L, D> {
         self.solid.dissipated()
     }
 
-    fn dissipate(&mut self, energy: f64) {
-        self.solid.dissipate(energy);
+    fn dissipate(&mut self, i: usize, energy: f64) {
+        self.solid.dissipate(i, energy);
+    }
+
+    fn follow_dissipation(&mut self) {
+        self.solid.follow_dissipation();
+    }
+
+    fn take_dissipated(&mut self, out: &mut [f64]) {
+        self.solid.take_dissipated(out);
     }
 
     fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {
