@@ -6,7 +6,7 @@ use pericles::{Archive, Checkpointed, Result};
 use pericles_manifold::EnergyInequality;
 use pericles_waves::exact::{ExactSolution, Miss};
 
-use super::pictures::{name_of, scalar_of};
+use super::picture_of::{name_of, scalar_of};
 use super::table::whole;
 use crate::csv::{Cell, Column};
 

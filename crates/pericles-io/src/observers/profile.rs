@@ -6,7 +6,7 @@ use pericles::observe::{Field, ObserveError, Observer, Snapshot};
 use pericles::space::{Point, PointCloud};
 use pericles::{PericlesError, Result};
 
-use super::pictures::PictureOf;
+use super::picture_of::PictureOf;
 use crate::csv::{Cell, Column, CsvTable};
 use crate::picture::{Axis, Curve, LineChart};
 

@@ -487,9 +487,7 @@ pub enum PericlesError {
         allowed: &'static str,
     },
     /// Two constraints prescribe the same component of the motion of a point.
-    #[error(
-        "the motion of point {point} along {axis} is prescribed twice; leave out one of the constraints"
-    )]
+    #[error("the motion of point {point} along {axis} is prescribed twice; leave out one motion")]
     PrescribedTwice {
         /// Number of the point.
         point: usize,

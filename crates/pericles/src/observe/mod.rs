@@ -5,6 +5,7 @@
 
 mod crack;
 mod energies;
+mod field;
 mod fragments;
 mod probe;
 mod schedule;
@@ -14,10 +15,11 @@ mod tensors;
 
 pub use crack::{CrackTip, CrackTracker, TrackedCrack};
 pub use energies::{Energies, StartEnergy};
+pub use field::Field;
 pub use fragments::{FragmentCount, Fragments};
 pub use probe::{Probe, ProbeReading};
 pub use schedule::Schedule;
-pub use snapshot::{Field, Snapshot};
+pub use snapshot::Snapshot;
 
 use crate::archive::Checkpointed;
 
