@@ -118,6 +118,10 @@ impl Trigonometric {
     /// Requirements on a system.
     pub const REQUIREMENTS: &'static [Requirement] = &[
         Requirement {
+            need: Need::WholeBody,
+            reason: "one of its steps couples all points, but the body is divided among several processes; use velocity-verlet, or run it on one process with threads",
+        },
+        Requirement {
             need: Need::NoMemory,
             reason: "the cosine of the stiffness extends much farther in one step than the ghosts of a boundary with memory, \
                 which are as many as the horizon has points; use velocity-verlet",

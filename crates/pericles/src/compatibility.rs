@@ -25,6 +25,8 @@ pub enum Need {
     ConservativeInteractions,
     /// No rigid bodies that move under the forces of the points.
     NoFreeBodies,
+    /// A body that is not divided among several processes.
+    WholeBody,
 }
 
 /// A requirement of a scheme, with its reason.
@@ -73,6 +75,7 @@ impl Need {
             Self::ConservativeInteractions => {
                 system.interactions().all(|one| one.is_conservative())
             }
+            Self::WholeBody => !system.domain().is_divided(),
             Self::NoFreeBodies => !system.interactions().any(|one| one.has_free_bodies()),
         }
     }

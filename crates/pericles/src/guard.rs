@@ -32,7 +32,6 @@
 use std::fmt;
 
 use crate::observe::StartEnergy;
-use crate::operator::Inversion;
 use crate::system::System;
 use crate::time::{Integrator, State, frequency_from_below, highest_frequency};
 use crate::units::significant;
@@ -154,7 +153,10 @@ impl InstabilityCause {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Alarm {
     pub(crate) cause: InstabilityCause,
+    /// The point on this process.
     pub(crate) point: usize,
+    /// The process with the largest value reports its point.
+    pub(crate) measure: f64,
 }
 
 /// The parts of a run that the guard checks.
@@ -218,28 +220,36 @@ impl Watched<'_> {
         if speed.is_nan() { f64::INFINITY } else { speed }
     }
 
+    /// The alarm of a cause at the fastest point.
+    fn alarm(&self, cause: InstabilityCause) -> Alarm {
+        let point = self.fastest();
+        Alarm {
+            cause,
+            point,
+            measure: self.speed(point),
+        }
+    }
+
     fn finite_kinetic_energy(&self) -> Result<f64, Alarm> {
         let kinetic = self.system.kinetic_energy(&self.state.v);
         if kinetic.is_finite() {
             return Ok(kinetic);
         }
-        Err(Alarm {
-            cause: InstabilityCause::NotANumber,
-            point: self.fastest(),
-        })
+        Err(self.alarm(InstabilityCause::NotANumber))
     }
 
     fn look_at_volumes(&self) -> Result<(), Alarm> {
-        match self.system.operator().inversion() {
-            None => Ok(()),
-            Some(Inversion {
-                point,
-                volume_ratio,
-            }) => Err(Alarm {
-                cause: InstabilityCause::Inverted { volume_ratio },
-                point,
-            }),
+        let (inversion, domain) = (self.system.operator().inversion(), self.system.domain());
+        if domain.all(inversion.is_none()) {
+            return Ok(());
         }
+        let measure = inversion.map_or(f64::NEG_INFINITY, |found| -found.volume_ratio);
+        let volume_ratio = -domain.max(measure);
+        Err(Alarm {
+            cause: InstabilityCause::Inverted { volume_ratio },
+            point: inversion.map_or(0, |found| found.point),
+            measure,
+        })
     }
 
     fn look_at_motion(&self) -> Result<(), Alarm> {
@@ -271,10 +281,7 @@ impl Watched<'_> {
         let omega = highest_frequency(self.system, &self.state.u);
         match omega.ok().and_then(|omega| self.stiffened(omega.estimate)) {
             None => Ok(()),
-            Some(cause) => Err(Alarm {
-                cause,
-                point: self.fastest(),
-            }),
+            Some(cause) => Err(self.alarm(cause)),
         }
     }
 
@@ -297,9 +304,8 @@ impl Watched<'_> {
                 (0..n).map(move |i| x[i].abs() + self.state.u[c * n + i].abs())
             })
             .fold(0.0, f64::max);
-        let mass: f64 = (0..n)
-            .map(|i| density(i) * system.cloud().volumes()[i])
-            .sum();
+        let (size, volumes) = (system.domain().max(size), system.cloud().volumes());
+        let mass = system.domain().sum(n, |i| density(i) * volumes[i]);
         let unit = if operator.rounding(&self.state.u).is_some() {
             f64::from(f32::EPSILON)
         } else {
@@ -329,10 +335,7 @@ impl Watched<'_> {
         let omega = highest_frequency(self.system, &self.state.u);
         let stiffened = omega.ok().and_then(|omega| self.stiffened(omega.estimate));
         let ratio = energy / available.max(f64::MIN_POSITIVE);
-        Err(Alarm {
-            cause: stiffened.unwrap_or(InstabilityCause::Growth { ratio }),
-            point: self.fastest(),
-        })
+        Err(self.alarm(stiffened.unwrap_or(InstabilityCause::Growth { ratio })))
     }
 
     /// Checks the order of adjacent cells of a bar, which stays the same as long as the bonds between them exist.
@@ -353,15 +356,24 @@ impl Watched<'_> {
             let whole = damage[k - 1] == 0.0 && damage[k] == 0.0;
             beside && whole && xi * (xi + eta) <= 0.0
         });
-        match passed {
-            None => Ok(()),
-            Some(point) => Err(Alarm {
-                cause: InstabilityCause::Passed {
-                    other: cloud.user_number(point - 1),
-                },
-                point,
-            }),
+        // Points of different processes are not compared.
+        let domain = system.domain();
+        if domain.all(passed.is_none()) {
+            return Ok(());
         }
+        let (point, measure) = match passed {
+            Some(point) => (point, 1.0),
+            None => (1, f64::NEG_INFINITY),
+        };
+        let other = cloud.user_number(point - 1) as f64;
+        let [other] = domain.of_largest(measure, [other]);
+        Err(Alarm {
+            cause: InstabilityCause::Passed {
+                other: other as usize,
+            },
+            point,
+            measure,
+        })
     }
 
     /// Checks that no contact is so deep that points are about to pass through each other.
@@ -370,10 +382,7 @@ impl Watched<'_> {
         let overlap = overlaps.fold(0.0, f64::max);
         match overlap > DEEPEST {
             false => Ok(()),
-            true => Err(Alarm {
-                cause: InstabilityCause::Overlapping { overlap },
-                point: self.fastest(),
-            }),
+            true => Err(self.alarm(InstabilityCause::Overlapping { overlap })),
         }
     }
 
@@ -384,10 +393,14 @@ impl Watched<'_> {
         let omega = frequency_from_below(self.system, &self.state.u, APPLICATIONS);
         match self.stiffened(omega) {
             None => Ok(()),
-            Some(cause) => Err(Alarm {
-                cause,
-                point: self.hardest(),
-            }),
+            Some(cause) => {
+                let (point, measure) = self.hardest();
+                Err(Alarm {
+                    cause,
+                    point,
+                    measure,
+                })
+            }
         }
     }
 
@@ -410,11 +423,13 @@ impl Watched<'_> {
         Some(self.integrator.stability_limit().filter(|_| one)? / omega)
     }
 
-    /// Returns the point with the largest elastic energy in its volume.
-    fn hardest(&self) -> usize {
+    /// Returns the point with the largest elastic energy density, and this density, J/m³.
+    fn hardest(&self) -> (usize, f64) {
         let mut energy = vec![0.0; self.system.points()];
         let operator = self.system.operator();
         operator.add_energy_density(self.state.t, &self.state.u, &mut energy);
-        (0..energy.len()).fold(0, |best, i| if energy[i] > energy[best] { i } else { best })
+        let larger = |best, i| if energy[i] > energy[best] { i } else { best };
+        let point = (0..energy.len()).fold(0, larger);
+        (point, energy.get(point).copied().unwrap_or_default())
     }
 }

@@ -150,10 +150,14 @@ impl StopWhen {
                 let worst = points
                     .iter()
                     .map(|&i| i as usize)
-                    .reduce(|best, i| if all[i] > all[best] { i } else { best })?;
-                (all[worst] > *damage).then(|| Found::Damage {
-                    damage: all[worst],
-                    point: system.cloud().user_number(worst),
+                    .reduce(|best, i| if all[i] > all[best] { i } else { best });
+                // Of several processes some may have no point of the set.
+                let most = worst.map_or(f64::NEG_INFINITY, |worst| all[worst]);
+                let number = worst.map_or(0, |worst| system.cloud().user_number(worst));
+                let [most, number] = system.domain().of_largest(most, [most, number as f64]);
+                (most > *damage).then_some(Found::Damage {
+                    damage: most,
+                    point: number as usize,
                 })
             }
         }

@@ -9,6 +9,7 @@ use std::sync::Arc;
 use pericles::boundary::{AxisMotion, Load, LoadDensity};
 use pericles::division::part_of;
 use pericles::domain::Comm;
+use pericles::observe::{Field, Schedule};
 use pericles::space::{PointCloud, PointSet};
 use pericles::time::State;
 use pericles::{PericlesError, PointScalar};
@@ -265,6 +266,13 @@ impl Assembler<'_> {
             return Some((
                 "material.bonds".into(),
                 "Fourier transforms need all points; use bonds = \"grid\" or \"list\"",
+            ));
+        }
+        let output = &self.model.output;
+        if output.fragments.schedule != Schedule::Never || output.wants(Field::FragmentId) {
+            return Some((
+                "output.fragments".into(),
+                "fragments are found by a search through the bonds of the whole body; leave them out",
             ));
         }
         if thermal.is_some_and(|thermal| thermal.conduction.is_some()) {

@@ -227,7 +227,7 @@ impl Load {
         }
     }
 
-    /// Resultant force at time t, N.
+    /// Resultant force on the whole body at time t, N. All processes must call it together.
     pub fn resultant(&self, t: f64, cloud: &PointCloud) -> [f64; 3] {
         let factor = self.factor(t);
         let mut sum = [0.0; 3];
@@ -243,16 +243,19 @@ impl Load {
         }
         self.with_amplitudes([t], |amplitude| {
             for (c, sum) in sum.iter_mut().enumerate().take(cloud.dimension()) {
-                let each = self.points.iter().enumerate();
-                *sum = each
-                    .map(|(k, &i)| amplitude(c, k)[0] * factor * cloud.volumes()[i as usize])
-                    .sum();
+                let force = |k: usize| {
+                    let volume = cloud.volumes()[self.points[k] as usize];
+                    amplitude(c, k)[0] * factor * volume
+                };
+                *sum = cloud.domain().sum(self.points.len(), force);
             }
         });
         sum
     }
 }
 
+/// Returns the volume of a set, m³. All processes must call it together.
 fn volume(cloud: &PointCloud, points: &[u32]) -> f64 {
-    points.iter().map(|&i| cloud.volumes()[i as usize]).sum()
+    let volume = |k: usize| cloud.volumes()[points[k] as usize];
+    cloud.domain().sum(points.len(), volume)
 }

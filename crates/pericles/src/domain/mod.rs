@@ -12,6 +12,7 @@
 //! division. Rows of bonds and groups of eight follow these numbers, so that the force on a point has the same bits
 //! for every division. Each process stores its own points in ascending order of these numbers.
 
+mod first;
 mod threads;
 mod timed;
 
@@ -21,6 +22,7 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::time::Duration;
 
+pub use first::{collect, distribute};
 pub use threads::Threads;
 pub use timed::Timed;
 
@@ -48,40 +50,6 @@ pub trait Comm: Send + Sync {
     fn waited(&self) -> Duration {
         Duration::ZERO
     }
-}
-
-/// Sends a message to the first process, which receives those of all processes in the order of ranks; `None` on the others.
-/// All processes must call it together.
-pub fn collect(comm: &dyn Comm, message: Vec<f64>) -> Option<Vec<Vec<f64>>> {
-    if comm.rank() > 0 {
-        comm.exchange(&[0], &[message], &mut [Vec::new()]);
-        return None;
-    }
-    let others: Vec<usize> = (1..comm.size()).collect();
-    let mut messages = vec![message];
-    messages.resize(comm.size(), Vec::new());
-    let nothing = vec![Vec::new(); others.len()];
-    comm.exchange(&others, &nothing, &mut messages[1..]);
-    Some(messages)
-}
-
-/// Sends `messages[k]` from the first process, which passes one per process, to process k, and returns the message of this
-/// process. All processes must call it together.
-///
-/// # Panics
-/// If the first process does not pass one message per process.
-pub fn distribute(comm: &dyn Comm, messages: Option<Vec<Vec<f64>>>) -> Vec<f64> {
-    if comm.rank() > 0 {
-        let mut received = [Vec::new()];
-        comm.exchange(&[0], &[Vec::new()], &mut received);
-        return std::mem::take(&mut received[0]);
-    }
-    let mut messages = messages.unwrap_or_default();
-    assert_eq!(messages.len(), comm.size(), "one message per process");
-    let others: Vec<usize> = (1..comm.size()).collect();
-    let mut received = vec![Vec::new(); others.len()];
-    comm.exchange(&others, &messages[1..], &mut received);
-    messages.swap_remove(0)
 }
 
 /// One process that owns all points.
@@ -443,6 +411,29 @@ impl Domain {
         } else {
             numbers[0]
         }
+    }
+
+    /// Returns the numbers of the process with the largest measure, the first of several: the properties of one point, which
+    /// must be finite or infinite. All processes must call it together.
+    pub fn of_largest<const N: usize>(&self, measure: f64, numbers: [f64; N]) -> [f64; N] {
+        if !self.is_divided() {
+            return numbers;
+        }
+        let rank = self.comm.rank() as f64;
+        let mut largest = [measure];
+        self.comm.max(&mut largest);
+        let mut first = [if measure == largest[0] {
+            -rank
+        } else {
+            f64::NEG_INFINITY
+        }];
+        self.comm.max(&mut first);
+        let mut numbers = match first[0] == -rank {
+            true => numbers,
+            false => [f64::NEG_INFINITY; N],
+        };
+        self.comm.max(&mut numbers);
+        numbers
     }
 
     /// Replaces each number by its maximum over all processes. None of them may be NaN.

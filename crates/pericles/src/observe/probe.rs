@@ -31,7 +31,9 @@ impl Probe {
         const WHAT: &str = "the points of a probe";
         let n = snapshot.system().points();
         check_points(WHAT, &self.points, n)?;
-        if self.points.is_empty() {
+        let domain = snapshot.system().domain();
+        let points = domain.count(self.points.len() as u64);
+        if points == 0 {
             return Err(PericlesError::BadSet {
                 what: WHAT,
                 reason: "no points are given; at least one is needed",
@@ -42,8 +44,8 @@ impl Probe {
                 if c >= snapshot.system().dimension() {
                     return 0.0;
                 }
-                let sum: f64 = self.points.iter().map(|&i| field[c * n + i as usize]).sum();
-                sum / self.points.len() as f64
+                let value = |k: usize| field[c * n + self.points[k] as usize];
+                domain.sum(self.points.len(), value) / points as f64
             })
         };
         Ok(ProbeReading {

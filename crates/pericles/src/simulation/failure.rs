@@ -99,6 +99,34 @@ fn no_state_advice(broken: u64) -> &'static str {
 }
 
 impl Simulation {
+    pub(super) fn stuck(&self, source: PericlesError, broken: u64) -> SimulationError {
+        if self.integrator.is_static() {
+            return self.no_static_state(source, broken);
+        }
+        let watched = self.watched();
+        let fastest = watched.fastest();
+        let speed = watched.speed(fastest);
+        let (point, place, speed) = self.located(speed, fastest, speed);
+        SimulationError::Stuck {
+            step: self.state.step,
+            t: self.state.t,
+            source: source.into(),
+            point,
+            place,
+            speed,
+        }
+    }
+
+    /// Returns the user's number, the reference position (m) and the given value of the point of the process with the largest
+    /// measure.
+    pub(super) fn located(&self, measure: f64, point: usize, value: f64) -> (usize, [f64; 3], f64) {
+        let cloud = self.system.cloud();
+        let [x, y, z] = cloud.point(point);
+        let own = [cloud.user_number(point) as f64, x, y, z, value];
+        let [number, x, y, z, value] = self.system.domain().of_largest(measure, own);
+        (number as usize, [x, y, z], value)
+    }
+
     /// Returns the error of a load step before which `broken` bonds had broken.
     pub(super) fn no_static_state(&self, source: PericlesError, broken: u64) -> SimulationError {
         let (system, state) = (&self.system, &self.state);
@@ -113,12 +141,13 @@ impl Simulation {
             components.map(|f| f * f).sum::<f64>().sqrt() * cloud.volumes()[i]
         };
         let worst = (0..n).fold(0, |best, i| if size(i) > size(best) { i } else { best });
+        let (point, place, _) = self.located(size(worst), worst, 0.0);
         SimulationError::NoStaticState {
             step: state.step,
             t: state.t,
             source: source.into(),
-            point: cloud.user_number(worst),
-            place: cloud.point(worst),
+            point,
+            place,
             broken: system.operator().broken_bonds().saturating_sub(broken),
         }
     }

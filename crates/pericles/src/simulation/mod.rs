@@ -410,38 +410,28 @@ impl Simulation {
         } else {
             watched.look(last)
         };
-        let Err(Alarm { cause, point }) = looked else {
+        let Err(Alarm {
+            cause,
+            point,
+            measure,
+        }) = looked
+        else {
             return Ok(());
         };
+        let (point, place, speed) = self.located(measure, point, watched.speed(point));
         let found = SimulationError::Unstable {
             step: self.state.step,
             t: self.state.t,
             cause,
-            point: self.system.cloud().user_number(point),
-            place: self.system.cloud().point(point),
-            speed: watched.speed(point),
+            point,
+            place,
+            speed,
         };
         if !(self.allow_unstable && cause.is_growth()) {
             return Err(found);
         }
         self.instability = Some(Box::new(found));
         Ok(())
-    }
-
-    fn stuck(&self, source: PericlesError, broken: u64) -> SimulationError {
-        if self.integrator.is_static() {
-            return self.no_static_state(source, broken);
-        }
-        let watched = self.watched();
-        let point = watched.fastest();
-        SimulationError::Stuck {
-            step: self.state.step,
-            t: self.state.t,
-            source: source.into(),
-            point: self.system.cloud().user_number(point),
-            place: self.system.cloud().point(point),
-            speed: watched.speed(point),
-        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::fine_region::Fine;
 use super::interface::{CoarseStep, History, Inside, Interpolant, Predictor};
-use super::refinement::{PARTS_OF_THE_BODY, Refinement, SchemeCost};
+use super::refinement::{PARTS_OF_THE_BODY, Refinement, SchemeCost, UNDIVIDED_ZONES};
 use super::refinement_report::RefinementReport;
 use super::runge_kutta::{Stages, StepForm};
 use super::zone::Sum;
@@ -66,6 +66,7 @@ struct Work {
 impl MultiTimeStep {
     /// Requirements on the system.
     pub const REQUIREMENTS: &'static [Requirement] = &[
+        UNDIVIDED_ZONES,
         Requirement {
             need: Need::NoMemory,
             reason: "a boundary with memory knows one time step only; use velocity-verlet",

@@ -50,6 +50,12 @@ struct Looking {
     marks: Vec<bool>,
 }
 
+/// The requirement of schemes with zones on the division of a body.
+pub(super) const UNDIVIDED_ZONES: Requirement = Requirement {
+    need: Need::WholeBody,
+    reason: "its zones cannot be divided among several processes; use velocity-verlet, or run it on one process with threads",
+};
+
 /// The requirement of all multirate schemes.
 pub(super) const PARTS_OF_THE_BODY: Requirement = Requirement {
     need: Need::FiniteReach,

@@ -1,7 +1,7 @@
 //! r-RESPA: velocity Verlet with short steps for some bonds.
 
 use super::fine_region::Fine;
-use super::refinement::{PARTS_OF_THE_BODY, Refinement, SchemeCost};
+use super::refinement::{PARTS_OF_THE_BODY, Refinement, SchemeCost, UNDIVIDED_ZONES};
 use super::refinement_report::RefinementReport;
 use super::zone::{Sum, Zone};
 use super::zones::Zones;
@@ -42,6 +42,7 @@ const NAME: &str = "respa";
 impl Respa {
     /// Requirements on the system.
     pub const REQUIREMENTS: &'static [Requirement] = &[
+        UNDIVIDED_ZONES,
         Requirement {
             need: Need::NoMemory,
             reason: "it applies parts of the force at different times, but a boundary with memory knows one time step only; use velocity-verlet",
