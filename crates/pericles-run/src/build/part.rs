@@ -13,7 +13,7 @@ use pericles::observe::{Field, Schedule};
 use pericles::space::{PointCloud, PointSet};
 use pericles::time::State;
 use pericles::{PericlesError, PointScalar};
-use pericles_deck::{Body, BoundaryCondition, BuildError, Fault, Keys};
+use pericles_deck::{Body, BoundaryCondition, BuildError, Fault, Keys, MaterialModel};
 use pericles_waves::ForceForm;
 
 use super::assembler::Assembler;
@@ -268,11 +268,26 @@ impl Assembler<'_> {
                 "Fourier transforms need all points; use bonds = \"grid\" or \"list\"",
             ));
         }
+        let others = self.model.materials.iter().map(|other| &other.model);
+        let mut models = std::iter::once(&solid.material.model).chain(others);
+        let is_inelastic = |model: &MaterialModel| matches!(model, MaterialModel::StateBased(state) if !state.inelastic.is_elastic());
+        if models.any(is_inelastic) {
+            return Some((
+                "material".into(),
+                "viscous and plastic materials store the history of both ends of a bond in the same process",
+            ));
+        }
         let output = &self.model.output;
         if output.fragments.schedule != Schedule::Never || output.wants(Field::FragmentId) {
             return Some((
                 "output.fragments".into(),
                 "fragments are found by a search through the bonds of the whole body; leave them out",
+            ));
+        }
+        if output.wants_tensors() && solid.material.bonds().is_none() {
+            return Some((
+                "output.fields.names".into(),
+                "stress and strain of state-based and correspondence materials need the bonds of all points; leave these fields out",
             ));
         }
         if thermal.is_some_and(|thermal| thermal.conduction.is_some()) {

@@ -65,6 +65,10 @@ impl StaticScheme {
     pub const REQUIREMENTS: &'static [Requirement] = &[
         Requirement::IN_DOUBLES,
         Requirement {
+            need: Need::WholeBody,
+            reason: "its preconditioner is built on the whole body, but this one is divided among several processes; use adaptive-dynamic-relaxation or fire, or run it on one process with threads",
+        },
+        Requirement {
             need: Need::NoBoundaries,
             reason: "static states have no waves to absorb and no velocities to damp; leave the boundary out",
         },

@@ -1,0 +1,333 @@
+//! Runs of bodies divided among several processes write the files of a run on a single process, byte for byte.
+//!
+//! The processes are threads; the communication by MPI is tested by `.ci/mpi`.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use pericles::domain::{Alone, Comm, Threads};
+use pericles_deck::Deck;
+use pericles_io::OutputFolder;
+use pericles_run::{
+    Assembled, Caching, Cancel, Ending, Event, Means, Run, RunError, Source, shared_folder,
+};
+
+/// A notched plate that is torn apart, with two materials, a hole, loads and all tables.
+const PLATE: &str = r#"
+title = "Torn plate"
+[body]
+shape = "plate"
+size = ["24 mm", "12 mm"]
+spacing = "0.5 mm"
+plane = "stress"
+hole = [{ ball = { centre = ["15 mm", "4 mm"], radius = "1.2 mm" } }]
+[material]
+youngs_modulus = "72 GPa"
+density = 2440
+horizon_ratio = 3
+critical_stretch = 0.002
+[materials.soft]
+youngs_modulus = "20 GPa"
+density = 1500
+horizon_ratio = 3
+critical_stretch = 0.004
+[sets.top]
+layer = { side = "+y", cells = 1 }
+[sets.bottom]
+layer = { side = "-y", cells = 1 }
+[sets.end]
+where = "x > 20e-3"
+[[assign]]
+set = "end"
+material = "soft"
+[[crack]]
+segment = [["0 mm", "6 mm"], ["8 mm", "6 mm"]]
+[[initial]]
+set = "end"
+velocity = [{ expression = "0.1 * sin(1e3 * x)" }, 0]
+random_velocity = { radius = "0.05 m/s", seed = 3 }
+[[constraint]]
+set = "top"
+velocity = ["free", "4 m/s"]
+[[load]]
+set = "bottom"
+traction = [0, "-20 MPa"]
+[[probe]]
+name = "tip"
+at = ["9 mm", "6.2 mm"]
+[[boundary]]
+side = "-x"
+kind = "damping-layer"
+thickness = "3 mm"
+[time]
+end = "4 us"
+dt = "0.04 us"
+[output]
+history = { every = 1, extremes = ["Velocity_y"] }
+fields = { count = 4, names = ["Displacement", "Velocity", "Damage", "Reaction_Density", "External_Force_Density", "Strain_Energy_Density"], format = ["vtu", "vtkhdf"] }
+cracks = { every = 5 }
+[[output.picture]]
+field = "Velocity_y"
+count = 2
+[[output.profile]]
+name = "middle"
+field = "Displacement_y"
+from = ["0 mm", "6 mm"]
+to = ["24 mm", "6 mm"]
+[checkpoint]
+every = 40
+"#;
+
+fn means(comm: Arc<dyn Comm>) -> Means {
+    Means {
+        caching: Caching::Off,
+        comm,
+        ..Means::default()
+    }
+}
+
+/// Runs a deck on one of several processes until its end, or for a number of steps.
+fn run(
+    deck: &str,
+    folder: &Path,
+    comm: Arc<dyn Comm>,
+    stop: Option<u64>,
+) -> Result<Ending, RunError> {
+    let deck = Deck::parse(deck, "deck.toml", &[])?;
+    let source = Source::of_deck(deck, "deck.toml".into());
+    let means = means(comm);
+    let assembled = Assembled::of(&source, &means, &mut |_| {})?;
+    let create = || Ok::<_, RunError>(OutputFolder::create(folder, false)?);
+    let folder = shared_folder(&*means.comm, create)?;
+    drive(Run::begin(&source, assembled, folder)?, stop)
+}
+
+fn drive(mut run: Run, stop: Option<u64>) -> Result<Ending, RunError> {
+    let cancel = Cancel::new();
+    let token = cancel.clone();
+    run.drive(None, &cancel, &mut |event| {
+        if let Event::Step { step, .. } = event
+            && Some(step) == stop
+        {
+            token.cancel();
+        }
+    })
+}
+
+fn resume(folder: &Path, comm: Arc<dyn Comm>) -> Result<Ending, RunError> {
+    let run = Run::resume(folder, &means(comm), &mut |_| {})?;
+    drive(run.expect("the run has not finished"), None)
+}
+
+/// Returns the contents of all files of a folder but `run.json`, which contains times.
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_str().unwrap().to_owned();
+        if path.is_dir() {
+            let inner = files(&path).into_iter();
+            found.extend(inner.map(|(inner, bytes)| (format!("{name}/{inner}"), bytes)));
+        } else if name != "run.json" && !name.starts_with('.') {
+            found.insert(name, fs::read(path).unwrap());
+        }
+    }
+    found
+}
+
+fn assert_same(found: &Path, expected: &Path, case: &str) {
+    let (found, expected) = (files(found), files(expected));
+    let names = |of: &BTreeMap<String, Vec<u8>>| of.keys().cloned().collect::<Vec<_>>();
+    assert_eq!(names(&found), names(&expected), "{case}");
+    let differ = |name: &&String| found[*name] != expected[*name];
+    let differ: Vec<&String> = expected.keys().filter(differ).collect();
+    assert!(differ.is_empty(), "{case}: {differ:?} differ");
+}
+
+/// Runs a deck on one process and on several, and compares all files.
+fn check(deck: &str, sizes: &[usize]) {
+    let place = tempfile::tempdir().unwrap();
+    let alone = place.path().join("alone");
+    let ending = run(deck, &alone, Arc::new(Alone), None).unwrap();
+    assert_eq!(ending, Ending::Finished);
+    for &size in sizes {
+        let folder = place.path().join(format!("of-{size}"));
+        let endings = Threads::run(size, |comm| run(deck, &folder, comm, None));
+        for ending in endings {
+            assert_eq!(ending.unwrap(), Ending::Finished);
+        }
+        assert_same(&folder, &alone, &format!("{size} processes"));
+    }
+}
+
+#[test]
+fn a_plate_divided_among_processes_has_the_files_of_one_process() {
+    check(PLATE, &[1, 2, 3, 4]);
+}
+
+#[test]
+fn a_run_is_resumed_on_another_number_of_processes() {
+    let place = tempfile::tempdir().unwrap();
+    let alone = place.path().join("alone");
+    run(PLATE, &alone, Arc::new(Alone), None).unwrap();
+    for (before, after) in [(3, 1), (3, 2), (1, 4)] {
+        let folder = place.path().join(format!("{before}-{after}"));
+        for ending in Threads::run(before, |comm| run(PLATE, &folder, comm, Some(47))) {
+            assert_eq!(ending.unwrap(), Ending::Cancelled);
+        }
+        for ending in Threads::run(after, |comm| resume(&folder, comm)) {
+            assert_eq!(ending.unwrap(), Ending::Finished);
+        }
+        // The run that stopped has a checkpoint of another step before the last one.
+        for (at, step) in [(&folder, 47), (&alone, 40)] {
+            let other = at.join(format!("checkpoints/step-{step:012}.chk"));
+            if other.exists() {
+                fs::remove_file(other).unwrap();
+            }
+        }
+        let case = format!("{before}, then {after} processes");
+        assert_same(&folder, &alone, &case);
+    }
+}
+
+/// Steps of the example decks.
+const STEPS: u64 = 8;
+
+/// Returns the example decks.
+fn examples() -> Vec<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
+    let list = |folder: &Path| -> Vec<PathBuf> {
+        let entries = fs::read_dir(folder).unwrap();
+        entries.map(|entry| entry.unwrap().path()).collect()
+    };
+    let folders = list(&root).into_iter().filter(|path| path.is_dir());
+    let decks = folders.flat_map(|folder| list(&folder));
+    let is_deck = |path: &PathBuf| {
+        path.extension().is_some_and(|end| end == "toml") && !path.ends_with("expected.toml")
+    };
+    let mut decks: Vec<PathBuf> = decks.filter(is_deck).collect();
+    decks.sort();
+    decks
+}
+
+/// Runs the first steps of an example on one of several processes.
+fn begin(deck: &Path, folder: &Path, comm: Arc<dyn Comm>) -> Result<Ending, RunError> {
+    let overrides = ["output.history = { every = 1 }".to_owned()];
+    let deck = Deck::read(deck, &overrides)?;
+    let source = Source::of_deck(deck, "deck.toml".into());
+    let means = means(comm);
+    let assembled = Assembled::of(&source, &means, &mut |_| {})?;
+    let create = || Ok::<_, RunError>(OutputFolder::create(folder, false)?);
+    let folder = shared_folder(&*means.comm, create)?;
+    drive(Run::begin(&source, assembled, folder)?, Some(STEPS))
+}
+
+/// The longer companion of the other tests: a few minutes.
+#[test]
+#[ignore = "minutes; run with --ignored"]
+fn examples_divided_among_processes_have_the_files_of_one_process() {
+    let place = tempfile::tempdir().unwrap();
+    let mut divided = 0;
+    for (k, deck) in examples().iter().enumerate() {
+        let name = deck.display();
+        let folder = place.path().join(format!("{k}-3"));
+        let found = Threads::run(3, |comm| begin(deck, &folder, comm));
+        if let Some(error) = found.iter().find_map(|one| one.as_ref().err()) {
+            // All processes refuse a model alike, before they create a folder.
+            assert!(found.iter().all(Result::is_err), "{name}: {error}");
+            assert!(!folder.exists(), "{name}: {error}");
+            println!("{name}: {error}");
+            continue;
+        }
+        let alone = place.path().join(format!("{k}-1"));
+        begin(deck, &alone, Arc::new(Alone)).unwrap();
+        assert_same(&folder, &alone, &name.to_string());
+        divided += 1;
+    }
+    assert!(divided >= 12, "{divided} examples were divided");
+}
+
+/// A small notched block that is torn apart; the material and the scheme are inserted.
+fn block(material: &str, time: &str) -> String {
+    format!(
+        r#"
+[body]
+shape = "block"
+size = [12, 8, 5]
+spacing = 1
+[material]
+{material}
+[sets.top]
+layer = {{ side = "+y", cells = 1 }}
+[sets.bottom]
+layer = {{ side = "-y", cells = 1 }}
+[[crack]]
+polygon = [[-1, 4, -1], [4, 4, -1], [4, 4, 6], [-1, 4, 6]]
+[[constraint]]
+set = "top"
+{time}
+[output]
+history = {{ every = 1 }}
+fields = {{ count = 2 }}
+[checkpoint]
+every = 5
+"#
+    )
+}
+
+const BONDS: &str = "density = 1\nyoungs_modulus = 1\nhorizon = 3.01\ncritical_stretch = 0.01";
+const SOLID: &str = "model = \"state-based\"\ndensity = 1\nyoungs_modulus = 1\npoisson_ratio = 0.3\nhorizon = 3.01\ncritical_stretch = 0.01";
+const PULL: &str = "velocity = [\"free\", 0.05, \"free\"]\n[time]\n";
+const PRESS: &str = "displacement = [0, 0.02, 0]\n[[constraint]]\nset = \"bottom\"\ndisplacement = [0, 0, 0]\n[time]\n";
+
+#[test]
+fn materials_on_lists_and_stencils_have_the_files_of_one_process() {
+    let end = format!("{PULL}end = 3\ndt = 0.2");
+    let correspondence = SOLID.replace("state-based", "correspondence");
+    for material in [
+        format!("{BONDS}\nbonds = \"list\""),
+        format!("{BONDS}\nbonds = \"grid\"\nsurface_correction = \"energy\""),
+        format!("{BONDS}\nsoftening = {{ law = \"linear\", onset_stretch = 0.003 }}"),
+        format!("{SOLID}\nbonds = \"list\""),
+        format!("{SOLID}\nbonds = \"grid\""),
+        correspondence,
+    ] {
+        println!("{material}");
+        check(&block(&material, &end), &[3]);
+    }
+}
+
+#[test]
+fn schemes_have_the_files_of_one_process() {
+    let unbreakable = BONDS.replace("critical_stretch = 0.01", "bonds = \"list\"");
+    for (material, scheme) in [
+        (BONDS, format!("{PULL}end = 3\ndt = 0.2\nscheme = \"rk4\"")),
+        (
+            BONDS,
+            format!("{PULL}end = 3\ndt = 0.2\nscheme = \"dormand-prince\"\ntolerance = 1e-6"),
+        ),
+        (
+            &unbreakable,
+            format!("{PULL}end = 3\ndt = 0.5\nscheme = \"newmark\""),
+        ),
+        (
+            &unbreakable,
+            format!("{PULL}end = 3\ndt = 0.5\nscheme = \"discrete-gradient\""),
+        ),
+        (
+            SOLID,
+            format!(
+                "{PRESS}scheme = \"adaptive-dynamic-relaxation\"\ntolerance = 1e-4\nload_steps = 2"
+            ),
+        ),
+        (
+            SOLID,
+            format!("{PRESS}scheme = \"fire\"\ntolerance = 1e-4\nload_steps = 2"),
+        ),
+    ] {
+        println!("{material}\n{scheme}");
+        check(&block(material, &scheme), &[3]);
+    }
+}
