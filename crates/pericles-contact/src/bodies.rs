@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use pericles::operator::Force;
 use pericles::space::PointCloud;
-use pericles::{PointScalar, Result};
+use pericles::{PericlesError, PointScalar, Result};
 
 use crate::error::ContactError;
 use crate::law::{ContactLaw, ContactStiffness, PairLaw, micromodulus};
@@ -91,13 +91,19 @@ pub(crate) struct Touching {
 }
 
 impl Touching {
+    /// Checks the points and prepares their data. All processes must call it together.
     pub(crate) fn new(
         cloud: Arc<PointCloud>,
         law: ContactLaw,
         bodies: ContactBodies,
     ) -> Result<Self> {
-        law.check()?;
-        bodies.check(cloud.len())?;
+        let checked = law.check().and_then(|()| bodies.check(cloud.len()));
+        // All processes return an error if one of them does.
+        let all = cloud.domain().all(checked.is_ok());
+        checked?;
+        if !all {
+            return Err(PericlesError::OnAnotherProcess);
+        }
         let n = cloud.len();
         let stiffness = |i: usize| {
             let (young, horizon) = (bodies.young.at(i), bodies.horizon.at(i));

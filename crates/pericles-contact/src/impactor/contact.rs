@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use pericles::boundary::Exchange;
 use pericles::operator::{Force, PointSubset};
 use pericles::parallel::BLOCK;
+use pericles::sum::BinnedSum;
 use pericles::{Configuration, Interaction, InteractionStep, PointScalar, Result, StepEnd};
 
 use super::Impactor;
@@ -137,17 +138,29 @@ impl Impactor {
     }
 
     /// Adds the energy that dampers and friction dissipated in a step: minus the mean of their forces at both ends times
-    /// the motion of the points relative to the body.
+    /// the motion of the points relative to the body. All processes must call it together.
     fn dissipate(&mut self, drag: Vec<f64>, sum: [V3; 2], step: &StepEnd<'_>, moved: &Moved) {
-        let of_points: f64 = (drag.iter().zip(&self.drag).enumerate())
-            .filter(|(_, (now, before))| **now != 0.0 || **before != 0.0)
-            .map(|(entry, (now, before))| (now + before) * step.mean_velocity(entry))
-            .sum();
+        let domain = self.touching.cloud.domain();
+        let of_points = domain.sum(drag.len(), |entry| match drag[entry] + self.drag[entry] {
+            0.0 => 0.0,
+            both => both * step.mean_velocity(entry),
+        });
         let [force, torque] = [0, 1].map(|k| plus(sum[k], 1.0, self.drag_sum[k]));
         let of_body = dot(force, moved.shift) + dot(torque, moved.turn);
         self.dissipated -= 0.5 * (step.dt * of_points - of_body);
         self.drag = drag;
         self.drag_sum = sum;
+    }
+
+    /// Returns the sums of vectors over the points in contact of all processes: exact ones, so that every process moves the
+    /// body alike, for every division. All processes must call it together.
+    fn totals<const N: usize>(&self, vectors: &[[V3; N]]) -> [V3; N] {
+        let domain = self.touching.cloud.domain();
+        std::array::from_fn(|k| {
+            domain.totals(std::array::from_fn(|c| {
+                BinnedSum::of(vectors.len(), |point| vectors[point][k][c])
+            }))
+        })
     }
 }
 
@@ -175,8 +188,10 @@ impl Interaction for Impactor {
     fn energy(&self, at: &Configuration<'_>) -> f64 {
         let touches = self.touches(&self.pose_at(at.t), at.u);
         let law = self.touching.law.law;
-        let energies = touches.iter().map(|one| law.energy(one.force, one.overlap));
-        energies.sum()
+        let domain = self.touching.cloud.domain();
+        domain.sum(touches.len(), |k| {
+            law.energy(touches[k].force, touches[k].overlap)
+        })
     }
 
     fn work_between(&self, from: &Configuration<'_>, to: &Configuration<'_>) -> f64 {
@@ -189,8 +204,9 @@ impl Interaction for Impactor {
         }
         let sum = |at: &Configuration<'_>| {
             let touches = self.touches(&self.pose_at(at.t), at.u);
-            let add = |sum, touch: &Touch| plus(sum, touch.force, touch.normal);
-            touches.iter().fold([0.0; 3], add)
+            let push = |touch: &Touch| [scaled(touch.force, touch.normal)];
+            let pushes: Vec<[V3; 1]> = touches.iter().map(push).collect();
+            self.totals(&pushes)[0]
         };
         dot(scaled(0.5, plus(sum(from), 1.0, sum(to))), shift)
     }
@@ -231,37 +247,36 @@ impl Interaction for Impactor {
         let touches = self.touches(&self.state.pose(), step.u);
         let cloud = self.touching.cloud.clone();
         let (n, dimension, volumes) = (cloud.len(), cloud.dimension(), cloud.volumes());
-        let (mut sum, mut moment) = ([0.0; 3], [0.0; 3]);
         let mut drag = vec![0.0; self.drag.len()];
-        let mut drag_sum = [[0.0; 3]; 2];
+        // Force and moment on the points, and those of dampers and friction.
+        let mut acting = Vec::with_capacity(touches.len());
         for touch in &touches {
             let i = touch.point;
             let mut push = scaled(touch.force, touch.normal);
             let lever = minus(touch.place, self.state.centre);
+            let mut own = [0.0; 3];
             if !self.drag.is_empty() {
                 let mut others = [0.0; 3];
                 for c in 0..dimension {
                     others[c] = out[c * n + i];
                 }
                 let body = self.state.velocity_at(touch.place, &moved, step.dt);
-                let mut own = self.drag_on(touch, body, others, step);
+                own = self.drag_on(touch, body, others, step);
                 own[dimension..].fill(0.0);
                 for c in 0..dimension {
                     drag[c * n + i] = own[c];
                 }
-                drag_sum[0] = plus(drag_sum[0], 1.0, own);
-                drag_sum[1] = plus(drag_sum[1], 1.0, cross(lever, own));
                 push = plus(push, 1.0, own);
             }
             push[dimension..].fill(0.0);
             for c in 0..dimension {
                 out[c * n + i] += push[c] / volumes[i];
             }
-            sum = plus(sum, 1.0, push);
-            moment = plus(moment, 1.0, cross(lever, push));
+            acting.push([push, cross(lever, push), own, cross(lever, own)]);
         }
+        let [sum, moment, drag_force, drag_moment] = self.totals(&acting);
         if !self.drag.is_empty() {
-            self.dissipate(drag, drag_sum, step, &moved);
+            self.dissipate(drag, [drag_force, drag_moment], step, &moved);
         }
         // Forces on the points at both ends of the step; those on the body have the opposite sign.
         let mean = scaled(0.5, minus(sum, self.state.force));
@@ -277,11 +292,12 @@ impl Interaction for Impactor {
         }
         self.impulse = plus(self.impulse, 1.0, impulse);
         self.work += work;
-        self.points = touches.len() as u64;
+        self.points = cloud.domain().count(touches.len() as u64);
         self.overlap = touches.iter().fold([0.0; 2], |[most, relative], one| {
             let of_cell = one.overlap / self.touching.size[one.point];
             [one.overlap.max(most), of_cell.max(relative)]
         });
+        cloud.domain().max_each(&mut self.overlap);
         Exchange { work, impulse }
     }
 
@@ -319,7 +335,8 @@ impl Interaction for Impactor {
             exponent * self.touching.wall_stiffness(i) * (1.0 / mass + inverse)
         };
         let points = 0..self.touching.cloud.len();
-        points.map(square).fold(0.0, f64::max).sqrt()
+        let most = points.map(square).fold(0.0, f64::max);
+        self.touching.cloud.domain().max(most).sqrt()
     }
 
     fn is_conservative(&self) -> bool {

@@ -91,7 +91,8 @@ pub struct Reading {
 }
 
 impl Impactor {
-    /// Makes a rigid body for a body of points.
+    /// Makes a rigid body for a body of points. If the points are divided among processes, all of them must call it together;
+    /// the state of the rigid body is the same on all of them.
     ///
     /// # Errors
     /// [`ContactError::Body`] and [`ContactError::Impactor`]: sizes and masses that are not positive, a rotation matrix
@@ -208,24 +209,33 @@ impl Impactor {
         Ok(impactor)
     }
 
-    /// Refuses bodies that contain points deeper than half of their cell at the start.
+    /// Refuses bodies that contain points deeper than half of their cell at the start. All processes must call it together.
     fn check_start(&self) -> Result<()> {
         let none = vec![0.0; self.touching.cloud.dimension() * self.touching.cloud.len()];
         let found = self.touches(&self.state.pose(), &none);
         let deep = found
             .iter()
             .find(|one| one.overlap > 0.5 * self.touching.size[one.point]);
-        match deep {
-            None => Ok(()),
-            Some(one) => Err(ContactError::Impactor {
-                name: self.name.clone(),
-                reason: format!(
-                    "at the start it contains point {} of the body; allowed: free surfaces that touch or are apart",
-                    self.touching.cloud.user_number(one.point)
-                ),
-            }
-            .into()),
+        let cloud = &self.touching.cloud;
+        // The first one of the whole body, so that all processes report the same.
+        let [number, user] = deep.map_or([f64::INFINITY; 2], |one| {
+            [
+                cloud.domain().number(one.point),
+                cloud.user_number(one.point),
+            ]
+            .map(|k| k as f64)
+        });
+        let [number, user] = cloud.domain().of_largest(-number, [number, user]);
+        if number.is_infinite() {
+            return Ok(());
         }
+        Err(ContactError::Impactor {
+            name: self.name.clone(),
+            reason: format!(
+                "at the start it contains point {user} of the body; allowed: free surfaces that touch or are apart"
+            ),
+        }
+        .into())
     }
 
     /// Shape, without its ends along axes that the points do not have. The frame of a free mesh has its origin at the

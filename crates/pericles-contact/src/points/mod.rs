@@ -144,6 +144,12 @@ impl PointContact {
     }
 
     fn check_bonds(&self, forces: &dyn Force) -> Result<()> {
+        if self.touching.cloud.domain().is_divided() {
+            return Err(ContactError::NotPossible {
+                reason: "contact between points is implemented for a single process",
+            }
+            .into());
+        }
         let unknown = forces.capabilities().breaking.is_none();
         if self.touching.law.pairs == ContactPairs::Unbonded && unknown {
             return Err(ContactError::NotPossible {

@@ -2,6 +2,7 @@
 
 mod bonded;
 mod disc;
+mod divided;
 mod impact;
 mod reference;
 mod runs;

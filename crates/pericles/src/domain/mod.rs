@@ -377,15 +377,21 @@ impl Domain {
 
     /// Returns the total of the sums of all processes.
     pub fn total(&self, own: BinnedSum) -> f64 {
+        let [total] = self.totals([own]);
+        total
+    }
+
+    /// Returns the totals of several sums of all processes, in the same number of messages as one. All processes must call it
+    /// together.
+    pub fn totals<const N: usize>(&self, own: [BinnedSum; N]) -> [f64; N] {
         if self.comm.size() == 1 {
-            return own.value();
+            return own.map(|sum| sum.value());
         }
-        let mut top = [f64::from(own.top())];
-        self.comm.max(&mut top);
-        let top = top[0] as i32;
-        let mut integers = own.integers(top);
-        self.comm.sum(&mut integers);
-        BinnedSum::of_integers(top, integers).value()
+        let mut tops = own.map(|sum| f64::from(sum.top()));
+        self.comm.max(&mut tops);
+        let mut integers: [_; N] = std::array::from_fn(|k| own[k].integers(tops[k] as i32));
+        self.comm.sum(integers.as_flattened_mut());
+        std::array::from_fn(|k| BinnedSum::of_integers(tops[k] as i32, integers[k]).value())
     }
 
     /// Σ a_k b_k.

@@ -415,11 +415,6 @@ pub enum PericlesError {
         /// Number of steps of the boundary.
         made_for: u64,
     },
-    /// Contact in a body that is divided among processes.
-    #[error(
-        "contact needs all points on one process, because any two of them may touch; this body is divided"
-    )]
-    DividedInteraction,
     /// An error of an extension crate.
     #[error(transparent)]
     Extension(Box<dyn std::error::Error + Send + Sync>),

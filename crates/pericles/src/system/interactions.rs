@@ -2,7 +2,7 @@
 
 use super::System;
 use crate::boundary::Exchange;
-use crate::error::{PericlesError, Result};
+use crate::error::Result;
 use crate::interaction::{Configuration, Interaction, InteractionStep};
 use crate::parallel::PointSubset;
 use crate::scalar::PointScalar;
@@ -12,11 +12,8 @@ impl System {
     /// Adds an interaction.
     ///
     /// # Errors
-    /// [`PericlesError::DividedInteraction`] for bodies divided among processes; errors of [`Interaction::check`].
+    /// Those of [`Interaction::check`].
     pub fn add_interaction(&mut self, interaction: Box<dyn Interaction>) -> Result<()> {
-        if self.domain().is_divided() {
-            return Err(PericlesError::DividedInteraction);
-        }
         interaction.check(self.operator())?;
         self.interactions.push(interaction);
         Ok(())
