@@ -68,7 +68,10 @@ impl Newmark {
             }
             InnerSolver::NewtonKrylov => {
                 let root_mass = root_masses(system);
-                let least = |x: &mut dyn Iterator<Item = f64>| x.fold(f64::INFINITY, f64::min);
+                // Of the whole body: all processes iterate to the same tolerance.
+                let least = |x: &mut dyn Iterator<Item = f64>| {
+                    -system.domain().max(-x.fold(f64::INFINITY, f64::min))
+                };
                 Inner::NewtonKrylov(Box::new(NewtonKrylov {
                     least_root_mass: least(&mut root_mass.iter().copied()),
                     least_root_density: least(
