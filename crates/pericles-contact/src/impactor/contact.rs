@@ -247,6 +247,8 @@ impl Interaction for Impactor {
         let touches = self.touches(&self.state.pose(), step.u);
         let cloud = self.touching.cloud.clone();
         let (n, dimension, volumes) = (cloud.len(), cloud.dimension(), cloud.volumes());
+        // The same on all processes, also on one without points.
+        let with_drag = !self.touching.law.is_conservative();
         let mut drag = vec![0.0; self.drag.len()];
         // Force and moment on the points, and those of dampers and friction.
         let mut acting = Vec::with_capacity(touches.len());
@@ -255,7 +257,7 @@ impl Interaction for Impactor {
             let mut push = scaled(touch.force, touch.normal);
             let lever = minus(touch.place, self.state.centre);
             let mut own = [0.0; 3];
-            if !self.drag.is_empty() {
+            if with_drag {
                 let mut others = [0.0; 3];
                 for c in 0..dimension {
                     others[c] = out[c * n + i];
@@ -275,7 +277,7 @@ impl Interaction for Impactor {
             acting.push([push, cross(lever, push), own, cross(lever, own)]);
         }
         let [sum, moment, drag_force, drag_moment] = self.totals(&acting);
-        if !self.drag.is_empty() {
+        if with_drag {
             self.dissipate(drag, [drag_force, drag_moment], step, &moved);
         }
         // Forces on the points at both ends of the step; those on the body have the opposite sign.

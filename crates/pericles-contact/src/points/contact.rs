@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use pericles::boundary::Exchange;
 use pericles::operator::{Force, PointSubset};
-use pericles::{Configuration, Interaction, InteractionStep, PointScalar, Result, StepEnd};
+use pericles::{Configuration, Interaction, InteractionStep, PointScalar, Result};
 
 use super::search::Candidates;
 use super::{Listed, PointContact};
@@ -95,12 +95,13 @@ impl Touching {
         })
     }
 
-    /// Returns the force of damper and friction of a contact on its first point, N.
-    fn drag(&self, contact: &Contact, [i, j]: [usize; 2], step: &StepEnd<'_>) -> V3 {
+    /// Returns the force of damper and friction of a contact on its first point, N. `velocity` has the entries of the mean
+    /// velocity of the step, m/s.
+    fn drag(&self, contact: &Contact, [i, j]: [usize; 2], velocity: impl Fn(usize) -> f64) -> V3 {
         let n = self.cloud.len();
         let mut w = [0.0; 3];
         for c in 0..self.cloud.dimension() {
-            w[c] = step.mean_velocity(c * n + j) - step.mean_velocity(c * n + i);
+            w[c] = velocity(c * n + j) - velocity(c * n + i);
         }
         let (a, b) = (self.mass(i), self.mass(j));
         let reduced = a * b / (a + b);
@@ -117,46 +118,67 @@ impl Touching {
     }
 }
 
-impl PointContact {
-    /// Determines the positions (m) of the points that may touch others; other entries of `places` are unchanged.
-    fn place(&self, list: &Candidates, u: &[f64], places: &mut Vec<V3>) {
-        places.resize(self.touching.cloud.len(), [0.0; 3]);
+/// The points and pairs of an evaluation: own points, and those of other processes near them.
+#[derive(Clone, Copy)]
+struct Evaluation<'a> {
+    list: &'a Candidates,
+    touching: &'a Touching,
+    /// Displacement of all points, m.
+    u: &'a [f64],
+    /// Positions of the points that may touch others, m; other entries have no meaning.
+    places: &'a [V3],
+}
+
+impl<'a> Evaluation<'a> {
+    /// Determines the positions of the points at displacement u, in memory that is used again.
+    fn new(
+        list: &'a Candidates,
+        touching: &'a Touching,
+        u: &'a [f64],
+        places: &'a mut Vec<V3>,
+    ) -> Self {
+        places.resize(touching.cloud.len(), [0.0; 3]);
         let tasks = places.par_chunks_mut(TASK).enumerate();
         tasks.for_each(|(task, places)| {
             for &i in within(list.exposed(), task).1 {
                 let i = i as usize;
-                places[i - task * TASK] = self.touching.place(u, i);
+                places[i - task * TASK] = touching.place(u, i);
             }
         });
+        for i in list.nearby().own_points()..touching.cloud.len() {
+            places[i] = touching.place(u, i);
+        }
+        Self {
+            list,
+            touching,
+            u,
+            places,
+        }
     }
 
-    /// Calls `found` for the contacts of point i at displacement u, in ascending order of the other points.
+    /// Calls `found` for the contacts of own point i, in ascending order of the other points.
     #[inline(always)]
-    fn visit(
-        &self,
-        list: &Candidates,
-        (u, places): (&[f64], &[V3]),
-        i: usize,
-        mut found: impl FnMut(&Contact, usize),
-    ) {
-        let size = &self.touching.size;
+    fn visit(&self, i: usize, mut found: impl FnMut(&Contact, usize)) {
+        let (size, places) = (&self.touching.size, self.places);
         let factor = 0.5 * self.touching.law.distance * (1.0 + MARGIN);
         let (place, own) = (places[i], size[i]);
-        for j in list.row(i) {
+        for j in self.list.row(i) {
             let apart = minus(places[j], place);
             let reach = factor * (own + size[j]);
             if dot(apart, apart) < reach * reach
-                && let Some(contact) = self.touching.contact(u, [i, j])
+                && let Some(contact) = self.touching.contact(self.u, [i, j])
             {
                 found(&contact, j);
             }
         }
     }
+}
 
+impl PointContact {
     /// Adds vectors (N) at points, given in ascending order, as force densities.
     fn add_at(&self, points: &[u32], vector: impl Fn(usize) -> V3 + Sync, out: &mut [f64]) {
         let volumes = self.touching.cloud.volumes();
-        for (c, out) in out.chunks_mut(volumes.len()).enumerate() {
+        for (c, out) in out.chunks_mut(volumes.len().max(1)).enumerate() {
             out.par_chunks_mut(TASK)
                 .enumerate()
                 .for_each(|(task, out)| {
@@ -204,10 +226,14 @@ impl Interaction for PointContact {
             }
         };
         let (mut places, mut forces) = (Vec::new(), Vec::new());
-        self.place(&list, at.u, &mut places);
+        let (touching, u) = (
+            list.nearby().touching(&self.touching),
+            list.nearby().vector(at.u),
+        );
+        let pairs = Evaluation::new(&list, touching, &u, &mut places);
         let force = |i| {
             let mut sum = [0.0; 3];
-            self.visit(&list, (at.u, &places), i, |contact, _| {
+            pairs.visit(i, |contact, _| {
                 sum = plus(sum, -contact.force, contact.normal);
             });
             sum
@@ -220,10 +246,14 @@ impl Interaction for PointContact {
         let list = self.candidates(at);
         let (law, points) = (self.touching.law.law, list.exposed());
         let mut places = Vec::new();
-        self.place(&list, at.u, &mut places);
-        pericles::sum::sum(points.len(), |k| {
+        let (touching, u) = (
+            list.nearby().touching(&self.touching),
+            list.nearby().vector(at.u),
+        );
+        let pairs = Evaluation::new(&list, touching, &u, &mut places);
+        self.touching.cloud.domain().sum(points.len(), |k| {
             let mut sum = 0.0;
-            self.visit(&list, (at.u, &places), points[k] as usize, |contact, _| {
+            pairs.visit(points[k] as usize, |contact, _| {
                 sum += law.energy(contact.force, contact.overlap);
             });
             0.5 * sum
@@ -232,14 +262,21 @@ impl Interaction for PointContact {
 
     fn add_tangent(&self, at: &Configuration<'_>, direction: &[f64], out: &mut [f64]) {
         let list = self.candidates(at);
-        let n = self.touching.cloud.len();
         let (mut places, mut changes) = (Vec::new(), Vec::new());
-        self.place(&list, at.u, &mut places);
+        let (touching, u) = (
+            list.nearby().touching(&self.touching),
+            list.nearby().vector(at.u),
+        );
+        let (pairs, n) = (
+            Evaluation::new(&list, touching, &u, &mut places),
+            touching.cloud.len(),
+        );
+        let direction = list.nearby().vector(direction);
         let change = |i| {
             let mut sum = [0.0; 3];
-            self.visit(&list, (at.u, &places), i, |contact, j| {
+            pairs.visit(i, |contact, j| {
                 let mut d = [0.0; 3];
-                for c in 0..self.touching.cloud.dimension() {
+                for c in 0..touching.cloud.dimension() {
                     d[c] = direction[c * n + j] - direction[c * n + i];
                 }
                 let along = dot(d, contact.normal);
@@ -257,29 +294,43 @@ impl Interaction for PointContact {
     fn end_step(&mut self, end: &InteractionStep<'_>, out: &mut [f64]) -> Exchange {
         let step = end.step;
         let list = self.candidates(&end.configuration());
-        let with_drag = !self.drag.is_empty();
+        let domain = self.touching.cloud.domain();
+        // The same on all processes, also on one without points.
+        let with_drag = !self.touching.law.is_conservative();
         // Kept for the next step, because new memory costs as much as the contacts.
         let Work {
             mut places,
             mut sums,
         } = std::mem::take(&mut self.work);
-        self.place(&list, step.u, &mut places);
+        let nearby = list.nearby();
+        let (touching, u) = (nearby.touching(&self.touching), nearby.vector(step.u));
+        let velocities = (with_drag && !nearby.are_own()).then(|| {
+            let own: Vec<f64> = (0..step.u.len())
+                .map(|entry| step.mean_velocity(entry))
+                .collect();
+            nearby.vector(&own).into_owned()
+        });
+        let velocity = |entry: usize| match &velocities {
+            None => step.mean_velocity(entry),
+            Some(velocities) => velocities[entry],
+        };
+        let pairs = Evaluation::new(&list, touching, &u, &mut places);
         let of_point = |i| {
             let mut sum = OfPoint::default();
-            self.visit(&list, (step.u, &places), i, |contact, j| {
+            pairs.visit(i, |contact, j| {
                 sum.force = plus(sum.force, -contact.force, contact.normal);
                 sum.contacts += 1;
                 sum.overlap = sum.overlap.max(contact.overlap / contact.limit);
                 if with_drag {
-                    let drag = self.touching.drag(contact, [i, j], step);
+                    let drag = touching.drag(contact, [i, j], velocity);
                     sum.drag = plus(sum.drag, 1.0, drag);
                 }
             });
             sum
         };
         each(list.exposed(), of_point, &mut sums);
-        self.pairs = sums.iter().map(|sum| sum.contacts).sum::<u64>() / 2;
-        self.overlap = sums.iter().map(|sum| sum.overlap).fold(0.0, f64::max);
+        self.pairs = domain.count(sums.iter().map(|sum| sum.contacts).sum()) / 2;
+        self.overlap = domain.max(sums.iter().map(|sum| sum.overlap).fold(0.0, f64::max));
         let force = |k: usize| plus(sums[k].force, 1.0, sums[k].drag);
         self.add_at(list.exposed(), force, out);
         if with_drag {
@@ -290,7 +341,7 @@ impl Interaction for PointContact {
                     drag[c * n + i as usize] = sum.drag[c];
                 }
             }
-            let power = pericles::sum::sum(drag.len(), |entry| {
+            let power = domain.sum(drag.len(), |entry| {
                 (drag[entry] + self.drag[entry]) * step.mean_velocity(entry)
             });
             self.dissipated -= 0.5 * step.dt * power;
@@ -315,7 +366,8 @@ impl Interaction for PointContact {
     fn contact_frequency(&self, density: &PointScalar) -> f64 {
         let touching = &self.touching;
         let volumes = touching.cloud.volumes();
-        let largest = volumes.iter().copied().fold(0.0, f64::max);
+        let domain = touching.cloud.domain();
+        let largest = domain.max(volumes.iter().copied().fold(0.0, f64::max));
         let square = |i: usize| {
             let stiffness = match touching.law.law {
                 PairLaw::Emu => touching.stiffness[i] * volumes[i] * largest,
@@ -323,7 +375,7 @@ impl Interaction for PointContact {
             };
             stiffness / (density.at(i) * volumes[i])
         };
-        let most = (0..volumes.len()).map(square).fold(0.0, f64::max);
+        let most = domain.max((0..volumes.len()).map(square).fold(0.0, f64::max));
         (2.0 * touching.law.law.exponent() * most).sqrt()
     }
 

@@ -2,11 +2,14 @@
 
 mod cells;
 mod contact;
+mod nearby;
 mod ranges;
 mod search;
+mod span;
 
 use std::sync::{Arc, Mutex, PoisonError};
 
+use pericles::domain::Domain;
 use pericles::operator::Force;
 use pericles::space::PointCloud;
 use pericles::{Configuration, PointScalar, Result};
@@ -26,8 +29,7 @@ const SKIN: f64 = 0.3;
 /// equal and opposite, and adds the pairs in ascending order, so that results do not depend on threads or on the search.
 pub struct PointContact {
     touching: Touching,
-    /// Pieces numbered from 0 without gaps.
-    pieces: Vec<u32>,
+    pieces: Pieces,
     skin: f64,
     list: Mutex<Listed>,
     /// Forces of dampers and friction at the last accepted state, N, component-major; empty without them.
@@ -39,6 +41,15 @@ pub struct PointContact {
     /// Largest overlap at the last accepted state, relative to the contact distance.
     overlap: f64,
     work: Work,
+}
+
+/// Pieces of the own points.
+#[derive(Debug, Clone)]
+struct Pieces {
+    /// Piece of each point, numbered from 0 without gaps in the whole body.
+    of_point: Vec<u32>,
+    /// Number of pieces of the whole body.
+    count: usize,
 }
 
 /// The present candidates.
@@ -62,7 +73,7 @@ pub struct SearchReport {
 }
 
 impl PointContact {
-    /// Makes the contact between the points of a body.
+    /// Makes the contact between the points of a body. If they are divided among processes, all of them must call it together.
     ///
     /// # Errors
     /// Those of [`ContactLaw::check`]; numbers of points that are not positive or not one per point.
@@ -72,11 +83,9 @@ impl PointContact {
             true => 0,
             false => touching.cloud.dimension() * touching.cloud.len(),
         };
-        let sizes = &touching.size;
-        let mean = sizes.iter().sum::<f64>() / sizes.len().max(1) as f64;
         Ok(Self {
-            pieces: renumbered(&touching.bodies.piece),
-            skin: SKIN * mean,
+            pieces: Pieces::of(&touching.bodies.piece, touching.cloud.domain()),
+            skin: SKIN * mean_size(&touching),
             touching,
             list: Mutex::default(),
             drag: vec![0.0; entries],
@@ -88,11 +97,10 @@ impl PointContact {
     }
 
     /// Sets the skin of the search relative to the mean size of the cells; 0.3 by default. Results do not depend on it:
-    /// with a larger skin searches are rarer, and each evaluation looks at more pairs.
+    /// with a larger skin searches are rarer, and each evaluation looks at more pairs. All processes must call it together.
     #[must_use]
     pub fn with_skin(mut self, relative: f64) -> Self {
-        let sizes = &self.touching.size;
-        self.skin = relative * sizes.iter().sum::<f64>() / sizes.len().max(1) as f64;
+        self.skin = relative * mean_size(&self.touching);
         self.list = Mutex::default();
         self
     }
@@ -107,24 +115,32 @@ impl PointContact {
         Ok(self)
     }
 
-    /// Returns contacts and searches.
+    /// Returns contacts and searches. All processes must call it together.
     pub fn report(&self) -> SearchReport {
         let list = self.list.lock().unwrap_or_else(PoisonError::into_inner);
+        let (entries, searches) = match &list.candidates {
+            Some(candidates) => (candidates.entries(), list.searches),
+            None => (0, list.searches),
+        };
+        // Not held while this process waits for others.
+        drop(list);
         SearchReport {
             pairs: self.pairs,
-            candidates: list.candidates.as_ref().map_or(0, |list| list.pairs()),
-            searches: list.searches,
+            candidates: self.touching.cloud.domain().count(entries) / 2,
+            searches,
             overlap: self.overlap,
         }
     }
 
-    /// Returns the pairs that may touch at a configuration, from the last search if it still contains them.
+    /// Returns the pairs that may touch at a configuration, from the last search if it still contains them on all processes,
+    /// which must call it together.
     fn candidates(&self, at: &Configuration<'_>) -> Arc<Candidates> {
         let lock = || self.list.lock().unwrap_or_else(PoisonError::into_inner);
         // Not held during parallel loops, in which other work may wait for other locks.
         let kept = lock().candidates.take();
         let mut searched = 0;
-        let mut candidates = match kept.filter(|list| list.contains_contacts(at.u)) {
+        let domain = self.touching.cloud.domain();
+        let mut candidates = match kept.filter(|list| list.contains_contacts(at.u, domain)) {
             Some(candidates) => candidates,
             None => {
                 searched = 1;
@@ -144,12 +160,6 @@ impl PointContact {
     }
 
     fn check_bonds(&self, forces: &dyn Force) -> Result<()> {
-        if self.touching.cloud.domain().is_divided() {
-            return Err(ContactError::NotPossible {
-                reason: "contact between points is implemented for a single process",
-            }
-            .into());
-        }
         let unknown = forces.capabilities().breaking.is_none();
         if self.touching.law.pairs == ContactPairs::Unbonded && unknown {
             return Err(ContactError::NotPossible {
@@ -162,11 +172,35 @@ impl PointContact {
     }
 }
 
-/// Returns the pieces numbered from 0 without gaps.
-fn renumbered(piece: &[u32]) -> Vec<u32> {
-    let mut known = piece.to_vec();
-    known.sort_unstable();
-    known.dedup();
-    let number = |p: &u32| known.partition_point(|q| q < p) as u32;
-    piece.iter().map(number).collect()
+impl Pieces {
+    /// Numbers the pieces of the points. All processes must call it together.
+    fn of(piece: &[u32], domain: &Domain) -> Self {
+        let mut known = distinct(piece.to_vec());
+        if domain.is_divided() {
+            let own = known.iter().map(|&p| f64::from(p)).collect();
+            let all = domain.collect(own).map(|all| {
+                let all = all.concat().iter().map(|&p| p as u32).collect();
+                let all: Vec<f64> = distinct(all).into_iter().map(f64::from).collect();
+                vec![all; domain.comm().size()]
+            });
+            known = domain.distribute(all).iter().map(|&p| p as u32).collect();
+        }
+        let number = |p: &u32| known.partition_point(|q| q < p) as u32;
+        Self {
+            of_point: piece.iter().map(number).collect(),
+            count: known.len(),
+        }
+    }
+}
+
+fn distinct(mut numbers: Vec<u32>) -> Vec<u32> {
+    numbers.sort_unstable();
+    numbers.dedup();
+    numbers
+}
+
+/// Returns the mean size of the cells of the whole body, m. All processes must call it together.
+fn mean_size(touching: &Touching) -> f64 {
+    let (sizes, domain) = (&touching.size, touching.cloud.domain());
+    domain.sum(sizes.len(), |i| sizes[i]) / domain.whole_points().max(1) as f64
 }

@@ -2,19 +2,15 @@
 
 use rayon::prelude::*;
 
+use pericles::domain::Domain;
 use pericles::parallel::BLOCK;
 
+use super::Pieces;
+use super::span::Span;
 use crate::vector::V3;
 
 /// Pieces that are followed separately; a body with more of them is followed as one.
 const MOST: usize = 8;
-
-/// Lowest and highest value of each component.
-#[derive(Debug, Clone, Copy)]
-struct Span {
-    low: V3,
-    high: V3,
-}
 
 /// Displacements at the time of a search, and how far pieces may move relative to each other before pairs in contact may
 /// be missing from its result.
@@ -25,64 +21,40 @@ pub(super) struct Ranges {
     piece: Vec<u32>,
     pieces: usize,
     points: usize,
+    dimension: usize,
     /// Squares of the allowed relative displacements of two pieces, m².
     allowed: Vec<f64>,
 }
 
-impl Span {
-    const NOTHING: Self = Self {
-        low: [f64::INFINITY; 3],
-        high: [f64::NEG_INFINITY; 3],
-    };
-
-    fn add(&mut self, c: usize, x: f64) {
-        self.low[c] = self.low[c].min(x);
-        self.high[c] = self.high[c].max(x);
-    }
-
-    fn merge(&mut self, other: &Self) {
-        for c in 0..3 {
-            self.low[c] = self.low[c].min(other.low[c]);
-            self.high[c] = self.high[c].max(other.high[c]);
-        }
-    }
-
-    /// Square of the distance of two boxes.
-    fn gap(&self, other: &Self) -> f64 {
-        let apart = |c: usize| {
-            (self.low[c] - other.high[c])
-                .max(other.low[c] - self.high[c])
-                .max(0.0)
-        };
-        (0..3).map(|c| apart(c).powi(2)).sum()
-    }
-
-    /// Square of the largest difference of a vector of one box and a vector of the other.
-    fn spread(&self, other: &Self, dimension: usize) -> f64 {
-        let most = |c: usize| (self.high[c] - other.low[c]).max(other.high[c] - self.low[c]);
-        (0..dimension).map(|c| most(c).powi(2)).sum()
-    }
-}
-
 impl Ranges {
     /// Starts to follow the points from displacement u, where a search has found all pairs closer than the contact
-    /// distance, at most `reach`, plus `skin`. Pieces far apart may approach each other by more than the skin.
-    pub(super) fn new(pieces: &[u32], places: &[V3], u: &[f64], skin: f64, reach: f64) -> Self {
-        let points = places.len();
-        let count = pieces.iter().max().map_or(1, |most| *most as usize + 1);
-        let one = count > MOST || count == 1;
+    /// distance, at most `reach`, plus `skin`. Pieces far apart may approach each other by more than the skin. All
+    /// processes must call it together.
+    pub(super) fn new(
+        pieces: &Pieces,
+        (domain, dimension): (&Domain, usize),
+        (places, u): (&[V3], &[f64]),
+        skin: f64,
+        reach: f64,
+    ) -> Self {
+        let one = pieces.count > MOST || pieces.count <= 1;
         let mut ranges = Self {
             u: u.to_vec(),
-            piece: if one { Vec::new() } else { pieces.to_vec() },
-            pieces: if one { 1 } else { count },
-            points,
+            piece: if one {
+                Vec::new()
+            } else {
+                pieces.of_point.clone()
+            },
+            pieces: if one { 1 } else { pieces.count },
+            points: places.len(),
+            dimension,
             allowed: Vec::new(),
         };
         let mut boxes = vec![Span::NOTHING; ranges.pieces];
         for (i, place) in places.iter().enumerate() {
-            let own = &mut boxes[ranges.piece_of(i)];
-            (0..3).for_each(|c| own.add(c, place[c]));
+            boxes[ranges.piece_of(i)].add_place(*place);
         }
+        Span::agree(&mut boxes, domain);
         for p in 0..ranges.pieces {
             for q in 0..ranges.pieces {
                 let free = boxes[p].gap(&boxes[q]).sqrt() - reach;
@@ -97,9 +69,10 @@ impl Ranges {
         self.piece.get(i).map_or(0, |piece| *piece as usize)
     }
 
-    /// Returns whether no point has moved too far relative to another at displacement u.
-    pub(super) fn are_kept(&self, u: &[f64]) -> bool {
-        let (n, dimension) = (self.points, u.len() / self.points.max(1));
+    /// Returns whether no point has moved too far relative to another at displacement u: the same for all processes, which
+    /// must call it together.
+    pub(super) fn are_kept(&self, u: &[f64], domain: &Domain) -> bool {
+        let (n, dimension) = (self.points, self.dimension);
         let of_block = |block: usize| {
             let mut spans = [Span::NOTHING; MOST];
             let own = block * BLOCK..((block + 1) * BLOCK).min(n);
@@ -128,7 +101,8 @@ impl Ranges {
             a
         };
         let blocks = (0..n.div_ceil(BLOCK)).into_par_iter();
-        let spans = blocks.map(of_block).reduce(nothing, merged);
+        let mut spans = blocks.map(of_block).reduce(nothing, merged);
+        Span::agree(&mut spans[..self.pieces], domain);
         let pairs = (0..self.pieces).flat_map(|p| (p..self.pieces).map(move |q| [p, q]));
         let mut pairs = pairs.map(|[p, q]| {
             let apart = spans[p].spread(&spans[q], dimension);

@@ -2,10 +2,13 @@
 
 use rayon::prelude::*;
 
+use pericles::domain::Domain;
 use pericles::operator::{Breakable, Force};
 use pericles::parallel::{BLOCK, for_each_point};
 
+use super::Pieces;
 use super::cells::Cells;
+use super::nearby::Nearby;
 use super::ranges::Ranges;
 use crate::bodies::Touching;
 use crate::law::ContactPairs;
@@ -15,9 +18,12 @@ use crate::vector::{dot, minus};
 /// by more than the skin, they contain all pairs in contact.
 ///
 /// Rows contain both ends of each pair, in ascending order, so that forces do not depend on the list: candidates that do
-/// not touch add nothing. The list is therefore not part of a checkpoint.
+/// not touch add nothing. The list is therefore not part of a checkpoint. Of several processes each has the rows of its own
+/// points.
 #[derive(Debug, Clone)]
 pub(super) struct Candidates {
+    /// Own points, and those of other processes near them.
+    nearby: Nearby,
     /// First entry of each row.
     starts: Vec<usize>,
     near: Vec<u32>,
@@ -39,21 +45,26 @@ fn bonds<'a>(touching: &Touching, forces: &'a dyn Force) -> Option<&'a dyn Break
 }
 
 impl Candidates {
-    /// Searches all pairs at displacement u.
+    /// Searches all pairs of own points at displacement u. All processes must call it together.
     pub(super) fn search(
-        touching: &Touching,
-        pieces: &[u32],
+        own: &Touching,
+        pieces: &Pieces,
         u: &[f64],
         skin: f64,
         forces: &dyn Force,
     ) -> Self {
-        let n = touching.cloud.len();
-        let places = for_each_point(n, &|i| touching.place(u, i));
-        let largest = touching.size.iter().copied().fold(0.0, f64::max);
-        let reach = touching.law.distance * largest;
-        let ranges = Ranges::new(pieces, &places, u, skin, reach);
+        let (n, dimension) = (own.cloud.len(), own.cloud.dimension());
+        let domain = own.cloud.domain();
+        let mut places = for_each_point(n, &|i| own.place(u, i));
+        let largest = domain.max(own.size.iter().copied().fold(0.0, f64::max));
+        let reach = own.law.distance * largest;
+        let ranges = Ranges::new(pieces, (domain, dimension), (&places, u), skin, reach);
         let most = reach + skin;
-        let cells = Cells::new(&places, touching.cloud.dimension(), most);
+        let nearby = Nearby::find(own, &places, most);
+        let touching = nearby.touching(own);
+        let all = nearby.vector(u);
+        places.extend((n..touching.cloud.len()).map(|i| touching.place(&all, i)));
+        let cells = Cells::new(&places, dimension, most);
         let of_block = |block: usize| {
             let (mut near, mut lengths) = (Vec::new(), Vec::new());
             for i in block * BLOCK..((block + 1) * BLOCK).min(n) {
@@ -65,7 +76,10 @@ impl Candidates {
                         near.push(other.point);
                     }
                 });
-                near[first..].sort_unstable();
+                match nearby.are_own() {
+                    true => near[first..].sort_unstable(),
+                    false => near[first..].sort_unstable_by_key(|&j| nearby.number(j)),
+                }
                 lengths.push(near.len() - first);
             }
             (near, lengths)
@@ -83,24 +97,31 @@ impl Candidates {
             near.extend(own);
         }
         let mut candidates = Self {
-            open: vec![bonds(touching, forces).is_none(); near.len()],
+            open: vec![bonds(own, forces).is_none(); near.len()],
+            nearby,
             starts,
             near,
             exposed: Vec::new(),
             ranges,
             broken: Vec::new(),
         };
-        if let Some(bonds) = bonds(touching, forces) {
+        if let Some(bonds) = bonds(own, forces) {
             bonds.for_each_broken_count(&mut |_, count| candidates.broken.push(count));
-            candidates.close_bonded(touching, forces, std::slice::from_ref(&(0..n)));
+            candidates.close_bonded(own, forces, std::slice::from_ref(&(0..n)));
         }
         candidates.find_exposed();
         candidates
     }
 
-    /// Returns whether the list contains all pairs in contact at displacement u.
-    pub(super) fn contains_contacts(&self, u: &[f64]) -> bool {
-        self.ranges.are_kept(u)
+    /// Returns whether the lists of all processes contain all pairs in contact at displacement u. All processes must call it
+    /// together.
+    pub(super) fn contains_contacts(&self, u: &[f64], domain: &Domain) -> bool {
+        self.ranges.are_kept(u, domain)
+    }
+
+    /// The points in the rows: own points and those of other processes near them.
+    pub(super) fn nearby(&self) -> &Nearby {
+        &self.nearby
     }
 
     /// Returns whether bonds broke since the list was last brought up to date.
@@ -150,6 +171,8 @@ impl Candidates {
             })
             .collect();
         let (starts, near, before) = (&self.starts, &self.near, &self.open);
+        // Points of other processes have other places among the ghosts of the bonds: the numbers in the whole body are common.
+        let (domain, nearby) = (touching.cloud.domain(), &self.nearby);
         let of_block = |block: &std::ops::Range<usize>| {
             let mut open = before[starts[block.start]..starts[block.end]].to_vec();
             if let Some(bonds) = bonds(touching, forces) {
@@ -164,10 +187,11 @@ impl Candidates {
                         continue;
                     }
                     own.fill(true);
+                    let [low, high] = [low, high].map(|j| nearby.number(j));
                     bonds.for_each_intact_of(i, &mut |j| {
-                        let j = j as u32;
+                        let j = domain.number(j);
                         if (low..=high).contains(&j)
-                            && let Ok(k) = row.binary_search(&j)
+                            && let Ok(k) = row.binary_search_by_key(&j, |&k| nearby.number(k))
                         {
                             own[k] = false;
                         }
@@ -191,7 +215,7 @@ impl Candidates {
         self.exposed = (0..n).into_par_iter().filter(exposed).collect();
     }
 
-    /// Points that may touch others, ascending.
+    /// Own points that may touch others, ascending.
     pub(super) fn exposed(&self) -> &[u32] {
         &self.exposed
     }
@@ -204,9 +228,9 @@ impl Candidates {
         entries.filter(|(_, open)| **open).map(|(j, _)| *j as usize)
     }
 
-    /// Number of pairs that may touch.
-    pub(super) fn pairs(&self) -> u64 {
-        self.open.iter().filter(|open| **open).count() as u64 / 2
+    /// Number of open entries: each pair that may touch is counted once for each own point.
+    pub(super) fn entries(&self) -> u64 {
+        self.open.iter().filter(|open| **open).count() as u64
     }
 }
 

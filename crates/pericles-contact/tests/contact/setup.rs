@@ -168,8 +168,33 @@ impl Grain {
     }
 }
 
-/// Two discs of `radius` cells in the plane, the second one turned by 0.3 and beside the first one's axis, that fly towards
-/// each other with `speed` relative to the speed of sound; bonds break at `critical`.
+/// Distance of the centres of two discs of `radius` cells.
+fn apart(radius: f64) -> f64 {
+    2.0 * radius + 1.5
+}
+
+/// The points of two discs of `radius` cells in the plane, the second one turned by 0.3 and beside the first one's axis.
+pub fn disc_points(radius: f64) -> Arc<PointCloud> {
+    let reach = radius.ceil() as i32;
+    let (mut x, mut y) = (Vec::new(), Vec::new());
+    for (number, angle) in [(0, 0.0f64), (1, 0.3)] {
+        for i in -reach..=reach {
+            for j in -reach..=reach {
+                let (a, b) = (f64::from(i), f64::from(j));
+                if a * a + b * b <= radius * radius {
+                    let (sin, cos) = angle.sin_cos();
+                    x.push(cos * a - sin * b + f64::from(number) * apart(radius));
+                    y.push(sin * a + cos * b + f64::from(number) * 0.4 * radius);
+                }
+            }
+        }
+    }
+    let n = x.len();
+    x.extend(y);
+    Arc::new(PointCloud::new(2, x, vec![1.0; n], 1.0).unwrap())
+}
+
+/// Two discs that fly towards each other with `speed` relative to the speed of sound; bonds break at `critical`.
 pub fn discs(
     radius: f64,
     speed: f64,
@@ -177,31 +202,30 @@ pub fn discs(
     law: ContactLaw,
     skin: f64,
 ) -> (System, State) {
-    let reach = radius.ceil() as i32;
-    let (mut x, mut y, mut piece, mut v) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    let apart = 2.0 * radius + 1.5;
-    for (number, angle) in [(0, 0.0f64), (1, 0.3)] {
-        for i in -reach..=reach {
-            for j in -reach..=reach {
-                let (a, b) = (f64::from(i), f64::from(j));
-                if a * a + b * b <= radius * radius {
-                    let (sin, cos) = angle.sin_cos();
-                    x.push(cos * a - sin * b + f64::from(number) * apart);
-                    y.push(sin * a + cos * b + f64::from(number) * 0.4 * radius);
-                    piece.push(number as u32);
-                    v.push(if number == 0 { speed } else { 0.0 });
-                }
-            }
-        }
-    }
-    let n = x.len();
-    x.extend(y);
-    let cloud = Arc::new(PointCloud::new(2, x, vec![1.0; n], 1.0).unwrap());
+    colliding(disc_points(radius), radius, speed, critical, law, skin)
+}
+
+/// As [`discs`], from their points or a part of them.
+pub fn colliding(
+    cloud: Arc<PointCloud>,
+    radius: f64,
+    speed: f64,
+    critical: f64,
+    law: ContactLaw,
+    skin: f64,
+) -> (System, State) {
+    let (n, middle) = (cloud.len(), 0.5 * apart(radius));
+    let piece: Vec<u32> = (0..n)
+        .map(|i| u32::from(cloud.point(i)[0] > middle))
+        .collect();
+    let v = piece
+        .iter()
+        .map(|&piece| if piece == 0 { speed } else { 0.0 });
+    let v: Vec<f64> = v.collect();
     let mut material = BondMaterial::new(ElasticModulus::Young(1.0), 1.0, 3.0);
     if critical.is_finite() {
         material = material.with_critical_stretch(critical);
     }
-    let middle = 0.5 * apart;
     let mut system = Body::new(cloud.clone(), material)
         .stress_state(StressState::PlaneStress)
         .crack(Crack::Segment {

@@ -344,11 +344,9 @@ impl<const D: usize> Breakable for CorrespondenceForce<D> {
 
     fn for_each_intact_of(&self, i: usize, visit: &mut dyn FnMut(usize)) {
         let sites = self.bonds.list.sites();
-        self.bonds.for_each::<D>(i, self.bits(i), |bond| {
-            if let Some(j) = sites.own_point(bond.site) {
-                visit(j);
-            }
-        });
+        let bits = self.bits(i);
+        self.bonds
+            .for_each::<D>(i, bits, |bond| visit(sites.point(bond.site)));
     }
 
     fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]) {

@@ -42,7 +42,7 @@ pub trait Breakable {
     fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize));
 
     /// Calls `visit` with the other end of each intact bond of point i, in any order. Points that other processes own
-    /// are left out.
+    /// are counted after the own points, as in [`Domain::number`](crate::domain::Domain::number).
     fn for_each_intact_of(&self, i: usize, visit: &mut dyn FnMut(usize));
 
     /// Calls `visit` with ranges of points that together contain all points, and the number of directed bonds that

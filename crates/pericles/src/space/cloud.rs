@@ -278,27 +278,26 @@ impl PointCloud {
         }
     }
 
-    /// Returns own points and ghosts as points of a single process. All processes must call it together.
-    pub(super) fn with_ghost_points(&self) -> Self {
-        let axis = |c: usize| self.domain.with_ghosts(self.axis(c));
+    /// Returns own points and the ghosts of a domain, that of the cloud or another one with the same own points, as points of a
+    /// single process. All processes must call it together.
+    #[must_use]
+    pub fn with_ghosts_of(&self, domain: &Domain) -> Self {
+        let axis = |c: usize| domain.with_ghosts(self.axis(c));
         let positions: Vec<f64> = (0..self.dimension)
             .flat_map(|c| axis(c).into_owned())
             .collect();
         let lattice = self.lattice.as_ref().map(|lattice| {
             let nodes: Vec<f64> = lattice.node.iter().map(|&node| f64::from(node)).collect();
-            let nodes = self.domain.with_ghosts(&nodes);
+            let nodes = domain.with_ghosts(&nodes);
             Lattice {
                 node: nodes.iter().map(|&node| node as u32).collect(),
                 ..lattice.clone()
             }
         });
-        let volumes = self.domain.with_ghosts(&self.volumes).into_owned();
+        let volumes = domain.with_ghosts(&self.volumes).into_owned();
         let pieces: Vec<f64> = self.pieces.iter().map(|&piece| f64::from(piece)).collect();
         let pieces = match self.has_pieces() {
-            true => self
-                .domain
-                .with_ghosts(&pieces)
-                .iter()
+            true => (domain.with_ghosts(&pieces).iter())
                 .map(|&piece| piece as u32)
                 .collect(),
             false => Vec::new(),

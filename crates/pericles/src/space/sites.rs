@@ -59,7 +59,7 @@ impl Sites {
                 });
             }
         }
-        let points = cloud.with_ghost_points();
+        let points = cloud.with_ghosts_of(domain);
         let shifts = match (cloud.is_periodic(), points.lattice()) {
             (true, Some(lattice)) => images(cloud.dimension(), lattice, reach),
             _ => vec![

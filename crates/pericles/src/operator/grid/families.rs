@@ -178,14 +178,14 @@ impl<const D: usize> Families<'_, D> {
         }
     }
 
-    /// Calls `visit` with the other end of each intact bond of point i.
+    /// Calls `visit` with the other end of each intact bond of point i; ghosts are counted after the own points.
     pub fn for_each_intact_of(self, i: usize, visit: &mut dyn FnMut(usize)) {
-        let (n, offsets) = (self.cloud.len(), self.stencil.offsets());
+        let offsets = self.stencil.offsets();
         let (place, intact) = self.bonds_of(i);
         for k in intact {
             let there = place.wrapping_add_signed(offsets[k].shift);
             let j = self.layout.point_at(there);
-            if j < n && j != i {
+            if j != i {
                 visit(j);
             }
         }

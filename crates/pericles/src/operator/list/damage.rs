@@ -86,9 +86,7 @@ impl<L: VectorLaw, const D: usize> Breakable for BondForce<L, D> {
     fn for_each_intact_of(&self, i: usize, visit: &mut dyn FnMut(usize)) {
         let (family, sites) = (self.bonds.family(i), self.bonds.sites());
         let intact = family.filter(|&(entry, _)| self.is_intact(i, entry));
-        intact
-            .filter_map(|(_, b)| sites.own_point(b))
-            .for_each(visit);
+        intact.for_each(|(_, b)| visit(sites.point(b)));
     }
 
     fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]) {

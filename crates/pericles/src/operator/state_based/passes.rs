@@ -266,9 +266,7 @@ impl<L: Kinematics, const D: usize> Breakable for LinearSolidForce<L, D> {
     fn for_each_intact_of(&self, i: usize, visit: &mut dyn FnMut(usize)) {
         let (family, sites) = (self.bonds.family(i), self.bonds.sites());
         let intact = family.filter(|&(entry, _)| self.is_intact(i, entry));
-        intact
-            .filter_map(|(_, b)| sites.own_point(b))
-            .for_each(visit);
+        intact.for_each(|(_, b)| visit(sites.point(b)));
     }
 
     /// The bond energy is that of the work at the end of the last step.
