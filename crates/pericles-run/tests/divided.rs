@@ -2,17 +2,17 @@
 //!
 //! The processes are threads; the communication by MPI is tested by `.ci/mpi`.
 
-use std::collections::BTreeMap;
+mod common;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use common::processes::{assert_same, check, drive, means, resume, run};
 use pericles::domain::{Alone, Comm, Threads};
 use pericles_deck::Deck;
 use pericles_io::OutputFolder;
-use pericles_run::{
-    Assembled, Caching, Cancel, Ending, Event, Means, Run, RunError, Source, shared_folder,
-};
+use pericles_run::{Assembled, Ending, Run, RunError, Source, shared_folder};
 
 /// A notched plate that is torn apart, with two materials, a hole, loads and all tables.
 const PLATE: &str = r#"
@@ -79,88 +79,6 @@ to = ["24 mm", "6 mm"]
 [checkpoint]
 every = 40
 "#;
-
-fn means(comm: Arc<dyn Comm>) -> Means {
-    Means {
-        caching: Caching::Off,
-        comm,
-        ..Means::default()
-    }
-}
-
-/// Runs a deck on one of several processes until its end, or for a number of steps.
-fn run(
-    deck: &str,
-    folder: &Path,
-    comm: Arc<dyn Comm>,
-    stop: Option<u64>,
-) -> Result<Ending, RunError> {
-    let deck = Deck::parse(deck, "deck.toml", &[])?;
-    let source = Source::of_deck(deck, "deck.toml".into());
-    let means = means(comm);
-    let assembled = Assembled::of(&source, &means, &mut |_| {})?;
-    let create = || Ok::<_, RunError>(OutputFolder::create(folder, false)?);
-    let folder = shared_folder(&*means.comm, create)?;
-    drive(Run::begin(&source, assembled, folder)?, stop)
-}
-
-fn drive(mut run: Run, stop: Option<u64>) -> Result<Ending, RunError> {
-    let cancel = Cancel::new();
-    let token = cancel.clone();
-    run.drive(None, &cancel, &mut |event| {
-        if let Event::Step { step, .. } = event
-            && Some(step) == stop
-        {
-            token.cancel();
-        }
-    })
-}
-
-fn resume(folder: &Path, comm: Arc<dyn Comm>) -> Result<Ending, RunError> {
-    let run = Run::resume(folder, &means(comm), &mut |_| {})?;
-    drive(run.expect("the run has not finished"), None)
-}
-
-/// Returns the contents of all files of a folder but `run.json`, which contains times.
-fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    let mut found = BTreeMap::new();
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        let name = path.file_name().unwrap().to_str().unwrap().to_owned();
-        if path.is_dir() {
-            let inner = files(&path).into_iter();
-            found.extend(inner.map(|(inner, bytes)| (format!("{name}/{inner}"), bytes)));
-        } else if name != "run.json" && !name.starts_with('.') {
-            found.insert(name, fs::read(path).unwrap());
-        }
-    }
-    found
-}
-
-fn assert_same(found: &Path, expected: &Path, case: &str) {
-    let (found, expected) = (files(found), files(expected));
-    let names = |of: &BTreeMap<String, Vec<u8>>| of.keys().cloned().collect::<Vec<_>>();
-    assert_eq!(names(&found), names(&expected), "{case}");
-    let differ = |name: &&String| found[*name] != expected[*name];
-    let differ: Vec<&String> = expected.keys().filter(differ).collect();
-    assert!(differ.is_empty(), "{case}: {differ:?} differ");
-}
-
-/// Runs a deck on one process and on several, and compares all files.
-fn check(deck: &str, sizes: &[usize]) {
-    let place = tempfile::tempdir().unwrap();
-    let alone = place.path().join("alone");
-    let ending = run(deck, &alone, Arc::new(Alone), None).unwrap();
-    assert_eq!(ending, Ending::Finished);
-    for &size in sizes {
-        let folder = place.path().join(format!("of-{size}"));
-        let endings = Threads::run(size, |comm| run(deck, &folder, comm, None));
-        for ending in endings {
-            assert_eq!(ending.unwrap(), Ending::Finished);
-        }
-        assert_same(&folder, &alone, &format!("{size} processes"));
-    }
-}
 
 #[test]
 fn a_plate_divided_among_processes_has_the_files_of_one_process() {

@@ -50,6 +50,9 @@ impl<'a> InteractionStep<'a> {
 /// impulse with the outside. Its sign convention is that of forces on the points. Like a force, it acts inside the
 /// evaluation of the acceleration, so that reactions of constrained points contain it.
 ///
+/// If the body is divided among processes, each evaluates the forces on its own points; bodies and energies are the same on all
+/// of them. All processes must call the methods that take a configuration, the end of a step or densities together.
+///
 /// The part that depends on displacements and time only has the potential [`Interaction::energy`]. Dampers, friction
 /// and free bodies act and advance in [`Interaction::end_step`] only, once per accepted step.
 pub trait Interaction: Any + Checkpointed + Send + Sync {

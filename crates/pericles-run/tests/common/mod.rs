@@ -1,6 +1,8 @@
 //! Assembly of decks with located warnings.
 #![allow(dead_code)] // each test uses its part
 
+pub mod processes;
+
 use std::ops::Deref;
 
 use pericles::Simulation;
