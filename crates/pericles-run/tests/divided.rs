@@ -249,3 +249,44 @@ fn schemes_have_the_files_of_one_process() {
         check(&block(material, &scheme), &[3]);
     }
 }
+
+/// The block is torn apart quasi-statically.
+const OPEN: &str = "displacement = [0, 0.2, 0]\n[[constraint]]\nset = \"bottom\"\ndisplacement = [0, 0, 0]\n[time]\nscheme = \"static\"\nload_steps = 4\n";
+
+#[test]
+fn static_states_have_the_files_of_one_process() {
+    let place = tempfile::tempdir().unwrap();
+    for (k, (material, breaking)) in [
+        (BONDS, "worst-first"),
+        (BONDS, "event"),
+        (SOLID, "worst-first"),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        println!("{material}\n{breaking}");
+        let deck = block(material, &format!("{OPEN}breaking = \"{breaking}\""));
+        check(&deck, &[2, 3, 4]);
+        let alone = place.path().join(format!("alone-{k}"));
+        run(&deck, &alone, Arc::new(Alone), None).unwrap();
+        for (before, after) in [(3, 2), (1, 4)] {
+            let folder = place.path().join(format!("{before}-{after}-{k}"));
+            for ending in Threads::run(before, |comm| run(&deck, &folder, comm, Some(2))) {
+                assert_eq!(ending.unwrap(), Ending::Cancelled);
+            }
+            for ending in Threads::run(after, |comm| resume(&folder, comm)) {
+                assert_eq!(ending.unwrap(), Ending::Finished);
+            }
+            // The run that stopped has a further checkpoint.
+            let other = folder.join("checkpoints/step-000000000002.chk");
+            if other.exists() {
+                fs::remove_file(other).unwrap();
+            }
+            assert_same(
+                &folder,
+                &alone,
+                &format!("{before}, then {after} processes"),
+            );
+        }
+    }
+}

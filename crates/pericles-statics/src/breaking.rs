@@ -3,7 +3,7 @@
 use pericles::operator::PointSubset;
 use pericles::{StepEnd, System};
 
-use crate::stretch::{endangered, largest_ratio};
+use crate::stretch::{any_endangered, endangered, largest_ratio};
 
 /// Rule that selects the bonds that break at a static state among those beyond their limits.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -80,7 +80,8 @@ fn enlarged(system: &System, u: &[f64], ties: f64) -> Vec<f64> {
     let by = |share: f64| -> Vec<f64> { u.iter().map(|u| (1.0 + share * ties) * u).collect() };
     let within = |up: &Vec<f64>| {
         let up = endangered(system, up, 1.0);
-        up.iter().zip(&tied).all(|(up, tied)| *tied || !*up)
+        let own = up.iter().zip(&tied).all(|(up, tied)| *tied || !*up);
+        system.domain().all(own)
     };
     let found = SHARES.into_iter().map(by).find(within);
     found.unwrap_or_else(|| u.to_vec())
@@ -111,7 +112,7 @@ enum Scaled {
 }
 
 fn scaled(system: &System, u: &[f64], fraction: f64) -> Scaled {
-    if !endangered(system, u, 1.0).contains(&true) {
+    if !any_endangered(system, u, 1.0) {
         return Scaled::Nothing;
     }
     /// Relative accuracy of the largest stretch, well below the fraction.
@@ -124,7 +125,8 @@ fn scaled(system: &System, u: &[f64], fraction: f64) -> Scaled {
         return Scaled::All;
     }
     let down: Vec<f64> = u.iter().map(|u| u / part).collect();
-    if endangered(system, u, part) == endangered(system, &down, 1.0) {
+    let same = endangered(system, u, part) == endangered(system, &down, 1.0);
+    if system.domain().all(same) {
         Scaled::By(down)
     } else {
         Scaled::All

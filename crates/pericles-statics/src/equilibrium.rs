@@ -1,5 +1,6 @@
 //! Solver for a static state: Newton's method with conjugate gradients.
 
+use pericles::domain::Replicated;
 use pericles::operator::PointSubset;
 use pericles::{Interrupt, IterationProgress, PericlesError, Result, System};
 
@@ -64,6 +65,8 @@ const HALVINGS: u32 = 8;
 pub struct Equilibrium {
     options: StaticOptions,
     free: Vec<f64>,
+    replicated: Replicated,
+    /// Unknowns of the whole body.
     unknowns: Unknowns,
     multigrid: Multigrid,
     pieces: Vec<FreePiece>,
@@ -79,14 +82,16 @@ pub struct Equilibrium {
 }
 
 impl Equilibrium {
-    /// Creates the solver for the intact bonds of a body, with constraints at the entries that are zero in `free`.
+    /// Creates the solver for the intact bonds of a body, with constraints at the entries that are zero in `free`. All
+    /// processes must call it together.
     pub fn new(options: StaticOptions, system: &System, free: Vec<f64>) -> Self {
-        let unknowns = Unknowns::new(system.dimension(), &free);
+        let replicated = Replicated::new(system.domain());
+        let unknowns = Unknowns::new(system.dimension(), &replicated.of(&free));
         let surrogate = Surrogate::new(system);
         let multigrid = surrogate.preconditioner(&unknowns);
         let pieces = free_pieces(system, &surrogate, &unknowns);
         let rigid = if options.fix_rigid_modes {
-            spread(&pieces, system)
+            spread(&pieces, system, &replicated)
         } else {
             Vec::new()
         };
@@ -105,6 +110,7 @@ impl Equilibrium {
             lift: zeros(),
             trial: zeros(),
             trial_residual: zeros(),
+            replicated,
             unknowns,
             free,
         }
@@ -124,12 +130,12 @@ impl Equilibrium {
     ///
     /// # Errors
     /// [`StaticsError::Unconstrained`].
-    pub fn check_support(&self, system: &System) -> Result<()> {
+    pub fn check_support(&self) -> Result<()> {
         match self.pieces.first() {
             Some(piece) if !self.options.fix_rigid_modes => Err(StaticsError::Unconstrained {
                 motions: piece.motions.clone(),
                 points: piece.points.len(),
-                of: system.points(),
+                of: self.replicated.points(),
             }
             .into()),
             _ => Ok(()),
@@ -145,18 +151,22 @@ impl Equilibrium {
         if self.options.fix_rigid_modes {
             return Ok(());
         }
-        let of = system.points();
+        let (of, n) = (self.replicated.points(), system.points());
         let separated = |points: usize| Err(StaticsError::Separated { t, points, of }.into());
-        let loaded = |piece: &&FreePiece| piece.moved_by(load, system.cloud().volumes());
-        if let Some(piece) = self.pieces.iter().find(loaded) {
-            return separated(piece.points.len());
+        if !self.pieces.is_empty() {
+            let whole = self.replicated.of(load);
+            let volumes = self.replicated.of(system.cloud().volumes());
+            let loaded = |piece: &&FreePiece| piece.moved_by(&whole, &volumes);
+            if let Some(piece) = self.pieces.iter().find(loaded) {
+                return separated(piece.points.len());
+            }
         }
-        let mut damage = vec![0.0; of];
+        let mut damage = vec![0.0; n];
         system.operator().damage_into(&mut damage);
-        let loose = |k: usize| self.free[k] * load[k] != 0.0 && damage[k % of] >= 1.0;
-        match (0..load.len()).find(|&k| loose(k)) {
-            Some(_) => separated(1),
-            None => Ok(()),
+        let loose = |k: usize| self.free[k] * load[k] != 0.0 && damage[k % n] >= 1.0;
+        match system.domain().all(!(0..load.len()).any(loose)) {
+            false => separated(1),
+            true => Ok(()),
         }
     }
 
@@ -175,7 +185,7 @@ impl Equilibrium {
         let mut effort = Effort::default();
         let load = self.load_norm(system, target)?;
         let linear = is_linear(system);
-        let mut lifted = self.set_lift(target, u);
+        let mut lifted = self.set_lift(system, target, u);
         let mut norm = self.evaluate(system, target, u, &mut effort);
         let first = norm;
         let mut forcing = FORCING;
@@ -266,8 +276,9 @@ impl Equilibrium {
         Ok(load)
     }
 
-    /// Stores the differences of constrained entries to their prescribed values; returns whether any is not zero.
-    fn set_lift(&mut self, target: &Target<'_>, u: &[f64]) -> bool {
+    /// Stores the differences of constrained entries to their prescribed values; returns whether any of the whole body is not
+    /// zero.
+    fn set_lift(&mut self, system: &System, target: &Target<'_>, u: &[f64]) -> bool {
         let mut any = false;
         for k in 0..u.len() {
             self.lift[k] = if self.free[k] == 0.0 {
@@ -277,7 +288,7 @@ impl Equilibrium {
             };
             any |= self.lift[k] != 0.0;
         }
-        any
+        !system.domain().all(!any)
     }
 
     /// Sets the residual V (f + b) at u and returns its norm on free entries.
@@ -326,6 +337,7 @@ impl Equilibrium {
             system,
             times: [target.t, target.place],
             u,
+            replicated: &self.replicated,
             unknowns: &self.unknowns,
             multigrid: &mut self.multigrid,
             rigid: &self.rigid,

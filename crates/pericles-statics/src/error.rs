@@ -44,6 +44,15 @@ pub enum StaticsError {
         /// Number of points of the body.
         of: usize,
     },
+    /// A divided body with too many unknowns for a preconditioner that every process stores.
+    #[error(
+        "every process stores the preconditioner of the whole body, about 2.5 kB per unknown in space: a divided body may have {} unknowns, this one has {unknowns};          run it on one process with threads, or use scheme = \"adaptive-dynamic-relaxation\" or \"fire\"",
+        crate::MOST_REPLICATED
+    )]
+    TooManyUnknowns {
+        /// Displacement components of all points.
+        unknowns: usize,
+    },
     /// Natural modes are not supported for the system.
     #[error("natural modes are not available for this body: {reason}")]
     NoModes {

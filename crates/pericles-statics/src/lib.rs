@@ -39,6 +39,6 @@ pub use equilibrium::{Effort, Equilibrium, Target};
 pub use error::StaticsError;
 pub use modes::{Mode, ModeGroup, ModeOptions, NaturalModes};
 pub use options::StaticOptions;
-pub use scheme::StaticScheme;
+pub use scheme::{MOST_REPLICATED, StaticScheme};
 pub use tangent::Tangent;
 pub use unknowns::Unknowns;

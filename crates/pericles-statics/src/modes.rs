@@ -1,5 +1,6 @@
 //! Natural frequencies and mode shapes.
 
+use pericles::domain::Replicated;
 use pericles::{Interrupt, Need, Requirement, Result, System};
 
 use crate::block::{combination, symmetric_products};
@@ -76,6 +77,10 @@ impl NaturalModes {
     /// Requirements on a system.
     pub const REQUIREMENTS: &'static [Requirement] = &[
         Requirement::IN_DOUBLES,
+        Requirement {
+            need: Need::WholeBody,
+            reason: "modes are computed on the whole body, but this one is divided among several processes; run it on one process with threads",
+        },
         Requirement {
             need: Need::NoBoundaries,
             reason: "absorbing boundaries and damping layers have no undamped modes; remove the boundary",
@@ -198,7 +203,7 @@ impl<'a> Problem<'a> {
             rigid: Vec::new(),
             products: 0,
         };
-        for mut motion in spread(&pieces, system) {
+        for mut motion in spread(&pieces, system, &Replicated::new(system.domain())) {
             problem.remove_rigid(&mut motion);
             let weighted = problem.weighted(&motion);
             let size = system.domain().dot(&motion, &weighted).sqrt();

@@ -1,7 +1,7 @@
 //! Unconstrained rigid-body motions.
 
 use pericles::System;
-use pericles::domain::Field;
+use pericles::domain::{Domain, Replicated};
 
 use crate::eigen::symmetric_eigen;
 use crate::surrogate::{RigidModes, Surrogate};
@@ -10,7 +10,7 @@ use crate::unknowns::Unknowns;
 /// A connected part of the body with unconstrained rigid-body motions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FreePiece {
-    /// Points, ascending.
+    /// Numbers of its points in the whole body, ascending.
     pub points: Vec<u32>,
     /// Names of the unconstrained motions.
     pub motions: Vec<&'static str>,
@@ -19,7 +19,8 @@ pub struct FreePiece {
 }
 
 impl FreePiece {
-    /// Returns whether a load (N/m³) has a resultant along the motions, and thus sets the part in motion.
+    /// Returns whether a load (N/m³) on the points of the whole body has a resultant along the motions, and thus sets the part
+    /// in motion.
     pub(crate) fn moved_by(&self, load: &[f64], volumes: &[f64]) -> bool {
         /// Part of the norm of the load: a smaller resultant is due to rounding.
         const BALANCED: f64 = 1e-9;
@@ -38,11 +39,11 @@ impl FreePiece {
 }
 
 /// Returns the connected parts of two or more points that have rigid-body motions compatible with the
-/// constrained entries.
+/// constrained entries. `unknowns` are those of the whole body. All processes must call it together.
 pub fn free_pieces(system: &System, surrogate: &Surrogate, unknowns: &Unknowns) -> Vec<FreePiece> {
     let d = system.dimension();
-    let positions = system.cloud().positions();
-    let n = system.points();
+    let positions = surrogate.positions();
+    let n = positions.len() / d;
     let rotates = surrogate.rotations(d);
     let mut free = Vec::new();
     for points in pieces(system, surrogate) {
@@ -67,58 +68,101 @@ pub fn free_pieces(system: &System, surrogate: &Surrogate, unknowns: &Unknowns) 
     free
 }
 
-/// Returns the motions of free parts as vectors on the whole body.
-pub(crate) fn spread(pieces: &[FreePiece], system: &System) -> Vec<Vec<f64>> {
-    let (n, d) = (system.points(), system.dimension());
+/// Returns the motions of free parts as vectors on own points.
+pub(crate) fn spread(
+    pieces: &[FreePiece],
+    system: &System,
+    replicated: &Replicated,
+) -> Vec<Vec<f64>> {
+    let (n, d) = (replicated.points(), system.dimension());
     let mut all = Vec::new();
     for piece in pieces {
         let own = piece.points.len();
         for motion in &piece.basis {
-            let mut vector = vec![0.0; n * d];
-            for c in 0..d {
-                for (k, &i) in piece.points.iter().enumerate() {
-                    vector[c * n + i as usize] = motion[c * own + k];
+            let mut vector = vec![0.0; d * system.points()];
+            replicated.fill_own(&mut vector, |whole| {
+                for c in 0..d {
+                    for (k, &i) in piece.points.iter().enumerate() {
+                        whole[c * n + i as usize] = motion[c * own + k];
+                    }
                 }
-            }
+            });
             all.push(vector);
         }
     }
     all
 }
 
-/// Returns the connected parts of the body.
-fn pieces(system: &System, surrogate: &Surrogate) -> Vec<Vec<u32>> {
-    let n = system.points();
-    let mut root: Vec<u32> = (0..n as u32).collect();
-    fn find(root: &mut [u32], mut i: u32) -> u32 {
+/// Disjoint sets of points, each of which is known by its first point.
+struct Sets(Vec<u32>);
+
+impl Sets {
+    /// Creates a set for each point.
+    fn new(points: usize) -> Self {
+        Self((0..points as u32).collect())
+    }
+
+    /// Returns the first point of the set of a point.
+    fn first(&mut self, mut i: u32) -> u32 {
+        let root = &mut self.0;
         while root[i as usize] != i {
             root[i as usize] = root[root[i as usize] as usize];
             i = root[i as usize];
         }
         i
     }
-    let mut join = |a: usize, b: usize| {
-        let (a, b) = (find(&mut root, a as u32), find(&mut root, b as u32));
+
+    fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.first(a as u32), self.first(b as u32));
         let (low, high) = (a.min(b), a.max(b));
-        root[high as usize] = low;
-    };
-    match system.operator().as_bonds() {
+        self.0[high as usize] = low;
+    }
+}
+
+/// Returns the connected parts of the body.
+fn pieces(system: &System, surrogate: &Surrogate) -> Vec<Vec<u32>> {
+    let domain = system.domain();
+    let whole = surrogate.positions().len() / system.dimension();
+    let sets = match system.operator().as_bonds() {
         Some(view) => {
-            let rest = vec![0.0; n * system.dimension()];
-            for i in 0..n {
-                view.for_each_bond(Field::new(&rest, &[]), i, &mut |bond| {
-                    if bond.neighbour < n {
-                        join(i, bond.neighbour);
-                    }
-                });
+            let mut own = Sets::new(domain.owned_points() + domain.ghost_points());
+            for i in 0..system.points() {
+                view.for_each_undeformed(i, &mut |bond| own.join(i, bond.neighbour));
+            }
+            match domain.is_divided() {
+                false => own,
+                true => of_all_processes(domain, own, whole),
             }
         }
-        None => surrogate.for_each_pair(&mut join),
+        None => {
+            let mut sets = Sets::new(whole);
+            surrogate.for_each_pair(&mut |a, b| sets.join(a, b));
+            sets
+        }
+    };
+    members(sets)
+}
+
+/// Returns the sets of all points from those of the points of each process and its ghosts.
+fn of_all_processes(domain: &Domain, mut own: Sets, whole: usize) -> Sets {
+    let points = own.0.len() as u32;
+    let pair = |k: u32| [k, own.first(k)];
+    let joined = (0..points).map(pair).filter(|[k, first]| k != first);
+    let numbers = joined.flatten().map(|k| domain.number(k as usize) as f64);
+    let messages = domain.collect_everywhere(numbers.collect());
+    let mut sets = Sets::new(whole);
+    for pair in messages.iter().flat_map(|message| message.chunks_exact(2)) {
+        sets.join(pair[0] as usize, pair[1] as usize);
     }
+    sets
+}
+
+/// Returns the points of each set, ascending.
+fn members(mut sets: Sets) -> Vec<Vec<u32>> {
+    let n = sets.0.len();
     let mut members: Vec<Vec<u32>> = vec![Vec::new(); n];
     for i in 0..n as u32 {
-        let first = find(&mut root, i);
-        members[first as usize].push(i);
+        members[sets.first(i) as usize].push(i);
     }
     members.retain(|points| !points.is_empty());
     members

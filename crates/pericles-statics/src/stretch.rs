@@ -11,6 +11,13 @@ pub(crate) fn endangered(system: &System, u: &[f64], part: f64) -> Vec<bool> {
     marks
 }
 
+/// Returns whether a point of the whole body has a bond beyond the fraction `part` of its critical stretch.
+pub(crate) fn any_endangered(system: &System, u: &[f64], part: f64) -> bool {
+    !system
+        .domain()
+        .all(!endangered(system, u, part).contains(&true))
+}
+
 /// Largest ratio that is determined.
 const LARGEST: f64 = 1e12;
 const SMALLEST: f64 = 1e-12;
@@ -18,7 +25,7 @@ const SMALLEST: f64 = 1e-12;
 /// Returns a lower bound of the largest ratio of stretch to critical stretch of breakable bonds, to a
 /// relative `accuracy`; `None` if no bond is stretched or the ratio exceeds 1e12.
 pub(crate) fn largest_ratio(system: &System, u: &[f64], accuracy: f64) -> Option<f64> {
-    largest(accuracy, |part| endangered(system, u, part).contains(&true))
+    largest(accuracy, |part| any_endangered(system, u, part))
 }
 
 /// Returns the factor by which the displacements may be multiplied until the first bond breaks, to a relative
@@ -27,7 +34,7 @@ pub(crate) fn largest_ratio(system: &System, u: &[f64], accuracy: f64) -> Option
 pub(crate) fn load_factor(system: &System, u: &[f64], accuracy: f64) -> Option<f64> {
     let breaks = |factor: f64| {
         let scaled: Vec<f64> = u.iter().map(|u| factor * u).collect();
-        endangered(system, &scaled, 1.0).contains(&true)
+        any_endangered(system, &scaled, 1.0)
     };
     let factor = 1.0 / largest_ratio(system, u, accuracy)?;
     let margin = 10.0 * accuracy;

@@ -1,6 +1,7 @@
 //! Tangent stiffness of a body as a linear problem.
 
 use pericles::System;
+use pericles::domain::Replicated;
 
 use crate::chunks::for_each_chunk;
 use crate::krylov::LinearProblem;
@@ -15,7 +16,9 @@ pub struct Tangent<'a> {
     pub times: [f64; 2],
     /// Displacement at which the force is linearised, m.
     pub u: &'a [f64],
-    /// The free entries.
+    /// Makes vectors of the whole body.
+    pub replicated: &'a Replicated,
+    /// The free entries of the whole body.
     pub unknowns: &'a Unknowns,
     /// The preconditioner.
     pub multigrid: &'a mut Multigrid,
@@ -32,9 +35,11 @@ impl LinearProblem for Tangent<'_> {
 
     fn precondition_into(&mut self, residual: &[f64], out: &mut [f64]) {
         let [right, solution] = &mut *self.work;
-        self.unknowns.gather(residual, right);
+        // Every process applies the multigrid of the whole body.
+        self.unknowns.gather(&self.replicated.of(residual), right);
         self.multigrid.apply_into(right, solution);
-        self.unknowns.scatter(solution, out);
+        let scatter = |whole: &mut [f64]| self.unknowns.scatter(solution, whole);
+        self.replicated.fill_own(out, scatter);
         remove(self.system, self.rigid, out);
     }
 }

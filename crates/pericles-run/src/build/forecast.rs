@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use pericles::division::{Share, shares};
-use pericles_deck::{BuildError, Fault, Model};
+use pericles_deck::{BuildError, Fault, Model, Scheme};
+use pericles_statics::{MOST_REPLICATED, StaticsError};
 use serde::Serialize;
 
 use super::assembler::Assembler;
@@ -67,6 +68,9 @@ const NUMBER: f64 = 8.0;
 /// Bytes per point of the whole body and dimension, and per point, while a process takes its part: positions and initial state;
 /// volume, number, owner, weight, cell. Every process creates the whole body.
 const WHOLE: [f64; 2] = [40.0, 60.0];
+/// Bytes per unknown of the whole body in one, two and three dimensions: matrix, prolongations and vectors of the multigrid that
+/// every process of a static run stores.
+const MULTIGRID: [f64; 3] = [400.0, 1000.0, 2500.0];
 
 impl Forecast {
     /// Returns the time of a step, s: that of the largest part and of its exchanges, which are not overlapped.
@@ -113,6 +117,21 @@ impl Assembly {
             1 => 0.0,
             _ => whole * (WHOLE[0] * dimension + WHOLE[1]),
         };
+        // The preconditioner of static states is not divided.
+        let unknowns = whole * dimension;
+        let multigrid = match model.time.scheme {
+            Scheme::Static(_) if processes > 1 => {
+                if unknowns > MOST_REPLICATED as f64 {
+                    let unknowns = unknowns as usize;
+                    return Err(at(
+                        "time.scheme",
+                        StaticsError::TooManyUnknowns { unknowns }.into(),
+                    ));
+                }
+                unknowns * MULTIGRID[cloud.dimension() - 1]
+            }
+            _ => 0.0,
+        };
         let spread = |of: &dyn Fn(&Share) -> f64| Spread::of(shares.iter().map(of));
         let per_own = |count: usize, share: &Share| count as f64 / share.owned as f64;
         Ok(Forecast {
@@ -123,6 +142,7 @@ impl Assembly {
             messages: spread(&|share| share.peers as f64),
             memory: spread(&|share| {
                 created
+                    + multigrid
                     + of_point * share.owned as f64
                     + 2.0 * NUMBER * numbers * share.ghosts as f64
             }),

@@ -172,7 +172,7 @@ impl<const D: usize> TwoPass for CorrespondenceForce<D> {
     /// Returns `None` for a body divided among processes, because the force of a bond requires the families
     /// of both end points.
     fn bonds(&self) -> Option<&dyn BondView> {
-        (!self.cloud.domain().is_divided()).then_some(self)
+        Some(self)
     }
 
     fn directed_bonds(&self) -> u64 {

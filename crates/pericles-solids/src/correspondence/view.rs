@@ -17,6 +17,10 @@ impl<const D: usize> PlasticView for CorrespondenceForce<D> {
 
 /// Each call computes the deformation gradients of a point and its neighbours.
 impl<const D: usize> BondView for CorrespondenceForce<D> {
+    fn has_forces(&self) -> bool {
+        !self.cloud.domain().is_divided()
+    }
+
     fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt)) {
         let (heat, sites) = (self.latest_heat(), self.bonds.list.sites());
         let state = |k: usize| {
@@ -30,6 +34,13 @@ impl<const D: usize> BondView for CorrespondenceForce<D> {
             let mut force = [0.0; D];
             own.add_force(&state(j), &bond, &eta, &mut force);
             visit(BondAt::new(j, bond.xi, eta, force));
+        });
+    }
+
+    fn for_each_undeformed(&self, i: usize, visit: &mut dyn FnMut(BondAt)) {
+        let sites = self.bonds.list.sites();
+        self.bonds.for_each(i, self.bits(i), |bond: Bond<D>| {
+            visit(BondAt::undeformed(sites.point(bond.site), bond.xi));
         });
     }
 }

@@ -11,6 +11,7 @@ use pericles::{
 
 use crate::breaking::BreakingRule;
 use crate::equilibrium::{Effort, Equilibrium};
+use crate::error::StaticsError;
 use crate::events;
 use crate::options::StaticOptions;
 use crate::path::{Follower, LoadStep};
@@ -60,14 +61,14 @@ pub struct StaticScheme {
 
 const NAME: &str = "static";
 
+/// Largest number of unknowns of a body divided among processes: the preconditioner of the whole body is then stored by every
+/// process, about 10 GB in space.
+pub const MOST_REPLICATED: usize = 4_000_000;
+
 impl StaticScheme {
     /// Requirements on a system.
     pub const REQUIREMENTS: &'static [Requirement] = &[
         Requirement::IN_DOUBLES,
-        Requirement {
-            need: Need::WholeBody,
-            reason: "its preconditioner is built on the whole body, but this one is divided among several processes; use adaptive-dynamic-relaxation or fire, or run it on one process with threads",
-        },
         Requirement {
             need: Need::NoBoundaries,
             reason: "static states have no waves to absorb and no velocities to damp; leave the boundary out",
@@ -96,8 +97,12 @@ impl StaticScheme {
             }
             _ => 0.0,
         };
+        let unknowns = system.dimension() * system.domain().whole_points();
+        if system.domain().is_divided() && unknowns > MOST_REPLICATED {
+            return Err(StaticsError::TooManyUnknowns { unknowns }.into());
+        }
         let equilibrium = Equilibrium::new(options, system, free_at(system, supported));
-        equilibrium.check_support(system)?;
+        equilibrium.check_support()?;
         Ok(Self {
             options,
             entries: system.dimension() * system.points(),
@@ -125,14 +130,14 @@ impl StaticScheme {
     fn prepare(&mut self, system: &System, t: f64) -> Result<()> {
         let free = free_at(system, t);
         let broken = system.operator().broken_bonds();
-        let held_anew = free != self.equilibrium.free();
+        let held_anew = !system.domain().all(free == self.equilibrium.free());
         if held_anew || broken != self.broken {
             self.equilibrium = Equilibrium::new(self.options, system, free);
             self.broken = broken;
         }
         // Parts that break off keep their displacement; parts that constraints release must be supported otherwise.
         if held_anew {
-            self.equilibrium.check_support(system)?;
+            self.equilibrium.check_support()?;
         }
         Ok(())
     }
@@ -284,7 +289,7 @@ impl Integrator for StaticScheme {
         let first = state.step == 0;
         let before = state.u.clone();
         // An initial displacement is not a static state: the first load step is a jump.
-        let displaced = first && before.iter().any(|u| *u != 0.0);
+        let displaced = first && !system.domain().all(before.iter().all(|u| *u == 0.0));
         let elastic = if displaced {
             system.stored_energy(state.t, &before)
         } else {

@@ -1,7 +1,7 @@
 //! Neighbours of points in the surrogate.
 
 use pericles::System;
-use pericles::domain::Field;
+use pericles::domain::Domain;
 use pericles::family::pairs_within;
 use pericles::parallel::for_each_point;
 use pericles::space::PointCloud;
@@ -32,48 +32,46 @@ pub(crate) struct Neighbours {
 }
 
 impl Neighbours {
-    /// Selects neighbours from the intact bonds of a body.
-    pub fn of(system: &System) -> Self {
-        let cloud = system.cloud();
-        let n = system.points();
-        let force = system.operator();
-        let chosen: Vec<Vec<Bond>> = match force.as_bonds() {
+    /// Selects neighbours from the intact bonds of a body, whose points are `whole`. Each process of a divided body selects
+    /// those of its own points, and has those of all points. All processes must call it together.
+    pub fn of(system: &System, whole: &PointCloud) -> Self {
+        let domain = system.domain();
+        let chosen: Vec<Vec<Bond>> = match system.operator().as_bonds() {
             Some(view) => {
-                let rest = vec![0.0; n * system.dimension()];
-                for_each_point(n, &|i| {
+                let own = for_each_point(system.points(), &|i| {
                     let mut all = Vec::new();
-                    view.for_each_bond(Field::new(&rest, &[]), i, &mut |bond| {
-                        // Ghosts belong to other processes, which have their own surrogates.
-                        let in_body = bond.neighbour < n && !bond.to_ghost;
-                        if in_body && bond.neighbour != i {
+                    view.for_each_undeformed(i, &mut |bond| {
+                        // Ghosts of surface layers are no points of the body.
+                        if !bond.to_ghost && bond.neighbour != i {
                             all.push(Bond {
-                                neighbour: bond.neighbour as u32,
+                                neighbour: domain.number(bond.neighbour) as u32,
                                 xi: bond.xi,
                             });
                         }
                     });
-                    chosen(cloud, all)
-                })
+                    chosen(whole, all)
+                });
+                of_all_processes(domain, own)
             }
             None => {
                 /// Search radius in spacings for forces without a view of their bonds.
                 const REACH: f64 = 2.5;
-                let (start, neighbours) = pairs_within(cloud, REACH * cloud.spacing());
-                for_each_point(n, &|i| {
+                let (start, neighbours) = pairs_within(whole, REACH * whole.spacing());
+                for_each_point(whole.len(), &|i| {
                     let near = neighbours[start[i]..start[i + 1]].iter();
                     let all = near.filter(|&&j| j as usize != i).map(|&j| {
-                        let (here, there) = (cloud.point(i), cloud.point(j as usize));
+                        let (here, there) = (whole.point(i), whole.point(j as usize));
                         Bond {
                             neighbour: j,
                             xi: std::array::from_fn(|c| there[c] - here[c]),
                         }
                     });
-                    chosen(cloud, all.collect())
+                    chosen(whole, all.collect())
                 })
             }
         };
         let mut symmetric = Self::symmetric(chosen);
-        symmetric.find_periods(cloud);
+        symmetric.find_periods(whole);
         symmetric
     }
 
@@ -128,6 +126,38 @@ impl Neighbours {
     pub fn of_point(&self, i: usize) -> &[Bond] {
         &self.bonds[self.start[i]..self.start[i + 1]]
     }
+}
+
+/// Returns the bonds of all points, in the order of their numbers, from those of own points.
+fn of_all_processes(domain: &Domain, own: Vec<Vec<Bond>>) -> Vec<Vec<Bond>> {
+    if !domain.is_divided() {
+        return own;
+    }
+    /// Numbers of a message per bond.
+    const LENGTH: usize = 4;
+    let of_point = |(i, bonds): (usize, &Vec<Bond>)| -> Vec<f64> {
+        let head = [domain.number(i), bonds.len()].map(|k| k as f64);
+        let numbers = bonds.iter().flat_map(|bond| {
+            let [x, y, z] = bond.xi;
+            [f64::from(bond.neighbour), x, y, z]
+        });
+        head.into_iter().chain(numbers).collect()
+    };
+    let message = own.iter().enumerate().flat_map(of_point).collect();
+    let messages = domain.collect_everywhere(message);
+    let mut all = vec![Vec::new(); domain.whole_points()];
+    for mut left in messages.iter().map(Vec::as_slice) {
+        while let [number, count, after @ ..] = left {
+            let (bonds, next) = after.split_at(LENGTH * *count as usize);
+            let bonds = bonds.chunks_exact(LENGTH).map(|bond| Bond {
+                neighbour: bond[0] as u32,
+                xi: [bond[1], bond[2], bond[3]],
+            });
+            all[*number as usize] = bonds.collect();
+            left = next;
+        }
+    }
+    all
 }
 
 /// Returns whether two bonds to the same point are equal to round-off.

@@ -7,6 +7,10 @@
 //! displacement gradients, equals that of the forces of the body; materials, surfaces and damage therefore
 //! need no special treatment. The springs have Poisson's ratio 1/4 (1/3 in plane stress). For other values
 //! the surrogate is a less accurate preconditioner, but its quality does not depend on the size of the body.
+//!
+//! On a body divided among processes each process selects the springs and evaluates the energies of its own points, and has
+//! the surrogate of the whole body: matrix and multigrid are those of a single process, bit for bit. Their memory per
+//! process does not decrease with the number of processes.
 
 mod bonds;
 mod probe;
@@ -18,6 +22,7 @@ pub use rigid_modes::RigidModes;
 use bonds::{Bond, Neighbours};
 
 use pericles::System;
+use pericles::domain::Replicated;
 
 use crate::multigrid::{Multigrid, NearKernel};
 use crate::sparse::SparseMatrix;
@@ -35,18 +40,21 @@ pub struct Surrogate {
 }
 
 impl Surrogate {
-    /// Creates the surrogate from the intact bonds of a body.
+    /// Creates the surrogate from the intact bonds of a body. Every process of a divided body has the surrogate of the whole
+    /// body, with the same bits as on a single process. All processes must call it together.
     pub fn new(system: &System) -> Self {
-        let cloud = system.cloud();
-        let neighbours = Neighbours::of(system);
+        let cloud = &*system.cloud().whole();
+        let neighbours = Neighbours::of(system, cloud);
         let (traces, resistance) = probe::energies(system, &neighbours);
+        let replicated = Replicated::new(system.domain());
+        let traces = &*replicated.of(&traces);
         let d = system.dimension();
         let volumes = cloud.volumes().to_vec();
         let components = match resistance {
             Resistance::Stretch => 1,
             Resistance::Difference => d,
         };
-        let mut coefficients: Vec<f64> = (0..system.points())
+        let mut coefficients: Vec<f64> = (0..cloud.len())
             .map(|i| {
                 let bonds = neighbours.of_point(i).iter();
                 let moment: f64 = bonds
@@ -74,6 +82,11 @@ impl Surrogate {
             volumes,
             positions: cloud.positions().to_vec(),
         }
+    }
+
+    /// Returns the positions of all points, m.
+    pub(crate) fn positions(&self) -> &[f64] {
+        &self.positions
     }
 
     /// Returns the deformations that bonds resist.

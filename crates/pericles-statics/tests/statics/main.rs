@@ -2,6 +2,7 @@
 
 mod bodies;
 mod breaking;
+mod divided;
 mod equilibrium;
 mod events;
 mod modes;

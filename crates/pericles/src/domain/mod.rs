@@ -13,6 +13,7 @@
 //! for every division. Each process stores its own points in ascending order of these numbers.
 
 mod first;
+mod replicated;
 mod threads;
 mod timed;
 
@@ -23,6 +24,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 pub use first::{collect, distribute};
+pub use replicated::Replicated;
 pub use threads::Threads;
 pub use timed::Timed;
 

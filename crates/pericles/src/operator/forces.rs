@@ -347,9 +347,20 @@ impl SplitForce for Forces {
 }
 
 impl BondView for Forces {
+    fn has_forces(&self) -> bool {
+        let mut views = self.iter().filter_map(|force| force.capabilities().bonds);
+        views.all(|bonds| bonds.has_forces())
+    }
+
     fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt)) {
         for bonds in self.iter().filter_map(|force| force.capabilities().bonds) {
             bonds.for_each_bond(u, i, visit);
+        }
+    }
+
+    fn for_each_undeformed(&self, i: usize, visit: &mut dyn FnMut(BondAt)) {
+        for bonds in self.iter().filter_map(|force| force.capabilities().bonds) {
+            bonds.for_each_undeformed(i, visit);
         }
     }
 }

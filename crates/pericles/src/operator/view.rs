@@ -37,12 +37,26 @@ impl BondAt {
             force: spatial(force),
         }
     }
+
+    /// Creates an undeformed bond without a force.
+    pub fn undeformed<const D: usize>(neighbour: usize, xi: [f64; D]) -> Self {
+        Self::new(neighbour, xi, [0.0; D], [0.0; D])
+    }
 }
 
 /// An operator with access to individual bonds. The access is slow and meant for output.
 pub trait BondView: Sync {
-    /// Calls `visit` for each intact bond of point i at displacement u.
+    /// Returns whether the forces of bonds are known: on a divided body not if they depend on the bonds of ghosts.
+    fn has_forces(&self) -> bool {
+        true
+    }
+
+    /// Calls `visit` for each intact bond of point i at displacement u; requires [`BondView::has_forces`].
     fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt));
+
+    /// Calls `visit` for each intact bond of own point i, undeformed and without its force. It reads the bonds of this
+    /// point only, so that it is available for every body divided among processes.
+    fn for_each_undeformed(&self, i: usize, visit: &mut dyn FnMut(BondAt));
 }
 
 /// An operator whose points can yield.

@@ -1,5 +1,7 @@
 //! Point clouds: the points of a body.
 
+mod whole;
+
 use super::set::{check_resolution, check_set};
 use super::{Lattice, Point, Region};
 use crate::domain::Domain;

@@ -72,16 +72,31 @@ impl BondView for GhostForce {
             }
         });
         bonds.for_each_bond(Field::new(&all, &[]), here, &mut |bond| {
-            let place = bond.neighbour;
-            let ghost = self.ghost_at(place);
-            let nearest = ghost.and_then(|g| self.extrapolation.nearest(g));
-            if let Some(neighbour) = self.numbers[place].or(nearest) {
-                visit(BondAt {
-                    neighbour: neighbour as usize,
-                    to_ghost: ghost.is_some(),
-                    ..bond
-                });
-            }
+            self.of_body(bond).into_iter().for_each(&mut *visit);
         });
+    }
+
+    fn for_each_undeformed(&self, i: usize, visit: &mut dyn FnMut(BondAt)) {
+        let Some(bonds) = self.inner.capabilities().bonds else {
+            return;
+        };
+        let here = self.layer.body()[i] as usize;
+        bonds.for_each_undeformed(here, &mut |bond| {
+            self.of_body(bond).into_iter().for_each(&mut *visit);
+        });
+    }
+}
+
+impl GhostForce {
+    /// Returns a bond of the inner body as one of the body.
+    fn of_body(&self, bond: BondAt) -> Option<BondAt> {
+        let ghost = self.ghost_at(bond.neighbour);
+        let nearest = ghost.and_then(|g| self.extrapolation.nearest(g));
+        let neighbour = self.numbers[bond.neighbour].or(nearest)?;
+        Some(BondAt {
+            neighbour: neighbour as usize,
+            to_ghost: ghost.is_some(),
+            ..bond
+        })
     }
 }

@@ -27,4 +27,13 @@ impl<L: VectorLaw, const D: usize> BondView for GridForce<L, D> {
             visit(BondAt::new(j, offset.xi, eta, force));
         }
     }
+
+    fn for_each_undeformed(&self, i: usize, visit: &mut dyn FnMut(BondAt)) {
+        let (place, left) = self.families().bonds_of(i);
+        for k in left {
+            let offset = &self.stencil.offsets()[k];
+            let there = place.wrapping_add_signed(offset.shift);
+            visit(BondAt::undeformed(self.layout.point_at(there), offset.xi));
+        }
+    }
 }

@@ -160,6 +160,17 @@ impl<L: VectorLaw, const D: usize> BondView for BondForce<L, D> {
             visit(BondAt::new(sites.point(b), xi, eta, force));
         }
     }
+
+    fn for_each_undeformed(&self, i: usize, visit: &mut dyn FnMut(BondAt)) {
+        let (bonds, sites) = (self.view(), self.bonds.sites());
+        let here = sites.of_point(i);
+        for (entry, b) in self.bonds.family(i) {
+            if self.is_intact(i, entry) {
+                let xi: [f64; D] = bonds.vector(here, b);
+                visit(BondAt::undeformed(sites.point(b), xi));
+            }
+        }
+    }
 }
 
 impl<L: VectorLaw, const D: usize> LinearOperator for BondForce<L, D> {

@@ -164,7 +164,7 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidForce<L, D> {
 
     /// Not available for bodies divided among processes: the force of a bond needs the families of both ends.
     fn bonds(&self) -> Option<&dyn BondView> {
-        (!self.cloud.domain().is_divided()).then_some(self)
+        Some(self)
     }
 
     fn directed_bonds(&self) -> u64 {

@@ -88,7 +88,20 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
 
 /// Each call computes the dilatations of a point and its neighbours.
 impl<L: Kinematics, const D: usize> BondView for LinearSolidForce<L, D> {
+    fn has_forces(&self) -> bool {
+        !self.cloud.domain().is_divided()
+    }
+
     fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt)) {
         self.visit_bonds(u, i, &|_, _| 0.0, visit);
+    }
+
+    fn for_each_undeformed(&self, i: usize, visit: &mut dyn FnMut(BondAt)) {
+        let (bonds, here) = (self.view(), self.bonds.site(i));
+        let family = self.bonds.family(i);
+        for (_, b) in family.filter(|&(entry, _)| self.is_intact(i, entry)) {
+            let xi = bonds.vector::<D>(here, b);
+            visit(BondAt::undeformed(self.bonds.sites().point(b), xi));
+        }
     }
 }

@@ -155,4 +155,8 @@ impl<L: VectorLaw, const D: usize> BondView for SofteningForce<L, D> {
             visit(BondAt::new(sites.point(b), xi, eta, force));
         }
     }
+
+    fn for_each_undeformed(&self, i: usize, visit: &mut dyn FnMut(BondAt)) {
+        self.list.for_each_undeformed(i, visit);
+    }
 }

@@ -27,6 +27,10 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
 
 /// Each call computes the dilatations of a point and its neighbours.
 impl<L: Kinematics, const D: usize> BondView for LinearSolidGrid<L, D> {
+    fn has_forces(&self) -> bool {
+        !self.cloud.domain().is_divided()
+    }
+
     fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt)) {
         let pressure = self.pressure_of(u, i);
         let (place, left) = self.families().bonds_of(i);
@@ -40,6 +44,15 @@ impl<L: Kinematics, const D: usize> BondView for LinearSolidGrid<L, D> {
             let s = self.states.stiffness[i] + self.states.stiffness[j];
             let force = force_of_bond::<L, D>(offset.weight, [p, s], offset.xi, eta);
             visit(BondAt::new(j, offset.xi, eta, force));
+        }
+    }
+
+    fn for_each_undeformed(&self, i: usize, visit: &mut dyn FnMut(BondAt)) {
+        let (place, left) = self.families().bonds_of(i);
+        for k in left {
+            let offset = &self.offsets[k];
+            let there = place.wrapping_add_signed(offset.shift);
+            visit(BondAt::undeformed(self.layout.point_at(there), offset.xi));
         }
     }
 }

@@ -248,6 +248,10 @@ impl<L: Kinematics, const D: usize> PlasticView for InelasticSolidForce<L, D> {
 
 /// Bonds have the inelastic stretches at the end of the last step.
 impl<L: Kinematics, const D: usize> BondView for InelasticSolidForce<L, D> {
+    fn for_each_undeformed(&self, i: usize, visit: &mut dyn FnMut(BondAt)) {
+        self.solid.for_each_undeformed(i, visit);
+    }
+
     fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt)) {
         let (bonds, stiffness) = (&self.solid.bonds, &self.solid.states.stiffness);
         let relief = |i: usize, entry: usize| {
