@@ -123,6 +123,7 @@ impl Audit {
         let written = domain.is_first() && history.exists();
         let table = written.then(|| read_csv(history)).transpose()?;
         let rows = table.as_ref().and_then(|table| table.column("balance"));
+        let evaluated_points = domain.count(system.evaluated_points());
         Ok(Self {
             kinetic_energy: energies.kinetic,
             elastic_energy: energies.elastic,
@@ -146,7 +147,7 @@ impl Audit {
             largest_damage: domain.max(damage.fold(0.0, f64::max)),
             energy_drift: balance / energies.work.abs().max(energies.initial.abs()),
             omega_dt: facts.limiting_frequency.map(|omega| omega * facts.dt),
-            evaluated_points: system.evaluated_points(),
+            evaluated_points,
             force_rounding: system.operator().rounding(&simulation.state().u),
             mirror_errors: start.symmetries.errors(simulation),
             static_balance: StaticBalance::of(simulation),
@@ -154,7 +155,7 @@ impl Audit {
             refinement: simulation
                 .integrator()
                 .refinement()
-                .map(|refinement| RefinementAudit::of(&refinement, system)),
+                .map(|refinement| RefinementAudit::of(&refinement, evaluated_points)),
             warnings: Vec::new(),
         })
     }

@@ -119,11 +119,11 @@ fn verlet_step(body: &HighestFrequency) -> f64 {
 }
 
 impl RefinementAudit {
-    /// Evaluates a scheme after the current step.
-    pub fn of(report: &RefinementReport, system: &System) -> Self {
+    /// Evaluates a scheme after the current step, given the number of force evaluations at points of the whole body.
+    pub fn of(report: &RefinementReport, evaluated_points: u64) -> Self {
         let steps = report.steps + report.starting_steps;
         // Every scheme evaluates the initial state.
-        let evaluated = system.evaluated_points().saturating_sub(report.points);
+        let evaluated = evaluated_points.saturating_sub(report.points);
         let everywhere = steps * u64::from(report.ratio) * report.points;
         let verlet = everywhere as f64 / evaluated as f64;
         Self {

@@ -388,7 +388,7 @@ impl<L: SurfaceLaw> Checkpointed for SurfaceForce<L> {
 }
 
 impl<L: SurfaceLaw> LocalForce for SurfaceForce<L> {
-    fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize)) {
+    fn bonded(&self, i: usize, visit: &mut dyn FnMut(usize)) {
         self.bonds.row(i).for_each(|(_, j)| visit(j));
     }
 }

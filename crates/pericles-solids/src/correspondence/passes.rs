@@ -100,12 +100,12 @@ impl<const D: usize> TwoPass for CorrespondenceForce<D> {
         let sites = self.bonds.list.sites();
         let mut points: Vec<usize> = Vec::new();
         self.bonds.for_each::<D>(i, self.bits_at_start(i), |bond| {
-            points.extend(sites.own_point(bond.site).filter(|&j| j != i));
+            points.push(sites.point(bond.site));
         });
         // With periodic images a point may be a neighbour more than once.
         points.sort_unstable();
         points.dedup();
-        points.into_iter().for_each(visit);
+        points.into_iter().filter(|&j| j != i).for_each(visit);
     }
 
     /// Breaks bonds first; plastic flow is computed with the remaining bonds.

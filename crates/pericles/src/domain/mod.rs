@@ -233,6 +233,24 @@ impl Domain {
         Cow::Owned(marks.iter().map(|&mark| mark != 0.0).collect())
     }
 
+    /// Marks the own points whose ghosts are marked on other processes, and returns those that were not marked. `marks` has
+    /// one flag per point, first own points, then ghosts. All processes must call it together.
+    pub fn merge_ghost_marks(&self, marks: &mut [bool]) -> Vec<u32> {
+        let flag = |&mark: &bool| f64::from(u8::from(mark));
+        let of_ghosts = |peer: &Peer| &marks[self.owned..][peer.received.clone()];
+        let received = self.exchange(|peer| of_ghosts(peer).iter().map(flag).collect());
+        let mut new = Vec::new();
+        for (peer, received) in self.peers.iter().zip(&received) {
+            let marked = peer.sent.iter().zip(received);
+            for (&i, _) in marked.filter(|&(_, &mark)| mark != 0.0) {
+                if !std::mem::replace(&mut marks[i as usize], true) {
+                    new.push(i);
+                }
+            }
+        }
+        new
+    }
+
     /// Returns the messages to own points: those of `letters`, which own points send, and those from other
     /// processes. All processes must call it together.
     ///

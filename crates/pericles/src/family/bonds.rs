@@ -315,7 +315,8 @@ impl BondList {
         })
     }
 
-    /// Calls `visit` once for every own point other than i that has a bond with point i.
+    /// Calls `visit` once for every point other than i that has a bond with own point i; ghosts are counted after the
+    /// own points.
     pub(crate) fn for_each_neighbour(&self, i: usize, visit: &mut dyn FnMut(usize)) {
         let family = self.family(i);
         let near = family.filter(|&(entry, _)| self.is_present(entry));
@@ -323,9 +324,7 @@ impl BondList {
             return near.for_each(|(_, j)| visit(j));
         }
         // Through periodic images a point may be a neighbour more than once, and a neighbour of itself.
-        let mut points: Vec<usize> = near
-            .filter_map(|(_, site)| self.sites.own_point(site))
-            .collect();
+        let mut points: Vec<usize> = near.map(|(_, site)| self.sites.point(site)).collect();
         points.sort_unstable();
         points.dedup();
         points.into_iter().filter(|&j| j != i).for_each(visit);

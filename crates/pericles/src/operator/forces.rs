@@ -307,14 +307,19 @@ impl Breakable for Forces {
 }
 
 impl LocalForce for Forces {
-    fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize)) {
+    fn bonded(&self, i: usize, visit: &mut dyn FnMut(usize)) {
         let mut reached = Vec::new();
         for local in self.iter().filter_map(|force| force.capabilities().local) {
-            local.neighbours(i, &mut |j| reached.push(j));
+            local.bonded(i, &mut |j| reached.push(j));
         }
         reached.sort_unstable();
         reached.dedup();
         reached.into_iter().for_each(visit);
+    }
+
+    fn range_in_bonds(&self) -> u32 {
+        let local = self.iter().filter_map(|force| force.capabilities().local);
+        local.map(LocalForce::range_in_bonds).max().unwrap_or(1)
     }
 }
 

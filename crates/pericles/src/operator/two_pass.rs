@@ -59,7 +59,8 @@ pub trait TwoPass: Checkpointed + Send + Sync {
         false
     }
 
-    /// Calls `visit` once for each own point that is bonded to point i.
+    /// Calls `visit` once for each point other than i that is bonded to own point i; ghosts are counted after the own
+    /// points.
     fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize));
 
     /// Ends a step at the displacement `u`: applies the failure criterion to the bonds of the points `on`, at
@@ -180,8 +181,10 @@ impl<F: TwoPass> TwoPassForce<F> {
         (own, ghosts)
     }
 
+    /// Returns the own points that are in `on`, or bonded to a point that is in `on` of its process.
     fn with_neighbours(&self, on: &PointSubset<'_>) -> PointSet {
-        let mut marks = vec![false; self.cloud.len()];
+        let domain = self.cloud.domain();
+        let mut marks = vec![false; self.cloud.len() + domain.ghost_points()];
         let mut mark = |i: usize| {
             marks[i] = true;
             self.force.neighbours(i, &mut |j| marks[j] = true);
@@ -191,6 +194,7 @@ impl<F: TwoPass> TwoPassForce<F> {
             PointSubset::Range(range) => range.clone().for_each(&mut mark),
             PointSubset::Set(points) => points.iter().for_each(|&i| mark(i as usize)),
         }
+        domain.merge_ghost_marks(&mut marks);
         let marked = |i: &u32| marks[*i as usize];
         (0..self.cloud.len() as u32).filter(marked).collect()
     }
@@ -354,19 +358,14 @@ impl<F: TwoPass> DilatationView for TwoPassForce<F> {
     }
 }
 
-/// The values of a neighbour depend on its neighbours, so the force on a point depends on points two bonds
-/// away.
 impl<F: TwoPass> LocalForce for TwoPassForce<F> {
-    fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize)) {
-        let mut near = Vec::new();
-        self.force.neighbours(i, &mut |j| near.push(j));
-        let mut reached = near.clone();
-        for &j in &near {
-            self.force.neighbours(j, &mut |k| reached.push(k));
-        }
-        reached.sort_unstable();
-        reached.dedup();
-        reached.into_iter().filter(|&k| k != i).for_each(visit);
+    fn bonded(&self, i: usize, visit: &mut dyn FnMut(usize)) {
+        self.force.neighbours(i, visit);
+    }
+
+    /// The values of a neighbour depend on its neighbours.
+    fn range_in_bonds(&self) -> u32 {
+        2
     }
 }
 

@@ -177,7 +177,7 @@ impl System {
         &self.ledger
     }
 
-    /// Number of force evaluations at points so far: one evaluation of the whole body counts once per point.
+    /// Number of force evaluations at own points so far: one evaluation of the whole body counts once per point.
     pub fn evaluated_points(&self) -> u64 {
         self.evaluated.get()
     }

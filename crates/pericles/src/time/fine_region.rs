@@ -81,64 +81,98 @@ pub(super) fn check(follow: &Follow) -> Result<()> {
     Ok(())
 }
 
-/// Marks the points of fixed fine regions.
+/// Marks the own points of fixed fine regions. All processes must call it together; they return the same error.
 pub(super) fn mark_regions(
     cloud: &PointCloud,
     force: &dyn LocalForce,
     regions: &[PointSet],
     is_fine: &mut [bool],
 ) -> Result<()> {
+    let domain = cloud.domain();
     for (region, points) in regions.iter().enumerate() {
-        if points.is_empty() {
+        if domain.count(points.len() as u64) == 0 {
             return Err(PericlesError::FineRegionEmpty { region });
         }
-        check_points("the points of a fine region", points, cloud.len())?;
-        for &i in points {
-            if std::mem::replace(&mut is_fine[i as usize], true) {
-                let first = regions
-                    .iter()
-                    .position(|other| other.binary_search(&i).is_ok())
-                    .unwrap_or(region);
-                return Err(PericlesError::FineRegionsOverlap {
-                    first,
-                    second: region,
-                    point: cloud.user_number(i as usize),
-                });
-            }
+        let checked = check_points("the points of a fine region", points, cloud.len());
+        if !domain.all(checked.is_ok()) {
+            return checked.and(Err(PericlesError::OnAnotherProcess));
+        }
+        let taken = points.iter().find(|&&i| is_fine[i as usize]);
+        points.iter().for_each(|&i| is_fine[i as usize] = true);
+        if let Some(error) = overlap(cloud, regions, region, taken) {
+            return Err(error);
         }
         thick_enough(cloud, force, region, points)?;
     }
     Ok(())
 }
 
-/// Checks that a region is at least as thick as its longest bond along every axis, unless the body ends there.
+/// Returns the error of a region if one of its points belongs to an earlier region, with the first of these points over
+/// all processes; `taken` is the first own one.
+fn overlap(
+    cloud: &PointCloud,
+    regions: &[PointSet],
+    region: usize,
+    taken: Option<&u32>,
+) -> Option<PericlesError> {
+    let domain = cloud.domain();
+    let own = taken.map(|&i| {
+        let has_it = |other: &PointSet| other.binary_search(&i).is_ok();
+        let first = regions.iter().position(has_it).unwrap_or(region);
+        let point = cloud.user_number(i as usize);
+        (
+            -(domain.number(i as usize) as f64),
+            [first as f64, point as f64],
+        )
+    });
+    let (measure, numbers) = own.unwrap_or((f64::NEG_INFINITY, [0.0; 2]));
+    if domain.all(own.is_none()) {
+        return None;
+    }
+    let [first, point] = domain.of_largest(measure, numbers).map(|k| k as usize);
+    Some(PericlesError::FineRegionsOverlap {
+        first,
+        second: region,
+        point,
+    })
+}
+
+/// Checks that a region is at least as thick as the force on its points reaches along every axis, unless the body ends
+/// there: the largest length of their bonds, twice that if the force depends on the bonds of neighbours.
 fn thick_enough(
     cloud: &PointCloud,
     force: &dyn LocalForce,
     region: usize,
     points: &[u32],
 ) -> Result<()> {
-    let n = cloud.len();
-    let span = |axis: &[f64], points: &mut dyn Iterator<Item = usize>| {
-        points.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], i| {
-            [low.min(axis[i]), high.max(axis[i])]
-        })
-    };
-    let mut reach: f64 = 0.0;
+    let (domain, dimension) = (cloud.domain(), cloud.dimension());
+    let axes: Vec<_> = (0..dimension)
+        .map(|c| domain.with_ghosts(cloud.axis(c)))
+        .collect();
+    let mut longest: f64 = 0.0;
     for &i in points {
-        let here = cloud.point(i as usize);
-        force.neighbours(i as usize, &mut |j| {
-            let there = cloud.point(j);
-            let square: f64 = (0..3).map(|c| (there[c] - here[c]).powi(2)).sum();
-            reach = reach.max(square);
+        force.bonded(i as usize, &mut |j| {
+            let square: f64 = axes
+                .iter()
+                .map(|axis| (axis[j] - axis[i as usize]).powi(2))
+                .sum();
+            longest = longest.max(square);
         });
     }
-    let reach = reach.sqrt();
-    for c in 0..cloud.dimension() {
+    let reach = f64::from(force.range_in_bonds()) * domain.max(longest).sqrt();
+    for (c, axis) in axes.iter().enumerate() {
+        // Largest coordinates along the axis and against it, over all processes.
+        let span = |points: &mut dyn Iterator<Item = usize>| {
+            let mut ends = [f64::NEG_INFINITY; 2];
+            for i in points {
+                ends = [ends[0].max(-axis[i]), ends[1].max(axis[i])];
+            }
+            domain.max_each(&mut ends);
+            [-ends[0], ends[1]]
+        };
         let half = 0.5 * cloud.cell_side(c);
-        let axis = cloud.axis(c);
-        let own = span(axis, &mut points.iter().map(|&i| i as usize));
-        let body = span(axis, &mut (0..n));
+        let own = span(&mut points.iter().map(|&i| i as usize));
+        let body = span(&mut (0..cloud.len()));
         let ends = own[0] - body[0] < half || body[1] - own[1] < half;
         let extent = own[1] - own[0] + cloud.cell_side(c);
         if !ends && extent < reach * (1.0 - 1e-9) {

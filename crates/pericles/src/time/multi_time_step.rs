@@ -2,7 +2,7 @@
 
 use super::fine_region::Fine;
 use super::interface::{CoarseStep, History, Inside, Interpolant, Predictor};
-use super::refinement::{PARTS_OF_THE_BODY, Refinement, SchemeCost, UNDIVIDED_ZONES};
+use super::refinement::{PARTS_OF_THE_BODY, Refinement, SchemeCost};
 use super::refinement_report::RefinementReport;
 use super::runge_kutta::{Stages, StepForm};
 use super::zone::Sum;
@@ -66,7 +66,6 @@ struct Work {
 impl MultiTimeStep {
     /// Requirements on the system.
     pub const REQUIREMENTS: &'static [Requirement] = &[
-        UNDIVIDED_ZONES,
         Requirement {
             need: Need::NoMemory,
             reason: "a boundary with memory knows one time step only; use velocity-verlet",
@@ -116,7 +115,7 @@ impl MultiTimeStep {
             inside: Inside::new(interpolant, tableau),
             predictor,
             refinement: Refinement::new(system, cost, ratio, fine)?,
-            everywhere: Zones::all_fine(system.points()),
+            everywhere: Zones::all_fine(system.domain()),
             history: History::new(predictor.levels(order), entries),
             work: Work {
                 stage: array(),
@@ -178,7 +177,7 @@ impl Integrator for MultiTimeStep {
     ) -> Result<()> {
         self.refinement.update(system, state);
         // The first levels of the predictor come from steps that are fine everywhere.
-        let starting = !self.history.is_complete() && !self.refinement.zones.fine.is_empty();
+        let starting = !self.history.is_complete() && self.refinement.zones.count.fine > 0;
         self.refinement.count(starting);
         let step = Step {
             form: &self.form,
@@ -243,9 +242,10 @@ impl Step<'_> {
         let Zones {
             coarse,
             fine_border,
+            count,
             ..
         } = self.zones;
-        if coarse.is_empty() {
+        if count.coarse == 0 {
             return;
         }
         let (n, dt) = (system.points(), self.t_next - self.t);
@@ -304,9 +304,10 @@ impl Step<'_> {
         let Zones {
             fine,
             coarse_border,
+            count,
             ..
         } = self.zones;
-        if fine.is_empty() {
+        if count.fine == 0 {
             return;
         }
         let n = system.points();

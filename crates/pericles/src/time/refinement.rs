@@ -4,7 +4,7 @@ use super::State;
 use super::fine_region::{Fine, Follow, check, mark_regions};
 use super::frequency::{HighestFrequency, highest_frequency_on};
 use super::refinement_report::RefinementReport;
-use super::zones::{Zones, grow};
+use super::zones::{Count, Zones, grow};
 use crate::archive::{Archive, Checkpointed, Counter, Layout, Values};
 use crate::compatibility::{Need, Requirement, require};
 use crate::error::{PericlesError, Result};
@@ -32,7 +32,8 @@ pub(super) struct Refinement {
     stale: bool,
     steps: Counter,
     starting_steps: Counter,
-    /// Sum of the number of fine points over the steps.
+    /// Sum of the number of fine points over the steps. As all counts it is that of the whole body, not of the points
+    /// of a process.
     fine_total: Counter,
     fine_most: u64,
     /// Sum of the number of coarse points next to fine ones over the steps.
@@ -49,12 +50,6 @@ struct Looking {
     now: Vec<f64>,
     marks: Vec<bool>,
 }
-
-/// The requirement of schemes with zones on the division of a body.
-pub(super) const UNDIVIDED_ZONES: Requirement = Requirement {
-    need: Need::WholeBody,
-    reason: "its zones cannot be divided among several processes; use velocity-verlet, or run it on one process with threads",
-};
 
 /// The requirement of all multirate schemes.
 pub(super) const PARTS_OF_THE_BODY: Requirement = Requirement {
@@ -84,7 +79,7 @@ impl Refinement {
             return Err(PericlesError::StepRatio { ratio });
         }
         let force = local(system, &cost)?;
-        let n = system.points();
+        let (n, domain) = (system.points(), system.domain());
         let mut is_fine = vec![false; n];
         let follow = match fine {
             Fine::Fixed(regions) => {
@@ -105,7 +100,7 @@ impl Refinement {
         Ok(Self {
             ratio,
             cost,
-            zones: Zones::new(force, is_fine),
+            zones: Zones::new(force, domain, is_fine),
             follow,
             stale: false,
             steps: Counter::default(),
@@ -123,14 +118,16 @@ impl Refinement {
         }
     }
 
-    /// Checks before a coarse step, when due, where bonds are about to break. Returns whether the zones changed.
+    /// Checks before a coarse step, when due, where bonds are about to break. Returns whether the zones changed in any
+    /// process.
     pub(super) fn update(&mut self, system: &System, state: &State) -> bool {
         let Some(force) = system.operator().as_local() else {
             return false;
         };
+        let domain = system.domain();
         if std::mem::take(&mut self.stale) {
             let marks = std::mem::take(&mut self.zones.is_fine);
-            self.zones = Zones::new(force, marks);
+            self.zones = Zones::new(force, domain, marks);
         }
         let Some(looking) = &mut self.follow else {
             return false;
@@ -139,9 +136,9 @@ impl Refinement {
             return false;
         }
         looking.look(system, force, &state.u);
-        let changed = looking.marks != self.zones.is_fine;
+        let changed = !domain.all(looking.marks == self.zones.is_fine);
         if changed {
-            self.zones = Zones::new(force, looking.marks.clone());
+            self.zones = Zones::new(force, domain, looking.marks.clone());
         }
         changed
     }
@@ -152,18 +149,19 @@ impl Refinement {
             self.starting_steps.add(1);
             return;
         }
-        let fine = self.zones.fine.len() as u64;
+        let Count { fine, border, .. } = self.zones.count;
         self.steps.add(1);
         self.fine_total.add(fine);
         self.fine_most = self.fine_most.max(fine);
-        self.border_total.add(self.zones.coarse_border.len() as u64);
+        self.border_total.add(border);
     }
 
     pub(super) fn report(&self) -> RefinementReport {
-        let points = self.zones.is_fine.len();
+        let points = self.zones.count.points();
         let fraction = |fine: u64| fine as f64 / points as f64;
-        let now = self.zones.fine.len() as u64;
-        let border = self.zones.coarse_border.len() as u64;
+        let Count {
+            fine: now, border, ..
+        } = self.zones.count;
         let steps = self.steps.get();
         let mean = |total: Counter, now: u64| match steps {
             0 => fraction(now),
@@ -172,7 +170,7 @@ impl Refinement {
         RefinementReport {
             ratio: self.ratio,
             stages: self.cost.stages,
-            points: points as u64,
+            points,
             fine_points: now,
             border_points: border,
             steps,
@@ -195,9 +193,10 @@ impl Refinement {
         u: &[f64],
         body: HighestFrequency,
     ) -> Result<HighestFrequency> {
+        let count = self.zones.count;
         // Adaptive regions change during the run.
-        if self.follow.is_some() || self.zones.coarse.is_empty() || self.zones.fine.is_empty() {
-            let ratio = if self.zones.coarse.is_empty() {
+        if self.follow.is_some() || count.coarse == 0 || count.fine == 0 {
+            let ratio = if count.coarse == 0 {
                 f64::from(self.ratio)
             } else {
                 1.0
@@ -290,6 +289,6 @@ impl Looking {
             self.left[i] = self.left[i].saturating_sub(1);
         }
         std::mem::swap(&mut self.damage, &mut self.now);
-        grow(force, &mut self.marks, self.follow.layers);
+        grow(force, system.domain(), &mut self.marks, self.follow.layers);
     }
 }

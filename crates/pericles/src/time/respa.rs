@@ -1,7 +1,7 @@
 //! r-RESPA: velocity Verlet with short steps for some bonds.
 
 use super::fine_region::Fine;
-use super::refinement::{PARTS_OF_THE_BODY, Refinement, SchemeCost, UNDIVIDED_ZONES};
+use super::refinement::{PARTS_OF_THE_BODY, Refinement, SchemeCost};
 use super::refinement_report::RefinementReport;
 use super::zone::{Sum, Zone};
 use super::zones::Zones;
@@ -42,7 +42,6 @@ const NAME: &str = "respa";
 impl Respa {
     /// Requirements on the system.
     pub const REQUIREMENTS: &'static [Requirement] = &[
-        UNDIVIDED_ZONES,
         Requirement {
             need: Need::NoMemory,
             reason: "it applies parts of the force at different times, but a boundary with memory knows one time step only; use velocity-verlet",
@@ -90,15 +89,16 @@ impl Respa {
             fine,
             is_fine,
             is_coarse,
+            count,
             ..
         } = &self.refinement.zones;
         let border = coarse_border.on();
         system.free_acceleration(t, u, &coarse_inner.on(), &mut self.slow);
-        if !coarse_border.is_empty() {
+        if count.border > 0 {
             system.free_acceleration_from(t, u, &border, is_coarse, true, &mut self.slow);
             system.free_acceleration_from(t, u, &border, is_fine, false, &mut self.fast);
         }
-        if !fine.is_empty() {
+        if count.fine > 0 {
             system.free_acceleration(t, u, &fine.on(), &mut self.fast);
         }
     }
@@ -110,6 +110,7 @@ impl Respa {
             fine,
             coarse_border,
             is_fine,
+            count,
             ..
         } = &self.refinement.zones;
         let (n, h) = (system.points(), t_next - t);
@@ -124,7 +125,7 @@ impl Respa {
             path: Path::MeanVelocity(v),
         };
         system.end_step_on(&end, &fine.on(), &mut self.fast);
-        if !coarse_border.is_empty() {
+        if count.border > 0 {
             // Fast bonds were broken from their fine ends.
             let border = coarse_border.on();
             system.free_acceleration_from(t_next, u, &border, is_fine, false, &mut self.fast);
@@ -205,7 +206,7 @@ impl Integrator for Respa {
         system.drive_mean_on(*t, dt, &coarse_inner.on(), v);
         Sum::new().plus(dt, v).add_to(coarse_inner, n, u);
         system.place_on(t_next, &coarse_inner.on(), u);
-        if !self.refinement.zones.fine.is_empty() {
+        if self.refinement.zones.count.fine > 0 {
             for m in 0..ratio {
                 let time = |m: u32| {
                     if m == ratio {
@@ -222,6 +223,7 @@ impl Integrator for Respa {
             coarse_inner,
             coarse_border,
             is_coarse,
+            count,
             ..
         } = &self.refinement.zones;
         self.everywhere
@@ -237,7 +239,7 @@ impl Integrator for Respa {
             path: Path::MeanVelocity(&self.mean),
         };
         system.end_step_on(&end, &coarse_inner.on(), &mut self.slow);
-        if !coarse_border.is_empty() {
+        if count.border > 0 {
             let border = coarse_border.on();
             system.end_step_on_from(&end, &border, is_coarse, true, &mut self.slow);
         }

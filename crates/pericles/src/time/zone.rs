@@ -17,8 +17,8 @@ pub(super) struct Zone {
 }
 
 impl Zone {
-    /// Makes the zone of some points (in ascending order) of a body of n points.
-    pub(super) fn new(points: PointSet, n: usize) -> Self {
+    /// Makes a zone of own points, in ascending order; `whole` if it has all points of the body, of all processes.
+    pub(super) fn new(points: PointSet, whole: bool) -> Self {
         let mut runs: Vec<Range<u32>> = Vec::new();
         for &i in &points {
             match runs.last_mut() {
@@ -39,26 +39,23 @@ impl Zone {
             pieces.push(runs.len());
         }
         Self {
-            whole: points.len() == n,
+            whole,
             points,
             runs,
             pieces,
         }
     }
 
-    /// The zone of all n points.
+    /// The zone of all points, of which the process owns n.
     pub(super) fn all(n: usize) -> Self {
-        Self::new((0..n as u32).collect(), n)
+        Self::new((0..n as u32).collect(), true)
     }
 
     pub(super) fn points(&self) -> &[u32] {
         &self.points
     }
 
-    pub(super) fn len(&self) -> usize {
-        self.points.len()
-    }
-
+    /// Returns whether the process owns no point of the zone; other processes may.
     pub(super) fn is_empty(&self) -> bool {
         self.points.is_empty()
     }
@@ -237,7 +234,7 @@ mod tests {
         let points: PointSet = (0..n as u32)
             .filter(|i| i % 7 != 3 && !(2000..2600).contains(i))
             .collect();
-        let zone = Zone::new(points.clone(), n);
+        let zone = Zone::new(points.clone(), false);
         let mut seen = vec![0.0; 2 * n];
         zone.for_each_run(n, &mut seen, &|out, range| {
             for (out, entry) in out.iter_mut().zip(range) {
@@ -249,8 +246,8 @@ mod tests {
             assert_eq!(seen[entry], if inside { 1.0 + entry as f64 } else { 0.0 });
         }
         assert!(matches!(Zone::all(7).on(), PointSubset::All));
-        assert!(Zone::new(vec![], 7).is_empty());
-        Zone::new(vec![], 7).for_each_run(7, &mut [0.0; 7], &|_, _| panic!("no run"));
+        assert!(Zone::new(vec![], false).is_empty());
+        Zone::new(vec![], false).for_each_run(7, &mut [0.0; 7], &|_, _| panic!("no run"));
     }
 
     #[test]

@@ -33,30 +33,30 @@ use pericles::{
 };
 
 const PAUSE: u64 = 20;
-const STEPS: u64 = 40;
+pub(super) const STEPS: u64 = 40;
 const DT: f64 = 0.2;
 
-type MakeScheme = fn(&System) -> Box<dyn Integrator>;
-type Furnish = fn(&mut System);
-type Part = fn(&PointCloud, Arc<dyn Comm>) -> PointCloud;
+pub(super) type MakeScheme = fn(&System) -> Box<dyn Integrator>;
+pub(super) type Furnish = fn(&mut System);
+pub(super) type Part = fn(&PointCloud, Arc<dyn Comm>) -> PointCloud;
 
 /// A run of a plate, whole or divided.
 #[derive(Clone, Copy)]
-struct Case {
-    name: &'static str,
-    periodic: bool,
+pub(super) struct Case {
+    pub(super) name: &'static str,
+    pub(super) periodic: bool,
     /// Whether bonds break before and after the checkpoint.
-    breaks: bool,
-    force: Make,
-    furnish: Furnish,
-    scheme: MakeScheme,
+    pub(super) breaks: bool,
+    pub(super) force: Make,
+    pub(super) furnish: Furnish,
+    pub(super) scheme: MakeScheme,
 }
 
 const NOTHING: Furnish = |_| {};
 const VERLET: MakeScheme = |_| Box::new(VelocityVerlet);
 
 impl Case {
-    const fn breaking(name: &'static str, force: Make) -> Self {
+    pub(super) const fn breaking(name: &'static str, force: Make) -> Self {
         Self {
             name,
             periodic: false,
@@ -80,7 +80,7 @@ impl Case {
         }
     }
 
-    fn simulation(&self, cloud: PointCloud) -> Simulation {
+    pub(super) fn simulation(&self, cloud: PointCloud) -> Simulation {
         let cloud = Arc::new(cloud);
         let n = cloud.len();
         let force = (self.force)(&cloud);
@@ -137,7 +137,7 @@ const DAMPING: Furnish = |system| {
 };
 
 /// A state-based solid that breaks by bond energy, which each bond accumulates.
-fn solid_of_energy(cloud: &Arc<PointCloud>) -> Box<dyn Force> {
+pub(super) fn solid_of_energy(cloud: &Arc<PointCloud>) -> Box<dyn Force> {
     let material = LinearSolid {
         density: 1.0,
         elastic: GivenConstants {
@@ -224,7 +224,7 @@ fn saved(run: &Simulation) -> Archive {
 }
 
 /// Runs to the end of a step.
-fn proceed(run: &mut Simulation, end: u64) {
+pub(super) fn proceed(run: &mut Simulation, end: u64) {
     run.run(|run| match run.state().step {
         step if step == end => Control::Stop,
         _ => Control::Continue,
@@ -242,7 +242,7 @@ fn alone(case: &Case, whole: &PointCloud) -> [Archive; 2] {
 }
 
 /// Each process owns a stripe; the last one of four has no points.
-fn stripes(cloud: &PointCloud, comm: Arc<dyn Comm>) -> PointCloud {
+pub(super) fn stripes(cloud: &PointCloud, comm: Arc<dyn Comm>) -> PointCloud {
     let owner = |k: usize| {
         let [x, y, _] = cloud.point(k);
         (((x + 0.4 * y) / 9.0) as u32)
@@ -285,9 +285,14 @@ fn broken(archive: &Archive) -> u64 {
 
 #[test]
 fn checkpoints_do_not_depend_on_the_division() {
-    for case in cases() {
+    check(&cases());
+}
+
+/// Checks runs on a single process, on several, and those that another number of processes resumes.
+pub(super) fn check(cases: &[Case]) {
+    for case in cases {
         let whole = plate(case.periodic);
-        let [paused, end] = alone(&case, &whole);
+        let [paused, end] = alone(case, &whole);
         if case.breaks {
             let [paused, end] = [&paused, &end].map(broken);
             let name = case.name;
@@ -315,7 +320,7 @@ fn checkpoints_do_not_depend_on_the_division() {
         proceed(&mut single, STEPS);
         assert_eq!(saved(&single).differences(&end), [""; 0], "{}", case.name);
         for (size, part) in [(1, part as Part), (2, part), (4, part), (4, stripes)] {
-            let found = resumed(&case, &whole, gathered, size, part);
+            let found = resumed(case, &whole, gathered, size, part);
             let differences = found.differences(&end);
             assert_eq!(differences, [""; 0], "{}, {size} processes", case.name);
         }

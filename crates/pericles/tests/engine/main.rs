@@ -7,6 +7,7 @@ mod common;
 mod divided;
 mod divided_bonds;
 mod divided_checkpoints;
+mod divided_zones;
 mod division;
 mod dynamics;
 mod ends;

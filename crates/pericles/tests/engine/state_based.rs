@@ -186,8 +186,7 @@ impl TwoPass for Dilatational {
     }
 
     fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize)) {
-        let own = self.families[i].iter().filter(|&&j| j < self.points);
-        own.for_each(|&j| visit(j));
+        self.families[i].iter().for_each(|&j| visit(j));
     }
 
     fn directed_bonds(&self) -> u64 {
@@ -295,7 +294,7 @@ impl Force for Wall {
 }
 
 impl LocalForce for Wall {
-    fn neighbours(&self, _i: usize, _visit: &mut dyn FnMut(usize)) {}
+    fn bonded(&self, _i: usize, _visit: &mut dyn FnMut(usize)) {}
 }
 
 pericles::saved! {

@@ -31,8 +31,9 @@ impl GhostForce {
     }
 }
 
+/// A bond to a ghost joins a point to all points that determine the displacement of the ghost.
 impl LocalForce for GhostForce {
-    fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize)) {
+    fn bonded(&self, i: usize, visit: &mut dyn FnMut(usize)) {
         let mut points = Vec::new();
         let mut places = Vec::new();
         let ghosts = self.extrapolation.column(i).iter();

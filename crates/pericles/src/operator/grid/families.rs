@@ -155,21 +155,22 @@ impl<const D: usize> Families<'_, D> {
         }
     }
 
-    /// Calls `visit` with both ends of each intact bond, once or twice per bond.
+    /// Calls `visit` with both ends of each intact bond, once or twice per bond: an own point, and an own point or a ghost.
     pub fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
         let (n, offsets) = (self.cloud.len(), self.stencil.offsets());
+        let to_ghosts = self.cloud.domain().ghost_points() > 0;
         for (number, block) in self.blocks.iter().enumerate() {
             let chunks = self.layout.chunks_of(number);
             for (chunk, intact) in chunks.zip(block.intact.chunks(offsets.len())) {
                 let chunk = &self.layout.chunks()[chunk];
-                // Other bonds are visited from their other end.
-                let forward = intact.iter().zip(offsets).filter(|(_, o)| o.shift > 0);
-                for (mask, offset) in forward {
+                // Other bonds are visited from their other end, which another process may own.
+                let wanted = intact.iter().zip(offsets);
+                for (mask, offset) in wanted.filter(|(_, o)| o.shift > 0 || to_ghosts) {
                     for (lane, i) in chunk.points().filter(|(lane, _)| mask >> lane & 1 == 1) {
                         let place = chunk.place as usize * LANES + lane;
                         let there = place.wrapping_add_signed(offset.shift);
                         let j = self.layout.point_at(there);
-                        if j < n && j != i {
+                        if j != i && (offset.shift > 0 || j >= n) {
                             visit(i, j);
                         }
                     }
@@ -191,11 +192,12 @@ impl<const D: usize> Families<'_, D> {
         }
     }
 
-    /// Calls `visit` once for each own point that is initially bonded to point i.
+    /// Calls `visit` once for each point other than i that is initially bonded to own point i; ghosts are counted after the
+    /// own points.
     pub fn for_each_neighbour(&self, i: usize, visit: &mut dyn FnMut(usize)) {
         let place = self.layout.place_of(i);
         let (number, lane) = self.layout.chunk_at(place);
-        let (n, m) = (self.cloud.len(), self.stencil.len());
+        let m = self.stencil.len();
         let mut near = Vec::new();
         for k in 0..m {
             let mut family = self.family(number, k);
@@ -213,7 +215,7 @@ impl<const D: usize> Families<'_, D> {
         }
         if !self.layout.is_of_points() {
             // A point can be a neighbour several times, and its own neighbour.
-            near.retain(|&j| j < n && j != i);
+            near.retain(|&j| j != i);
             near.sort_unstable();
             near.dedup();
         }

@@ -76,7 +76,7 @@ impl<L: VectorLaw, const D: usize> SplitForce for GridForce<L, D> {
 }
 
 impl<L: VectorLaw, const D: usize> LocalForce for GridForce<L, D> {
-    fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize)) {
+    fn bonded(&self, i: usize, visit: &mut dyn FnMut(usize)) {
         self.families().for_each_neighbour(i, visit);
     }
 }

@@ -42,7 +42,7 @@ impl<L: VectorLaw, const D: usize> SplitForce for BondForce<L, D> {
 }
 
 impl<L: VectorLaw, const D: usize> LocalForce for BondForce<L, D> {
-    fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize)) {
+    fn bonded(&self, i: usize, visit: &mut dyn FnMut(usize)) {
         self.bonds.for_each_neighbour(i, visit);
     }
 }

@@ -136,7 +136,7 @@ pub fn highest_frequency_on(
     points.iter().for_each(|&i| held[i as usize] = false);
     let hold = |vector: &mut [f64]| {
         system.hold(vector);
-        for component in vector.chunks_mut(held.len()) {
+        for component in vector.chunks_mut(held.len().max(1)) {
             for (entry, held) in component.iter_mut().zip(&held) {
                 if *held {
                     *entry = 0.0;
