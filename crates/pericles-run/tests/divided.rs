@@ -290,3 +290,78 @@ fn static_states_have_the_files_of_one_process() {
         }
     }
 }
+
+/// Returns the figures of a multirate scheme in `run.json`: before the first step and at the end.
+fn refinement(folder: &Path) -> [serde_json::Value; 2] {
+    let text = fs::read_to_string(folder.join("run.json")).unwrap();
+    let report: serde_json::Value = serde_json::from_str(&text).unwrap();
+    ["model", "audit"].map(|part| {
+        let found = report[part]["refinement"].clone();
+        assert!(found.is_object(), "{part}: {found}");
+        found
+    })
+}
+
+/// The fine set is at the end with the crack, so that some processes have no fine point. With the largest stable step many
+/// bonds break in steps too large for them.
+#[test]
+fn multirate_schemes_have_the_files_of_one_process() {
+    let notch = "[sets.notch]\nwhere = \"x < 6\"\n[[constraint]]\nset = \"top\"\n";
+    let fixed = "ratio = 2\nfine = \"notch\"";
+    let adaptive = "ratio = 2\nadaptive = { every = 2, threshold = 0.5, layers = 1 }";
+    let stencil = format!("{BONDS}\nbonds = \"grid\"");
+    let list = format!("{BONDS}\nbonds = \"list\"");
+    let correspondence = SOLID.replace("state-based", "correspondence");
+    for (material, scheme, fine, step) in [
+        (&list[..], "respa", fixed, ""),
+        (&stencil, "respa", adaptive, "dt = 0.2"),
+        (&stencil, "multirate-rk4", adaptive, ""),
+        (&list, "multirate-rk4", adaptive, "dt = 0.2"),
+        (SOLID, "multirate-rk4", fixed, "dt = 0.2"),
+        (SOLID, "multirate-rk3", adaptive, ""),
+        (&correspondence, "multirate-rk3", adaptive, "dt = 0.2"),
+    ] {
+        println!("{material}\n{scheme}\n{fine}\n{step}");
+        let time = format!("{PULL}end = 4\nscheme = \"{scheme}\"\n{fine}\n{step}");
+        let deck = block(material, &time).replace("[[constraint]]\nset = \"top\"\n", notch);
+        let place = tempfile::tempdir().unwrap();
+        let alone = place.path().join("alone");
+        let ending = run(&deck, &alone, Arc::new(Alone), None).unwrap();
+        assert_eq!(ending, Ending::Finished);
+        for size in [2, 4] {
+            let folder = place.path().join(format!("of-{size}"));
+            for ending in Threads::run(size, |comm| run(&deck, &folder, comm, None)) {
+                assert_eq!(ending.unwrap(), Ending::Finished);
+            }
+            assert_same(&folder, &alone, &format!("{size} processes"));
+            assert_eq!(refinement(&folder), refinement(&alone));
+        }
+    }
+}
+
+/// A block that is cut in three and torn: pieces extend over several processes.
+#[test]
+fn fragments_have_the_files_of_one_process() {
+    let end = format!("{PULL}end = 3\ndt = 0.2");
+    let correspondence = SOLID.replace("state-based", "correspondence");
+    let output = "[output]\nfragments = { every = 3, smallest = 0.1 }\nfields = { count = 3, names = [\"Fragment_Id\", \"Damage\"] }\nhistory = { every = 1 }\n";
+    for material in [
+        format!("{BONDS}\nbonds = \"list\""),
+        format!("{BONDS}\nbonds = \"grid\""),
+        format!("{SOLID}\nbonds = \"list\""),
+        format!("{SOLID}\nbonds = \"grid\""),
+        correspondence,
+    ] {
+        println!("{material}");
+        let deck = block(&material, &end);
+        let cracks = "[[crack]]\npolygon = [[9, -1, -1], [9, 9, -1], [9, 9, 6], [9, -1, 6]]\n[[crack]]\npolygon = [[5, -1, -1], [5, 9, -1], [5, 9, 6], [5, -1, 6]]\n";
+        let (before, after) = deck.split_once("[[crack]]").unwrap();
+        let deck = format!("{before}{cracks}[[crack]]{after}");
+        let (before, after) = deck.split_once("[output]").unwrap();
+        let checkpoint = after.split_once("[checkpoint]").unwrap().1;
+        check(
+            &format!("{before}{output}[checkpoint]{checkpoint}"),
+            &[2, 3, 4],
+        );
+    }
+}

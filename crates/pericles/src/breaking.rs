@@ -8,8 +8,8 @@
 //! angular momentum. All bonds of a step are corrected at once from the same velocities, so that the result does
 //! not depend on their order. The energy actually removed enters the energy balance, which closes to rounding.
 
-use crate::domain::Field;
-use crate::operator::CoarseBreak;
+use crate::domain::{Domain, Field, Letter};
+use crate::operator::{CoarseBreak, each_once};
 use crate::system::System;
 
 /// Largest number of passes over the broken bonds of a step. One is enough where few bonds share a point; where all
@@ -28,10 +28,11 @@ impl System {
         let Some(breaking) = self.operator_mut().breaking_mut() else {
             return;
         };
-        let mut breaks = breaking.take_coarse_breaks();
+        let breaks = breaking.take_coarse_breaks();
         if domain.all(breaks.is_empty()) {
             return;
         }
+        let mut breaks = at_both_ends(&domain, breaks);
         // The order must not depend on the division among processes.
         breaks.sort_by_key(|bond| {
             let [a, b] = bond.points.map(|point| domain.number(point as usize));
@@ -153,6 +154,36 @@ impl System {
     fn mass(&self, i: usize) -> f64 {
         self.density().at(i) * self.cloud().volumes()[i]
     }
+}
+
+/// Returns the bonds that broke at own points, each once. A sweep over a part of the body records a bond at one end only,
+/// which sends it to the owner of the other end. All processes must call it together.
+fn at_both_ends(domain: &Domain, breaks: Vec<CoarseBreak>) -> Vec<CoarseBreak> {
+    if !domain.is_divided() {
+        return breaks;
+    }
+    let mut letters = Vec::new();
+    for bond in &breaks {
+        // Ghosts are counted after the own points.
+        let [own, other] = bond.points.map(|point| point as usize);
+        if other >= domain.owned_points() {
+            let [x, y, z] = bond.along;
+            letters.push(Letter {
+                from: own,
+                to: other,
+                numbers: [x, y, z, bond.missing],
+            });
+        }
+    }
+    let arrived = domain.deliver(letters).into_iter().map(|letter| {
+        let [x, y, z, missing] = letter.numbers;
+        CoarseBreak {
+            points: [letter.to as u32, letter.from as u32],
+            along: [x, y, z],
+            missing,
+        }
+    });
+    each_once(breaks.into_iter().chain(arrived).collect())
 }
 
 /// Data of the ends of bonds, including those owned by other processes.

@@ -37,7 +37,7 @@ impl FragmentCourse {
 impl Observer for FragmentCourse {
     fn observe(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), ObserveError> {
         let (state, system) = (snapshot.state(), snapshot.system());
-        let count = Fragments::of(system.operator())
+        let count = Fragments::of(system.operator(), system.domain())
             .count(&system.masses()[..system.points()], self.smallest);
         self.table.append(
             snapshot,

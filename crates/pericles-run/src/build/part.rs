@@ -9,7 +9,6 @@ use std::sync::Arc;
 use pericles::boundary::{AxisMotion, Load, LoadDensity};
 use pericles::division::part_of;
 use pericles::domain::Comm;
-use pericles::observe::{Field, Schedule};
 use pericles::space::{PointCloud, PointSet};
 use pericles::time::State;
 use pericles::{PericlesError, PointScalar};
@@ -277,14 +276,7 @@ impl Assembler<'_> {
                 "viscous and plastic materials store the history of both ends of a bond in the same process",
             ));
         }
-        let output = &self.model.output;
-        if output.fragments.schedule != Schedule::Never || output.wants(Field::FragmentId) {
-            return Some((
-                "output.fragments".into(),
-                "fragments are found by a search through the bonds of the whole body; leave them out",
-            ));
-        }
-        if output.wants_tensors() && solid.material.bonds().is_none() {
+        if self.model.output.wants_tensors() && solid.material.bonds().is_none() {
             return Some((
                 "output.fields.names".into(),
                 "stress and strain of state-based and correspondence materials need the bonds of all points; leave these fields out",

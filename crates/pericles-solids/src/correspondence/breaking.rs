@@ -331,7 +331,8 @@ impl<const D: usize> Breakable for CorrespondenceForce<D> {
         let sites = self.bonds.list.sites();
         for i in 0..self.cloud.len() {
             self.bonds.for_each::<D>(i, self.bits(i), |bond| {
-                if let Some(j) = sites.own_point(bond.site).filter(|&j| j > i) {
+                let j = sites.point(bond.site);
+                if j > i {
                     visit(i, j);
                 }
             });

@@ -38,7 +38,8 @@ pub trait Breakable {
     /// Sets the damage of each point, 0 … 1: the missing fraction of its family.
     fn damage_into(&self, out: &mut [f64]);
 
-    /// Calls `visit` with both ends of each intact bond, once or twice per bond.
+    /// Calls `visit` with both ends of each intact bond, once or twice per bond. The first end is an own point; ghosts are
+    /// counted after the own points.
     fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize));
 
     /// Calls `visit` with the other end of each intact bond of point i, in any order. Points that other processes own

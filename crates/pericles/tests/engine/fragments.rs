@@ -48,7 +48,8 @@ fn pieces(form: BondForm) -> Fragments {
         ],
         ..BondBody::new(&cloud, &material, &constants)
     };
-    Fragments::of(&*body.operator(form).unwrap().operator)
+    let operator = body.operator(form).unwrap().operator;
+    Fragments::of(&*operator, cloud.domain())
 }
 
 #[test]

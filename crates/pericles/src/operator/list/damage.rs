@@ -67,7 +67,8 @@ impl<L: VectorLaw, const D: usize> Breakable for BondForce<L, D> {
         for i in 0..self.points() {
             let family = self.bonds.family(i);
             for (_, b) in family.filter(|&(entry, _)| self.is_intact(i, entry)) {
-                if let Some(j) = sites.own_point(b).filter(|&j| j > i) {
+                let j = sites.point(b);
+                if j > i {
                     visit(i, j);
                 }
             }

@@ -247,7 +247,8 @@ impl<L: Kinematics, const D: usize> Breakable for LinearSolidForce<L, D> {
         for i in 0..self.cloud.len() {
             let family = self.bonds.family(i);
             for (_, b) in family.filter(|&(entry, _)| self.is_intact(i, entry)) {
-                if let Some(j) = self.bonds.sites().own_point(b).filter(|&j| j > i) {
+                let j = self.bonds.sites().point(b);
+                if j > i {
                     visit(i, j);
                 }
             }
