@@ -29,7 +29,6 @@ pub use replicated::Replicated;
 pub use threads::Threads;
 pub use timed::Timed;
 
-
 /// Communication between the processes that share a body. It offers no sum of floating-point numbers, because such
 /// a sum depends on the number of processes.
 pub trait Comm: Send + Sync {
