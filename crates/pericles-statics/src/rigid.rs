@@ -80,7 +80,7 @@ pub(crate) fn spread(
         let own = piece.points.len();
         for motion in &piece.basis {
             let mut vector = vec![0.0; d * system.points()];
-            replicated.fill_own(&mut vector, |whole| {
+            replicated.fill_own(d, &mut vector, |whole| {
                 for c in 0..d {
                     for (k, &i) in piece.points.iter().enumerate() {
                         whole[c * n + i as usize] = motion[c * own + k];

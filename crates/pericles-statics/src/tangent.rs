@@ -39,7 +39,8 @@ impl LinearProblem for Tangent<'_> {
         self.unknowns.gather(&self.replicated.of(residual), right);
         self.multigrid.apply_into(right, solution);
         let scatter = |whole: &mut [f64]| self.unknowns.scatter(solution, whole);
-        self.replicated.fill_own(out, scatter);
+        let dimension = self.system.dimension();
+        self.replicated.fill_own(dimension, out, scatter);
         remove(self.system, self.rigid, out);
     }
 }

@@ -81,13 +81,13 @@ impl Replicated {
         Cow::Owned(whole)
     }
 
-    /// Fills the values of own points in `owned` with those of a vector of the whole body, which `fill` computes.
-    pub fn fill_own(&self, owned: &mut [f64], fill: impl FnOnce(&mut [f64])) {
+    /// Fills the values of own points in `owned` with those of a vector of the whole body, which `fill` computes. A process
+    /// without points calls `fill` too: the number of components does not follow from the length of `owned`.
+    pub fn fill_own(&self, components: usize, owned: &mut [f64], fill: impl FnOnce(&mut [f64])) {
         if !self.is_divided() {
             return fill(owned);
         }
         let own = self.domain.owned_points();
-        let components = owned.len() / own.max(1);
         let mut whole = vec![0.0; components * self.points];
         fill(&mut whole);
         for (c, owned) in owned.chunks_mut(own.max(1)).enumerate() {
@@ -116,7 +116,7 @@ mod tests {
             let expected: Vec<f64> = (0..11).chain(100..111).map(f64::from).collect();
             assert_eq!((all.points(), &*all.of(&values)), (11, &expected[..]));
             let mut filled = vec![0.0; 2 * own];
-            all.fill_own(&mut filled, |whole| whole.copy_from_slice(&expected));
+            all.fill_own(2, &mut filled, |whole| whole.copy_from_slice(&expected));
             assert_eq!(filled, values);
         });
     }
