@@ -1,8 +1,6 @@
 //! Tests of state-based materials.
 
 mod bodies;
-#[path = "../../../pericles-bench/src/clock.rs"]
-mod clock;
 #[path = "../common/mod.rs"]
 mod common;
 mod constants;

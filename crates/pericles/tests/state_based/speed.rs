@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use crate::bodies::{solid, wave};
-use crate::clock::cpu_seconds;
 use crate::common::{boxed, material as bond_based};
 use pericles::family::VolumeCorrection;
 use pericles::kernel::InfluenceFunction;
@@ -25,6 +24,13 @@ fn state_based(
     let constants = material.constants(cloud, StressState::Spatial).unwrap();
     let body = LinearSolidBody::new(cloud, &constants, VolumeCorrection::Linear);
     body.operator(form).unwrap().operator
+}
+
+/// Returns the CPU time of the calling thread, s; the pool has one thread. The sum over all threads of the process decreases
+/// when a thread of another test ends.
+fn cpu_seconds() -> f64 {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap();
+    1e-9 * text.split(' ').next().unwrap().parse::<f64>().unwrap()
 }
 
 /// CPU time of a sample, s: fifty ticks of a clock that advances by 4 ms, as it does on some virtual machines.
