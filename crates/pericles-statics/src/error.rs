@@ -3,6 +3,10 @@
 use pericles::PericlesError;
 use pericles::units::{quantity, significant};
 
+/// Largest number of unknowns of a body divided among processes: the preconditioner of the whole body is then stored by every
+/// process, about 10 GB in space.
+pub const MOST_REPLICATED: usize = 4_000_000;
+
 /// Errors of static solvers and of natural modes.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum StaticsError {
@@ -46,8 +50,8 @@ pub enum StaticsError {
     },
     /// A divided body with too many unknowns for a preconditioner that every process stores.
     #[error(
-        "every process stores the preconditioner of the whole body, about 2.5 kB per unknown in space: a divided body may have {} unknowns, this one has {unknowns};          run it on one process with threads, or use scheme = \"adaptive-dynamic-relaxation\" or \"fire\"",
-        crate::MOST_REPLICATED
+        "every process stores the preconditioner of the whole body, about 2.5 kB per unknown in space: a divided body may have {} unknowns, this one has {unknowns}; run it on one process with threads, or use scheme = \"adaptive-dynamic-relaxation\" or \"fire\"",
+        MOST_REPLICATED
     )]
     TooManyUnknowns {
         /// Displacement components of all points.

@@ -11,7 +11,7 @@ use pericles::{
 
 use crate::breaking::BreakingRule;
 use crate::equilibrium::{Effort, Equilibrium};
-use crate::error::StaticsError;
+use crate::error::{MOST_REPLICATED, StaticsError};
 use crate::events;
 use crate::options::StaticOptions;
 use crate::path::{Follower, LoadStep};
@@ -60,10 +60,6 @@ pub struct StaticScheme {
 }
 
 const NAME: &str = "static";
-
-/// Largest number of unknowns of a body divided among processes: the preconditioner of the whole body is then stored by every
-/// process, about 10 GB in space.
-pub const MOST_REPLICATED: usize = 4_000_000;
 
 impl StaticScheme {
     /// Requirements on a system.
