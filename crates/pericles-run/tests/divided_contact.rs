@@ -203,7 +203,7 @@ fn materials_in_contact_with_themselves_have_the_files_of_one_process() {
 #[test]
 fn schemes_with_contact_have_the_files_of_one_process() {
     let dynamic = "velocity = [0, -0.05, 0]\n[contact]\n[time]\nend = 6\ndt = 0.3\nscheme = ";
-    // A ball that is pressed into the block, besides the crack that closes.
+    // A ball that is pressed into the block while the crack closes.
     let ball = "[[impactor]]\nname = \"ball\"\nshape = \"ball\"\nradius = 3\ncentre = [13, 5, 2.4]\nmotion = \"prescribed\"\ndisplacement = [-0.1, 0, 0]";
     let fixed = format!(
         "displacement = [0, -0.05, 0]\n[contact]\n{ball}\n[time]\ntolerance = 1e-3\nload_steps = 2\nscheme = "
