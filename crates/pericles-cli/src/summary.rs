@@ -43,6 +43,9 @@ pub(crate) fn closing(report: &Report, place: &Path) -> Result<(), IoError> {
         threads(rayon::current_num_threads()),
         model.instruction_set,
     ))?;
+    if let Some(sharing) = &report.sharing {
+        console::print(format_args!("{}", sharing.line()))?;
+    }
     if let Some(reason) = &report.stop_reason {
         console::print(format_args!("stop condition reached: {reason}"))?;
     }

@@ -12,6 +12,7 @@ use crate::deck_text::DeckText;
 use crate::error::RunError;
 use crate::facts::Facts;
 use crate::machine;
+use crate::sharing::Sharing;
 use crate::source::{ModelData, Source};
 
 /// The status of a run.
@@ -44,6 +45,8 @@ pub struct Report {
     pub model: Facts,
     /// Progress and performance.
     pub progress: Span,
+    /// Division among processes and time in communication at the end; `None` for a single process.
+    pub sharing: Option<Sharing>,
     /// Balance of energy and momentum at the end; `None` during the run.
     pub audit: Option<Audit>,
     #[serde(flatten)]
@@ -120,6 +123,7 @@ impl Report {
                 last_step: first_step,
                 ..Span::default()
             },
+            sharing: None,
             audit: None,
             source: Given::of(source),
         }
@@ -128,6 +132,7 @@ impl Report {
     /// Starts a session at `step`.
     pub(crate) fn begin_session(&mut self, step: u64) {
         self.status = Status::Running;
+        self.sharing = None;
         self.audit = None;
         self.progress.first_step = step;
         self.progress.last_step = step;

@@ -24,6 +24,7 @@ use crate::facts::Facts;
 use crate::observers;
 use crate::processes::{agreed, any, on_first};
 use crate::report::{Report, Status};
+use crate::sharing::Sharing;
 use crate::source::{Source, SourceRecord};
 use crate::units::quantity;
 use crate::watch::{self, Breakage};
@@ -173,12 +174,17 @@ impl Run {
             folder: self.folder.path(),
         });
         self.write_agreed_report()?;
-        let began = Instant::now();
+        let comm = Arc::clone(self.simulation.system().domain().comm());
+        let (began, waited) = (Instant::now(), comm.waited());
         let ended = self.integrate(deadline, cancel, tell);
-        self.report
-            .note_progress(&self.simulation, began.elapsed().as_secs_f64());
+        let (seconds, waited) = (began.elapsed().as_secs_f64(), comm.waited() - waited);
+        self.report.note_progress(&self.simulation, seconds);
         match ended {
-            Ok(outcome) => self.close(outcome, cancel),
+            Ok(outcome) => {
+                let domain = self.simulation.system().domain();
+                self.report.sharing = Sharing::of(domain, seconds, waited);
+                self.close(outcome, cancel)
+            }
             Err(error) => {
                 self.report.status = Status::Failed;
                 self.report.error = Some(error.to_string());

@@ -5,7 +5,8 @@ use std::time::Duration;
 use pericles::domain::Domain;
 use serde::Serialize;
 
-use crate::units::{count, percent, significant};
+use crate::machine;
+use crate::units::{bytes, count, percent, significant};
 
 /// The division of a run among several processes, and the time that they waited for each other.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -20,6 +21,8 @@ pub struct Sharing {
     pub largest_waiting: f64,
     /// Largest over mean time that a process does not spend in communication.
     pub imbalance: f64,
+    /// Largest peak memory of a process since its start, bytes; `None` if the system does not report it.
+    pub largest_peak_memory: Option<u64>,
 }
 
 impl Sharing {
@@ -48,13 +51,24 @@ impl Sharing {
             } else {
                 1.0
             },
+            largest_peak_memory: Self::largest(domain, machine::peak_memory()),
         })
+    }
+
+    /// Returns the largest number of all processes; `None` if one of them has none.
+    fn largest(domain: &Domain, own: Option<u64>) -> Option<u64> {
+        let largest = domain.max(own.map_or(f64::INFINITY, |bytes| bytes as f64));
+        largest.is_finite().then_some(largest as u64)
     }
 
     /// Returns a line for the end of a run.
     pub fn line(&self) -> String {
+        let memory = match self.largest_peak_memory {
+            Some(memory) => format!(", peak memory up to {}", bytes(memory)),
+            None => String::new(),
+        };
         format!(
-            "{} processes: ghosts {} of the points, {} of the time in communication (largest {}), imbalance {}",
+            "{} processes: ghosts {} of the points, {} of the time in communication (largest {}), imbalance {}{memory}",
             count(self.processes as u64),
             percent(self.halo),
             percent(self.waiting),
@@ -86,16 +100,22 @@ mod tests {
             Sharing::of(&domain, 2.0, Duration::from_secs(rank as u64)).unwrap()
         });
         assert_eq!(found[0], found[1]);
+        let memory = found[0].largest_peak_memory;
         let expected = Sharing {
             processes: 2,
             halo: 2.0 / 6.0,
             waiting: 0.25,
             largest_waiting: 0.5,
             imbalance: 2.0 / 1.5,
+            largest_peak_memory: memory,
         };
         assert_eq!(found[0], expected);
+        let expected = Sharing {
+            largest_peak_memory: None,
+            ..expected
+        };
         assert_eq!(
-            found[0].line(),
+            expected.line(),
             "2 processes: ghosts 33 % of the points, 25 % of the time in communication (largest 50 %), imbalance 1.33"
         );
     }

@@ -62,9 +62,9 @@ fn ordered(x: f64) -> u64 {
 }
 
 /// Assigns each of the points, which may be spread over processes in any way, to one of `parts` parts by recursive
-/// coordinate bisection: the box of a group of points is cut across its longest side (the first of equal ones) at the
-/// weighted median, with ⌊p/2⌋ of its p parts on the lower side, until each group is one part. A point belongs to the lower
-/// side if the weight before it and half of its own are less than that side's share.
+/// coordinate bisection: the box of a group of points is cut across its longest side (the last of equal ones, so that the rows
+/// of the stencil along x stay long) at the weighted median, with ⌊p/2⌋ of its p parts on the lower side, until each group is
+/// one part. A point belongs to the lower side if the weight before it and half of its own are less than that side's share.
 ///
 /// The result does not depend on how the points are spread over the processes: cuts are found by exact sums of integer
 /// weights over bins of the ordered coordinates, refined eight bits at a time. No process needs the points of others. All
@@ -171,7 +171,7 @@ fn longest_sides(comm: &dyn Comm, points: &Points<'_>, group: &[u32], groups: us
     comm.max(&mut ends);
     let longest = |ends: &[f64]| {
         let side = |c: usize| ends[2 * c] + ends[2 * c + 1];
-        (1..dimension).fold(0, |best, c| if side(c) > side(best) { c } else { best })
+        (1..dimension).fold(0, |best, c| if side(c) >= side(best) { c } else { best })
     };
     ends.chunks(2 * dimension).map(longest).collect()
 }

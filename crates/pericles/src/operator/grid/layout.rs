@@ -9,15 +9,12 @@
 //! Ghosts of other processes and images beyond periodic faces ([`Sites`]) have places in a larger box; no
 //! force is computed for them.
 
-use std::borrow::Cow;
 use std::ops::Range;
 
-use rayon::prelude::*;
-
-use super::rows::NodeRows;
+use super::rows::{NodeRows, for_each_piece};
+use super::runs::PointRuns;
 use crate::domain::Field;
 use crate::lanes::LANES;
-use crate::parallel::BLOCK;
 use crate::space::{Lattice, Sites};
 
 /// Eight nodes of a row, at least one of which is an own point.
@@ -74,6 +71,7 @@ struct Seen {
     point: Vec<u32>,
     /// Nodes that are sites, one byte per place (in chunks).
     present: Vec<u8>,
+    runs: PointRuns,
 }
 
 const NONE: u32 = u32::MAX;
@@ -91,13 +89,19 @@ impl GridLayout {
         if sites.are_points() {
             return Self::of_rows(NodeRows::new(lattice.shape, &lattice.node), lattice.shape);
         }
-        let (corner, shape) = bounding_box(lattice);
+        let (mut corner, mut shape) = bounding_box(lattice);
+        let owned = sites.cloud().len();
+        // Own points begin with a whole chunk: ghosts before them would shift them into one more chunk per row.
+        let along_x = |i: usize| lattice.coordinates(lattice.node[sites.of_point(i)])[0];
+        let before = (0..owned).map(along_x).min().map_or(0, |x| x - corner[0]);
+        let unused = (LANES - before as usize % LANES) % LANES;
+        corner[0] -= unused as i32;
+        shape[0] += unused;
         let inside = |site: usize| {
             let at = lattice.coordinates(lattice.node[site]);
             let [x, y, z] = std::array::from_fn(|c| (at[c] - corner[c]) as usize);
             (x + shape[0] * (y + shape[1] * z)) as u32
         };
-        let owned = sites.cloud().len();
         let own: Vec<u32> = (0..owned).map(|i| inside(sites.of_point(i))).collect();
         let mut layout = Self::of_rows(NodeRows::new(shape, &own), shape);
         let mut site: Vec<u32> = (0..sites.len() as u32).collect();
@@ -110,9 +114,12 @@ impl GridLayout {
             present[place / LANES] |= 1 << (place % LANES);
         }
         let point = |&site: &u32| sites.point(site as usize) as u32;
+        let point: Vec<u32> = site.iter().map(point).collect();
+        let rows = NodeRows::new(shape, &nodes);
         layout.seen = Some(Seen {
-            rows: NodeRows::new(shape, &nodes),
-            point: site.iter().map(point).collect(),
+            runs: PointRuns::new(&rows, &point, owned),
+            rows,
+            point,
             site,
             present,
         });
@@ -346,20 +353,28 @@ impl GridLayout {
         self.seen.is_none()
     }
 
-    /// Returns one component of a vector on points for all sites, in the order of their nodes.
-    pub fn of_sites<'a>(&self, field: Field<'a>, c: usize, components: usize) -> Cow<'a, [f64]> {
-        let n = field.owned.len() / components;
-        let Some(seen) = &self.seen else {
-            return Cow::Borrowed(&field.owned[c * n..(c + 1) * n]);
-        };
-        let value = |&point: &u32| field.entry(components, c, point as usize);
-        Cow::Owned(
-            seen.point
-                .par_iter()
-                .with_min_len(BLOCK)
-                .map(value)
-                .collect(),
-        )
+    /// Copies the given columns of each row of component `c` of `components` of a vector field to padded rows, and converts the
+    /// numbers; other places are unchanged.
+    pub fn pad<N: Send>(
+        &self,
+        field: Field<'_>,
+        (c, components): (usize, usize),
+        columns: impl Fn(usize) -> Range<usize> + Sync,
+        number: impl Fn(f64) -> N + Sync,
+        padded: &mut [N],
+    ) {
+        match &self.seen {
+            None => {
+                let n = field.owned.len() / components;
+                let values = &field.owned[c * n..(c + 1) * n];
+                for_each_piece(self.stride, columns, padded, |piece, padded| {
+                    self.own.pad_piece(piece, values, &number, padded);
+                });
+            }
+            Some(seen) => for_each_piece(self.stride, columns, padded, |piece, padded| {
+                (seen.runs).pad_piece(piece, field, (c, components), &number, padded);
+            }),
+        }
     }
 
     /// Returns the rows of all nodes with values.
@@ -446,7 +461,10 @@ impl GridLayout {
             + size_of_val(&self.chunk_at[..])
             + self.own.bytes()
             + self.seen.as_ref().map_or(0, |seen| {
-                seen.rows.bytes() + 2 * size_of_val(&seen.site[..]) + seen.present.len()
+                seen.rows.bytes()
+                    + 2 * size_of_val(&seen.site[..])
+                    + seen.present.len()
+                    + seen.runs.bytes()
             })
     }
 }

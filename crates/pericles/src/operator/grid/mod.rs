@@ -15,6 +15,7 @@ mod numbers;
 mod operator;
 pub(in crate::operator) mod padded;
 mod rows;
+mod runs;
 pub(in crate::operator) mod stencil;
 pub(in crate::operator) mod stored;
 mod thresholds;

@@ -81,13 +81,10 @@ impl<N: GridNumber, const D: usize> Padded<N, D> {
     ) {
         let rows = self.values[self.start + self.margin..].chunks_mut(self.places + self.margin);
         for (c, padded) in rows.take(D).enumerate() {
-            let values = layout.of_sites(field, c, D);
             let (origin, per_unit) = (frame.origin[c], frame.per_unit);
             let number = |value| N::of(value, origin, per_unit);
             let padded = &mut padded[..self.places];
-            layout
-                .nodes()
-                .pad(layout.row_length(), &values, &columns, &number, padded);
+            layout.pad(field, (c, D), &columns, number, padded);
         }
     }
 

@@ -9,6 +9,42 @@ use crate::lanes::LANES;
 /// Number of entries copied by a task.
 const PIECE: usize = 4096;
 
+/// Calls `fill` for the given columns of all rows of `stride` places in parallel, with the row and the first column of each piece
+/// of a row.
+pub(super) fn for_each_piece<N: Send>(
+    stride: usize,
+    columns: impl Fn(usize) -> Range<usize> + Sync,
+    padded: &mut [N],
+    fill: impl Fn((usize, usize), &mut [N]) + Sync,
+) {
+    // A task copies whole rows, or a part of a very long row.
+    if stride <= PIECE {
+        let rows = PIECE / stride;
+        padded
+            .par_chunks_mut(rows * stride)
+            .enumerate()
+            .for_each(|(group, padded)| {
+                for (k, padded) in padded.chunks_mut(stride).enumerate() {
+                    let row = group * rows + k;
+                    let columns = columns(row);
+                    if !columns.is_empty() {
+                        fill((row, columns.start), &mut padded[columns]);
+                    }
+                }
+            });
+    } else {
+        for (row, padded) in padded.chunks_mut(stride).enumerate() {
+            let columns = columns(row);
+            if !columns.is_empty() {
+                padded[columns.clone()]
+                    .par_chunks_mut(PIECE)
+                    .enumerate()
+                    .for_each(|(k, padded)| fill((row, columns.start + k * PIECE), padded));
+            }
+        }
+    }
+}
+
 /// A subset of the nodes of a box in ascending order, x fastest.
 #[derive(Debug, Clone)]
 pub(in crate::operator) struct NodeRows {
@@ -110,58 +146,11 @@ impl NodeRows {
         }
     }
 
-    /// Copies the given columns of each row of one component of a vector on sites (see
-    /// [`GridLayout::of_sites`](super::layout::GridLayout::of_sites)) to padded rows of `stride` places and
-    /// converts the numbers; other places are unchanged.
-    pub fn pad<N: Send>(
+    /// Copies the points of a row to a piece of it that begins at column `x`, and converts the numbers; places without a node are
+    /// unchanged.
+    pub fn pad_piece<N>(
         &self,
-        stride: usize,
-        values: &[f64],
-        columns: impl Fn(usize) -> Range<usize> + Sync,
-        number: &(impl Fn(f64) -> N + Sync),
-        padded: &mut [N],
-    ) {
-        // A task copies whole rows, or a part of a very long row.
-        if stride <= PIECE {
-            let rows = PIECE / stride;
-            padded
-                .par_chunks_mut(rows * stride)
-                .enumerate()
-                .for_each(|(group, padded)| {
-                    for (k, padded) in padded.chunks_mut(stride).enumerate() {
-                        let row = group * rows + k;
-                        let columns = columns(row);
-                        if !columns.is_empty() {
-                            self.pad_piece(
-                                row,
-                                columns.start,
-                                values,
-                                number,
-                                &mut padded[columns],
-                            );
-                        }
-                    }
-                });
-        } else {
-            for (row, padded) in padded.chunks_mut(stride).enumerate() {
-                let columns = columns(row);
-                if !columns.is_empty() {
-                    padded[columns.clone()]
-                        .par_chunks_mut(PIECE)
-                        .enumerate()
-                        .for_each(|(k, padded)| {
-                            self.pad_piece(row, columns.start + k * PIECE, values, number, padded);
-                        });
-                }
-            }
-        }
-    }
-
-    /// Copies the points of a row from column x on.
-    fn pad_piece<N>(
-        &self,
-        row: usize,
-        x: usize,
+        (row, x): (usize, usize),
         values: &[f64],
         number: &impl Fn(f64) -> N,
         padded: &mut [N],
