@@ -28,7 +28,7 @@ pub fn owners(
         dimension: cloud.dimension(),
         positions: cloud.positions(),
         numbers: &numbers,
-        weights: &vec![1; cloud.len()],
+        weights: &[],
     };
     Ok(bisect(&Alone, &points, processes, cuts_of(cloud)))
 }

@@ -81,16 +81,16 @@ pub fn assemble(
         let added = system.add_field(Box::new(field));
         added.map_err(|error| at("thermal", error))?;
     }
-    let mut state = assembler.initial_state(cloud, sets, resources)?;
+    let own_sets = part.sets(sets);
+    let state = assembler.initial_state(&part.cloud, &own_sets, cloud.len(), resources);
+    let mut state = part.agreed(state)?;
     discretisation.conditions.start(&mut state)?;
     let exact = assembler.exact_reference(cloud, constants.as_ref(), &mut warnings)?;
     if let (Some(exact), Some(true)) = (&exact, model.exact.map(|exact| exact.start)) {
         exact
             .solution
-            .displacement_into(0.0, cloud.axis(0), &mut state.u);
+            .displacement_into(0.0, part.cloud.axis(0), &mut state.u);
     }
-    let whole_state = state;
-    let state = part.state(&whole_state);
     let areas = assembler.add_loads(&mut system, place, &mut warnings)?;
     discretisation.conditions.add_loads(&mut system)?;
     assembler.add_motions(&mut system, place, &state)?;
@@ -99,17 +99,16 @@ pub fn assemble(
     warnings.extend(assembler.judge_idle_keys(&system));
     warnings.extend(assembler.judge_dissipation(&system));
     if discretisation.conditions.is_empty() {
-        warnings.extend(assembler.judge_rest(&whole_state));
+        warnings.extend(assembler.judge_rest(system.domain(), &state));
     }
     let contact = assembler.add_contact(
         &mut system,
-        (&discretisation, &part, &whole_state),
+        (&discretisation, &part, &state),
         (constants.as_ref(), &others),
         resources,
         &mut warnings,
     )?;
     let probes = assembler.point_probes(place, &mut warnings)?;
-    let own_sets = part.sets(sets);
     let integrator = assembler.integrator(&system, &own_sets)?;
     let ends = assembler.ends(&system, &state, sets, &*integrator, resources)?;
     let exterior = exterior_frequency(&ends);
@@ -131,8 +130,7 @@ pub fn assemble(
     );
     assembler.check_thermal_steps(&system, steps.dt)?;
     assembler.judge_two_steps(&*integrator, &steps, &mut warnings);
-    let states = (&state, &whole_state);
-    assembler.judge_breaking(&system, states, constants.as_ref(), &steps, &mut warnings);
+    assembler.judge_breaking(&system, &state, constants.as_ref(), &steps, &mut warnings);
     let ends = assembler.add_ends(&mut system, ends, &state, &steps, resources, &mut warnings)?;
     assembler.add_damping_layers(&mut system, layers, integrator.step_kind(), &steps)?;
     assembler.add_rayleigh_damping(&mut system, &*integrator)?;

@@ -18,7 +18,7 @@ impl Assembler<'_> {
     pub(super) fn judge_breaking(
         &self,
         system: &System,
-        (state, whole): (&State, &State),
+        state: &State,
         constants: Option<&MaterialConstants>,
         steps: &Steps,
         warnings: &mut Vec<ModelWarning>,
@@ -35,10 +35,7 @@ impl Assembler<'_> {
         let limit = waves.transverse.map_or(waves.pressure, |t| t.rayleigh);
         let first = |key: &str| KeyPath::from(key).index(0);
         // Velocities relative to the mean: a translation of the whole body breaks no bonds.
-        let speed = largest_speed(
-            &about_mean(&whole.v, system.dimension()),
-            system.dimension(),
-        );
+        let speed = largest_relative_speed(system, &state.v);
         if speed > limit {
             let caution = fast("initial velocity", speed, limit, system.dimension());
             warnings.push(Remark::new(first("initial"), caution));
@@ -122,19 +119,15 @@ fn torn(system: &System, u: &[f64]) -> usize {
     system.domain().count(own as u64) as usize
 }
 
-/// Returns the largest norm of a component-major vector field.
-fn largest_speed(v: &[f64], dimension: usize) -> f64 {
-    let n = v.len() / dimension;
-    let square = |i: usize| (0..dimension).map(|c| v[c * n + i].powi(2)).sum::<f64>();
-    (0..n).map(square).fold(0.0, f64::max).sqrt()
-}
-
-/// Subtracts the mean of a vector field.
-fn about_mean(v: &[f64], dimension: usize) -> Vec<f64> {
-    let n = v.len() / dimension;
-    let components = v.chunks(n).flat_map(|component| {
-        let mean = component.iter().sum::<f64>() / n as f64;
-        component.iter().map(move |x| x - mean)
-    });
-    components.collect()
+/// Returns the largest speed of a point of the whole body relative to the mean velocity of the points, m/s.
+fn largest_relative_speed(system: &System, v: &[f64]) -> f64 {
+    let (n, domain) = (system.points(), system.domain());
+    let whole = domain.whole_points() as f64;
+    let mean = |c: usize| domain.sum(n, |i| v[c * n + i]) / whole;
+    let means: Vec<f64> = (0..system.dimension()).map(mean).collect();
+    let square = |i: usize| -> f64 {
+        let relative = means.iter().zip(0..).map(|(mean, c)| v[c * n + i] - mean);
+        relative.map(|x| x.powi(2)).sum()
+    };
+    domain.max((0..n).map(square).fold(0.0, f64::max).sqrt())
 }

@@ -19,12 +19,13 @@ use super::refusal::{at, at_path};
 use super::resources::Resources;
 
 impl Assembler<'_> {
-    /// Builds the initial state: the velocities of pieces, then the entries of the deck; later entries for a point
-    /// replace earlier ones.
+    /// Builds the initial state of the points of a process: the velocities of pieces, then the entries of the deck; later entries
+    /// for a point replace earlier ones. `sets` are those of the process, `whole` is the number of points of the whole body.
     pub(super) fn initial_state(
         &self,
         cloud: &PointCloud,
         sets: &Sets,
+        whole: usize,
         resources: &Resources<'_>,
     ) -> Result<State, BuildError> {
         let n = cloud.len();
@@ -41,7 +42,7 @@ impl Assembler<'_> {
             let path = KeyPath::from("initial").index(k);
             let points = self.members(sets, &initial.set, path.key("set"))?;
             if let Some(file) = &initial.file {
-                let rows = self.initial_rows(&path, file, cloud, resources)?;
+                let rows = self.initial_rows(&path, file, (cloud.dimension(), whole), resources)?;
                 let columns = 2 * cloud.dimension();
                 for &i in points {
                     let row = cloud.user_number(i as usize) * columns;
@@ -76,7 +77,7 @@ impl Assembler<'_> {
                         }
                     }
                 }
-                Self::add_random(random, cloud, points, &mut state.v);
+                Self::add_random(random, cloud, points, whole, &mut state.v);
             }
         }
         Ok(state)
@@ -87,12 +88,12 @@ impl Assembler<'_> {
         &self,
         path: &KeyPath,
         file: &FilePath,
-        cloud: &PointCloud,
+        (dimension, points): (usize, usize),
         resources: &Resources<'_>,
     ) -> Result<Vec<f64>, BuildError> {
         const COLUMNS: [[&str; 3]; 2] = [["u_x", "u_y", "u_z"], ["v_x", "v_y", "v_z"]];
-        let columns = COLUMNS.map(|names| names[..cloud.dimension()].to_vec());
-        let (file, points) = (resources.beside(file), cloud.len());
+        let columns = COLUMNS.map(|names| names[..dimension].to_vec());
+        let file = resources.beside(file);
         (resources.read_table)(&file, points, &columns.concat(), resources.memory).map_err(
             |error| {
                 let fault = error.fault(|reason| Fault::BadInitialFile { reason, points });
@@ -107,10 +108,11 @@ impl Assembler<'_> {
         random: RandomVelocity,
         cloud: &PointCloud,
         points: &[u32],
+        whole: usize,
         velocity: &mut [f64],
     ) {
         let n = cloud.len();
-        let drawn = uniform_in_ball(cloud.dimension(), random.radius, random.seed, n);
+        let drawn = uniform_in_ball(cloud.dimension(), random.radius, random.seed, whole);
         for &i in points {
             let vector = drawn[cloud.user_number(i as usize)];
             for c in 0..cloud.dimension() {

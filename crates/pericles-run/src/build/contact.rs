@@ -88,7 +88,7 @@ impl Assembler<'_> {
         let density = &bodies.density;
         let facts = ContactFacts {
             frequency: system.single_contact_frequency(density),
-            speed: self.impact_speed(system, &discretisation.cloud, state),
+            speed: self.impact_speed(system, cloud, state),
         };
         self.judge_impact(solid, &contact, facts, constants, warnings);
         Ok(facts)
@@ -184,23 +184,29 @@ impl Assembler<'_> {
         Ok((shape, Pose { centre, rotation }))
     }
 
-    /// Returns the largest relative speed of pieces and impactors at the start, from the state of the whole body.
+    /// Returns the largest relative speed of pieces and impactors at the start. All processes must call it together.
     fn impact_speed(&self, system: &System, cloud: &PointCloud, state: &State) -> f64 {
-        let pieces = cloud.pieces().iter().max().map_or(1, |most| most + 1) as usize;
-        let mut momentum = vec![[0.0; 3]; pieces];
-        let mut mass = vec![0.0; pieces];
-        for i in 0..cloud.len() {
-            let (piece, m) = (cloud.piece(i) as usize, cloud.volumes()[i]);
-            mass[piece] += m;
-            for c in 0..cloud.dimension() {
-                momentum[piece][c] += m * state.v[c * cloud.len() + i];
-            }
+        let (n, domain) = (cloud.len(), cloud.domain());
+        let last = cloud.pieces().iter().max().copied().unwrap_or(0);
+        let pieces = domain.max(f64::from(last)) as u32 + 1;
+        let total = |piece: u32, of: &(dyn Fn(usize) -> f64 + Sync)| {
+            domain.sum(n, |i| match cloud.piece(i) == piece {
+                true => cloud.volumes()[i] * of(i),
+                false => 0.0,
+            })
+        };
+        let mut momentum = Vec::new();
+        let mut mass = Vec::new();
+        for piece in 0..pieces {
+            mass.push(total(piece, &|_| 1.0));
+            momentum.push(std::array::from_fn(|c| match c < cloud.dimension() {
+                true => total(piece, &|i| state.v[c * n + i]),
+                false => 0.0,
+            }));
         }
-        let mut all: Vec<[f64; 3]> = momentum
-            .iter()
-            .zip(&mass)
+        let mut all: Vec<[f64; 3]> = (momentum.iter().zip(&mass))
             .filter(|(_, m)| **m > 0.0)
-            .map(|(p, m)| p.map(|x| x / m))
+            .map(|(p, m): (&[f64; 3], _)| p.map(|x| x / m))
             .collect();
         let impactors = system.interactions();
         let impactors = impactors.filter_map(|one| one.downcast_ref::<Impactor>());

@@ -10,7 +10,6 @@ use pericles::boundary::{AxisMotion, Load, LoadDensity};
 use pericles::division::part_of;
 use pericles::domain::Comm;
 use pericles::space::{PointCloud, PointSet};
-use pericles::time::State;
 use pericles::{PericlesError, PointScalar};
 use pericles_deck::{Body, BoundaryCondition, BuildError, Fault, Keys, MaterialModel};
 use pericles_waves::ForceForm;
@@ -58,26 +57,6 @@ impl Part {
         match of_whole {
             PointScalar::PerPoint(values) => PointScalar::PerPoint(self.own(&values).into_owned()),
             uniform => uniform,
-        }
-    }
-
-    /// Returns the initial state of own points.
-    pub(super) fn state(&self, of_whole: &State) -> State {
-        let points = match &self.numbers {
-            Some(_) => of_whole.u.len() / self.cloud.dimension(),
-            None => return of_whole.clone(),
-        };
-        let vector = |whole: &[f64]| -> Vec<f64> {
-            let components = whole.chunks(points);
-            components
-                .flat_map(|one| self.own(one).into_owned())
-                .collect()
-        };
-        State {
-            u: vector(&of_whole.u),
-            v: vector(&of_whole.v),
-            a: vector(&of_whole.a),
-            ..of_whole.clone()
         }
     }
 

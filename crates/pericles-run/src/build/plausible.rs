@@ -2,6 +2,7 @@
 
 use pericles::System;
 use pericles::boundary::MotionKind;
+use pericles::domain::Domain;
 use pericles::observe::Schedule;
 use pericles::time::State;
 use pericles_deck::{Caution, Model, ModelWarning, Remark, Scheme, Solid};
@@ -73,8 +74,8 @@ impl Assembler<'_> {
     }
 
     /// Warns of a run without loads, constraints and initial motion.
-    pub(super) fn judge_rest(&self, state: &State) -> Option<ModelWarning> {
-        let at_rest = state.u.iter().chain(&state.v).all(|x| *x == 0.0);
+    pub(super) fn judge_rest(&self, domain: &Domain, state: &State) -> Option<ModelWarning> {
+        let at_rest = domain.all(state.u.iter().chain(&state.v).all(|x| *x == 0.0));
         let loaded = self.model.loads.iter().any(|load| {
             let mut components = load.amplitude.components().iter();
             components.any(|entry| entry.number() != Some(0.0))

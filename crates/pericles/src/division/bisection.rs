@@ -21,7 +21,7 @@ pub struct Points<'a> {
     pub positions: &'a [f64],
     /// Number of each point in the whole body.
     pub numbers: &'a [u32],
-    /// Work of each point, such as its number of bonds; zero counts as one.
+    /// Work of each point, such as its number of bonds; zero counts as one. Empty if all are equal.
     pub weights: &'a [u32],
 }
 
@@ -75,11 +75,12 @@ fn ordered(x: f64) -> u64 {
 pub fn bisect(comm: &dyn Comm, points: &Points<'_>, parts: usize, cuts: Cuts) -> Vec<u32> {
     let n = points.numbers.len();
     assert!(
-        points.weights.len() == n && points.positions.len() == n * points.dimension,
+        (points.weights.is_empty() || points.weights.len() == n)
+            && points.positions.len() == n * points.dimension,
         "one weight and one position per point"
     );
     assert!(parts > 0, "at least one part");
-    let weight = |i: usize| i128::from(points.weights[i].max(1));
+    let weight = |i: usize| points.weights.get(i).map_or(1, |&w| i128::from(w.max(1)));
     let mut group = vec![0u32; n];
     let mut groups = vec![Group {
         first: 0,

@@ -10,6 +10,7 @@ mod archives;
 mod bisection;
 mod message;
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -17,7 +18,7 @@ use rayon::prelude::*;
 
 pub use bisection::{Cuts, Points, bisect};
 
-use crate::domain::{Comm, Domain, Peer};
+use crate::domain::{Alone, Comm, Domain, Peer};
 use crate::error::Result;
 use crate::family::pairs_of_sites;
 use crate::space::{PointCloud, Sites, check_length};
@@ -35,7 +36,8 @@ pub struct Share {
     pub peers: usize,
 }
 
-/// Returns the owners of the points of others within reach of each of the points `wanted`, and those points.
+/// Returns the owners of the points of others within reach of each of the points `wanted`, and those points. The search is
+/// restricted to the surroundings of the wanted points.
 fn foreign(
     whole: &Arc<PointCloud>,
     owners: &[u32],
@@ -43,18 +45,60 @@ fn foreign(
     wanted: &[u32],
 ) -> Result<Vec<BTreeSet<(u32, u32)>>> {
     check_length("the owners of the points", owners.len(), whole.len())?;
-    let sites = Sites::new(whole, reach)?;
-    let is_foreign = |i: usize, j: usize| owners[sites.point(i)] != owners[sites.point(j)];
-    let (starts, near) = pairs_of_sites(&sites, wanted, reach, &|i, j, distance| {
+    if wanted.is_empty() {
+        return Ok(Vec::new());
+    }
+    // Images beyond periodic faces may lie anywhere.
+    let around = match whole.is_periodic() || wanted.len() == whole.len() {
+        true => None,
+        false => Some(around(whole, wanted, reach)),
+    };
+    let number = |point: usize| match &around {
+        Some((numbers, _)) => numbers[point] as usize,
+        None => point,
+    };
+    let (near, rows): (_, Cow<'_, [u32]>) = match &around {
+        Some((numbers, near)) => {
+            let row = |point: &u32| numbers.partition_point(|number| number < point) as u32;
+            (near, wanted.iter().map(row).collect())
+        }
+        None => (whole, wanted.into()),
+    };
+    let sites = Sites::new(near, reach)?;
+    let owner = |site: usize| owners[number(sites.point(site))];
+    let is_foreign = |i: usize, j: usize| owner(i) != owner(j);
+    let (starts, near) = pairs_of_sites(&sites, &rows, reach, &|i, j, distance| {
         distance <= reach && is_foreign(i, j)
     });
     let of_row = |k: usize| {
         let row = near[starts[k]..starts[k + 1]].iter();
-        row.map(|&site| sites.point(site as usize))
+        row.map(|&site| number(sites.point(site as usize)))
             .map(|point| (owners[point], point as u32))
             .collect()
     };
     Ok((0..wanted.len()).into_par_iter().map(of_row).collect())
+}
+
+/// Returns the points of a body in the box around some of its points, enlarged by `reach`, with their numbers.
+fn around(whole: &PointCloud, points: &[u32], reach: f64) -> (Vec<u32>, Arc<PointCloud>) {
+    let axes = 0..whole.dimension();
+    let box_of = |c: usize| {
+        let along = points.iter().map(|&i| whole.axis(c)[i as usize]);
+        let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+            (low.min(x), high.max(x))
+        });
+        // Twice the reach: coordinates are rounded.
+        low - 2.0 * reach..=high + 2.0 * reach
+    };
+    let sides: Vec<_> = axes.map(box_of).collect();
+    let is_inside = |&i: &u32| {
+        let mut sides = sides.iter().zip(0..);
+        sides.all(|(side, c)| side.contains(&whole.axis(c)[i as usize]))
+    };
+    let numbers: Vec<u32> = (0..whole.len() as u32).filter(is_inside).collect();
+    let n = numbers.len();
+    let domain = Domain::new(numbers.clone(), n, Vec::new(), Arc::new(Alone));
+    (numbers, Arc::new(whole.part(domain)))
 }
 
 /// Returns the part of a body that the calling process owns, with ghosts as far as bonds of length up to `reach` (m) lead.
