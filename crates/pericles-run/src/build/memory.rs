@@ -273,9 +273,9 @@ impl Assembler<'_> {
     /// Returns the bytes of heat conduction of a point with this number of neighbours.
     fn bytes_of_heat(&self, solid: &Solid, dimension: usize, neighbours: f64) -> f64 {
         let thermal = self.model.thermal.as_ref();
-        let Some(conduction) = thermal.and_then(|thermal| thermal.conduction.as_ref()) else {
+        if thermal.is_none_or(|thermal| thermal.conduction.is_none()) {
             return 0.0;
-        };
+        }
         let listed =
             solid.shape.is_refined() || solid.shape.is_listed() || self.has_several_horizons(solid);
         let bonds = match listed {
