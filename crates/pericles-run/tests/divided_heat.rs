@@ -153,8 +153,8 @@ fn last(history: &str, column: &str) -> f64 {
     let mut lines = history.lines().filter(|line| !line.starts_with('#'));
     let mut names = lines.next().unwrap().split(',');
     let place = names.position(|name| name.starts_with(column));
-    let row = lines.last().unwrap().split(',');
-    row.skip(place.unwrap()).next().unwrap().parse().unwrap()
+    let mut row = lines.next_back().unwrap().split(',');
+    row.nth(place.unwrap()).unwrap().parse().unwrap()
 }
 
 /// A hot glass plate cracks when it is quenched.
