@@ -55,7 +55,8 @@ pub(crate) struct Span<'a> {
     pub power: &'a [f64],
 }
 
-/// Advances values over a time interval and adds the inflow of each condition to `flows`.
+/// Advances values over a time interval and adds the inflow of each condition to `flows`. All processes must call it together; an
+/// error is one of all of them.
 pub(crate) fn advance(
     problem: &Problem,
     scheme: Scheme,
@@ -176,11 +177,12 @@ fn implicit(
         }
     };
     // Typical content over the step: rounding of C T/dt limits the residual.
-    let domain = problem.diffusion.cloud().domain();
+    let domain = problem.domain();
     let most = values
         .iter()
         .chain(&before)
         .fold(0.0, |most: f64, value| most.max(value.abs()));
+    let most = domain.max(most);
     let rounding = 1e-15 * most * domain.norm(capacity) / dt;
     newton(
         problem,
@@ -217,7 +219,7 @@ fn newton(
     /// Largest residual relative to the first one.
     const REACHED: f64 = 2e-10;
     let n = values.len();
-    let domain = problem.diffusion.cloud().domain();
+    let domain = problem.domain();
     let norm = |r: &[f64]| {
         domain
             .sum(n, |i| {
@@ -287,7 +289,7 @@ fn steady(
 ) -> Result<()> {
     let points = problem.undetermined_points();
     if points > 0 {
-        let of = problem.len();
+        let of = problem.domain().whole_points();
         return Err(HeatError::Undetermined { points, of }.into());
     }
     let sampled = problem.sample(t1)?;
@@ -301,10 +303,11 @@ fn steady(
             out,
         );
     };
-    let domain = problem.diffusion.cloud().domain();
+    let domain = problem.domain();
     let most = values
         .iter()
         .fold(0.0, |most: f64, value| most.max(value.abs()));
+    let most = domain.max(most);
     let rounding = 1e-15 * most * domain.norm(&problem.diffusion.diagonal());
     newton(problem, solver, (0.0, 1.0, t1), &residual, values, rounding)?;
     // Flows of the steady state: the change of content is not followed.

@@ -58,7 +58,7 @@ impl PairConductivity {
             return Self::of_continuum(influence, horizon, dimension, cloud.section());
         };
         check(influence, horizon, dimension)?;
-        let (cell, volume) = (cloud.spacing(), cloud.volumes()[0]);
+        let (cell, volume) = (cloud.spacing(), cell_volume(cloud));
         // Σ α/r ξ_a² ξ_b²/r² V
         let mut sums = [[0.0; 3]; 3];
         for_each_offset(
@@ -126,6 +126,14 @@ fn check(influence: &Influence, horizon: f64, dimension: usize) -> Result<()> {
         true => Err(HeatError::NegativeInfluence.into()),
         false => Ok(()),
     }
+}
+
+/// Returns the volume of a cell of a lattice, m³: that of its points, which are equal.
+pub(crate) fn cell_volume(cloud: &PointCloud) -> f64 {
+    let sides = (0..cloud.dimension()).map(|c| cloud.cell_side(c));
+    // A process may own no points of a divided body.
+    let first = cloud.volumes().first().copied();
+    first.unwrap_or_else(|| cloud.section() * sides.product::<f64>())
 }
 
 /// Calls `visit(steps, ξ, |ξ|)` for all offsets of a lattice up to a length, x fastest.

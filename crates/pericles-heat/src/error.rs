@@ -2,6 +2,7 @@
 
 use pericles::PericlesError;
 use pericles::units::{quantity, significant};
+use pericles_statics::MOST_REPLICATED;
 
 /// Errors of diffusing fields.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -59,9 +60,15 @@ pub enum HeatError {
         /// Time, s.
         t: f64,
     },
-    /// A body divided among processes.
-    #[error("fields that diffuse need all points on one process; this body is divided")]
-    Divided,
+    /// A divided body with too many points for a preconditioner that every process stores.
+    #[error(
+        "every process stores the preconditioner of implicit and steady schemes for the whole body, about 3 kB per point in space: a divided body may have {} points, this one has {points}; run it on one process with threads, or use scheme = \"explicit\"",
+        MOST_REPLICATED
+    )]
+    TooManyPoints {
+        /// Number of points of the body.
+        points: usize,
+    },
     /// A share of the dissipated energy outside of its range.
     #[error(
         "the share of dissipated energy that becomes heat is {share}; allowed: a number from 0 to 1"

@@ -10,8 +10,10 @@ use pericles::{
     Archive, BodyStep, Checkpointed, PericlesError, Result, SecondaryField, Temperature, Values,
     positive,
 };
+use pericles_statics::MOST_REPLICATED;
 
 use crate::advance::{Flows, Scheme, Span, advance};
+use crate::agreement::agreed;
 use crate::dissipation::Dissipation;
 use crate::error::HeatError;
 use crate::problem::Problem;
@@ -65,7 +67,8 @@ struct State {
     dissipation: Option<Dissipation>,
 }
 
-/// A computed field, shared by the system and the forces that depend on it.
+/// A computed field, shared by the system and the forces that depend on it. Values are those of own points, contents, flows and
+/// extremes those of the whole body: all processes must call its functions together.
 #[derive(Clone)]
 pub struct SharedField(Arc<Mutex<State>>);
 
@@ -75,17 +78,21 @@ pub struct DiffusingField {
 }
 
 impl DiffusingField {
-    /// Makes a field from its values at the time t.
+    /// Makes a field from its values at own points at the time t. All processes must call it together.
     ///
     /// # Errors
-    /// Values that are not one per point or not finite; a step that is not positive; a share of dissipated energy
-    /// outside of its range or with steady states.
+    /// Values that are not one per point; a step that is not positive; a share of dissipated energy outside of its range or with
+    /// steady states; [`HeatError::TooManyPoints`].
     pub fn new(problem: Problem, options: FieldOptions, t: f64, values: Vec<f64>) -> Result<Self> {
-        check_length(
-            "the temperatures of the points",
-            values.len(),
-            problem.len(),
-        )?;
+        let what = "the temperatures of the points";
+        let checked = check_length(what, values.len(), problem.len());
+        agreed(problem.domain(), checked)?;
+        if problem.domain().is_divided() && options.scheme != Scheme::Explicit {
+            let points = problem.domain().whole_points();
+            if points > MOST_REPLICATED {
+                return Err(HeatError::TooManyPoints { points }.into());
+            }
+        }
         if let Some(step) = options.step {
             positive("the thermal step", step)?;
         }
@@ -235,8 +242,7 @@ impl State {
             return;
         };
         let heat = |i: usize| dissipation.share * dissipated[i];
-        let domain = self.problem.diffusion.cloud().domain();
-        let total = domain.sum(dissipated.len(), heat);
+        let total = self.problem.domain().sum(dissipated.len(), heat);
         let Interval { from, to } = &mut self.accepted;
         for state in [from, to] {
             for (i, pending) in state.pending.iter_mut().enumerate() {
@@ -296,10 +302,13 @@ impl SharedField {
 
     /// Returns the smallest and the largest value at a time.
     pub fn range(&self, t: f64) -> [f64; 2] {
-        let values = self.state().values_at(t);
+        let mut state = self.state();
+        let values = state.values_at(t);
         let low = values.iter().copied().fold(f64::INFINITY, f64::min);
         let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        [low, high]
+        let mut most = [-low, high];
+        state.problem.domain().max_each(&mut most);
+        [-most[0], most[1]]
     }
 
     /// Returns the largest stable step of the explicit scheme at a time, s.
@@ -338,11 +347,9 @@ impl SecondaryField for DiffusingField {
 
     fn start(&mut self, forces: &dyn Force) -> Result<()> {
         let mut state = self.shared.state();
-        check_length(
-            "the points of the temperature field",
-            state.problem.len(),
-            forces.points(),
-        )?;
+        let what = "the points of the temperature field";
+        let checked = check_length(what, state.problem.len(), forces.points());
+        agreed(state.problem.domain(), checked)?;
         state.problem.diffusion.read_bonds(forces);
         let t = state.accepted.to.t;
         let sampled = state.problem.sample(t)?;
@@ -398,7 +405,7 @@ impl SecondaryField for DiffusingField {
 /// Names of arrays in checkpoints.
 const TIMES: &str = "temperature/t";
 const CONTENT: &str = "temperature/initial content";
-const INTACT: &str = "temperature/conducting bonds";
+const INTACT: &str = "temperature/intact bonds";
 const VALUES: [&str; 2] = ["temperature/from", "temperature/to"];
 const FLOWS: [&str; 2] = ["temperature/flows from", "temperature/flows to"];
 const PENDING: [&str; 2] = ["temperature/pending from", "temperature/pending to"];
@@ -409,10 +416,7 @@ impl Checkpointed for DiffusingField {
         let Interval { from, to } = &state.accepted;
         archive.put(TIMES, Values::F64(vec![from.t, to.t]));
         archive.put(CONTENT, Values::F64(vec![state.initial]));
-        archive.put(
-            INTACT,
-            Values::U8(state.problem.diffusion.intact().to_vec()),
-        );
+        state.problem.diffusion.save_intact(INTACT, archive);
         for (k, one) in [from, to].into_iter().enumerate() {
             let values = Values::F64(one.values.clone());
             archive.put_as(VALUES[k], values, Layout::Points);
@@ -421,7 +425,8 @@ impl Checkpointed for DiffusingField {
         if let Some(dissipation) = state.dissipation {
             dissipation.save(archive);
             for (k, one) in [from, to].into_iter().enumerate() {
-                archive.put(PENDING[k], Values::F64(one.pending.clone()));
+                let pending = Values::F64(one.pending.clone());
+                archive.put_as(PENDING[k], pending, Layout::Points);
             }
         }
     }
@@ -444,8 +449,7 @@ impl Checkpointed for DiffusingField {
         if let Some(dissipation) = &mut state.dissipation {
             dissipation.restore(archive)?;
         }
-        let intact: &[u8] = archive.numbers(INTACT)?;
-        state.problem.diffusion.restore_intact(intact)?;
+        state.problem.diffusion.restore_intact(INTACT, archive)?;
         state.ahead = None;
         state.failure = None;
         state.revision += 1;

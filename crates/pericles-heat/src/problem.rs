@@ -1,13 +1,16 @@
 //! A diffusion problem: capacity, conductances and conditions.
 
+use pericles::domain::Domain;
 use pericles::space::{check_length, check_points};
 use pericles::{Result, positive};
 
+use crate::agreement::agreed;
 use crate::condition::{Condition, Kind};
 use crate::diffusion::Diffusion;
 use crate::error::HeatError;
 
-/// Capacity, conductances and conditions of a field that diffuses.
+/// Capacity, conductances and conditions of a field that diffuses, on the own points of a process. All processes have the same
+/// conditions, each on its own points, which may be none.
 pub struct Problem {
     pub(crate) diffusion: Diffusion,
     /// Capacity of each point, J/K for heat.
@@ -26,7 +29,7 @@ pub(crate) struct Sampled {
 }
 
 impl Problem {
-    /// Makes a problem; capacities (J/K for heat) are those of whole points.
+    /// Makes a problem; capacities (J/K for heat) are those of whole points. All processes must call it together.
     ///
     /// # Errors
     /// Capacities that are not positive, or not one per point; conditions on points that do not exist; two prescribed
@@ -36,29 +39,8 @@ impl Problem {
         capacity: Vec<f64>,
         conditions: Vec<Condition>,
     ) -> Result<Self> {
-        let n = diffusion.cloud().len();
-        check_length("the heat capacities of the points", capacity.len(), n)?;
-        for &value in &capacity {
-            positive("the heat capacity", value)?;
-        }
-        let mut is_prescribed = vec![false; n];
-        for condition in &conditions {
-            check_points("the points of a thermal condition", &condition.points, n)?;
-            match &condition.kind {
-                Kind::Prescribed(_) => {
-                    for &i in &condition.points {
-                        if std::mem::replace(&mut is_prescribed[i as usize], true) {
-                            let point = diffusion.cloud().user_number(i as usize);
-                            return Err(HeatError::PrescribedTwice { point }.into());
-                        }
-                    }
-                }
-                Kind::Inflow { measure, .. } | Kind::Exchange { area: measure, .. } => {
-                    let what = "the areas of a thermal condition";
-                    check_length(what, measure.len(), condition.points.len())?;
-                }
-            }
-        }
+        let is_prescribed = prescribed_points(&diffusion, &capacity, &conditions);
+        let is_prescribed = agreed(diffusion.cloud().domain(), is_prescribed)?;
         Ok(Self {
             rates: diffusion.diagonal(),
             diffusion,
@@ -68,12 +50,17 @@ impl Problem {
         })
     }
 
-    /// Number of points.
+    /// The domain: how the body is divided among processes.
+    pub(crate) fn domain(&self) -> &Domain {
+        self.diffusion.cloud().domain()
+    }
+
+    /// Number of own points.
     pub fn len(&self) -> usize {
         self.capacity.len()
     }
 
-    /// Returns false: every body has points.
+    /// Returns whether this process owns no points.
     pub fn is_empty(&self) -> bool {
         self.capacity.is_empty()
     }
@@ -98,13 +85,13 @@ impl Problem {
         self.is_prescribed[i]
     }
 
-    /// Returns the content Σ C_i T_i, J for heat.
+    /// Returns the content Σ C_i T_i of the whole body, J for heat. All processes must call it together.
     pub fn content(&self, values: &[f64]) -> f64 {
-        let domain = self.diffusion.cloud().domain();
-        domain.sum(values.len(), |i| self.capacity[i] * values[i])
+        self.domain()
+            .sum(values.len(), |i| self.capacity[i] * values[i])
     }
 
-    /// Evaluates all conditions at a time.
+    /// Evaluates all conditions at a time. All processes must call it together.
     pub(crate) fn sample(&self, t: f64) -> Result<Sampled> {
         let of_condition = |condition: &Condition| -> Result<Vec<f64>> {
             let value = condition.value();
@@ -129,7 +116,8 @@ impl Problem {
             .conditions
             .iter()
             .map(of_condition)
-            .collect::<Result<_>>()?;
+            .collect::<Result<_>>();
+        let values = agreed(self.domain(), values)?;
         Ok(Sampled { values })
     }
 
@@ -144,8 +132,8 @@ impl Problem {
         }
     }
 
-    /// Adds the inflow of all conditions into each point (W for heat) to `out`, and the inflow of each condition times
-    /// `duration` to its entry of `booked`.
+    /// Adds the inflow of all conditions into each point (W for heat) to `out`, and the inflow of each condition into the whole
+    /// body times `duration` to its entry of `booked`. All processes must call it together, with the same duration.
     pub(crate) fn add_inflow(
         &self,
         sampled: &Sampled,
@@ -155,32 +143,39 @@ impl Problem {
     ) {
         for ((condition, sample), booked) in self.conditions.iter().zip(&sampled.values).zip(booked)
         {
-            let mut total = 0.0;
-            let mut add = |i: u32, inflow: f64| {
-                out[i as usize] += inflow;
-                total += inflow;
-            };
-            let points = condition.points.iter().zip(sample);
+            let points = &condition.points;
+            let target = (&mut *out, &mut *booked, duration);
             match &condition.kind {
                 Kind::Prescribed(_) => {}
                 Kind::Inflow { measure, .. } => {
-                    for ((&i, density), measure) in points.zip(measure) {
-                        add(i, density * measure);
-                    }
+                    self.add(points, target, |k| sample[k] * measure[k]);
                 }
                 Kind::Exchange {
                     law,
                     coefficient,
                     area,
                     ..
-                } => {
-                    for ((&i, &ambient), area) in points.zip(area) {
-                        let difference = law.value(ambient) - law.value(values[i as usize]);
-                        add(i, coefficient * area * difference);
-                    }
-                }
+                } => self.add(points, target, |k| {
+                    let value = values[points[k] as usize];
+                    let difference = law.value(sample[k]) - law.value(value);
+                    coefficient * area[k] * difference
+                }),
             }
-            *booked += duration * total;
+        }
+    }
+
+    /// Adds `inflow(k)` to the entry of the k-th of `points`, and the sum over the whole body times a duration to `booked`.
+    fn add(
+        &self,
+        points: &[u32],
+        (out, booked, duration): (&mut [f64], &mut f64, f64),
+        inflow: impl Fn(usize) -> f64 + Sync,
+    ) {
+        for (k, &i) in points.iter().enumerate() {
+            out[i as usize] += inflow(k);
+        }
+        if duration != 0.0 {
+            *booked += duration * self.domain().sum(points.len(), inflow);
         }
     }
 
@@ -212,14 +207,14 @@ impl Problem {
     }
 
     /// Adds to `booked` the inflow that prescribed values cause: the change of content of each of their points minus
-    /// what flows into it by bonds and other conditions, `inflow` (J).
+    /// what flows into it by bonds and other conditions, `inflow` (J). All processes must call it together.
     pub(crate) fn book_prescribed(
         &self,
         change: &(dyn Fn(usize) -> f64 + Sync),
         inflow: &(dyn Fn(usize) -> f64 + Sync),
         booked: &mut [f64],
     ) {
-        let domain = self.diffusion.cloud().domain();
+        let domain = self.domain();
         for (condition, booked) in self.conditions.iter().zip(booked) {
             if condition.is_prescribed() {
                 let points = &condition.points;
@@ -233,7 +228,7 @@ impl Problem {
 
     /// Returns the largest stable step of the explicit scheme at given values with all bonds intact, s:
     /// 1/max_i (Σ_j G_ij + h_i)/C_i, at most 2/λ by Gershgorin's theorem. Values then remain between the extremes of their
-    /// neighbours, also after bonds have broken.
+    /// neighbours, also after bonds have broken. All processes must call it together.
     pub fn explicit_limit(&self, values: &[f64]) -> f64 {
         let mut rates = self.rates.clone();
         self.add_exchange_slope(values, &mut rates);
@@ -241,13 +236,14 @@ impl Problem {
         let largest = free
             .map(|i| rates[i] / self.capacity[i])
             .fold(0.0, f64::max);
-        1.0 / largest
+        1.0 / self.domain().max(largest)
     }
 
-    /// Returns the number of points whose steady value no condition determines.
+    /// Returns the number of points of the whole body whose steady value no condition determines. All processes must call it
+    /// together.
     pub(crate) fn undetermined_points(&self) -> usize {
-        let n = self.len();
-        let mut reached = vec![false; n];
+        let (n, domain) = (self.len(), self.domain());
+        let mut reached = vec![false; n + domain.ghost_points()];
         let mut waiting: Vec<u32> = Vec::new();
         let determining = self.conditions.iter().filter(|one| one.determines_level());
         for &i in determining.flat_map(|one| &one.points) {
@@ -255,13 +251,54 @@ impl Problem {
                 waiting.push(i);
             }
         }
-        while let Some(i) = waiting.pop() {
-            self.diffusion.for_each_bond(i as usize, &mut |bond| {
-                if !std::mem::replace(&mut reached[bond.neighbour], true) {
-                    waiting.push(bond.neighbour as u32);
-                }
-            });
+        loop {
+            while let Some(i) = waiting.pop() {
+                self.diffusion.for_each_bond(i as usize, &mut |bond| {
+                    let is_new = !std::mem::replace(&mut reached[bond.neighbour], true);
+                    // The owner of a ghost continues from it.
+                    if is_new && bond.neighbour < n {
+                        waiting.push(bond.neighbour as u32);
+                    }
+                });
+            }
+            waiting = domain.merge_ghost_marks(&mut reached);
+            if domain.all(waiting.is_empty()) {
+                break;
+            }
         }
-        reached.iter().filter(|reached| !**reached).count()
+        let left = reached[..n].iter().filter(|reached| !**reached);
+        domain.count(left.count() as u64) as usize
     }
+}
+
+/// Returns whether the value of each point is prescribed; checks capacities and conditions of own points.
+fn prescribed_points(
+    diffusion: &Diffusion,
+    capacity: &[f64],
+    conditions: &[Condition],
+) -> Result<Vec<bool>> {
+    let n = diffusion.cloud().len();
+    check_length("the heat capacities of the points", capacity.len(), n)?;
+    for &value in capacity {
+        positive("the heat capacity", value)?;
+    }
+    let mut is_prescribed = vec![false; n];
+    for condition in conditions {
+        check_points("the points of a thermal condition", &condition.points, n)?;
+        match &condition.kind {
+            Kind::Prescribed(_) => {
+                for &i in &condition.points {
+                    if std::mem::replace(&mut is_prescribed[i as usize], true) {
+                        let point = diffusion.cloud().user_number(i as usize);
+                        return Err(HeatError::PrescribedTwice { point }.into());
+                    }
+                }
+            }
+            Kind::Inflow { measure, .. } | Kind::Exchange { area: measure, .. } => {
+                let what = "the areas of a thermal condition";
+                check_length(what, measure.len(), condition.points.len())?;
+            }
+        }
+    }
+    Ok(is_prescribed)
 }

@@ -1,16 +1,21 @@
 //! Solution of the implicit equations: conjugate gradients with the multigrid of a sparse network of springs between
 //! neighbouring points, here conductors.
+//!
+//! On a body divided among processes every process has the network and the multigrid of the whole body, with the bits of a single
+//! process; each of them selects the conductors of its own points.
+
+mod network;
 
 use std::hash::{DefaultHasher, Hasher};
 
-use pericles::parallel::for_each_point;
+use pericles::domain::Replicated;
 use pericles::{Interrupt, Result};
 use pericles_statics::krylov::{Goal, KrylovWork, LinearProblem, conjugate_gradients};
 use pericles_statics::multigrid::{Multigrid, NearKernel};
 use pericles_statics::sparse::SparseMatrix;
 
-use crate::diffusion::{Bond, Diffusion};
 use crate::problem::Problem;
+use network::near_network;
 
 /// Effort of the last step and of all steps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -23,7 +28,7 @@ pub struct Effort {
     pub total: u64,
 }
 
-/// What the preconditioner was made for.
+/// What the preconditioner was made for, on this process.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Key {
     changes: u64,
@@ -35,7 +40,9 @@ struct Key {
 impl Key {
     fn of(equations: &Equations<'_>) -> Self {
         let mut slopes = DefaultHasher::new();
-        for slope in equations.slope.iter().filter(|slope| **slope != 0.0) {
+        let present = equations.slope.iter().enumerate();
+        for (i, slope) in present.filter(|(_, slope)| **slope != 0.0) {
+            slopes.write_usize(i);
             slopes.write_u64(coarse(*slope).to_bits());
         }
         Self {
@@ -59,6 +66,8 @@ fn coarse(number: f64) -> f64 {
 pub(crate) struct Solver {
     made_for: Option<Key>,
     multigrid: Option<Multigrid>,
+    /// Makes vectors of the whole body; made with the first multigrid.
+    replicated: Option<Replicated>,
     krylov: KrylovWork,
     pub effort: Effort,
     /// 1 at points without prescribed values, 0 at others.
@@ -89,6 +98,7 @@ impl Solver {
         Self {
             made_for: None,
             multigrid: None,
+            replicated: None,
             krylov: KrylovWork::new(n),
             effort: Effort::default(),
             free: (0..n).map(free).collect(),
@@ -96,7 +106,7 @@ impl Solver {
     }
 
     /// Solves the equations for `residual`; `scale` is the norm of the right-hand side that the tolerance refers to.
-    /// Returns the correction, the number of products and the final relative residual.
+    /// Returns the correction, the number of products and the final relative residual. All processes must call it together.
     pub fn solve(
         &mut self,
         equations: &Equations<'_>,
@@ -104,21 +114,27 @@ impl Solver {
         scale: f64,
     ) -> Result<(Vec<f64>, u64, f64)> {
         let problem = equations.problem;
+        let domain = problem.domain();
         let key = Key::of(equations);
-        if self.made_for != Some(key) || self.multigrid.is_none() {
-            self.multigrid = Some(preconditioner(equations));
-            self.made_for = Some(key);
-        }
-        let mut solution = vec![0.0; problem.len()];
-        let Some(multigrid) = &mut self.multigrid else {
-            return Ok((solution, 0, 0.0));
+        let replicated = self
+            .replicated
+            .get_or_insert_with(|| Replicated::new(domain));
+        // A multigrid that is outdated on one process is outdated on all of them.
+        let is_valid = domain.all(self.made_for == Some(key));
+        let multigrid = match self.multigrid.take().filter(|_| is_valid) {
+            Some(known) => known,
+            None => preconditioner(equations, replicated),
         };
+        let multigrid = self.multigrid.insert(multigrid);
+        self.made_for = Some(key);
+        let mut solution = vec![0.0; problem.len()];
         for (r, free) in residual.iter_mut().zip(&self.free) {
             *r *= free;
         }
         let mut linear = Preconditioned {
             equations,
             multigrid,
+            replicated,
             free: &self.free,
         };
         let goal = Goal {
@@ -128,7 +144,6 @@ impl Solver {
             products: MOST,
             interrupt: Interrupt::never(),
         };
-        let domain = problem.diffusion.cloud().domain();
         let solved = conjugate_gradients(
             &mut linear,
             (domain, &self.free),
@@ -152,6 +167,7 @@ impl Solver {
 struct Preconditioned<'a> {
     equations: &'a Equations<'a>,
     multigrid: &'a mut Multigrid,
+    replicated: &'a Replicated,
     free: &'a [f64],
 }
 
@@ -172,36 +188,44 @@ impl LinearProblem for Preconditioned<'_> {
     }
 
     fn precondition_into(&mut self, residual: &[f64], out: &mut [f64]) {
-        self.multigrid.apply_into(residual, out);
+        let whole = self.replicated.of(residual);
+        let apply = |out: &mut [f64]| self.multigrid.apply_into(&whole, out);
+        self.replicated.fill_own(1, out, apply);
         for (out, free) in out.iter_mut().zip(self.free) {
             *out *= free;
         }
     }
 }
 
-/// Returns the multigrid of a network between neighbouring points that conducts unit gradients as the body does.
-fn preconditioner(equations: &Equations<'_>) -> Multigrid {
+/// Returns the multigrid of a network between neighbouring points that conducts unit gradients as the body does. All processes
+/// must call it together and obtain the same one.
+fn preconditioner(equations: &Equations<'_>, replicated: &Replicated) -> Multigrid {
     let Equations {
         problem,
         rate,
         share,
         slope,
     } = equations;
-    let n = problem.len();
-    let diffusion = &problem.diffusion;
-    let rows = near_network(diffusion);
+    let n = replicated.points();
+    let rows = near_network(&problem.diffusion, n);
     let own = |i: usize| coarse(*rate) * problem.capacity()[i] + coarse(slope[i]);
-    let typical = (0..n).map(|i| own(i) + share * rows[i].iter().map(|(_, g)| g).sum::<f64>());
+    let own: Vec<f64> = (0..problem.len()).map(own).collect();
+    let own = replicated.of(&own);
+    let is_prescribed = |i| f64::from(u8::from(problem.is_prescribed(i)));
+    let is_prescribed: Vec<f64> = (0..problem.len()).map(is_prescribed).collect();
+    let is_prescribed = replicated.of(&is_prescribed);
+    let is_prescribed = |i: usize| is_prescribed[i] != 0.0;
+    let typical = (0..n).map(|i| own[i] + share * rows[i].iter().map(|(_, g)| g).sum::<f64>());
     let typical = (typical.sum::<f64>() / n as f64).max(f64::MIN_POSITIVE);
     let matrix = SparseMatrix::from_rows(n, n, &|i, add| {
-        if problem.is_prescribed(i) {
+        if is_prescribed(i) {
             add(i, typical);
             return;
         }
-        let mut diagonal = own(i);
+        let mut diagonal = own[i];
         for &(j, conductance) in &rows[i] {
             diagonal += share * conductance;
-            if !problem.is_prescribed(j as usize) {
+            if !is_prescribed(j as usize) {
                 add(j as usize, -share * conductance);
             }
         }
@@ -213,64 +237,4 @@ fn preconditioner(equations: &Equations<'_>) -> Multigrid {
         vectors: vec![1.0; n],
     };
     Multigrid::new(matrix, kernel)
-}
-
-/// Returns the conductors between neighbouring points, row by row and symmetric: the short bonds of the body, with a
-/// factor per point such that unit gradients, averaged over the axes, have the energy of all bonds.
-fn near_network(diffusion: &Diffusion) -> Vec<Vec<(u32, f64)>> {
-    let cloud = diffusion.cloud();
-    let (n, d) = (cloud.len(), cloud.dimension());
-    /// Squared reach in cells. Bonds to next neighbours alone would need a third more products.
-    const REACH: f64 = 4.1;
-    let nearest = [4, 12, 32][d - 1];
-    let square = |bond: &Bond| bond.xi.iter().map(|x| x * x).sum::<f64>();
-    let chosen = for_each_point(n, &|i| {
-        let mut all = Vec::new();
-        diffusion.for_each_bond(i, &mut |bond| {
-            if bond.neighbour != i {
-                all.push(bond);
-            }
-        });
-        let moment: f64 = all.iter().map(|bond| bond.conductance * square(bond)).sum();
-        let cells = |bond: &Bond| {
-            (0..d)
-                .map(|c| (bond.xi[c] / cloud.cell_side(c)).powi(2))
-                .sum::<f64>()
-        };
-        all.sort_by(|a, b| {
-            cells(a)
-                .total_cmp(&cells(b))
-                .then(a.neighbour.cmp(&b.neighbour))
-        });
-        let near = match cloud.cell_sides() {
-            Some(_) => all.partition_point(|bond| cells(bond) <= REACH),
-            None => nearest,
-        };
-        all.truncate(near.max(2 * d));
-        // All points together would keep the memory of whole families.
-        all.shrink_to_fit();
-        let own: f64 = all.iter().map(|bond| bond.conductance * square(bond)).sum();
-        let coefficient = if own > 0.0 { moment / own } else { 0.0 };
-        (all, coefficient)
-    });
-    let mut rows: Vec<Vec<(u32, f64)>> = vec![Vec::new(); n];
-    for (i, (bonds, coefficient)) in chosen.iter().enumerate() {
-        for bond in bonds {
-            // Half of the mean from each end that selects the bond.
-            let conductance = 0.5 * coefficient * bond.conductance;
-            rows[i].push((bond.neighbour as u32, conductance));
-            rows[bond.neighbour].push((i as u32, conductance));
-        }
-    }
-    for row in &mut rows {
-        row.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
-        row.dedup_by(|next, kept| {
-            let same = next.0 == kept.0;
-            if same {
-                kept.1 += next.1;
-            }
-            same
-        });
-    }
-    rows
 }

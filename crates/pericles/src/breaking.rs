@@ -32,12 +32,16 @@ impl System {
         if domain.all(breaks.is_empty()) {
             return;
         }
-        let mut breaks = at_both_ends(&domain, breaks);
-        // The order must not depend on the division among processes.
-        breaks.sort_by_key(|bond| {
-            let [a, b] = bond.points.map(|point| domain.number(point as usize));
-            [a.min(b), a.max(b)]
-        });
+        let numbers = |bond: &CoarseBreak| bond.points.map(|point| domain.number(point as usize));
+        // Neither the order nor the first end must depend on the division among processes: the ends of a bond without relative
+        // velocity are pushed in the direction of the force on the first one.
+        let oriented = |bond: CoarseBreak| match numbers(&bond) {
+            [a, b] if a > b => bond.reversed(),
+            _ => bond,
+        };
+        let breaks = at_both_ends(&domain, breaks).into_iter();
+        let mut breaks: Vec<CoarseBreak> = breaks.map(oriented).collect();
+        breaks.sort_by_key(numbers);
         let own: Vec<usize> = (0..breaks.len())
             .filter(|&k| self.is_ours(&breaks[k]))
             .collect();
@@ -179,7 +183,7 @@ fn at_both_ends(domain: &Domain, breaks: Vec<CoarseBreak>) -> Vec<CoarseBreak> {
         let [x, y, z, missing] = letter.numbers;
         CoarseBreak {
             points: [letter.to as u32, letter.from as u32],
-            along: [x, y, z],
+            along: [-x, -y, -z],
             missing,
         }
     });

@@ -1,5 +1,7 @@
 //! Stencil of conductances, for lattice bodies.
 
+use pericles::archive::Layout;
+use pericles::domain::Domain;
 use pericles::lanes::{InstructionSet, LANES};
 use pericles::operator::pool::Pool;
 use pericles::parallel::for_each_point;
@@ -7,21 +9,25 @@ use pericles::space::Sites;
 use pericles::{PericlesError, Result};
 use rayon::prelude::*;
 
+use super::frame::Frame;
 use super::kernels::{Chunk, Stencil, add_chunks};
-use super::{Bond, Bonds, DiffusionBody, Interface, surface};
-use crate::calibration::{PairConductivity, for_each_offset};
+use super::{Bond, Bonds, DiffusionBody, Interface, surface, with_ghosts};
+use crate::calibration::{PairConductivity, cell_volume, for_each_offset};
 
 /// Marks a place without a site.
 const NONE: u32 = u32::MAX;
+
+/// Offsets per byte in checkpoints.
+const BITS: usize = u8::BITS as usize;
 
 /// Number of chunks that a thread computes at a time.
 const TASK: usize = 64;
 
 /// Bonds of a lattice body. The rows along x of the box of all sites are padded to whole chunks of eight nodes, so that
-/// a neighbour is a fixed number of places away.
+/// a neighbour is a fixed number of places away. Ghosts of other processes have places too; no flow into them is computed.
 pub(super) struct GridBonds {
     chunks: Vec<Chunk>,
-    /// Point at each place, or [`NONE`].
+    /// Point at each place, ghosts after own points, or [`NONE`].
     points: Vec<u32>,
     /// Chunk and lane of each point.
     slots: Vec<(u32, u8)>,
@@ -39,42 +45,25 @@ pub(super) struct GridBonds {
     intact: Vec<u8>,
     share: f64,
     work: Pool<Vec<f64>>,
+    domain: Domain,
 }
 
 impl GridBonds {
     pub fn new(body: &DiffusionBody, calibration: PairConductivity) -> Result<Self> {
         let cloud = &body.cloud;
         let (n, d) = (cloud.len(), cloud.dimension());
-        let (cell, volume) = (cloud.spacing(), cloud.volumes()[0]);
+        let (cell, volume) = (cloud.spacing(), cell_volume(cloud));
         let reach = body.correction.reach(body.horizon, cell);
         let sites = Sites::new(cloud, reach)?;
-        let lattice = sites.places().lattice().or(cloud.lattice());
+        let lattice = sites.places().lattice();
         let lattice = lattice.ok_or(PericlesError::BadArchive {
             reason: "the body has no lattice".into(),
         })?;
-        let at: Vec<[i32; 3]> = lattice
-            .node
-            .iter()
-            .map(|&node| lattice.coordinates(node))
-            .collect();
-        let low: [i32; 3] = std::array::from_fn(|c| at.iter().map(|x| x[c]).min().unwrap_or(0));
-        let high: [i32; 3] = std::array::from_fn(|c| at.iter().map(|x| x[c]).max().unwrap_or(0));
-        let side = |c: usize| (high[c] - low[c]) as usize + 1;
-        let mut row = side(0).next_multiple_of(LANES);
-        // Rows at distances of a multiple of 1024 numbers would compete for the same cache lines.
-        if row.is_multiple_of(128) {
-            row += LANES;
-        }
-        let strides = [1, row as isize, (row * side(1)) as isize];
-        let place = |x: [i32; 3]| -> usize {
-            (0..3)
-                .map(|c| (x[c] - low[c]) as usize * strides[c] as usize)
-                .sum()
-        };
-        let places = row * side(1) * side(2);
-        let mut points = vec![NONE; places];
-        for (site, x) in at.iter().enumerate() {
-            points[place(*x)] = sites.point(site) as u32;
+        let frame = Frame::new(&sites, lattice);
+        let places = frame.places;
+        let mut site_at = vec![NONE; places];
+        for (site, place) in frame.site_places().enumerate() {
+            site_at[place] = site as u32;
         }
         let (mut shifts, mut steps, mut vectors, mut weights) = (vec![], vec![], vec![], vec![]);
         for_each_offset(lattice.spacing, d, reach, &mut |step, xi, r| {
@@ -83,7 +72,7 @@ impl GridBonds {
                 * volume
                 * volume;
             if weight > 0.0 {
-                shifts.push((0..3).map(|c| step[c] as isize * strides[c]).sum::<isize>());
+                shifts.push(frame.shift(step));
                 steps.push(step);
                 vectors.push(xi);
                 weights.push(weight);
@@ -101,20 +90,16 @@ impl GridBonds {
             .max()
             .unwrap_or(0);
         let margin = (farthest + LANES).next_multiple_of(LANES);
-        let own: Vec<[i32; 3]> = (0..n).map(|i| at[sites.of_point(i)]).collect();
-        let (chunks, slots) = chunks(&own, low, strides);
+        let (chunks, slots) = frame.chunks(&sites);
+        let piece = |site: usize| sites.places().piece(site);
         let bits = |chunk: &Chunk, step: [i32; 3]| -> u8 {
             let mut bits = 0;
             for lane in (0..LANES).filter(|lane| chunk.lanes >> lane & 1 == 1) {
                 let before = (chunk.lanes & !(0xFF << lane)).count_ones() as usize;
-                let here = own[chunk.point as usize + before];
-                let there: [i32; 3] = std::array::from_fn(|c| here[c] + step[c]);
-                let inside = (0..3).all(|c| (low[c]..=high[c]).contains(&there[c]));
-                let other = |point: u32| {
-                    point != NONE
-                        && cloud.piece(point as usize) == cloud.piece(chunk.point as usize + before)
-                };
-                if inside && other(points[place(there)]) {
+                let here = sites.of_point(chunk.point as usize + before);
+                let there = frame.place_beside(here, step);
+                let there = there.map_or(NONE, |place| site_at[place]);
+                if there != NONE && piece(there as usize) == piece(here) {
                     bits |= 1 << lane;
                 }
             }
@@ -129,6 +114,12 @@ impl GridBonds {
                     .collect::<Vec<_>>()
             })
             .collect();
+        let point = |&site: &u32| match site {
+            NONE => NONE,
+            site => sites.point(site as usize) as u32,
+        };
+        let points: Vec<u32> = site_at.iter().map(point).collect();
+        drop(site_at);
         let padded = |of_point: &dyn Fn(usize) -> f64| {
             let mut field = vec![1.0; places + 2 * margin];
             for (place, &point) in points
@@ -140,9 +131,10 @@ impl GridBonds {
             }
             field
         };
+        let conductivity = with_ghosts(cloud.domain(), &body.conductivity);
         let material = padded(&|i| match body.interface {
-            Interface::Harmonic => 1.0 / body.conductivity.at(i),
-            Interface::Arithmetic => body.conductivity.at(i),
+            Interface::Harmonic => 1.0 / conductivity.at(i),
+            Interface::Arithmetic => conductivity.at(i),
         });
         let length = places + 2 * margin;
         let mut bonds = Self {
@@ -150,6 +142,7 @@ impl GridBonds {
             family,
             surface: Vec::new(),
             work: Pool::new(1, move || vec![0.0; length]),
+            domain: cloud.domain().clone(),
             interface: body.interface,
             share: body.broken_share,
             chunks,
@@ -173,6 +166,7 @@ impl GridBonds {
             true => surface::factors(cloud, &moments),
             false => vec![1.0; n],
         };
+        let factors = cloud.domain().with_ghosts(&factors);
         let mut surface = vec![0.5; length];
         for (place, &point) in bonds
             .points
@@ -184,6 +178,7 @@ impl GridBonds {
         }
         bonds.surface = surface;
         bonds.find_plain();
+        frame.agree_on_plain(cloud.domain(), &mut bonds.chunks);
         Ok(bonds)
     }
 
@@ -297,35 +292,9 @@ impl GridBonds {
     }
 }
 
-/// Returns the chunks of the points, whose coordinates ascend with x fastest, and the chunk and lane of each point.
-fn chunks(own: &[[i32; 3]], low: [i32; 3], strides: [isize; 3]) -> (Vec<Chunk>, Vec<(u32, u8)>) {
-    let mut chunks: Vec<Chunk> = Vec::new();
-    let mut slots = Vec::with_capacity(own.len());
-    for (i, x) in own.iter().enumerate() {
-        let place: usize = (0..3)
-            .map(|c| (x[c] - low[c]) as usize * strides[c] as usize)
-            .sum();
-        let (first, lane) = (place / LANES * LANES, place % LANES);
-        if chunks
-            .last()
-            .is_none_or(|chunk| chunk.place as usize != first)
-        {
-            chunks.push(Chunk {
-                place: first as u32,
-                point: i as u32,
-                lanes: 0,
-                is_plain: false,
-            });
-        }
-        let number = chunks.len() - 1;
-        chunks[number].lanes |= 1 << lane;
-        slots.push((number as u32, lane as u8));
-    }
-    (chunks, slots)
-}
-
 impl Bonds for GridBonds {
     fn add_flow(&self, values: &[f64], set: InstructionSet, out: &mut [f64]) {
+        let values = self.domain.with_ghosts(values);
         let mut padded = self.work.take();
         let (margin, points) = (self.margin, &self.points);
         padded[margin..margin + points.len()]
@@ -371,18 +340,40 @@ impl Bonds for GridBonds {
         }
     }
 
-    fn intact(&self) -> &[u8] {
-        &self.intact
+    /// One bit per point and offset: unlike chunks, points and offsets do not depend on the division among processes.
+    fn intact(&self) -> (Vec<u8>, Layout) {
+        let (n, m) = (self.slots.len(), self.shifts.len());
+        let mut bits = vec![0u8; m.div_ceil(BITS) * n];
+        let of_offsets = bits.par_chunks_mut(n.max(1)).enumerate();
+        of_offsets.for_each(|(byte, bits)| {
+            let offsets = byte * BITS..((byte + 1) * BITS).min(m);
+            let of_points = bits.par_iter_mut().zip(&self.slots);
+            of_points.for_each(|(bits, &(chunk, lane))| {
+                for (bit, k) in offsets.clone().enumerate() {
+                    *bits |= (self.intact[chunk as usize * m + k] >> lane & 1) << bit;
+                }
+            });
+        });
+        (bits, Layout::Points)
     }
 
-    fn restore_intact(&mut self, intact: &[u8]) -> Result<()> {
-        let fits = intact.len() == self.family.len()
-            && intact.iter().zip(&self.family).all(|(a, b)| a & !b == 0);
-        if !fits {
+    fn restore_intact(&mut self, bits: &[u8]) -> Result<()> {
+        let (n, m) = (self.slots.len(), self.shifts.len());
+        let mut intact = vec![0u8; self.family.len()];
+        let has_length = bits.len() == m.div_ceil(BITS) * n;
+        if has_length {
+            for (i, &(chunk, lane)) in self.slots.iter().enumerate() {
+                for k in 0..m {
+                    let bit = bits[k / BITS * n + i] >> (k % BITS) & 1;
+                    intact[chunk as usize * m + k] |= bit << lane;
+                }
+            }
+        }
+        if !has_length || intact.iter().zip(&self.family).any(|(a, b)| a & !b != 0) {
             let reason = "its conducting bonds are not bonds of the body".into();
             return Err(PericlesError::BadArchive { reason });
         }
-        self.intact.copy_from_slice(intact);
+        self.intact = intact;
         Ok(())
     }
 

@@ -1,11 +1,13 @@
 //! Neighbour list of conductances, for any body.
 
+use pericles::archive::Layout;
 use pericles::family::BondList;
 use pericles::lanes::{InstructionSet, LANES};
 use pericles::parallel::{for_each_chunk, for_each_point};
 use pericles::{PericlesError, Result};
 
-use super::{Bond, Bonds, DiffusionBody, surface};
+use super::{Bond, Bonds, DiffusionBody, surface, with_ghosts};
+use crate::agreement::agreed;
 use crate::calibration::PairConductivity;
 
 /// A neighbour list with the conductance of each entry.
@@ -24,7 +26,11 @@ impl ListBonds {
     pub fn new(body: &DiffusionBody, list: BondList) -> Result<Self> {
         let cloud = list.sites().cloud();
         let n = cloud.len();
-        let horizons = body.horizons.as_deref();
+        let domain = cloud.domain();
+        // The other end of a bond may be a ghost.
+        let horizons = body.horizons.as_ref().map(|own| domain.with_ghosts(own));
+        let horizons = horizons.as_deref();
+        let conductivity = with_ghosts(domain, &body.conductivity);
         // Points have few different horizons.
         let mut values: Vec<f64> = horizons.map_or(vec![body.horizon], <[f64]>::to_vec);
         values.sort_unstable_by(f64::total_cmp);
@@ -33,7 +39,7 @@ impl ListBonds {
             .iter()
             .map(|&horizon| body.calibration(horizon))
             .collect();
-        let calibrations = calibrations?;
+        let calibrations = agreed(domain, calibrations)?;
         let of_point = |i: usize| match horizons {
             None => &calibrations[0],
             Some(horizons) => &calibrations[values.partition_point(|h| *h < horizons[i])],
@@ -63,16 +69,15 @@ impl ListBonds {
             true => surface::factors(cloud, &moments),
             false => vec![1.0; n],
         };
+        let factors = domain.with_ghosts(&factors);
         let rows = for_each_point(n, &|i| {
             let mut row = vec![0.0; list.groups(i).len() * LANES];
             let first = list.groups(i).start * LANES;
             for (entry, site) in list.family(i) {
                 let (kappa, _, j) = kappa(i, site);
-                let k = body
-                    .interface
-                    .mean(body.conductivity.at(i), body.conductivity.at(j));
+                let k = body.interface.mean(conductivity.at(i), conductivity.at(j));
                 let factor = 0.5 * (factors[i] + factors[j]);
-                let volumes = cloud.volumes()[i] * cloud.volumes()[j];
+                let volumes = cloud.volumes()[i] * list.volume(site);
                 row[entry - first] = kappa * k * factor * volumes;
             }
             row
@@ -137,8 +142,10 @@ impl Bonds for ListBonds {
         }
     }
 
-    fn intact(&self) -> &[u8] {
-        &self.intact
+    /// One byte per group: groups do not depend on the division among processes.
+    fn intact(&self) -> (Vec<u8>, Layout) {
+        let layout = Layout::rows(self.list.start(), self.intact.len());
+        (self.intact.clone(), layout)
     }
 
     fn restore_intact(&mut self, intact: &[u8]) -> Result<()> {

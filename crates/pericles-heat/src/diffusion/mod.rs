@@ -1,22 +1,26 @@
 //! Conductances of all bonds of a body: the linear operator of diffusion.
 
+mod frame;
 mod grid;
 mod kernels;
 mod list;
 mod surface;
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
+use pericles::archive::{Archive, Layout};
+use pericles::domain::Domain;
 use pericles::family::{BondList, VolumeCorrection};
 use pericles::kernel::Influence;
 use pericles::lanes::InstructionSet;
 use pericles::operator::Force;
 use pericles::parallel::for_each_point;
 use pericles::space::{PointCloud, check_length};
-use pericles::{PericlesError, PointScalar, Result};
+use pericles::{PericlesError, PointScalar, Result, Values, positive};
 
+use crate::agreement::agreed;
 use crate::calibration::PairConductivity;
-use crate::error::HeatError;
 use grid::GridBonds;
 use list::ListBonds;
 
@@ -40,7 +44,8 @@ impl Interface {
     }
 }
 
-/// Description of a body that conducts.
+/// Description of a body that conducts. If it is divided among processes, each of them describes its own points, with a uniform
+/// conductivity on all of them or on none.
 #[derive(Debug, Clone)]
 pub struct DiffusionBody {
     /// The points.
@@ -67,7 +72,7 @@ pub struct DiffusionBody {
 /// A bond seen from one of its ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Bond {
-    /// The other end; a point can be a neighbour several times through periodic faces.
+    /// The other end, ghosts after own points; a point can be a neighbour several times through periodic faces.
     pub neighbour: usize,
     /// Reference vector to the other end, m.
     pub xi: [f64; 3],
@@ -81,15 +86,18 @@ trait Bonds: Send + Sync {
     fn for_each_bond(&self, i: usize, visit: &mut dyn FnMut(Bond));
     /// Sets the intact bonds of a point by a function of the other end.
     fn set_intact(&mut self, i: usize, is_intact: &dyn Fn(usize) -> bool);
-    fn intact(&self) -> &[u8];
-    fn restore_intact(&mut self, intact: &[u8]) -> Result<()>;
+    /// Returns the intact bonds as bits with their layout in checkpoints.
+    fn intact(&self) -> (Vec<u8>, Layout);
+    /// Restores the intact bonds from these bits.
+    fn restore_intact(&mut self, bits: &[u8]) -> Result<()>;
     fn directed_bonds(&self) -> u64;
     fn bytes(&self) -> usize;
 }
 
 /// The conductances of all bonds: T ↦ Σ_j G_ij (T_j − T_i), the flow into each point (W for heat).
 ///
-/// Every point adds the flows of its bonds in a fixed order, so that results do not depend on the number of threads.
+/// Every point adds the flows of its bonds in a fixed order, so that results do not depend on the number of threads and processes.
+/// On a body divided among processes, values and flows are those of own points; the values of ghosts are exchanged.
 pub struct Diffusion {
     cloud: Arc<PointCloud>,
     bonds: Box<dyn Bonds>,
@@ -101,10 +109,10 @@ pub struct Diffusion {
 }
 
 impl DiffusionBody {
-    /// Makes the operator: a stencil for lattices, a neighbour list for other bodies.
+    /// Makes the operator: a stencil for lattices, a neighbour list for other bodies. All processes must call it together.
     ///
     /// # Errors
-    /// Invalid horizons, influence functions, conductivities and shares; bodies divided among processes.
+    /// Invalid horizons, influence functions, conductivities and shares.
     pub fn build(&self) -> Result<Diffusion> {
         self.build_as(self.cloud.lattice().is_some() && self.horizons.is_none())
     }
@@ -119,41 +127,7 @@ impl DiffusionBody {
 
     fn build_as(&self, on_grid: bool) -> Result<Diffusion> {
         let cloud = &self.cloud;
-        if cloud.domain().is_divided() {
-            return Err(HeatError::Divided.into());
-        }
-        let within = |quantity, value: f64, holds: bool, allowed| match holds {
-            true => Ok(()),
-            false => Err(PericlesError::OutOfRange {
-                quantity,
-                value,
-                allowed,
-            }),
-        };
-        if let PointScalar::PerPoint(values) = &self.conductivity {
-            check_length(
-                "the conductivities of the points",
-                values.len(),
-                cloud.len(),
-            )?;
-        }
-        for i in 0..cloud.len() {
-            let k = self.conductivity.at(i);
-            within(
-                "the conductivity",
-                k,
-                k.is_finite() && k >= 0.0,
-                "zero or positive",
-            )?;
-        }
-        let share = self.broken_share;
-        let allowed = "from 0 to 1";
-        within(
-            "the conductance of broken bonds",
-            share,
-            (0.0..=1.0).contains(&share),
-            allowed,
-        )?;
+        agreed(cloud.domain(), self.check())?;
         let bonds: Box<dyn Bonds> = match on_grid {
             true => Box::new(GridBonds::new(self, self.calibration(self.horizon)?)?),
             false => {
@@ -175,9 +149,58 @@ impl DiffusionBody {
         })
     }
 
+    /// Checks the constants of own points.
+    fn check(&self) -> Result<()> {
+        let points = self.cloud.len();
+        let within = |quantity, value: f64, holds: bool, allowed| match holds {
+            true => Ok(()),
+            false => Err(PericlesError::OutOfRange {
+                quantity,
+                value,
+                allowed,
+            }),
+        };
+        if let PointScalar::PerPoint(values) = &self.conductivity {
+            check_length("the conductivities of the points", values.len(), points)?;
+        }
+        for i in 0..points {
+            let k = self.conductivity.at(i);
+            within(
+                "the conductivity",
+                k,
+                k.is_finite() && k >= 0.0,
+                "zero or positive",
+            )?;
+        }
+        if let Some(horizons) = &self.horizons {
+            check_length("the horizons of the points", horizons.len(), points)?;
+            for &horizon in horizons {
+                positive("the horizon", horizon)?;
+            }
+        }
+        let share = self.broken_share;
+        let allowed = "from 0 to 1";
+        within(
+            "the conductance of broken bonds",
+            share,
+            (0.0..=1.0).contains(&share),
+            allowed,
+        )
+    }
+
     /// Returns the pair conductivity for a horizon: by sums over the lattice where there is one.
     fn calibration(&self, horizon: f64) -> Result<PairConductivity> {
         PairConductivity::of_lattice(&self.influence, horizon, self.correction, &self.cloud)
+    }
+}
+
+/// Returns a constant of own points and ghosts. All processes must call it together.
+fn with_ghosts<'a>(domain: &Domain, own: &'a PointScalar) -> Cow<'a, PointScalar> {
+    match own {
+        PointScalar::PerPoint(values) if domain.is_divided() => Cow::Owned(PointScalar::PerPoint(
+            domain.with_ghosts(values).into_owned(),
+        )),
+        _ => Cow::Borrowed(own),
     }
 }
 
@@ -194,7 +217,7 @@ impl Diffusion {
         }
     }
 
-    /// Adds the flow into each point (W for heat) to `out`.
+    /// Adds the flow into each point (W for heat) to `out`. All processes must call it together.
     pub fn add_flow(&self, values: &[f64], out: &mut [f64]) {
         self.bonds.add_flow(values, self.set, out);
     }
@@ -213,9 +236,11 @@ impl Diffusion {
     }
 
     /// Sets `out` (component-major) to the flux −½ Σ_j κ_ij V_j ξ (T_j − T_i), W/m² for heat: −k ∇T of a linear field.
+    /// All processes must call it together.
     pub fn flux_into(&self, values: &[f64], out: &mut [f64]) {
         let (n, d) = (self.cloud.len(), self.cloud.dimension());
         let volumes = self.cloud.volumes();
+        let values = &*self.cloud.domain().with_ghosts(values);
         let of_points = for_each_point(n, &|i| {
             let mut flux = [0.0; 3];
             self.for_each_bond(i, &mut |bond| {
@@ -242,7 +267,8 @@ impl Diffusion {
         });
     }
 
-    /// Reads from the forces of the body which bonds are intact; returns whether bonds changed.
+    /// Reads from the forces of the body which bonds are intact; returns whether bonds changed on any process. All processes must
+    /// call it together.
     pub fn read_bonds(&mut self, forces: &dyn Force) -> bool {
         let Some(breaking) = forces.capabilities().breaking else {
             return false;
@@ -271,6 +297,7 @@ impl Diffusion {
             let is_intact = |j: usize| j == i || near.binary_search(&j).is_ok();
             self.bonds.set_intact(i, &is_intact);
         }
+        let any = !self.cloud.domain().all(!any);
         self.changes += u64::from(any);
         any
     }
@@ -280,27 +307,28 @@ impl Diffusion {
         self.changes
     }
 
-    /// Returns the intact bonds as bits, for checkpoints.
-    pub fn intact(&self) -> &[u8] {
-        self.bonds.intact()
+    /// Adds the intact bonds to a checkpoint.
+    pub fn save_intact(&self, name: &str, archive: &mut Archive) {
+        let (bits, layout) = self.bonds.intact();
+        archive.put_as(name, Values::U8(bits), layout);
     }
 
     /// Restores the intact bonds.
     ///
     /// # Errors
-    /// Bits of another body.
-    pub fn restore_intact(&mut self, intact: &[u8]) -> Result<()> {
+    /// Bonds of another body.
+    pub fn restore_intact(&mut self, name: &str, archive: &Archive) -> Result<()> {
         self.read.clear();
         self.changes += 1;
-        self.bonds.restore_intact(intact)
+        self.bonds.restore_intact(archive.numbers(name)?)
     }
 
-    /// Returns the number of family entries in the loops: each bond counts twice.
+    /// Returns the number of bonds of the whole body, each counted from both ends. All processes must call it together.
     pub fn directed_bonds(&self) -> u64 {
-        self.bonds.directed_bonds()
+        self.cloud.domain().count(self.bonds.directed_bonds())
     }
 
-    /// Returns the memory use, bytes.
+    /// Returns the memory use of this process, bytes.
     pub fn bytes(&self) -> usize {
         self.bonds.bytes()
     }

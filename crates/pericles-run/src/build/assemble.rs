@@ -57,8 +57,8 @@ pub fn assemble(
             assembler.grid_parts(solid, &discretisation, &part, &mut warnings)?
         }
     };
-    let field = assembler.conduct(&parts, &discretisation, resources, &mut warnings)?;
     let place = (&discretisation, &part);
+    let field = assembler.conduct(&parts, place, resources, &mut warnings)?;
     assembler.heat(&mut parts, place, resources, field.as_ref())?;
     let BodyParts {
         constants,

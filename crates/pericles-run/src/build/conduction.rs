@@ -21,6 +21,7 @@ use super::area;
 use super::assembler::Assembler;
 use super::body::BodyParts;
 use super::discretisation::Discretisation;
+use super::part::Part;
 use super::refusal::{at, at_path};
 use super::resources::Resources;
 use super::thermal::Given;
@@ -29,11 +30,11 @@ use super::thermal::Given;
 const STEFAN_BOLTZMANN: f64 = 5.670_374_419e-8;
 
 impl Assembler<'_> {
-    /// Builds the computed temperature, if the model has heat conduction.
+    /// Builds the computed temperature of own points, if the model has heat conduction. All processes must call it together.
     pub(super) fn conduct(
         &self,
         parts: &BodyParts,
-        discretisation: &Discretisation,
+        (discretisation, part): (&Discretisation, &Part),
         resources: &Resources<'_>,
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<Option<DiffusingField>, BuildError> {
@@ -63,12 +64,12 @@ impl Assembler<'_> {
                 .unwrap_or_default(),
         };
         let body = DiffusionBody {
-            cloud: cloud.clone(),
+            cloud: part.cloud.clone(),
             influence,
             horizon: solid.material.horizon(),
-            horizons,
+            horizons: horizons.map(|horizons| part.own(&horizons).into_owned()),
             correction: solid.material.volume_correction(),
-            conductivity,
+            conductivity: part.scalar(conductivity),
             interface: match conduction.interface {
                 ConductivityMean::Harmonic => Interface::Harmonic,
                 ConductivityMean::Arithmetic => Interface::Arithmetic,
@@ -79,15 +80,17 @@ impl Assembler<'_> {
         let diffusion = body
             .build()
             .map_err(|error| at("thermal.conductivity", error))?;
+        let own = (0..part.cloud.len()).map(|k| part.number(k));
         let capacity = |i: usize| parts.density.at(i) * specific_heat.at(i) * cloud.volumes()[i];
-        let capacity = (0..cloud.len()).map(capacity).collect();
+        let capacity = own.map(capacity).collect();
         let conditions = conduction
             .conditions
             .iter()
             .enumerate()
             .map(|(k, condition)| {
                 let path = KeyPath::from("thermal").key("condition").index(k);
-                self.thermal_condition(&path, (thermal, condition), discretisation, warnings)
+                let place = (discretisation, part);
+                self.thermal_condition(&path, (thermal, condition), place, warnings)
             });
         let conditions = conditions.collect::<Result<Vec<_>, _>>()?;
         let problem = Problem::new(diffusion, capacity, conditions);
@@ -103,8 +106,9 @@ impl Assembler<'_> {
             dissipation: conduction.dissipation,
         };
         let start = match self.temperature(thermal, cloud, resources)? {
-            Given::OfPoints(values) => values,
+            Given::OfPoints(values) => part.own(&values).into_owned(),
             Given::Formula(value) => {
+                let cloud = &part.cloud;
                 for_each_point(cloud.len(), &|i| value.value(cloud.point(i), 0.0))
             }
         };
@@ -113,7 +117,7 @@ impl Assembler<'_> {
     }
 
     /// Rejects heat conduction that would need very many of its own steps within a step of the run, `dt` (s): a step cannot
-    /// be interrupted.
+    /// be interrupted. All processes must call it together.
     pub(super) fn check_thermal_steps(&self, system: &System, dt: f64) -> Result<(), BuildError> {
         const MOST: f64 = 1e5;
         let mut fields = system.fields();
@@ -190,7 +194,7 @@ impl Assembler<'_> {
         &self,
         path: &KeyPath,
         (thermal, condition): (&Thermal, &ThermalCondition),
-        discretisation: &Discretisation,
+        (discretisation, part): (&Discretisation, &Part),
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<Condition, BuildError> {
         let cloud = &discretisation.cloud;
@@ -202,13 +206,13 @@ impl Assembler<'_> {
         // Time functions multiply the difference to the reference temperature.
         let temperature = |value: &Component| {
             of_time(
-                cloud,
+                &part.cloud,
                 value,
                 &function,
                 thermal.reference.unwrap_or_default(),
             )
         };
-        let density = |value: &Component| of_time(cloud, value, &function, 0.0);
+        let density = |value: &Component| of_time(&part.cloud, value, &function, 0.0);
         let volumes: Vec<f64> = points
             .iter()
             .map(|&i| cloud.volumes()[i as usize])
@@ -216,7 +220,8 @@ impl Assembler<'_> {
         let mut areas = || -> Result<Vec<f64>, BuildError> {
             let area = self.heated_area(path, condition, discretisation, &points, warnings)?;
             let volume: f64 = volumes.iter().sum();
-            Ok(volumes.iter().map(|one| area * one / volume).collect())
+            let areas = volumes.iter().map(|one| area * one / volume);
+            Ok(part.own_of(&points, areas.collect()))
         };
         let kind = match &condition.amplitude {
             ThermalAmplitude::Temperature(value) => Kind::Prescribed(temperature(value)),
@@ -226,7 +231,7 @@ impl Assembler<'_> {
             },
             ThermalAmplitude::Source(value) => Kind::Inflow {
                 density: density(value),
-                measure: volumes.clone(),
+                measure: part.own_of(&points, volumes.clone()),
             },
             ThermalAmplitude::Convection {
                 coefficient,
@@ -249,7 +254,7 @@ impl Assembler<'_> {
         };
         Ok(Condition {
             name: condition.set.clone(),
-            points,
+            points: part.set(&points),
             kind,
         })
     }

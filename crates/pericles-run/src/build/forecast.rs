@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use pericles::division::{Share, shares};
 use pericles_deck::{BuildError, Fault, Model, Scheme};
+use pericles_heat::HeatError;
 use pericles_statics::{MOST_REPLICATED, StaticsError};
 use serde::Serialize;
 
@@ -110,7 +111,9 @@ impl Assembly {
         let dimension = cloud.dimension() as f64;
         // Forces in two passes also exchange the values of the points between the passes.
         let values = self.system.operator().values_between_passes();
-        let numbers = dimension + values as f64;
+        // Conduction exchanges temperatures once per step, if it needs no sub-steps.
+        let heat = usize::from(self.temperature.is_some());
+        let numbers = dimension + (values + heat) as f64;
         let whole = cloud.len() as f64;
         let of_point = self.memory_estimate(model) as f64 / whole;
         let created = match processes {
@@ -132,6 +135,18 @@ impl Assembly {
             }
             _ => 0.0,
         };
+        // Nor is that of implicit and steady heat conduction; every process counts that of its own points already.
+        let conductors = match processes {
+            1 => 0.0,
+            _ => assembler.bytes_of_heat_multigrid(cloud.dimension()),
+        };
+        if conductors > 0.0 && cloud.len() > MOST_REPLICATED {
+            let points = cloud.len();
+            return Err(at(
+                "thermal.scheme",
+                HeatError::TooManyPoints { points }.into(),
+            ));
+        }
         let spread = |of: &dyn Fn(&Share) -> f64| Spread::of(shares.iter().map(of));
         let per_own = |count: usize, share: &Share| count as f64 / share.owned as f64;
         Ok(Forecast {
@@ -143,11 +158,12 @@ impl Assembly {
             memory: spread(&|share| {
                 created
                     + multigrid
+                    + conductors * (whole - share.owned as f64)
                     + of_point * share.owned as f64
                     + 2.0 * NUMBER * numbers * share.ghosts as f64
             }),
             bytes: spread(&|share| NUMBER * numbers * share.ghosts as f64),
-            exchanges: 1 + usize::from(values > 0),
+            exchanges: 1 + usize::from(values > 0) + heat,
             whole,
         })
     }

@@ -273,20 +273,27 @@ impl Assembler<'_> {
     /// Returns the bytes of heat conduction of a point with this number of neighbours.
     fn bytes_of_heat(&self, solid: &Solid, dimension: usize, neighbours: f64) -> f64 {
         let thermal = self.model.thermal.as_ref();
-        let Some(conduction) = thermal.and_then(|thermal| thermal.conduction.as_ref()) else {
+        if thermal.is_none_or(|thermal| thermal.conduction.is_none()) {
             return 0.0;
-        };
+        }
         let listed =
             solid.shape.is_refined() || solid.shape.is_listed() || self.has_several_horizons(solid);
         let bonds = match listed {
             true => CONDUCTOR * neighbours,
             false => neighbours / 4.0,
         };
-        let multigrid = match conduction.scheme {
-            ConductionScheme::Explicit => 0.0,
-            _ => NEAR * CONDUCTORS[dimension - 1],
-        };
-        HEAT * NUMBER + bonds + multigrid
+        HEAT * NUMBER + bonds + self.bytes_of_heat_multigrid(dimension)
+    }
+
+    /// Returns the bytes per point of the multigrid of implicit and steady heat conduction; zero for models without it.
+    pub(super) fn bytes_of_heat_multigrid(&self, dimension: usize) -> f64 {
+        let thermal = self.model.thermal.as_ref();
+        match thermal.and_then(|thermal| thermal.conduction.as_ref()) {
+            Some(conduction) if conduction.scheme != ConductionScheme::Explicit => {
+                NEAR * CONDUCTORS[dimension - 1]
+            }
+            _ => 0.0,
+        }
     }
 
     /// Returns the bytes of the bonds of a point on a stencil.

@@ -74,6 +74,22 @@ impl Part {
         (points, Some(places))
     }
 
+    /// Returns the number in the whole body of own point k.
+    pub(super) fn number(&self, k: usize) -> usize {
+        match &self.numbers {
+            Some(numbers) => numbers[k] as usize,
+            None => k,
+        }
+    }
+
+    /// Returns the values at the own points of a set, of one value per point of the set.
+    pub(super) fn own_of(&self, set: &[u32], values: Vec<f64>) -> Vec<f64> {
+        match self.members(set).1 {
+            Some(places) => places.iter().map(|&k| values[k]).collect(),
+            None => values,
+        }
+    }
+
     /// Returns the own points of a set.
     pub(super) fn set(&self, set: &[u32]) -> PointSet {
         self.members(set).0
@@ -232,7 +248,6 @@ impl Assembler<'_> {
         let absorbing =
             |boundary: &BoundaryCondition| matches!(boundary, BoundaryCondition::Absorbing { .. });
         let form = solid.material.form;
-        let thermal = self.model.thermal.as_ref();
         if self.model.boundaries.iter().any(absorbing) {
             return Some((
                 "boundary".into(),
@@ -259,12 +274,6 @@ impl Assembler<'_> {
             return Some((
                 "output.fields.names".into(),
                 "stress and strain of state-based and correspondence materials need the bonds of all points; leave these fields out",
-            ));
-        }
-        if thermal.is_some_and(|thermal| thermal.conduction.is_some()) {
-            return Some((
-                "thermal".into(),
-                "heat conduction is implemented for a single process",
             ));
         }
         if !whole.conditions.are_none() {

@@ -46,7 +46,7 @@ pub(super) struct BreakEvent {
 pub struct CoarseBreak {
     /// Both ends, the smaller index first.
     pub points: [u32; 2],
-    /// Direction of its force, with either sign and any nonzero length; missing components are zero.
+    /// Direction of the force on the first of these ends, with any nonzero length; missing components are zero.
     pub along: [f64; 3],
     /// Energy at the critical stretch minus the recorded energy, J.
     pub missing: f64,
@@ -87,12 +87,24 @@ impl CoarseBreak {
     pub fn of<const D: usize>(bond: &BreakingBond<D>, dissipated: f64) -> Option<Self> {
         let critical = bond.weight * bond.critical?;
         let resolved = critical * RESOLVED.start()..=critical * RESOLVED.end();
-        let [i, j] = bond.ends.map(|end| end as u32);
-        (!resolved.contains(&dissipated)).then(|| Self {
-            points: [i.min(j), i.max(j)],
+        let record = Self {
+            points: bond.ends.map(|end| end as u32),
             along: std::array::from_fn(|c| bond.force.get(c).copied().unwrap_or(0.0)),
             missing: critical - dissipated,
-        })
+        };
+        let is_first = bond.ends[0] < bond.ends[1];
+        let outside = !resolved.contains(&dissipated);
+        outside.then(|| if is_first { record } else { record.reversed() })
+    }
+
+    /// Returns the same record seen from the other end.
+    pub(crate) fn reversed(self) -> Self {
+        let [i, j] = self.points;
+        Self {
+            points: [j, i],
+            along: self.along.map(|component| -component),
+            ..self
+        }
     }
 }
 
