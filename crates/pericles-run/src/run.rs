@@ -59,7 +59,8 @@ impl Run {
     ) -> Result<Self, RunError> {
         let Assembled { assembly, facts } = assembled;
         let model = source.model();
-        let simulation = observers::simulation(model, assembly, &folder)?;
+        let comm = Arc::clone(assembly.system.domain().comm());
+        let simulation = agreed(&*comm, observers::simulation(model, assembly, &folder))?;
         Ok(Self {
             checkpoints: Checkpoints::new(&folder, model.checkpoint, source.record()),
             start: Start::of(&simulation),
@@ -101,7 +102,8 @@ impl Run {
             false => Ok(None),
         };
         facts.warnings.extend(agreed(comm, gaps)?);
-        let mut simulation = observers::simulation(model, assembly, &folder)?;
+        let simulation = observers::simulation(model, assembly, &folder);
+        let mut simulation = agreed(comm, simulation)?;
         // The state is still the initial state.
         let start = Start::of(&simulation);
         stored.restore(&mut simulation)?;

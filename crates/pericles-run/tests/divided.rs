@@ -82,7 +82,7 @@ every = 40
 
 #[test]
 fn a_plate_divided_among_processes_has_the_files_of_one_process() {
-    check(PLATE, &[1, 2, 3, 4]);
+    check(PLATE, &[1, 2, 3, 4, 8]);
 }
 
 #[test]
