@@ -159,6 +159,11 @@ def checkpoint():
     header = {"metadata": {"step": 1}, "sections": [dict(entry, stored=len(frame)), dict(entry, name="v", stored=len(frame))]}
     write("checkpoint", "two", json.dumps(header, separators=(",", ":")).encode() + b"\n" + frame + frame)
     write("checkpoint", "none", '{"metadata":null,"sections":[]}\n')
+    # Version 2: a block as it is, and one in the block format of LZ4: a literal, fourteen repetitions of it, five literals.
+    entry = {"name": "u", "type": "u8", "len": 4, "codec": "shuffle+lz4"}
+    header = {"metadata": {"step": 1}, "sections": [entry, dict(entry, name="v", len=20)]}
+    packed = bytes.fromhex("1a61010050") + b"bcdef"
+    write("checkpoint", "blocks", json.dumps(header, separators=(",", ":")).encode() + f"\n4 {len(packed)}\nabcd".encode() + packed)
 
 
 BAR = """body = { shape = "bar", length = 12, spacing = 1 }

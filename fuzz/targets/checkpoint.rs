@@ -1,5 +1,5 @@
 #![no_main]
-//! Checkpoints: the bytes as they are; and, as random bytes hardly ever have the right checksums, the same as a header and the arrays behind it, with checksums put in.
+//! Checkpoints: the bytes as they are; and, as random bytes hardly ever have the right checksums, the same as a header and the arrays behind it, with checksums put in, for both versions of the format.
 
 use pericles_io::Container;
 
@@ -7,7 +7,7 @@ use pericles_io::Container;
 const PREFIX: usize = 24;
 
 pericles_fuzz::target!(|content: &[u8]| {
-    for content in [content.to_vec(), sealed(content)] {
+    for content in [content.to_vec(), sealed(content), in_blocks(content)] {
         if let Ok(container) = Container::parse("a.chk", &content, pericles_fuzz::MEMORY) {
             let _ = container.into_archive();
         }
@@ -35,12 +35,43 @@ fn sealed(content: &[u8]) -> Vec<u8> {
         let crc = crc32fast::hash(array);
         text = text.replacen("\"crc32\":0", &format!("\"crc32\":{crc}"), 1);
     }
-    let mut file = b"PERICLES\x01\0\0\0".to_vec();
-    file.extend((text.len() as u64).to_le_bytes());
-    let crc = crc32fast::hash(&[&file[8..], text.as_bytes()].concat());
+    let mut file = opening(1, text.as_bytes());
+    file.extend(body);
+    file
+}
+
+/// Version 2: the first line is the header, the second one the lengths of the blocks, the rest the blocks.
+fn in_blocks(content: &[u8]) -> Vec<u8> {
+    let mut parts = content.splitn(3, |&byte| byte == b'\n');
+    let mut file = opening(2, parts.next().unwrap_or_default());
+    let lengths = String::from_utf8_lossy(parts.next().unwrap_or_default()).into_owned();
+    let blocks = parts.next().unwrap_or_default();
+    let mut rest = blocks;
+    let mut table = Vec::new();
+    for length in lengths
+        .split(' ')
+        .filter_map(|length| length.parse::<u32>().ok())
+    {
+        let (block, more) = rest.split_at((length as usize).min(rest.len()));
+        rest = more;
+        table.extend(length.to_le_bytes());
+        table.extend(crc32fast::hash(block).to_le_bytes());
+    }
+    let crc = crc32fast::hash(&table);
+    file.extend(table);
+    file.extend(crc.to_le_bytes());
+    file.extend(blocks);
+    file
+}
+
+/// Magic, version, length, CRC-32 and header.
+fn opening(version: u32, header: &[u8]) -> Vec<u8> {
+    let mut file = b"PERICLES".to_vec();
+    file.extend(version.to_le_bytes());
+    file.extend((header.len() as u64).to_le_bytes());
+    let crc = crc32fast::hash(&[&file[8..], header].concat());
     file.extend(crc.to_le_bytes());
     assert_eq!(file.len(), PREFIX);
-    file.extend(text.bytes());
-    file.extend(body);
+    file.extend(header);
     file
 }

@@ -50,6 +50,12 @@ pub fn write_atomically<T>(
     }
 }
 
+/// Renames a temporary file that has been flushed to disk and closed, and makes this durable.
+pub(crate) fn finish(temporary: &Path, path: &Path) -> io::Result<()> {
+    fs::rename(temporary, path)?;
+    sync_folder(folder_of(path))
+}
+
 /// Removes the unfinished files that a crashed run left in `folder`.
 pub(crate) fn remove_unfinished(folder: &Path) -> io::Result<()> {
     for entry in fs::read_dir(folder)? {
@@ -80,7 +86,8 @@ pub(crate) fn folder_of(path: &Path) -> &Path {
     }
 }
 
-fn create_beside(path: &Path) -> io::Result<(PathBuf, File)> {
+/// Creates a temporary file in the folder of `path`.
+pub(crate) fn create_beside(path: &Path) -> io::Result<(PathBuf, File)> {
     static COUNTER: AtomicU64 = AtomicU64::new(0);
     let name = path
         .file_name()

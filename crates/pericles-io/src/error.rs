@@ -124,6 +124,13 @@ pub enum IoError {
         reason: String,
     },
 
+    /// Another of the processes that share a file has failed and reports the error.
+    #[error("another process cannot read or write {}", path.display())]
+    OnAnotherProcess {
+        /// The file.
+        path: PathBuf,
+    },
+
     /// Any other error of reading.
     #[error("cannot read {}: {source}", path.display())]
     Read {
@@ -221,6 +228,7 @@ impl IoError {
             | Self::NoValidCheckpoint { path, .. }
             | Self::Shape { path, .. }
             | Self::Unsuitable { path, .. }
+            | Self::OnAnotherProcess { path }
             | Self::Read { path, .. }
             | Self::Write { path, .. } => path,
         }

@@ -67,7 +67,9 @@ mod xml;
 
 pub use atomic::write_atomically;
 pub use cache::DiskCache;
-pub use checkpoint::{CheckpointFolder, Container, LatestCheckpoint, Section};
+pub use checkpoint::{
+    CheckpointFolder, Container, DividedCheckpoint, LatestCheckpoint, Section, write_divided,
+};
 pub use csv::{Cell, Column, CsvData, CsvTable, csv_row, read_csv};
 pub use error::IoError;
 pub use folder::OutputFolder;

@@ -6,16 +6,22 @@
 //! its state is written to `failed.chk` for inspection; `resume` continues from the last regular checkpoint.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use pericles::division::DividedArchive;
+use pericles::domain::Comm;
 use pericles::observe::Schedule;
-use pericles::{Archive, Checkpointed, Simulation};
+use pericles::{Archive, Checkpointed, PericlesError, Simulation};
 use pericles_deck::Checkpoint;
-use pericles_io::{CheckpointFolder, Container, IoError, OutputFolder};
+use pericles_io::{
+    CheckpointFolder, Container, DividedCheckpoint, IoError, OutputFolder, write_divided,
+};
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use crate::error::RunError;
-use crate::processes::agreed;
+use crate::processes::{agreed, on_first};
 use crate::source::SourceRecord;
 
 /// File of the state of a run that became unstable.
@@ -90,11 +96,18 @@ impl Checkpoints {
     pub fn write(&mut self, simulation: &Simulation) -> Result<PathBuf, RunError> {
         let began = Instant::now();
         let step = simulation.state().step;
-        let written = match self.container(simulation)? {
-            Some(container) => self.folder.write(step, &container).map_err(RunError::from),
-            None => Ok(self.folder.file(step)),
+        let (metadata, archive) = self.content(simulation)?;
+        let domain = simulation.system().domain();
+        let path = match domain.is_divided() {
+            true => {
+                let archive = DividedArchive::new(archive, domain)?;
+                self.folder.write_divided(step, &metadata, archive)?
+            }
+            false => {
+                let container = Container::from_archive(metadata, archive);
+                self.folder.write(step, &container)?
+            }
         };
-        let path = agreed(&**simulation.system().domain().comm(), written)?;
         self.last = Instant::now();
         self.cost = self.last - began;
         Ok(path)
@@ -106,8 +119,11 @@ impl Checkpoints {
     /// The file cannot be written.
     pub fn write_failed(&self, simulation: &Simulation) -> Result<PathBuf, RunError> {
         let path = self.folder.path().join(FAILED);
-        if let Some(container) = self.container(simulation)? {
-            container.write(&path)?;
+        let (metadata, archive) = self.content(simulation)?;
+        let domain = simulation.system().domain();
+        match domain.is_divided() {
+            true => write_divided(&path, &metadata, DividedArchive::new(archive, domain)?)?,
+            false => Container::from_archive(metadata, archive).write(&path)?,
         }
         Ok(path)
     }
@@ -123,8 +139,13 @@ impl Checkpoints {
         self.folder.steps().ok()?.last().copied()
     }
 
-    /// Returns the content of a checkpoint on the process that writes it; `None` on the others.
-    fn container(&self, simulation: &Simulation) -> Result<Option<Container>, RunError> {
+    /// Returns metadata and state of this process. All processes must call it together.
+    fn content(&self, simulation: &Simulation) -> Result<(Value, Archive), RunError> {
+        let comm = simulation.system().domain().comm();
+        agreed(&**comm, self.own_content(simulation))
+    }
+
+    fn own_content(&self, simulation: &Simulation) -> Result<(Value, Archive), RunError> {
         simulation
             .settle()
             .map_err(|error| RunError::of_run(error, String::new))?;
@@ -137,45 +158,98 @@ impl Checkpoints {
         };
         let mut archive = Archive::default();
         simulation.save(&mut archive);
-        let Some(archive) = archive.gathered(simulation.system().domain())? else {
-            return Ok(None);
-        };
-        let metadata = serde_json::to_value(metadata)?;
-        Ok(Some(Container::from_archive(metadata, archive)))
+        Ok((serde_json::to_value(metadata)?, archive))
     }
 }
 
-/// A checkpoint read from a file.
+/// The state in a checkpoint.
+enum Content {
+    /// That of a body on a single process.
+    Whole(Archive),
+    /// That of a divided body, which the processes read together.
+    Divided(Box<DividedCheckpoint>),
+}
+
+/// A checkpoint that a run resumes from.
 pub struct Stored {
     /// The file.
     pub path: PathBuf,
     /// The metadata.
     pub metadata: Metadata,
-    /// The state.
-    pub archive: Archive,
-    /// Errors of newer checkpoints that cannot be used.
+    /// Errors of newer checkpoints that cannot be used, on the first process.
     pub refused: Vec<IoError>,
+    content: Content,
 }
 
 impl Stored {
-    /// Reads the newest usable checkpoint of a run, whose content may need at most `memory` bytes.
+    /// Reads or opens the newest usable checkpoint of a run; the part of a process may need at most `memory` bytes. All
+    /// processes must call it together.
     ///
     /// # Errors
     /// No checkpoint is complete, it is from another program, or it needs more memory.
-    pub fn latest(folder: &OutputFolder, memory: u64) -> Result<Self, RunError> {
-        let latest = CheckpointFolder::new(folder.file("checkpoints")).latest_valid(memory)?;
-        let unusable = |reason: String| RunError::Checkpoint {
-            path: latest.path.clone(),
-            reason,
+    pub fn latest(folder: &OutputFolder, memory: u64, comm: &dyn Comm) -> Result<Self, RunError> {
+        let folder = CheckpointFolder::new(folder.file("checkpoints"));
+        let (path, metadata, content, refused) = if comm.size() > 1 {
+            let (checkpoint, refused) = folder.latest_divided(memory, comm)?;
+            let path = checkpoint.path().to_path_buf();
+            let metadata = checkpoint.metadata().clone();
+            let content = Content::Divided(Box::new(checkpoint));
+            (path, metadata, content, refused)
+        } else {
+            let latest = folder.latest_valid(memory)?;
+            let container = latest.container.into_archive();
+            let (metadata, archive) = container.map_err(|reason| RunError::Checkpoint {
+                path: latest.path.clone(),
+                reason,
+            })?;
+            (
+                latest.path,
+                metadata,
+                Content::Whole(archive),
+                latest.refused,
+            )
         };
-        let (metadata, archive) = latest.container.into_archive().map_err(unusable)?;
-        let metadata =
-            serde_json::from_value(metadata).map_err(|error| unusable(error.to_string()))?;
+        // Other processes may not see the file.
+        let read = || {
+            serde_json::from_value(metadata).map_err(|error| RunError::Checkpoint {
+                path: path.clone(),
+                reason: error.to_string(),
+            })
+        };
+        let words = |metadata: &Metadata| serde_json::to_string(metadata).unwrap_or_default();
+        let (metadata, text) = on_first(comm, read, words)?;
         Ok(Self {
-            path: latest.path,
-            metadata,
-            archive,
-            refused: latest.refused,
+            metadata: metadata.map_or_else(|| serde_json::from_str(&text), Ok)?,
+            path,
+            refused,
+            content,
         })
+    }
+
+    /// Restores a simulation. All processes must call it together.
+    ///
+    /// # Errors
+    /// The checkpoint does not match the simulation, or its file has changed since it was opened.
+    pub fn restore(self, simulation: &mut Simulation) -> Result<(), RunError> {
+        let path = self.path;
+        let unusable = |error: PericlesError| match error {
+            PericlesError::OnAnotherProcess => error.into(),
+            error => RunError::Checkpoint {
+                path: path.clone(),
+                reason: error.to_string(),
+            },
+        };
+        let restored = match self.content {
+            Content::Whole(archive) => simulation.restore(&archive),
+            Content::Divided(mut checkpoint) => {
+                let mut template = Archive::default();
+                simulation.save(&mut template);
+                let domain = simulation.system().domain();
+                Archive::part_of(&template, &mut *checkpoint, domain)
+                    .and_then(|own| simulation.restore(&own))
+            }
+        };
+        let comm = Arc::clone(simulation.system().domain().comm());
+        agreed(&*comm, restored.map_err(unusable))
     }
 }

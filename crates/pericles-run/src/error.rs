@@ -134,6 +134,7 @@ impl RunError {
         let is = |error: &PericlesError| matches!(error, PericlesError::OnAnotherProcess);
         match self {
             Self::Library(error) => is(error),
+            Self::Io(IoError::OnAnotherProcess { .. }) => true,
             Self::Simulation(SimulationError::Observe(source)) => {
                 source.downcast_ref().is_some_and(is)
             }

@@ -6,9 +6,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use pericles::observe::{Observer, Schedule};
-use pericles::{
-    Archive, Checkpointed, Control, Interrupt, Outcome, PericlesError, Simulation, SimulationError,
-};
+use pericles::{Archive, Checkpointed, Control, Interrupt, Outcome, Simulation, SimulationError};
 use pericles_deck::Model;
 use pericles_io::{OutputFolder, PvdSeries, VtuFile};
 
@@ -25,7 +23,7 @@ use crate::observers;
 use crate::processes::{agreed, any, on_first};
 use crate::report::{Report, Status};
 use crate::sharing::Sharing;
-use crate::source::{Source, SourceRecord};
+use crate::source::Source;
 use crate::units::quantity;
 use crate::watch::{self, Breakage};
 
@@ -62,7 +60,8 @@ impl Run {
     ) -> Result<Self, RunError> {
         let Assembled { assembly, facts } = assembled;
         let model = source.model();
-        let simulation = observers::simulation(model, assembly, &folder)?;
+        let comm = Arc::clone(assembly.system.domain().comm());
+        let simulation = agreed(&*comm, observers::simulation(model, assembly, &folder))?;
         Ok(Self {
             checkpoints: Checkpoints::new(&folder, model.checkpoint, source.record()),
             start: Start::of(&simulation),
@@ -77,46 +76,41 @@ impl Run {
     /// # Errors
     /// There is no usable checkpoint, or it does not match its deck.
     pub fn resume(path: &Path, means: &Means, tell: Tell<'_>) -> Result<Option<Self>, RunError> {
-        // The first process reads the checkpoint; the others need the deck only.
-        let words = |opened: &Option<(OutputFolder, Stored)>| match opened {
-            Some((_, stored)) => serde_json::to_string(&stored.metadata.source).unwrap_or_default(),
+        let comm = &*means.comm;
+        let words = |folder: &Option<OutputFolder>| match folder {
+            Some(_) => "unfinished".to_owned(),
             None => String::new(),
         };
-        let open = || opened(path, means);
-        let (opened, source) = on_first(&*means.comm, open, words)?;
-        if source.is_empty() {
+        let (folder, unfinished) = on_first(comm, || opened(path), words)?;
+        if unfinished.is_empty() {
             return Ok(None);
         }
-        let source: SourceRecord = serde_json::from_str(&source)?;
-        let source = agreed(&*means.comm, source.read())?;
-        let (folder, stored) = opened.flatten().unzip();
+        let folder = folder.flatten();
         let folder = folder.unwrap_or_else(|| OutputFolder::following(path));
+        let stored = Stored::latest(&folder, means.memory, comm)?;
+        let source = agreed(comm, stored.metadata.source.clone().read())?;
         let model = source.model();
         let Assembled {
             assembly,
             mut facts,
         } = Assembled::of(&source, means, tell)?;
-        if let Some(stored) = &stored {
-            facts.warnings.extend(doubts(stored, model, &facts));
-            facts.warnings.extend(incomplete(&folder)?);
+        let is_first = comm.rank() == 0;
+        if is_first {
+            facts.warnings.extend(doubts(&stored, model, &facts));
         }
-        let mut simulation = observers::simulation(model, assembly, &folder)?;
+        let gaps = match is_first {
+            true => incomplete(&folder),
+            false => Ok(None),
+        };
+        facts.warnings.extend(agreed(comm, gaps)?);
+        let simulation = observers::simulation(model, assembly, &folder);
+        let mut simulation = agreed(comm, simulation)?;
         // The state is still the initial state.
         let start = Start::of(&simulation);
-        let place = stored.as_ref().map_or(path, |stored| &stored.path);
-        let unusable = |error: PericlesError| match error {
-            PericlesError::OnAnotherProcess => error.into(),
-            error => RunError::Checkpoint {
-                path: place.into(),
-                reason: error.to_string(),
-            },
-        };
-        let whole = stored.as_ref().map(|stored| &stored.archive);
-        let restored = restore(&mut simulation, whole).map_err(unusable);
-        agreed(&*means.comm, restored)?;
+        stored.restore(&mut simulation)?;
         let step = simulation.state().step;
         let checkpoints = Checkpoints::new(&folder, model.checkpoint, source.record());
-        if stored.is_some() {
+        if is_first {
             checkpoints.forget_failed();
         }
         Ok(Some(Self {
@@ -332,28 +326,13 @@ impl Run {
     }
 }
 
-/// Opens the folder of a run and reads its last checkpoint; `None` if it has finished.
-fn opened(path: &Path, means: &Means) -> Result<Option<(OutputFolder, Stored)>, RunError> {
+/// Opens the folder of a run; `None` if it has finished.
+fn opened(path: &Path) -> Result<Option<OutputFolder>, RunError> {
     if path.is_dir() && !path.join("checkpoints").is_dir() {
         return Err(RunError::NoRun { path: path.into() });
     }
     let folder = OutputFolder::open(path)?;
-    if is_finished(&folder) {
-        return Ok(None);
-    }
-    let stored = Stored::latest(&folder, means.memory)?;
-    Ok(Some((folder, stored)))
-}
-
-/// Restores a simulation from the archive of the whole body, which the first process has.
-fn restore(simulation: &mut Simulation, whole: Option<&Archive>) -> Result<(), PericlesError> {
-    let domain = simulation.system().domain();
-    let mut own = Archive::default();
-    if domain.is_divided() {
-        simulation.save(&mut own);
-    }
-    let own = Archive::scattered(&own, whole, domain)?;
-    simulation.restore(&own)
+    Ok((!is_finished(&folder)).then_some(folder))
 }
 
 /// Returns whether the run has finished according to `run.json`. If it cannot be read, the checkpoints decide.

@@ -82,7 +82,7 @@ every = 40
 
 #[test]
 fn a_plate_divided_among_processes_has_the_files_of_one_process() {
-    check(PLATE, &[1, 2, 3, 4]);
+    check(PLATE, &[1, 2, 3, 4, 8]);
 }
 
 #[test]
@@ -90,7 +90,7 @@ fn a_run_is_resumed_on_another_number_of_processes() {
     let place = tempfile::tempdir().unwrap();
     let alone = place.path().join("alone");
     run(PLATE, &alone, Arc::new(Alone), None).unwrap();
-    for (before, after) in [(3, 1), (3, 2), (1, 4)] {
+    for (before, after) in [(3, 1), (3, 2), (1, 4), (5, 8)] {
         let folder = place.path().join(format!("{before}-{after}"));
         for ending in Threads::run(before, |comm| run(PLATE, &folder, comm, Some(47))) {
             assert_eq!(ending.unwrap(), Ending::Cancelled);

@@ -3,22 +3,17 @@
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, BufReader, Cursor, Read, Seek, SeekFrom, Write};
+use std::ops::Range;
 use std::path::Path;
 
-use crc32fast::Hasher;
 use pericles::{Archive, Values};
-use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::section::{Codec, Kind, Section};
+use super::block::{Coder, entries};
+use super::former;
+use super::head::{Draft, Entry, FORMER, Head, Opening, Placed};
+use super::section::{Codec, Section};
 use crate::{IoError, write_atomically};
-
-const MAGIC: &[u8; 8] = b"PERICLES";
-const VERSION: u32 = 1;
-/// Bytes of magic, version, and length and CRC-32 of the header.
-const PREFIX: u64 = 24;
-/// A number in a JSON list takes 32 bytes of memory and at least two characters.
-const PER_CHARACTER: u64 = 16;
 
 /// JSON metadata and named arrays.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -27,23 +22,6 @@ pub struct Container {
     pub metadata: Value,
     /// Named arrays.
     pub sections: BTreeMap<String, Section>,
-}
-
-#[derive(Serialize, Deserialize)]
-struct Header<'a> {
-    metadata: std::borrow::Cow<'a, Value>,
-    sections: Vec<Entry>,
-}
-
-#[derive(Serialize, Deserialize)]
-struct Entry {
-    name: String,
-    #[serde(rename = "type")]
-    kind: Kind,
-    len: u64,
-    stored: u64,
-    crc32: u32,
-    codec: Codec,
 }
 
 impl Container {
@@ -78,42 +56,25 @@ impl Container {
     }
 
     fn write_into(&self, out: &mut (impl Write + Seek)) -> io::Result<()> {
-        // Sizes and checksums are known only after the sections are written. Space for the longest possible
-        // numbers is reserved, so that no encoded section is held in memory.
-        let mut header = Header {
-            metadata: std::borrow::Cow::Borrowed(&self.metadata),
-            sections: Vec::with_capacity(self.sections.len()),
+        let entry = |(name, section): (&String, &Section)| Entry {
+            name: name.clone(),
+            kind: section.kind(),
+            len: section.len() as u64,
+            codec: Codec::ShuffleLz4,
         };
-        for (name, section) in &self.sections {
-            header.sections.push(Entry {
-                name: name.clone(),
-                kind: section.kind(),
-                len: section.len() as u64,
-                stored: u64::MAX,
-                crc32: u32::MAX,
-                codec: Codec::ShuffleLz4,
-            });
+        let draft = Draft::new(&self.metadata, self.sections.iter().map(entry).collect())?;
+        // Sizes and checksums of the blocks are known only after they are written.
+        let mut table = Vec::with_capacity(draft.blocks() as usize);
+        let mut coder = Coder::default();
+        out.seek(SeekFrom::Start(draft.end()))?;
+        for section in self.sections.values() {
+            section.encode(&mut coder, &mut |block, bytes| {
+                table.push(block);
+                out.write_all(bytes)
+            })?;
         }
-        let room = serde_json::to_vec(&header)?.len();
-        out.seek(SeekFrom::Start(PREFIX + room as u64))?;
-        for (entry, section) in header.sections.iter_mut().zip(self.sections.values()) {
-            let mut counted = Counted {
-                out: &mut *out,
-                crc: Hasher::new(),
-                length: 0,
-            };
-            section.encode(&mut counted)?;
-            entry.stored = counted.length;
-            entry.crc32 = counted.crc.finalize();
-        }
-        let mut json = serde_json::to_vec(&header)?;
-        json.resize(room, b' ');
         out.seek(SeekFrom::Start(0))?;
-        out.write_all(MAGIC)?;
-        out.write_all(&VERSION.to_le_bytes())?;
-        out.write_all(&(room as u64).to_le_bytes())?;
-        out.write_all(&header_crc(&json).to_le_bytes())?;
-        out.write_all(&json)
+        out.write_all(&draft.bytes(&table))
     }
 
     /// Reads a container whose decoded content may take at most `memory` bytes.
@@ -149,137 +110,59 @@ impl Container {
         length: u64,
         memory: u64,
     ) -> Result<Self, IoError> {
-        let reading = |source| IoError::reading(path, source);
-        let damaged = |reason: String| IoError::damaged(path, reason);
-        let mut prefix = [0; PREFIX as usize];
-        if length < PREFIX {
-            return Err(damaged(format!(
-                "{length} bytes are too few for a checkpoint"
-            )));
+        let opening = Opening::read(path, &mut file, length, memory)?;
+        if opening.version == FORMER {
+            return former::read(path, &opening, file, memory);
         }
-        file.read_exact(&mut prefix).map_err(reading)?;
-        if !prefix.starts_with(MAGIC) {
-            return Err(damaged("it is not a Pericles checkpoint".into()));
-        }
-        let version = u32_at(&prefix, 8);
-        if version != VERSION {
-            return Err(IoError::UnsupportedVersion {
-                path: path.to_path_buf(),
-                found: version,
-                newest: VERSION,
-            });
-        }
-        let room = u64::from(u32_at(&prefix, 12)) | u64::from(u32_at(&prefix, 16)) << 32;
-        if room > length - PREFIX {
-            return Err(damaged(format!(
-                "a header of {room} bytes does not fit into a file of {length}"
-            )));
-        }
-        let fits = |needed: u64| match needed {
-            needed if needed <= memory => Ok(()),
-            needed => Err(IoError::TooLarge {
-                path: path.to_path_buf(),
-                needed,
-                memory,
-            }),
-        };
-        fits(room.saturating_mul(PER_CHARACTER))?;
-        let mut json = Vec::new();
-        (&mut file)
-            .take(room)
-            .read_to_end(&mut json)
-            .map_err(reading)?;
-        if json.len() as u64 != room || header_crc(&json) != u32_at(&prefix, 20) {
-            return Err(damaged("the CRC-32 of the header does not match".into()));
-        }
-        let header: Header = serde_json::from_slice(&json)
-            .map_err(|error| damaged(format!("the header is not valid: {error}")))?;
-
-        let stored = header
-            .sections
-            .iter()
-            .try_fold(0_u64, |sum, entry| sum.checked_add(entry.stored));
-        let found = length - PREFIX - room;
-        if stored != Some(found) {
-            return Err(damaged(format!(
-                "its sections do not fill the {found} bytes after the header"
-            )));
-        }
-        let bytes = |entry: &Entry| entry.len.saturating_mul(entry.kind.bytes());
-        let needed = header.sections.iter().map(bytes);
-        fits(needed.fold(0, u64::saturating_add))?;
+        let head = Head::read(path, opening, &mut file, memory)?;
+        let mut coder = Coder::default();
         let mut sections = BTreeMap::new();
-        for entry in header.sections {
-            let start = file.stream_position().map_err(reading)?;
-            if crc_of(&mut (&mut file).take(entry.stored)).map_err(reading)? != entry.crc32 {
-                let name = entry.name;
-                return Err(damaged(format!(
-                    "the CRC-32 of section {name:?} does not match"
-                )));
-            }
-            file.seek(SeekFrom::Start(start)).map_err(reading)?;
-            let section = Section::decode(entry.kind, entry.len, (&mut file).take(entry.stored))
-                .map_err(|error| damaged(format!("section {:?}: {error}", entry.name)))?;
-            file.seek(SeekFrom::Start(start + entry.stored))
-                .map_err(reading)?;
-            if sections.insert(entry.name, section).is_some() {
-                return Err(damaged("two sections have the same name".into()));
+        for placed in &head.sections {
+            let section = read_section(path, &mut file, &head, placed, 0..placed.len, &mut coder)?;
+            if sections.insert(placed.name.clone(), section).is_some() {
+                return Err(IoError::damaged(path, "two sections have the same name"));
             }
         }
         Ok(Self {
-            metadata: header.metadata.into_owned(),
+            metadata: head.metadata,
             sections,
         })
     }
 }
 
-fn u32_at(bytes: &[u8], at: usize) -> u32 {
-    u32::from_le_bytes(std::array::from_fn(|k| bytes[at + k]))
-}
-
-fn header_crc(json: &[u8]) -> u32 {
-    let mut crc = Hasher::new();
-    crc.update(&VERSION.to_le_bytes());
-    crc.update(&(json.len() as u64).to_le_bytes());
-    crc.update(json);
-    crc.finalize()
-}
-
-fn crc_of(input: &mut impl Read) -> io::Result<u32> {
-    let mut crc = Hasher::new();
-    let mut buffer = [0; 1 << 13];
-    loop {
-        match input.read(&mut buffer) {
-            Ok(0) => return Ok(crc.finalize()),
-            Ok(count) => crc.update(&buffer[..count]),
-            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-            Err(error) => return Err(error),
-        }
+/// Reads a range of a section, which begins with a block and ends with one or with the section.
+pub(super) fn read_section(
+    path: &Path,
+    mut file: impl Read + Seek,
+    head: &Head,
+    placed: &Placed,
+    range: Range<u64>,
+    coder: &mut Coder,
+) -> Result<Section, IoError> {
+    let most = entries(placed.kind) as u64;
+    let mut section = Section::empty(placed.kind);
+    let mut bytes = Vec::new();
+    let blocks = (range.start / most) as usize..range.end.div_ceil(most) as usize;
+    for (block, place) in &head.blocks[placed.blocks.clone()][blocks] {
+        file.seek(SeekFrom::Start(*place))
+            .map_err(|source| IoError::reading(path, source))?;
+        bytes.resize(block.stored as usize, 0);
+        file.read_exact(&mut bytes)
+            .map_err(|source| IoError::reading(path, source))?;
+        let left = range.end - range.start - section.len() as u64;
+        section
+            .decode(coder, *block, &bytes, left.min(most) as usize)
+            .map_err(|error| {
+                IoError::damaged(path, format!("section {:?}: {error}", placed.name))
+            })?;
     }
-}
-
-/// Counts bytes and computes the CRC-32 of everything written through it.
-struct Counted<W> {
-    out: W,
-    crc: Hasher,
-    length: u64,
-}
-
-impl<W: Write> Write for Counted<W> {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let count = self.out.write(bytes)?;
-        self.crc.update(&bytes[..count]);
-        self.length += count as u64;
-        Ok(count)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.out.flush()
-    }
+    Ok(section)
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::head::{VERSION, header_crc};
+    use super::super::section::Kind;
     use super::*;
     use proptest::prelude::*;
     use serde_json::json;
@@ -321,7 +204,7 @@ mod tests {
         fn a_file_of_random_bytes_is_rejected(bytes in prop::collection::vec(any::<u8>(), 0..200), marked in any::<bool>()) {
             let folder = tempfile::tempdir().unwrap();
             let path = folder.path().join("a.chk");
-            let mut file = if marked { b"PERICLES\x01\0\0\0".to_vec() } else { Vec::new() };
+            let mut file = if marked { b"PERICLES\x02\0\0\0".to_vec() } else { Vec::new() };
             file.extend(bytes);
             fs::write(&path, file).unwrap();
             prop_assert!(Container::read(&path, u64::MAX).is_err());
@@ -383,35 +266,70 @@ mod tests {
         refused(&[&good[..], b"x"].concat(), "one byte more".into());
     }
 
+    /// A file with this header and what follows it.
+    fn forged(header: &str, rest: &[u8]) -> Vec<u8> {
+        let mut bytes = b"PERICLES\x02\0\0\0".to_vec();
+        bytes.extend((header.len() as u64).to_le_bytes());
+        bytes.extend(header_crc(VERSION, header.as_bytes()).to_le_bytes());
+        bytes.extend(header.as_bytes());
+        bytes.extend(rest);
+        bytes
+    }
+
+    /// A table of blocks and its checksum.
+    fn table(blocks: &[[u32; 2]]) -> Vec<u8> {
+        let numbers = blocks.as_flattened().iter();
+        let table: Vec<u8> = numbers.flat_map(|number| number.to_le_bytes()).collect();
+        let crc = crc32fast::hash(&table).to_le_bytes();
+        [&table[..], &crc].concat()
+    }
+
     #[test]
     fn a_false_header_is_rejected_before_memory_is_allocated() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("a.chk");
-        let entry = |len: u64, stored: u64| json!({ "name": "u", "type": "f64", "len": len, "stored": stored, "crc32": 0, "codec": "shuffle+lz4" });
-        let huge = u64::MAX;
-        for (sections, body) in [
-            (json!([entry(huge, 0)]), &b""[..]),
-            (json!([entry(1, huge)]), b""),
-            (json!([entry(1, huge), entry(1, 2)]), b"x"), // the sum overflows to 1
-            (json!([entry(0, 3)]), b"abc"),
+        let entry = |name: &str, len: u64| json!({ "name": name, "type": "f64", "len": len, "codec": "shuffle+lz4" });
+        let crc = crc32fast::hash(b"abc");
+        let eight = crc32fast::hash(b"12345678");
+        let plain = [8, eight];
+        for (sections, rest) in [
+            (json!([entry("u", u64::MAX)]), table(&[])),
+            (
+                json!([entry("u", u64::MAX), entry("v", u64::MAX)]),
+                table(&[]),
+            ),
+            (json!([entry("u", 1)]), table(&[])),
+            (json!([entry("u", 1)]), table(&[[u32::MAX, 0]])),
+            (
+                json!([entry("u", 0)]),
+                [table(&[]), b"abc".to_vec()].concat(),
+            ),
+            (
+                json!([entry("u", 1)]),
+                [table(&[[3, crc]]), b"abc".to_vec()].concat(),
+            ),
+            (
+                json!([entry("u", 2)]),
+                [table(&[plain]), b"12345678".to_vec()].concat(),
+            ),
+            (
+                json!([entry("u", 1)]),
+                [table(&[[3, crc]]), b"abcd".to_vec()].concat(),
+            ),
+            (
+                json!([entry("u", 1), entry("u", 1)]),
+                [table(&[plain, plain]), b"1234567812345678".to_vec()].concat(),
+            ),
         ] {
             let text = json!({ "metadata": null, "sections": sections }).to_string();
-            let mut bytes = MAGIC.to_vec();
-            bytes.extend(VERSION.to_le_bytes());
-            bytes.extend((text.len() as u64).to_le_bytes());
-            bytes.extend(header_crc(text.as_bytes()).to_le_bytes());
-            bytes.extend(text.as_bytes());
-            bytes.extend(body);
-            fs::write(&path, bytes).unwrap();
-            let error = Container::read(&path, u64::MAX).unwrap_err();
+            let error = Container::parse("a.chk", &forged(&text, &rest), u64::MAX).unwrap_err();
             assert!(matches!(error, IoError::Damaged { .. }), "{text}: {error}");
         }
-        let mut bytes = MAGIC.to_vec();
-        bytes.extend(VERSION.to_le_bytes());
-        bytes.extend(huge.to_le_bytes());
+        let text = json!({ "metadata": null, "sections": [entry("u", 1)] }).to_string();
+        let good = [table(&[plain]), b"12345678".to_vec()].concat();
+        assert!(Container::parse("a.chk", &forged(&text, &good), u64::MAX).is_ok());
+        let mut bytes = b"PERICLES\x02\0\0\0".to_vec();
+        bytes.extend(u64::MAX.to_le_bytes());
         bytes.extend([0; 4]);
-        fs::write(&path, bytes).unwrap();
-        assert!(Container::read(&path, u64::MAX).is_err());
+        assert!(Container::parse("a.chk", &bytes, u64::MAX).is_err());
     }
 
     #[test]
@@ -420,25 +338,43 @@ mod tests {
         let path = folder.path().join("a.chk");
         example().write(&path).unwrap();
         let bytes = fs::read(&path).unwrap();
-        assert_eq!(&bytes[..12], b"PERICLES\x01\0\0\0");
+        assert_eq!(&bytes[..12], b"PERICLES\x02\0\0\0");
         let room = u64::from_le_bytes(bytes[12..20].try_into().unwrap()) as usize;
         let header: Value = serde_json::from_slice(&bytes[24..24 + room]).unwrap();
         let covered = [&bytes[8..20], &bytes[24..24 + room]].concat();
         let crc = u32::from_le_bytes(bytes[20..24].try_into().unwrap());
         assert_eq!(crc32fast::hash(&covered), crc);
-        let mut at = 24 + room;
-        for (entry, name) in header["sections"]
-            .as_array()
-            .unwrap()
-            .iter()
-            .zip(["bonds", "velocity"])
+        for (entry, name) in
+            (header["sections"].as_array().unwrap().iter()).zip(["bonds", "velocity"])
         {
             assert_eq!(entry["name"], name);
-            let stored = &bytes[at..at + entry["stored"].as_u64().unwrap() as usize];
-            assert_eq!(entry["crc32"], crc32fast::hash(stored));
+        }
+        let number = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap());
+        let table = 24 + room;
+        let mut at = table + 2 * 8 + 4;
+        assert_eq!(crc32fast::hash(&bytes[table..at - 4]), number(at - 4));
+        for block in 0..2 {
+            let stored = &bytes[at..at + number(table + 8 * block) as usize];
+            assert_eq!(number(table + 8 * block + 4), crc32fast::hash(stored));
             at += stored.len();
         }
         assert_eq!(at, bytes.len());
+    }
+
+    #[test]
+    fn sections_of_several_blocks_are_read_back() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.chk");
+        let most = entries(Kind::F64);
+        for len in [most - 1, most, most + 1, 2 * most + 7] {
+            let mut container = Container::default();
+            let numbers = (0..len).map(|i| (i as f64).sqrt()).collect();
+            container.sections.insert("u".into(), Section::F64(numbers));
+            container.write(&path).unwrap();
+            let size = fs::metadata(&path).unwrap().len() as usize;
+            assert!(size < 8 * len, "shuffled square roots compress");
+            assert!(Container::read(&path, u64::MAX).unwrap() == container);
+        }
     }
 
     #[test]

@@ -3,8 +3,14 @@
 use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use super::Container;
+use pericles::division::DividedArchive;
+use pericles::domain::{Comm, distribute};
+use serde_json::Value;
+
+use super::divided::agreed;
+use super::{Container, DividedCheckpoint, write_divided};
 use crate::IoError;
 
 /// Number of checkpoints kept.
@@ -50,15 +56,49 @@ impl CheckpointFolder {
     /// Checkpoints of later steps are deleted as well: they remain from a run that was resumed at an earlier
     /// step.
     pub fn write(&self, step: u64, container: &Container) -> Result<PathBuf, IoError> {
+        self.create()?;
+        let file = self.file(step);
+        container.write(&file)?;
+        self.retain(step)?;
+        Ok(file)
+    }
+
+    /// Writes the checkpoint of a divided body as [`CheckpointFolder::write`]; see [`write_divided`]. All processes must call
+    /// it together.
+    ///
+    /// # Errors
+    /// Those of the first process and of [`write_divided`].
+    pub fn write_divided(
+        &self,
+        step: u64,
+        metadata: &Value,
+        archive: DividedArchive<'_>,
+    ) -> Result<PathBuf, IoError> {
+        let file = self.file(step);
+        let comm = Arc::clone(archive.domain().comm());
+        let on_first = |work: &dyn Fn() -> Result<(), IoError>| {
+            let done = if comm.rank() == 0 { work() } else { Ok(()) };
+            agreed(&*comm, &file, done)
+        };
+        on_first(&|| self.create())?;
+        write_divided(&file, metadata, archive)?;
+        on_first(&|| self.retain(step))?;
+        Ok(file)
+    }
+
+    /// Creates the folder.
+    fn create(&self) -> Result<(), IoError> {
         // Parent folders are not created: if the output folder was deleted, the run must not recreate it.
         match fs::create_dir(&self.path) {
             Err(source) if source.kind() != ErrorKind::AlreadyExists => {
-                return Err(IoError::writing(&self.path, source));
+                Err(IoError::writing(&self.path, source))
             }
-            _ => {}
+            _ => Ok(()),
         }
-        let file = self.file(step);
-        container.write(&file)?;
+    }
+
+    /// Deletes all checkpoints except that of a step and the previous one.
+    fn retain(&self, step: u64) -> Result<(), IoError> {
         let earlier: Vec<_> = self.steps()?.into_iter().filter(|&s| s <= step).collect();
         let kept = &earlier[earlier.len().saturating_sub(KEPT)..];
         for step in self.steps()? {
@@ -67,7 +107,7 @@ impl CheckpointFolder {
                 fs::remove_file(&old).map_err(|source| IoError::writing(&old, source))?;
             }
         }
-        Ok(file)
+        Ok(())
     }
 
     /// Returns the steps that have a checkpoint, in increasing order.
@@ -110,6 +150,42 @@ impl CheckpointFolder {
         Err(IoError::NoValidCheckpoint {
             path: self.path.clone(),
             refused,
+        })
+    }
+
+    /// Opens the newest valid checkpoint for the processes of a divided body, as [`CheckpointFolder::latest_valid`], and
+    /// returns the errors of newer ones that were rejected. The part of a process may take at most `memory` bytes. All
+    /// processes must call it together.
+    ///
+    /// # Errors
+    /// As for [`CheckpointFolder::latest_valid`], on the first process; the others return [`IoError::OnAnotherProcess`].
+    pub fn latest_divided(
+        &self,
+        memory: u64,
+        comm: &dyn Comm,
+    ) -> Result<(DividedCheckpoint, Vec<IoError>), IoError> {
+        let steps = (comm.rank() == 0).then(|| self.steps()).transpose();
+        let steps = agreed(comm, &self.path, steps)?;
+        let words = steps.map(|steps| steps.into_iter().rev().map(f64::from_bits).collect());
+        let words = words.map(|words: Vec<f64>| vec![words; comm.size()]);
+        let mut refused = Vec::new();
+        for word in distribute(comm, words) {
+            match DividedCheckpoint::open(&self.file(word.to_bits()), memory, comm) {
+                Ok(checkpoint) => return Ok((checkpoint, refused)),
+                Err(error) => refused.push(error),
+            }
+            // The previous checkpoint needs the same memory.
+            let last = refused.pop_if(|error| matches!(error, IoError::TooLarge { .. }));
+            agreed(comm, &self.path, last.map_or(Ok(()), Err))?;
+        }
+        Err(match comm.rank() {
+            0 => IoError::NoValidCheckpoint {
+                path: self.path.clone(),
+                refused,
+            },
+            _ => IoError::OnAnotherProcess {
+                path: self.path.clone(),
+            },
         })
     }
 }

@@ -5,16 +5,22 @@
 //! | bytes | content |
 //! |---|---|
 //! | 8 | `PERICLES` |
-//! | 4 | format version |
+//! | 4 | format version, 2 |
 //! | 8 | length of the header |
 //! | 4 | CRC-32 of the version, the length and the header |
-//! | … | header: JSON `{metadata, sections: [{name, type, len, stored, crc32, codec}]}`, padded with spaces |
-//! | … | the sections in the order of the header, without gaps, up to the end of the file |
+//! | … | header: JSON `{metadata, sections: [{name, type, len, codec}]}` |
+//! | 8 per block | table of blocks: `stored` bytes and their CRC-32, 4 bytes each, in the order of the sections |
+//! | 4 | CRC-32 of the table |
+//! | … | the blocks in the order of the table, without gaps, up to the end of the file |
 //!
-//! The bytes of a section are shuffled (the first bytes of up to 65536 elements, then their second bytes …),
-//! which groups slowly varying exponents, and compressed as an LZ4 frame; `crc32` is the checksum of the
-//! `stored` bytes. Every size is checked against the length of the file before data are read, and no section
-//! is decoded before its CRC-32 is verified.
+//! A section is cut into blocks of 512 KiB, the last of which may be shorter. The bytes of a block are shuffled (the first
+//! bytes of all elements, then their second bytes …), which groups slowly varying exponents, and compressed in the block format
+//! of LZ4; a block that would not become smaller is stored as it is. Every size is checked against the length of the file
+//! before data are read, and no block is decoded before its CRC-32 is verified. Files of version 1, in which every section is
+//! one LZ4 frame, are also read.
+//!
+//! The blocks do not depend on each other, so that processes that share a divided body encode and write them in parallel
+//! ([`CheckpointFolder::write_divided`]); the file is the same, byte for byte, for any number of processes.
 //!
 //! [`CheckpointFolder`] keeps the last two checkpoints, so that one remains if the other is damaged.
 //!
@@ -30,10 +36,15 @@
 //! assert_eq!((latest.step, latest.container), (1840, state));
 //! ```
 
+mod block;
 mod container;
+mod divided;
 mod folder;
+mod former;
+mod head;
 mod section;
 
 pub use container::Container;
+pub use divided::{DividedCheckpoint, write_divided};
 pub use folder::{CheckpointFolder, LatestCheckpoint};
 pub use section::Section;

@@ -1,13 +1,12 @@
-//! A named array: its element types, byte shuffling and compression.
+//! A named array: its element types and its blocks.
 
-use std::io::{self, Read, Write};
+use std::io;
+use std::ops::Range;
 
-use lz4_flex::frame::{FrameDecoder, FrameEncoder};
 use pericles::Values;
 use serde::{Deserialize, Serialize};
 
-/// Number of elements shuffled together; bounds the memory needed for encoding.
-const CHUNK: usize = 1 << 16;
+use super::block::{Block, Coder, Element, entries};
 
 /// The values of one section.
 #[derive(Debug, Clone)]
@@ -114,121 +113,76 @@ impl Section {
         }
     }
 
-    /// Writes the encoded form.
-    pub(super) fn encode(&self, out: impl Write) -> io::Result<()> {
+    /// Returns a section without elements.
+    pub(super) fn empty(kind: Kind) -> Self {
+        match kind {
+            Kind::F64 => Self::F64(Vec::new()),
+            Kind::U64 => Self::U64(Vec::new()),
+            Kind::U32 => Self::U32(Vec::new()),
+            Kind::U8 => Self::U8(Vec::new()),
+        }
+    }
+
+    /// Returns a range of the elements.
+    pub(super) fn slice(&self, range: Range<usize>) -> Self {
         match self {
-            Self::F64(values) => encode(values, out),
-            Self::U64(values) => encode(values, out),
-            Self::U32(values) => encode(values, out),
-            Self::U8(values) => encode(values, out),
+            Self::F64(values) => Self::F64(values[range].to_vec()),
+            Self::U64(values) => Self::U64(values[range].to_vec()),
+            Self::U32(values) => Self::U32(values[range].to_vec()),
+            Self::U8(values) => Self::U8(values[range].to_vec()),
         }
     }
 
-    /// Decodes exactly `len` elements.
-    pub(super) fn decode(kind: Kind, len: u64, stored: impl Read) -> io::Result<Self> {
-        Ok(match kind {
-            Kind::F64 => Self::F64(decode(len, stored)?),
-            Kind::U64 => Self::U64(decode(len, stored)?),
-            Kind::U32 => Self::U32(decode(len, stored)?),
-            Kind::U8 => Self::U8(decode(len, stored)?),
-        })
-    }
-}
-
-trait Element: Copy {
-    const WIDTH: usize;
-    fn byte(self, k: usize) -> u8;
-    fn from_bytes(byte: impl Fn(usize) -> u8) -> Self;
-}
-
-macro_rules! element {
-    ($($type:ty),*) => {$(
-        impl Element for $type {
-            const WIDTH: usize = size_of::<$type>();
-            fn byte(self, k: usize) -> u8 {
-                self.to_le_bytes()[k]
-            }
-            fn from_bytes(byte: impl Fn(usize) -> u8) -> Self {
-                Self::from_le_bytes(std::array::from_fn(byte))
-            }
+    /// Passes the blocks and their bytes to `write`, in order.
+    pub(super) fn encode(
+        &self,
+        coder: &mut Coder,
+        write: &mut dyn FnMut(Block, &[u8]) -> io::Result<()>,
+    ) -> io::Result<()> {
+        fn each<T: Element>(
+            values: &[T],
+            block: usize,
+            coder: &mut Coder,
+            write: &mut dyn FnMut(Block, &[u8]) -> io::Result<()>,
+        ) -> io::Result<()> {
+            values.chunks(block).try_for_each(|values| {
+                let (block, bytes) = coder.encode(values);
+                write(block, bytes)
+            })
         }
-    )*};
-}
-element!(f64, u64, u32, u8);
-
-fn encode<T: Element>(values: &[T], out: impl Write) -> io::Result<()> {
-    let mut lz4 = FrameEncoder::new(out);
-    let mut shuffled = Vec::with_capacity(CHUNK.min(values.len()) * T::WIDTH);
-    for chunk in values.chunks(CHUNK) {
-        shuffled.clear();
-        for k in 0..T::WIDTH {
-            shuffled.extend(chunk.iter().map(|value| value.byte(k)));
-        }
-        lz4.write_all(&shuffled)?;
-    }
-    lz4.finish().map_err(io::Error::from)?;
-    Ok(())
-}
-
-fn decode<T: Element>(len: u64, stored: impl Read) -> io::Result<Vec<T>> {
-    let mut lz4 = FrameDecoder::new(stored);
-    let mut values = Vec::new();
-    let mut shuffled = Vec::new();
-    let mut left = len;
-    while left > 0 {
-        // At most u32::MAX elements, so the number fits usize. The vector grows with the data that are
-        // present, not with `len`.
-        let count = left.min(CHUNK as u64) as usize;
-        shuffled.resize(count * T::WIDTH, 0);
-        lz4.read_exact(&mut shuffled)?;
-        values.extend((0..count).map(|i| T::from_bytes(|k| shuffled[k * count + i])));
-        left -= count as u64;
-    }
-    if lz4.read(&mut [0])? > 0 {
-        return Err(io::Error::new(
-            io::ErrorKind::InvalidData,
-            "more values than the header states",
-        ));
-    }
-    Ok(values)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_encoded_form_is_lz4_of_shuffled_little_endian_bytes() {
-        let mut stored = Vec::new();
-        let section = Section::U32(vec![0x0403_0201, 0x1413_1211, 0x2423_2221]);
-        section.encode(&mut stored).unwrap();
-        let mut plain = Vec::new();
-        let mut frame = FrameDecoder::new(&stored[..]);
-        frame.read_to_end(&mut plain).unwrap();
-        assert_eq!(
-            plain,
-            [1, 0x11, 0x21, 2, 0x12, 0x22, 3, 0x13, 0x23, 4, 0x14, 0x24]
-        );
-    }
-
-    #[test]
-    fn data_across_chunk_boundaries_are_preserved() {
-        for len in [CHUNK - 1, CHUNK, CHUNK + 1, 2 * CHUNK + 7] {
-            let section = Section::F64((0..len).map(|i| (i as f64).sqrt()).collect());
-            let mut stored = Vec::new();
-            section.encode(&mut stored).unwrap();
-            assert!(stored.len() < 8 * len, "shuffled square roots compress");
-            let back = Section::decode(Kind::F64, len as u64, &stored[..]).unwrap();
-            assert!(back == section, "{len}");
+        let block = entries(self.kind());
+        match self {
+            Self::F64(values) => each(values, block, coder, write),
+            Self::U64(values) => each(values, block, coder, write),
+            Self::U32(values) => each(values, block, coder, write),
+            Self::U8(values) => each(values, block, coder, write),
         }
     }
 
-    #[test]
-    fn a_wrong_length_is_rejected_without_allocating_it() {
-        let mut stored = Vec::new();
-        Section::U64(vec![5; 1000]).encode(&mut stored).unwrap();
-        for len in [999, 1001, u64::MAX] {
-            assert!(Section::decode(Kind::U64, len, &stored[..]).is_err());
+    /// Appends the `count` elements of a block.
+    pub(super) fn decode(
+        &mut self,
+        coder: &mut Coder,
+        block: Block,
+        bytes: &[u8],
+        count: usize,
+    ) -> io::Result<()> {
+        match self {
+            Self::F64(values) => coder.decode(block, bytes, count, values),
+            Self::U64(values) => coder.decode(block, bytes, count, values),
+            Self::U32(values) => coder.decode(block, bytes, count, values),
+            Self::U8(values) => coder.decode(block, bytes, count, values),
+        }
+    }
+}
+
+impl Kind {
+    /// Returns the type of an array of an archive.
+    pub(super) fn of(values: &Values) -> Self {
+        match values {
+            Values::F64(_) => Self::F64,
+            Values::U64(_) => Self::U64,
+            Values::U8(_) => Self::U8,
         }
     }
 }

@@ -34,7 +34,8 @@ struct Station {
 }
 
 impl Profile {
-    /// The profile of a field, or of one of its components, between two places; table and chart are files.
+    /// The profile of a field, or of one of its components, between two places; table and chart are files. The first of several
+    /// processes, which writes them, passes the points of the whole body.
     ///
     /// # Errors
     /// A line that no point is near.
@@ -46,7 +47,7 @@ impl Profile {
         cloud: &PointCloud,
     ) -> Result<Self> {
         let stations = stations(cloud, ends);
-        if stations.is_empty() {
+        if stations.is_empty() && cloud.domain().is_first() {
             return Err(PericlesError::OutOfRange {
                 quantity: "the number of points on the line of a profile",
                 value: 0.0,

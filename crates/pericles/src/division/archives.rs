@@ -1,15 +1,207 @@
 //! Archives of bodies divided among processes: the archive of the whole body, and the parts of the processes.
 //!
 //! The arrays of the whole body are in the order of the point numbers in the body, so that they do not depend on the
-//! division. Only the first process has whole arrays, and of the other processes' parts one at a time.
+//! division. [`DividedArchive`] and [`Archive::part_of`] transfer them in ranges of bounded size, so that no process needs the
+//! memory of a whole array.
 
 use std::borrow::Cow;
+use std::ops::Range;
 
 use super::message::{bytes_of, into_words, of_words, text_of};
+use super::placement::{Placement, rounds};
 use crate::archive::{Archive, Layout, Values, check_length, missing};
 use crate::domain::Domain;
 use crate::error::{PericlesError, Result};
 use crate::sum::BinnedSum;
+
+/// Entries of the blocks in which whole archives are transferred.
+const BLOCK: usize = 1 << 16;
+
+/// Name, type and length of an array of the whole body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ArrayOutline {
+    /// Its name.
+    pub name: String,
+    /// An array of its type without entries.
+    pub empty: Values,
+    /// Number of its entries.
+    pub len: usize,
+}
+
+impl ArrayOutline {
+    /// Returns the outline of an array.
+    pub fn of(name: &str, values: &Values) -> Self {
+        Self {
+            name: name.into(),
+            empty: values.zeros(0),
+            len: values.len(),
+        }
+    }
+
+    fn words(&self) -> impl Iterator<Item = f64> {
+        let head = [self.name.len(), usize::from(self.empty.kind()), self.len];
+        let head = head.into_iter().map(|number| number as f64);
+        head.chain(into_words(&bytes_of(&self.name)))
+    }
+
+    /// Reads the outline from the start of a message and returns the rest.
+    fn of_words(words: &[f64]) -> Option<(Self, &[f64])> {
+        let [name, kind, len, words @ ..] = words else {
+            return None;
+        };
+        let (text, rest) = words.split_at((*name as usize).div_ceil(8));
+        let outline = Self {
+            name: text_of(*name as usize, text),
+            empty: Values::of_kind(*kind as u8),
+            len: *len as usize,
+        };
+        Some((outline, rest))
+    }
+}
+
+/// The archive of a divided body. Each process has the arrays of its part; [`DividedArray::part`] returns ranges of the arrays
+/// of the whole body.
+pub struct DividedArchive<'a> {
+    archive: Archive,
+    domain: &'a Domain,
+    outline: Vec<ArrayOutline>,
+}
+
+/// An array of a divided body.
+pub struct DividedArray<'a> {
+    values: Values,
+    /// `None` if the first process has the whole array.
+    placement: Option<Placement>,
+    domain: &'a Domain,
+}
+
+impl<'a> DividedArchive<'a> {
+    /// Combines the archives of all processes. All processes must call it together.
+    ///
+    /// # Errors
+    /// An array that does not match its layout, on any process; all processes then return an error.
+    pub fn new(mut archive: Archive, domain: &'a Domain) -> Result<Self> {
+        agreed(domain, archive.check_layouts(domain))?;
+        archive.add_up(domain)?;
+        let lengths = lengths(&archive, domain);
+        // The arrays that are not divided are those of the first process.
+        let outline = |(name, values): (&String, &Values)| {
+            let own = ArrayOutline::of(name, values);
+            let len = lengths.iter().find(|(divided, _)| divided == &name);
+            ArrayOutline {
+                len: len.map_or(own.len, |(_, len)| *len),
+                ..own
+            }
+        };
+        let outline = archive.arrays.iter().map(outline).collect();
+        let outline = shared_outline(domain.is_first().then_some(outline), domain);
+        Ok(Self {
+            archive,
+            domain,
+            outline,
+        })
+    }
+
+    /// Returns the arrays of the whole body, which are the same on all processes.
+    pub fn outline(&self) -> &[ArrayOutline] {
+        &self.outline
+    }
+
+    /// Returns the points of the process and its communication.
+    pub fn domain(&self) -> &'a Domain {
+        self.domain
+    }
+
+    /// Removes the array of an outline. All processes must call it together.
+    pub fn take(&mut self, outline: &ArrayOutline) -> DividedArray<'a> {
+        let domain = self.domain;
+        let layout = self.archive.layouts.remove(&outline.name);
+        let values = self.archive.arrays.remove(&outline.name);
+        let values = values.filter(|_| layout.is_some() || domain.is_first());
+        let values = values.unwrap_or_else(|| outline.empty.clone());
+        let placement = layout.map(|layout| Placement::of(&values, &layout, domain));
+        DividedArray {
+            values,
+            placement,
+            domain,
+        }
+    }
+}
+
+impl DividedArray<'_> {
+    /// Returns whether the first process has the whole array, because its entries do not belong to points.
+    pub fn is_on_first(&self) -> bool {
+        self.placement.is_none()
+    }
+
+    /// Returns the range `ranges[k]` of the array of the whole body on process k; see [`rounds`]. The ranges of all but the
+    /// first process must be empty if [`Self::is_on_first`]. All processes must call it together.
+    pub fn part(&self, ranges: &[Range<usize>]) -> Values {
+        let comm = &**self.domain.comm();
+        match &self.placement {
+            Some(placement) => placement.collected(&self.values, ranges, comm),
+            None if self.domain.is_first() => self.values.slice(ranges[0].clone()),
+            None => self.values.zeros(0),
+        }
+    }
+
+    /// Returns the whole array on the first process, and an empty one on the others.
+    fn whole(self, len: usize) -> Values {
+        if self.is_on_first() {
+            return self.values;
+        }
+        let size = self.domain.comm().size();
+        let mut whole = self.values.zeros(0);
+        for ranges in rounds(len, BLOCK, 1, size) {
+            whole.append(self.part(&ranges));
+        }
+        whole
+    }
+}
+
+/// The archive of a whole body, from which processes read arrays.
+pub trait ArraySource {
+    /// Returns all arrays. Only those of the first process are used.
+    fn outline(&self) -> Vec<ArrayOutline>;
+
+    /// Returns whether all processes can read; otherwise only the first one can. It is the same on all processes.
+    fn is_shared(&self) -> bool;
+
+    /// Number of entries of the type of `like` that are read together.
+    fn block(&self, like: &Values) -> usize;
+
+    /// Returns a range of an array, which begins at a multiple of [`block`](Self::block). It is inside the array of the
+    /// outline.
+    ///
+    /// # Errors
+    /// The array cannot be read.
+    fn entries(&mut self, name: &str, range: Range<usize>) -> Result<Values>;
+}
+
+/// An archive of the first process.
+struct OnFirst<'a>(Option<&'a Archive>);
+
+impl ArraySource for OnFirst<'_> {
+    fn outline(&self) -> Vec<ArrayOutline> {
+        let arrays = self.0.iter().flat_map(|archive| &archive.arrays);
+        arrays
+            .map(|(name, values)| ArrayOutline::of(name, values))
+            .collect()
+    }
+
+    fn is_shared(&self) -> bool {
+        false
+    }
+
+    fn block(&self, _like: &Values) -> usize {
+        BLOCK
+    }
+
+    fn entries(&mut self, name: &str, range: Range<usize>) -> Result<Values> {
+        let values = self.0.and_then(|archive| archive.arrays.get(name));
+        Ok(values.ok_or_else(|| missing(name))?.slice(range))
+    }
+}
 
 impl Archive {
     /// Returns the archive of the whole body on the first process, from those of all processes; `None` on the others.
@@ -17,21 +209,17 @@ impl Archive {
     ///
     /// # Errors
     /// An array that does not match its layout, on any process; all processes then return an error.
-    pub fn gathered(mut self, domain: &Domain) -> Result<Option<Self>> {
+    pub fn gathered(self, domain: &Domain) -> Result<Option<Self>> {
         if !domain.is_divided() {
             return Ok(Some(self));
         }
-        agreed(domain, self.check_layouts(domain))?;
-        let owners = Owners::of(domain);
-        for (name, layout) in std::mem::take(&mut self.layouts) {
-            let Some(own) = self.arrays.remove(&name) else {
-                continue;
-            };
-            if let Some(whole) = gather(own, &layout, domain, owners.as_ref()) {
-                self.arrays.insert(name, whole);
-            }
+        let mut divided = DividedArchive::new(self, domain)?;
+        let mut whole = Self::default();
+        for outline in std::mem::take(&mut divided.outline) {
+            let values = divided.take(&outline).whole(outline.len);
+            whole.put(outline.name, values);
         }
-        Ok(domain.is_first().then_some(self))
+        Ok(domain.is_first().then_some(whole))
     }
 
     /// Returns the part of the archive `whole` of the whole body that this process restores. The first process passes
@@ -54,18 +242,103 @@ impl Archive {
             return Ok(Cow::Borrowed(whole));
         }
         let whole = agreed(domain, whole)?;
+        Self::part_of(template, &mut OnFirst(whole), domain).map(Cow::Owned)
+    }
+
+    /// Returns the part of the archive of the whole body that this process restores, as [`Archive::scattered`], from the
+    /// arrays that `source` reads. All processes must call it together.
+    ///
+    /// # Errors
+    /// Those of the source; an array that is missing, of another type or of another length than that of the body. All processes
+    /// then return an error.
+    pub fn part_of(template: &Self, source: &mut dyn ArraySource, domain: &Domain) -> Result<Self> {
         agreed(domain, template.check_layouts(domain))?;
-        let owners = Owners::of(domain);
-        let mut own = share(template, whole, domain);
-        for (name, layout) in &template.layouts {
-            let values = whole.map(|whole| whole.arrays.get(name));
-            let part = match template.arrays.get(name) {
-                Some(like) => scatter(name, (like, layout), values, domain, owners.as_ref())?,
-                None => continue,
+        let outline = domain.is_first().then(|| source.outline());
+        let lengths = lengths(template, domain);
+        let fits = match &outline {
+            Some(outline) => template.check_outline(outline, &lengths),
+            None => Ok(()),
+        };
+        agreed(domain, fits)?;
+        let mut own = Self::default();
+        for outline in shared_outline(outline, domain) {
+            let name = outline.name.clone();
+            let layout = template.layouts.get(&name);
+            let like = template.arrays.get(&name).zip(layout);
+            let values = match like {
+                Some((like, Layout::Count)) => {
+                    accounted(like.zeros(like.len()), outline, source, domain)?
+                }
+                Some((_, Layout::Sum)) => {
+                    let none = Values::U64(BinnedSum::default().stored());
+                    accounted(none, outline, source, domain)?
+                }
+                Some((like, layout)) => delivered((like, layout), &outline, source, domain)?,
+                None => from_first(&outline, source, domain)?,
             };
-            own.arrays.insert(name.clone(), part);
+            own.arrays.insert(name, values);
         }
-        Ok(Cow::Owned(own))
+        Ok(own)
+    }
+
+    /// Checks that the arrays of the whole body, of which divided ones have these lengths, are among those of an outline.
+    fn check_outline(&self, outline: &[ArrayOutline], lengths: &[(&String, usize)]) -> Result<()> {
+        for (name, like) in &self.arrays {
+            let Some(layout) = self.layouts.get(name) else {
+                continue;
+            };
+            let found = outline.iter().find(|found| &found.name == name);
+            let found = found.filter(|found| found.empty.is_like(like));
+            let found = found.ok_or_else(|| missing(name))?;
+            let len = match layout {
+                Layout::Count | Layout::Sum => Some(like.len()),
+                _ => lengths
+                    .iter()
+                    .find(|(divided, _)| *divided == name)
+                    .map(|&(_, len)| len),
+            };
+            check_length(name, found.len, len.unwrap_or(like.len()))?;
+        }
+        Ok(())
+    }
+
+    /// Replaces counts and sums by those of the whole body, which are equal on all processes.
+    fn add_up(&mut self, domain: &Domain) -> Result<()> {
+        let mut counts = Vec::new();
+        for name in self.named(&Layout::Count) {
+            if let Some(Values::U64(numbers)) = self.arrays.get(&name) {
+                counts.extend(numbers.iter().map(|&number| i128::from(number)));
+            }
+        }
+        let most = domain.max(counts.len() as f64);
+        let same = match counts.len() as f64 == most {
+            true => Ok(()),
+            false => Err(bad("the processes have different numbers of counts".into())),
+        };
+        agreed(domain, same)?;
+        domain.comm().sum(&mut counts);
+        // Counters saturate.
+        let count = |count: i128| u64::try_from(count).unwrap_or(u64::MAX);
+        let mut counts = counts.into_iter().map(count);
+        for name in self.named(&Layout::Count) {
+            self.layouts.remove(&name);
+            if let Some(Values::U64(numbers)) = self.arrays.get_mut(&name) {
+                numbers.fill_with(|| counts.next().unwrap_or(0));
+            }
+        }
+        for name in self.named(&Layout::Sum) {
+            self.layouts.remove(&name);
+            let own = self.arrays.get(&name).and_then(sum_of);
+            let [total] = domain.merged([own.unwrap_or_default()]);
+            self.arrays.insert(name, Values::U64(total.stored()));
+        }
+        Ok(())
+    }
+
+    /// Returns the names of the arrays with a layout.
+    fn named(&self, layout: &Layout) -> Vec<String> {
+        let named = self.layouts.iter().filter(|(_, found)| *found == layout);
+        named.map(|(name, _)| name.clone()).collect()
     }
 
     /// Checks that all arrays have the numbers that their layouts state.
@@ -120,151 +393,6 @@ fn agreed<T>(domain: &Domain, result: Result<T>) -> Result<T> {
     }
 }
 
-/// The points of all processes, known to the first one.
-struct Owners {
-    /// Numbers in the whole body of the points of each process.
-    numbers: Vec<Vec<u32>>,
-    /// Number of points of the body.
-    points: usize,
-}
-
-impl Owners {
-    /// Returns the points of all processes on the first one; `None` on the others.
-    fn of(domain: &Domain) -> Option<Self> {
-        let own = (0..domain.owned_points()).map(|k| domain.number(k) as f64);
-        let messages = domain.collect(own.collect())?;
-        let numbers = |message: &Vec<f64>| message.iter().map(|&number| number as u32).collect();
-        Some(Self {
-            numbers: messages.iter().map(numbers).collect(),
-            points: messages.iter().map(Vec::len).sum(),
-        })
-    }
-
-    /// The process that continues counts and sums of the whole body: the first one with points.
-    fn accountant(&self) -> usize {
-        let with_points = self.numbers.iter().position(|numbers| !numbers.is_empty());
-        with_points.unwrap_or(0)
-    }
-}
-
-/// The items of an array on one process: points with one or more numbers.
-struct Items<'a> {
-    numbers: Cow<'a, [u32]>,
-    /// Numbers per item; `None` for one.
-    lengths: Option<Vec<u32>>,
-}
-
-impl<'a> Items<'a> {
-    /// Returns what describes the items of this process to the first one.
-    fn message(layout: &Layout) -> Vec<f64> {
-        match layout {
-            Layout::Set(numbers) | Layout::Rows(numbers) => {
-                numbers.iter().map(|&number| f64::from(number)).collect()
-            }
-            _ => Vec::new(),
-        }
-    }
-
-    /// Reads that message of a process with the given points.
-    fn of(layout: &Layout, message: &[f64], points: &'a [u32]) -> Self {
-        let read = message.iter().map(|&number| number as u32);
-        match layout {
-            Layout::Set(_) => Self {
-                numbers: read.map(|local| points[local as usize]).collect(),
-                lengths: None,
-            },
-            Layout::Rows(_) => Self {
-                numbers: Cow::Borrowed(points),
-                lengths: Some(read.collect()),
-            },
-            _ => Self {
-                numbers: Cow::Borrowed(points),
-                lengths: None,
-            },
-        }
-    }
-
-    fn length(&self, item: usize) -> usize {
-        self.lengths
-            .as_ref()
-            .map_or(1, |lengths| lengths[item] as usize)
-    }
-
-    /// Number of numbers of all items in one component.
-    fn size(&self) -> usize {
-        (0..self.numbers.len()).map(|item| self.length(item)).sum()
-    }
-}
-
-/// Places of the items of all processes in an array of the whole body.
-struct Places<'a> {
-    items: Vec<Items<'a>>,
-    components: usize,
-    /// First place of each point in a component, and the size of a component at the end.
-    starts: Vec<usize>,
-}
-
-/// Equally long ranges of two arrays: their starts and their length.
-type Span = (usize, usize, usize);
-
-impl<'a> Places<'a> {
-    fn new(items: Vec<Items<'a>>, components: usize, points: usize) -> Self {
-        let mut starts = vec![0; points + 1];
-        for own in &items {
-            for (item, &number) in own.numbers.iter().enumerate() {
-                starts[number as usize + 1] = own.length(item);
-            }
-        }
-        for k in 0..points {
-            starts[k + 1] += starts[k];
-        }
-        Self {
-            items,
-            components,
-            starts,
-        }
-    }
-
-    /// Number of numbers of the whole array.
-    fn size(&self) -> usize {
-        self.components * self.starts.last().copied().unwrap_or(0)
-    }
-
-    /// Returns the ranges of a process: start in the whole array, start in its own array, length.
-    fn spans(&self, process: usize) -> impl Iterator<Item = Span> + '_ {
-        let items = &self.items[process];
-        let size = self.starts.last().copied().unwrap_or(0);
-        let all = (0..self.components)
-            .flat_map(move |c| (0..items.numbers.len()).map(move |item| (c * size, item)));
-        all.scan(0, move |own, (first, item)| {
-            let length = items.length(item);
-            let span = (
-                first + self.starts[items.numbers[item] as usize],
-                *own,
-                length,
-            );
-            *own += length;
-            Some(span)
-        })
-    }
-}
-
-/// Copies ranges: start in the target, start in the source, length.
-fn copy(target: &mut Values, source: &Values, spans: impl Iterator<Item = Span>) {
-    fn each<T: Copy>(target: &mut [T], source: &[T], spans: impl Iterator<Item = Span>) {
-        for (to, from, length) in spans {
-            target[to..to + length].copy_from_slice(&source[from..from + length]);
-        }
-    }
-    match (target, source) {
-        (Values::F64(target), Values::F64(source)) => each(target, source, spans),
-        (Values::U64(target), Values::U64(source)) => each(target, source, spans),
-        (Values::U8(target), Values::U8(source)) => each(target, source, spans),
-        // Both arrays are made of the same type.
-        _ => {}
-    }
-}
-
 /// Returns the sum that an array stores.
 fn sum_of(values: &Values) -> Option<BinnedSum> {
     match values {
@@ -273,177 +401,86 @@ fn sum_of(values: &Values) -> Option<BinnedSum> {
     }
 }
 
-/// Returns an array of the whole body on the first process; `None` on the others.
-fn gather(
-    own: Values,
-    layout: &Layout,
-    domain: &Domain,
-    owners: Option<&Owners>,
-) -> Option<Values> {
-    let items = Items::message(layout);
-    let components = components(&own, layout, domain);
-    let head = [own.len() as f64, items.len() as f64];
-    let message = head
-        .into_iter()
-        .chain(items)
-        .chain(into_words(&own))
-        .collect();
-    let kind = own.zeros(0);
-    drop(own);
-    let messages = domain.collect(message)?;
-    let owners = owners?;
-    let parts: Vec<(&[f64], Values)> = messages
-        .iter()
-        .map(|message| {
-            let (items, words) = message[2..].split_at(message[1] as usize);
-            (items, of_words(&kind, message[0] as usize, words))
-        })
-        .collect();
-    let all = || parts.iter().map(|(_, values)| values);
-    match layout {
-        Layout::Shared => all().next().cloned(),
-        Layout::Count => all().cloned().reduce(added),
-        Layout::Sum => {
-            let sum = all().filter_map(sum_of);
-            let sum = sum.fold(BinnedSum::default(), BinnedSum::merged);
-            Some(Values::U64(sum.stored()))
-        }
-        Layout::Points | Layout::Set(_) | Layout::Rows(_) => {
-            let items = parts.iter().zip(&owners.numbers);
-            let items = items.map(|((items, _), points)| Items::of(layout, items, points));
-            let places = Places::new(items.collect(), components, owners.points);
-            let mut whole = kind.zeros(places.size());
-            for (process, values) in all().enumerate() {
-                copy(&mut whole, values, places.spans(process));
-            }
-            Some(whole)
-        }
-    }
+/// Returns the lengths of the arrays of the whole body whose entries belong to points. All processes must call it together.
+fn lengths<'a>(archive: &'a Archive, domain: &Domain) -> Vec<(&'a String, usize)> {
+    let divided = archive.layouts.iter();
+    let divided = divided.filter(|(_, layout)| !matches!(layout, Layout::Count | Layout::Sum));
+    let names: Vec<&String> = divided.map(|(name, _)| name).collect();
+    let length = |name: &&String| archive.arrays.get(*name).map_or(0, Values::len) as i128;
+    let mut lengths: Vec<i128> = names.iter().map(length).collect();
+    domain.comm().sum(&mut lengths);
+    let lengths = lengths.into_iter().map(|length| length as usize);
+    names.into_iter().zip(lengths).collect()
 }
 
-/// Adds counts.
-fn added(a: Values, b: Values) -> Values {
-    match (a, b) {
-        (Values::U64(a), Values::U64(b)) => {
-            let both = a.iter().zip(&b);
-            Values::U64(both.map(|(a, b)| a.saturating_add(*b)).collect())
-        }
-        (a, _) => a,
-    }
-}
-
-/// Number of components of a vector on points, equal on all processes. All processes must call it together.
-fn components(own: &Values, layout: &Layout, domain: &Domain) -> usize {
-    let items = match layout {
-        Layout::Points => domain.owned_points(),
-        Layout::Set(set) => set.len(),
-        _ => return 1,
-    };
-    domain.max((own.len() / items.max(1)) as f64) as usize
-}
-
-/// Returns the part of this process of an array of the whole body, which the first process passes; there, the inner
-/// `None` is a missing array.
-fn scatter(
-    name: &str,
-    (like, layout): (&Values, &Layout),
-    whole: Option<Option<&Values>>,
-    domain: &Domain,
-    owners: Option<&Owners>,
-) -> Result<Values> {
-    let components = components(like, layout, domain);
-    let items = domain.collect(Items::message(layout));
-    let messages = match (items, owners) {
-        (Some(items), Some(owners)) => {
-            let whole = whole.flatten().filter(|whole| whole.is_like(like));
-            Some(match whole {
-                Some(whole) => parts((name, layout), whole, like, (&items, components), owners),
-                None => Err(missing(name)),
-            })
-        }
-        _ => None,
-    };
-    let messages = match messages.transpose() {
-        Ok(messages) => agreed(domain, Ok(messages)),
-        Err(error) => agreed(domain, Err(error)),
-    }?;
-    let message = domain.distribute(messages);
-    let (length, words) = message
-        .split_first()
-        .map_or((0, &[][..]), |(length, words)| (*length as usize, words));
-    Ok(of_words(like, length, words))
-}
-
-/// Returns the messages to all processes with their parts of an array: the number of entries and the entries.
-fn parts(
-    (name, layout): (&str, &Layout),
-    whole: &Values,
-    like: &Values,
-    (items, components): (&[Vec<f64>], usize),
-    owners: &Owners,
-) -> Result<Vec<Vec<f64>>> {
-    let message = |values: &Values| {
-        let length = std::iter::once(values.len() as f64);
-        length.chain(into_words(values)).collect()
-    };
-    let processes = 0..owners.numbers.len();
-    let accounts = |others: Values| -> Result<Vec<Vec<f64>>> {
-        check_length(name, whole.len(), like.len())?;
-        let of = |process| match process == owners.accountant() {
-            true => message(whole),
-            false => message(&others),
-        };
-        Ok(processes.clone().map(of).collect())
-    };
-    match layout {
-        Layout::Shared => accounts(whole.clone()),
-        Layout::Count => accounts(like.zeros(like.len())),
-        Layout::Sum => accounts(Values::U64(BinnedSum::default().stored())),
-        Layout::Points | Layout::Set(_) | Layout::Rows(_) => {
-            let items = items.iter().zip(&owners.numbers);
-            let items = items.map(|(items, points)| Items::of(layout, items, points));
-            let places = Places::new(items.collect(), components, owners.points);
-            check_length(name, whole.len(), places.size())?;
-            let of = |process: usize| {
-                let mut own = like.zeros(components * places.items[process].size());
-                let spans = places.spans(process);
-                copy(
-                    &mut own,
-                    whole,
-                    spans.map(|(to, from, length)| (from, to, length)),
-                );
-                message(&own)
-            };
-            Ok(processes.map(of).collect())
-        }
-    }
-}
-
-/// Returns the arrays of the whole archive that are equal on all processes.
-fn share(template: &Archive, whole: Option<&Archive>, domain: &Domain) -> Archive {
-    let mut shared = Archive::default();
-    let message = whole.map(|whole| {
-        let shared = whole.arrays.iter();
-        let shared = shared.filter(|(name, _)| !template.layouts.contains_key(*name));
-        let array = |(name, values): (&String, &Values)| {
-            let head = [name.len(), usize::from(values.kind()), values.len()];
-            let head = head.into_iter().map(|number| number as f64);
-            let name = into_words(&bytes_of(name));
-            head.chain(name).chain(into_words(values)).collect()
-        };
-        shared.map(array).collect::<Vec<Vec<f64>>>().concat()
-    });
+/// Returns the outline of the first process on all processes. All processes must call it together.
+fn shared_outline(outline: Option<Vec<ArrayOutline>>, domain: &Domain) -> Vec<ArrayOutline> {
+    let words = |outline: Vec<ArrayOutline>| outline.iter().flat_map(ArrayOutline::words).collect();
+    let message: Option<Vec<f64>> = outline.map(words);
     let messages = message.map(|message| vec![message; domain.comm().size()]);
     let message = domain.distribute(messages);
     let mut rest = &message[..];
-    while let [name, kind, length, words @ ..] = rest {
-        let [name, length] = [name, length].map(|&number| number as usize);
-        let kind = Values::of_kind(*kind as u8);
-        let (name_words, words) = words.split_at(name.div_ceil(8));
-        let name = text_of(name, name_words);
-        let (words, behind) = words.split_at(kind.words(length));
-        shared.arrays.insert(name, of_words(&kind, length, words));
-        rest = behind;
+    let next = || {
+        let (outline, words) = ArrayOutline::of_words(rest)?;
+        rest = words;
+        Some(outline)
+    };
+    std::iter::from_fn(next).collect()
+}
+
+/// Returns an array that the first process reads, on all processes.
+fn from_first(
+    outline: &ArrayOutline,
+    source: &mut dyn ArraySource,
+    domain: &Domain,
+) -> Result<Values> {
+    let values = domain
+        .is_first()
+        .then(|| source.entries(&outline.name, 0..outline.len));
+    let values = agreed(domain, values.transpose())?;
+    let message = values.map(|values| into_words(&values));
+    let messages = message.map(|message| vec![message; domain.comm().size()]);
+    let words = domain.distribute(messages);
+    Ok(of_words(&outline.empty, outline.len, &words))
+}
+
+/// Returns an array of counts or a sum of the whole body on one process, the first one with points, and `none` on the others.
+fn accounted(
+    none: Values,
+    outline: ArrayOutline,
+    source: &mut dyn ArraySource,
+    domain: &Domain,
+) -> Result<Values> {
+    let values = from_first(&outline, source, domain)?;
+    let rank = domain.comm().rank() as f64;
+    let with_points = domain.max(match domain.owned_points() {
+        0 => f64::NEG_INFINITY,
+        _ => -rank,
+    });
+    let accounts = with_points == -rank || with_points.is_infinite() && domain.is_first();
+    Ok(if accounts { values } else { none })
+}
+
+/// Returns the entries of this process of an array whose entries belong to points.
+fn delivered(
+    (like, layout): (&Values, &Layout),
+    outline: &ArrayOutline,
+    source: &mut dyn ArraySource,
+    domain: &Domain,
+) -> Result<Values> {
+    let comm = &**domain.comm();
+    let (rank, size) = (comm.rank(), comm.size());
+    let placement = Placement::of(like, layout, domain);
+    let mut own = like.zeros(like.len());
+    let readers = if source.is_shared() { size } else { 1 };
+    for ranges in rounds(outline.len, source.block(like), readers, size) {
+        let range = ranges[rank].clone();
+        let part = match range.is_empty() {
+            true => Ok(like.zeros(0)),
+            false => source.entries(&outline.name, range),
+        };
+        let part = agreed(domain, part)?;
+        placement.deliver(&part, &ranges, &mut own, comm);
     }
-    shared
+    Ok(own)
 }

@@ -1,5 +1,7 @@
 //! Arrays as messages between processes, which consist of 64-bit words.
 
+use std::ops::Range;
+
 use crate::archive::Values;
 
 /// Bytes in a word.
@@ -56,6 +58,26 @@ impl Values {
         }
     }
 
+    /// Returns a range of the entries.
+    pub(super) fn slice(&self, range: Range<usize>) -> Self {
+        match self {
+            Self::F64(numbers) => Self::F64(numbers[range].to_vec()),
+            Self::U64(numbers) => Self::U64(numbers[range].to_vec()),
+            Self::U8(numbers) => Self::U8(numbers[range].to_vec()),
+        }
+    }
+
+    /// Appends an array of the same type.
+    pub(super) fn append(&mut self, more: Self) {
+        match (self, more) {
+            (Self::F64(numbers), Self::F64(more)) => numbers.extend(more),
+            (Self::U64(numbers), Self::U64(more)) => numbers.extend(more),
+            (Self::U8(numbers), Self::U8(more)) => numbers.extend(more),
+            // Both arrays are made of the same type.
+            _ => {}
+        }
+    }
+
     /// Returns whether both arrays have the same type.
     pub(super) fn is_like(&self, other: &Self) -> bool {
         std::mem::discriminant(self) == std::mem::discriminant(other)
@@ -78,14 +100,6 @@ impl Values {
             _ => Self::U8(Vec::new()),
         }
     }
-
-    /// Number of words of `length` entries.
-    pub(super) fn words(&self, length: usize) -> usize {
-        match self {
-            Self::U8(_) => length.div_ceil(BYTES),
-            _ => length,
-        }
-    }
 }
 
 #[cfg(test)]
@@ -102,7 +116,6 @@ mod tests {
             Values::U8(Vec::new()),
         ] {
             let words = into_words(&values);
-            assert_eq!(words.len(), values.words(values.len()));
             let kind = Values::of_kind(values.kind());
             assert_eq!(of_words(&kind, values.len(), &words), values);
         }

@@ -3,12 +3,15 @@
 //! [`bisect`] assigns points to processes by recursive coordinate bisection. [`part_of`] makes the part of a body that a
 //! process computes, with its ghosts and its communication; results do not depend on the division, bit for bit
 //! ([`domain`](crate::domain)). [`shares`] predicts points, ghosts and messages of every process.
-//! [`Archive::gathered`](crate::Archive::gathered) makes the checkpoint of the whole body,
-//! [`Archive::scattered`](crate::Archive::scattered) the checkpoints of its parts.
+//! [`DividedArchive`] returns ranges of the arrays of the whole body, for checkpoints that do not depend on the division, and
+//! [`Archive::part_of`](crate::Archive::part_of) the arrays of a process from such ranges.
+//! [`Archive::gathered`](crate::Archive::gathered) makes the archive of the whole body on the first process,
+//! [`Archive::scattered`](crate::Archive::scattered) the archives of its parts.
 
 mod archives;
 mod bisection;
 mod message;
+mod placement;
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -16,7 +19,9 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
+pub use archives::{ArrayOutline, ArraySource, DividedArchive, DividedArray};
 pub use bisection::{Cuts, Points, bisect};
+pub use placement::rounds;
 
 use crate::domain::{Alone, Comm, Domain, Peer};
 use crate::error::Result;

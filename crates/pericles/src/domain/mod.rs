@@ -12,6 +12,7 @@
 //! division. Rows of bonds and groups of eight follow these numbers, so that the force on a point has the same bits
 //! for every division. Each process stores its own points in ascending order of these numbers.
 
+mod all;
 mod first;
 mod replicated;
 mod sums;
@@ -24,6 +25,7 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::time::Duration;
 
+pub use all::exchange_all;
 pub use first::{collect, distribute};
 pub use replicated::Replicated;
 pub use threads::Threads;

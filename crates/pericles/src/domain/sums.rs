@@ -18,14 +18,19 @@ impl Domain {
     /// Returns the totals of several sums of all processes, in the same number of messages as one. All processes must call it
     /// together.
     pub fn totals<const N: usize>(&self, own: [BinnedSum; N]) -> [f64; N] {
+        self.merged(own).map(|sum| sum.value())
+    }
+
+    /// Returns the sums of the terms of all processes. All processes must call it together.
+    pub(crate) fn merged<const N: usize>(&self, own: [BinnedSum; N]) -> [BinnedSum; N] {
         if self.comm.size() == 1 {
-            return own.map(|sum| sum.value());
+            return own;
         }
         let mut tops = own.map(|sum| f64::from(sum.top()));
         self.comm.max(&mut tops);
         let mut integers: [_; N] = std::array::from_fn(|k| own[k].integers(tops[k] as i32));
         self.comm.sum(integers.as_flattened_mut());
-        std::array::from_fn(|k| BinnedSum::of_integers(tops[k] as i32, integers[k]).value())
+        std::array::from_fn(|k| BinnedSum::of_integers(tops[k] as i32, integers[k]))
     }
 
     /// Σ a_k b_k.
