@@ -66,9 +66,9 @@ pub const LATENCY: f64 = 2e-6;
 pub const BANDWIDTH: f64 = 10e9;
 
 const NUMBER: f64 = 8.0;
-/// Bytes per point of the whole body and dimension, and per point, while a process takes its part: positions and initial state;
-/// volume, number, owner, weight, cell. Every process creates the whole body.
-const WHOLE: [f64; 2] = [40.0, 60.0];
+/// Bytes per point of the whole body and dimension, and per point, while a process takes its part: positions; volume, node, sets,
+/// number, owner. Every process creates the points of the whole body.
+const WHOLE: [f64; 2] = [8.0, 32.0];
 /// Bytes per unknown of the whole body in one, two and three dimensions: matrix, prolongations and vectors of the multigrid that
 /// every process of a static run stores.
 const MULTIGRID: [f64; 3] = [400.0, 1000.0, 2500.0];
