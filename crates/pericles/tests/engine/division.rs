@@ -82,7 +82,7 @@ fn shares_of_ghosts_of_large_bodies_equal_those_of_an_independent_program() {
 }
 
 fn check_shares(cases: &[Case<'_>]) {
-    for & (size, parts, ghosts, boundary, messages) in cases {
+    for &(size, parts, ghosts, boundary, messages) in cases {
         let (shares, imbalance) = shares_of(size, parts);
         let mean = |of: &dyn Fn(&Share) -> f64| shares.iter().map(of).sum::<f64>() / parts as f64;
         let most = |of: &dyn Fn(&Share) -> f64| shares.iter().map(of).fold(0.0, f64::max);
