@@ -175,16 +175,9 @@ impl PointContact {
 impl Pieces {
     /// Numbers the pieces of the points. All processes must call it together.
     fn of(piece: &[u32], domain: &Domain) -> Self {
-        let mut known = distinct(piece.to_vec());
-        if domain.is_divided() {
-            let own = known.iter().map(|&p| f64::from(p)).collect();
-            let all = domain.collect(own).map(|all| {
-                let all = all.concat().iter().map(|&p| p as u32).collect();
-                let all: Vec<f64> = distinct(all).into_iter().map(f64::from).collect();
-                vec![all; domain.comm().size()]
-            });
-            known = domain.distribute(all).iter().map(|&p| p as u32).collect();
-        }
+        let own = distinct(piece.to_vec());
+        let all = domain.collect_everywhere(own.into_iter().map(f64::from).collect());
+        let known = distinct(all.concat().into_iter().map(|p| p as u32).collect());
         let number = |p: &u32| known.partition_point(|q| q < p) as u32;
         Self {
             of_point: piece.iter().map(number).collect(),

@@ -193,13 +193,7 @@ impl Fragments {
         let is_first = |&i: &usize| lowest[i] == user_number(i);
         let firsts = (0..lowest.len()).filter(is_first);
         let own: Vec<f64> = firsts.map(|i| f64::from(lowest[i])).collect();
-        let mut firsts = match domain.is_divided() {
-            false => own,
-            true => {
-                let all = domain.collect(own).map(|all| all.concat());
-                domain.distribute(all.map(|all| vec![all; domain.comm().size()]))
-            }
-        };
+        let mut firsts = domain.collect_everywhere(own).concat();
         firsts.sort_unstable_by(f64::total_cmp);
         let place = |&lowest: &u32| firsts.partition_point(|&first| first < f64::from(lowest));
         lowest.iter().map(|lowest| place(lowest) as f64).collect()
