@@ -233,6 +233,18 @@ fn heat_conduction_counts() {
     .map(|text| estimate(&text));
     assert!(explicit > without + 150e3, "{without} {explicit}");
     assert!(implicit > explicit + 2e6, "{explicit} {implicit}");
+    // Every process stores the multigrid of the whole body.
+    let divided = |scheme: &str| {
+        let deck = Deck::parse(&conducting(scheme), "a.toml", &[]).unwrap();
+        let forecast = deck.build().unwrap().forecast(&deck.model, 4).unwrap();
+        forecast.memory.mean
+    };
+    let multigrid = divided("trapezoidal") - divided("explicit");
+    let expected = implicit - explicit;
+    assert!(
+        (multigrid / expected - 1.0).abs() < 1e-3,
+        "{multigrid} {expected}"
+    );
     let limit = 4_000_000;
     let same = ["spacing = 0.1", "spacing = 0.1"];
     assert!(built(BLOCK, same, limit).is_ok());
