@@ -1,4 +1,4 @@
-//! Agreement between the processes that share a run: the first one reads and writes files for all.
+//! Agreement between the processes that share a run: the first one reads and writes all files except checkpoints.
 
 use std::path::PathBuf;
 

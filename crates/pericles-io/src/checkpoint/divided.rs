@@ -262,10 +262,13 @@ impl DividedCheckpoint {
         let opened = agreed(comm, path, opened)?;
         let checks = opened.as_ref().map(|content| vec![content.checks(); size]);
         let checks = distribute(comm, checks);
-        let content = opened.or_else(|| {
-            // The same file: the folder may be another one there.
-            let content = Content::open(path, memory).ok();
-            content.filter(|content| !checks.is_empty() && content.checks() == checks)
+        let content = opened.or_else(|| match checks.is_empty() {
+            true => None,
+            false => {
+                // The same file: the folder may be another one there.
+                let content = Content::open(path, memory).ok();
+                content.filter(|content| content.checks() == checks)
+            }
         });
         let content = content.unwrap_or(Content::None);
         let is_shared = all(comm, matches!(content, Content::Blocks(..)));

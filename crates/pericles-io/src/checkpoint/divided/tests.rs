@@ -37,7 +37,7 @@ fn archive(points: usize, domain: &Domain) -> Archive {
     let mut archive = Archive::default();
     let vector = (0..4).flat_map(|c| own.iter().map(move |&k| value(c, k)));
     archive.put_as("u", Values::F64(vector.collect()), Layout::Points);
-    let set = (0..own.len() as u32).filter(|&k| own[k as usize] % 5 == 0);
+    let set = (0..own.len() as u32).filter(|&k| own[k as usize].is_multiple_of(5));
     let set: Vec<u32> = set.collect();
     let on_set = set.iter().map(|&k| (own[k as usize] as u64) << 40);
     archive.put_as("set", Values::U64(on_set.collect()), Layout::Set(set));
@@ -46,7 +46,7 @@ fn archive(points: usize, domain: &Domain) -> Archive {
     let lengths = own.iter().map(length).collect();
     archive.put_as("bits", Values::U8(bits.collect()), Layout::Rows(lengths));
     archive.put_as("none", Values::F64(Vec::new()), Layout::Set(Vec::new()));
-    let broken = own.iter().filter(|&k| k % 3 == 0).count() as u64;
+    let broken = own.iter().filter(|k| k.is_multiple_of(3)).count() as u64;
     archive.put_as("broken", Values::U64(vec![broken, 0]), Layout::Count);
     let work = BinnedSum::of(own.len(), |k| value(0, own[k]));
     work.save_under("work", &mut archive);
