@@ -9,6 +9,7 @@ use std::sync::Arc;
 use pericles::boundary::{AxisMotion, Load, LoadDensity};
 use pericles::division::part_of;
 use pericles::domain::Comm;
+use pericles::material::SurfaceCorrection;
 use pericles::space::{PointCloud, PointSet};
 use pericles::time::State;
 use pericles::{PericlesError, PointScalar};
@@ -273,13 +274,13 @@ impl Assembler<'_> {
         if models.any(is_inelastic) {
             return Some((
                 "material".into(),
-                "viscous and plastic materials store the history of both ends of a bond in the same process",
+                "sums over the bonds of viscous and plastic materials are renewed by blocks of points when bonds break, which depend on the division",
             ));
         }
-        if self.model.output.wants_tensors() && solid.material.bonds().is_none() {
+        if solid.material.surface_correction == SurfaceCorrection::Ghosts {
             return Some((
-                "output.fields.names".into(),
-                "stress and strain of state-based and correspondence materials need the bonds of all points; leave these fields out",
+                "material.surface_correction".into(),
+                "the ghost layer outside the body is created for a whole body; use surface_correction = \"energy\"",
             ));
         }
         if thermal.is_some_and(|thermal| thermal.conduction.is_some()) {

@@ -282,12 +282,28 @@ impl Domain {
         arrived
     }
 
+    /// Sends `values` at `places[k]` to the k-th of the peers and returns the values received, peer by peer. All processes must
+    /// call it together.
+    ///
+    /// # Panics
+    /// If there is not one list of places per peer.
+    pub fn exchange_places(&self, places: &[Vec<u32>], values: &[f64]) -> Vec<f64> {
+        assert_eq!(places.len(), self.peers.len(), "one list per peer");
+        let of_peer = |places: &Vec<u32>| places.iter().map(|&k| values[k as usize]).collect();
+        self.exchange_messages(places.iter().map(of_peer)).concat()
+    }
+
     /// Sends a message to each peer and returns the messages of the peers.
     fn exchange(&self, message: impl Fn(&Peer) -> Vec<f64>) -> Vec<Vec<f64>> {
+        self.exchange_messages(self.peers.iter().map(message))
+    }
+
+    /// Sends one message to each peer, in their order, and returns the messages of the peers.
+    fn exchange_messages(&self, messages: impl Iterator<Item = Vec<f64>>) -> Vec<Vec<f64>> {
         let mut received = vec![Vec::new(); self.peers.len()];
         if !self.peers.is_empty() {
             let ranks: Vec<usize> = self.peers.iter().map(|peer| peer.rank).collect();
-            let sent: Vec<Vec<f64>> = self.peers.iter().map(message).collect();
+            let sent: Vec<Vec<f64>> = messages.collect();
             self.comm.exchange(&ranks, &sent, &mut received);
         }
         received
@@ -332,6 +348,11 @@ impl Domain {
     /// Returns whether this is the first of the processes, which writes files and messages for all.
     pub fn is_first(&self) -> bool {
         self.comm.rank() == 0
+    }
+
+    /// The processes with which this one shares points.
+    pub fn peers(&self) -> &[Peer] {
+        &self.peers
     }
 
     /// Returns the communication with the other processes.

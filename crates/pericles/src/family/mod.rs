@@ -5,11 +5,13 @@
 
 mod bonds;
 mod crack;
+mod reverse;
 mod search;
 mod volume;
 
 pub use bonds::{BondCut, BondList};
 pub use crack::{Crack, Cutter, EndRule};
+pub(crate) use reverse::ReverseEntries;
 pub(crate) use search::pairs_of_sites;
 pub use search::{pairs_where, pairs_within};
 pub use volume::VolumeCorrection;

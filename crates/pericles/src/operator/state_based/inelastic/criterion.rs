@@ -9,11 +9,10 @@ use crate::operator::PointSubset;
 use crate::step_end::StepEnd;
 
 impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
-    /// Returns the force states at time t for values of the pass over points.
+    /// Returns the force states at time t for values of the pass over points. All processes must call it together.
     pub(super) fn force_states(&self, t: f64, values: &[f64]) -> ForceStates {
         let n = self.solid.cloud.len();
-        let at_time = self.reliefs_at(t);
-        let mut relief = match &at_time {
+        let mut relief = match &self.own_reliefs_at(t) {
             Some(reliefs) => reliefs.to_vec(),
             None => self.history.inelastic.clone(),
         };

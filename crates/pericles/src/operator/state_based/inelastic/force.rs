@@ -19,6 +19,7 @@ use crate::operator::rows::Rows;
 use crate::parallel::{BLOCK, for_each_block, for_each_point};
 use crate::step_end::StepEnd;
 use rayon::prelude::*;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Force density of linear peridynamic solids with viscous or plastic shear ([`Inelasticity`]), on a
 /// neighbour list, N/m³.
@@ -36,7 +37,8 @@ use rayon::prelude::*;
 /// For influence functions other than the constant one, the plastic flow of a point is radial but not normal
 /// to the yield surface, and the tangent of yielding points is not symmetric.
 ///
-/// Memory in addition to [`LinearSolidForce`]: 20 bytes per directed bond, and 8 bytes per viscous term.
+/// Memory in addition to [`LinearSolidForce`]: 20 bytes per directed bond, and 8 bytes per viscous term; 8 more per directed
+/// bond if the body is divided among processes.
 pub struct InelasticSolidForce<L: Kinematics, const D: usize> {
     pub(super) solid: LinearSolidForce<L, D>,
     pub(super) laws: Laws,
@@ -45,6 +47,25 @@ pub struct InelasticSolidForce<L: Kinematics, const D: usize> {
     pub(super) influence: Option<Weight>,
     states: Pool<Vec<Row>>,
     reliefs: Pool<Vec<f64>>,
+    /// R of all entries and of the reverse entries of other processes, if the body is divided: those of a time, or those at
+    /// the end of the last step. `None` after a change of the history.
+    shared: Mutex<Option<Shared>>,
+}
+
+/// Values kept until the history or the time changes.
+struct Shared {
+    t: Option<f64>,
+    values: Arc<Vec<f64>>,
+}
+
+/// R of all entries.
+pub(super) enum ReliefValues<'a> {
+    /// The inelastic stretches at the end of the last step.
+    Last,
+    /// Those at another time.
+    AtTime(Lent<'a, Vec<f64>>),
+    /// Those of a divided body, followed by the reverse entries of other processes.
+    Shared(Arc<Vec<f64>>),
 }
 
 crate::saved! {
@@ -52,6 +73,7 @@ crate::saved! {
         solid, history: part,
         laws, influence: fixed,
         states, reliefs: scratch,
+        shared: set(Mutex::new(None)),
     }
 }
 
@@ -69,7 +91,7 @@ impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
         if solid.cloud.domain().is_divided() {
             return Err(PericlesError::FormNotUsable {
                 form: "list",
-                reason: "viscous and plastic materials store the history of both ends of a bond in the same process, but this body is divided among processes",
+                reason: "sums over the bonds of viscous and plastic materials are renewed by blocks of points when bonds break, but this body is divided among processes",
             });
         }
         let mut laws = Laws {
@@ -98,6 +120,7 @@ impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
             influence,
             states: Pool::new(1, move || vec![Row::default(); sites]),
             reliefs: Pool::new(0, move || vec![0.0; entries]),
+            shared: Mutex::new(None),
         })
     }
 
@@ -140,30 +163,83 @@ impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
         }
     }
 
-    /// Returns R of all entries at time t; `None` if they are those at the end of the last step.
-    pub(super) fn reliefs_at(&self, t: f64) -> Option<Lent<'_, Vec<f64>>> {
-        if self.laws.terms == 0 || self.history.time.iter().all(|&time| time >= t) {
+    /// Returns R of own entries at time t; `None` if they are those at the end of the last step. All processes must call it
+    /// together.
+    pub(super) fn own_reliefs_at(&self, t: f64) -> Option<Lent<'_, Vec<f64>>> {
+        let Self { solid, laws, .. } = self;
+        let is_last = || self.history.time.iter().all(|&time| time >= t);
+        if laws.terms == 0 || solid.cloud.domain().all(is_last()) {
             return None;
         }
         let mut reliefs = self.reliefs.take();
-        let Self { solid, laws, .. } = self;
         self.history
             .reliefs_into(t, &solid.bonds, laws, &solid.classes, &mut reliefs);
         Some(reliefs)
     }
 
+    /// Returns R at time t, of other processes too. All processes must call it together.
+    pub(super) fn reliefs_at(&self, t: f64) -> ReliefValues<'_> {
+        let own = self.own_reliefs_at(t);
+        if self.solid.cloud.domain().is_divided() {
+            let t = own.as_ref().map(|_| t);
+            let own = own
+                .as_ref()
+                .map_or(&self.history.inelastic[..], |own| &own[..]);
+            return ReliefValues::Shared(self.shared(t, own));
+        }
+        own.map_or(ReliefValues::Last, ReliefValues::AtTime)
+    }
+
+    /// Returns the inelastic stretches of the reverse entries of all entries. All processes must call it together.
+    pub(super) fn reverse_stretches(&self) -> Vec<f64> {
+        let History {
+            inelastic,
+            opposite,
+            ..
+        } = &self.history;
+        let shared;
+        let all: &[f64] = match self.solid.cloud.domain().is_divided() {
+            false => inelastic,
+            true => {
+                shared = self.shared(None, inelastic);
+                &shared
+            }
+        };
+        let places = opposite.places().iter();
+        places.map(|&place| all[place as usize]).collect()
+    }
+
+    /// Returns the values of own entries at a time, or at the end of the last step, followed by those of other processes.
+    /// They are exchanged only after a change of time or history, which all processes see alike.
+    fn shared(&self, t: Option<f64>, own: &[f64]) -> Arc<Vec<f64>> {
+        let mut kept = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
+        match &*kept {
+            Some(known) if known.t == t => known.values.clone(),
+            _ => {
+                let domain = self.solid.cloud.domain();
+                let values = Arc::new(self.history.opposite.with_others(domain, own));
+                *kept = Some(Shared {
+                    t,
+                    values: values.clone(),
+                });
+                values
+            }
+        }
+    }
+
     /// Returns the data of the loops over bonds, with rows of S and G.
     pub(super) fn reliefs<'a>(
         &'a self,
-        at_time: &'a Option<Lent<'_, Vec<f64>>>,
+        at_time: &'a ReliefValues<'_>,
         states: &'a [Row],
     ) -> Reliefs<'a> {
         Reliefs {
             of_entries: match at_time {
-                Some(reliefs) => reliefs,
-                None => &self.history.inelastic,
+                ReliefValues::Last => &self.history.inelastic,
+                ReliefValues::AtTime(reliefs) => reliefs,
+                ReliefValues::Shared(reliefs) => reliefs,
             },
-            opposite: &self.history.opposite,
+            opposite: self.history.opposite.places(),
             states,
         }
     }
@@ -233,6 +309,7 @@ impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
         drop(u);
         self.solid.blocks = blocks;
         self.history = history;
+        self.shared = Mutex::new(None);
     }
 
     /// Updates the sums over bonds in all blocks in which the number of broken bonds differs from `before`.
@@ -325,7 +402,11 @@ impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
         let influence = self.influence.as_ref().map_or(0, Weight::bytes);
         let strength = size_of_val(&self.laws.strength[..]);
         let states = size_of::<Row>() * self.solid.bonds.sites().len();
-        self.history.bytes() + influence + strength + states
+        let shared = match self.solid.cloud.domain().is_divided() {
+            true => size_of::<f64>() * self.history.opposite.with_others_len(),
+            false => 0,
+        };
+        self.history.bytes() + influence + strength + states + shared
     }
 }
 

@@ -6,6 +6,9 @@
 //! from those at the end of the last step and from the displacement; they are stored when the step is
 //! accepted.
 //!
+//! The arrays allow for bodies divided among processes, which constructors still refuse: a process stores the entries of its own points, and receives what the loops read of the
+//! reverse entries that belong to ghosts, once after each change of the history or of the time.
+//!
 //! For fixed x the force is the gradient of Σ W V with W = A θ²/(2 D) + (B/2m) Σ ω r² (ψ² − 2 ψ x + c), where
 //! c is Σ λ_k ψ_k² of the back-stretches ψ_k, or x² of the plastic stretch. A step therefore dissipates the
 //! mean of −∂W/∂x before and after it times the change of x. The energy balance of velocity Verlet is then

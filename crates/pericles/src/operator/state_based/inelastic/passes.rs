@@ -9,8 +9,8 @@ use super::kernels::{force_rows, square_rows};
 use super::tangent::{Along, change_rows, tangent_rows};
 use crate::domain::Field;
 use crate::operator::{
-    AtPoints, BondAt, BondView, Breakable, CoarseBreak, InstructionSet, PlasticView, PointSubset,
-    TwoPass,
+    AtPoints, BondAt, BondValues, BondView, Breakable, CoarseBreak, InstructionSet, PlasticView,
+    PointSubset, TwoPass,
 };
 use crate::parallel::for_each_chunk;
 use crate::step_end::StepEnd;
@@ -228,10 +228,13 @@ impl<L: Kinematics, const D: usize> Breakable for InelasticSolidForce<L, D> {
 
     /// Force states are those for the history at the end of the last step.
     fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]) {
-        let u = Field::new(u, &[]);
+        let domain = self.solid.cloud.domain();
+        let ghosts = domain.ghosts(u);
+        let u = Field::new(u, &ghosts);
         self.solid.mark_by_limits(u, fraction, marks);
         if self.solid.has_criteria() {
-            let t = self.history.time.iter().copied().fold(0.0, f64::max);
+            let latest = self.history.time.iter().copied().fold(0.0, f64::max);
+            let t = domain.max(latest);
             let mut values = vec![0.0; 3 * self.solid.cloud.len()];
             self.values_into(t, u, &PointSubset::All, &mut values);
             let states = self.force_states(t, &values);
@@ -246,20 +249,26 @@ impl<L: Kinematics, const D: usize> PlasticView for InelasticSolidForce<L, D> {
     }
 }
 
-/// Bonds have the inelastic stretches at the end of the last step.
+/// Bonds have the inelastic stretches at the end of the last step; the values of bonds are those of their reverse entries.
 impl<L: Kinematics, const D: usize> BondView for InelasticSolidForce<L, D> {
     fn for_each_undeformed(&self, i: usize, visit: &mut dyn FnMut(BondAt)) {
         self.solid.for_each_undeformed(i, visit);
     }
 
-    fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt)) {
+    fn values_at(&self, u: Field<'_>) -> BondValues {
+        BondValues {
+            of_bonds: self.reverse_stretches(),
+            ..self.solid.values_at(u)
+        }
+    }
+
+    fn for_each_bond(&self, values: &BondValues, i: usize, visit: &mut dyn FnMut(BondAt)) {
         let (bonds, stiffness) = (&self.solid.bonds, &self.solid.states.stiffness);
         let relief = |i: usize, entry: usize| {
-            let back = self.history.opposite[entry] as usize;
-            let [forth, back] = [entry, back].map(|entry| self.history.inelastic[entry]);
+            let (forth, back) = (self.history.inelastic[entry], values.of_bonds[entry]);
             let (here, there) = (bonds.site(i), bonds.neighbour(entry));
             stiffness[here] * forth + stiffness[there] * back
         };
-        self.solid.visit_bonds(u, i, &relief, visit);
+        self.solid.visit_bonds(values, i, &relief, visit);
     }
 }
