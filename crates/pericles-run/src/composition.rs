@@ -209,6 +209,11 @@ impl Scheme {
     }
 }
 
+/// Returns whether a scheme has a need.
+pub(crate) fn has_need(scheme: &DeckScheme, need: Need) -> bool {
+    requirements(scheme).iter().any(|one| one.need == need)
+}
+
 /// Returns the requirements of the scheme of a model.
 pub fn requirements(scheme: &DeckScheme) -> &'static [Requirement] {
     match scheme {

@@ -159,9 +159,10 @@ fn separation_dissipates_the_fracture_energy() {
             let side = |i: usize| cloud.point(i)[0] > 7.0;
             let rest = vec![0.0; 2 * n];
             let view = brittle.capabilities().bonds.unwrap();
+            let values = view.values_at(Field::new(&rest, &[]));
             let mut wanted = 0.0;
             for i in 0..n {
-                view.for_each_bond(Field::new(&rest, &[]), i, &mut |bond| {
+                view.for_each_bond(&values, i, &mut |bond| {
                     if side(i) != side(bond.neighbour) {
                         let length = bond.xi.iter().map(|x| x * x).sum::<f64>().sqrt();
                         let alpha = material.influence.alpha_of(bond.xi, material.horizon);
@@ -460,9 +461,10 @@ fn softening_curves_depend_on_materials_and_strengths() {
     let brittle = BondBody::new(&cloud, &material, &constants);
     let brittle = brittle.operator(BondForm::List).unwrap().operator;
     let view = brittle.capabilities().bonds.unwrap();
+    let values = view.values_at(Field::new(&vec![0.0; 2 * n], &[]));
     for (i, damage) in wanted.iter_mut().enumerate() {
         let (mut whole, mut left) = (0.0, 0.0);
-        view.for_each_bond(Field::new(&vec![0.0; 2 * n], &[]), i, &mut |bond| {
+        view.for_each_bond(&values, i, &mut |bond| {
             let j = bond.neighbour;
             let square: f64 = bond.xi.iter().map(|x| x * x).sum();
             let stretch = s * bond.xi[0] * bond.xi[0] / square;

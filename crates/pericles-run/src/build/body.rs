@@ -7,7 +7,7 @@ use pericles::space::PointSet;
 use pericles::{Need, PericlesError, PointScalar};
 use pericles_deck::{
     BuildError, Caution, CellChoice, ContactPairs, Fault, KeyPath, MaterialModel, ModelWarning,
-    PointNumber, Remark, Scheme, Solid, SurfaceBody,
+    PointNumber, Remark, Solid, SurfaceBody,
 };
 use pericles_manifold::surface::Surface;
 use pericles_waves::{AssembledForce, ForceForm};
@@ -20,7 +20,7 @@ use super::materials::{Between, Composition};
 use super::part::Part;
 use super::refusal::{at_material, at_path};
 use super::resources::Resources;
-use crate::composition::requirements;
+use crate::composition::has_need;
 
 /// Force operator and material of a body.
 pub(super) struct BodyParts {
@@ -323,9 +323,4 @@ impl Assembler<'_> {
         let tracked = self.tracked_cracks(&assembled.cuts, (discretisation, part), warnings);
         Ok((assembled, tracked))
     }
-}
-
-/// Returns whether a scheme has a need.
-fn has_need(scheme: &Scheme, need: Need) -> bool {
-    requirements(scheme).iter().any(|one| one.need == need)
 }

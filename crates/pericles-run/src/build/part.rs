@@ -9,14 +9,16 @@ use std::sync::Arc;
 use pericles::boundary::{AxisMotion, Load, LoadDensity};
 use pericles::division::part_of;
 use pericles::domain::Comm;
+use pericles::material::SurfaceCorrection;
 use pericles::space::{PointCloud, PointSet};
-use pericles::{PericlesError, PointScalar};
+use pericles::{Need, PericlesError, PointScalar};
 use pericles_deck::{Body, BoundaryCondition, BuildError, Fault, Keys, MaterialModel};
 use pericles_waves::ForceForm;
 
 use super::assembler::Assembler;
 use super::discretisation::{Discretisation, Sets};
 use super::refusal::{at, at_path};
+use crate::composition::has_need;
 use crate::division::owners;
 
 /// The points of a process, and the values of the whole body at them.
@@ -262,18 +264,32 @@ impl Assembler<'_> {
             ));
         }
         let others = self.model.materials.iter().map(|other| &other.model);
-        let mut models = std::iter::once(&solid.material.model).chain(others);
+        let models: Vec<_> = std::iter::once(&solid.material.model)
+            .chain(others)
+            .collect();
         let is_inelastic = |model: &MaterialModel| matches!(model, MaterialModel::StateBased(state) if !state.inelastic.is_elastic());
-        if models.any(is_inelastic) {
+        if models.iter().any(|model| is_inelastic(model)) {
             return Some((
                 "material".into(),
                 "viscous and plastic materials store the history of both ends of a bond in the same process",
             ));
         }
-        if self.model.output.wants_tensors() && solid.material.bonds().is_none() {
+        let breaks_by_stress = |model: &MaterialModel| match model {
+            MaterialModel::StateBased(state) => state.criterion.is_some(),
+            MaterialModel::Correspondence(solid) => solid.criterion.is_some(),
+            MaterialModel::Bonds(_) => false,
+        };
+        let in_zones = has_need(&self.model.time.scheme, Need::FiniteReach);
+        if in_zones && models.iter().any(|model| breaks_by_stress(model)) {
             return Some((
-                "output.fields.names".into(),
-                "stress and strain of state-based and correspondence materials need the bonds of all points; leave these fields out",
+                "material.failure".into(),
+                "with a fine region, failure by stress or strain would depend on the division; use a scheme with one time step",
+            ));
+        }
+        if solid.material.surface_correction == SurfaceCorrection::Ghosts {
+            return Some((
+                "material.surface_correction".into(),
+                "the ghost layer outside the body is created for a whole body; use surface_correction = \"energy\"",
             ));
         }
         if !whole.conditions.are_none() {

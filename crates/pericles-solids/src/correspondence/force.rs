@@ -389,9 +389,20 @@ impl<const D: usize> CorrespondenceForce<D> {
 
     /// Sets the values of the points `on`.
     pub(super) fn all_values(&self, t: f64, u: Field<'_>, on: &PointSubset<'_>, out: &mut [f64]) {
-        let (rows, heat) = (self.packed(u), self.heat_at(t));
+        self.values_with(&self.heat_at(t), u, on, out);
+    }
+
+    /// Sets the values of the points `on` with given thermal stretches.
+    pub(super) fn values_with(
+        &self,
+        heat: &Heat,
+        u: Field<'_>,
+        on: &PointSubset<'_>,
+        out: &mut [f64],
+    ) {
+        let rows = self.packed(u);
         self.set_values(on, out, &|i| {
-            let values = self.values_of(i, &rows, &heat);
+            let values = self.values_of(i, &rows, heat);
             (values.state, values.dilatation)
         });
     }

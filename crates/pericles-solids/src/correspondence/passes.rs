@@ -169,8 +169,6 @@ impl<const D: usize> TwoPass for CorrespondenceForce<D> {
         (!self.history.is_empty()).then_some(self)
     }
 
-    /// Returns `None` for a body divided among processes, because the force of a bond requires the families
-    /// of both end points.
     fn bonds(&self) -> Option<&dyn BondView> {
         Some(self)
     }

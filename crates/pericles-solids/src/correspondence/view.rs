@@ -1,9 +1,9 @@
 //! Views of bonds and plastic strain of correspondence bodies, for output.
 
 use pericles::domain::Field;
-use pericles::operator::{BondAt, BondView, PlasticView};
+use pericles::operator::{BondAt, BondValues, BondView, PlasticView, PointSubset};
 
-use super::bonds::Bond;
+use super::bonds::{Bond, Values};
 use super::force::CorrespondenceForce;
 
 /// The accumulated plastic strain ∫ √(2/3 d_p : d_p) dt.
@@ -15,24 +15,23 @@ impl<const D: usize> PlasticView for CorrespondenceForce<D> {
     }
 }
 
-/// Each call computes the deformation gradients of a point and its neighbours.
+/// The values of points are those of the pass over points, with the temperature of the last force evaluation.
 impl<const D: usize> BondView for CorrespondenceForce<D> {
-    fn has_forces(&self) -> bool {
-        !self.cloud.domain().is_divided()
+    fn values_at(&self, u: Field<'_>) -> BondValues {
+        let mut values = vec![0.0; self.value_count() * self.cloud.len()];
+        self.values_with(&self.latest_heat(), u, &PointSubset::All, &mut values);
+        BondValues::of_points(u, values, self.cloud.domain())
     }
 
-    fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt)) {
-        let (heat, sites) = (self.latest_heat(), self.bonds.list.sites());
-        let state = |k: usize| {
-            let eta = |bond: &Bond<D>| u.difference::<D>([k, sites.point(bond.site)]);
-            self.state_of(k, &self.shapes[k], &eta, &heat).0
-        };
-        let own = state(i);
+    fn for_each_bond(&self, values: &BondValues, i: usize, visit: &mut dyn FnMut(BondAt)) {
+        let (count, sites) = (self.value_count(), self.bonds.list.sites());
+        let (u, points) = (values.displacement(), values.points());
+        let own = Values::read::<D>(points, count, i);
         self.bonds.for_each(i, self.bits(i), |bond: Bond<D>| {
             let j = sites.point(bond.site);
             let eta = u.difference::<D>([i, j]);
             let mut force = [0.0; D];
-            own.add_force(&state(j), &bond, &eta, &mut force);
+            own.add_force(&Values::read(points, count, j), &bond, &eta, &mut force);
             visit(BondAt::new(j, bond.xi, eta, force));
         });
     }

@@ -64,8 +64,9 @@ fn bonds_break_by_the_normal_stress_in_their_direction() {
         let strength = part * principal[0];
         let mut wanted = 0;
         let view = whole.capabilities().bonds.unwrap();
+        let values = view.values_at(Field::new(&rest, &[]));
         for i in 0..n {
-            view.for_each_bond(Field::new(&rest, &[]), i, &mut |bond| {
+            view.for_each_bond(&values, i, &mut |bond| {
                 let y = [0, 1].map(|c| stretches[c] * bond.xi[c]);
                 let square = y[0] * y[0] + y[1] * y[1];
                 let normal = (0..2).map(|c| principal[c] * y[c] * y[c]).sum::<f64>() / square;

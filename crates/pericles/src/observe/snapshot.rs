@@ -276,8 +276,7 @@ impl<'a> Snapshot<'a> {
         of_bonds: impl Fn(&PointCloud, &dyn BondView, &[f64]) -> Vec<f64>,
     ) -> Vec<f64> {
         let cloud = self.system.cloud();
-        let bonds = self.system.operator().as_bonds();
-        match bonds.filter(|bonds| bonds.has_forces()) {
+        match self.system.operator().as_bonds() {
             Some(bonds) => of_bonds(cloud, bonds, &self.state.u),
             None => vec![f64::NAN; places(cloud.dimension()).len() * cloud.len()],
         }

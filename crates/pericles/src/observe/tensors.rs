@@ -94,10 +94,10 @@ fn diagonalise(m: &mut Matrix) {
 /// free surfaces, where bonds are missing.
 pub(super) fn virial_stress(cloud: &PointCloud, bonds: &dyn BondView, u: &[f64]) -> Vec<f64> {
     let ghosts = cloud.domain().ghosts(u);
-    let u = Field::new(u, &ghosts);
+    let values = bonds.values_at(Field::new(u, &ghosts));
     per_point(cloud, |i| {
         let mut stress = Matrix::default();
-        bonds.for_each_bond(u, i, &mut |bond: BondAt| {
+        bonds.for_each_bond(&values, i, &mut |bond: BondAt| {
             for a in 0..3 {
                 for b in 0..3 {
                     stress[a][b] += 0.5 * bond.force[a] * (bond.xi[b] + bond.eta[b]);
@@ -113,11 +113,11 @@ pub(super) fn virial_stress(cloud: &PointCloud, bonds: &dyn BondView, u: &[f64])
 pub(super) fn fitted_strain(cloud: &PointCloud, bonds: &dyn BondView, u: &[f64]) -> Vec<f64> {
     let dimension = cloud.dimension();
     let ghosts = cloud.domain().ghosts(u);
-    let u = Field::new(u, &ghosts);
+    let values = bonds.values_at(Field::new(u, &ghosts));
     let volumes = cloud.domain().with_ghosts(cloud.volumes());
     per_point(cloud, |i| {
         let (mut shape, mut moment) = (Matrix::default(), Matrix::default());
-        bonds.for_each_bond(u, i, &mut |bond: BondAt| {
+        bonds.for_each_bond(&values, i, &mut |bond: BondAt| {
             let volume = volumes[bond.neighbour];
             for a in 0..3 {
                 for b in 0..3 {

@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use super::{
-    BondAt, BondView, Breakable, Capabilities, CoarseBreak, Force, InstructionSet, Inversion,
-    LinearOperator, Linearity, LocalForce, PointSubset, SplitForce,
+    BondAt, BondValues, BondView, Breakable, Capabilities, CoarseBreak, Force, InstructionSet,
+    Inversion, LinearOperator, Linearity, LocalForce, PointSubset, SplitForce,
 };
 use crate::archive::{Archive, Checkpointed};
 use crate::domain::Field;
@@ -352,14 +352,18 @@ impl SplitForce for Forces {
 }
 
 impl BondView for Forces {
-    fn has_forces(&self) -> bool {
-        let mut views = self.iter().filter_map(|force| force.capabilities().bonds);
-        views.all(|bonds| bonds.has_forces())
+    fn values_at(&self, u: Field<'_>) -> BondValues {
+        let views = self.iter().filter_map(|force| force.capabilities().bonds);
+        BondValues {
+            parts: views.map(|bonds| bonds.values_at(u)).collect(),
+            ..BondValues::default()
+        }
     }
 
-    fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt)) {
-        for bonds in self.iter().filter_map(|force| force.capabilities().bonds) {
-            bonds.for_each_bond(u, i, visit);
+    fn for_each_bond(&self, values: &BondValues, i: usize, visit: &mut dyn FnMut(BondAt)) {
+        let views = self.iter().filter_map(|force| force.capabilities().bonds);
+        for (bonds, values) in views.zip(&values.parts) {
+            bonds.for_each_bond(values, i, visit);
         }
     }
 

@@ -1,6 +1,6 @@
 //! Access to bonds, dilatations and plastic strains for output fields.
 
-use crate::domain::Field;
+use crate::domain::{Domain, Field};
 
 /// A bond seen from one of its ends; missing components are zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,18 +44,63 @@ impl BondAt {
     }
 }
 
-/// An operator with access to individual bonds. The access is slow and meant for output.
-pub trait BondView: Sync {
-    /// Returns whether the forces of bonds are known: on a divided body not if they depend on the bonds of ghosts.
-    fn has_forces(&self) -> bool {
-        true
+/// Displacements, and the values that the forces of bonds read at both ends, for [`BondView::for_each_bond`].
+#[derive(Debug, Clone, Default)]
+pub struct BondValues {
+    /// Displacement of own points, m.
+    pub u: Vec<f64>,
+    /// Displacement of ghosts, m.
+    pub ghosts: Vec<f64>,
+    /// Values of own points, component-major, if the force of a bond depends on other bonds of its ends.
+    pub of_points: Vec<f64>,
+    /// These values of ghosts.
+    pub of_ghosts: Vec<f64>,
+    /// Those of the forces of which a force consists.
+    pub parts: Vec<BondValues>,
+}
+
+impl BondValues {
+    /// Values of a force whose bonds depend on the displacements of their ends only.
+    pub fn of_displacement(u: Field<'_>) -> Self {
+        Self {
+            u: u.owned.to_vec(),
+            ghosts: u.ghosts.to_vec(),
+            ..Self::default()
+        }
     }
 
-    /// Calls `visit` for each intact bond of point i at displacement u; requires [`BondView::has_forces`].
-    fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt));
+    /// Values of a force whose bonds read values of both ends. All processes must call it together.
+    pub fn of_points(u: Field<'_>, values: Vec<f64>, domain: &Domain) -> Self {
+        Self {
+            of_ghosts: domain.ghosts(&values),
+            of_points: values,
+            ..Self::of_displacement(u)
+        }
+    }
 
-    /// Calls `visit` for each intact bond of own point i, undeformed and without its force. It reads the bonds of this
-    /// point only, so that it is available for every body divided among processes.
+    /// Displacement, m.
+    pub fn displacement(&self) -> Field<'_> {
+        Field::new(&self.u, &self.ghosts)
+    }
+
+    /// Values of points.
+    pub fn points(&self) -> Field<'_> {
+        Field::new(&self.of_points, &self.of_ghosts)
+    }
+}
+
+/// An operator with access to individual bonds. The access is slow and meant for output.
+pub trait BondView: Sync {
+    /// Returns the values that the forces of bonds read at a displacement of own points and ghosts. All processes must call it
+    /// together.
+    fn values_at(&self, u: Field<'_>) -> BondValues {
+        BondValues::of_displacement(u)
+    }
+
+    /// Calls `visit` for each intact bond of own point i, with values of [`BondView::values_at`].
+    fn for_each_bond(&self, values: &BondValues, i: usize, visit: &mut dyn FnMut(BondAt));
+
+    /// Calls `visit` for each intact bond of own point i, undeformed and without its force.
     fn for_each_undeformed(&self, i: usize, visit: &mut dyn FnMut(BondAt));
 }
 

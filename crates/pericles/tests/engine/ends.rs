@@ -287,7 +287,7 @@ fn the_stencil_agrees_with_the_neighbour_list() {
                 let bonds = |force: &dyn Force, i: usize| {
                     let mut sum = [0.0; 3];
                     let view = force.capabilities().bonds.unwrap();
-                    view.for_each_bond(Field::new(&u, &[]), i, &mut |bond| {
+                    view.for_each_bond(&view.values_at(Field::new(&u, &[])), i, &mut |bond| {
                         for c in 0..3 {
                             sum[c] += bond.force[c] * bond.xi[0];
                         }

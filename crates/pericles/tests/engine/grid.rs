@@ -693,9 +693,10 @@ fn single_bonds_add_up_to_the_force() {
         operator.add_force(0.0, &u, PointSubset::All, &mut force);
         let scale = force.iter().fold(0.0f64, |a, f| a.max(f.abs()));
         let (bonds, mut count) = (operator.capabilities().bonds.unwrap(), 0);
+        let values = bonds.values_at(Field::new(&u, &[]));
         for i in 0..n {
             let mut sum = [0.0; 3];
-            bonds.for_each_bond(Field::new(&u, &[]), i, &mut |bond| {
+            bonds.for_each_bond(&values, i, &mut |bond| {
                 count += 1;
                 for c in 0..2 {
                     let xi = cloud.point(bond.neighbour)[c] - cloud.point(i)[c];

@@ -214,9 +214,10 @@ fn single_bonds_add_up_to_the_force() {
         let force = force_at(&*operator, 0.8, &u);
         let n = u.len() / 2;
         let mut sums = vec![0.0; u.len()];
+        let bonds = operator.as_bonds().unwrap();
+        let values = bonds.values_at(Field::new(&u, &[]));
         for i in 0..n {
-            let bonds = operator.as_bonds().unwrap();
-            bonds.for_each_bond(Field::new(&u, &[]), i, &mut |bond| {
+            bonds.for_each_bond(&values, i, &mut |bond| {
                 sums[i] += bond.force[0];
                 sums[n + i] += bond.force[1];
             });

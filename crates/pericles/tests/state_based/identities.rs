@@ -447,7 +447,7 @@ fn the_virial_stress_of_a_uniform_strain_equals_elasticity() {
     }
     let bonds = operator.as_bonds().unwrap();
     let mut stress = [[0.0; 2]; 2];
-    bonds.for_each_bond(Field::new(&u, &[]), middle, &mut |bond| {
+    bonds.for_each_bond(&bonds.values_at(Field::new(&u, &[])), middle, &mut |bond| {
         for a in 0..2 {
             for b in 0..2 {
                 stress[a][b] += 0.5 * bond.force[a] * bond.xi[b];
@@ -480,9 +480,10 @@ fn the_forces_of_single_bonds_add_up_to_the_force() {
         let u = wave(&cloud, 0.15);
         let force = force_of(&*operator, &u);
         let bonds = operator.as_bonds().unwrap();
+        let values = bonds.values_at(Field::new(&u, &[]));
         for i in 0..cloud.len() {
             let mut sum = [0.0; 3];
-            bonds.for_each_bond(Field::new(&u, &[]), i, &mut |bond| {
+            bonds.for_each_bond(&values, i, &mut |bond| {
                 (0..3).for_each(|c| sum[c] += bond.force[c]);
             });
             for c in 0..cloud.dimension() {

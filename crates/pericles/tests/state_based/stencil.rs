@@ -187,14 +187,12 @@ fn computed(operator: &dyn Force, u: &[f64]) -> Vec<(&'static str, Vec<f64>)> {
     let mut of_bonds = vec![0.0; u.len()];
     for i in 0..n {
         let field = pericles::domain::Field::new(u, &[]);
-        operator
-            .as_bonds()
-            .unwrap()
-            .for_each_bond(field, i, &mut |bond| {
-                for c in 0..operator.dimension() {
-                    of_bonds[c * n + i] += bond.force[c];
-                }
-            });
+        let bonds = operator.as_bonds().unwrap();
+        bonds.for_each_bond(&bonds.values_at(field), i, &mut |bond| {
+            for c in 0..operator.dimension() {
+                of_bonds[c * n + i] += bond.force[c];
+            }
+        });
     }
     let mut damage = vec![0.0; n];
     operator.damage_into(&mut damage);

@@ -95,7 +95,7 @@ fn constrained_expansion_has_the_stress_of_linear_elasticity() {
         let mut stress = 0.0;
         let field = pericles::domain::Field::new(&u, &[]);
         let bonds = force.as_bonds().unwrap();
-        bonds.for_each_bond(field, middle, &mut |bond| {
+        bonds.for_each_bond(&bonds.values_at(field), middle, &mut |bond| {
             stress += 0.5 * bond.force[0] * bond.xi[0];
         });
         let expected = -modulus * stretch;

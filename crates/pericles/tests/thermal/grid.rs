@@ -76,12 +76,10 @@ fn the_stencil_has_the_forces_energies_and_failure_of_the_list() {
                     force.add_energy_density(0.7, &u, &mut density);
                     let mut bond = Vec::new();
                     let field = Field::new(&u, &[]);
-                    force
-                        .as_bonds()
-                        .unwrap()
-                        .for_each_bond(field, 40, &mut |at| {
-                            bond.push((at.neighbour, at.force));
-                        });
+                    let bonds = force.as_bonds().unwrap();
+                    bonds.for_each_bond(&bonds.values_at(field), 40, &mut |at| {
+                        bond.push((at.neighbour, at.force));
+                    });
                     bond.sort_by_key(|(j, _)| *j);
                     let bond: Vec<f64> = bond.iter().flat_map(|(_, force)| *force).collect();
                     let mut marks = vec![false; cloud.len()];

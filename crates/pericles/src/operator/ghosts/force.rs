@@ -71,11 +71,6 @@ impl GhostForce {
         }
     }
 
-    /// Returns a work vector of the body with its ghosts, not initialised.
-    pub(super) fn vector(&self) -> Lent<'_, Vec<f64>> {
-        self.vectors.take()
-    }
-
     /// Returns the displacements of the body with its ghosts, m.
     pub(super) fn extended(&self, u: &[f64]) -> Lent<'_, Vec<f64>> {
         let (n, m) = (self.cloud.len(), self.layer.cloud().len());

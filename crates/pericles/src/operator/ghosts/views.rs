@@ -2,7 +2,7 @@
 
 use super::force::GhostForce;
 use crate::domain::Field;
-use crate::operator::{BondAt, BondView, LocalForce};
+use crate::operator::{BondAt, BondValues, BondView, LocalForce};
 
 impl GhostForce {
     /// Calls `visit` for the places on whose displacements the force on a place depends, including itself.
@@ -55,24 +55,19 @@ impl LocalForce for GhostForce {
 
 /// Bonds to ghosts lead to the nearest point of the body and are marked.
 impl BondView for GhostForce {
-    fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt)) {
+    fn values_at(&self, u: Field<'_>) -> BondValues {
+        match self.inner.capabilities().bonds {
+            Some(bonds) => bonds.values_at(Field::new(&self.extended(u.owned), &[])),
+            None => BondValues::of_displacement(u),
+        }
+    }
+
+    fn for_each_bond(&self, values: &BondValues, i: usize, visit: &mut dyn FnMut(BondAt)) {
         let Some(bonds) = self.inner.capabilities().bonds else {
             return;
         };
-        let (dimension, m) = (self.cloud.dimension(), self.layer.cloud().len());
         let here = self.layer.body()[i] as usize;
-        // The bonds of a point depend on these displacements only.
-        let mut all = self.vector();
-        self.reached(here, &mut |place| {
-            for c in 0..dimension {
-                let mut sum = 0.0;
-                self.sources(place, &mut |j, weight| {
-                    sum += weight * u.entry(dimension, c, j as usize);
-                });
-                all[c * m + place] = sum;
-            }
-        });
-        bonds.for_each_bond(Field::new(&all, &[]), here, &mut |bond| {
+        bonds.for_each_bond(values, here, &mut |bond| {
             self.of_body(bond).into_iter().for_each(&mut *visit);
         });
     }

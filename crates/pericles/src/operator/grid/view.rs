@@ -1,12 +1,12 @@
 //! Access to individual bonds of a lattice body.
 
 use super::force::GridForce;
-use crate::domain::Field;
 use crate::operator::fast_law::VectorLaw;
-use crate::operator::view::{BondAt, BondView};
+use crate::operator::view::{BondAt, BondValues, BondView};
 
 impl<L: VectorLaw, const D: usize> BondView for GridForce<L, D> {
-    fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt)) {
+    fn for_each_bond(&self, values: &BondValues, i: usize, visit: &mut dyn FnMut(BondAt)) {
+        let u = values.displacement();
         let (place, left) = self.families().bonds_of(i);
         let (chunk, lane) = self.layout.chunk_at(place);
         let stretches = self.latest_stretches();

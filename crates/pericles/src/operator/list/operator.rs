@@ -2,10 +2,9 @@
 
 use super::force::BondForce;
 use super::kernels::{energy_rows, force_rows, tangent_rows};
-use crate::domain::Field;
 use crate::operator::fast_law::VectorLaw;
 use crate::operator::{
-    BondAt, BondView, Breakable, Capabilities, Force, InstructionSet, LatticeSprings,
+    BondAt, BondValues, BondView, Breakable, Capabilities, Force, InstructionSet, LatticeSprings,
     LinearOperator, Linearity, PointSubset, SplitForce,
 };
 use crate::step_end::StepEnd;
@@ -144,7 +143,8 @@ impl<L: VectorLaw, const D: usize> Force for BondForce<L, D> {
 }
 
 impl<L: VectorLaw, const D: usize> BondView for BondForce<L, D> {
-    fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt)) {
+    fn for_each_bond(&self, values: &BondValues, i: usize, visit: &mut dyn FnMut(BondAt)) {
+        let u = values.displacement();
         let (heat, sites) = (self.latest_heat(), self.bonds.sites());
         let bonds = self.view().heated(heat.as_deref().map(Vec::as_slice));
         let here = sites.of_point(i);

@@ -214,7 +214,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
     }
 
     /// Breaks the bonds of the points `on` whose failure index exceeds one. `states` are those of the points `needed`.
-    /// Returns whether a bond broke in this process.
+    /// Returns whether a bond of this process may have broken.
     pub(super) fn break_by_criterion(
         &mut self,
         step: &StepEnd<'_>,
@@ -236,7 +236,12 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         let of_point = |&i: &usize| Some((i, self.beyond(tensors, &rows, stretches, i, 1.0)?));
         let found: Vec<(usize, Vec<u8>)> = points.par_iter().filter_map(of_point).collect();
         drop(rows);
-        if found.is_empty() {
+        // In a sweep over a subset of points other processes report broken bonds to this one.
+        let none = match on {
+            PointSubset::All => found.is_empty(),
+            _ => self.cloud.domain().all(found.is_empty()),
+        };
+        if none {
             return false;
         }
         let counts = self.broken_by_blocks();

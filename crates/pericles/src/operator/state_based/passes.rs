@@ -162,7 +162,6 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidForce<L, D> {
         Some(self)
     }
 
-    /// Not available for bodies divided among processes: the force of a bond needs the families of both ends.
     fn bonds(&self) -> Option<&dyn BondView> {
         Some(self)
     }

@@ -5,7 +5,8 @@ use super::kinematics::Kinematics;
 use crate::domain::Field;
 use crate::lanes::{F64x8, LANES, dot};
 use crate::material::PairForce;
-use crate::operator::{BondAt, BondView};
+use crate::operator::{BondAt, BondValues, BondView};
+use crate::parallel::for_each_point;
 
 impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
     /// Returns ξ and η of the bond from point i to a site.
@@ -61,22 +62,22 @@ pub(super) fn force_of_bond<L: Kinematics, const D: usize>(
 }
 
 impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
-    /// Calls `visit` for each intact bond of a point. The pull of a bond is reduced by `relief` of its point
-    /// and entry.
+    /// Calls `visit` for each intact bond of a point with the values of [`BondView::values_at`]. The pull of a bond is
+    /// reduced by `relief` of its point and entry.
     pub(super) fn visit_bonds(
         &self,
-        u: Field<'_>,
+        values: &BondValues,
         i: usize,
         relief: &dyn Fn(usize, usize) -> f64,
         visit: &mut dyn FnMut(BondAt),
     ) {
         let (bonds, here) = (self.view(), self.bonds.site(i));
-        let pressure = self.pressure_of(u, i);
+        let (u, pressures) = (values.displacement(), values.points());
         let family = self.bonds.family(i);
         for (entry, b) in family.filter(|&(entry, _)| self.is_intact(i, entry)) {
             let j = self.bonds.sites().point(b);
             let [xi, eta] = self.vectors(u, i, b);
-            let p = pressure + self.pressure_of(u, j) - relief(i, entry);
+            let p = pressures.at::<1>(0, i) + pressures.at::<1>(0, j) - relief(i, entry);
             let stiffness = self.states.stiffness[here] + self.states.stiffness[b];
             let s = bonds.factor_of(entry) * stiffness;
             let weight = bonds.weight_of(entry, [here, b], xi);
@@ -86,14 +87,15 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
     }
 }
 
-/// Each call computes the dilatations of a point and its neighbours.
+/// The values of points are p = A θ/m with thermal pulls.
 impl<L: Kinematics, const D: usize> BondView for LinearSolidForce<L, D> {
-    fn has_forces(&self) -> bool {
-        !self.cloud.domain().is_divided()
+    fn values_at(&self, u: Field<'_>) -> BondValues {
+        let pressures = for_each_point(self.cloud.len(), &|i| self.pressure_of(u, i));
+        BondValues::of_points(u, pressures, self.cloud.domain())
     }
 
-    fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt)) {
-        self.visit_bonds(u, i, &|_, _| 0.0, visit);
+    fn for_each_bond(&self, values: &BondValues, i: usize, visit: &mut dyn FnMut(BondAt)) {
+        self.visit_bonds(values, i, &|_, _| 0.0, visit);
     }
 
     fn for_each_undeformed(&self, i: usize, visit: &mut dyn FnMut(BondAt)) {

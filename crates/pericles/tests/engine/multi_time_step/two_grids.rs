@@ -269,9 +269,10 @@ fn a_crack_along_the_interface_dissipates_the_mean_energy_of_both_grids() {
         let mut out = vec![0.0; u.len()];
         force.end_step(&StepEnd::sub_step(0.0, 1.0, &u), PointSubset::All, &mut out);
         let mut left = [0; 3];
+        let view = force.as_bonds().unwrap();
+        let values = view.values_at(Field::new(&u, &[]));
         for i in 0..cloud.len() {
-            let view = force.as_bonds().unwrap();
-            view.for_each_bond(Field::new(&u, &[]), i, &mut |bond| {
+            view.for_each_bond(&values, i, &mut |bond| {
                 left[usize::from(is_fine(i)) + usize::from(is_fine(bond.neighbour))] += 1;
             });
         }
@@ -299,9 +300,10 @@ fn a_crack_along_the_interface_dissipates_the_mean_energy_of_both_grids() {
     let across = |line: f64| {
         let inside = |i: &usize| (0.07..0.13).contains(&cloud.axis(1)[*i]);
         let mut energy = 0.0;
+        let view = force.as_bonds().unwrap();
+        let values = view.values_at(Field::new(&u, &[]));
         for i in (0..cloud.len()).filter(inside) {
-            let view = force.as_bonds().unwrap();
-            view.for_each_bond(Field::new(&u, &[]), i, &mut |bond| {
+            view.for_each_bond(&values, i, &mut |bond| {
                 let [a, b] = [i, bond.neighbour].map(|i| cloud.axis(0)[i]);
                 if (a - line) * (b - line) > 0.0 {
                     return;

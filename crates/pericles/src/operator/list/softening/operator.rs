@@ -2,11 +2,11 @@
 
 use super::force::SofteningForce;
 use super::kernels::{Softened, energy_rows, force_rows, tangent_rows};
-use crate::domain::Field;
 use crate::operator::fast_law::VectorLaw;
 use crate::operator::heating::heating_of;
 use crate::operator::{
-    BondAt, BondView, Breakable, Capabilities, Force, InstructionSet, LatticeSprings, PointSubset,
+    BondAt, BondValues, BondView, Breakable, Capabilities, Force, InstructionSet, LatticeSprings,
+    PointSubset,
 };
 use crate::step_end::StepEnd;
 use crate::thermal::Expandable;
@@ -138,7 +138,8 @@ impl<L: VectorLaw, const D: usize> Force for SofteningForce<L, D> {
 
 /// Bonds have the damage at the end of the last step.
 impl<L: VectorLaw, const D: usize> BondView for SofteningForce<L, D> {
-    fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt)) {
+    fn for_each_bond(&self, values: &BondValues, i: usize, visit: &mut dyn FnMut(BondAt)) {
+        let u = values.displacement();
         let list = &self.list;
         let (heat, sites) = (list.latest_heat(), list.bonds.sites());
         let bonds = list.view().heated(heat.as_deref().map(Vec::as_slice));

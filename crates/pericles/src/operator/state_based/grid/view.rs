@@ -4,7 +4,8 @@ use super::force::LinearSolidGrid;
 use crate::domain::Field;
 use crate::operator::state_based::kinematics::Kinematics;
 use crate::operator::state_based::view::{force_of_bond, weighted_extension};
-use crate::operator::{BondAt, BondView};
+use crate::operator::{BondAt, BondValues, BondView};
+use crate::parallel::for_each_point;
 
 impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
     /// Returns p = A θ/m of a point with its thermal pull at the time of the last force evaluation.
@@ -25,14 +26,15 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
     }
 }
 
-/// Each call computes the dilatations of a point and its neighbours.
+/// The values of points are p = A θ/m with thermal pulls.
 impl<L: Kinematics, const D: usize> BondView for LinearSolidGrid<L, D> {
-    fn has_forces(&self) -> bool {
-        !self.cloud.domain().is_divided()
+    fn values_at(&self, u: Field<'_>) -> BondValues {
+        let pressures = for_each_point(self.cloud.len(), &|i| self.pressure_of(u, i));
+        BondValues::of_points(u, pressures, self.cloud.domain())
     }
 
-    fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt)) {
-        let pressure = self.pressure_of(u, i);
+    fn for_each_bond(&self, values: &BondValues, i: usize, visit: &mut dyn FnMut(BondAt)) {
+        let (u, pressures) = (values.displacement(), values.points());
         let (place, left) = self.families().bonds_of(i);
         for k in left {
             let offset = &self.offsets[k];
@@ -40,7 +42,7 @@ impl<L: Kinematics, const D: usize> BondView for LinearSolidGrid<L, D> {
                 .layout
                 .point_at(place.wrapping_add_signed(offset.shift));
             let eta = u.difference::<D>([i, j]);
-            let p = pressure + self.pressure_of(u, j);
+            let p = pressures.at::<1>(0, i) + pressures.at::<1>(0, j);
             let s = self.states.stiffness[i] + self.states.stiffness[j];
             let force = force_of_bond::<L, D>(offset.weight, [p, s], offset.xi, eta);
             visit(BondAt::new(j, offset.xi, eta, force));

@@ -9,8 +9,8 @@ use super::kernels::{force_rows, square_rows};
 use super::tangent::{Along, change_rows, tangent_rows};
 use crate::domain::Field;
 use crate::operator::{
-    AtPoints, BondAt, BondView, Breakable, CoarseBreak, InstructionSet, PlasticView, PointSubset,
-    TwoPass,
+    AtPoints, BondAt, BondValues, BondView, Breakable, CoarseBreak, InstructionSet, PlasticView,
+    PointSubset, TwoPass,
 };
 use crate::parallel::for_each_chunk;
 use crate::step_end::StepEnd;
@@ -252,7 +252,11 @@ impl<L: Kinematics, const D: usize> BondView for InelasticSolidForce<L, D> {
         self.solid.for_each_undeformed(i, visit);
     }
 
-    fn for_each_bond(&self, u: Field<'_>, i: usize, visit: &mut dyn FnMut(BondAt)) {
+    fn values_at(&self, u: Field<'_>) -> BondValues {
+        self.solid.values_at(u)
+    }
+
+    fn for_each_bond(&self, values: &BondValues, i: usize, visit: &mut dyn FnMut(BondAt)) {
         let (bonds, stiffness) = (&self.solid.bonds, &self.solid.states.stiffness);
         let relief = |i: usize, entry: usize| {
             let back = self.history.opposite[entry] as usize;
@@ -260,6 +264,6 @@ impl<L: Kinematics, const D: usize> BondView for InelasticSolidForce<L, D> {
             let (here, there) = (bonds.site(i), bonds.neighbour(entry));
             stiffness[here] * forth + stiffness[there] * back
         };
-        self.solid.visit_bonds(u, i, &relief, visit);
+        self.solid.visit_bonds(values, i, &relief, visit);
     }
 }

@@ -1,0 +1,82 @@
+//! Stress and strain of solids on bodies divided among processes: the files are those of a run on a single process.
+
+mod common;
+
+use common::processes::check;
+
+/// A small notched block; the material, the scheme and the output are inserted.
+fn block(material: &str, time: &str, output: &str) -> String {
+    format!(
+        r#"
+[body]
+shape = "block"
+size = [12, 8, 5]
+spacing = 1
+[material]
+{material}
+[sets.top]
+layer = {{ side = "+y", cells = 1 }}
+[sets.bottom]
+layer = {{ side = "-y", cells = 1 }}
+[sets.end]
+where = "x > 8"
+[sets.notch]
+where = "x < 6"
+[[crack]]
+polygon = [[-1, 4, -1], [4, 4, -1], [4, 4, 6], [-1, 4, 6]]
+[[constraint]]
+set = "top"
+{time}
+[output]
+history = {{ every = 1, extremes = [{EXTREMES}] }}
+{output}
+[checkpoint]
+every = 5
+"#
+    )
+}
+
+/// Extremes of fields that all materials of these tests have.
+const EXTREMES: &str = "\"Damage\"";
+const FIELDS: &str = "fields = { count = 2 }";
+const TENSORS: &str = "fields = { count = 2, names = [\"Displacement\", \"Stress\", \"Strain\", \"Equivalent_Stress\", \"Principal_Stress\", \"Dilatation\"], format = [\"vtu\", \"vtkhdf\"] }\npicture = [{ field = \"Equivalent_Stress\", count = 1 }]\nprofile = [{ name = \"middle\", field = \"Stress_yy\", from = [0, 4, 2.5], to = [12, 4, 2.5] }]";
+
+const SOLID: &str = "model = \"state-based\"\ndensity = 1\nyoungs_modulus = 1\npoisson_ratio = 0.3\nhorizon = 3.01\ninfluence = { function = \"conical\" }\n";
+const BREAKS: &str = "critical_stretch = 0.012\n";
+const PLASTIC: &str = "yield_stress = 0.003\nhardening = 0.2\n";
+const PULL: &str = "velocity = [\"free\", 0.05, \"free\"]\n[time]\n";
+
+/// Returns the largest number of a column of the history.
+fn largest(history: &str, column: &str) -> f64 {
+    let mut lines = history.lines().filter(|line| !line.starts_with('#'));
+    let names: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let place = names.iter().position(|name| name.starts_with(column));
+    let place = place.unwrap_or_else(|| panic!("{column}: {names:?}"));
+    let numbers = lines.filter_map(|line| line.split(',').nth(place)?.parse::<f64>().ok());
+    numbers.fold(f64::NEG_INFINITY, f64::max)
+}
+
+#[test]
+fn stress_and_strain_have_the_files_of_one_process() {
+    let end = format!("{PULL}end = 3\ndt = 0.2");
+    let correspondence = SOLID.replace("state-based", "correspondence");
+    for material in [
+        format!("{SOLID}{BREAKS}bonds = \"list\""),
+        format!("{SOLID}{BREAKS}bonds = \"grid\""),
+        format!("{SOLID}surface_correction = \"energy\""),
+        format!("{correspondence}{BREAKS}"),
+        format!("{correspondence}{PLASTIC}"),
+    ] {
+        println!("{material}");
+        check(&block(&material, &end, TENSORS), &[2, 3, 4]);
+    }
+}
+
+#[test]
+fn failure_by_stress_has_the_files_of_one_process() {
+    let by_stress = "failure = \"principal-stress\"\nstrength = 0.02\n";
+    let time = format!("{PULL}end = 3\ndt = 0.2");
+    let deck = block(&format!("{SOLID}{by_stress}"), &time, FIELDS);
+    let history = check(&deck, &[2, 3, 4]);
+    assert!(largest(&history, "max_Damage") > 0.0, "{history}");
+}
