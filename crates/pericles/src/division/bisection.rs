@@ -62,9 +62,10 @@ fn ordered(x: f64) -> u64 {
 }
 
 /// Assigns each of the points, which may be spread over processes in any way, to one of `parts` parts by recursive
-/// coordinate bisection: the box of a group of points is cut across its longest side (the last of equal ones, so that the rows
-/// of the stencil along x stay long) at the weighted median, with ⌊p/2⌋ of its p parts on the lower side, until each group is
-/// one part. A point belongs to the lower side if the weight before it and half of its own are less than that side's share.
+/// coordinate bisection: the box of a group of points is cut across its longest side at the weighted median, with ⌊p/2⌋ of its p
+/// parts on the lower side, until each group is one part. Of equal sides the first one is cut, or the last one if the cuts lie
+/// between planes, so that the rows of the stencil along x stay long. A point belongs to the lower side if the weight before it
+/// and half of its own are less than that side's share.
 ///
 /// The result does not depend on how the points are spread over the processes: cuts are found by exact sums of integer
 /// weights over bins of the ordered coordinates, refined eight bits at a time. No process needs the points of others. All
@@ -87,7 +88,7 @@ pub fn bisect(comm: &dyn Comm, points: &Points<'_>, parts: usize, cuts: Cuts) ->
         parts: parts as u32,
     }];
     while groups.iter().any(|one| one.parts > 1) {
-        let axes = longest_sides(comm, points, &group, groups.len());
+        let axes = longest_sides(comm, points, (&group, groups.len()), cuts);
         let mut whole = vec![0; groups.len()];
         (0..n).for_each(|i| whole[group[i] as usize] += weight(i));
         comm.sum(&mut whole);
@@ -158,7 +159,12 @@ fn agree(a: u128, b: u128, shift: u32) -> bool {
 }
 
 /// Returns the axis of the longest side of the box of each group.
-fn longest_sides(comm: &dyn Comm, points: &Points<'_>, group: &[u32], groups: usize) -> Vec<usize> {
+fn longest_sides(
+    comm: &dyn Comm,
+    points: &Points<'_>,
+    (group, groups): (&[u32], usize),
+    cuts: Cuts,
+) -> Vec<usize> {
     let (n, dimension) = (group.len(), points.dimension);
     // Largest coordinates and largest opposites of coordinates.
     let mut ends = vec![f64::NEG_INFINITY; 2 * dimension * groups];
@@ -172,7 +178,13 @@ fn longest_sides(comm: &dyn Comm, points: &Points<'_>, group: &[u32], groups: us
     comm.max(&mut ends);
     let longest = |ends: &[f64]| {
         let side = |c: usize| ends[2 * c] + ends[2 * c + 1];
-        (1..dimension).fold(0, |best, c| if side(c) >= side(best) { c } else { best })
+        (1..dimension).fold(0, |best, c| {
+            let is_longer = match cuts {
+                Cuts::Anywhere => side(c) > side(best),
+                Cuts::Planes => side(c) >= side(best),
+            };
+            if is_longer { c } else { best }
+        })
     };
     ends.chunks(2 * dimension).map(longest).collect()
 }
