@@ -205,6 +205,8 @@ fn schemes_with_contact_have_the_files_of_one_process() {
     let dynamic = "velocity = [0, -0.05, 0]\n[contact]\n[time]\nend = 6\ndt = 0.3\nscheme = ";
     // A ball that is pressed into the block while the crack closes.
     let ball = "[[impactor]]\nname = \"ball\"\nshape = \"ball\"\nradius = 3\ncentre = [13, 5, 2.4]\nmotion = \"prescribed\"\ndisplacement = [-0.1, 0, 0]";
+    // Without a schedule, static runs write checkpoints at intervals of wall-clock time.
+    let every = "[checkpoint]\nevery = 1";
     let fixed = format!(
         "displacement = [0, -0.05, 0]\n[contact]\n{ball}\n[time]\ntolerance = 1e-3\nload_steps = 2\nscheme = "
     );
@@ -213,8 +215,8 @@ fn schemes_with_contact_have_the_files_of_one_process() {
         format!("{dynamic}\"dormand-prince\"\ntolerance = 1e-6"),
         format!("{dynamic}\"newmark\"\nsolver = \"newton-krylov\""),
         format!("{dynamic}\"discrete-gradient\""),
-        format!("{fixed}\"adaptive-dynamic-relaxation\""),
-        format!("{fixed}\"fire\""),
+        format!("{fixed}\"adaptive-dynamic-relaxation\"\n{every}"),
+        format!("{fixed}\"fire\"\n{every}"),
     ] {
         println!("{scheme}");
         check_touching(&block("bonds = \"list\"", &scheme), &[3]);

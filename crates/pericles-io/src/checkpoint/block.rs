@@ -6,7 +6,7 @@ use lz4_flex::block::{
     CompressTable, compress_into_with_table, decompress_into, get_maximum_output_size,
 };
 
-use super::section::Kind;
+use super::kind::Kind;
 
 /// Bytes of the entries of a block; bounds the memory needed for encoding, and is a multiple of the size of every type.
 pub(super) const BYTES: usize = 1 << 19;

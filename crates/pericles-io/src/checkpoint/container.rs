@@ -112,7 +112,8 @@ impl Container {
     ) -> Result<Self, IoError> {
         let opening = Opening::read(path, &mut file, length, memory)?;
         if opening.version == FORMER {
-            return former::read(path, &opening, file, memory);
+            let (metadata, sections) = former::read(path, &opening, file, memory)?;
+            return Ok(Self { metadata, sections });
         }
         let head = Head::read(path, opening, &mut file, memory)?;
         let mut coder = Coder::default();
@@ -162,7 +163,7 @@ pub(super) fn read_section(
 #[cfg(test)]
 mod tests {
     use super::super::head::{VERSION, header_crc};
-    use super::super::section::Kind;
+    use super::super::kind::Kind;
     use super::*;
     use proptest::prelude::*;
     use serde_json::json;

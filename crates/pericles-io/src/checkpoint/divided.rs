@@ -18,7 +18,8 @@ use super::Container;
 use super::block::{Block, Coder, entries};
 use super::container::read_section;
 use super::head::{Draft, Entry, FORMER, Head, Opening, Placed};
-use super::section::{Codec, Kind, Section};
+use super::kind::Kind;
+use super::section::{Codec, Section};
 use crate::IoError;
 use crate::atomic::{create_beside, finish};
 

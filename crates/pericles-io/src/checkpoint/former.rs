@@ -9,10 +9,10 @@ use lz4_flex::frame::FrameDecoder;
 use serde::Deserialize;
 use serde_json::Value;
 
-use super::Container;
 use super::block::{Element, append_shuffled};
 use super::head::{Opening, check_memory};
-use super::section::{Kind, Section};
+use super::kind::Kind;
+use super::section::Section;
 use crate::IoError;
 
 /// Number of entries shuffled together.
@@ -34,13 +34,13 @@ struct Entry {
     crc32: u32,
 }
 
-/// Reads what follows the opening of a file.
+/// Reads what follows the opening of a file: metadata and sections.
 pub(super) fn read(
     path: &Path,
     opening: &Opening,
     mut file: impl Read + Seek,
     memory: u64,
-) -> Result<Container, IoError> {
+) -> Result<(Value, BTreeMap<String, Section>), IoError> {
     let reading = |source| IoError::reading(path, source);
     let damaged = |reason: String| IoError::damaged(path, reason);
     let header: Header = serde_json::from_slice(&opening.json)
@@ -74,10 +74,7 @@ pub(super) fn read(
             return Err(damaged("two sections have the same name".into()));
         }
     }
-    Ok(Container {
-        metadata: header.metadata,
-        sections,
-    })
+    Ok((header.metadata, sections))
 }
 
 fn crc_of(input: &mut impl Read) -> io::Result<u32> {
@@ -127,6 +124,7 @@ fn decode<T: Element>(len: u64, stored: impl Read) -> io::Result<Vec<T>> {
 
 #[cfg(test)]
 pub(super) mod tests {
+    use super::super::Container;
     use std::io::Write;
 
     use lz4_flex::frame::FrameEncoder;

@@ -10,7 +10,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::block::{self, Block};
-use super::section::{Codec, Kind};
+use super::kind::Kind;
+use super::section::Codec;
 use crate::IoError;
 
 const MAGIC: &[u8; 8] = b"PERICLES";

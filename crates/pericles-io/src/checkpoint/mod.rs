@@ -42,6 +42,7 @@ mod divided;
 mod folder;
 mod former;
 mod head;
+mod kind;
 mod section;
 
 pub use container::Container;

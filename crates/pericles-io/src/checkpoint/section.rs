@@ -7,6 +7,7 @@ use pericles::Values;
 use serde::{Deserialize, Serialize};
 
 use super::block::{Block, Coder, Element, entries};
+use super::kind::Kind;
 
 /// The values of one section.
 #[derive(Debug, Clone)]
@@ -56,27 +57,6 @@ impl TryFrom<Section> for Values {
             Section::U64(values) => Ok(Self::U64(values)),
             Section::U8(values) => Ok(Self::U8(values)),
             Section::U32(_) => Err("u32"),
-        }
-    }
-}
-
-/// Element type of a section, as named in the header.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub(super) enum Kind {
-    F64,
-    U64,
-    U32,
-    U8,
-}
-
-impl Kind {
-    /// Returns the size of one element in bytes.
-    pub(super) fn bytes(self) -> u64 {
-        match self {
-            Self::F64 | Self::U64 => 8,
-            Self::U32 => 4,
-            Self::U8 => 1,
         }
     }
 }
@@ -172,17 +152,6 @@ impl Section {
             Self::U64(values) => coder.decode(block, bytes, count, values),
             Self::U32(values) => coder.decode(block, bytes, count, values),
             Self::U8(values) => coder.decode(block, bytes, count, values),
-        }
-    }
-}
-
-impl Kind {
-    /// Returns the type of an array of an archive.
-    pub(super) fn of(values: &Values) -> Self {
-        match values {
-            Values::F64(_) => Self::F64,
-            Values::U64(_) => Self::U64,
-            Values::U8(_) => Self::U8,
         }
     }
 }
