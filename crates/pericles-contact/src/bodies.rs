@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use pericles::operator::Force;
 use pericles::space::PointCloud;
-use pericles::{PericlesError, PointScalar, Result};
+use pericles::{PointScalar, Result};
 
 use crate::error::ContactError;
 use crate::law::{ContactLaw, ContactStiffness, PairLaw, micromodulus};
@@ -98,12 +98,7 @@ impl Touching {
         bodies: ContactBodies,
     ) -> Result<Self> {
         let checked = law.check().and_then(|()| bodies.check(cloud.len()));
-        // All processes return an error if one of them does.
-        let all = cloud.domain().all(checked.is_ok());
-        checked?;
-        if !all {
-            return Err(PericlesError::OnAnotherProcess);
-        }
+        cloud.domain().agreed(checked)?;
         let n = cloud.len();
         let stiffness = |i: usize| {
             let (young, horizon) = (bodies.young.at(i), bodies.horizon.at(i));

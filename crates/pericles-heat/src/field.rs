@@ -13,7 +13,6 @@ use pericles::{
 use pericles_statics::MOST_REPLICATED;
 
 use crate::advance::{Flows, Scheme, Span, advance};
-use crate::agreement::agreed;
 use crate::dissipation::Dissipation;
 use crate::error::HeatError;
 use crate::problem::Problem;
@@ -86,7 +85,7 @@ impl DiffusingField {
     pub fn new(problem: Problem, options: FieldOptions, t: f64, values: Vec<f64>) -> Result<Self> {
         let what = "the temperatures of the points";
         let checked = check_length(what, values.len(), problem.len());
-        agreed(problem.domain(), checked)?;
+        problem.domain().agreed(checked)?;
         if problem.domain().is_divided() && options.scheme != Scheme::Explicit {
             let points = problem.domain().whole_points();
             if points > MOST_REPLICATED {
@@ -349,7 +348,7 @@ impl SecondaryField for DiffusingField {
         let mut state = self.shared.state();
         let what = "the points of the temperature field";
         let checked = check_length(what, state.problem.len(), forces.points());
-        agreed(state.problem.domain(), checked)?;
+        state.problem.domain().agreed(checked)?;
         state.problem.diffusion.read_bonds(forces);
         let t = state.accepted.to.t;
         let sampled = state.problem.sample(t)?;

@@ -27,7 +27,6 @@
 //! The crate uses only public items of [`pericles`] and the multigrid of [`pericles_statics`].
 
 mod advance;
-mod agreement;
 mod calibration;
 mod condition;
 mod diffusion;

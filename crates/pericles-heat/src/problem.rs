@@ -4,7 +4,6 @@ use pericles::domain::Domain;
 use pericles::space::{check_length, check_points};
 use pericles::{Result, positive};
 
-use crate::agreement::agreed;
 use crate::condition::{Condition, Kind};
 use crate::diffusion::Diffusion;
 use crate::error::HeatError;
@@ -40,7 +39,7 @@ impl Problem {
         conditions: Vec<Condition>,
     ) -> Result<Self> {
         let is_prescribed = prescribed_points(&diffusion, &capacity, &conditions);
-        let is_prescribed = agreed(diffusion.cloud().domain(), is_prescribed)?;
+        let is_prescribed = diffusion.cloud().domain().agreed(is_prescribed)?;
         Ok(Self {
             rates: diffusion.diagonal(),
             diffusion,
@@ -117,7 +116,7 @@ impl Problem {
             .iter()
             .map(of_condition)
             .collect::<Result<_>>();
-        let values = agreed(self.domain(), values)?;
+        let values = self.domain().agreed(values)?;
         Ok(Sampled { values })
     }
 

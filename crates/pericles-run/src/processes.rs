@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use pericles::PericlesError;
-use pericles::domain::{Comm, distribute};
+use pericles::domain::{self, Comm, all, distribute, text_message, text_of};
 use pericles_io::OutputFolder;
 
 use crate::error::RunError;
@@ -22,9 +22,8 @@ pub(crate) fn on_first<T, E: From<PericlesError>>(
     // The first number states whether there was no error.
     let message = match &made {
         Some(Ok(made)) => {
-            let text = words(made);
-            let bytes = text.bytes().map(f64::from);
-            std::iter::once(1.0).chain(bytes).collect()
+            let text = text_message(&words(made));
+            std::iter::once(1.0).chain(text).collect()
         }
         Some(Err(_)) => vec![0.0],
         None => Vec::new(),
@@ -35,17 +34,12 @@ pub(crate) fn on_first<T, E: From<PericlesError>>(
     if message.first() != Some(&1.0) {
         return Err(PericlesError::OnAnotherProcess.into());
     }
-    let bytes = message[1..].iter().map(|&byte| byte as u8).collect();
-    // The text comes from a string of the first process.
-    let text = String::from_utf8(bytes).unwrap_or_default();
-    Ok((made, text))
+    Ok((made, text_of(&message[1..])))
 }
 
 /// Returns whether a condition holds on any process. All processes must call it together.
 pub(crate) fn any(comm: &dyn Comm, holds: bool) -> bool {
-    let mut flag = [f64::from(u8::from(holds))];
-    comm.max(&mut flag);
-    flag[0] > 0.0
+    !all(comm, !holds)
 }
 
 /// Returns the result of this process, or an error if another process has failed. All processes must call it together.
@@ -56,11 +50,7 @@ pub(crate) fn agreed<T, E: From<PericlesError>>(
     comm: &dyn Comm,
     result: Result<T, E>,
 ) -> Result<T, E> {
-    let failed = any(comm, result.is_err());
-    match (result, failed) {
-        (Ok(_), true) => Err(PericlesError::OnAnotherProcess.into()),
-        (result, _) => result,
-    }
+    domain::agreed(comm, result, || PericlesError::OnAnotherProcess.into())
 }
 
 /// Creates the output folder of a run on the first process, by `create`; the others follow it. All processes must call it

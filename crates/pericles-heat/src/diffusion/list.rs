@@ -7,7 +7,6 @@ use pericles::parallel::{for_each_chunk, for_each_point};
 use pericles::{PericlesError, Result};
 
 use super::{Bond, Bonds, DiffusionBody, surface, with_ghosts};
-use crate::agreement::agreed;
 use crate::calibration::PairConductivity;
 
 /// A neighbour list with the conductance of each entry.
@@ -39,7 +38,7 @@ impl ListBonds {
             .iter()
             .map(|&horizon| body.calibration(horizon))
             .collect();
-        let calibrations = agreed(domain, calibrations)?;
+        let calibrations = domain.agreed(calibrations)?;
         let of_point = |i: usize| match horizons {
             None => &calibrations[0],
             Some(horizons) => &calibrations[values.partition_point(|h| *h < horizons[i])],

@@ -19,7 +19,6 @@ use pericles::parallel::for_each_point;
 use pericles::space::{PointCloud, check_length};
 use pericles::{PericlesError, PointScalar, Result, Values, positive};
 
-use crate::agreement::agreed;
 use crate::calibration::PairConductivity;
 use grid::GridBonds;
 use list::ListBonds;
@@ -127,7 +126,7 @@ impl DiffusionBody {
 
     fn build_as(&self, on_grid: bool) -> Result<Diffusion> {
         let cloud = &self.cloud;
-        agreed(cloud.domain(), self.check())?;
+        cloud.domain().agreed(self.check())?;
         let bonds: Box<dyn Bonds> = match on_grid {
             true => Box::new(GridBonds::new(self, self.calibration(self.horizon)?)?),
             false => {

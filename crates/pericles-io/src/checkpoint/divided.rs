@@ -10,7 +10,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use pericles::division::{ArrayOutline, ArraySource, DividedArchive, rounds};
-use pericles::domain::{Comm, collect, distribute};
+use pericles::domain::{self, Comm, all, collect, distribute, text_message, text_of};
 use pericles::{PericlesError, Values};
 use serde_json::Value;
 
@@ -59,12 +59,11 @@ fn write_opened(
     let text = created.as_ref().map(|((temporary, _), draft)| {
         // The other processes need the name only: the folder may have another path there.
         let name = temporary.file_name().unwrap_or_default().to_string_lossy();
-        let bytes = name.bytes().map(f64::from);
-        std::iter::once(draft.end() as f64).chain(bytes).collect()
+        let end = std::iter::once(draft.end() as f64);
+        end.chain(text_message(&name)).collect()
     });
     let words = distribute(comm, text.map(|text: Vec<f64>| vec![text; comm.size()]));
-    let name: Vec<u8> = words.iter().skip(1).map(|&byte| byte as u8).collect();
-    let temporary = path.with_file_name(String::from_utf8_lossy(&name).as_ref());
+    let temporary = path.with_file_name(text_of(words.get(1..).unwrap_or_default()));
     let (file, draft) = match created {
         Some(((_, file), draft)) => (Some(file), Some(draft)),
         None => (open(&temporary).ok(), None),
@@ -318,16 +317,10 @@ impl DividedCheckpoint {
             Ok(()) => String::new(),
         };
         // The first process reports for all.
-        let reasons = collect(comm, reason.bytes().map(f64::from).collect());
+        let reasons = collect(comm, text_message(&reason));
         let reason = reasons.and_then(|reasons| reasons.into_iter().find(|one| !one.is_empty()));
         let result = match reason {
-            Some(reason) if verified.is_ok() => {
-                let bytes: Vec<u8> = reason.iter().map(|&byte| byte as u8).collect();
-                Err(IoError::damaged(
-                    &self.path,
-                    String::from_utf8_lossy(&bytes),
-                ))
-            }
+            Some(reason) if verified.is_ok() => Err(IoError::damaged(&self.path, text_of(&reason))),
             _ if rank == 0 => verified,
             _ => Ok(()),
         };
@@ -418,23 +411,15 @@ impl ArraySource for DividedCheckpoint {
     }
 }
 
-/// Returns whether a condition holds on all processes.
-fn all(comm: &dyn Comm, holds: bool) -> bool {
-    let mut flag = [f64::from(u8::from(!holds))];
-    comm.max(&mut flag);
-    flag[0] == 0.0
-}
-
 /// Returns the result of this process, or an error if another process has failed.
 pub(super) fn agreed<T>(
     comm: &dyn Comm,
     path: &Path,
     result: Result<T, IoError>,
 ) -> Result<T, IoError> {
-    match (all(comm, result.is_ok()), result) {
-        (false, Ok(_)) => Err(IoError::OnAnotherProcess { path: path.into() }),
-        (_, result) => result,
-    }
+    domain::agreed(comm, result, || IoError::OnAnotherProcess {
+        path: path.into(),
+    })
 }
 
 #[cfg(test)]

@@ -80,7 +80,7 @@ impl Assembler<'_> {
         let diffusion = body
             .build()
             .map_err(|error| at("thermal.conductivity", error))?;
-        let own = (0..part.cloud.len()).map(|k| part.number(k));
+        let own = (0..part.cloud.len()).map(|k| part.cloud.domain().number(k));
         let capacity = |i: usize| parts.density.at(i) * specific_heat.at(i) * cloud.volumes()[i];
         let capacity = own.map(capacity).collect();
         let conditions = conduction

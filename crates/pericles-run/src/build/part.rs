@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use pericles::boundary::{AxisMotion, Load, LoadDensity};
 use pericles::division::part_of;
-use pericles::domain::Comm;
+use pericles::domain::{Comm, agreed};
 use pericles::material::SurfaceCorrection;
 use pericles::space::{PointCloud, PointSet};
 use pericles::{Need, PericlesError, PointScalar};
@@ -74,14 +74,6 @@ impl Part {
         });
         let (points, places) = found.unzip();
         (points, Some(places))
-    }
-
-    /// Returns the number in the whole body of own point k.
-    pub(super) fn number(&self, k: usize) -> usize {
-        match &self.numbers {
-            Some(numbers) => numbers[k] as usize,
-            None => k,
-        }
     }
 
     /// Returns the values at the own points of a set, of one value per point of the set.
@@ -167,11 +159,8 @@ impl Part {
 
     /// Returns the result of this process, or an error if another process has failed. All processes must call it together.
     pub(super) fn agreed<T>(&self, result: Result<T, BuildError>) -> Result<T, BuildError> {
-        let all = self.cloud.domain().all(result.is_ok());
-        match (result, all) {
-            (Ok(_), false) => Err(at("body", PericlesError::OnAnotherProcess)),
-            (result, _) => result,
-        }
+        let elsewhere = || at("body", PericlesError::OnAnotherProcess);
+        agreed(&**self.cloud.domain().comm(), result, elsewhere)
     }
 
     /// Returns the points of the whole body that are marked on any process, on the first process; own points on the others. All

@@ -81,7 +81,7 @@ impl<'a> DividedArchive<'a> {
     /// # Errors
     /// An array that does not match its layout, on any process; all processes then return an error.
     pub fn new(mut archive: Archive, domain: &'a Domain) -> Result<Self> {
-        agreed(domain, archive.check_layouts(domain))?;
+        domain.agreed(archive.check_layouts(domain))?;
         archive.add_up(domain)?;
         let lengths = lengths(&archive, domain);
         // The arrays that are not divided are those of the first process.
@@ -241,7 +241,7 @@ impl Archive {
         if let (false, Ok(Some(whole))) = (domain.is_divided(), &whole) {
             return Ok(Cow::Borrowed(whole));
         }
-        let whole = agreed(domain, whole)?;
+        let whole = domain.agreed(whole)?;
         Self::part_of(template, &mut OnFirst(whole), domain).map(Cow::Owned)
     }
 
@@ -252,14 +252,14 @@ impl Archive {
     /// Those of the source; an array that is missing, of another type or of another length than that of the body. All processes
     /// then return an error.
     pub fn part_of(template: &Self, source: &mut dyn ArraySource, domain: &Domain) -> Result<Self> {
-        agreed(domain, template.check_layouts(domain))?;
+        domain.agreed(template.check_layouts(domain))?;
         let outline = domain.is_first().then(|| source.outline());
         let lengths = lengths(template, domain);
         let fits = match &outline {
             Some(outline) => template.check_outline(outline, &lengths),
             None => Ok(()),
         };
-        agreed(domain, fits)?;
+        domain.agreed(fits)?;
         let mut own = Self::default();
         for outline in shared_outline(outline, domain) {
             let name = outline.name.clone();
@@ -315,7 +315,7 @@ impl Archive {
             true => Ok(()),
             false => Err(bad("the processes have different numbers of counts".into())),
         };
-        agreed(domain, same)?;
+        domain.agreed(same)?;
         domain.comm().sum(&mut counts);
         // Counters saturate.
         let count = |count: i128| u64::try_from(count).unwrap_or(u64::MAX);
@@ -385,14 +385,6 @@ fn bad(reason: String) -> PericlesError {
     PericlesError::BadArchive { reason }
 }
 
-/// Returns the result of this process, or an error if another process has failed.
-fn agreed<T>(domain: &Domain, result: Result<T>) -> Result<T> {
-    match (domain.all(result.is_ok()), result) {
-        (false, Ok(_)) => Err(PericlesError::OnAnotherProcess),
-        (_, result) => result,
-    }
-}
-
 /// Returns the sum that an array stores.
 fn sum_of(values: &Values) -> Option<BinnedSum> {
     match values {
@@ -437,7 +429,7 @@ fn from_first(
     let values = domain
         .is_first()
         .then(|| source.entries(&outline.name, 0..outline.len));
-    let values = agreed(domain, values.transpose())?;
+    let values = domain.agreed(values.transpose())?;
     let message = values.map(|values| into_words(&values));
     let messages = message.map(|message| vec![message; domain.comm().size()]);
     let words = domain.distribute(messages);
@@ -479,7 +471,7 @@ fn delivered(
             true => Ok(like.zeros(0)),
             false => source.entries(&outline.name, range),
         };
-        let part = agreed(domain, part)?;
+        let part = domain.agreed(part)?;
         placement.deliver(&part, &ranges, &mut own, comm);
     }
     Ok(own)

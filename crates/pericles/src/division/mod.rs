@@ -13,7 +13,6 @@ mod bisection;
 mod message;
 mod placement;
 
-use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -41,8 +40,8 @@ pub struct Share {
     pub peers: usize,
 }
 
-/// Returns the owners of the points of others within reach of each of the points `wanted`, and those points. The search is
-/// restricted to the surroundings of the wanted points.
+/// Returns the owners of the points of others within reach of each of the points `wanted`, which are ascending, and those points.
+/// The search is restricted to the surroundings of the wanted points.
 fn foreign(
     whole: &Arc<PointCloud>,
     owners: &[u32],
@@ -54,29 +53,26 @@ fn foreign(
         return Ok(Vec::new());
     }
     // Images beyond periodic faces may lie anywhere.
-    let around = match whole.is_periodic() || wanted.len() == whole.len() {
-        true => None,
-        false => Some(around(whole, wanted, reach)),
+    let near = match whole.is_periodic() || wanted.len() == whole.len() {
+        true => Arc::clone(whole),
+        false => around(whole, wanted, reach),
     };
-    let number = |point: usize| match &around {
-        Some((numbers, _)) => numbers[point] as usize,
-        None => point,
+    let number = |point: usize| near.domain().number(point);
+    // Both are ascending.
+    let mut next = wanted.iter().peekable();
+    let is_wanted = |&k: &u32| {
+        next.next_if(|&&i| i as usize == number(k as usize))
+            .is_some()
     };
-    let (near, rows): (_, Cow<'_, [u32]>) = match &around {
-        Some((numbers, near)) => {
-            let row = |point: &u32| numbers.partition_point(|number| number < point) as u32;
-            (near, wanted.iter().map(row).collect())
-        }
-        None => (whole, wanted.into()),
-    };
-    let sites = Sites::new(near, reach)?;
+    let rows: Vec<u32> = (0..near.len() as u32).filter(is_wanted).collect();
+    let sites = Sites::new(&near, reach)?;
     let owner = |site: usize| owners[number(sites.point(site))];
     let is_foreign = |i: usize, j: usize| owner(i) != owner(j);
-    let (starts, near) = pairs_of_sites(&sites, &rows, reach, &|i, j, distance| {
+    let (starts, found) = pairs_of_sites(&sites, &rows, reach, &|i, j, distance| {
         distance <= reach && is_foreign(i, j)
     });
     let of_row = |k: usize| {
-        let row = near[starts[k]..starts[k + 1]].iter();
+        let row = found[starts[k]..starts[k + 1]].iter();
         row.map(|&site| number(sites.point(site as usize)))
             .map(|point| (owners[point], point as u32))
             .collect()
@@ -84,8 +80,8 @@ fn foreign(
     Ok((0..wanted.len()).into_par_iter().map(of_row).collect())
 }
 
-/// Returns the points of a body in the box around some of its points, enlarged by `reach`, with their numbers.
-fn around(whole: &PointCloud, points: &[u32], reach: f64) -> (Vec<u32>, Arc<PointCloud>) {
+/// Returns the points of a body in the box around some of its points, enlarged by `reach`.
+fn around(whole: &PointCloud, points: &[u32], reach: f64) -> Arc<PointCloud> {
     let axes = 0..whole.dimension();
     let box_of = |c: usize| {
         let along = points.iter().map(|&i| whole.axis(c)[i as usize]);
@@ -102,8 +98,8 @@ fn around(whole: &PointCloud, points: &[u32], reach: f64) -> (Vec<u32>, Arc<Poin
     };
     let numbers: Vec<u32> = (0..whole.len() as u32).filter(is_inside).collect();
     let n = numbers.len();
-    let domain = Domain::new(numbers.clone(), n, Vec::new(), Arc::new(Alone));
-    (numbers, Arc::new(whole.part(domain)))
+    let domain = Domain::new(numbers, n, Vec::new(), Arc::new(Alone));
+    Arc::new(whole.part(domain))
 }
 
 /// Returns the part of a body that the calling process owns, with ghosts as far as bonds of length up to `reach` (m) lead.

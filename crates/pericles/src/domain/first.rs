@@ -17,6 +17,17 @@ pub fn collect(comm: &dyn Comm, message: Vec<f64>) -> Option<Vec<Vec<f64>>> {
     Some(messages)
 }
 
+/// Returns a text as a message, see [`text_of`].
+pub fn text_message(text: &str) -> Vec<f64> {
+    text.bytes().map(f64::from).collect()
+}
+
+/// Returns the text of a message of [`text_message`].
+pub fn text_of(message: &[f64]) -> String {
+    let bytes: Vec<u8> = message.iter().map(|&byte| byte as u8).collect();
+    String::from_utf8_lossy(&bytes).into_owned()
+}
+
 /// Sends `messages[k]` from the first process, which passes one per process, to process k, and returns the message of this
 /// process. All processes must call it together.
 ///

@@ -12,7 +12,8 @@
 //! division. Rows of bonds and groups of eight follow these numbers, so that the force on a point has the same bits
 //! for every division. Each process stores its own points in ascending order of these numbers.
 
-mod all;
+mod agreement;
+mod exchange;
 mod first;
 mod replicated;
 mod sums;
@@ -25,8 +26,9 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::time::Duration;
 
-pub use all::exchange_all;
-pub use first::{collect, distribute};
+pub use agreement::{agreed, all};
+pub use exchange::exchange_all;
+pub use first::{collect, distribute, text_message, text_of};
 pub use replicated::Replicated;
 pub use threads::Threads;
 pub use timed::Timed;
@@ -344,11 +346,6 @@ impl Domain {
     /// Number of points of the whole body. All processes must call it together.
     pub fn whole_points(&self) -> usize {
         self.count(self.owned as u64) as usize
-    }
-
-    /// Returns whether a condition holds on all processes.
-    pub fn all(&self, holds: bool) -> bool {
-        self.max(f64::from(u8::from(!holds))) == 0.0
     }
 
     /// Returns whether other processes own points of the body.

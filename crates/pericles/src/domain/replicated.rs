@@ -2,19 +2,13 @@
 
 use std::borrow::Cow;
 
-use super::Domain;
+use super::{Domain, exchange_all};
 
 impl Domain {
     /// Sends a message to all processes and returns those of all of them in the order of ranks. All processes must call it
     /// together.
     pub fn collect_everywhere(&self, message: Vec<f64>) -> Vec<Vec<f64>> {
-        let (rank, size) = (self.comm.rank(), self.comm.size());
-        let others: Vec<usize> = (0..size).filter(|&other| other != rank).collect();
-        let sent = vec![message; size];
-        let mut messages = vec![Vec::new(); others.len()];
-        self.comm.exchange(&others, &sent[1..], &mut messages);
-        messages.insert(rank, sent.into_iter().next().unwrap_or_default());
-        messages
+        exchange_all(&*self.comm, vec![message; self.comm.size()])
     }
 }
 

@@ -11,6 +11,7 @@ pub use failure::SimulationError;
 
 use crate::archive::{Archive, Checkpointed};
 use crate::compatibility::require;
+use crate::domain::agreed;
 use crate::error::{PericlesError, positive};
 use crate::guard::{Alarm, Watched};
 use crate::interrupt::Interrupt;
@@ -310,14 +311,9 @@ impl Simulation {
 
     /// Returns the result of the observers, or an error if those of another process have failed.
     fn agreed(&self, observed: Result<(), ObserveError>) -> Result<(), SimulationError> {
-        let all = self.system.domain().all(observed.is_ok());
-        observed.map_err(SimulationError::Observe)?;
-        match all {
-            true => Ok(()),
-            false => Err(SimulationError::Observe(Box::new(
-                PericlesError::OnAnotherProcess,
-            ))),
-        }
+        let elsewhere = || Box::new(PericlesError::OnAnotherProcess).into();
+        let comm = &**self.system.domain().comm();
+        agreed(comm, observed, elsewhere).map_err(SimulationError::Observe)
     }
 
     /// Evaluates all conditions and returns the first that the current state meets.

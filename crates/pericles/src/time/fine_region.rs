@@ -94,9 +94,7 @@ pub(super) fn mark_regions(
             return Err(PericlesError::FineRegionEmpty { region });
         }
         let checked = check_points("the points of a fine region", points, cloud.len());
-        if !domain.all(checked.is_ok()) {
-            return checked.and(Err(PericlesError::OnAnotherProcess));
-        }
+        domain.agreed(checked)?;
         let taken = points.iter().find(|&&i| is_fine[i as usize]);
         points.iter().for_each(|&i| is_fine[i as usize] = true);
         if let Some(error) = overlap(cloud, regions, region, taken) {
