@@ -8,7 +8,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use common::processes::{assert_same, check, drive, means, resume, run};
+use common::processes::{
+    PULL, assert_same, check, check_resumed, drive, means, notched_block, resume, run,
+};
 use pericles::domain::{Alone, Comm, Threads};
 use pericles_deck::Deck;
 use pericles_io::OutputFolder;
@@ -87,27 +89,7 @@ fn a_plate_divided_among_processes_has_the_files_of_one_process() {
 
 #[test]
 fn a_run_is_resumed_on_another_number_of_processes() {
-    let place = tempfile::tempdir().unwrap();
-    let alone = place.path().join("alone");
-    run(PLATE, &alone, Arc::new(Alone), None).unwrap();
-    for (before, after) in [(3, 1), (3, 2), (1, 4), (5, 8)] {
-        let folder = place.path().join(format!("{before}-{after}"));
-        for ending in Threads::run(before, |comm| run(PLATE, &folder, comm, Some(47))) {
-            assert_eq!(ending.unwrap(), Ending::Cancelled);
-        }
-        for ending in Threads::run(after, |comm| resume(&folder, comm)) {
-            assert_eq!(ending.unwrap(), Ending::Finished);
-        }
-        // The run that stopped has a checkpoint of another step before the last one.
-        for (at, step) in [(&folder, 47), (&alone, 40)] {
-            let other = at.join(format!("checkpoints/step-{step:012}.chk"));
-            if other.exists() {
-                fs::remove_file(other).unwrap();
-            }
-        }
-        let case = format!("{before}, then {after} processes");
-        assert_same(&folder, &alone, &case);
-    }
+    check_resumed(PLATE, 47, &[(3, 1), (3, 2), (1, 4), (5, 8)]);
 }
 
 /// Steps of the example decks.
@@ -167,37 +149,13 @@ fn examples_divided_among_processes_have_the_files_of_one_process() {
     assert!(divided >= 12, "{divided} examples were divided");
 }
 
-/// A small notched block that is torn apart; the material and the scheme are inserted.
 fn block(material: &str, time: &str) -> String {
-    format!(
-        r#"
-[body]
-shape = "block"
-size = [12, 8, 5]
-spacing = 1
-[material]
-{material}
-[sets.top]
-layer = {{ side = "+y", cells = 1 }}
-[sets.bottom]
-layer = {{ side = "-y", cells = 1 }}
-[[crack]]
-polygon = [[-1, 4, -1], [4, 4, -1], [4, 4, 6], [-1, 4, 6]]
-[[constraint]]
-set = "top"
-{time}
-[output]
-history = {{ every = 1 }}
-fields = {{ count = 2 }}
-[checkpoint]
-every = 5
-"#
-    )
+    let output = "history = { every = 1 }\nfields = { count = 2 }";
+    notched_block(material, time, output)
 }
 
 const BONDS: &str = "density = 1\nyoungs_modulus = 1\nhorizon = 3.01\ncritical_stretch = 0.01";
 const SOLID: &str = "model = \"state-based\"\ndensity = 1\nyoungs_modulus = 1\npoisson_ratio = 0.3\nhorizon = 3.01\ncritical_stretch = 0.01";
-const PULL: &str = "velocity = [\"free\", 0.05, \"free\"]\n[time]\n";
 const PRESS: &str = "displacement = [0, 0.02, 0]\n[[constraint]]\nset = \"bottom\"\ndisplacement = [0, 0, 0]\n[time]\n";
 
 #[test]

@@ -4,12 +4,9 @@ mod common;
 
 use std::fs;
 use std::path::Path;
-use std::sync::Arc;
 
-use common::processes::{assert_same, check, resume, run};
-use pericles::domain::{Alone, Threads};
+use common::processes::{check, check_resumed};
 use pericles_deck::Deck;
-use pericles_run::Ending;
 
 /// Returns an example deck with changes that make it small.
 fn example(name: &str, changes: &[(&str, &str)]) -> String {
@@ -62,35 +59,7 @@ fn a_ball_through_glass_has_the_files_of_one_process() {
 
 #[test]
 fn a_run_with_contact_is_resumed_on_another_number_of_processes() {
-    let place = tempfile::tempdir().unwrap();
-    let alone = place.path().join("alone");
-    run(&glass(), &alone, Arc::new(Alone), None).unwrap();
-    for (before, after) in [(3, 1), (1, 4), (2, 3)] {
-        let folder = place.path().join(format!("{before}-{after}"));
-        for ending in Threads::run(before, |comm| run(&glass(), &folder, comm, Some(25))) {
-            assert_eq!(ending.unwrap(), Ending::Cancelled);
-        }
-        for ending in Threads::run(after, |comm| resume(&folder, comm)) {
-            assert_eq!(ending.unwrap(), Ending::Finished);
-        }
-        // Only the last checkpoints of both are those of the same steps.
-        for folder in [&folder, &alone] {
-            let mut checkpoints: Vec<_> = fs::read_dir(folder.join("checkpoints"))
-                .unwrap()
-                .map(|one| one.unwrap().path())
-                .collect();
-            checkpoints.sort();
-            checkpoints.pop();
-            checkpoints
-                .iter()
-                .for_each(|one| fs::remove_file(one).unwrap());
-        }
-        assert_same(
-            &folder,
-            &alone,
-            &format!("{before}, then {after} processes"),
-        );
-    }
+    check_resumed(&glass(), 25, &[(3, 1), (1, 4), (2, 3)]);
 }
 
 #[test]

@@ -4,12 +4,9 @@ mod common;
 
 use std::fs;
 use std::path::Path;
-use std::sync::Arc;
 
-use common::processes::{assert_same, check, resume, run};
-use pericles::domain::{Alone, Threads};
+use common::processes::{check, check_resumed};
 use pericles_deck::Deck;
-use pericles_run::Ending;
 
 /// A plate at rest that conducts, with two materials, a hole, an insulating crack and every kind of condition; SHAPE, THERMAL and
 /// TIME are placeholders.
@@ -275,46 +272,18 @@ fn schemes_with_computed_temperatures_have_the_files_of_one_process() {
     }
 }
 
-/// Stops a deck after a number of steps, resumes it on another number of processes, and compares the last files.
-fn check_resumed(deck: &str, stop: u64) {
-    let place = tempfile::tempdir().unwrap();
-    let alone = place.path().join("alone");
-    run(deck, &alone, Arc::new(Alone), None).unwrap();
-    for (before, after) in [(3, 1), (1, 4), (2, 3)] {
-        let folder = place.path().join(format!("{before}-{after}"));
-        for ending in Threads::run(before, |comm| run(deck, &folder, comm, Some(stop))) {
-            assert_eq!(ending.unwrap(), Ending::Cancelled);
-        }
-        for ending in Threads::run(after, |comm| resume(&folder, comm)) {
-            assert_eq!(ending.unwrap(), Ending::Finished);
-        }
-        // Only the last checkpoints of both are those of the same steps.
-        for folder in [&folder, &alone] {
-            let mut checkpoints: Vec<_> = fs::read_dir(folder.join("checkpoints"))
-                .unwrap()
-                .map(|one| one.unwrap().path())
-                .collect();
-            checkpoints.sort();
-            checkpoints.pop();
-            checkpoints
-                .iter()
-                .for_each(|one| fs::remove_file(one).unwrap());
-        }
-        let case = format!("{before}, then {after} processes");
-        assert_same(&folder, &alone, &case);
-    }
-}
-
 #[test]
 fn a_run_with_conduction_is_resumed_on_another_number_of_processes() {
+    const SIZES: &[(usize, usize)] = &[(3, 1), (1, 4), (2, 3)];
     check_resumed(
         &plate("", "scheme = \"trapezoidal\"\nstep = 0.25", SHORT),
         7,
+        SIZES,
     );
     for model in [
         "model = \"linear\", critical_stretch = 0.03, bonds = \"grid\"",
         "model = \"linear\", critical_stretch = 0.03, bonds = \"list\"",
     ] {
-        check_resumed(&torn(model, "step = 0.27", "end = 4, dt = 0.05"), 38);
+        check_resumed(&torn(model, "step = 0.27", "end = 4, dt = 0.05"), 38, SIZES);
     }
 }

@@ -2,49 +2,16 @@
 
 mod common;
 
-use common::processes::check;
+use common::processes::{PULL, check, notched_block};
 
-/// A small notched block; the material, the scheme and the output are inserted.
-fn block(material: &str, time: &str, output: &str) -> String {
-    format!(
-        r#"
-[body]
-shape = "block"
-size = [12, 8, 5]
-spacing = 1
-[material]
-{material}
-[sets.top]
-layer = {{ side = "+y", cells = 1 }}
-[sets.bottom]
-layer = {{ side = "-y", cells = 1 }}
-[sets.end]
-where = "x > 8"
-[sets.notch]
-where = "x < 6"
-[[crack]]
-polygon = [[-1, 4, -1], [4, 4, -1], [4, 4, 6], [-1, 4, 6]]
-[[constraint]]
-set = "top"
-{time}
-[output]
-history = {{ every = 1, extremes = [{EXTREMES}] }}
-{output}
-[checkpoint]
-every = 5
-"#
-    )
-}
-
-/// Extremes of fields that all materials of these tests have.
-const EXTREMES: &str = "\"Damage\"";
+/// History with the extremes of a field that all materials of these tests have.
+const HISTORY: &str = "history = { every = 1, extremes = [\"Damage\"] }\n";
 const FIELDS: &str = "fields = { count = 2 }";
 const TENSORS: &str = "fields = { count = 2, names = [\"Displacement\", \"Stress\", \"Strain\", \"Equivalent_Stress\", \"Principal_Stress\", \"Dilatation\"], format = [\"vtu\", \"vtkhdf\"] }\npicture = [{ field = \"Equivalent_Stress\", count = 1 }]\nprofile = [{ name = \"middle\", field = \"Stress_yy\", from = [0, 4, 2.5], to = [12, 4, 2.5] }]";
 
 const SOLID: &str = "model = \"state-based\"\ndensity = 1\nyoungs_modulus = 1\npoisson_ratio = 0.3\nhorizon = 3.01\ninfluence = { function = \"conical\" }\n";
 const BREAKS: &str = "critical_stretch = 0.012\n";
 const PLASTIC: &str = "yield_stress = 0.003\nhardening = 0.2\n";
-const PULL: &str = "velocity = [\"free\", 0.05, \"free\"]\n[time]\n";
 
 /// Returns the largest number of a column of the history.
 fn largest(history: &str, column: &str) -> f64 {
@@ -68,7 +35,8 @@ fn stress_and_strain_have_the_files_of_one_process() {
         format!("{correspondence}{PLASTIC}"),
     ] {
         println!("{material}");
-        check(&block(&material, &end, TENSORS), &[2, 3, 4]);
+        let output = format!("{HISTORY}{TENSORS}");
+        check(&notched_block(&material, &end, &output), &[2, 3, 4]);
     }
 }
 
@@ -76,7 +44,8 @@ fn stress_and_strain_have_the_files_of_one_process() {
 fn failure_by_stress_has_the_files_of_one_process() {
     let by_stress = "failure = \"principal-stress\"\nstrength = 0.02\n";
     let time = format!("{PULL}end = 3\ndt = 0.2");
-    let deck = block(&format!("{SOLID}{by_stress}"), &time, FIELDS);
+    let output = format!("{HISTORY}{FIELDS}");
+    let deck = notched_block(&format!("{SOLID}{by_stress}"), &time, &output);
     let history = check(&deck, &[2, 3, 4]);
     assert!(largest(&history, "max_Damage") > 0.0, "{history}");
 }

@@ -98,3 +98,64 @@ pub fn check(deck: &str, sizes: &[usize]) -> String {
     }
     fs::read_to_string(alone.join("history.csv")).unwrap()
 }
+
+/// Stops a deck after a number of steps on the first number of processes of each pair, resumes it on the second one, and compares
+/// the files with those of a run on one process.
+pub fn check_resumed(deck: &str, stop: u64, sizes: &[(usize, usize)]) {
+    let place = tempfile::tempdir().unwrap();
+    let alone = place.path().join("alone");
+    run(deck, &alone, Arc::new(Alone), None).unwrap();
+    for &(before, after) in sizes {
+        let folder = place.path().join(format!("{before}-{after}"));
+        for ending in Threads::run(before, |comm| run(deck, &folder, comm, Some(stop))) {
+            assert_eq!(ending.unwrap(), Ending::Cancelled);
+        }
+        for ending in Threads::run(after, |comm| resume(&folder, comm)) {
+            assert_eq!(ending.unwrap(), Ending::Finished);
+        }
+        // Only the last checkpoints of both are those of the same steps.
+        for folder in [&folder, &alone] {
+            let mut checkpoints: Vec<_> = fs::read_dir(folder.join("checkpoints"))
+                .unwrap()
+                .map(|one| one.unwrap().path())
+                .collect();
+            checkpoints.sort();
+            checkpoints.pop();
+            checkpoints
+                .iter()
+                .for_each(|one| fs::remove_file(one).unwrap());
+        }
+        let case = format!("{before}, then {after} processes");
+        assert_same(&folder, &alone, &case);
+    }
+}
+
+/// A small notched block that is torn apart; the material, the scheme and the output are inserted.
+pub fn notched_block(material: &str, time: &str, output: &str) -> String {
+    format!(
+        r#"
+[body]
+shape = "block"
+size = [12, 8, 5]
+spacing = 1
+[material]
+{material}
+[sets.top]
+layer = {{ side = "+y", cells = 1 }}
+[sets.bottom]
+layer = {{ side = "-y", cells = 1 }}
+[[crack]]
+polygon = [[-1, 4, -1], [4, 4, -1], [4, 4, 6], [-1, 4, 6]]
+[[constraint]]
+set = "top"
+{time}
+[output]
+{output}
+[checkpoint]
+every = 5
+"#
+    )
+}
+
+/// Condition on the set "top" of [`notched_block`].
+pub const PULL: &str = "velocity = [\"free\", 0.05, \"free\"]\n[time]\n";
