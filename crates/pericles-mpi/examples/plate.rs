@@ -11,7 +11,7 @@ use std::error::Error;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
 
-use pericles::division::{Cuts, Points, bisect, part_of};
+use pericles::division::{Cuts, part_by_bisection};
 use pericles::domain::{Comm, Threads};
 use pericles::family::{Crack, EndRule};
 use pericles::material::{BondMaterial, ElasticModulus, StressState};
@@ -61,27 +61,8 @@ fn system(part: PointCloud, form: BondForm) -> Result<System> {
 
 /// Computes the part of a process; returns a report, which is the same on all processes.
 fn run(comm: Arc<dyn Comm>, form: BondForm, cuts: Cuts) -> Result<String> {
-    let whole = Arc::new(plate()?);
-    let n = whole.len() as u32;
-    // Every process orders a contiguous share of the points and learns the owners of the others by a sum.
-    let share = |rank: usize| rank as u32 * n / comm.size() as u32;
-    let own: Vec<u32> = (share(comm.rank())..share(comm.rank() + 1)).collect();
-    let axes = (0..2).flat_map(|c| own.iter().map(move |&i| (c, i)));
-    let points = Points {
-        dimension: 2,
-        positions: &axes
-            .map(|(c, i)| whole.axis(c)[i as usize])
-            .collect::<Vec<_>>(),
-        numbers: &own,
-        weights: &vec![1; own.len()],
-    };
-    let mut owners = vec![0i128; whole.len()];
-    for (&i, owner) in own.iter().zip(bisect(&*comm, &points, comm.size(), cuts)) {
-        owners[i as usize] = i128::from(owner);
-    }
-    comm.sum(&mut owners);
-    let owners: Vec<u32> = owners.into_iter().map(|owner| owner as u32).collect();
-    let part = part_of(&whole, &owners, HORIZON + 0.5, Arc::clone(&comm))?;
+    let plate = plate();
+    let part = part_by_bisection(&plate.body()?, HORIZON + 0.5, cuts, Arc::clone(&comm))?;
     let system = system(part, form)?;
     let cloud = Arc::clone(system.cloud());
     let n = cloud.len();

@@ -30,5 +30,5 @@ pub fn owners(
         numbers: &numbers,
         weights: &[],
     };
-    Ok(bisect(&Alone, &points, processes, cuts_of(cloud)))
+    Ok(bisect(&Alone, &points, processes, cuts_of(cloud)).owners(&points))
 }

@@ -217,7 +217,8 @@ impl EndFacts {
 }
 
 impl Facts {
-    /// Returns the properties of an assembled model. Warnings name their keys.
+    /// Returns the properties of an assembled model. Warnings name their keys. All processes that share the body must call it
+    /// together.
     pub fn of(model: &Model, assembly: &Assembly) -> Self {
         let waves = assembly.judge_waves(model);
         let warnings = assembly.warnings.iter().chain(&waves);
@@ -226,8 +227,9 @@ impl Facts {
 
     fn with(model: &Model, assembly: &Assembly, warnings: Vec<String>) -> Self {
         let operator = assembly.system.operator();
-        let (points, dimension) = (assembly.cloud.len(), assembly.cloud.dimension());
-        let directed_bonds = assembly.system.domain().count(operator.directed_bonds());
+        let (domain, dimension) = (assembly.cloud.domain(), assembly.cloud.dimension());
+        let points = domain.whole_points();
+        let directed_bonds = domain.count(operator.directed_bonds());
         let constants = assembly.constants.as_ref();
         let finite = |x: f64| x.is_finite().then_some(x);
         let bonds = constants.and_then(MaterialConstants::bonds);

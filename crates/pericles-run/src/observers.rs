@@ -23,7 +23,7 @@ use pericles_io::{OutputFolder, ResultBody};
 use pericles_manifold::surface::Surface;
 use pericles_manifold::{EnergyInequality, SurfaceMeasure};
 
-use crate::build::{Assembly, ExactReference, MeshBody, Sets, is_on_grid};
+use crate::build::{Assembly, ExactReference, MeshBody, Sets, gathered, is_on_grid};
 use crate::checkpoint;
 use crate::error::RunError;
 use crate::heat::HeatColumns;
@@ -39,8 +39,8 @@ pub fn simulation(
     mut assembly: Assembly,
     folder: &OutputFolder,
 ) -> Result<Simulation, RunError> {
-    let (cloud, output) = (assembly.cloud.clone(), &model.output);
-    let dimension = cloud.dimension();
+    let output = &model.output;
+    let dimension = assembly.cloud.dimension();
     let can_break = assembly.system.operator().can_break();
     let reactions = (!assembly.system.motions().is_empty())
         .then(|| Reactions::new(folder.file("reactions.csv"), assembly.system.motions()));
@@ -58,8 +58,9 @@ pub fn simulation(
     let (probes, cracks) = (assembly.probes.clone(), assembly.cracks.clone());
     let exact = assembly.exact.take();
     let surface = assembly.surface.clone();
-    let body = FieldBody::of(&assembly);
-    let mut simulation = assembly.simulation()?;
+    let body = FieldBody::of(&assembly, needs_whole_body(model, &assembly));
+    let cloud = Arc::clone(&body.cloud);
+    let mut simulation = assembly.simulation()?.of_whole(body.whole());
     let mut names = [
         "run.json",
         "report.html",
@@ -202,9 +203,23 @@ pub fn overlay(model: &Model, cloud: &PointCloud, sets: &Sets) -> Option<Overlay
     Some(Overlay::new(cloud, cracks.collect(), &class))
 }
 
-/// Data of an assembly for field files.
+/// Returns whether the process that writes the output of a model needs the points of the whole body. For history, probes, reactions
+/// and checkpoints it needs its own ones only.
+fn needs_whole_body(model: &Model, assembly: &Assembly) -> bool {
+    let output = &model.output;
+    output.fields != Schedule::Never
+        || !output.profiles.is_empty()
+        || !output.pictures.is_empty()
+        || !model.impactors.is_empty()
+        || !assembly.cracks.is_empty()
+        || model.exact.is_some()
+}
+
+/// Data of an assembly for field files: of the whole body on the process that writes them.
 struct FieldBody {
     cloud: Arc<PointCloud>,
+    /// Whether these are the points of a body divided among several processes.
+    is_gathered: bool,
     sets: Sets,
     surface: Option<Arc<Surface>>,
     mesh: Option<Arc<MeshBody>>,
@@ -213,10 +228,24 @@ struct FieldBody {
 }
 
 impl FieldBody {
-    fn of(assembly: &Assembly) -> Self {
+    /// Collects the points and sets of the whole body on the process that writes the output, if it needs them. All processes must
+    /// call it together.
+    fn of(assembly: &Assembly, whole: bool) -> Self {
+        let cloud = &assembly.cloud;
+        let is_gathered = whole && cloud.domain().is_divided();
+        let sets = assembly.sets.iter();
         Self {
-            cloud: assembly.cloud.clone(),
-            sets: assembly.sets.clone(),
+            is_gathered: is_gathered && cloud.domain().is_first(),
+            cloud: match is_gathered.then(|| cloud.gathered()).flatten() {
+                Some(whole) => Arc::new(whole.into_owned()),
+                None => Arc::clone(cloud),
+            },
+            sets: match is_gathered {
+                true => sets
+                    .map(|(name, set)| (name.clone(), gathered(cloud, set.clone())))
+                    .collect(),
+                false => assembly.sets.clone(),
+            },
             surface: assembly.surface.clone(),
             mesh: assembly.mesh.clone(),
             dt: assembly.dt,
@@ -226,6 +255,11 @@ impl FieldBody {
 }
 
 impl FieldBody {
+    /// The points of the whole body, if it is divided and this process has them.
+    fn whole(&self) -> Option<Arc<PointCloud>> {
+        self.is_gathered.then(|| Arc::clone(&self.cloud))
+    }
+
     /// The cells that fields are written on; none if they are written on points.
     fn cells(&self, model: &Model) -> Option<CellMesh> {
         let is_on_grid = is_on_grid(model, &self.cloud);

@@ -28,66 +28,96 @@ pub(crate) fn is_layer(region: Option<&Region>) -> bool {
     matches!(region, Some(Region::Layer { .. }))
 }
 
-/// Returns the doubt about the projected area along `axis` of a set that is not defined as a layer; `None` if its
-/// points form a single layer at one face.
-pub(crate) fn doubt(cloud: &PointCloud, points: &[u32], axis: usize) -> Option<AreaDoubt> {
-    /// Largest depth of a layer along the axis, relative to another axis.
-    const DEEPER: f64 = 1.5;
-    /// Largest depth of a column, relative to the median; caps of spheres and cylinders are uneven.
-    const UNEVEN: usize = 4;
-    let area = seen_along(cloud, points, axis);
-    let levels = columns(cloud, points, axis);
-    let apart = |levels: &BTreeSet<i64>| {
-        let (first, last) = (levels.first(), levels.last());
-        first
-            .zip(last)
-            .is_some_and(|(first, last)| last - first + 1 > levels.len() as i64)
-    };
-    let mut depths: Vec<usize> = levels.values().map(BTreeSet::len).collect();
-    depths.sort_unstable();
-    let uneven = depths[depths.len() - 1] > UNEVEN * depths[depths.len() / 2];
-    if uneven || levels.values().any(apart) {
-        return Some(AreaDoubt::Parts { axis, area });
-    }
-    let depth = |axis: usize| points.len() as f64 / columns(cloud, points, axis).len() as f64;
-    let others = (0..cloud.dimension()).filter(|&c| c != axis);
-    let other = others.min_by(|&a, &b| depth(a).total_cmp(&depth(b)))?;
-    (depth(axis) > DEEPER * depth(other)).then(|| AreaDoubt::Thinner {
-        axis,
-        area,
-        other,
-        face: seen_along(cloud, points, other),
-    })
+/// The cells of a set under a load.
+pub(crate) struct LoadedCells {
+    dimension: usize,
+    section: f64,
+    sides: [f64; 3],
+    /// The cell of each point, counted from the corner of the body. Cell centres, also of refined cells, lie well inside the large
+    /// cells.
+    cells: Vec<[i64; 3]>,
 }
 
-/// Returns the projected area of a set along an axis, m²: the area of the cells that no other cell of the set hides.
-/// For a box it is the area of a face, for a layer of a cylinder that of the cells of its base.
-pub(crate) fn seen_along(cloud: &PointCloud, points: &[u32], axis: usize) -> f64 {
-    let count = columns(cloud, points, axis).len();
-    let across = (0..cloud.dimension()).filter(|&c| c != axis);
-    let cell: f64 = across.map(|c| cloud.cell_side(c)).product();
-    count as f64 * cloud.section() * cell
-}
-
-/// Groups the cells of a set into columns along an axis; returns the levels of each column.
-fn columns(cloud: &PointCloud, points: &[u32], axis: usize) -> BTreeMap<[i64; 3], BTreeSet<i64>> {
-    let dimension = cloud.dimension();
-    let [corner, _] = cloud.bounds();
-    let mut columns: BTreeMap<[i64; 3], BTreeSet<i64>> = BTreeMap::new();
-    for &i in points {
-        let place = cloud.point(i as usize);
-        // Cell centres, also of refined cells, lie well inside the large cells.
-        let cell = |c: usize| ((place[c] - corner[c]) / cloud.cell_side(c)).floor() as i64;
-        let column = std::array::from_fn(|c| {
-            if c == axis || c >= dimension {
-                0
-            } else {
-                cell(c)
-            }
+impl LoadedCells {
+    /// Determines the cells of a set of points of all processes. All processes must call it together.
+    pub(crate) fn new(cloud: &PointCloud, points: &[u32]) -> Self {
+        let dimension = cloud.dimension();
+        let [corner, _] = cloud.body_bounds();
+        let sides = std::array::from_fn(|c| match c < dimension {
+            true => cloud.cell_side(c),
+            false => 1.0,
         });
-        columns.entry(column).or_default().insert(cell(axis));
+        let cell = |&i: &u32| -> [f64; 3] {
+            let place = cloud.point(i as usize);
+            std::array::from_fn(|c| match c < dimension {
+                true => ((place[c] - corner[c]) / sides[c]).floor(),
+                false => 0.0,
+            })
+        };
+        let own: Vec<f64> = points.iter().flat_map(cell).collect();
+        let all = cloud.domain().collect_everywhere(own).concat();
+        let cells = all.chunks_exact(3);
+        Self {
+            dimension,
+            section: cloud.section(),
+            sides,
+            cells: cells
+                .map(|cell| [0, 1, 2].map(|c| cell[c] as i64))
+                .collect(),
+        }
     }
-    columns
+
+    /// Returns the doubt about the projected area along `axis` of a set that is not defined as a layer; `None` if its points form
+    /// a single layer at one face.
+    pub(crate) fn doubt(&self, axis: usize) -> Option<AreaDoubt> {
+        /// Largest depth of a layer along the axis, relative to another axis.
+        const DEEPER: f64 = 1.5;
+        /// Largest depth of a column, relative to the median; caps of spheres and cylinders are uneven.
+        const UNEVEN: usize = 4;
+        let area = self.seen_along(axis);
+        let levels = self.columns(axis);
+        let apart = |levels: &BTreeSet<i64>| {
+            let (first, last) = (levels.first(), levels.last());
+            first
+                .zip(last)
+                .is_some_and(|(first, last)| last - first + 1 > levels.len() as i64)
+        };
+        let mut depths: Vec<usize> = levels.values().map(BTreeSet::len).collect();
+        depths.sort_unstable();
+        let uneven = depths[depths.len() - 1] > UNEVEN * depths[depths.len() / 2];
+        if uneven || levels.values().any(apart) {
+            return Some(AreaDoubt::Parts { axis, area });
+        }
+        let depth = |axis: usize| self.cells.len() as f64 / self.columns(axis).len() as f64;
+        let others = (0..self.dimension).filter(|&c| c != axis);
+        let other = others.min_by(|&a, &b| depth(a).total_cmp(&depth(b)))?;
+        (depth(axis) > DEEPER * depth(other)).then(|| AreaDoubt::Thinner {
+            axis,
+            area,
+            other,
+            face: self.seen_along(other),
+        })
+    }
+
+    /// Returns the projected area of the set along an axis, m²: the area of the cells that no other cell of the set hides. For a
+    /// box it is the area of a face, for a layer of a cylinder that of the cells of its base.
+    pub(crate) fn seen_along(&self, axis: usize) -> f64 {
+        let count = self.columns(axis).len();
+        let across = (0..self.dimension).filter(|&c| c != axis);
+        let cell: f64 = across.map(|c| self.sides[c]).product();
+        count as f64 * self.section * cell
+    }
+
+    /// Groups the cells into columns along an axis; returns the levels of each column.
+    fn columns(&self, axis: usize) -> BTreeMap<[i64; 3], BTreeSet<i64>> {
+        let mut columns: BTreeMap<[i64; 3], BTreeSet<i64>> = BTreeMap::new();
+        for &cell in &self.cells {
+            let mut column = cell;
+            column[axis] = 0;
+            columns.entry(column).or_default().insert(cell[axis]);
+        }
+        columns
+    }
 }
 
 #[cfg(test)]
@@ -112,7 +142,7 @@ mod tests {
         let close = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-12, "{a} {b}");
         let area = |cloud: &PointCloud, axis| {
             let all: Vec<u32> = (0..cloud.len() as u32).collect();
-            seen_along(cloud, &all, axis)
+            LoadedCells::new(cloud, &all).seen_along(axis)
         };
         let size = vec![2.0];
         close(area(&points(Shape::Box { origin, size }, 0.25), 0), 0.25);
@@ -158,9 +188,9 @@ mod tests {
         };
         let close = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-12, "{a} {b}");
         let right = set(&|x, _| x > 7.7);
-        assert_eq!(doubt(&cloud, &right, 0), None);
+        assert_eq!(LoadedCells::new(&cloud, &right).doubt(0), None);
         // Shear on a box three cells deep: the projection along the load is its narrow side.
-        match doubt(&cloud, &right, 1) {
+        match LoadedCells::new(&cloud, &right).doubt(1) {
             Some(AreaDoubt::Thinner {
                 axis: 1,
                 area,
@@ -177,7 +207,7 @@ mod tests {
             set(&|x, _| !(0.3..7.7).contains(&x)),
             set(&|x, y| x > 7.7 || y > 3.7),
         ] {
-            let doubt = doubt(&cloud, &union, 0);
+            let doubt = LoadedCells::new(&cloud, &union).doubt(0);
             assert!(
                 matches!(doubt, Some(AreaDoubt::Parts { axis: 0, .. })),
                 "{doubt:?}"

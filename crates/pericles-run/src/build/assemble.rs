@@ -16,7 +16,8 @@ use super::discretise::discretise;
 use super::refusal::{at, at_path};
 use super::resources::Resources;
 
-/// Builds forces, conditions and scheme of a model on its points, and determines the time step.
+/// Builds forces, conditions and scheme of a model on its points, and determines the time step. All processes that share a body
+/// must call it together.
 ///
 /// The run ends at `time.end` exactly: an automatic step is the largest stable one that divides the time; a given
 /// step that does not divide it is reduced to the next one that does, with a warning. Expensive results are read from
@@ -44,7 +45,6 @@ pub fn assemble(
         sets,
         ..
     } = &discretisation;
-    let part = assembler.part(&discretisation, resources.comm)?;
     let mut parts = match (&model.body, surface) {
         (Body::Surface(body), Some(surface)) => {
             assembler.surface_parts(body, surface, &discretisation, resources, &mut warnings)?
@@ -53,11 +53,9 @@ pub fn assemble(
             let reason = "the points do not belong to a surface".into();
             return Err(at_path("body", Fault::BadDiscretisation { reason }));
         }
-        (Body::Solid(solid), _) => {
-            assembler.grid_parts(solid, &discretisation, &part, &mut warnings)?
-        }
+        (Body::Solid(solid), _) => assembler.grid_parts(solid, &discretisation, &mut warnings)?,
     };
-    let place = (&discretisation, &part);
+    let place = &discretisation;
     let field = assembler.conduct(&parts, place, resources, &mut warnings)?;
     assembler.heat(&mut parts, place, resources, field.as_ref())?;
     let BodyParts {
@@ -70,26 +68,21 @@ pub fn assemble(
     assembler.refuse_fields(&bonds)?;
     assembler.check_cells(&discretisation)?;
     assembler.check_point_numbers(sets)?;
-    let mut system = System::new(
-        Arc::clone(&part.cloud),
-        bonds.operator,
-        part.scalar(density.clone()),
-    )
-    .map_err(|error| at("material.density", error))?;
+    let mut system = System::new(Arc::clone(cloud), bonds.operator, density.clone())
+        .map_err(|error| at("material.density", error))?;
     let temperature = field.as_ref().map(DiffusingField::shared);
     if let Some(field) = field {
         let added = system.add_field(Box::new(field));
         added.map_err(|error| at("thermal", error))?;
     }
-    let own_sets = part.sets(sets);
-    let state = assembler.initial_state(&part.cloud, &own_sets, cloud.len(), resources);
-    let mut state = part.agreed(state)?;
+    let state = assembler.initial_state(cloud, sets, resources);
+    let mut state = discretisation.agreed(state)?;
     discretisation.conditions.start(&mut state)?;
     let exact = assembler.exact_reference(cloud, constants.as_ref(), &mut warnings)?;
     if let (Some(exact), Some(true)) = (&exact, model.exact.map(|exact| exact.start)) {
         exact
             .solution
-            .displacement_into(0.0, part.cloud.axis(0), &mut state.u);
+            .displacement_into(0.0, cloud.axis(0), &mut state.u);
     }
     let areas = assembler.add_loads(&mut system, place, &mut warnings)?;
     discretisation.conditions.add_loads(&mut system)?;
@@ -103,13 +96,13 @@ pub fn assemble(
     }
     let contact = assembler.add_contact(
         &mut system,
-        (&discretisation, &part, &state),
+        (&discretisation, &state),
         (constants.as_ref(), &others),
         resources,
         &mut warnings,
     )?;
     let probes = assembler.point_probes(place, &mut warnings)?;
-    let integrator = assembler.integrator(&system, &own_sets)?;
+    let integrator = assembler.integrator(&system, sets)?;
     let ends = assembler.ends(&system, &state, sets, &*integrator, resources)?;
     let exterior = exterior_frequency(&ends);
     let layers = assembler.damping_layers(&density, constants.as_ref())?;
@@ -136,12 +129,11 @@ pub fn assemble(
     assembler.add_rayleigh_damping(&mut system, &*integrator)?;
     check_compatibility(&system, &*integrator, steps.count)
         .map_err(|error| at("time.scheme", error))?;
-    part.agreed(assembler.refuse_lost_values(&system, &steps))?;
-    if !part.is_divided() {
+    discretisation.agreed(assembler.refuse_lost_values(&system, &steps))?;
+    if !system.domain().is_divided() {
         assembler.judge_supports(&system, steps.count as f64 * steps.dt, &mut warnings);
     }
-    let stops = assembler.stops(&system, &own_sets)?;
-    drop(own_sets);
+    let stops = assembler.stops(&system, sets)?;
     let loads = assembler.load_reports(&system, areas, steps.count as f64 * steps.dt);
     let Discretisation {
         cloud,
@@ -150,11 +142,6 @@ pub fn assemble(
         sets,
         ..
     } = discretisation;
-    // The process that writes the results needs the whole body; the others have their parts.
-    let (cloud, sets) = match system.domain().is_first() {
-        true => (cloud, sets),
-        false => (Arc::clone(&part.cloud), part.sets(&sets).into_owned()),
-    };
     Ok(Assembly {
         cloud,
         surface,

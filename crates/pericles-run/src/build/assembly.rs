@@ -21,7 +21,7 @@ use super::step::damped_step;
 
 /// An assembled model, ready to run.
 pub struct Assembly {
-    /// The points of the whole body; on all but the first of several processes, own points.
+    /// The points; own points if the body is divided among several processes.
     pub cloud: Arc<PointCloud>,
     /// The sets of these points with their names, "all" first.
     pub sets: Sets,
@@ -97,7 +97,6 @@ impl Assembly {
             self.dt,
             self.steps,
         )?;
-        simulation = simulation.of_whole(Some(self.cloud));
         for stop in self.stops {
             simulation.stop_when(stop)?;
         }

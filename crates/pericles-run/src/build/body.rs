@@ -17,7 +17,6 @@ use super::constants::MaterialConstants;
 use super::discretisation::{Discretisation, Grids, Sets, is_on_grid};
 use super::graded::have_several_horizons;
 use super::materials::{Between, Composition};
-use super::part::Part;
 use super::refusal::{at_material, at_path};
 use super::resources::Resources;
 use crate::composition::has_need;
@@ -37,10 +36,9 @@ impl Assembler<'_> {
         &self,
         solid: &Solid,
         discretisation: &Discretisation,
-        part: &Part,
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<BodyParts, BuildError> {
-        let place = (discretisation, part);
+        let place = discretisation;
         match &solid.material.model {
             MaterialModel::Bonds(material) => {
                 self.bond_based_parts(solid, material, place, warnings)
@@ -58,10 +56,9 @@ impl Assembler<'_> {
         &self,
         solid: &Solid,
         material: &BondMaterial,
-        (discretisation, part): (&Discretisation, &Part),
+        discretisation: &Discretisation,
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<BodyParts, BuildError> {
-        let place = (discretisation, part);
         let Discretisation {
             cloud, grids, sets, ..
         } = discretisation;
@@ -72,18 +69,17 @@ impl Assembler<'_> {
         warnings.extend(self.judge_speed(solid, &known));
         warnings.extend(self.judge_classes(material, &constants));
         warnings.extend(self.judge_solid(solid, &known));
-        let no_fail = part.set(&self.union_of(sets, &solid.material.no_fail)?);
+        let no_fail = self.union_of(sets, &solid.material.no_fail)?;
         let stiffness = self.stiffness_of(cloud, sets)?;
-        let stiffness = part.own(&stiffness);
         let Composition {
             classes,
             materials,
             interfaces,
             density,
             others,
-        } = self.materials(solid, (material, &constants), place, warnings)?;
+        } = self.materials(solid, (material, &constants), discretisation, warnings)?;
         let body = BondBody {
-            cloud: &part.cloud,
+            cloud,
             material,
             constants: &constants,
             cracks: &[],
@@ -97,12 +93,9 @@ impl Assembler<'_> {
             correction: solid.material.surface_correction,
             softening: solid.material.softening.map(|own| own.softening()),
         };
-        let grids = Grids {
-            ratios: grids.ratios.clone(),
-            of_point: part.own(&grids.of_point).into_owned(),
-        };
         let all = (&materials[..], &interfaces[..]);
-        let (bonds, cracks) = self.bonds(solid, composite, (&grids, all), place, warnings)?;
+        let (bonds, cracks) =
+            self.bonds(solid, composite, (grids, all), discretisation, warnings)?;
         let refused = bonds.form.refusal(Feature::Tensors.into());
         if let (true, Some(reason)) = (self.model.output.wants_tensors(), refused) {
             let fields = "the fields Stress, Strain and Equivalent_Stress are";
@@ -264,13 +257,12 @@ impl Assembler<'_> {
         solid: &Solid,
         composite: &CompositeBody<'_>,
         is_graded: bool,
-        part: &Part,
     ) -> Result<ForceForm, BuildError> {
         let scheme = &self.model.time.scheme;
         let needs_bonds = self.model.output.wants_tensors()
             || self.expands()
             || self.touches_without_bonds()
-            || part.is_divided()
+            || composite.body.cloud.domain().is_divided()
             || has_need(scheme, Need::FiniteReach);
         match self.heated_form(solid.material.form)? {
             ForceForm::Fastest if needs_bonds && !is_graded => Ok(composite.fastest_form().into()),
@@ -296,7 +288,7 @@ impl Assembler<'_> {
         solid: &Solid,
         composite: CompositeBody<'_>,
         (grids, (materials, interfaces)): (&Grids, (&[BondMaterial], &[Between])),
-        (discretisation, part): (&Discretisation, &Part),
+        discretisation: &Discretisation,
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<(AssembledForce, Vec<TrackedCrack>), BuildError> {
         let surfaces = self.cracks;
@@ -309,7 +301,7 @@ impl Assembler<'_> {
         };
         let is_graded = grids.ratios.len() > 1
             || composite.classes.is_some() && have_several_horizons(materials);
-        let form = self.form(solid, &composite, is_graded, part)?;
+        let form = self.form(solid, &composite, is_graded)?;
         let assembled = if is_graded {
             self.graded_bonds(
                 (form, solid.state),
@@ -320,7 +312,7 @@ impl Assembler<'_> {
         } else {
             pericles_waves::assemble(&composite, form).map_err(at_material)?
         };
-        let tracked = self.tracked_cracks(&assembled.cuts, (discretisation, part), warnings);
+        let tracked = self.tracked_cracks(&assembled.cuts, discretisation, warnings);
         Ok((assembled, tracked))
     }
 }

@@ -6,7 +6,7 @@ use pericles::System;
 use pericles::boundary::PrescribedMotion;
 use pericles::noise::uniform_in_ball;
 use pericles::observe::Probe as PointProbe;
-use pericles::space::{Point, PointCloud};
+use pericles::space::PointCloud;
 use pericles::time::State;
 use pericles_deck::{
     BuildError, Caution, Fault, KeyPath, ModelWarning, ProbePlace, RandomVelocity, Remark,
@@ -14,21 +14,19 @@ use pericles_deck::{
 
 use super::assembler::Assembler;
 use super::discretisation::{Discretisation, Sets};
-use super::part::Part;
 use super::refusal::{at, at_path};
 use super::resources::Resources;
 
 impl Assembler<'_> {
     /// Builds the initial state of the points of a process: the velocities of pieces, then the entries of the deck; later entries
-    /// for a point replace earlier ones. `sets` are those of the process, `whole` is the number of points of the whole body.
+    /// for a point replace earlier ones.
     pub(super) fn initial_state(
         &self,
         cloud: &PointCloud,
         sets: &Sets,
-        whole: usize,
         resources: &Resources<'_>,
     ) -> Result<State, BuildError> {
-        let n = cloud.len();
+        let (n, whole) = (cloud.len(), cloud.domain().whole_points());
         let mut state = State::at_rest(cloud.dimension() * n);
         let shape = self.model.body.solid().map(|solid| &solid.shape);
         let pieces = shape.map_or(&[][..], |shape| shape.pieces());
@@ -124,7 +122,7 @@ impl Assembler<'_> {
     pub(super) fn add_motions(
         &self,
         system: &mut System,
-        (discretisation, part): (&Discretisation, &Part),
+        discretisation: &Discretisation,
         state: &State,
     ) -> Result<(), BuildError> {
         let Discretisation { cloud, sets, .. } = discretisation;
@@ -142,23 +140,24 @@ impl Assembler<'_> {
             let points = self.members(sets, &motion.set, path.key("set"))?.clone();
             let function = motion.function.smooth_function();
             let function = function.map_err(|fault| at_path(path.key("function"), fault))?;
-            self.refuse_second_motion(k, &points, sets)?;
-            let along = self.axis_motions(&path, motion, cloud, &points)?;
-            let (points, along) = part.motions(&points, along);
-            let prescribed = PrescribedMotion::along(
-                name,
-                points,
-                motion.kind,
-                along,
-                function,
-                &state.u,
-                system.points(),
-            );
-            let mut prescribed = prescribed.map_err(|error| at(&path, error))?;
-            prescribed.until = motion.until;
-            system
-                .add_motion(prescribed)
-                .map_err(|error| at(&path, error))?;
+            self.refuse_second_motion(k, &points, discretisation)?;
+            let add = || {
+                let along = self.axis_motions(&path, motion, cloud, &points)?;
+                let prescribed = PrescribedMotion::along(
+                    name,
+                    points,
+                    motion.kind,
+                    along,
+                    function,
+                    &state.u,
+                    system.points(),
+                );
+                let mut prescribed = prescribed.map_err(|error| at(&path, error))?;
+                prescribed.until = motion.until;
+                let added = system.add_motion(prescribed);
+                added.map_err(|error| at(&path, error))
+            };
+            discretisation.agreed(add())?;
         }
         Ok(())
     }
@@ -168,18 +167,18 @@ impl Assembler<'_> {
         &self,
         k: usize,
         points: &[u32],
-        sets: &Sets,
+        discretisation: &Discretisation,
     ) -> Result<(), BuildError> {
+        let Discretisation { cloud, sets, .. } = discretisation;
         let later = &self.model.constraints[k];
         for (earlier, other) in self.model.constraints[..k].iter().enumerate() {
             let path = KeyPath::from("constraint").index(earlier);
             let others = self.members(sets, &other.set, &path)?;
             // Sets are sorted.
             let shared = points.iter().filter(|i| others.binary_search(i).is_ok());
-            let (shared, both) = (
-                shared.count(),
-                (0..3).find(|&c| later.amplitude[c].is_some() && other.amplitude[c].is_some()),
-            );
+            let shared = cloud.domain().count(shared.count() as u64) as usize;
+            let both =
+                (0..3).find(|&c| later.amplitude[c].is_some() && other.amplitude[c].is_some());
             if let (Some(c), true) = (both, shared > 0) {
                 let fault = Fault::PrescribedTwice {
                     points: shared,
@@ -194,7 +193,7 @@ impl Assembler<'_> {
 
     pub(super) fn point_probes(
         &self,
-        (discretisation, part): (&Discretisation, &Part),
+        discretisation: &Discretisation,
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<Vec<PointProbe>, BuildError> {
         let Discretisation { cloud, sets, .. } = discretisation;
@@ -204,7 +203,7 @@ impl Assembler<'_> {
             let points = match &probe.place {
                 ProbePlace::Set(set) => self.members(sets, set, path.key("set"))?.clone(),
                 ProbePlace::At(place) => {
-                    let (nearest, distance) = nearest(cloud, *place);
+                    let (nearest, distance) = cloud.nearest_of_all(*place);
                     // Positions inside a cell are within half a diagonal of its centre.
                     let diagonal = (cloud.dimension() as f64).sqrt() * cloud.spacing();
                     if distance > 0.5 * diagonal * (1.0 + 1e-9) {
@@ -212,22 +211,14 @@ impl Assembler<'_> {
                         let caution = Caution::ProbeOutside { name, distance };
                         warnings.push(Remark::new(path.key("at"), caution));
                     }
-                    vec![nearest]
+                    nearest.into_iter().collect()
                 }
             };
             probes.push(PointProbe {
                 name: probe.name.clone(),
-                points: part.set(&points),
+                points,
             });
         }
         Ok(probes)
     }
-}
-
-/// Returns the point nearest to a position, and its distance.
-fn nearest(cloud: &PointCloud, place: Point) -> (u32, f64) {
-    let nearest = cloud.nearest(place);
-    let found = cloud.point(nearest);
-    let square: f64 = (0..3).map(|c| (found[c] - place[c]).powi(2)).sum();
-    (nearest as u32, square.sqrt())
 }

@@ -17,11 +17,11 @@ use pericles_heat::{
     Scheme, Value,
 };
 
-use super::area;
+use super::area::{self, LoadedCells};
 use super::assembler::Assembler;
 use super::body::BodyParts;
 use super::discretisation::Discretisation;
-use super::part::Part;
+use super::loads::volume_of;
 use super::refusal::{at, at_path};
 use super::resources::Resources;
 use super::thermal::Given;
@@ -34,7 +34,7 @@ impl Assembler<'_> {
     pub(super) fn conduct(
         &self,
         parts: &BodyParts,
-        (discretisation, part): (&Discretisation, &Part),
+        discretisation: &Discretisation,
         resources: &Resources<'_>,
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<Option<DiffusingField>, BuildError> {
@@ -64,12 +64,12 @@ impl Assembler<'_> {
                 .unwrap_or_default(),
         };
         let body = DiffusionBody {
-            cloud: part.cloud.clone(),
+            cloud: cloud.clone(),
             influence,
             horizon: solid.material.horizon(),
-            horizons: horizons.map(|horizons| part.own(&horizons).into_owned()),
+            horizons,
             correction: solid.material.volume_correction(),
-            conductivity: part.scalar(conductivity),
+            conductivity: conductivity,
             interface: match conduction.interface {
                 ConductivityMean::Harmonic => Interface::Harmonic,
                 ConductivityMean::Arithmetic => Interface::Arithmetic,
@@ -80,17 +80,15 @@ impl Assembler<'_> {
         let diffusion = body
             .build()
             .map_err(|error| at("thermal.conductivity", error))?;
-        let own = (0..part.cloud.len()).map(|k| part.cloud.domain().number(k));
         let capacity = |i: usize| parts.density.at(i) * specific_heat.at(i) * cloud.volumes()[i];
-        let capacity = own.map(capacity).collect();
+        let capacity = (0..cloud.len()).map(capacity).collect();
         let conditions = conduction
             .conditions
             .iter()
             .enumerate()
             .map(|(k, condition)| {
                 let path = KeyPath::from("thermal").key("condition").index(k);
-                let place = (discretisation, part);
-                self.thermal_condition(&path, (thermal, condition), place, warnings)
+                self.thermal_condition(&path, (thermal, condition), discretisation, warnings)
             });
         let conditions = conditions.collect::<Result<Vec<_>, _>>()?;
         let problem = Problem::new(diffusion, capacity, conditions);
@@ -105,10 +103,10 @@ impl Assembler<'_> {
             step: conduction.step,
             dissipation: conduction.dissipation,
         };
-        let start = match self.temperature(thermal, cloud, resources)? {
-            Given::OfPoints(values) => part.own(&values).into_owned(),
+        let start = self.temperature(thermal, cloud, resources);
+        let start = match discretisation.agreed(start)? {
+            Given::OfPoints(values) => values,
             Given::Formula(value) => {
-                let cloud = &part.cloud;
                 for_each_point(cloud.len(), &|i| value.value(cloud.point(i), 0.0))
             }
         };
@@ -194,7 +192,7 @@ impl Assembler<'_> {
         &self,
         path: &KeyPath,
         (thermal, condition): (&Thermal, &ThermalCondition),
-        (discretisation, part): (&Discretisation, &Part),
+        discretisation: &Discretisation,
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<Condition, BuildError> {
         let cloud = &discretisation.cloud;
@@ -206,22 +204,22 @@ impl Assembler<'_> {
         // Time functions multiply the difference to the reference temperature.
         let temperature = |value: &Component| {
             of_time(
-                &part.cloud,
+                cloud,
                 value,
                 &function,
                 thermal.reference.unwrap_or_default(),
             )
         };
-        let density = |value: &Component| of_time(&part.cloud, value, &function, 0.0);
+        let density = |value: &Component| of_time(cloud, value, &function, 0.0);
         let volumes: Vec<f64> = points
             .iter()
             .map(|&i| cloud.volumes()[i as usize])
             .collect();
         let mut areas = || -> Result<Vec<f64>, BuildError> {
             let area = self.heated_area(path, condition, discretisation, &points, warnings)?;
-            let volume: f64 = volumes.iter().sum();
+            let volume = volume_of(cloud, &points);
             let areas = volumes.iter().map(|one| area * one / volume);
-            Ok(part.own_of(&points, areas.collect()))
+            Ok(areas.collect())
         };
         let kind = match &condition.amplitude {
             ThermalAmplitude::Temperature(value) => Kind::Prescribed(temperature(value)),
@@ -231,7 +229,7 @@ impl Assembler<'_> {
             },
             ThermalAmplitude::Source(value) => Kind::Inflow {
                 density: density(value),
-                measure: part.own_of(&points, volumes.clone()),
+                measure: volumes.clone(),
             },
             ThermalAmplitude::Convection {
                 coefficient,
@@ -254,7 +252,7 @@ impl Assembler<'_> {
         };
         Ok(Condition {
             name: condition.set.clone(),
-            points: part.set(&points),
+            points,
             kind,
         })
     }
@@ -293,12 +291,13 @@ impl Assembler<'_> {
         let Ok(axis) = area::normal_axis(region, &along_bar) else {
             return refuse("the set is not a layer at a face of the body");
         };
+        let heated = LoadedCells::new(cloud, points);
         if !area::is_layer(region)
-            && let Some(doubt) = area::doubt(cloud, points, axis)
+            && let Some(doubt) = heated.doubt(axis)
         {
             warnings.push(Remark::new(path, Caution::LoadedArea(doubt)));
         }
-        Ok(area::seen_along(cloud, points, axis))
+        Ok(heated.seen_along(axis))
     }
 }
 

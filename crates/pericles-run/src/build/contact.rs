@@ -15,7 +15,6 @@ use pericles_deck::{
 use super::assembler::Assembler;
 use super::constants::MaterialConstants;
 use super::discretisation::Discretisation;
-use super::part::Part;
 use super::refusal::{at, at_path};
 use super::resources::Resources;
 use super::rotation::{UNIT, matrix, product, times, upright};
@@ -37,7 +36,7 @@ impl Assembler<'_> {
     pub(super) fn add_contact(
         &self,
         system: &mut System,
-        (discretisation, part, state): (&Discretisation, &Part, &State),
+        (discretisation, state): (&Discretisation, &State),
         constants: AllConstants<'_>,
         resources: &Resources<'_>,
         warnings: &mut Vec<ModelWarning>,
@@ -55,13 +54,7 @@ impl Assembler<'_> {
         let contact = self.model.contact.unwrap_or_default();
         let law = law(&contact);
         let bodies = self.contact_bodies(solid, discretisation, constants)?;
-        let bodies = ContactBodies {
-            piece: part.own(&bodies.piece).into_owned(),
-            young: part.scalar(bodies.young),
-            horizon: part.scalar(bodies.horizon),
-            density: part.scalar(bodies.density),
-        };
-        let cloud = &part.cloud;
+        let cloud = &discretisation.cloud;
         if self.model.contact.is_some() {
             PointContact::new(cloud.clone(), law, bodies.clone())
                 .and_then(|points| system.add_interaction(Box::new(points)))

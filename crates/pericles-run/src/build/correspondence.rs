@@ -16,7 +16,6 @@ use super::body::BodyParts;
 use super::constants::MaterialConstants;
 use super::discretisation::Discretisation;
 use super::materials::PairRule;
-use super::part::Part;
 use super::refusal::{at, at_material, at_path};
 
 impl Assembler<'_> {
@@ -25,7 +24,7 @@ impl Assembler<'_> {
         &self,
         solid: &Solid,
         own: &Correspondence,
-        (discretisation, part): (&Discretisation, &Part),
+        discretisation: &Discretisation,
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<BodyParts, BuildError> {
         self.refuse_correspondence_features(solid)?;
@@ -64,7 +63,6 @@ impl Assembler<'_> {
         let classes = match of_point {
             None => None,
             Some(of_point) => {
-                let of_point = part.own(&of_point).into_owned();
                 let classes = CorrespondenceClasses::new(of_point, &all);
                 let mut classes = classes.map_err(|error| at("materials", error))?;
                 for (pair, limits) in self.stretches_between(solid, &materials, cloud)? {
@@ -77,12 +75,12 @@ impl Assembler<'_> {
             None => classes,
             Some(factors) => {
                 let classes = classes.unwrap_or_else(|| CorrespondenceClasses::uniform(&all[0]));
-                Some(classes.with_strengths(part.own(&factors).into_owned()))
+                Some(classes.with_strengths(factors))
             }
         };
-        let no_fail = part.set(&self.union_of(sets, &material.no_fail)?);
+        let no_fail = self.union_of(sets, &material.no_fail)?;
         let body = CorrespondenceBody {
-            cloud: &part.cloud,
+            cloud,
             constants: &all[0],
             classes: classes.as_ref(),
             volume_correction: own.solid.volume_correction,
@@ -96,7 +94,7 @@ impl Assembler<'_> {
             .of_bonds()
             .unwrap_or_default();
         let bonds = body.operator(form).map_err(at_material)?;
-        let cracks = self.tracked_cracks(&bonds.cuts, (discretisation, part), warnings);
+        let cracks = self.tracked_cracks(&bonds.cuts, discretisation, warnings);
         let mut all = all.into_iter().map(MaterialConstants::Correspondence);
         let constants = all.next();
         if let Some(constants) = &constants {

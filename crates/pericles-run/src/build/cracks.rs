@@ -6,7 +6,7 @@ use pericles_deck::{BuildError, CrackSurface, Fault, KeyPath, ModelWarning, Rema
 
 use super::assembler::Assembler;
 use super::discretisation::Discretisation;
-use super::part::Part;
+use super::part::gathered;
 use super::refusal::at_path;
 use super::resources::Resources;
 
@@ -53,7 +53,7 @@ impl Assembler<'_> {
     pub(super) fn tracked_cracks(
         &self,
         cuts: &[BondCut],
-        (discretisation, part): (&Discretisation, &Part),
+        discretisation: &Discretisation,
         warnings: &mut Vec<ModelWarning>,
     ) -> Vec<TrackedCrack> {
         let mut tracked = Vec::new();
@@ -64,7 +64,7 @@ impl Assembler<'_> {
             }
             tracked.push(TrackedCrack {
                 crack: surface.clone(),
-                points: part.gathered_points(cut.points.clone()),
+                points: gathered(&discretisation.cloud, cut.points.clone()),
             });
         }
         tracked

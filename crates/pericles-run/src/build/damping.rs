@@ -114,7 +114,7 @@ impl Assembler<'_> {
     }
 }
 
-/// Returns the largest damping rate of a point, 1/s: rates of layers add up in corners, and of opposite layers where
+/// Returns the largest damping rate of a point, 1/s. All processes must call it together. Rates of layers add up in corners, and of opposite layers where
 /// they overlap.
 pub(super) fn strongest(layers: &[(usize, Face, DampingProfile)], cloud: &PointCloud) -> f64 {
     let along = |axis: usize| {
@@ -130,12 +130,8 @@ pub(super) fn strongest(layers: &[(usize, Face, DampingProfile)], cloud: &PointC
             )
         };
         let [(low, a), (high, b)] = [false, true].map(depth_of);
-        let cell = cloud.cell_side(axis);
-        let axis = cloud.axis(axis).iter();
-        let ends = axis.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
-            (low.min(*x), high.max(*x))
-        });
-        let length = ends.1 - ends.0 + cell;
+        let [first, last] = cloud.extent(axis);
+        let length = last - first + cloud.cell_side(axis);
         if low + high > length { a + b } else { a.max(b) }
     };
     (0..cloud.dimension()).map(along).sum()

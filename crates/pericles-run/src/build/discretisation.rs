@@ -18,7 +18,7 @@ pub type Sets = Vec<(String, PointSet)>;
 /// [`assemble`](crate::assemble).
 #[derive(Debug, Clone)]
 pub struct Discretisation {
-    /// The points with their volumes.
+    /// The points with their volumes; own points if the body is divided among several processes.
     pub cloud: Arc<PointCloud>,
     /// The grids of the points.
     pub grids: Grids,
@@ -26,7 +26,7 @@ pub struct Discretisation {
     pub surface: Option<Arc<Surface>>,
     /// The mesh, if the points are its elements.
     pub mesh: Option<Arc<MeshBody>>,
-    /// The sets of points with their names: "all", those of a mesh, those of the deck.
+    /// The sets of these points with their names: "all", those of a mesh, those of the deck.
     pub sets: Sets,
     /// The surfaces of the pre-cracks.
     pub cracks: Vec<(Crack, EndRule)>,

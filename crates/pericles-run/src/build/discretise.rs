@@ -12,7 +12,8 @@ use super::program::Conditions;
 use super::refusal::at_path;
 use super::resources::Resources;
 
-/// Creates the points of a model and selects its sets.
+/// Creates the points of a model and selects its sets; of a body divided among several processes, the part of the calling
+/// process. All processes must call it together.
 ///
 /// ```
 /// use pericles_deck::Deck;
@@ -56,11 +57,16 @@ pub fn discretise(model: &Model, resources: &Resources<'_>) -> Result<Discretisa
     let mut named = Sets::new();
     let (points, surface) = match &model.body {
         Body::Surface(body) => {
+            if let (Some(_), Some((keys, reason))) = (resources.several(), assembler.undivided()) {
+                return Err(at_path(keys, Fault::Undivided { reason }));
+            }
             let (surface, cloud) = assembler.surface_points(body, resources)?;
             (GradedCloud::of_one_grid(cloud), Some(Arc::new(surface)))
         }
         Body::Solid(solid) => {
-            let points = assembler.points(solid, resources, &mut warnings)?;
+            let points = assembler.own_points(resources, || {
+                assembler.points(solid, resources, &mut warnings)
+            })?;
             mesh = points.mesh.map(Arc::new);
             named = points.sets;
             (points.cloud, None)
@@ -107,7 +113,7 @@ impl Assembler<'_> {
             match self.points_of(&set.members, cloud, mesh, &path) {
                 Err(error) => problems.extend(error.into_problems()),
                 Ok(points) => {
-                    if points.is_empty() {
+                    if cloud.domain().count(points.len() as u64) == 0 {
                         let set = set.name.clone();
                         problems.push(Remark::new(path, Fault::EmptySet { set }));
                     }

@@ -8,13 +8,14 @@ use pericles_waves::exact::{BarMode, ExactSolution, LineSolution, StretchedBar, 
 
 use super::assembler::Assembler;
 use super::constants::MaterialConstants;
+use super::part::gathered;
 use super::refusal::at_path;
 
 /// The exact solution for comparison.
 pub struct ExactReference {
     /// The solution.
     pub solution: Box<dyn ExactSolution>,
-    /// The points of comparison.
+    /// The points of comparison: of the whole body on the first process, own points on the others.
     pub points: PointSet,
 }
 
@@ -96,9 +97,11 @@ impl Assembler<'_> {
         let points: PointSet = (0..x.len() as u32)
             .filter(|&i| counts(x[i as usize]))
             .collect();
-        if let (Some(window), true) = (exact.window, points.is_empty()) {
-            let distances = x.iter().map(|x| (x - centre).abs());
-            let nearest = distances.fold(f64::INFINITY, f64::min);
+        let domain = cloud.domain();
+        let is_empty = domain.all(points.is_empty());
+        if let (Some(window), true) = (exact.window, is_empty) {
+            let distances = x.iter().map(|x| -(x - centre).abs());
+            let nearest = -domain.max(distances.fold(f64::NEG_INFINITY, f64::max));
             let fault = Fault::EmptyWindow {
                 window,
                 centre,
@@ -106,6 +109,7 @@ impl Assembler<'_> {
             };
             return Err(at_path("exact.window", fault));
         }
+        let points = gathered(cloud, points);
         Ok(Some(ExactReference { solution, points }))
     }
 
@@ -114,7 +118,7 @@ impl Assembler<'_> {
         /// Maximum number of terms per point.
         const MOST: f64 = 1e5;
         let distances = cloud.axis(0).iter().map(|x| (x - line.centre).abs());
-        let reach = distances.fold(0.0, f64::max);
+        let reach = cloud.domain().max(distances.fold(0.0, f64::max));
         let terms = line.terms(self.model.time.end, reach);
         if terms <= MOST {
             return Ok(());
@@ -137,7 +141,7 @@ impl Assembler<'_> {
         if !solid.shape.is_periodic() {
             return;
         }
-        let period = cloud.len() as f64 * cloud.spacing();
+        let period = cloud.domain().whole_points() as f64 * cloud.spacing();
         let window = window.unwrap_or(0.5 * period);
         let estimate = line.image_error(period, window, self.model.time.end);
         if estimate > NOTABLE {

@@ -4,9 +4,10 @@ use pericles::boundary::LoadDensity;
 use pericles::space::{PointCloud, Region};
 use pericles_deck::{BuildError, Component, Fault, KeyPath, Load, Members};
 
-use super::area;
+use super::area::LoadedCells;
 use super::assembler::Assembler;
 use super::discretisation::Discretisation;
+use super::loads::volume_of;
 use super::mesh_body::MeshBody;
 use super::refusal::at_path;
 
@@ -73,8 +74,8 @@ impl Assembler<'_> {
             let set = load.set.clone();
             return Err(at_path(path.key("pressure"), Fault::NoFaces { set }));
         };
-        let area = area::seen_along(cloud, points, face.axis);
-        let volume: f64 = points.iter().map(|&i| cloud.volumes()[i as usize]).sum();
+        let area = LoadedCells::new(cloud, points).seen_along(face.axis);
+        let volume = volume_of(cloud, points);
         let sign = if face.upper { 1.0 } else { -1.0 };
         let vector = |&i: &u32| {
             let mut vector = [0.0; 3];

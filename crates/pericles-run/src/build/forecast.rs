@@ -1,7 +1,5 @@
 //! Prediction of a run divided among several processes, without starting any.
 
-use std::sync::Arc;
-
 use pericles::division::{Share, shares};
 use pericles_deck::{BuildError, Fault, Model, Scheme};
 use pericles_heat::HeatError;
@@ -10,8 +8,6 @@ use serde::Serialize;
 
 use super::assembler::Assembler;
 use super::assembly::Assembly;
-use super::discretisation::{Discretisation, Grids};
-use super::program::Conditions;
 use super::refusal::{at, at_path};
 use crate::division::owners;
 
@@ -94,7 +90,7 @@ impl Assembly {
         let assembler = Assembler::new(model);
         let cloud = &self.cloud;
         if processes > 1
-            && let Some((keys, reason)) = assembler.undivided(&self.as_discretised())
+            && let Some((keys, reason)) = assembler.undivided()
         {
             return Err(at_path(keys, Fault::Undivided { reason }));
         }
@@ -166,19 +162,5 @@ impl Assembly {
             exchanges: 1 + usize::from(values > 0) + heat,
             whole,
         })
-    }
-
-    /// Returns the points and sets of the assembly.
-    fn as_discretised(&self) -> Discretisation {
-        Discretisation {
-            cloud: Arc::clone(&self.cloud),
-            grids: Grids::one(self.cloud.len()),
-            surface: self.surface.clone(),
-            mesh: self.mesh.clone(),
-            sets: self.sets.clone(),
-            cracks: Vec::new(),
-            conditions: Conditions::default(),
-            warnings: Vec::new(),
-        }
     }
 }

@@ -8,10 +8,9 @@ use pericles_deck::{
     VectorField,
 };
 
-use super::area;
+use super::area::{self, LoadedCells};
 use super::assembler::Assembler;
 use super::discretisation::Discretisation;
-use super::part::Part;
 use super::refusal::{at, at_path};
 use super::step::Steps;
 
@@ -35,7 +34,7 @@ impl Assembler<'_> {
     pub(super) fn add_loads(
         &self,
         system: &mut System,
-        (discretisation, part): (&Discretisation, &Part),
+        discretisation: &Discretisation,
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<Vec<Option<f64>>, BuildError> {
         let cloud = &*discretisation.cloud;
@@ -47,9 +46,10 @@ impl Assembler<'_> {
             let points = self.members(sets, &load.set, path.key("set"))?.clone();
             let function = load.function.function();
             let function = function.map_err(|fault| at_path(path.key("function"), fault))?;
-            let volume: f64 = points.iter().map(|&i| cloud.volumes()[i as usize]).sum();
+            let volume = volume_of(cloud, &points);
             let spread = |field: &VectorField, factor: f64| {
-                self.load_density(&path, field, factor, cloud, &points)
+                let density = self.load_density(&path, field, factor, cloud, &points);
+                discretisation.agreed(density)
             };
             let (density, area) = match &load.amplitude {
                 LoadAmplitude::BodyForce(density) => (spread(density, 1.0)?, None),
@@ -69,7 +69,7 @@ impl Assembler<'_> {
                 }
                 LoadAmplitude::Pressure(pressure) => {
                     let made = self.pressure(&path, load, pressure, discretisation, &points);
-                    let (density, area) = made?;
+                    let (density, area) = discretisation.agreed(made)?;
                     (density, Some(area))
                 }
             };
@@ -80,8 +80,8 @@ impl Assembler<'_> {
                 function,
                 window: load.window(),
             };
-            let load = part.load(load);
-            system.add_load(load).map_err(|error| at(&path, error))?;
+            let added = system.add_load(load).map_err(|error| at(&path, error));
+            discretisation.agreed(added)?;
         }
         Ok(areas)
     }
@@ -115,12 +115,13 @@ impl Assembler<'_> {
         let region = named.and_then(|named| named.members.region());
         let acts = std::array::from_fn(|c| traction[c].number() != Some(0.0));
         let axis = area::normal_axis(region, &acts).map_err(refuse)?;
+        let loaded = LoadedCells::new(cloud, points);
         if !area::is_layer(region)
-            && let Some(doubt) = area::doubt(cloud, points, axis)
+            && let Some(doubt) = loaded.doubt(axis)
         {
             warnings.push(Remark::new(path, Caution::LoadedArea(doubt)));
         }
-        Ok(area::seen_along(cloud, points, axis))
+        Ok(loaded.seen_along(axis))
     }
 
     /// Rejects loads and prescribed motions that are NaN or infinite at a step of the run.
@@ -175,6 +176,14 @@ impl Assembler<'_> {
         };
         loads.map(report).collect()
     }
+}
+
+/// Returns the volume of a set, m³. All processes must call it together.
+pub(super) fn volume_of(cloud: &PointCloud, points: &[u32]) -> f64 {
+    let volumes = cloud.volumes();
+    cloud
+        .domain()
+        .sum(points.len(), |k| volumes[points[k] as usize])
 }
 
 /// Returns the first time at which a value is not finite, s, to within rounding, sampled at all or many steps.

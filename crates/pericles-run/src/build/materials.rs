@@ -13,7 +13,6 @@ use pericles_waves::ForceForm;
 
 use super::assembler::Assembler;
 use super::discretisation::{Discretisation, Sets};
-use super::part::Part;
 use super::refusal::{at, at_path};
 
 /// The materials of a body.
@@ -45,7 +44,7 @@ impl<'m> Assembler<'m> {
         &self,
         solid: &Solid,
         (bonds, constants): (&BondMaterial, &BondConstants),
-        (discretisation, part): (&Discretisation, &Part),
+        discretisation: &Discretisation,
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<Composition, BuildError> {
         let Discretisation { cloud, sets, .. } = discretisation;
@@ -78,7 +77,6 @@ impl<'m> Assembler<'m> {
         let classes = match of_point {
             None => None,
             Some(of_point) => {
-                let of_point = part.own(&of_point).into_owned();
                 let classes = MaterialPairs::new(of_point, &all, InterfaceRule::default());
                 let mut classes = classes.map_err(|error| at("materials", error))?;
                 for (between, path) in self.interfaces(&solid.material)? {
@@ -96,7 +94,7 @@ impl<'m> Assembler<'m> {
                 }
                 if let Some(strengths) = strengths {
                     classes = classes
-                        .with_strengths(part.own(&strengths).into_owned())
+                        .with_strengths(strengths)
                         .map_err(|error| at("material.scatter", error))?;
                 }
                 Some(classes)
@@ -181,7 +179,7 @@ impl<'m> Assembler<'m> {
         found.collect()
     }
 
-    /// Returns the material number of every point (`None` if all have the material of the body), and the density.
+    /// Returns the material number of every point (`None` if all points of the body have its own material), and the density.
     pub(super) fn points_of_materials(
         &self,
         material: &Material,
@@ -213,6 +211,7 @@ impl<'m> Assembler<'m> {
             .into_iter()
             .map(Option::unwrap_or_default)
             .collect();
+        let has = |number: u8| !cloud.domain().all(!of_point.contains(&number));
         let own = std::iter::once(material.name()).filter(|_| !material.is_default);
         let own = own.map(|name| (0, name));
         let named = others.iter().map(|other| other.name.as_str());
@@ -224,14 +223,17 @@ impl<'m> Assembler<'m> {
                     };
                     warnings.push(Remark::new(KeyPath::from("materials").key(name), caution));
                 }
-                Some(path) if !of_point.contains(&(number.min(255) as u8)) => {
+                Some(path) if !has(number.min(255) as u8) => {
                     let material = name.to_owned();
                     return Err(at_path(path, Fault::EmptyMaterial { material }));
                 }
                 Some(_) => {}
             }
         }
-        if of_point.iter().all(|&number| number == 0) {
+        if cloud
+            .domain()
+            .all(of_point.iter().all(|&number| number == 0))
+        {
             return Ok((None, PointScalar::Uniform(material.density())));
         }
         let densities: Vec<f64> = of_point
@@ -252,17 +254,17 @@ impl<'m> Assembler<'m> {
         cloud: &PointCloud,
     ) -> Result<(), BuildError> {
         let without = |number: &Option<u8>| number.is_none();
-        let Some(first) = of_point
-            .iter()
-            .position(without)
-            .filter(|_| !material.is_default)
-        else {
+        let points = of_point.iter().filter(|number| without(number)).count();
+        let points = cloud.domain().count(points as u64) as usize;
+        if points == 0 || material.is_default {
             return Ok(());
-        };
+        }
+        let first = of_point.iter().position(without);
+        let place = cloud.first_of_all(first).unwrap_or_default();
         let fault = Fault::NoMaterial {
-            points: of_point.iter().filter(|number| without(number)).count(),
-            of: of_point.len(),
-            place: cloud.point(first)[..cloud.dimension()].to_vec(),
+            points,
+            of: cloud.domain().whole_points(),
+            place: place[..cloud.dimension()].to_vec(),
         };
         Err(at_path("assign", fault))
     }

@@ -26,12 +26,12 @@ fn name_in_decks(name: &str) -> String {
 }
 
 impl MeshBody {
-    /// Returns the sets of the mesh in the numbering of a point cloud.
+    /// Returns the sets of the mesh in the numbering of a point cloud, or of a part of it.
     pub(super) fn sets<'a>(
         &'a self,
         cloud: &'a PointCloud,
     ) -> impl Iterator<Item = (String, space::PointSet)> + 'a {
-        let place = places(cloud);
+        let place = self.places(cloud);
         self.points.sets.iter().map(move |set| {
             let points = renumbered(&set.points, &place);
             (name_in_decks(&set.name), points)
@@ -50,7 +50,19 @@ impl MeshBody {
         let near = self
             .points
             .near_faces(&self.mesh, self.unit, faces, distance)?;
-        Some(renumbered(&near, &places(cloud)))
+        Some(renumbered(&near, &self.places(cloud)))
+    }
+
+    /// Returns the point of each element; none for elements whose points other processes own.
+    fn places(&self, cloud: &PointCloud) -> Vec<Option<u32>> {
+        let mut place = vec![None; self.points.len()];
+        for i in 0..cloud.len() {
+            // The points of further pieces follow.
+            if let Some(place) = place.get_mut(cloud.user_number(i)) {
+                *place = Some(i as u32);
+            }
+        }
+        place
     }
 
     /// Returns the face set with this name in decks.
@@ -135,17 +147,9 @@ impl MeshBody {
     }
 }
 
-/// Returns the point of each element.
-fn places(cloud: &PointCloud) -> Vec<u32> {
-    let mut place = vec![0; cloud.len()];
-    for i in 0..cloud.len() {
-        place[cloud.user_number(i)] = i as u32;
-    }
-    place
-}
-
-fn renumbered(elements: &[u32], place: &[u32]) -> space::PointSet {
-    let mut points: space::PointSet = elements.iter().map(|&k| place[k as usize]).collect();
+fn renumbered(elements: &[u32], place: &[Option<u32>]) -> space::PointSet {
+    let own = elements.iter().filter_map(|&k| place[k as usize]);
+    let mut points: space::PointSet = own.collect();
     points.sort_unstable();
     points
 }

@@ -61,6 +61,7 @@ pub use exact::ExactReference;
 pub use forecast::{BANDWIDTH, Forecast, LATENCY, Spread};
 pub use loads::LoadReport;
 pub use mesh_body::MeshBody;
+pub(crate) use part::gathered;
 pub use program::Conditions;
 pub use resources::{
     FileError, MeshReader, OutlineReader, PointsReader, Polygons, Resources, SurfaceReader,

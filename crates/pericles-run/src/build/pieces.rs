@@ -39,6 +39,11 @@ impl Assembler<'_> {
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<BodyPoints, BuildError> {
         let mut placed = Vec::new();
+        // Pieces are created whole: the body is divided when they are in place.
+        let alone = Resources {
+            comm: None,
+            ..*resources
+        };
         for (k, piece) in pieces.iter().enumerate() {
             let (body, path) = (KeyPath::from("body"), piece_path(k));
             let own = Solid {
@@ -47,7 +52,7 @@ impl Assembler<'_> {
             };
             let mut found = Vec::new();
             let made = self
-                .points(&own, resources, &mut found)
+                .points(&own, &alone, &mut found)
                 .map_err(|error| error.moved(&body, &path))?;
             warnings.extend(found.into_iter().map(|one| one.moved(&body, &path)));
             placed.push(place(piece, made));

@@ -3,8 +3,8 @@
 use pericles::PericlesError;
 use pericles::family::pairs_within;
 use pericles::space::{
-    GradedCloud, GradedGrid, Grid, ListedPoints, PointCloud, Shape, gauss_bar, idle_holes,
-    rectangular_cells,
+    GradedCloud, GradedGrid, Grid, ListedPoints, PointCloud, PointSource, Shape, gauss_bar,
+    idle_holes, rectangular_body,
 };
 use pericles_deck::{
     BuildError, Caution, Fault, KeyPath, Keys, Lattice, ModelWarning, PointsFile, Positions,
@@ -169,33 +169,48 @@ impl Assembler<'_> {
         warnings.extend(self.judge_holes(lattice, &graded));
         let grid = &graded.grid;
         let points = match (&grid.shape, lattice.quadrature) {
-            (Shape::Box { origin, size }, _) if lattice.rectangular.is_some() => {
-                let spacing = lattice.rectangular.as_deref().unwrap_or_default();
-                let cells = rectangular_cells(*origin, size, spacing, grid.section, &grid.holes);
-                match lattice.periodic {
-                    true => cells.and_then(PointCloud::with_periodic_faces),
-                    false => cells,
-                }
-                .map(GradedCloud::of_one_grid)
+            (Shape::Box { .. }, _) if lattice.rectangular.is_some() => {
+                self.lattice_points(lattice, resources)
             }
             (Shape::Box { origin, size }, Quadrature::Gauss) => {
                 gauss_bar(origin[0], size[0], grid.spacing, grid.section)
                     .map(GradedCloud::of_one_grid)
             }
-            _ if lattice.periodic => grid
-                .points()
-                .and_then(PointCloud::with_periodic_faces)
-                .map(GradedCloud::of_one_grid),
+            _ if lattice.periodic => self.lattice_points(lattice, resources),
             _ if lattice.positions.are_random() => {
                 return self
                     .random_points(grid, lattice.positions)
                     .map(GradedCloud::of_one_grid)
                     .map_err(|error| self.no_grid(lattice, error));
             }
-            _ if graded.finer.is_empty() => grid.points().map(GradedCloud::of_one_grid),
+            _ if graded.finer.is_empty() => self.lattice_points(lattice, resources),
             _ => graded.points(),
         };
         points.map_err(|error| self.no_grid(lattice, error))
+    }
+
+    /// Creates the cells of a grid, of one of several processes its own ones only.
+    fn lattice_points(
+        &self,
+        lattice: &Lattice,
+        resources: &Resources<'_>,
+    ) -> pericles::Result<GradedCloud> {
+        let grid = &lattice.grid;
+        let body = match (&grid.shape, &lattice.rectangular) {
+            (Shape::Box { origin, size }, Some(spacing)) => {
+                rectangular_body(*origin, size, spacing, grid.section, &grid.holes)
+            }
+            _ => grid.body(),
+        }?;
+        let body = match lattice.periodic {
+            true => body.with_periodic_faces()?,
+            false => body,
+        };
+        let cloud = match resources.several() {
+            None => body.points(),
+            Some(comm) => self.divided(&body, &body.points_where(&mut |_, _| false), comm)?,
+        };
+        Ok(GradedCloud::of_one_grid(cloud))
     }
 
     /// Creates random points in the shape of a grid.

@@ -12,9 +12,9 @@ use super::refusal::{at, at_path};
 /// rejected.
 #[derive(Debug, Clone, Default)]
 pub struct Conditions {
-    /// Initial displacement of all points, component-major, m.
+    /// Initial displacement of the points, component-major, m.
     pub displacement: Option<Vec<f64>>,
-    /// Initial velocity of all points, component-major, m/s.
+    /// Initial velocity of the points, component-major, m/s.
     pub velocity: Option<Vec<f64>>,
     /// Loads.
     pub loads: Vec<Load>,
@@ -26,11 +26,6 @@ impl Conditions {
     /// Returns whether there are no loads and prescribed motions.
     pub(super) fn is_empty(&self) -> bool {
         self.loads.is_empty() && self.motions.is_empty()
-    }
-
-    /// Returns whether the program adds nothing.
-    pub(super) fn are_none(&self) -> bool {
-        self.is_empty() && self.displacement.is_none() && self.velocity.is_none()
     }
 
     /// Replaces the initial state.

@@ -80,6 +80,11 @@ pub struct Resources<'a> {
 }
 
 impl Resources<'_> {
+    /// Returns the communication with the other processes, if there are several.
+    pub(super) fn several(&self) -> Option<&Arc<dyn Comm>> {
+        self.comm.filter(|comm| comm.size() > 1)
+    }
+
     /// Returns the path of an input file.
     pub(super) fn beside(&self, path: &Path) -> PathBuf {
         self.folder.join(path)

@@ -18,7 +18,7 @@ impl Assembler<'_> {
     pub(super) fn judge_conditions(
         &self,
         system: &System,
-        whole: &Arc<PointCloud>,
+        cloud: &Arc<PointCloud>,
         warnings: &mut Vec<ModelWarning>,
     ) {
         self.judge_held_loads(system, warnings);
@@ -30,7 +30,7 @@ impl Assembler<'_> {
         }
         // Constraints of static bodies are checked with their loads.
         if !self.model.time.scheme.is_static() {
-            self.judge_pieces(solid, whole, warnings);
+            self.judge_pieces(solid, cloud, warnings);
         }
     }
 
@@ -103,9 +103,8 @@ impl Assembler<'_> {
         let dimension = cloud.dimension();
         let half = 0.5 * cloud.spacing();
         let ends = |c: usize| {
-            let axis = cloud.axis(c).iter().copied();
-            let low = axis.clone().fold(f64::INFINITY, f64::min);
-            (low - half, axis.fold(f64::NEG_INFINITY, f64::max) + half)
+            let [low, high] = cloud.extent(c);
+            (low - half, high + half)
         };
         let (low, high): (Vec<f64>, Vec<f64>) = (0..dimension).map(ends).unzip();
         let (least, most) = extent(crack);
@@ -159,9 +158,14 @@ impl Assembler<'_> {
         let holes = &solid.shape.holes();
         let whole = self.model.cracks.is_empty() && holes.is_empty() && !solid.shape.is_listed();
         let joined = self.model.contact.is_some();
-        if whole || joined || cloud.len() > MOST || cloud.is_periodic() {
+        let points = cloud.domain().whole_points();
+        if whole || joined || points > MOST || cloud.is_periodic() {
             return;
         }
+        let cloud = &match cloud.domain().is_divided() {
+            true => Arc::new(cloud.whole().into_owned()),
+            false => Arc::clone(cloud),
+        };
         let Some(piece) = self.pieces(solid, cloud) else {
             return;
         };

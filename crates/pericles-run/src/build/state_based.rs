@@ -17,7 +17,6 @@ use super::body::BodyParts;
 use super::constants::MaterialConstants;
 use super::discretisation::Discretisation;
 use super::materials::PairRule;
-use super::part::Part;
 use super::refusal::{at, at_material, at_path};
 
 /// Returns the constants of a material with its failure criterion.
@@ -39,7 +38,7 @@ impl Assembler<'_> {
         &self,
         solid: &Solid,
         state_based: &StateBased,
-        (discretisation, part): (&Discretisation, &Part),
+        discretisation: &Discretisation,
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<BodyParts, BuildError> {
         self.refuse_features(solid)?;
@@ -71,7 +70,6 @@ impl Assembler<'_> {
         let classes = match of_point {
             None => None,
             Some(of_point) => {
-                let of_point = part.own(&of_point).into_owned();
                 let classes = SolidClasses::new(of_point, &all);
                 let mut classes = classes.map_err(|error| at("materials", error))?;
                 for (pair, limits) in self.limits_between(solid, &solids, cloud)? {
@@ -84,13 +82,13 @@ impl Assembler<'_> {
             None => classes,
             Some(factors) => {
                 let classes = classes.unwrap_or_else(|| SolidClasses::uniform(&constants));
-                Some(classes.with_strengths(part.own(&factors).into_owned()))
+                Some(classes.with_strengths(factors))
             }
         };
-        let no_fail = part.set(&self.union_of(sets, &material.no_fail)?);
+        let no_fail = self.union_of(sets, &material.no_fail)?;
         let surfaces = self.cracks;
         let body = LinearSolidBody {
-            cloud: &part.cloud,
+            cloud,
             constants: &constants,
             classes: classes.as_ref(),
             volume_correction: state_based.solid.volume_correction,
@@ -120,7 +118,7 @@ impl Assembler<'_> {
             }
         };
         let bonds = bonds.map_err(at_material)?;
-        let cracks = self.tracked_cracks(&bonds.cuts, (discretisation, part), warnings);
+        let cracks = self.tracked_cracks(&bonds.cuts, discretisation, warnings);
         let mut all = all.into_iter().map(MaterialConstants::StateBased);
         let constants = all.next();
         if let Some(constants) = &constants {

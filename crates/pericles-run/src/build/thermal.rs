@@ -17,7 +17,6 @@ use super::assembler::Assembler;
 use super::body::BodyParts;
 use super::constants::MaterialConstants;
 use super::discretisation::Discretisation;
-use super::part::Part;
 use super::refusal::{at, at_material, at_path};
 use super::resources::Resources;
 
@@ -83,7 +82,7 @@ impl Assembler<'_> {
     pub(super) fn heat(
         &self,
         parts: &mut BodyParts,
-        (discretisation, part): (&Discretisation, &Part),
+        discretisation: &Discretisation,
         resources: &Resources<'_>,
         field: Option<&DiffusingField>,
     ) -> Result<(), BuildError> {
@@ -99,17 +98,14 @@ impl Assembler<'_> {
             let (table, allowed) = ("[thermal]".into(), vec!["reference".into()]);
             return Err(at_path(path, Fault::MissingChoice { table, allowed }));
         };
-        let cloud = &part.cloud;
+        let cloud = &discretisation.cloud;
         let coefficient = self.coefficients((thermal, expansion), solid, parts, discretisation)?;
-        let coefficient = part.scalar(coefficient);
         let temperature: Arc<dyn Temperature> = match field {
             Some(field) => Arc::new(field.shared()),
             None => {
                 let function = thermal.function.function();
-                let value = match self.temperature(thermal, &discretisation.cloud, resources)? {
-                    Given::OfPoints(values) => Given::OfPoints(part.own(&values).into_owned()),
-                    formula @ Given::Formula(_) => formula,
-                };
+                let value = self.temperature(thermal, cloud, resources);
+                let value = discretisation.agreed(value)?;
                 Arc::new(Prescribed {
                     cloud: cloud.clone(),
                     value,
@@ -200,12 +196,13 @@ impl Assembler<'_> {
     ) -> Result<Given, BuildError> {
         let path = KeyPath::from("thermal");
         let (n, memory) = (cloud.len(), resources.memory);
+        let points = cloud.domain().whole_points();
         let formula = match (&thermal.temperature, &thermal.file) {
             (_, Some(file)) => {
                 let file = resources.beside(file);
-                let rows = (resources.read_table)(&file, n, &["temperature"], memory);
+                let rows = (resources.read_table)(&file, points, &["temperature"], memory);
                 let rows = rows.map_err(|error| {
-                    let wrong = |reason| Fault::BadTemperatureFile { reason, points: n };
+                    let wrong = |reason| Fault::BadTemperatureFile { reason, points };
                     at_path(path.key("file"), error.fault(wrong))
                 })?;
                 let of_point = (0..n).map(|i| rows[cloud.user_number(i)]);

@@ -1,6 +1,7 @@
 //! Recursive coordinate bisection.
 
 use crate::domain::Comm;
+use crate::space::Point;
 
 /// Where cuts may lie.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -61,11 +62,70 @@ fn ordered(x: f64) -> u64 {
     }
 }
 
-/// Assigns each of the points, which may be spread over processes in any way, to one of `parts` parts by recursive
-/// coordinate bisection: the box of a group of points is cut across its longest side at the weighted median, with ⌊p/2⌋ of its p
-/// parts on the lower side, until each group is one part. Of equal sides the first one is cut, or the last one if the cuts lie
-/// between planes, so that the rows of the stencil along x stay long. A point belongs to the lower side if the weight before it
-/// and half of its own are less than that side's share.
+/// One cut of each group, into the groups of the next level.
+#[derive(Debug, Clone)]
+struct Level {
+    groups: Vec<Group>,
+    searches: Vec<Search>,
+    /// Index of the lower half of each group in the next level; the upper half follows.
+    lower: Vec<u32>,
+}
+
+/// A division of space into parts by recursive coordinate bisection, see [`bisect`].
+#[derive(Debug, Clone)]
+pub struct Bisection {
+    levels: Vec<Level>,
+    /// The part of each group of the last level.
+    parts: Vec<u32>,
+    /// Lowest bit of keys that cuts distinguish.
+    last: u32,
+}
+
+impl Bisection {
+    /// Returns the part of a point of the body by its number and position, m.
+    pub fn owner(&self, number: u32, position: Point) -> u32 {
+        let mut g = 0;
+        for level in &self.levels {
+            let key = key(number, position[level.searches[g].axis]);
+            g = level.next(g, key, self.last) as usize;
+        }
+        self.parts[g]
+    }
+
+    /// Returns the parts of some points.
+    pub fn owners(&self, points: &Points<'_>) -> Vec<u32> {
+        let n = points.numbers.len();
+        let position = |i: usize| -> Point {
+            std::array::from_fn(|c| match c < points.dimension {
+                true => points.positions[c * n + i],
+                false => 0.0,
+            })
+        };
+        (0..n)
+            .map(|i| self.owner(points.numbers[i], position(i)))
+            .collect()
+    }
+}
+
+impl Level {
+    /// Returns the group of the next level to which an item of group g belongs.
+    fn next(&self, g: usize, key: u128, last: u32) -> u32 {
+        let group = &self.groups[g];
+        let upper = group.parts > 1 && !self.searches[g].is_below(group, key >> last, last);
+        self.lower[g] + u32::from(upper)
+    }
+}
+
+/// Returns the key of a point along an axis.
+fn key(number: u32, coordinate: f64) -> u128 {
+    u128::from(ordered(coordinate)) << COORDINATE | u128::from(number)
+}
+
+/// Divides points, which may be spread over processes in any way, into `parts` parts by recursive coordinate bisection: the box
+/// of a group of points is cut across its longest side at the weighted median, with ⌊p/2⌋ of its p parts on the lower side, until
+/// each group is one part. Of equal sides the first one is cut, or the last one if the cuts lie between planes, so that the rows
+/// of the stencil along x stay long. A point belongs to the lower side if the weight before it and half of its own are less than
+/// that side's share.
 ///
 /// The result does not depend on how the points are spread over the processes: cuts are found by exact sums of integer
 /// weights over bins of the ordered coordinates, refined eight bits at a time. No process needs the points of others. All
@@ -73,7 +133,7 @@ fn ordered(x: f64) -> u64 {
 ///
 /// # Panics
 /// If numbers, weights and coordinates are not those of the same points, or there are no parts.
-pub fn bisect(comm: &dyn Comm, points: &Points<'_>, parts: usize, cuts: Cuts) -> Vec<u32> {
+pub fn bisect(comm: &dyn Comm, points: &Points<'_>, parts: usize, cuts: Cuts) -> Bisection {
     let n = points.numbers.len();
     assert!(
         (points.weights.is_empty() || points.weights.len() == n)
@@ -82,11 +142,17 @@ pub fn bisect(comm: &dyn Comm, points: &Points<'_>, parts: usize, cuts: Cuts) ->
     );
     assert!(parts > 0, "at least one part");
     let weight = |i: usize| points.weights.get(i).map_or(1, |&w| i128::from(w.max(1)));
+    let key = |i: usize, axis: usize| key(points.numbers[i], points.positions[axis * n + i]);
+    let last = match cuts {
+        Cuts::Anywhere => 0,
+        Cuts::Planes => COORDINATE,
+    };
     let mut group = vec![0u32; n];
     let mut groups = vec![Group {
         first: 0,
         parts: parts as u32,
     }];
+    let mut levels = Vec::new();
     while groups.iter().any(|one| one.parts > 1) {
         let axes = longest_sides(comm, points, (&group, groups.len()), cuts);
         let mut whole = vec![0; groups.len()];
@@ -100,14 +166,6 @@ pub fn bisect(comm: &dyn Comm, points: &Points<'_>, parts: usize, cuts: Cuts) ->
             weight: whole,
         };
         let mut searches: Vec<Search> = axes.iter().zip(&whole).map(start).collect();
-        let key = |i: usize, axis: usize| {
-            let coordinate = ordered(points.positions[axis * n + i]);
-            u128::from(coordinate) << COORDINATE | u128::from(points.numbers[i])
-        };
-        let last = match cuts {
-            Cuts::Anywhere => 0,
-            Cuts::Planes => COORDINATE,
-        };
         let mut shift = u128::BITS;
         while shift > last {
             let known = shift;
@@ -142,15 +200,22 @@ pub fn bisect(comm: &dyn Comm, points: &Points<'_>, parts: usize, cuts: Cuts) ->
                 parts: one.parts - left,
             });
         }
+        let level = Level {
+            groups: std::mem::replace(&mut groups, next),
+            searches,
+            lower,
+        };
         for (i, own) in group.iter_mut().enumerate() {
             let g = *own as usize;
-            let upper = groups[g].parts > 1
-                && !searches[g].is_below(&groups[g], key(i, searches[g].axis) >> last, last);
-            *own = lower[g] + u32::from(upper);
+            *own = level.next(g, key(i, level.searches[g].axis), last);
         }
-        groups = next;
+        levels.push(level);
     }
-    group.iter().map(|&g| groups[g as usize].first).collect()
+    Bisection {
+        levels,
+        parts: groups.iter().map(|one| one.first).collect(),
+        last,
+    }
 }
 
 /// Returns whether two keys have the same bits from `shift` on.

@@ -1,8 +1,8 @@
 //! Division of a body among processes: which process owns which points, and which points of others it needs.
 //!
-//! [`bisect`] assigns points to processes by recursive coordinate bisection. [`part_of`] makes the part of a body that a
-//! process computes, with its ghosts and its communication; results do not depend on the division, bit for bit
-//! ([`domain`](crate::domain)). [`shares`] predicts points, ghosts and messages of every process.
+//! [`bisect`] assigns points to processes by recursive coordinate bisection. [`part_by_bisection`], or [`divide`] for any other
+//! division, creates the part of a body that a process computes, with its ghosts and its communication; results do not depend on
+//! the division, bit for bit ([`domain`](crate::domain)). [`shares`] predicts points, ghosts and messages of every process.
 //! [`DividedArchive`] returns ranges of the arrays of the whole body, for checkpoints that do not depend on the division, and
 //! [`Archive::part_of`](crate::Archive::part_of) the arrays of a process from such ranges.
 //! [`Archive::gathered`](crate::Archive::gathered) makes the archive of the whole body on the first process,
@@ -19,13 +19,13 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 pub use archives::{ArrayOutline, ArraySource, DividedArchive, DividedArray};
-pub use bisection::{Cuts, Points, bisect};
+pub use bisection::{Bisection, Cuts, Points, bisect};
 pub use placement::rounds;
 
-use crate::domain::{Alone, Comm, Domain, Peer};
+use crate::domain::{Comm, Domain, Peer};
 use crate::error::Result;
 use crate::family::pairs_of_sites;
-use crate::space::{PointCloud, Sites, check_length};
+use crate::space::{Point, PointCloud, PointSource, Sites, check_length};
 
 /// Points and messages of a process.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -40,87 +40,73 @@ pub struct Share {
     pub peers: usize,
 }
 
-/// Returns the owners of the points of others within reach of each of the points `wanted`, which are ascending, and those points.
-/// The search is restricted to the surroundings of the wanted points.
+/// Returns the points of others within reach of each of the points `rows`, with their owners. `near` are points of a body,
+/// among them all within reach of the rows, and `owners` their owners; points are identified by their indices in `near`.
 fn foreign(
-    whole: &Arc<PointCloud>,
+    near: &Arc<PointCloud>,
     owners: &[u32],
     reach: f64,
-    wanted: &[u32],
+    rows: &[u32],
 ) -> Result<Vec<BTreeSet<(u32, u32)>>> {
-    check_length("the owners of the points", owners.len(), whole.len())?;
-    if wanted.is_empty() {
+    check_length("the owners of the points", owners.len(), near.len())?;
+    if rows.is_empty() {
         return Ok(Vec::new());
     }
-    // Images beyond periodic faces may lie anywhere.
-    let near = match whole.is_periodic() || wanted.len() == whole.len() {
-        true => Arc::clone(whole),
-        false => around(whole, wanted, reach),
-    };
-    let number = |point: usize| near.domain().number(point);
-    // Both are ascending.
-    let mut next = wanted.iter().peekable();
-    let is_wanted = |&k: &u32| {
-        next.next_if(|&&i| i as usize == number(k as usize))
-            .is_some()
-    };
-    let rows: Vec<u32> = (0..near.len() as u32).filter(is_wanted).collect();
-    let sites = Sites::new(&near, reach)?;
-    let owner = |site: usize| owners[number(sites.point(site))];
+    let sites = Sites::new(near, reach)?;
+    let owner = |site: usize| owners[sites.point(site)];
     let is_foreign = |i: usize, j: usize| owner(i) != owner(j);
-    let (starts, found) = pairs_of_sites(&sites, &rows, reach, &|i, j, distance| {
+    let (starts, found) = pairs_of_sites(&sites, rows, reach, &|i, j, distance| {
         distance <= reach && is_foreign(i, j)
     });
     let of_row = |k: usize| {
         let row = found[starts[k]..starts[k + 1]].iter();
-        row.map(|&site| number(sites.point(site as usize)))
+        row.map(|&site| sites.point(site as usize))
             .map(|point| (owners[point], point as u32))
             .collect()
     };
-    Ok((0..wanted.len()).into_par_iter().map(of_row).collect())
+    Ok((0..rows.len()).into_par_iter().map(of_row).collect())
 }
 
-/// Returns the points of a body in the box around some of its points, enlarged by `reach`.
-fn around(whole: &PointCloud, points: &[u32], reach: f64) -> Arc<PointCloud> {
-    let axes = 0..whole.dimension();
-    let box_of = |c: usize| {
-        let along = points.iter().map(|&i| whole.axis(c)[i as usize]);
-        let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+/// Returns a test whether a position lies in the box around some points, enlarged by twice the reach, because coordinates are
+/// rounded.
+fn around(points: &PointCloud, reach: f64) -> impl Fn(Point) -> bool + use<> {
+    let side = |c: usize| {
+        let along = points.axis(c).iter();
+        let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| {
             (low.min(x), high.max(x))
         });
-        // Twice the reach: coordinates are rounded.
         low - 2.0 * reach..=high + 2.0 * reach
     };
-    let sides: Vec<_> = axes.map(box_of).collect();
-    let is_inside = |&i: &u32| {
-        let mut sides = sides.iter().zip(0..);
-        sides.all(|(side, c)| side.contains(&whole.axis(c)[i as usize]))
-    };
-    let numbers: Vec<u32> = (0..whole.len() as u32).filter(is_inside).collect();
-    let n = numbers.len();
-    let domain = Domain::new(numbers, n, Vec::new(), Arc::new(Alone));
-    Arc::new(whole.part(domain))
+    let sides: Vec<_> = (0..points.dimension()).map(side).collect();
+    move |place| sides.iter().zip(place).all(|(side, x)| side.contains(&x))
 }
 
-/// Returns the part of a body that the calling process owns, with ghosts as far as bonds of length up to `reach` (m) lead.
-/// `owners` has the process of each point.
-///
-/// Every process needs the whole body to make its part.
+/// Creates the part of a body that the calling process owns, with ghosts as far as bonds of length up to `reach` (m) lead.
+/// `owner` returns the process of a point by its number and position, m. Only the points of this part and of its surroundings are
+/// created; of bodies with periodic faces all.
 ///
 /// # Errors
-/// Owners that are not one per point; bonds that span too many periods of the body.
-pub fn part_of(
-    whole: &Arc<PointCloud>,
-    owners: &[u32],
+/// Bonds that span too many periods of the body.
+pub fn divide(
+    body: &dyn PointSource,
+    owner: impl Fn(u32, Point) -> u32,
     reach: f64,
     comm: Arc<dyn Comm>,
 ) -> Result<PointCloud> {
     let rank = comm.rank() as u32;
-    let all = 0..whole.len() as u32;
-    let own: Vec<u32> = all
-        .filter(|&i| owners.get(i as usize) == Some(&rank))
+    let own = body.points_where(&mut |number, place| owner(number, place) == rank);
+    let is_near = around(&own, reach);
+    let is_periodic = own.is_periodic();
+    // Images beyond periodic faces may lie anywhere.
+    let near = body.points_where(&mut |_, place| is_periodic || is_near(place));
+    let near = Arc::new(near);
+    let number = |point: usize| near.domain().number(point) as u32;
+    let owners: Vec<u32> = (0..near.len())
+        .map(|k| owner(number(k), near.point(k)))
         .collect();
-    let found = foreign(whole, owners, reach, &own)?;
+    let all = 0..near.len() as u32;
+    let rows: Vec<u32> = all.filter(|&k| owners[k as usize] == rank).collect();
+    let found = foreign(&near, &owners, reach, &rows)?;
     // Own points that each peer needs, by local number, and points of the peer, both ascending.
     let mut peers: BTreeMap<u32, (Vec<u32>, BTreeSet<u32>)> = BTreeMap::new();
     for (local, foreign) in found.iter().enumerate() {
@@ -133,10 +119,10 @@ pub fn part_of(
             ghosts.insert(point);
         }
     }
-    let (owned, mut numbers) = (own.len(), own);
+    let (owned, mut numbers) = (own.len(), own.domain().own_numbers());
     let peers = peers.into_iter().map(|(rank, (sent, ghosts))| {
         let first = numbers.len() - owned;
-        numbers.extend(&ghosts);
+        numbers.extend(ghosts.iter().map(|&point| number(point as usize)));
         Peer {
             rank: rank as usize,
             sent,
@@ -144,7 +130,56 @@ pub fn part_of(
         }
     });
     let peers = peers.collect();
-    Ok(whole.part(Domain::new(numbers, owned, peers, comm)))
+    let spacing = own.spacing();
+    Ok(own.with_domain(Domain::new(numbers, owned, peers, comm), spacing))
+}
+
+/// Creates the part of a body that the calling process owns, see [`divide`], if it is divided by recursive coordinate bisection into
+/// as many parts of equal numbers of points as there are processes. No process stores the points of others, except for ghosts. All
+/// processes must call it together.
+///
+/// # Errors
+/// Those of [`divide`].
+pub fn part_by_bisection(
+    body: &dyn PointSource,
+    reach: f64,
+    cuts: Cuts,
+    comm: Arc<dyn Comm>,
+) -> Result<PointCloud> {
+    let (rank, size) = (comm.rank() as u64, comm.size() as u64);
+    let count = body.count() as u64;
+    let bound = |rank: u64| (rank * count / size) as u32;
+    let range = bound(rank)..bound(rank + 1);
+    let slice = body.points_where(&mut |number, _| range.contains(&number));
+    let points = Points {
+        dimension: slice.dimension(),
+        positions: slice.positions(),
+        numbers: &slice.domain().own_numbers(),
+        weights: &[],
+    };
+    let parts = bisect(&*comm, &points, comm.size(), cuts);
+    drop(slice);
+    divide(
+        body,
+        |number, place| parts.owner(number, place),
+        reach,
+        comm,
+    )
+}
+
+/// Returns the part of a body that the calling process owns, with ghosts as far as bonds of length up to `reach` (m) lead.
+/// `owners` has the process of each point.
+///
+/// # Errors
+/// Owners that are not one per point, and those of [`divide`].
+pub fn part_of(
+    whole: &PointCloud,
+    owners: &[u32],
+    reach: f64,
+    comm: Arc<dyn Comm>,
+) -> Result<PointCloud> {
+    check_length("the owners of the points", owners.len(), whole.len())?;
+    divide(whole, |number, _| owners[number as usize], reach, comm)
 }
 
 /// Returns points, ghosts and messages of each of `processes` processes for bonds of length up to `reach` (m).

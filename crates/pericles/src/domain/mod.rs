@@ -215,6 +215,14 @@ impl Domain {
         }
     }
 
+    /// Numbers of own points in the whole body; empty if all points are owned.
+    pub fn own_numbers(&self) -> Vec<u32> {
+        match &self.numbers[..] {
+            [] => Vec::new(),
+            numbers => numbers[..self.owned].to_vec(),
+        }
+    }
+
     /// Returns one value per point, first own points, then ghosts. All processes must call it together.
     pub fn with_ghosts<'a>(&self, owned: &'a [f64]) -> Cow<'a, [f64]> {
         if self.peers.is_empty() {

@@ -94,7 +94,15 @@ impl<'a> Snapshot<'a> {
     }
 
     /// Returns the points of the whole body on the process that writes the results, and own points on the others.
+    ///
+    /// # Panics
+    /// If the process that writes the results of a divided body has not received its points; see [`Snapshot::with_whole`].
     pub fn whole_cloud(&self) -> &'a PointCloud {
+        let domain = self.system.domain();
+        assert!(
+            self.whole.is_some() || !domain.is_divided() || !domain.is_first(),
+            "observers of the whole body need its points"
+        );
         self.whole.unwrap_or(self.system.cloud())
     }
 

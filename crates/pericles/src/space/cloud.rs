@@ -1,6 +1,6 @@
 //! Point clouds: the points of a body.
 
-mod whole;
+mod divided;
 
 use super::set::{check_resolution, check_set};
 use super::{Lattice, Point, Region};
@@ -124,7 +124,7 @@ impl PointCloud {
         }
     }
 
-    /// Returns whether opposite faces are periodic.
+    /// Returns whether opposite faces of the whole body are periodic.
     pub fn is_periodic(&self) -> bool {
         self.periodic
     }
@@ -170,31 +170,59 @@ impl PointCloud {
         lattice: Lattice,
         section: f64,
     ) -> Result<Self> {
+        positive("the section (area in 1D, thickness in 2D)", section)?;
         for dx in lattice.spacing {
             positive("the spacing", dx)?;
         }
-        let nodes = lattice.shape.iter().product();
-        check_set("the nodes of a lattice", &lattice.node, nodes)?;
+        check_set("the nodes of a lattice", &lattice.node, lattice.nodes())?;
+        let n = lattice.node.len();
+        if n == 0 {
+            return Err(PericlesError::EmptyBody);
+        }
+        let cloud = Self::at_nodes((dimension, origin), lattice, section, Domain::alone(n));
+        check_resolution(&cloud.positions, cloud.spacing)?;
+        Ok(cloud)
+    }
+
+    /// As [`PointCloud::on_lattice`] for any part of a body, which may be empty; its nodes and dimensions have been checked.
+    pub(super) fn at_nodes(
+        (dimension, origin): (usize, Point),
+        lattice: Lattice,
+        section: f64,
+        domain: Domain,
+    ) -> Self {
         let n = lattice.node.len();
         let mut positions = vec![0.0; dimension * n];
         for (i, &node) in lattice.node.iter().enumerate() {
-            let cell = lattice.coordinates(node);
+            let place = lattice.position(dimension, origin, node);
             for c in 0..dimension {
-                positions[c * n + i] = origin[c] + f64::from(cell[c]) * lattice.spacing[c];
+                positions[c * n + i] = place[c];
             }
         }
-        let cubic = lattice.is_cubic(dimension);
         let volume = section
-            * match cubic {
+            * match lattice.is_cubic(dimension) {
                 true => lattice.spacing[0].powi(dimension as i32),
                 false => lattice.spacing[..dimension].iter().product(),
             };
-        let spacing = cubic.then_some(lattice.spacing[0]);
-        let mut cloud =
-            Self::with_spacing(dimension, positions, vec![volume; n], section, spacing)?;
-        cloud.cell_sides = Some(lattice.spacing);
-        cloud.lattice = Some(lattice);
-        Ok(cloud)
+        Self {
+            dimension,
+            positions,
+            volumes: vec![volume; n],
+            section,
+            spacing: lattice.size(dimension),
+            cell_sides: Some(lattice.spacing),
+            lattice: Some(lattice),
+            periodic: false,
+            user_numbers: domain.own_numbers(),
+            blocks: Vec::new(),
+            pieces: Vec::new(),
+            domain,
+        }
+    }
+
+    /// Makes opposite faces of the whole body periodic, or not.
+    pub(super) fn with_faces(self, periodic: bool) -> Self {
+        Self { periodic, ..self }
     }
 
     /// A cloud of cells of several sizes; the spacing is that of the largest cells.
@@ -230,90 +258,6 @@ impl PointCloud {
     /// The domain: how the body is divided among processes.
     pub fn domain(&self) -> &Domain {
         &self.domain
-    }
-
-    /// Makes these points the part of one of several processes; `spacing` is that of the whole body, m.
-    ///
-    /// # Panics
-    /// If the domain owns another number of points than the cloud has.
-    #[must_use]
-    pub fn with_domain(self, domain: Domain, spacing: f64) -> Self {
-        assert_eq!(
-            domain.owned_points(),
-            self.len(),
-            "one volume per own point"
-        );
-        Self {
-            domain,
-            spacing,
-            ..self
-        }
-    }
-
-    /// Returns the part of this body that a process owns, by the numbers of its points.
-    ///
-    /// # Panics
-    /// If a number is not a point of this body.
-    #[must_use]
-    pub fn part(&self, domain: Domain) -> Self {
-        let own: Vec<usize> = (0..domain.owned_points())
-            .map(|k| domain.number(k))
-            .collect();
-        let axis = |c: usize| own.iter().map(move |&k| self.axis(c)[k]);
-        let lattice = self.lattice.as_ref().map(|lattice| Lattice {
-            node: own.iter().map(|&k| lattice.node[k]).collect(),
-            ..lattice.clone()
-        });
-        let numbers = |numbers: &Vec<u32>| match numbers.is_empty() {
-            true => Vec::new(),
-            false => own.iter().map(|&k| numbers[k]).collect(),
-        };
-        Self {
-            positions: (0..self.dimension).flat_map(axis).collect(),
-            volumes: own.iter().map(|&k| self.volumes[k]).collect(),
-            lattice,
-            user_numbers: own.iter().map(|&k| self.user_number(k) as u32).collect(),
-            blocks: numbers(&self.blocks),
-            pieces: numbers(&self.pieces),
-            domain,
-            ..*self
-        }
-    }
-
-    /// Returns own points and the ghosts of a domain, that of the cloud or another one with the same own points, as points of a
-    /// single process. All processes must call it together.
-    #[must_use]
-    pub fn with_ghosts_of(&self, domain: &Domain) -> Self {
-        let axis = |c: usize| domain.with_ghosts(self.axis(c));
-        let positions: Vec<f64> = (0..self.dimension)
-            .flat_map(|c| axis(c).into_owned())
-            .collect();
-        let lattice = self.lattice.as_ref().map(|lattice| {
-            let nodes: Vec<f64> = lattice.node.iter().map(|&node| f64::from(node)).collect();
-            let nodes = domain.with_ghosts(&nodes);
-            Lattice {
-                node: nodes.iter().map(|&node| node as u32).collect(),
-                ..lattice.clone()
-            }
-        });
-        let volumes = domain.with_ghosts(&self.volumes).into_owned();
-        let pieces: Vec<f64> = self.pieces.iter().map(|&piece| f64::from(piece)).collect();
-        let pieces = match self.has_pieces() {
-            true => (domain.with_ghosts(&pieces).iter())
-                .map(|&piece| piece as u32)
-                .collect(),
-            false => Vec::new(),
-        };
-        Self {
-            pieces,
-            domain: Domain::alone(volumes.len()),
-            positions,
-            volumes,
-            lattice,
-            user_numbers: Vec::new(),
-            blocks: Vec::new(),
-            ..*self
-        }
     }
 
     /// Returns points moved by whole numbers of periods (the sides of the lattice box); several may be images of
@@ -466,9 +410,10 @@ impl PointCloud {
         bounds
     }
 
-    /// Returns the points in a region.
+    /// Returns the own points in a region; parts of a region may be given by the bounding box of the whole body. All processes must
+    /// call it together.
     pub fn select(&self, region: &Region) -> PointSet {
-        let bounds = self.bounds();
+        let bounds = self.body_bounds();
         let tolerance = 1e-9 * self.spacing;
         (0..self.len())
             .filter(|&i| region.contains(self.point(i), &bounds, tolerance))

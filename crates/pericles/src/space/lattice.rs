@@ -14,6 +14,17 @@ pub struct Lattice {
 }
 
 impl Lattice {
+    /// Edge of the cube (square, interval) with the volume of a cell, m.
+    pub fn size(&self, dimension: usize) -> f64 {
+        match self.is_cubic(dimension) {
+            true => self.spacing[0],
+            false => {
+                let volume: f64 = self.spacing[..dimension].iter().product();
+                volume.powf(1.0 / dimension as f64)
+            }
+        }
+    }
+
     /// Returns whether the spacing is the same along the first `dimension` axes.
     pub fn is_cubic(&self, dimension: usize) -> bool {
         self.spacing[..dimension]
@@ -30,6 +41,20 @@ impl Lattice {
     /// Sides of the box of all cells, m.
     pub fn sides(&self) -> Point {
         std::array::from_fn(|c| self.shape[c] as f64 * self.spacing[c])
+    }
+
+    /// Number of nodes.
+    pub fn nodes(&self) -> usize {
+        self.shape.iter().product()
+    }
+
+    /// Returns the position of a node, m, if node 0 is at `origin`; components beyond `dimension` are zero.
+    pub fn position(&self, dimension: usize, origin: Point, node: u32) -> Point {
+        let cell = self.coordinates(node);
+        std::array::from_fn(|c| match c < dimension {
+            true => origin[c] + f64::from(cell[c]) * self.spacing[c],
+            false => 0.0,
+        })
     }
 
     /// Returns the integer coordinates of a node.

@@ -1,7 +1,7 @@
 //! Bars with Gauss points.
 
 use super::PointCloud;
-use super::grid::whole_cells;
+use super::cell_count::whole_cells;
 use crate::error::{PericlesError, Result};
 
 /// Makes a bar with the two Gauss–Legendre nodes of every cell, at ± spacing/(2√3) from its centre, each with half

@@ -1,7 +1,7 @@
 //! Boxes of cells with anisotropic spacing.
 
-use super::grid::{CELL_LIMIT, whole_cells};
-use super::{Lattice, Point, PointCloud, Region};
+use super::cell_count::{CELL_LIMIT, whole_cells};
+use super::{Lattice, LatticeBody, Point, PointCloud, Region};
 use crate::error::{PericlesError, Result};
 
 /// Makes the cloud of equal cells with the given spacing along each axis (m) that fill a box, starting at its lower
@@ -18,19 +18,35 @@ pub fn rectangular_cells(
     section: f64,
     holes: &[Region],
 ) -> Result<PointCloud> {
+    Ok(rectangular_body(origin, size, spacing, section, holes)?.points())
+}
+
+/// Returns the body whose points are the centres of the cells of [`rectangular_cells`].
+///
+/// # Errors
+/// Those of [`rectangular_cells`].
+pub fn rectangular_body<'a>(
+    origin: Point,
+    size: &[f64],
+    spacing: &'a [f64],
+    section: f64,
+    holes: &'a [Region],
+) -> Result<LatticeBody<'a>> {
     let cells = BoxOfCells::new(origin, size, spacing)?;
-    let dimension = size.len();
-    let centre = |k: usize| cells.centre(k);
-    let total = cells.shape.iter().product::<usize>();
-    let node = (0..total)
-        .filter(|&k| !holes.iter().any(|hole| cells.is_in(hole, centre(k))))
-        .map(|k| k as u32);
+    let first = cells.centre(0);
     let lattice = Lattice {
-        node: node.collect(),
+        node: Vec::new(),
         shape: cells.shape,
         spacing: std::array::from_fn(|c| spacing.get(c).copied().unwrap_or(spacing[0])),
     };
-    PointCloud::on_lattice(dimension, centre(0), lattice, section)
+    let holds: Option<Box<dyn Fn(u32) -> bool + Sync>> = match holes.is_empty() {
+        true => None,
+        false => Some(Box::new(move |node| {
+            let place = cells.centre(node as usize);
+            !holes.iter().any(|hole| cells.is_in(hole, place))
+        })),
+    };
+    LatticeBody::new(size.len(), first, lattice, section, holds)
 }
 
 /// Returns the indices of the holes that contain no cell centre and thus remove nothing.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::common::{listed, material, points};
 
-use pericles::division::{Cuts, Points, bisect, part_of};
+use pericles::division::{Cuts, part_by_bisection, part_of};
 use pericles::domain::{Alone, Comm, Threads};
 use pericles::family::{Crack, EndRule, VolumeCorrection};
 use pericles::kernel::InfluenceFunction;
@@ -62,20 +62,12 @@ pub(super) fn part(cloud: &PointCloud, comm: Arc<dyn Comm>) -> PointCloud {
     let owners: Vec<u32> = (0..cloud.len())
         .map(|k| owner(cloud, comm.size(), k) as u32)
         .collect();
-    part_of(&Arc::new(cloud.clone()), &owners, REACH, comm).unwrap()
+    part_of(cloud, &owners, REACH, comm).unwrap()
 }
 
 /// The part that recursive coordinate bisection gives to a process.
 fn bisected(cloud: &PointCloud, cuts: Cuts, comm: Arc<dyn Comm>) -> PointCloud {
-    let numbers: Vec<u32> = (0..cloud.len() as u32).collect();
-    let points = Points {
-        dimension: 2,
-        positions: cloud.positions(),
-        numbers: &numbers,
-        weights: &vec![1; cloud.len()],
-    };
-    let owners = bisect(&Alone, &points, comm.size(), cuts);
-    part_of(&Arc::new(cloud.clone()), &owners, REACH, comm).unwrap()
+    part_by_bisection(cloud, REACH, cuts, comm).unwrap()
 }
 
 pub(super) fn glass(law: PairLaw) -> BondMaterial {

@@ -250,7 +250,7 @@ pub(super) fn stripes(cloud: &PointCloud, comm: Arc<dyn Comm>) -> PointCloud {
             .min(2)
     };
     let owners: Vec<u32> = (0..cloud.len()).map(owner).collect();
-    part_of(&Arc::new(cloud.clone()), &owners, REACH, comm).unwrap()
+    part_of(cloud, &owners, REACH, comm).unwrap()
 }
 
 /// The whole archive at the end of a run that several processes resume.

@@ -39,7 +39,7 @@ fn owners(cloud: &PointCloud, weights: &[u32], parts: usize, cuts: Cuts) -> Vec<
         numbers: &numbers,
         weights,
     };
-    bisect(&Alone, &points, parts, cuts)
+    bisect(&Alone, &points, parts, cuts).owners(&points)
 }
 
 fn shares_of(size: &[f64], parts: usize) -> (Vec<Share>, f64) {
@@ -159,7 +159,7 @@ fn bisection_does_not_depend_on_how_the_points_are_spread() {
                         numbers: &own,
                         weights: &weights,
                     };
-                    let found = bisect(&*comm, &points, parts, cuts);
+                    let found = bisect(&*comm, &points, parts, cuts).owners(&points);
                     own.into_iter().zip(found).collect::<Vec<_>>()
                 };
                 for (i, part) in Threads::run(size, of).into_iter().flatten() {
