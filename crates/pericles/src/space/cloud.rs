@@ -260,19 +260,23 @@ impl PointCloud {
         &self.domain
     }
 
-    /// Returns points moved by whole numbers of periods (the sides of the lattice box); several may be images of
-    /// one point. The nodes of their lattice are not ordered.
-    pub(super) fn moved_points(&self, points: &[([i16; 3], u32)]) -> Self {
-        let n = self.len();
+    /// Returns `count` points moved by whole numbers of periods (the sides of the lattice box), which `moved` returns with the number
+    /// of the point; several may be images of one point. The nodes of their lattice are not ordered.
+    pub(super) fn moved_points(
+        &self,
+        count: usize,
+        moved: impl Fn(usize) -> ([i16; 3], usize),
+    ) -> Self {
         let far: [i32; 3] = std::array::from_fn(|c| {
-            let along = points.iter().map(|(shift, _)| i32::from(shift[c]).abs());
+            let along = (0..count).map(|k| i32::from(moved(k).0[c]).abs());
             along.max().unwrap_or(0)
         });
         let lattice = self.lattice.as_ref().map(|lattice| {
             let sides = lattice.shape.map(|nodes| nodes as i32);
             let shape: [usize; 3] = std::array::from_fn(|c| ((2 * far[c] + 1) * sides[c]) as usize);
-            let node = |&(shift, point): &([i16; 3], u32)| {
-                let at = lattice.coordinates(lattice.node[point as usize]);
+            let node = |k: usize| {
+                let (shift, point) = moved(k);
+                let at = lattice.coordinates(lattice.node[point]);
                 let [x, y, z] = std::array::from_fn(|c| {
                     (at[c] + (i32::from(shift[c]) + far[c]) * sides[c]) as usize
                 });
@@ -281,33 +285,35 @@ impl PointCloud {
             Lattice {
                 spacing: lattice.spacing,
                 shape,
-                node: points.iter().map(node).collect(),
+                node: (0..count).map(node).collect(),
             }
         });
         let side = |c: usize| match &self.lattice {
             Some(lattice) => lattice.sides()[c],
             None => 0.0,
         };
-        let moved = |c: usize| {
+        let n = self.len();
+        let mut positions = Vec::with_capacity(self.dimension * count);
+        for c in 0..self.dimension {
             let (axis, side) = (&self.positions[c * n..(c + 1) * n], side(c));
-            points
-                .iter()
-                .map(move |&(shift, point)| axis[point as usize] + f64::from(shift[c]) * side)
-        };
-        let volume = |&(_, point): &([i16; 3], u32)| self.volumes[point as usize];
-        let piece = |&(_, point): &([i16; 3], u32)| self.piece(point as usize);
+            positions.extend((0..count).map(|k| {
+                let (shift, point) = moved(k);
+                axis[point] + f64::from(shift[c]) * side
+            }));
+        }
+        let points = (0..count).map(|k| moved(k).1);
         Self {
             pieces: match self.has_pieces() {
-                true => points.iter().map(piece).collect(),
+                true => points.clone().map(|i| self.piece(i)).collect(),
                 false => Vec::new(),
             },
-            positions: (0..self.dimension).flat_map(moved).collect(),
-            volumes: points.iter().map(volume).collect(),
+            positions,
+            volumes: points.map(|i| self.volumes[i]).collect(),
             lattice,
             periodic: false,
             user_numbers: Vec::new(),
             blocks: Vec::new(),
-            domain: Domain::alone(points.len()),
+            domain: Domain::alone(count),
             ..*self
         }
     }

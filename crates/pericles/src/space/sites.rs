@@ -1,7 +1,7 @@
 //! Sites: the positions to which bonds lead.
 
 use std::borrow::Cow;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use super::{Lattice, PointCloud};
 use crate::domain::Domain;
@@ -17,22 +17,28 @@ use crate::error::{PericlesError, Result};
 #[derive(Debug, Clone)]
 pub struct Sites {
     cloud: Arc<PointCloud>,
-    /// Positions and volumes of all sites; the cloud itself if site i is point i.
-    places: Arc<PointCloud>,
+    /// Positions and volumes of all sites, if site i is not point i; they can be restored at any time.
+    places: OnceLock<PointCloud>,
     /// `None` if site i is point i.
     map: Option<Map>,
 }
 
 #[derive(Debug, Clone)]
 struct Map {
+    ghosts: PointCloud,
     /// Site without a shift of each point, first own points, then ghosts.
     unmoved: Vec<u32>,
     /// Point of each site: first own points, then ghosts.
     point: Vec<u32>,
-    /// Number of periods by which each site is moved.
-    shift: Vec<[i16; 3]>,
-    /// Number of the point in the whole body in the low bits, index of the shift in the high bits.
-    number: Vec<u64>,
+    /// Numbers of periods by which sites are moved, with the first site of each shift; some have no sites.
+    shifts: Vec<([i16; 3], usize)>,
+}
+
+impl Map {
+    /// Returns the index of the shift of a site.
+    fn shift(&self, site: usize) -> usize {
+        self.shifts.partition_point(|&(_, first)| first <= site) - 1
+    }
 }
 
 impl Sites {
@@ -59,39 +65,39 @@ impl Sites {
                 });
             }
         }
-        let points = cloud.with_ghosts_of(domain);
-        let shifts = match (cloud.is_periodic(), points.lattice()) {
+        let ghosts = cloud.ghosts_of(domain);
+        let points = cloud.with_ghosts(&ghosts);
+        let groups = match (cloud.is_periodic(), points.lattice()) {
             (true, Some(lattice)) => images(cloud.dimension(), lattice, reach),
-            _ => vec![
-                (0..points.len() as u32)
-                    .map(|point| ([0; 3], point))
-                    .collect(),
-            ],
+            _ => vec![([0; 3], (0..points.len() as u32).collect())],
         };
-        let mut sites = Vec::new();
-        for (k, mut of_shift) in shifts.into_iter().enumerate() {
-            of_shift.sort_unstable_by_key(|&(_, point)| domain.number(point as usize));
-            sites.extend(of_shift.into_iter().map(|(shift, point)| {
-                let number = (k as u64) << 32 | domain.number(point as usize) as u64;
-                (shift, point, number)
-            }));
+        let (mut point, mut shifts) = (Vec::new(), Vec::new());
+        for (shift, mut of_shift) in groups {
+            of_shift.sort_unstable_by_key(|&point| domain.number(point as usize));
+            shifts.push((shift, point.len()));
+            point.append(&mut of_shift);
         }
         let mut unmoved = vec![0; points.len()];
-        for (site, &(shift, point, _)) in sites.iter().enumerate() {
-            if shift == [0; 3] {
-                unmoved[point as usize] = site as u32;
-            }
+        let first_image = shifts.get(1).map_or(point.len(), |&(_, first)| first);
+        for (site, &point) in point[..first_image].iter().enumerate() {
+            unmoved[point as usize] = site as u32;
         }
-        let moved: Vec<([i16; 3], u32)> = sites.iter().map(|&(s, point, _)| (s, point)).collect();
-        Ok(Self {
-            places: Arc::new(points.moved_points(&moved)),
+        let map = Map {
+            ghosts,
+            unmoved,
+            point,
+            shifts,
+        };
+        let sites = Self {
             cloud: cloud.clone(),
-            map: Some(Map {
-                unmoved,
-                point: moved.iter().map(|&(_, point)| point).collect(),
-                shift: moved.iter().map(|&(shift, _)| shift).collect(),
-                number: sites.iter().map(|&(_, _, number)| number).collect(),
-            }),
+            places: OnceLock::new(),
+            map: Some(map),
+        };
+        // The points are at hand.
+        let places = sites.placed(&points);
+        Ok(Self {
+            places: OnceLock::from(places),
+            ..sites
         })
     }
 
@@ -99,9 +105,19 @@ impl Sites {
     fn of_points(cloud: &Arc<PointCloud>) -> Self {
         Self {
             cloud: cloud.clone(),
-            places: cloud.clone(),
+            places: OnceLock::new(),
             map: None,
         }
+    }
+
+    /// Returns positions and volumes of the sites of own points and ghosts.
+    fn placed(&self, points: &PointCloud) -> PointCloud {
+        points.moved_points(self.len(), |site| (self.shift(site), self.point(site)))
+    }
+
+    /// Frees the positions and volumes of the sites until they are needed again.
+    pub fn release_places(&mut self) {
+        self.places.take();
     }
 
     /// The own points.
@@ -111,7 +127,10 @@ impl Sites {
 
     /// Number of sites.
     pub fn len(&self) -> usize {
-        self.places.len()
+        match &self.map {
+            None => self.cloud.len(),
+            Some(map) => map.point.len(),
+        }
     }
 
     /// Returns false: there is at least one site.
@@ -126,7 +145,12 @@ impl Sites {
 
     /// Positions, volumes and cells of the sites.
     pub fn places(&self) -> &PointCloud {
-        &self.places
+        match &self.map {
+            None => &self.cloud,
+            Some(map) => self
+                .places
+                .get_or_init(|| self.placed(&self.cloud.with_ghosts(&map.ghosts))),
+        }
     }
 
     /// The site of own point k, or of a ghost; ghosts are counted after the own points.
@@ -154,7 +178,9 @@ impl Sites {
 
     /// Number of periods by which a site is moved from its point.
     pub fn shift(&self, site: usize) -> [i16; 3] {
-        self.map.as_ref().map_or([0; 3], |map| map.shift[site])
+        self.map
+            .as_ref()
+            .map_or([0; 3], |map| map.shifts[map.shift(site)].0)
     }
 
     /// Periods of the body, m: the sides of its box.
@@ -170,7 +196,10 @@ impl Sites {
     pub fn number(&self, site: usize) -> u64 {
         match &self.map {
             None => site as u64,
-            Some(map) => map.number[site],
+            Some(map) => {
+                let number = self.domain().number(map.point[site] as usize);
+                (map.shift(site) as u64) << 32 | number as u64
+            }
         }
     }
 
@@ -206,15 +235,15 @@ impl Sites {
     /// Memory in addition to that of the cloud, bytes.
     pub fn bytes(&self) -> usize {
         let Some(map) = &self.map else { return 0 };
-        let places = (self.places.dimension() + 1) * size_of::<f64>() + size_of::<u32>();
-        let each = 2 * size_of::<u32>() + size_of::<u64>() + 3;
-        size_of_val(&map.unmoved[..]) + self.len() * (places + each)
+        let place = (self.cloud.dimension() + 1) * size_of::<f64>() + size_of::<u32>();
+        let places = self.places.get().map_or(0, PointCloud::len) + map.ghosts.len();
+        size_of_val(&map.unmoved[..]) + size_of_val(&map.point[..]) + places * place
     }
 }
 
 /// Returns the points of a periodic lattice and their images within `reach` of the box, shift by shift, starting
 /// without a shift.
-fn images(dimension: usize, lattice: &Lattice, reach: f64) -> Vec<Vec<([i16; 3], u32)>> {
+fn images(dimension: usize, lattice: &Lattice, reach: f64) -> Vec<([i16; 3], Vec<u32>)> {
     // The margin keeps rounding of the quotient from losing the longest bonds.
     let cells = (lattice.spacing).map(|dx| (reach / dx * (1.0 + 1e-9)).floor() as i32);
     let sides = lattice.shape.map(|nodes| nodes as i32);
@@ -240,10 +269,10 @@ fn images(dimension: usize, lattice: &Lattice, reach: f64) -> Vec<Vec<([i16; 3],
         })
     };
     let of_shift = |shift: [i32; 3]| {
-        (lattice.node.iter().zip(0..))
+        let points = (lattice.node.iter().zip(0..))
             .filter(|&(&node, _)| near(shift, node))
-            .map(|(_, point)| (shift.map(|s| s as i16), point))
-            .collect()
+            .map(|(_, point)| point);
+        (shift.map(|s| s as i16), points.collect())
     };
     shifts.into_iter().map(of_shift).collect()
 }

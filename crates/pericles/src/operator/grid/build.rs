@@ -69,7 +69,7 @@ impl<const D: usize> LatticeBonds<D> {
             volume: &|r| correction.factor(r, horizon, spacing) * volume,
             stiffness,
         };
-        let sites = Sites::new(cloud, rule.reach)?;
+        let mut sites = Sites::new(cloud, rule.reach)?;
         let lattice = sites.places().lattice().unwrap_or(lattice);
         let layout = GridLayout::new(&sites, lattice);
         let stencil = Stencil::<D>::new(lattice, layout.strides(), &rule);
@@ -98,6 +98,8 @@ impl<const D: usize> LatticeBonds<D> {
         } else {
             Vec::new()
         };
+        // The kernel needs positions for output and tangents only.
+        sites.release_places();
         Ok(Self {
             held: held_sites(cloud, &layout, no_fail),
             sites,

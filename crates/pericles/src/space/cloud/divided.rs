@@ -55,40 +55,57 @@ impl PointCloud {
         }
     }
 
+    /// Returns the ghosts of a domain, that of the cloud or another one with the same own points, as points of a single process.
+    /// All processes must call it together.
+    #[must_use]
+    pub(in crate::space) fn ghosts_of(&self, domain: &Domain) -> Self {
+        let numbers = |own: &[u32]| -> Vec<u32> {
+            let own: Vec<f64> = own.iter().map(|&number| f64::from(number)).collect();
+            domain.ghosts(&own).iter().map(|&k| k as u32).collect()
+        };
+        let lattice = self.lattice.as_ref().map(|lattice| Lattice {
+            node: numbers(&lattice.node),
+            ..lattice.clone()
+        });
+        Self {
+            positions: domain.ghosts(&self.positions),
+            volumes: domain.ghosts(&self.volumes),
+            lattice,
+            // Arrays are empty on all processes or on none.
+            pieces: numbers(&self.pieces),
+            user_numbers: Vec::new(),
+            blocks: Vec::new(),
+            domain: Domain::alone(domain.ghost_points()),
+            ..*self
+        }
+    }
+
+    /// Returns own points, then ghosts, as points of a single process.
+    #[must_use]
+    pub(in crate::space) fn with_ghosts(&self, ghosts: &Self) -> Self {
+        let axis = |c: usize| self.axis(c).iter().chain(ghosts.axis(c)).copied();
+        let lattice = self.lattice.iter().zip(&ghosts.lattice);
+        let lattice = lattice.map(|(own, ghosts)| Lattice {
+            node: [&own.node[..], &ghosts.node].concat(),
+            ..own.clone()
+        });
+        Self {
+            positions: (0..self.dimension).flat_map(axis).collect(),
+            volumes: [&self.volumes[..], &ghosts.volumes].concat(),
+            lattice: lattice.last(),
+            pieces: [&self.pieces[..], &ghosts.pieces].concat(),
+            user_numbers: Vec::new(),
+            blocks: Vec::new(),
+            domain: Domain::alone(self.len() + ghosts.len()),
+            ..*self
+        }
+    }
+
     /// Returns own points and the ghosts of a domain, that of the cloud or another one with the same own points, as points of a
     /// single process. All processes must call it together.
     #[must_use]
     pub fn with_ghosts_of(&self, domain: &Domain) -> Self {
-        let axis = |c: usize| domain.with_ghosts(self.axis(c));
-        let positions: Vec<f64> = (0..self.dimension)
-            .flat_map(|c| axis(c).into_owned())
-            .collect();
-        let lattice = self.lattice.as_ref().map(|lattice| {
-            let nodes: Vec<f64> = lattice.node.iter().map(|&node| f64::from(node)).collect();
-            let nodes = domain.with_ghosts(&nodes);
-            Lattice {
-                node: nodes.iter().map(|&node| node as u32).collect(),
-                ..lattice.clone()
-            }
-        });
-        let volumes = domain.with_ghosts(&self.volumes).into_owned();
-        let pieces: Vec<f64> = self.pieces.iter().map(|&piece| f64::from(piece)).collect();
-        let pieces = match self.has_pieces() {
-            true => (domain.with_ghosts(&pieces).iter())
-                .map(|&piece| piece as u32)
-                .collect(),
-            false => Vec::new(),
-        };
-        Self {
-            pieces,
-            domain: Domain::alone(volumes.len()),
-            positions,
-            volumes,
-            lattice,
-            user_numbers: Vec::new(),
-            blocks: Vec::new(),
-            ..*self
-        }
+        self.with_ghosts(&self.ghosts_of(domain))
     }
 
     /// Returns the points of the whole body as points of a single process, from the parts of all processes. Its memory does
