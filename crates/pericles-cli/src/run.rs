@@ -40,6 +40,7 @@ pub(crate) fn run(args: &RunArgs, processes: &Processes) -> Result<Exit, CliErro
     let mut screen = Screen::shared(quiet, processes.is_first());
     let means = Means {
         comm: processes.comm(),
+        memory: processes.memory(&args.options.limits.memory),
         ..args.options.means()
     };
     let assembled = Assembled::of(&source, &means, &mut |event| screen.show(event))?;
@@ -66,6 +67,7 @@ pub(crate) fn resume(args: &ResumeArgs, processes: &Processes) -> Result<Exit, C
     let mut screen = Screen::shared(quiet, processes.is_first());
     let means = Means {
         comm: processes.comm(),
+        memory: processes.memory(&args.options.limits.memory),
         ..args.options.means()
     };
     let Some(run) = Run::resume(&args.dir, &means, &mut |event| screen.show(event))? else {

@@ -16,7 +16,7 @@ use pericles::domain::{Comm, Threads};
 use pericles::family::{Crack, EndRule};
 use pericles::material::{BondMaterial, ElasticModulus, StressState};
 use pericles::operator::{BondBody, BondForm};
-use pericles::space::{Grid, PointCloud, Shape};
+use pericles::space::{Grid, PointCloud};
 use pericles::time::{State, VelocityVerlet};
 use pericles::{Control, PointScalar, Simulation, System};
 use pericles_mpi::Mpi;
@@ -27,17 +27,8 @@ const CELLS: [usize; 2] = [120, 80];
 const HORIZON: f64 = 3.015;
 const DENSITY: f64 = 1.0;
 
-fn plate() -> Result<PointCloud> {
-    let grid = Grid {
-        shape: Shape::Box {
-            origin: [0.0; 3],
-            size: CELLS.map(|count| count as f64).to_vec(),
-        },
-        spacing: 1.0,
-        section: 1.0,
-        holes: vec![],
-    };
-    Ok(grid.points()?)
+fn plate() -> Grid {
+    Grid::plate(CELLS.map(|count| count as f64), 1.0, 1.0)
 }
 
 fn system(part: PointCloud, form: BondForm) -> Result<System> {

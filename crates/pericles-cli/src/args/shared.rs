@@ -76,8 +76,8 @@ pub(crate) struct Limits {
 /// Memory limit.
 #[derive(Debug, Args)]
 pub(crate) struct Memory {
-    /// Memory limit, such as 8GB, 512MiB or a number of bytes: models with a larger estimate are rejected with exit
-    /// status 8 [default: available memory]
+    /// Memory limit of all processes together, such as 8GB, 512MiB or a number of bytes: models with a larger estimate are
+    /// rejected with exit status 8 [default: available memory]
     #[arg(long = "max-memory", value_name = "SIZE", value_parser = machine::size)]
     most: Option<u64>,
 }
@@ -86,6 +86,11 @@ impl Memory {
     /// Returns the limit in bytes; by default the available memory, if the system reports it.
     pub(crate) fn bytes(&self) -> u64 {
         self.most.unwrap_or_else(machine::memory)
+    }
+
+    /// Returns the limit given on the command line, bytes.
+    pub(crate) fn given(&self) -> Option<u64> {
+        self.most
     }
 }
 

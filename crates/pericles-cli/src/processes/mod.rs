@@ -17,7 +17,7 @@ use pericles::domain::{Alone, Comm, Timed};
 use pericles_mpi::{Mpi, abort, library};
 use pericles_run::units::{count, significant, threads};
 
-use crate::args::Threads;
+use crate::args::{Memory, Threads};
 use crate::bug;
 use crate::console;
 use crate::error::CliError;
@@ -79,6 +79,20 @@ impl Processes {
     /// Returns the communication between the processes.
     pub(crate) fn comm(&self) -> Arc<dyn Comm> {
         Arc::clone(&self.comm)
+    }
+
+    /// Returns the memory limit of all processes together, bytes: by default the memory available on their machines. All processes
+    /// must call it together.
+    pub(crate) fn memory(&self, limit: &Memory) -> u64 {
+        if let Some(given) = limit.given() {
+            return given;
+        }
+        // Processes of one machine share its memory.
+        let machine = self.job.as_ref().map(|job| job.of_machine());
+        let is_first = machine.is_none_or(|machine| machine.rank() == 0);
+        let mut sum = [i128::from(if is_first { limit.bytes() } else { 0 })];
+        self.comm.sum(&mut sum);
+        u64::try_from(sum[0]).unwrap_or(u64::MAX)
     }
 
     /// Returns whether this is the first of the processes, which prints for all.

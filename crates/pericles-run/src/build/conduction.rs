@@ -69,7 +69,7 @@ impl Assembler<'_> {
             horizon: solid.material.horizon(),
             horizons,
             correction: solid.material.volume_correction(),
-            conductivity: conductivity,
+            conductivity,
             interface: match conduction.interface {
                 ConductivityMean::Harmonic => Interface::Harmonic,
                 ConductivityMean::Arithmetic => Interface::Arithmetic,

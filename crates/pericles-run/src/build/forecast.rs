@@ -1,13 +1,14 @@
 //! Prediction of a run divided among several processes, without starting any.
 
 use pericles::division::{Share, shares};
-use pericles_deck::{BuildError, Fault, Model, Scheme};
+use pericles_deck::{BuildError, Fault, Model, Scheme, SolidShape};
 use pericles_heat::HeatError;
 use pericles_statics::{MOST_REPLICATED, StaticsError};
 use serde::Serialize;
 
 use super::assembler::Assembler;
 use super::assembly::Assembly;
+use super::points::has_equal_cells;
 use super::refusal::{at, at_path};
 use crate::division::owners;
 
@@ -62,8 +63,8 @@ pub const LATENCY: f64 = 2e-6;
 pub const BANDWIDTH: f64 = 10e9;
 
 const NUMBER: f64 = 8.0;
-/// Bytes per point of the whole body and dimension, and per point, while a process takes its part: positions; volume, node, sets,
-/// number, owner. Every process creates the points of the whole body.
+/// Bytes per point of the whole body and dimension, and per point, while a process takes its part of points that are not created in
+/// parts: positions; volume, node, number, block, grid.
 const WHOLE: [f64; 2] = [8.0, 32.0];
 /// Bytes per unknown of the whole body in one, two and three dimensions: matrix, prolongations and vectors of the multigrid that
 /// every process of a static run stores.
@@ -112,8 +113,12 @@ impl Assembly {
         let numbers = dimension + (values + heat) as f64;
         let whole = cloud.len() as f64;
         let of_point = self.memory_estimate(model) as f64 / whole;
+        let shape = model.body.solid().map(|solid| &solid.shape);
+        let in_parts =
+            matches!(shape, Some(SolidShape::Lattice(lattice)) if has_equal_cells(lattice));
         let created = match processes {
             1 => 0.0,
+            _ if in_parts => 0.0,
             _ => whole * (WHOLE[0] * dimension + WHOLE[1]),
         };
         // The preconditioner of static states is not divided.

@@ -3,11 +3,11 @@
 
 use std::sync::Arc;
 
+use pericles::PericlesError;
 use pericles::division::part_by_bisection;
 use pericles::domain::{Comm, agreed};
 use pericles::material::SurfaceCorrection;
 use pericles::space::{GradedCloud, PointCloud, PointSet, PointSource};
-use pericles::{Need, PericlesError};
 use pericles_deck::{Body, BoundaryCondition, BuildError, Fault, Keys, MaterialModel};
 use pericles_waves::ForceForm;
 
@@ -16,7 +16,6 @@ use super::discretisation::{Discretisation, Sets};
 use super::points::BodyPoints;
 use super::refusal::{at, at_path};
 use super::resources::Resources;
-use crate::composition::has_need;
 use crate::division::cuts_of;
 
 impl Discretisation {
@@ -161,18 +160,6 @@ impl Assembler<'_> {
             return Some((
                 "material".into(),
                 "viscous and plastic materials store the history of both ends of a bond in the same process",
-            ));
-        }
-        let breaks_by_stress = |model: &MaterialModel| match model {
-            MaterialModel::StateBased(state) => state.criterion.is_some(),
-            MaterialModel::Correspondence(solid) => solid.criterion.is_some(),
-            MaterialModel::Bonds(_) => false,
-        };
-        let in_zones = has_need(&self.model.time.scheme, Need::FiniteReach);
-        if in_zones && models.iter().any(|model| breaks_by_stress(model)) {
-            return Some((
-                "material.failure".into(),
-                "with a fine region, failure by stress or strain would depend on the division; use a scheme with one time step",
             ));
         }
         if solid.material.surface_correction == SurfaceCorrection::Ghosts {

@@ -27,6 +27,13 @@ pub(super) struct BodyPoints {
     pub(super) sets: Sets,
 }
 
+/// Returns whether the points of a grid are the centres of equal cells, so that a process can create its own ones only.
+pub(super) fn has_equal_cells(lattice: &Lattice) -> bool {
+    let is_regular =
+        lattice.periodic || lattice.finer.is_empty() && !lattice.positions.are_random();
+    lattice.rectangular.is_some() || lattice.quadrature != Quadrature::Gauss && is_regular
+}
+
 impl Assembler<'_> {
     pub(super) fn points(
         &self,
@@ -169,21 +176,17 @@ impl Assembler<'_> {
         warnings.extend(self.judge_holes(lattice, &graded));
         let grid = &graded.grid;
         let points = match (&grid.shape, lattice.quadrature) {
-            (Shape::Box { .. }, _) if lattice.rectangular.is_some() => {
-                self.lattice_points(lattice, resources)
-            }
+            _ if has_equal_cells(lattice) => self.lattice_points(lattice, resources),
             (Shape::Box { origin, size }, Quadrature::Gauss) => {
                 gauss_bar(origin[0], size[0], grid.spacing, grid.section)
                     .map(GradedCloud::of_one_grid)
             }
-            _ if lattice.periodic => self.lattice_points(lattice, resources),
             _ if lattice.positions.are_random() => {
                 return self
                     .random_points(grid, lattice.positions)
                     .map(GradedCloud::of_one_grid)
                     .map_err(|error| self.no_grid(lattice, error));
             }
-            _ if graded.finer.is_empty() => self.lattice_points(lattice, resources),
             _ => graded.points(),
         };
         points.map_err(|error| self.no_grid(lattice, error))

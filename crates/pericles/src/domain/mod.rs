@@ -21,6 +21,7 @@ mod threads;
 mod timed;
 
 use std::borrow::Cow;
+use std::cmp::Ordering;
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
@@ -263,7 +264,8 @@ impl Domain {
     }
 
     /// Returns the messages to own points: those of `letters`, which own points send, and those from other
-    /// processes. All processes must call it together.
+    /// processes, in the order of the numbers of receiving and then of sending points, which does not depend on the division. All
+    /// processes must call it together.
     ///
     /// # Panics
     /// If a point that sends to a ghost is not a ghost of the owner of that ghost.
@@ -291,6 +293,14 @@ impl Domain {
                 numbers: std::array::from_fn(|k| one[2 + k]),
             }));
         }
+        let ends = |one: &Letter| (one.to, self.number(one.from));
+        arrived.sort_unstable_by(|a, b| {
+            // Images of a point beyond periodic faces send several messages.
+            let numbers = a.numbers.iter().zip(&b.numbers);
+            let by_content = numbers.map(|(a, b)| a.total_cmp(b));
+            let by_content = by_content.fold(Ordering::Equal, Ordering::then);
+            ends(a).cmp(&ends(b)).then(by_content)
+        });
         arrived
     }
 
@@ -420,5 +430,45 @@ mod tests {
         });
         let expected: Vec<f64> = (0..11).chain(100..111).map(f64::from).collect();
         assert_eq!(found, [Some(expected), None, None, None]);
+    }
+
+    /// Point 1 of a chain receives messages of all others, in the order of their numbers for every division.
+    #[test]
+    fn messages_to_a_point_have_the_same_order_for_every_division() {
+        const POINTS: u32 = 7;
+        for size in [1, 3] {
+            let found = Threads::run(size, |comm| {
+                let (rank, size) = (comm.rank() as u32, size as u32);
+                let of = |rank: u32| (0..POINTS).filter(move |k| k % size == rank);
+                let mut numbers: Vec<u32> = of(rank).collect();
+                let own = numbers.len();
+                let others = (0..size).filter(|&other| other != rank);
+                let peers: Vec<Peer> = others
+                    .map(|other| {
+                        let first = numbers.len() - own;
+                        numbers.extend(of(other));
+                        Peer {
+                            rank: other as usize,
+                            sent: (0..own as u32).collect(),
+                            received: first..numbers.len() - own,
+                        }
+                    })
+                    .collect();
+                let to = numbers.iter().position(|&k| k == 1).unwrap();
+                let domain = Domain::new(numbers, own, peers, comm);
+                let letter = |from: usize| Letter {
+                    from,
+                    to,
+                    numbers: [0.0; Letter::NUMBERS],
+                };
+                let arrived = domain.deliver((0..own).rev().map(letter).collect());
+                arrived
+                    .iter()
+                    .map(|one| domain.number(one.from))
+                    .collect::<Vec<_>>()
+            });
+            let of_owner = &found[1 % size];
+            assert_eq!(of_owner, &(0..POINTS as usize).collect::<Vec<_>>());
+        }
     }
 }

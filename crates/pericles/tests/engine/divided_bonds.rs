@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::common::{listed, material, points};
 
 use pericles::division::{Cuts, part_by_bisection, part_of};
-use pericles::domain::{Alone, Comm, Threads};
+use pericles::domain::{Comm, Threads};
 use pericles::family::{Crack, EndRule, VolumeCorrection};
 use pericles::kernel::InfluenceFunction;
 use pericles::material::{

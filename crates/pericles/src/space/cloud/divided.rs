@@ -85,14 +85,14 @@ impl PointCloud {
     pub(in crate::space) fn with_ghosts(&self, ghosts: &Self) -> Self {
         let axis = |c: usize| self.axis(c).iter().chain(ghosts.axis(c)).copied();
         let lattice = self.lattice.iter().zip(&ghosts.lattice);
-        let lattice = lattice.map(|(own, ghosts)| Lattice {
+        let mut lattice = lattice.map(|(own, ghosts)| Lattice {
             node: [&own.node[..], &ghosts.node].concat(),
             ..own.clone()
         });
         Self {
             positions: (0..self.dimension).flat_map(axis).collect(),
             volumes: [&self.volumes[..], &ghosts.volumes].concat(),
-            lattice: lattice.last(),
+            lattice: lattice.next(),
             pieces: [&self.pieces[..], &ghosts.pieces].concat(),
             user_numbers: Vec::new(),
             blocks: Vec::new(),
