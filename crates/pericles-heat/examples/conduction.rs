@@ -46,6 +46,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             conductivity: PointScalar::Uniform(45.0),
             interface: Interface::Harmonic,
             surface_correction: true,
+            prescribed: Vec::new(),
             broken_share: 0.0,
         };
         let diffusion = body.build()?;

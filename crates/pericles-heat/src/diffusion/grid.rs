@@ -4,14 +4,14 @@ use pericles::archive::Layout;
 use pericles::domain::Domain;
 use pericles::lanes::{InstructionSet, LANES};
 use pericles::operator::pool::Pool;
-use pericles::parallel::for_each_point;
 use pericles::space::Sites;
 use pericles::{PericlesError, Result};
 use rayon::prelude::*;
 
 use super::frame::Frame;
 use super::kernels::{Chunk, Stencil, add_chunks};
-use super::{Bond, Bonds, DiffusionBody, Interface, surface, with_ghosts};
+use super::surface::{SurfaceFactors, Visit, direction};
+use super::{Bond, Bonds, DiffusionBody, Interface, with_ghosts};
 use crate::calibration::{PairConductivity, cell_volume, for_each_offset};
 
 /// Marks a place without a site.
@@ -36,9 +36,12 @@ pub(super) struct GridBonds {
     vectors: Vec<[f64; 3]>,
     /// κ V V of each offset for unit conductivity.
     weights: Vec<f64>,
-    /// Fields at places, with margins: conductivity or its inverse, half of the surface factor.
+    /// Conductivity or its inverse at places, with margins.
     material: Vec<f64>,
-    surface: Vec<f64>,
+    /// Fields of [`SurfaceFactors`] at places, with margins; none if all families are complete.
+    surface: Vec<Vec<f64>>,
+    /// Coefficients of the tensors for each offset.
+    directions: Vec<[f64; 6]>,
     interface: Interface,
     /// Bonds of the family, one byte per chunk and offset.
     family: Vec<u8>,
@@ -51,7 +54,7 @@ pub(super) struct GridBonds {
 impl GridBonds {
     pub fn new(body: &DiffusionBody, calibration: PairConductivity) -> Result<Self> {
         let cloud = &body.cloud;
-        let (n, d) = (cloud.len(), cloud.dimension());
+        let d = cloud.dimension();
         let (cell, volume) = (cloud.spacing(), cell_volume(cloud));
         let reach = body.correction.reach(body.horizon, cell);
         let sites = Sites::new(cloud, reach)?;
@@ -120,27 +123,12 @@ impl GridBonds {
         };
         let points: Vec<u32> = site_at.iter().map(point).collect();
         drop(site_at);
-        let padded = |of_point: &dyn Fn(usize) -> f64| {
-            let mut field = vec![1.0; places + 2 * margin];
-            for (place, &point) in points
-                .iter()
-                .enumerate()
-                .filter(|(_, point)| **point != NONE)
-            {
-                field[margin + place] = of_point(point as usize);
-            }
-            field
-        };
-        let conductivity = with_ghosts(cloud.domain(), &body.conductivity);
-        let material = padded(&|i| match body.interface {
-            Interface::Harmonic => 1.0 / conductivity.at(i),
-            Interface::Arithmetic => conductivity.at(i),
-        });
         let length = places + 2 * margin;
         let mut bonds = Self {
             intact: family.clone(),
             family,
             surface: Vec::new(),
+            directions: vectors.iter().map(|&xi| direction(d, xi)).collect(),
             work: Pool::new(1, move || vec![0.0; length]),
             domain: cloud.domain().clone(),
             interface: body.interface,
@@ -151,41 +139,48 @@ impl GridBonds {
             shifts,
             vectors,
             weights,
-            material,
+            material: Vec::new(),
             points,
         };
-        let moments = for_each_point(n, &|i| {
-            let family = bonds.family_of(i);
-            let terms = family.map(|(_, k, _)| {
-                let square: f64 = bonds.vectors[k].iter().map(|x| x * x).sum();
-                bonds.weights[k] / volume * square
-            });
-            terms.sum::<f64>()
+        let conductivity = with_ghosts(cloud.domain(), &body.conductivity);
+        bonds.material = bonds.padded(1.0, &|i| match body.interface {
+            Interface::Harmonic => 1.0 / conductivity.at(i),
+            Interface::Arithmetic => conductivity.at(i),
         });
-        let factors = match body.surface_correction {
-            true => surface::factors(cloud, &moments),
-            false => vec![1.0; n],
+        let for_each_bond = |i: usize, visit: &mut Visit<'_>| {
+            for (_, k, _) in bonds.family_of(i) {
+                visit(
+                    bonds.other_end(i, k),
+                    bonds.vectors[k],
+                    bonds.weights[k] / volume,
+                );
+            }
         };
-        let factors = cloud.domain().with_ghosts(&factors);
-        let mut surface = vec![0.5; length];
-        for (place, &point) in bonds
-            .points
-            .iter()
-            .enumerate()
-            .filter(|(_, point)| **point != NONE)
-        {
-            surface[margin + place] = 0.5 * factors[point as usize];
-        }
-        bonds.surface = surface;
+        let factors = body.surface_factors(&for_each_bond);
+        let fields = factors.iter().flat_map(SurfaceFactors::fields);
+        let fields = fields.map(|field| bonds.padded(0.0, &|i| field[i]));
+        bonds.surface = fields.collect();
         bonds.find_plain();
         frame.agree_on_plain(cloud.domain(), &mut bonds.chunks);
         Ok(bonds)
     }
 
+    /// Returns a field at places with margins, `elsewhere` at places without a site.
+    fn padded(&self, elsewhere: f64, of_point: &dyn Fn(usize) -> f64) -> Vec<f64> {
+        let mut field = vec![elsewhere; self.points.len() + 2 * self.margin];
+        let places = field[self.margin..].iter_mut().zip(&self.points);
+        for (value, &point) in places.filter(|(_, point)| **point != NONE) {
+            *value = of_point(point as usize);
+        }
+        field
+    }
+
     /// Marks the chunks whose bonds all have the same conductivity.
     fn find_plain(&mut self) {
         let m = self.shifts.len();
-        let (material, surface, margin) = (&self.material, &self.surface, self.margin);
+        let (material, margin) = (&self.material, self.margin);
+        let incomplete = self.surface.first();
+        let is_complete = |place: usize| incomplete.is_none_or(|field| field[place] == 0.0);
         let (family, shifts) = (&self.family, &self.shifts);
         self.chunks
             .par_iter_mut()
@@ -197,10 +192,9 @@ impl GridBonds {
                     let here = material[at + lane];
                     let bonds = shifts.iter().zip(&family[number * m..(number + 1) * m]);
                     let mut present = bonds.filter(|(_, bits)| *bits >> lane & 1 == 1);
-                    surface[at + lane] == 0.5
+                    is_complete(at + lane)
                         && present.all(|(&shift, _)| {
-                            let there = (at + lane).wrapping_add_signed(shift);
-                            material[there] == here && surface[there] == 0.5
+                            material[(at + lane).wrapping_add_signed(shift)] == here
                         })
                 });
             });
@@ -237,6 +231,7 @@ impl GridBonds {
             values,
             material: &self.material,
             surface: &self.surface,
+            directions: &self.directions,
             interface: self.interface,
             margin: self.margin,
             shifts: &self.shifts,
@@ -322,7 +317,17 @@ impl Bonds for GridBonds {
                 Interface::Harmonic => 2.0 / both,
                 Interface::Arithmetic => 0.5 * both,
             };
-            let whole = mean * (self.surface[here] + self.surface[there]) * self.weights[k];
+            let factor = match &self.surface[..] {
+                [] => 1.0,
+                [incomplete, excess @ ..] => {
+                    let terms = excess.iter().zip(&self.directions[k]);
+                    let excess: f64 = terms
+                        .map(|(field, c)| c * (field[here] + field[there]))
+                        .sum();
+                    1.0 + incomplete[here] * incomplete[there] * excess
+                }
+            };
+            let whole = mean * factor * self.weights[k];
             let is_intact = self.intact[entry] >> lane & 1 == 1;
             visit(Bond {
                 neighbour: self.other_end(i, k),
@@ -385,7 +390,8 @@ impl Bonds for GridBonds {
     }
 
     fn bytes(&self) -> usize {
-        let fields = 3 * size_of_val(&self.material[..]) + size_of_val(&self.points[..]);
+        let fields = (2 + self.surface.len()) * size_of_val(&self.material[..])
+            + size_of_val(&self.points[..]);
         fields
             + 2 * self.family.len()
             + size_of_val(&self.slots[..])

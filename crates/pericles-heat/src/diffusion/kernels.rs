@@ -22,8 +22,10 @@ pub(super) struct Stencil<'a> {
     pub values: &'a [f64],
     /// Conductivity at each place, or its inverse for [`Interface::Harmonic`].
     pub material: &'a [f64],
-    /// Half of the surface factor at each place.
-    pub surface: &'a [f64],
+    /// Fields of [`super::surface::SurfaceFactors`] at each place; none if all families are complete.
+    pub surface: &'a [Vec<f64>],
+    /// Coefficients of the tensors for each offset.
+    pub directions: &'a [[f64; 6]],
     pub interface: Interface,
     pub margin: usize,
     pub shifts: &'a [isize],
@@ -78,7 +80,6 @@ fn add_chunks_body<T: Lanes>(
             };
             (even + odd) * conductivity
         } else {
-            let surface = T::load(stencil.surface, at);
             for k in 0..m {
                 let place = at.wrapping_add_signed(stencil.shifts[k]);
                 let both = material + T::load(stencil.material, place);
@@ -86,9 +87,18 @@ fn add_chunks_body<T: Lanes>(
                     Interface::Harmonic => T::splat(2.0) / both,
                     Interface::Arithmetic => T::splat(0.5) * both,
                 };
-                let factor = mean * (surface + T::load(stencil.surface, place));
+                let mut conductivity = mean;
+                if let [incomplete, excess @ ..] = stencil.surface {
+                    let both = T::load(incomplete, at) * T::load(incomplete, place);
+                    let mut sum = zero;
+                    for (field, &c) in excess.iter().zip(&stencil.directions[k]) {
+                        let ends = T::load(field, at) + T::load(field, place);
+                        sum = ends.mul_add(T::splat(c), sum);
+                    }
+                    conductivity = (both * sum).mul_add(mean, mean);
+                }
                 let difference = T::load(stencil.values, place) - here;
-                even = (factor * difference)
+                even = (conductivity * difference)
                     .masked(bonds[k])
                     .mul_add(T::splat(stencil.weights[k]), even);
             }

@@ -6,7 +6,8 @@ use pericles::lanes::{InstructionSet, LANES};
 use pericles::parallel::{for_each_chunk, for_each_point};
 use pericles::{PericlesError, Result};
 
-use super::{Bond, Bonds, DiffusionBody, surface, with_ghosts};
+use super::surface::{Visit, direction};
+use super::{Bond, Bonds, DiffusionBody, with_ghosts};
 use crate::calibration::PairConductivity;
 
 /// A neighbour list with the conductance of each entry.
@@ -47,41 +48,47 @@ impl ListBonds {
         let kappa = |i: usize, site: usize| {
             let (here, j) = (list.site(i), list.sites().point(site));
             let xi = list.vector(here, site);
-            let kappa = match horizons {
+            match horizons {
                 None => list.volume_factor(here, site) * of_point(i).value(xi),
                 Some(_) => {
                     let ends = [(i, here, site), (j, site, here)];
                     let of_end = |(point, a, b)| list.end_factor(a, b) * of_point(point).value(xi);
                     0.5 * ends.map(of_end).iter().sum::<f64>()
                 }
-            };
-            (kappa, xi, j)
+            }
         };
-        let moments = for_each_point(n, &|i| {
-            let terms = list.family(i).map(|(_, site)| {
-                let (kappa, xi, _) = kappa(i, site);
-                kappa * xi.iter().map(|x| x * x).sum::<f64>() * list.volume(site)
-            });
-            terms.sum::<f64>()
-        });
-        let factors = match body.surface_correction {
-            true => surface::factors(cloud, &moments),
-            false => vec![1.0; n],
-        };
-        let factors = domain.with_ghosts(&factors);
+        // κ V of each entry for unit conductivity.
         let rows = for_each_point(n, &|i| {
             let mut row = vec![0.0; list.groups(i).len() * LANES];
             let first = list.groups(i).start * LANES;
             for (entry, site) in list.family(i) {
-                let (kappa, _, j) = kappa(i, site);
-                let k = body.interface.mean(conductivity.at(i), conductivity.at(j));
-                let factor = 0.5 * (factors[i] + factors[j]);
-                let volumes = cloud.volumes()[i] * list.volume(site);
-                row[entry - first] = kappa * k * factor * volumes;
+                row[entry - first] = kappa(i, site) * list.volume(site);
             }
             row
         });
-        let whole = rows.concat();
+        let mut whole = rows.concat();
+        let for_each_bond = |i: usize, visit: &mut Visit<'_>| {
+            for (entry, site) in list.family(i) {
+                let xi = list.vector(list.site(i), site);
+                visit(list.sites().point(site), xi, whole[entry]);
+            }
+        };
+        let surface = body.surface_factors(&for_each_bond);
+        let scales = for_each_point(n, &|i| {
+            let scales = list.family(i).map(|(entry, site)| {
+                let j = list.sites().point(site);
+                let k = body.interface.mean(conductivity.at(i), conductivity.at(j));
+                let factor = surface.as_ref().map_or(1.0, |surface| {
+                    let xi = list.vector(list.site(i), site);
+                    surface.of_bond(i, j, &direction(cloud.dimension(), xi))
+                });
+                (entry, k * factor * cloud.volumes()[i])
+            });
+            scales.collect::<Vec<_>>()
+        });
+        for (entry, scale) in scales.into_iter().flatten() {
+            whole[entry] *= scale;
+        }
         Ok(Self {
             present: whole.clone(),
             intact: list.geometric().to_vec(),

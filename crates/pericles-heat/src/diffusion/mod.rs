@@ -22,6 +22,7 @@ use pericles::{PericlesError, PointScalar, Result, Values, positive};
 use crate::calibration::PairConductivity;
 use grid::GridBonds;
 use list::ListBonds;
+use surface::{SurfaceFactors, Visit};
 
 /// Mean of the conductivities of the two ends of a bond.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -61,9 +62,11 @@ pub struct DiffusionBody {
     pub conductivity: PointScalar,
     /// Mean conductivity of bonds between different materials.
     pub interface: Interface,
-    /// Whether bonds of points with incomplete families conduct more, so that unit gradients have the energy of the
-    /// continuum.
+    /// Whether bonds of points with incomplete families conduct more, so that unit gradients along each axis have the energy
+    /// of the continuum.
     pub surface_correction: bool,
+    /// Points with prescribed values, which continue the body beyond a surface: their families are not corrected.
+    pub prescribed: Vec<u32>,
     /// Part of its conductance that a broken bond keeps, 0 … 1.
     pub broken_share: f64,
 }
@@ -185,6 +188,22 @@ impl DiffusionBody {
             (0.0..=1.0).contains(&share),
             allowed,
         )
+    }
+
+    /// Returns the correction of incomplete families, if there are any and they are corrected. All processes must call it
+    /// together.
+    fn surface_factors(
+        &self,
+        for_each_bond: &(dyn Fn(usize, &mut Visit<'_>) + Sync),
+    ) -> Option<SurfaceFactors> {
+        if !self.surface_correction {
+            return None;
+        }
+        let mut prescribed = vec![false; self.cloud.len()];
+        for &i in &self.prescribed {
+            prescribed[i as usize] = true;
+        }
+        SurfaceFactors::new(&self.cloud, &prescribed, for_each_bond)
     }
 
     /// Returns the pair conductivity for a horizon: by sums over the lattice where there is one.

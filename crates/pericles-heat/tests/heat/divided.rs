@@ -163,6 +163,7 @@ fn problem(case: &Case, cloud: &Arc<PointCloud>, conditions: Vec<Condition>) -> 
         conductivity: PointScalar::PerPoint(of_side(1.0, 0.3)),
         interface: case.interface,
         surface_correction: case.surface_correction,
+        prescribed: Vec::new(),
         broken_share: case.broken_share,
     };
     let diffusion = match case.on_list {

@@ -5,4 +5,5 @@ mod divided;
 mod operator;
 mod schemes;
 mod support;
+mod surfaces;
 mod system;

@@ -18,6 +18,7 @@ pub fn body(cloud: Arc<PointCloud>, horizon: f64, k: f64) -> DiffusionBody {
         conductivity: PointScalar::Uniform(k),
         interface: Interface::Harmonic,
         surface_correction: false,
+        prescribed: Vec::new(),
         broken_share: 0.0,
     }
 }

@@ -63,6 +63,17 @@ impl Assembler<'_> {
                 .and_then(|constants| constants.influence().cloned())
                 .unwrap_or_default(),
         };
+        let conditions = conduction
+            .conditions
+            .iter()
+            .enumerate()
+            .map(|(k, condition)| {
+                let path = KeyPath::from("thermal").key("condition").index(k);
+                self.thermal_condition(&path, (thermal, condition), discretisation, warnings)
+            });
+        let conditions = conditions.collect::<Result<Vec<_>, _>>()?;
+        let is_prescribed = |condition: &&Condition| matches!(condition.kind, Kind::Prescribed(_));
+        let prescribed = conditions.iter().filter(is_prescribed);
         let body = DiffusionBody {
             cloud: cloud.clone(),
             influence,
@@ -75,6 +86,9 @@ impl Assembler<'_> {
                 ConductivityMean::Arithmetic => Interface::Arithmetic,
             },
             surface_correction: conduction.surface_correction,
+            prescribed: prescribed
+                .flat_map(|condition| condition.points.iter().copied())
+                .collect(),
             broken_share: conduction.broken_conductance,
         };
         let diffusion = body
@@ -82,15 +96,6 @@ impl Assembler<'_> {
             .map_err(|error| at("thermal.conductivity", error))?;
         let capacity = |i: usize| parts.density.at(i) * specific_heat.at(i) * cloud.volumes()[i];
         let capacity = (0..cloud.len()).map(capacity).collect();
-        let conditions = conduction
-            .conditions
-            .iter()
-            .enumerate()
-            .map(|(k, condition)| {
-                let path = KeyPath::from("thermal").key("condition").index(k);
-                self.thermal_condition(&path, (thermal, condition), discretisation, warnings)
-            });
-        let conditions = conditions.collect::<Result<Vec<_>, _>>()?;
         let problem = Problem::new(diffusion, capacity, conditions);
         let problem = problem.map_err(|error| at("thermal.condition", error))?;
         let options = FieldOptions {
