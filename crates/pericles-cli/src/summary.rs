@@ -116,11 +116,22 @@ fn heat(audit: &Audit) -> Result<(), IoError> {
 }
 
 fn energies(audit: &Audit) -> Result<(), IoError> {
+    let more = [
+        ("contact", audit.contact_energy),
+        ("dissipated by contact", audit.contact_dissipated),
+        ("kinetic energy of impactors", audit.impactor_kinetic),
+    ];
+    let more = more.into_iter().filter_map(|(name, energy)| {
+        let energy = energy.filter(|energy| *energy != 0.0)?;
+        Some(format!(", {name} {}", quantity(energy, "J")))
+    });
     console::print(format_args!(
-        "energy: kinetic {}, elastic {}, dissipated {}; external work {}",
+        "energy: kinetic {}, elastic {}, dissipated {}{}; initially {}, external work {}",
         quantity(audit.kinetic_energy, "J"),
         quantity(audit.elastic_energy, "J"),
         quantity(audit.dissipated_energy, "J"),
+        more.collect::<String>(),
+        quantity(audit.initial_energy, "J"),
         quantity(audit.external_work, "J"),
     ))?;
     let forces = match &audit.static_balance {

@@ -272,7 +272,7 @@ time = { scheme = "adaptive-dynamic-relaxation", tolerance = 0.1 }
 output = { fields = "never" }
 "#;
     let says = [
-        "loads and reactions are not in equilibrium",
+        "loads, reactions and contact forces are not in equilibrium",
         "smaller tolerance",
     ];
     warned_of(deck, &says, "--set time.tolerance=1e-8");
@@ -350,4 +350,124 @@ output = { fields = "never", history = "never" }
     assert_eq!(shown(""), (1, 1));
     assert_eq!(shown("--quiet"), (0, 1));
     assert_eq!(shown("--set material.critical_stretch=30"), (0, 0));
+}
+
+/// Runs a deck that must give no warnings after the run; returns the audit and the printed text.
+fn without_warnings(deck: &str) -> (serde_json::Value, String) {
+    let place = tempfile::tempdir().unwrap();
+    assert_eq!(warnings(place.path(), deck, ""), [""; 0], "{deck}");
+    let audit = report(&place.path().join("out"))["audit"].clone();
+    let shown = text(&succeed(place.path(), "run deck.toml --out out --force").stdout);
+    (audit, shown)
+}
+
+#[test]
+fn a_closed_cycle_is_compared_with_the_largest_work() {
+    // The work at the end of the cycle is of the order of rounding.
+    for scheme in [
+        "scheme = 'velocity-verlet'",
+        "scheme = 'static', load_steps = 20",
+    ] {
+        let deck = format!(
+            r#"
+body = {{ shape = "bar", length = 40, spacing = 1 }}
+material = {{ model = "linear", density = 1, youngs_modulus = 1, horizon_ratio = 3 }}
+sets.left = {{ layer = {{ side = "-x", cells = 3 }} }}
+sets.right = {{ layer = {{ side = "+x", cells = 3 }} }}
+constraint = [
+    {{ set = "left", displacement = [0] }},
+    {{ set = "right", displacement = [{{ expression = "0.01*sin(pi*t/4000)^4" }}] }},
+]
+time = {{ {scheme}, end = 4000 }}
+output = {{ fields = "never" }}
+"#
+        );
+        let (audit, _) = without_warnings(&deck);
+        let number = |name: &str| audit[name].as_f64().unwrap();
+        assert!(number("external_work").abs() < 1e-6 * number("largest_work"));
+        assert!(number("energy_drift").abs() < 1e-6, "{audit}");
+    }
+}
+
+#[test]
+fn a_body_that_expands_freely_is_in_equilibrium_without_reactions() {
+    let (audit, _) = without_warnings(
+        r#"
+body = { shape = "plate", size = [20, 10], spacing = 1, plane = "stress" }
+material = { model = "state-based", density = 1, youngs_modulus = 1, poisson_ratio = 0.22, horizon_ratio = 3 }
+thermal = { expansion = 1e-5, reference = 300, temperature = 400 }
+sets.left = { layer = { side = "-x", cells = 1 } }
+sets.low = { layer = { side = "-y", cells = 1 } }
+constraint = [{ set = "left", displacement = [0, "free"] }, { set = "low", displacement = ["free", 0] }]
+time = { scheme = "static" }
+output = { fields = "never" }
+"#,
+    );
+    let balance = &audit["static_balance"];
+    assert!(
+        balance["force_relative"].as_f64().unwrap() < 1e-5,
+        "{balance}"
+    );
+}
+
+#[test]
+fn contact_forces_are_part_of_static_equilibrium_and_of_the_printed_energies() {
+    let (audit, shown) = without_warnings(
+        r#"
+body = { shape = "plate", size = [14, 9], spacing = 1, plane = "stress" }
+material = { density = 1, youngs_modulus = 5, horizon_ratio = 3 }
+sets.fixed = { where = "y > 6" }
+constraint = [{ set = "fixed", displacement = [0, 0] }]
+impactor = [{ name = "wall", shape = "half-space", normal = [0.1, 1], centre = [7, -1.5], displacement = [0, 1.9], function = { kind = "ramp", duration = 1 } }]
+time = { scheme = "static", load_steps = 10 }
+output = { fields = "never" }
+"#,
+    );
+    let number = |name: &str| audit[name].as_f64().unwrap();
+    let parts = number("elastic_energy") + number("contact_energy");
+    assert!(number("contact_energy") > 0.01 * parts);
+    assert!(
+        (parts / number("external_work") - 1.0).abs() < 1e-3,
+        "{audit}"
+    );
+    assert!(shown.contains(", contact "), "{shown}");
+}
+
+#[test]
+fn a_body_that_is_heated_on_one_side_has_no_mirror_symmetry_to_lose() {
+    let body = r#"
+body = { shape = "plate", size = [12, 6], spacing = 1, plane = "stress" }
+material = { density = 1, youngs_modulus = 1, horizon_ratio = 3 }
+output = { fields = "never" }
+"#;
+    // Computed temperatures, and prescribed ones that are symmetric at the start only.
+    for (more, across) in [
+        (
+            r#"
+sets.face = { layer = { side = "-y", cells = 1 } }
+time = { scheme = "static", end = 2, load_steps = 2, rigid_modes = "fix" }
+[thermal]
+conductivity = 1
+specific_heat = 1
+expansion = 1e-5
+reference = 500
+temperature = 500
+scheme = "backward-euler"
+condition = [{ set = "face", convection = { coefficient = 1, ambient = 300 } }]
+"#,
+            "y",
+        ),
+        (
+            r#"
+thermal = { expansion = 1e-5, reference = 0, temperature = { expression = "x*t" } }
+time = { end = 5 }
+"#,
+            "x",
+        ),
+    ] {
+        let (audit, _) = without_warnings(&format!("{body}{more}"));
+        let mirrors = audit["mirror_errors"].as_array().unwrap();
+        assert_eq!(mirrors.len(), 1, "{audit}");
+        assert_ne!(mirrors[0]["axis"], across);
+    }
 }

@@ -38,8 +38,19 @@ pub struct Audit {
     pub elastic_energy: f64,
     /// Energy dissipated by broken bonds and damping, J.
     pub dissipated_energy: f64,
+    /// Energy stored by contact, J; `None` without contact.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contact_energy: Option<f64>,
+    /// Energy dissipated by dampers and friction of contact, J; `None` without contact.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contact_dissipated: Option<f64>,
+    /// Kinetic energy of impactors that move freely, J; `None` without contact.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub impactor_kinetic: Option<f64>,
     /// Work done on the body by loads and constraints, J.
     pub external_work: f64,
+    /// Largest magnitude of this work during the run, J.
+    pub largest_work: f64,
     /// Kinetic and elastic energy before the first step of the whole run, J.
     pub initial_energy: f64,
     /// Difference between the energy that the scheme conserves and kinetic + elastic energy, J.
@@ -66,7 +77,7 @@ pub struct Audit {
     pub coarse_breaks: u64,
     /// The largest damage of a point.
     pub largest_damage: f64,
-    /// Error of the energy balance relative to the larger of external work and initial energy.
+    /// Error of the energy balance relative to the larger of the largest work and the initial energy; zero without energy.
     pub energy_drift: f64,
     /// Highest frequency of the reference state that limits the time step, times the step; `None` without stiffness.
     pub omega_dt: Option<f64>,
@@ -123,12 +134,18 @@ impl Audit {
         let written = domain.is_first() && history.exists();
         let table = written.then(|| read_csv(history)).transpose()?;
         let rows = table.as_ref().and_then(|table| table.column("balance"));
+        let touching = |energy: f64| system.has_interactions().then_some(energy);
+        let largest_work = system.ledger().largest_work;
         let evaluated_points = domain.count(system.evaluated_points());
         Ok(Self {
             kinetic_energy: energies.kinetic,
             elastic_energy: energies.elastic,
             dissipated_energy: energies.dissipated,
+            contact_energy: touching(energies.contact),
+            contact_dissipated: touching(energies.contact_dissipated),
+            impactor_kinetic: touching(energies.bodies),
             external_work: energies.work,
+            largest_work,
             initial_energy: energies.initial,
             scheme_correction: energies.scheme,
             balance,
@@ -145,7 +162,10 @@ impl Audit {
             broken_bonds: system.operator().broken_bonds(),
             coarse_breaks: system.coarse_breaks(),
             largest_damage: domain.max(damage.fold(0.0, f64::max)),
-            energy_drift: balance / energies.work.abs().max(energies.initial.abs()),
+            energy_drift: match largest_work.max(energies.initial.abs()) {
+                0.0 => 0.0,
+                scale => balance / scale,
+            },
             omega_dt: facts.limiting_frequency.map(|omega| omega * facts.dt),
             evaluated_points,
             force_rounding: system.operator().rounding(&simulation.state().u),

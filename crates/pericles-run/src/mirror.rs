@@ -118,9 +118,27 @@ impl Symmetries {
     }
 
     /// Returns the deviations of the current state.
+    ///
+    /// The conditions of computed temperatures are not compared before the run: a symmetry that the temperatures do not have is not
+    /// one of the data.
     pub fn errors(&self, simulation: &Simulation) -> Vec<MirrorError> {
+        let system = simulation.system();
+        let temperatures: Vec<Vec<f64>> = system
+            .fields()
+            .map(|field| {
+                let mut values = vec![f64::NAN; system.points()];
+                field.values_into(simulation.state().t, &mut values);
+                values
+            })
+            .collect();
         let errors = self.0.iter().filter_map(|symmetry| {
-            let mirror = Mirror::across(symmetry.axis, simulation.system().cloud())?;
+            let mirror = Mirror::across(symmetry.axis, system.cloud())?;
+            if !temperatures
+                .iter()
+                .all(|field| mirror.is_even_in_range(field))
+            {
+                return None;
+            }
             Some(MirrorError {
                 axis: AXES[symmetry.axis],
                 opposite: symmetry.sign < 0.0,
@@ -178,6 +196,20 @@ impl Mirror {
         })
     }
 
+    /// Returns whether a computed scalar is symmetric to the accuracy of iterative solvers.
+    fn is_even_in_range(&self, values: &[f64]) -> bool {
+        /// Tolerance relative to the range of the values.
+        const SOLVED: f64 = 1e-5;
+        let range = |[low, high]: [f64; 2], x: &f64| [low.min(*x), high.max(*x)];
+        let [low, high] = values
+            .iter()
+            .fold([f64::INFINITY, f64::NEG_INFINITY], range);
+        let rounding = SAME_FIELD * low.abs().max(high.abs());
+        let allowed = rounding.max(SOLVED * (high - low));
+        let mut pairs = values.iter().zip(&self.images);
+        pairs.all(|(a, &image)| (a - values[image as usize]).abs() <= allowed)
+    }
+
     /// Returns the sign of a component in the image.
     fn sign(&self, component: usize, sign: f64) -> f64 {
         if component == self.axis { -sign } else { sign }
@@ -229,6 +261,15 @@ impl Mirror {
             fill(&mut field);
             self.difference(sign, &field) <= SAME_FIELD
         };
+        if let Some(thermal) = system.operator().capabilities().thermal
+            && system.fields().next().is_none()
+        {
+            let mut temperatures = vec![0.0; system.points()];
+            thermal.temperatures_into(t, &mut temperatures);
+            if !self.is_even(&temperatures) {
+                return false;
+            }
+        }
         // Unconstrained entries stay NaN.
         alike(&|field| system.load_density_into(t, field), 0.0)
             && alike(

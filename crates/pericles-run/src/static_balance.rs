@@ -11,11 +11,14 @@ pub struct StaticBalance {
     pub residual: f64,
     /// Resultant of loads, reactions and impactors, N: zero at equilibrium.
     pub force: [f64; 3],
-    /// Its magnitude relative to the sum of the magnitudes of all loads and reactions.
+    /// Its magnitude relative to the sum of the magnitudes of all loads, reactions and contact forces, or to the norm of
+    /// the forces to which the tolerance of the scheme refers, if this is larger: in a body that expands freely, or is
+    /// severed, loads and reactions vanish.
     pub force_relative: f64,
     /// Moment of loads and reactions about the centre of the body, N m: zero at equilibrium.
     pub moment: [f64; 3],
-    /// Its magnitude relative to the sum of the magnitudes of the moments of all loads and reactions.
+    /// Its magnitude relative to the sum of the magnitudes of the moments of these forces, or to the same norm times the distance of
+    /// the farthest point from the centre.
     pub moment_relative: f64,
 }
 
@@ -40,10 +43,15 @@ impl StaticBalance {
             0.0 => 0.0,
             sum => size(resultant) / sum,
         };
+        let reference = match inner.change {
+            0.0 => 0.0,
+            change => unbalanced(&snapshot) / change,
+        };
+        let arm = domain.max(arms.iter().map(size).fold(0.0, f64::max));
         Some(Self {
             residual: inner.change,
-            force_relative: relative(&force, total(&|i| size(&forces[i]))),
-            moment_relative: relative(&moment, total(&|i| size(&moments[i]))),
+            force_relative: relative(&force, total(&|i| size(&forces[i])).max(reference)),
+            moment_relative: relative(&moment, total(&|i| size(&moments[i])).max(reference * arm)),
             force,
             moment,
         })
@@ -86,6 +94,16 @@ fn forces(snapshot: &Snapshot<'_>) -> Vec<[f64; 3]> {
         force
     };
     (0..n).map(of_point).collect()
+}
+
+/// Returns the norm of the unbalanced forces, N.
+fn unbalanced(snapshot: &Snapshot<'_>) -> f64 {
+    let system = snapshot.system();
+    let (n, volumes) = (system.points(), system.cloud().volumes());
+    let [forces, reactions] = [Field::ForceDensity, Field::Reaction].map(|f| snapshot.field(f));
+    let entries = system.dimension() * n;
+    let square = |k: usize| (volumes[k % n] * (forces[k] + reactions[k])).powi(2);
+    system.domain().sum(entries, square).sqrt()
 }
 
 fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {

@@ -9,6 +9,8 @@ use crate::step_end::{Path, StepEnd};
 pub struct Ledger {
     /// Work, J.
     pub work: f64,
+    /// The largest magnitude of the work so far, J.
+    pub largest_work: f64,
     /// Sum of the magnitudes of all contributions to the work, J: the scale for relative errors of the energy
     /// balance.
     pub exchanged: f64,
@@ -19,6 +21,7 @@ pub struct Ledger {
 impl Ledger {
     pub(crate) fn book(&mut self, work: f64, impulse: [f64; 3]) {
         self.work += work;
+        self.largest_work = self.largest_work.max(self.work.abs());
         self.exchanged += work.abs();
         for c in 0..3 {
             self.impulse[c] += impulse[c];

@@ -57,7 +57,9 @@ impl Subject for Caution {
             Self::NothingDissipates { moves: false } => {
                 "use another scheme than \"thermal\" in [time], or remove the key"
             }
-            Self::NothingActs => "add [[load]], [[constraint]] or [[initial]]",
+            Self::NothingActs => {
+                "add [[load]], [[constraint]] or [[initial]]; `pericles modes` does not need them"
+            }
             Self::StiffnessError { .. } => {
                 "use modulus = \"lattice\", which is exact on a grid (\"continuum\" for spectral forces and Gauss nodes), or a larger horizon ratio"
             }

@@ -223,6 +223,9 @@ impl Assembler<'_> {
     ) {
         /// Overlap in spacings above which points may pass each other.
         const LARGE: f64 = 0.5;
+        if self.model.time.scheme.is_static() {
+            return;
+        }
         let (Some(own), Some(spacing)) = (own, solid.shape.spacing()) else {
             return;
         };

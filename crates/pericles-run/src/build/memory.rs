@@ -52,7 +52,7 @@ const TRANSFORM: f64 = 4.0;
 const VERTEX: f64 = 400.0;
 const GEODESIC: f64 = 84.0;
 /// Numbers per point of heat conduction: temperatures at both ends of the accepted and the next step, capacity, flows,
-/// work arrays of a step; conductivity and surface factor.
+/// work arrays of a step; conductivity and marks of incomplete families. The tensor of the surface correction comes in addition.
 const HEAT: f64 = 24.0;
 /// Bytes per conducting bond of a list: list and conductances.
 const CONDUCTOR: f64 = 20.0;
@@ -282,7 +282,8 @@ impl Assembler<'_> {
             true => CONDUCTOR * neighbours,
             false => neighbours / 4.0,
         };
-        HEAT * NUMBER + bonds + self.bytes_of_heat_multigrid(dimension)
+        let tensor = dimension as f64 * (dimension as f64 + 1.0) / 2.0;
+        (HEAT + tensor) * NUMBER + bonds + self.bytes_of_heat_multigrid(dimension)
     }
 
     /// Returns the bytes per point of the multigrid of implicit and steady heat conduction; zero for models without it.

@@ -20,5 +20,5 @@ crate::saved! {
 }
 
 crate::saved! {
-    impl Entry<Number = f64> for Ledger { work, exchanged, impulse }
+    impl Entry<Number = f64> for Ledger { work, largest_work, exchanged, impulse }
 }
