@@ -10,18 +10,27 @@ pub trait Nonlinear {
     fn residual_into(&mut self, x: &[f64], out: &mut [f64]);
     /// Computes `out` = F′(x) direction.
     fn derivative_into(&mut self, x: &[f64], direction: &[f64], out: &mut [f64]);
+    /// Sets `out` to errors of x that change F(x) as much as the rounding errors of its evaluation do, for example those of the
+    /// positions from which F is computed; zero if the given tolerance is above rounding.
+    fn rounding_into(&mut self, x: &[f64], out: &mut [f64]) {
+        let _ = x;
+        out.fill(0.0);
+    }
 }
 
 /// Largest number of conjugate-gradient iterations per Newton step.
 const INNER: usize = 400;
 /// Largest number of halvings of a step that does not reduce the residual.
 const HALVINGS: usize = 12;
+/// Residual accepted where it does not decrease, relative to the effect of rounding errors.
+const AT_ROUNDING: f64 = 16.0;
 
 /// Solves F(x) = 0 starting from the given `x`: x ← x − λ F′(x)⁻¹ F(x). Conjugate gradients solve the linear system
 /// to a tolerance that tightens as Newton's method converges (Eisenstat & Walker, choice 2 with γ = 0.9 and
 /// exponent 2); λ is halved until ‖F‖ decreases.
 ///
-/// The limits compare ‖F(x)‖₂ with `scale`, the size of the terms whose difference is F.
+/// The limits compare ‖F(x)‖₂ with `scale`, the size of the terms whose difference is F. A residual that no longer decreases
+/// is accepted if it consists of the rounding errors of F ([`Nonlinear::rounding_into`]).
 ///
 /// # Errors
 /// [`PericlesError::NotConverged`] if the residual stagnates or after too many iterations; `x` is then the best
@@ -44,16 +53,19 @@ pub fn newton_krylov(
     problem.residual_into(x, residual);
     solved.residual = domain.norm(residual);
     let mut forcing: f64 = 0.1;
-    while solved.residual > tolerance {
-        let failed = |solved: Solved, cause| PericlesError::NotConverged {
-            solver: "Newton's method",
-            iterations: solved.iterations,
-            residual: solved.residual,
-            tolerance,
-            cause,
-        };
+    let failed = |solved: Solved, cause| PericlesError::NotConverged {
+        solver: "Newton's method",
+        iterations: solved.iterations,
+        residual: solved.residual,
+        tolerance,
+        cause,
+    };
+    let cause = loop {
+        if solved.residual <= tolerance {
+            return Ok(solved);
+        }
         if solved.iterations == limits.iterations {
-            return Err(failed(solved, "too few iterations"));
+            break "too few iterations";
         }
         limits.interrupt.poll()?;
         solved.iterations += 1;
@@ -80,12 +92,12 @@ pub fn newton_krylov(
         )?;
         solved.products += counted.products;
         if matches!(end, End::Indefinite) && counted.iterations == 1 {
-            return Err(failed(solved, "the derivative is not positive definite"));
+            break "the derivative is not positive definite";
         }
         let before = solved.residual;
         let mut length = 1.0;
         let mut halvings = 0;
-        loop {
+        let stagnates = loop {
             trial.copy_from_slice(x);
             add_scaled(trial, length, correction);
             limits.interrupt.poll()?;
@@ -93,17 +105,17 @@ pub fn newton_krylov(
             solved.residual = domain.norm(residual);
             if solved.residual < before * (1.0 - 1e-4 * length) {
                 x.copy_from_slice(trial);
-                break;
+                break false;
             }
             halvings += 1;
             if halvings > HALVINGS {
                 solved.residual = before;
-                return Err(failed(
-                    solved,
-                    "the residual stagnates: the tolerance is below rounding, or the step is too large",
-                ));
+                break true;
             }
             length *= 0.5;
+        };
+        if stagnates {
+            break "the residual stagnates: the tolerance is below rounding, or the step is too large";
         }
         let ratio = solved.residual / before;
         let safeguard = 0.9 * forcing * forcing;
@@ -111,8 +123,13 @@ pub fn newton_krylov(
         if safeguard > 0.1 {
             forcing = forcing.max(safeguard);
         }
+    };
+    problem.rounding_into(x, trial);
+    problem.derivative_into(x, trial, right);
+    match solved.residual <= AT_ROUNDING * domain.norm(right) {
+        true => Ok(solved),
+        false => Err(failed(solved, cause)),
     }
-    Ok(solved)
 }
 
 #[cfg(test)]

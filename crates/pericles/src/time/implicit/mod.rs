@@ -348,6 +348,14 @@ impl Nonlinear for Stage<'_> {
         self.system.hold_at(self.t[1], out);
     }
 
+    fn rounding_into(&mut self, x: &[f64], out: &mut [f64]) {
+        self.go_to(x, self.reach);
+        ends::rounding_into(self.system, self.place, out);
+        let reach = self.reach;
+        out.iter_mut().for_each(|error| *error /= reach);
+        self.system.hold_at(self.t[1], out);
+    }
+
     fn derivative_into(&mut self, x: &[f64], direction: &[f64], out: &mut [f64]) {
         self.go_to(x, self.reach);
         self.system

@@ -161,6 +161,15 @@ impl Nonlinear for StepEquation<'_> {
         self.add_boundaries(false, out);
     }
 
+    fn rounding_into(&mut self, y: &[f64], out: &mut [f64]) {
+        self.unscale(y, 0);
+        ends::rounding_into(self.system, &self.work[0], out);
+        for (error, root_mass) in out.iter_mut().zip(self.root_mass) {
+            *error *= root_mass;
+        }
+        self.system.hold_at(self.t, out);
+    }
+
     fn derivative_into(&mut self, y: &[f64], direction: &[f64], out: &mut [f64]) {
         self.unscale(y, 0);
         self.unscale(direction, 1);

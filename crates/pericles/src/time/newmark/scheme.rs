@@ -8,7 +8,7 @@ use crate::compatibility::{Requirement, require};
 use crate::error::{PericlesError, Result};
 use crate::interrupt::Interrupt;
 use crate::operator::PointSubset;
-use crate::solve::{SolveLimits, Work, newton_krylov};
+use crate::solve::{Nonlinear, SolveLimits, Work, newton_krylov};
 use crate::step_end::{Path, StepEnd};
 use crate::step_kind::StepKind;
 use crate::system::System;
@@ -213,9 +213,7 @@ impl Newmark {
             .plus(theta, &state.a)
             .onto(&self.predicted[0], &self.zone, n, u);
         system.place_on(t, &PointSubset::All, u);
-        for ((y, u), root) in scaled.iter_mut().zip(&*u).zip(&*root_mass) {
-            *y = u * root;
-        }
+        scale_by(root_mass, u, scaled);
         let velocity = self.options.gamma / (self.options.beta * dt);
         let least = match self.options.norm {
             VelocityNorm::Weighted => *least_root_density,
@@ -240,6 +238,25 @@ impl Newmark {
             with_boundaries: false,
             work: vectors,
         };
+        // The explicit step is close for smooth motion, but far from the solution after a jump of a prescribed displacement in steps
+        // of many periods; the last displacement is then the better start.
+        let [explicit, rest] = {
+            let norm = |equation: &mut StepEquation<'_>, y: &[f64], out: &mut Vec<f64>| {
+                equation.residual_into(y, out);
+                system.domain().norm(out)
+            };
+            u.copy_from_slice(&state.u);
+            system.place_on(t, &PointSubset::All, u);
+            scale_by(root_mass, u, found);
+            let mut residual = std::mem::take(v);
+            let norms = [&*scaled, &*found].map(|y| norm(&mut equation, y, &mut residual));
+            *v = residual;
+            norms
+        };
+        // A residual that is NaN is larger than any other.
+        if rest < explicit || explicit.is_nan() {
+            scaled.copy_from_slice(found);
+        }
         let solved = newton_krylov(&mut equation, scaled, scale, &limits, work)?;
         for ((u, y), root) in u.iter_mut().zip(&*scaled).zip(&*root_mass) {
             *u = y / root;
@@ -293,6 +310,13 @@ impl Newmark {
         std::mem::swap(&mut state.v, v);
         std::mem::swap(&mut state.a, a);
         state.close(system, t);
+    }
+}
+
+/// Computes y = √m u.
+fn scale_by(root_mass: &[f64], u: &[f64], y: &mut [f64]) {
+    for ((y, u), root) in y.iter_mut().zip(u).zip(root_mass) {
+        *y = u * root;
     }
 }
 
