@@ -176,14 +176,16 @@ fn implicit(
             out[i] = explicit[i] + theta * out[i] - capacity[i] * (values[i] - before[i]) / dt;
         }
     };
-    // Typical content over the step: rounding of C T/dt limits the residual.
+    // Typical content and flows over the step: their rounding limits the residual. In long steps of good conductors the flows
+    // are much larger than the change of the content.
     let domain = problem.domain();
     let most = values
         .iter()
         .chain(&before)
         .fold(0.0, |most: f64, value| most.max(value.abs()));
     let most = domain.max(most);
-    let rounding = 1e-15 * most * domain.norm(capacity) / dt;
+    let conductance = solver.conductance(problem);
+    let rounding = 1e-15 * most * (domain.norm(capacity) / dt + theta * conductance);
     newton(
         problem,
         solver,
@@ -249,7 +251,7 @@ fn newton(
             share,
             slope: &slope,
         };
-        let (correction, used, _) = solver.solve(&equations, &mut r, size)?;
+        let (correction, used, _) = solver.solve(&equations, &mut r, (size, rounding))?;
         products += used;
         for (value, correction) in values.iter_mut().zip(&correction) {
             *value += correction;
@@ -308,7 +310,7 @@ fn steady(
         .iter()
         .fold(0.0, |most: f64, value| most.max(value.abs()));
     let most = domain.max(most);
-    let rounding = 1e-15 * most * domain.norm(&problem.diffusion.diagonal());
+    let rounding = 1e-15 * most * solver.conductance(problem);
     newton(problem, solver, (0.0, 1.0, t1), &residual, values, rounding)?;
     // Flows of the steady state: the change of content is not followed.
     let mut rates = vec![0.0; values.len()];

@@ -70,6 +70,8 @@ pub(crate) struct Solver {
     replicated: Option<Replicated>,
     krylov: KrylovWork,
     pub effort: Effort,
+    /// Number of changes of the bonds, and the norm of the conductances of all points for these bonds, W/K.
+    conductance: Option<(u64, f64)>,
     /// 1 at points without prescribed values, 0 at others.
     free: Vec<f64>,
 }
@@ -101,17 +103,32 @@ impl Solver {
             replicated: None,
             krylov: KrylovWork::new(n),
             effort: Effort::default(),
+            conductance: None,
             free: (0..n).map(free).collect(),
         }
     }
 
-    /// Solves the equations for `residual`; `scale` is the norm of the right-hand side that the tolerance refers to.
+    /// Returns the norm of Σ_j G_ij, W/K, which is computed once for the present bonds. All processes must call it together.
+    pub fn conductance(&mut self, problem: &Problem) -> f64 {
+        let changes = problem.diffusion.changes();
+        match self.conductance {
+            Some((known, conductance)) if known == changes => conductance,
+            _ => {
+                let conductance = problem.domain().norm(&problem.diffusion.diagonal());
+                self.conductance = Some((changes, conductance));
+                conductance
+            }
+        }
+    }
+
+    /// Solves the equations for `residual`; `scale` is the norm of the right-hand side that the tolerance refers to, `rounding` a
+    /// residual that consists of rounding errors.
     /// Returns the correction, the number of products and the final relative residual. All processes must call it together.
     pub fn solve(
         &mut self,
         equations: &Equations<'_>,
         residual: &mut [f64],
-        scale: f64,
+        (scale, rounding): (f64, f64),
     ) -> Result<(Vec<f64>, u64, f64)> {
         let problem = equations.problem;
         let domain = problem.domain();
@@ -138,7 +155,7 @@ impl Solver {
             free: &self.free,
         };
         let goal = Goal {
-            absolute: TOLERANCE * scale,
+            absolute: rounding.max(TOLERANCE * scale),
             relative: 0.0,
             acting: 0.0,
             products: MOST,

@@ -331,3 +331,55 @@ fn the_products_of_a_steady_state_do_not_grow_with_the_body() {
         "{plates:?} {blocks:?}"
     );
 }
+
+#[test]
+fn long_implicit_steps_of_good_conductors_reach_the_accuracy_of_rounding() {
+    // The temperature rises uniformly by flux · area · t/content; the difference across the bar vanishes with 1/k.
+    let (cells, dx, flux, end) = (30, 1e-3, 1e4, 40.0);
+    let cloud = box_of(2, cells, dx);
+    let volume = cloud.volumes()[0];
+    let heated: Vec<u32> = (0..cloud.len() as u32)
+        .filter(|&i| cloud.point(i as usize)[1] > (cells as f64 - 1.0) * dx)
+        .collect();
+    let area = volume / dx;
+    for k in [1e2, 1e5, 1e8] {
+        for scheme in [Scheme::BackwardEuler, Scheme::Trapezoidal] {
+            let body = pericles_heat::DiffusionBody {
+                surface_correction: true,
+                ..body(cloud.clone(), 3.0 * dx, k)
+            };
+            let condition = Condition {
+                name: "top".into(),
+                points: heated.clone(),
+                kind: Kind::Inflow {
+                    density: number(flux),
+                    measure: vec![area; heated.len()],
+                },
+            };
+            let capacity = vec![3.6e6 * volume; cloud.len()];
+            let problem = Problem::new(body.build().unwrap(), capacity, vec![condition]).unwrap();
+            let options = FieldOptions {
+                scheme,
+                step: Some(1.0),
+                dissipation: 0.0,
+            };
+            let field = DiffusingField::new(problem, options, 0.0, vec![500.0; cloud.len()]);
+            let mut values = vec![0.0; cloud.len()];
+            field.unwrap().shared().temperatures_into(end, &mut values);
+            let rise =
+                flux * area * heated.len() as f64 * end / (3.6e6 * volume * cloud.len() as f64);
+            let mean = values.iter().sum::<f64>() / cloud.len() as f64;
+            assert!(
+                ((mean - 500.0) / rise - 1.0).abs() < 1e-9,
+                "{k} {scheme:?}: {mean}"
+            );
+            // The last change of the temperature is computed from the flows, with their rounding errors.
+            let rounding = 1e-14 * mean * k / (3.6e6 * dx * dx);
+            let farthest = values
+                .iter()
+                .fold(0.0, |most: f64, t| most.max((t - mean).abs()));
+            let allowed = 2.0 * flux * cells as f64 * dx / k + rounding;
+            assert!(farthest < allowed, "{k}: {farthest:e}, {allowed:e}");
+        }
+    }
+}
