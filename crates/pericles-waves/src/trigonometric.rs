@@ -75,10 +75,14 @@ pub struct TrigonometricOptions {
 /// Trigonometric integrator: u′ = u + τ sinc(τW) v + (1 − cos τW) W⁻² a, v′ = cos(τW) v + τ sinc(τW) a, with W² =
 /// K/ρ and a = −W²u + b/ρ at the start of the step.
 ///
-/// Exact for linear forces and constant loads with any time step: one step may cover any time. Loads and prescribed
-/// motions that vary within the step contribute by the difference from its start, r(s) = b(t+s) − b(t) over ρ, as
+/// Exact for linear forces and constant loads with any time step: one step may cover any time. Loads that vary within
+/// the step contribute by the difference from its start, r(s) = b(t+s) − b(t) over ρ, as
 /// Σ_k w_k [ sin((τ−s_k)W)/W r(s_k), cos((τ−s_k)W) r(s_k) ] with the Gauss nodes s_k (order 4) or the midpoint
 /// (order 2).
+///
+/// The displacement of moving supports within the step is a cubic in time through its values at the start, both thirds and
+/// the end. Its force on the body, which grows with the stiffness, is integrated exactly, so that the step may be
+/// longer than the periods of the body.
 ///
 /// Nonlinear forces are split into K, the tangent at the reference, and a remainder g, which changes the velocity
 /// by τg/(2ρ) before and after the step of the linear part: second order, symmetric and symplectic (Deuflhard 1979;
@@ -195,24 +199,73 @@ impl Trigonometric {
     }
 
     /// Computes r for the second of three times (start, node and end of the step); returns false if nothing varies.
-    fn change_into(&mut self, system: &System, t: [f64; 3], u: &[f64]) -> bool {
+    fn change_into(&mut self, system: &System, t: [f64; 3]) -> bool {
         let [push, change] = [&mut self.push, &mut self.change];
         system.external_acceleration_into(t[1], change);
         system.external_acceleration_into(t[0], push);
         subtract(change, push);
-        if !system.motions().is_empty() {
-            push.copy_from_slice(u);
-            system.place_on(t[1], &PointSubset::All, push);
-            subtract(push, u);
-            // Points that are released within the step are free during all of it.
-            self.pull.copy_from_slice(push);
-            system.hold_at(t[2], &mut self.pull);
-            subtract(push, &self.pull);
-            system.vibration_at(t[2], &self.reference, push, &mut self.pull);
-            system.hold_at(t[2], change);
-            subtract(change, &self.pull);
-        }
+        system.hold_at(t[2], change);
         change.iter().any(|x| *x != 0.0)
+    }
+
+    /// Adds the effect of the motion of supports within the step.
+    fn supports(
+        &mut self,
+        system: &System,
+        [t, tau]: [f64; 2],
+        u: &[f64],
+        interrupt: Interrupt<'_>,
+    ) -> Result<()> {
+        /// Coefficients of s/τ, (s/τ)² and (s/τ)³ of the cubic with the values y at s = τ/3, 2τ/3 and τ, and zero at s = 0.
+        const CUBIC: [[f64; 3]; 3] = [[9.0, -4.5, 1.0], [-22.5, 18.0, -4.5], [13.5, -13.5, 4.5]];
+        const FUNCTIONS: [[WaveFunction; 2]; 3] = [
+            [WaveFunction::Ramp, WaveFunction::Versine],
+            [WaveFunction::Parabola, WaveFunction::Ramp],
+            [WaveFunction::Cubic, WaveFunction::Parabola],
+        ];
+        if system.motions().is_empty() {
+            return Ok(());
+        }
+        let t_next = t + tau;
+        let mut factor = 1.0;
+        for (power, (row, [of_u, of_v])) in CUBIC.iter().zip(FUNCTIONS).enumerate() {
+            // (s/τ)^k = k!/τ^k · s^k/k!
+            factor *= (power + 1) as f64 / tau;
+            self.push.fill(0.0);
+            for (node, weight) in row.iter().enumerate() {
+                let moved = &mut self.pull;
+                moved.copy_from_slice(u);
+                let at = match node {
+                    2 => t_next,
+                    node => t + tau * (node + 1) as f64 / 3.0,
+                };
+                system.place_on(at, &PointSubset::All, moved);
+                subtract(moved, u);
+                add(&mut self.push, *weight, moved);
+            }
+            // Points that are released within the step are free during all of it.
+            self.pull.copy_from_slice(&self.push);
+            system.hold_at(t_next, &mut self.pull);
+            subtract(&mut self.push, &self.pull);
+            if self.push.iter().all(|x| *x == 0.0) {
+                continue;
+            }
+            system.vibration_at(t_next, &self.reference, &self.push, &mut self.change);
+            let [u_next, v_next] = &mut self.next;
+            let terms = [
+                Term::times(-factor, of_u, tau, u_next),
+                Term::times(-factor, of_v, tau, v_next),
+            ];
+            apply(
+                &mut self.engine,
+                self.options,
+                system,
+                (&self.reference, t_next),
+                (&self.change, terms),
+                interrupt,
+            )?;
+        }
+        Ok(())
     }
 
     fn flow(
@@ -253,10 +306,9 @@ impl Trigonometric {
         &mut self,
         system: &System,
         [t, tau]: [f64; 2],
-        u: &[f64],
         interrupt: Interrupt<'_>,
     ) -> Result<()> {
-        if system.loads().is_empty() && system.motions().is_empty() {
+        if system.loads().is_empty() {
             return Ok(());
         }
         let gauss = 0.5 / 3.0f64.sqrt();
@@ -265,7 +317,7 @@ impl Trigonometric {
             LoadRule::Midpoint => &[(0.5, 1.0)],
         };
         for (node, weight) in nodes {
-            if self.change_into(system, [t, t + node * tau, t + tau], u) {
+            if self.change_into(system, [t, t + node * tau, t + tau]) {
                 let left = (1.0 - node) * tau;
                 let [u, v] = &mut self.next;
                 let terms = [
@@ -467,7 +519,8 @@ impl Integrator for Trigonometric {
         self.next[0].copy_from_slice(u);
         self.next[1].fill(0.0);
         self.flow(system, times, interrupt)?;
-        self.loads(system, [*t, dt], u, interrupt)?;
+        self.loads(system, [*t, dt], interrupt)?;
+        self.supports(system, [*t, dt], u, interrupt)?;
         let [u_next, v_next] = &mut self.next;
         system.constrain(t_next, u_next, v_next);
         system.constrain_velocity(t_next, v_next);

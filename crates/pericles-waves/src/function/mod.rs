@@ -54,11 +54,30 @@ pub enum WaveFunction {
     Sine,
     /// −W sin τW
     Slope,
-    /// (1 − cos τW) W⁻²
+    /// (1 − cos τW) W⁻²: response at τ to a constant acceleration
     Versine,
+    /// (τ − sin(τW) W⁻¹) W⁻²: response to the acceleration s at the time s
+    Ramp,
+    /// (τ²/2 − (1 − cos τW) W⁻²) W⁻²: response to s²/2
+    Parabola,
+    /// (τ³/6 − (τ − sin(τW) W⁻¹) W⁻²) W⁻²: response to s³/6
+    Cubic,
 }
 
 impl WaveFunction {
+    /// Number of integrations over τ that give the function from cos τW; `None` for the slope, its derivative.
+    pub(crate) fn integrations(self) -> Option<usize> {
+        match self {
+            Self::Slope => None,
+            Self::Cosine => Some(0),
+            Self::Sine => Some(1),
+            Self::Versine => Some(2),
+            Self::Ramp => Some(3),
+            Self::Parabola => Some(4),
+            Self::Cubic => Some(5),
+        }
+    }
+
     /// Value at an eigenvalue ω²; values made negative by round-off count as zero.
     pub fn value(self, tau: f64, square: f64) -> f64 {
         let omega = square.max(0.0).sqrt();
@@ -71,8 +90,32 @@ impl WaveFunction {
             // 2 sin²(a/2)/ω² avoids cancellation.
             Self::Versine if angle.abs() < 1e-4 => 0.5 * tau * tau * (1.0 - angle * angle / 12.0),
             Self::Versine => 2.0 * ((0.5 * angle).sin() / omega).powi(2),
+            Self::Ramp => response(Self::Sine, tau, omega, 3),
+            Self::Parabola => response(Self::Versine, tau, omega, 4),
+            Self::Cubic => response(Self::Ramp, tau, omega, 5),
         }
     }
+}
+
+/// The n-th integral of cos τω over τ, (τ^(n−2)/(n−2)! − the integral n − 2)/ω²; by its power series where the difference
+/// cancels.
+fn response(lower: WaveFunction, tau: f64, omega: f64, n: u32) -> f64 {
+    let factorial = |n: u32| (1..=n).map(f64::from).product::<f64>();
+    let angle = tau * omega;
+    if angle > 2.0 {
+        let first = tau.powi(n as i32 - 2) / factorial(n - 2);
+        return (first - lower.value(tau, omega * omega)) / (omega * omega);
+    }
+    let (mut term, mut sum) = (tau.powi(n as i32) / factorial(n), 0.0);
+    for j in (1..).step_by(2) {
+        let next = sum + term;
+        if next == sum {
+            break;
+        }
+        sum = next;
+        term *= -angle * angle / (f64::from(n + j) * f64::from(n + j + 1));
+    }
+    sum
 }
 
 /// Requested contribution `out` += factor · g(A) x.

@@ -470,6 +470,50 @@ fn loads_and_supports_have_the_expected_order() {
 }
 
 #[test]
+fn moving_supports_are_integrated_exactly_at_steps_of_many_periods() {
+    // A support that moves slowly: the body follows, and its highest period is much shorter than the step.
+    let cloud = cells(0.0, &[6.0], 0.25);
+    let n = cloud.len();
+    let end = 400.0;
+    let run = |count: usize| {
+        let mut body = system(&cloud, bonds(&cloud, &gaussian(), ForceForm::Grid));
+        let motion = |name: &str, points: std::ops::Range<u32>, far: f64| {
+            let pulse = TimeFunction::Pulse {
+                start: 0.0,
+                duration: 2.0 * end,
+            };
+            PrescribedMotion::new(
+                name.into(),
+                points.collect(),
+                MotionKind::Displacement,
+                [Some(far), None, None],
+                pulse,
+                &vec![0.0; n],
+                n,
+            )
+            .unwrap()
+        };
+        body.add_motion(motion("left", 0..3, 0.0)).unwrap();
+        body.add_motion(motion("right", n as u32 - 3..n as u32, 0.2))
+            .unwrap();
+        let mut scheme = Trigonometric::new(TrigonometricOptions::default(), &body).unwrap();
+        let dt = end / count as f64;
+        let state = steps(&mut body, &mut scheme, State::at_rest(n), dt, count);
+        (state.u, body.ledger().work)
+    };
+    let (reference, work) = run(4000);
+    for (count, tolerance) in [(400, 1e-9), (100, 1e-7), (40, 1e-5)] {
+        let (u, own) = run(count);
+        let error = distance(&u, &reference) / distance(&reference, &vec![0.0; n]);
+        assert!(error < tolerance, "{count} steps: {error:e}");
+        assert!(
+            (own / work - 1.0).abs() < 1e-2,
+            "{count} steps: {own} {work}"
+        );
+    }
+}
+
+#[test]
 fn constant_loads_are_integrated_exactly() {
     let cloud = cells(0.0, &[6.0], 0.25);
     let n = cloud.len();
