@@ -1,7 +1,7 @@
 //! Materials and geodesic distances of 2-manifolds.
 
+use pericles_manifold::PowerMaterial;
 use pericles_manifold::geodesic::{Ball, GeodesicMethod};
-use pericles_manifold::{PowerMaterial, SurfaceBond};
 use serde::{Deserialize, Serialize};
 
 use crate::body::{SurfaceShape, VertexAreas};
@@ -83,12 +83,16 @@ pub(crate) fn material(
     let bond = table.worded("bond", "bond");
     let self_interaction = table.optional("self_interaction").map_or_else(
         || {
-            table.record("self_interaction", false);
-            Some(false)
+            // Without it results for larger α depend on the mesh.
+            let supported = PowerMaterial::supports_self_interaction(p?, bond?);
+            let default = supported && alpha? >= 0.5;
+            table.record("self_interaction", default);
+            Some(default)
         },
         |item| {
             let wanted = item.boolean()?;
-            if wanted && (p.is_some_and(|p| p != 2.0) || bond == Some(SurfaceBond::Chord)) {
+            let supported = |p, bond| PowerMaterial::supports_self_interaction(p, bond);
+            if wanted && !p.zip(bond).is_none_or(|(p, bond)| supported(p, bond)) {
                 item.out_of_range("false, or true with p = 2 and bond = \"displacement\"");
                 return None;
             }

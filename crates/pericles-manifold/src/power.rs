@@ -68,7 +68,7 @@ impl PowerMaterial {
             "a positive number, or infinity if bonds never break",
             critical,
         )?;
-        if self.self_interaction && (self.p != 2.0 || self.bond != SurfaceBond::Displacement) {
+        if self.self_interaction && !Self::supports_self_interaction(self.p, self.bond) {
             return Err(PericlesError::OutOfRange {
                 quantity: "the exponent p with the self-interaction term",
                 value: self.p,
@@ -81,6 +81,19 @@ impl PowerMaterial {
     /// Weight w = κ / d^(2+αp) of a pair at distance d.
     pub fn weight(&self, distance: f64) -> f64 {
         self.kappa / distance.powf(2.0 + self.alpha * self.p)
+    }
+
+    /// Whether the self-interaction is available: for p = 2 it is a Laplacian of the displacement.
+    pub fn supports_self_interaction(p: f64, bond: SurfaceBond) -> bool {
+        p == 2.0 && bond == SurfaceBond::Displacement
+    }
+
+    /// Share of the force of a smooth field that the self-interaction of a vertex with this area has:
+    /// (r/δ)^(p (1 − α)) with the radius r of a disc of this area. The sum over other points omits it, so that it is also the size of
+    /// the dependence of the results on the mesh.
+    pub fn self_interaction_share(&self, area: f64) -> f64 {
+        let radius = (area / std::f64::consts::PI).sqrt();
+        (radius / self.horizon).powf(self.p * (1.0 - self.alpha))
     }
 
     /// Stiffness c = κ π r^(2−2α)/(2 (2−2α)) of the self-interaction: for p = 2 the integral over a disc of

@@ -36,6 +36,33 @@ pub enum Shape {
 pub(crate) type Distance = (f64, V3);
 
 impl Shape {
+    /// Returns half of the smallest extent of the shape along the axes of its frame, for bodies in a plane along the first two,
+    /// m; infinite for half-spaces.
+    pub fn smallest_half_width(&self, dimension: usize) -> f64 {
+        let axes = dimension.min(3);
+        match self {
+            Self::Ball { radius } => *radius,
+            Self::Box { half } => half[..axes].iter().copied().fold(f64::INFINITY, f64::min),
+            Self::Cylinder {
+                radius,
+                half_height,
+            } => match axes {
+                3 => radius.min(*half_height),
+                _ => *radius,
+            },
+            Self::HalfSpace => f64::INFINITY,
+            Self::Mesh(mesh) => {
+                let extent = |c: usize| {
+                    let along = mesh.vertices().iter().map(|vertex| vertex[c]);
+                    let range = |[low, high]: [f64; 2], x: f64| [low.min(x), high.max(x)];
+                    let [low, high] = along.fold([f64::INFINITY, f64::NEG_INFINITY], range);
+                    0.5 * (high - low)
+                };
+                (0..axes).map(extent).fold(f64::INFINITY, f64::min)
+            }
+        }
+    }
+
     /// Returns the signed distance of a point of the shape's frame, m, positive outside, and its gradient.
     pub fn distance(&self, q: [f64; 3]) -> (f64, [f64; 3]) {
         match self {

@@ -89,6 +89,10 @@ impl Subject for Caution {
             Self::FastImpact { .. } => {
                 "use a larger `contact.stiffness` with a smaller step, fewer spacings per horizon, or a smaller speed; the history shows the overlap of impactors"
             }
+            Self::SmallImpactor { .. } => "use a smaller spacing or a wider impactor",
+            Self::FrictionTorque => {
+                "the error of a sliding body is of the order of μ times the spacing over its size; a smaller spacing reduces it"
+            }
             Self::FewContactSteps { longest, .. } => {
                 return Some(format!(
                     "use dt = \"auto\" or at most {}",
@@ -115,6 +119,9 @@ impl Subject for Caution {
                 "choose a dt that divides time.end to keep the given step"
             }
             Self::Surface(_) => "recommended: 3 to 6 median edge lengths",
+            Self::MeshDependence { .. } => {
+                "use a smaller `alpha`, more edge lengths per horizon, or p = 2 with bond = \"displacement\", where `self_interaction` adds it; compare results of two meshes"
+            }
             Self::ShortPeriod { .. } => {
                 "use a longer body, a shorter run or a smaller exact.window"
             }
@@ -165,6 +172,8 @@ impl Subject for Caution {
             Self::NoContact { .. } => "no contact",
             Self::FastImpact { .. } => "fast impact",
             Self::FewContactSteps { .. } | Self::CoarseImpact { .. } => "large step",
+            Self::SmallImpactor { .. } => "narrow impactor",
+            Self::FrictionTorque => "angular momentum",
             Self::LargeStretch { .. } => "large critical stretch",
             Self::SoftSolid { .. } => "low modulus",
             Self::HeavySolid { .. } => "large density",
@@ -187,6 +196,7 @@ impl Subject for Caution {
             Self::NoSupport { .. } => "no support",
             Self::Unbalanced { .. } => "not in equilibrium",
             Self::Surface(_) => "unusual horizon",
+            Self::MeshDependence { .. } => "mesh-dependent",
             Self::ProbeOutside { .. } => "outside the body",
             Self::UnstableStep { .. } | Self::UncertainStep { .. } => "large time step",
             Self::ShortenedStep { .. } => "shortened",

@@ -86,6 +86,15 @@ pub enum Caution {
         /// The same ratio along the diagonals.
         diagonals: f64,
     },
+    /// A force on a surface that depends on the mesh.
+    #[error(
+        "the interaction of a vertex with its own area, which the sum over bonds omits, is {} of the force, so that results depend on the mesh",
+        percent(*share)
+    )]
+    MeshDependence {
+        /// Omitted share of the force.
+        share: f64,
+    },
     /// An implausibly large wave speed.
     #[error("the speed of pressure waves is {} m/s, larger than in any solid", significant(*speed, 4))]
     FastWaves {
@@ -225,6 +234,20 @@ pub enum Caution {
         /// Estimated overlap in spacings.
         overlap: f64,
     },
+    /// An impactor that may pass between the points of the body.
+    #[error("the impactor is {} wide at its narrowest, less than the spacing of {}: it may pass between the points without contact",
+        quantity(*width, "m"), quantity(*spacing, "m"))]
+    SmallImpactor {
+        /// Smallest width, m.
+        width: f64,
+        /// Spacing of the points, m.
+        spacing: f64,
+    },
+    /// Friction between points.
+    #[error(
+        "friction between points does not conserve angular momentum: its forces act at the two points, which are a distance apart, and points do not rotate"
+    )]
+    FrictionTorque,
     /// A step in which contacts are not resolved.
     #[error("a contact of two points lasts less than five steps of {}: bodies may leave each other with up to 10 % more or less velocity",
         quantity(*dt, "s"))]

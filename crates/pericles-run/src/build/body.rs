@@ -9,6 +9,7 @@ use pericles_deck::{
     BuildError, Caution, CellChoice, ContactPairs, Fault, KeyPath, MaterialModel, ModelWarning,
     PointNumber, Remark, Solid, SurfaceBody,
 };
+use pericles_manifold::PowerMaterial;
 use pericles_manifold::surface::Surface;
 use pericles_waves::{AssembledForce, ForceForm};
 
@@ -129,6 +130,7 @@ impl Assembler<'_> {
         for caution in surface.cautions(body.material.horizon, neighbours) {
             warnings.push(Remark::new("material.horizon", Caution::Surface(caution)));
         }
+        warnings.extend(mesh_dependence(&body.material, surface));
         Ok(BodyParts {
             bonds: AssembledForce {
                 operator,
@@ -315,4 +317,13 @@ impl Assembler<'_> {
         let tracked = self.tracked_cracks(&assembled.cuts, discretisation, warnings);
         Ok((assembled, tracked))
     }
+}
+
+/// Warns of a surface force that depends on the mesh, because the self-interaction is not available for its law.
+fn mesh_dependence(material: &PowerMaterial, surface: &Surface) -> Option<ModelWarning> {
+    const LARGE: f64 = 0.1;
+    let share = material.self_interaction_share(surface.area() / surface.len() as f64);
+    let is_available = PowerMaterial::supports_self_interaction(material.p, material.bond);
+    (!is_available && share > LARGE)
+        .then(|| Remark::new("material.alpha", Caution::MeshDependence { share }))
 }

@@ -59,10 +59,14 @@ impl Assembler<'_> {
             PointContact::new(cloud.clone(), law, bodies.clone())
                 .and_then(|points| system.add_interaction(Box::new(points)))
                 .map_err(|error| at("contact", error))?;
+            if law.friction.is_some() && cloud.dimension() > 1 {
+                warnings.push(Remark::new("contact.friction", Caution::FrictionTorque));
+            }
         }
         for (k, impactor) in self.model.impactors.iter().enumerate() {
             let path = KeyPath::from("impactor").index(k);
             let (shape, pose) = self.impactor_shape(&path, impactor, resources)?;
+            warnings.extend(small_impactor(&path, &shape, cloud));
             let motion = impactor_motion(&path, impactor)?;
             let one = Impactor::new(
                 impactor.name.clone(),
@@ -356,4 +360,18 @@ fn centroid(mesh: &ClosedMesh) -> [f64; 3] {
         }
     }
     moment.map(|entry| entry / volume)
+}
+
+/// Warns of an impactor that may pass between the points.
+fn small_impactor(path: &KeyPath, shape: &Shape, cloud: &PointCloud) -> Option<ModelWarning> {
+    let (half_width, spacing) = (
+        shape.smallest_half_width(cloud.dimension()),
+        cloud.spacing(),
+    );
+    let caution = Caution::SmallImpactor {
+        width: 2.0 * half_width,
+        spacing,
+    };
+    let is_small = cloud.dimension() > 1 && half_width < 0.5 * spacing;
+    is_small.then(|| Remark::new(path, caution))
 }
