@@ -119,6 +119,12 @@ impl Subject for Caution {
                 "choose a dt that divides time.end to keep the given step"
             }
             Self::Surface(_) => "recommended: 3 to 6 median edge lengths",
+            Self::ThinBody { .. } => {
+                "use surface_correction = \"energy\", or a smaller horizon with a smaller spacing"
+            }
+            Self::BridgedLayer { .. } => {
+                "use a horizon smaller than the layer is thick, with a smaller spacing"
+            }
             Self::MeshDependence { .. } => {
                 "use a smaller `alpha`, more edge lengths per horizon, or p = 2 with bond = \"displacement\", where `self_interaction` adds it; compare results of two meshes"
             }
@@ -197,6 +203,8 @@ impl Subject for Caution {
             Self::Unbalanced { .. } => "not in equilibrium",
             Self::Surface(_) => "unusual horizon",
             Self::MeshDependence { .. } => "mesh-dependent",
+            Self::ThinBody { .. } => "surface effect",
+            Self::BridgedLayer { .. } => "bridged layer",
             Self::ProbeOutside { .. } => "outside the body",
             Self::UnstableStep { .. } | Self::UncertainStep { .. } => "large time step",
             Self::ShortenedStep { .. } => "shortened",

@@ -86,6 +86,28 @@ pub enum Caution {
         /// The same ratio along the diagonals.
         diagonals: f64,
     },
+    /// A thin body whose stiffness differs from the material's.
+    #[error(
+        "the smallest side has {} horizons: in tension along its longest side the body is {} too {} (surface effect)",
+        significant(*sides, 2), percent(error.abs()), if *error > 0.0 { "stiff" } else { "compliant" }
+    )]
+    ThinBody {
+        /// Smallest side in horizons.
+        sides: f64,
+        /// Relative error of the stiffness.
+        error: f64,
+    },
+    /// A layer of a material that bonds bridge.
+    #[error(
+        "most points of the material {material:?} lie between points of other materials that are within a horizon of {} of each other: bonds bridge this layer, so that it hardly deforms",
+        quantity(*horizon, "m")
+    )]
+    BridgedLayer {
+        /// The material.
+        material: String,
+        /// Largest horizon, m.
+        horizon: f64,
+    },
     /// A force on a surface that depends on the mesh.
     #[error(
         "the interaction of a vertex with its own area, which the sum over bonds omits, is {} of the force, so that results depend on the mesh",

@@ -236,6 +236,9 @@ impl<'m> Assembler<'m> {
         {
             return Ok((None, PointScalar::Uniform(material.density())));
         }
+        if let Some(solid) = self.model.body.solid() {
+            self.judge_layers(solid, cloud, Some(&of_point), warnings);
+        }
         let densities: Vec<f64> = of_point
             .iter()
             .map(|&number| match number {

@@ -49,6 +49,7 @@ mod step;
 mod stop;
 mod surface;
 mod thermal;
+mod thin;
 
 pub use assemble::{assemble, build};
 pub use assembly::Assembly;

@@ -125,6 +125,10 @@ impl Assembler<'_> {
             warnings.extend(self.judge_speed(solid, constants));
             warnings.extend(self.judge_solid(solid, constants));
         }
+        if let (Some(MaterialConstants::StateBased(constants)), None) = (&constants, &classes) {
+            let forces = (&*bonds.operator, &constants.elastic);
+            warnings.extend(self.judge_thin(solid, cloud, forces));
+        }
         warnings.extend(self.judge_isotropy(constants.as_ref()));
         Ok(BodyParts {
             constants,
