@@ -9,6 +9,7 @@ use crate::body::unit;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 use crate::region::{self, Frame};
+use crate::set::SetNames;
 
 /// A pre-crack.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -35,6 +36,11 @@ pub enum CrackSurface {
         /// Unit of length of the file, m.
         unit: f64,
     },
+    /// A layer of points that bonds between other points do not cross.
+    Layer {
+        /// Name of the set of its points.
+        layer: String,
+    },
 }
 
 impl From<Crack> for CrackSurface {
@@ -47,7 +53,7 @@ impl CrackSurface {
     /// Returns the path of the file, if there is one.
     pub fn file(&self) -> Option<&Path> {
         match self {
-            Self::Plane(_) => None,
+            Self::Plane(_) | Self::Layer { .. } => None,
             Self::File { path, .. } => Some(path),
         }
     }
@@ -62,7 +68,8 @@ const KINDS: [(&str, usize, &str); 5] = [
     ("file", 3, "`file` requires a 3D body"),
 ];
 
-pub(crate) fn read(table: Table<'_>, frame: Frame) -> Option<PreCrack> {
+pub(crate) fn read(table: Table<'_>, frame: Frame, sets: &SetNames) -> Option<PreCrack> {
+    let is_layer = table.has("layer");
     let surface = match frame.dimension {
         Some(dimension) => {
             for (kind, needs, reason) in KINDS {
@@ -71,6 +78,7 @@ pub(crate) fn read(table: Table<'_>, frame: Frame) -> Option<PreCrack> {
                 }
             }
             match dimension {
+                _ if is_layer => layer(&table, sets),
                 1 => table
                     .required("section")
                     .and_then(|item| section(&item))
@@ -87,10 +95,16 @@ pub(crate) fn read(table: Table<'_>, frame: Frame) -> Option<PreCrack> {
             for (kind, ..) in KINDS {
                 table.optional(kind);
             }
+            table.optional("layer");
             None
         }
     };
-    if table.has("file") {
+    if is_layer {
+        for key in KINDS.map(|(kind, ..)| kind) {
+            table.forbid(key, "a `layer` has no other surface");
+        }
+        table.forbid("ends", "bonds with an end in the `layer` always remain");
+    } else if table.has("file") {
         table.forbid("ends", "a crack from a `file` always includes its edges");
     } else {
         table.forbid("unit", "it requires `file`");
@@ -104,6 +118,12 @@ pub(crate) fn read(table: Table<'_>, frame: Frame) -> Option<PreCrack> {
     table.finish();
     let (surface, ends) = crack?;
     Some(PreCrack { surface, ends })
+}
+
+fn layer(table: &Table<'_>, sets: &SetNames) -> Option<CrackSurface> {
+    let layer = table.required("layer")?;
+    let layer = sets.reference(&layer)?;
+    Some(CrackSurface::Layer { layer })
 }
 
 fn section(item: &Item<'_>) -> Option<Crack> {

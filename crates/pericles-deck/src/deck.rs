@@ -210,7 +210,7 @@ fn model(root: Table<'_>, further: &[String]) -> Option<Model> {
             (solid.map(Body::Solid), gaussian, several, thermal)
         }
     };
-    let cracks = each(&root, "crack", |table| crack::read(table, frame));
+    let cracks = each(&root, "crack", |table| crack::read(table, frame, &names));
     let initial = each(&root, "initial", |table| {
         conditions::initial(table, frame.dimension, &names)
     });

@@ -10,7 +10,7 @@ use crate::body::{SolidShape, SurfaceShape, piece_path};
 use crate::boundary::BoundaryCondition;
 use crate::conditions::{Constraint, Initial, Load, Probe};
 use crate::contact::Contact;
-use crate::crack::PreCrack;
+use crate::crack::{CrackSurface, PreCrack};
 use crate::damping::Damping;
 use crate::exact::Exact;
 use crate::impactor::Impactor;
@@ -259,6 +259,13 @@ impl Model {
             output: Output::default(),
             checkpoint: Checkpoint::default(),
         }
+    }
+
+    /// Returns whether bonds do not cross the layer of a set, because of a `[[crack]]` with `layer`.
+    pub fn has_layer(&self, set: &str) -> bool {
+        self.cracks
+            .iter()
+            .any(|crack| matches!(&crack.surface, CrackSurface::Layer { layer } if layer == set))
     }
 
     /// Returns the materials of pieces and of `[[assign]]`, with their paths and sets; later ones take precedence.

@@ -123,7 +123,7 @@ impl Subject for Caution {
                 "use surface_correction = \"energy\", or a smaller horizon with a smaller spacing"
             }
             Self::BridgedLayer { .. } => {
-                "use a horizon smaller than the layer is thick, with a smaller spacing"
+                "add [[crack]] with `layer` = its set, which removes these bonds, or use a horizon smaller than the layer is thick"
             }
             Self::MeshDependence { .. } => {
                 "use a smaller `alpha`, more edge lengths per horizon, or p = 2 with bond = \"displacement\", where `self_interaction` adds it; compare results of two meshes"

@@ -88,7 +88,7 @@ pub enum Caution {
     },
     /// A thin body whose stiffness differs from the material's.
     #[error(
-        "the smallest side has {} horizons: in tension along its longest side the body is {} too {} (surface effect)",
+        "the smallest side has {} horizons: in tension along its longest side the body is about {} too {} (surface effect)",
         significant(*sides, 2), percent(error.abs()), if *error > 0.0 { "stiff" } else { "compliant" }
     )]
     ThinBody {

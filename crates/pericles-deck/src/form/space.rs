@@ -105,6 +105,11 @@ enum CrackForm {
     Triangles {
         triangles: Vec<[Point; 3]>,
     },
+    Layer {
+        points: Vec<Point>,
+        spacing: f64,
+        dimension: usize,
+    },
 }
 
 described!(Grid: GridForm, Shape: ShapeForm, Finer: FinerForm, Region: RegionForm, Crack: CrackForm);

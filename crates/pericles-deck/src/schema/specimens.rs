@@ -374,6 +374,7 @@ pub(super) const SPECIMENS: &[Specimen] = &[
     specimen(PLATE, &["material.shear_modulus=1"]),
     specimen(BAR, &["material.model=green-strain"]),
     // Bars: cracks, absorbing boundaries, exact solutions.
+    specimen(BAR, &["crack=[{ layer = 'all' }]"]),
     specimen(BAR, &["crack=[{ section = 5 }, { section = 5, ends = 'open' }]", "probe=[{ name = 'a', at = 5 }]"]),
     specimen(BAR, &["constraint=[{ set = 'left', velocity = 1, function = { kind = 'pulse', duration = 1 } }]"]),
     specimen(BAR, &["initial=[{ velocity = { expression = 'x' } }]", "load=[{ set = 'left', traction = 1, function = { kind = 'constant' } }]"]),

@@ -2,18 +2,22 @@
 
 use pericles::family::{BondCut, Crack, EndRule};
 use pericles::observe::TrackedCrack;
+use pericles::space::PointCloud;
 use pericles_deck::{BuildError, CrackSurface, Fault, KeyPath, ModelWarning, Remark};
 
 use super::assembler::Assembler;
-use super::discretisation::Discretisation;
+use super::discretisation::{Discretisation, Sets};
 use super::part::gathered;
 use super::refusal::at_path;
 use super::resources::Resources;
 
 impl Assembler<'_> {
-    /// Returns the surfaces of the pre-cracks; triangulated ones are read from their files.
+    /// Returns the surfaces of the pre-cracks; triangulated ones are read from their files. All processes must call it
+    /// together.
     pub(super) fn read_cracks(
         &self,
+        cloud: &PointCloud,
+        sets: &Sets,
         resources: &Resources<'_>,
     ) -> Result<Vec<(Crack, EndRule)>, BuildError> {
         let cracks = self.model.cracks.iter().enumerate();
@@ -21,6 +25,17 @@ impl Assembler<'_> {
             let path = KeyPath::from("crack").index(k);
             let surface = match &crack.surface {
                 CrackSurface::Plane(surface) => surface.clone(),
+                CrackSurface::Layer { layer } => {
+                    let members = self.members(sets, layer, path.key("layer"))?;
+                    let places = members.iter().flat_map(|&i| cloud.point(i as usize));
+                    let places = cloud.domain().collect_everywhere(places.collect()).concat();
+                    let point = |place: &[f64]| std::array::from_fn(|c| place[c]);
+                    Crack::Layer {
+                        points: places.chunks_exact(3).map(point).collect(),
+                        spacing: cloud.spacing(),
+                        dimension: cloud.dimension(),
+                    }
+                }
                 CrackSurface::File { path: file, unit } => {
                     let key = path.key("file");
                     let file = resources.beside(file);
@@ -58,6 +73,10 @@ impl Assembler<'_> {
     ) -> Vec<TrackedCrack> {
         let mut tracked = Vec::new();
         for (k, ((surface, _), cut)) in self.cracks.iter().zip(cuts).enumerate() {
+            if let Crack::Layer { .. } = surface {
+                // A layer has no tip.
+                continue;
+            }
             if cut.bonds == 0 {
                 let caution = Self::useless_crack(surface, &discretisation.cloud);
                 warnings.push(Remark::new(KeyPath::from("crack").index(k), caution));

@@ -72,9 +72,10 @@ pub fn discretise(model: &Model, resources: &Resources<'_>) -> Result<Discretisa
             (points.cloud, None)
         }
     };
+    let sets = assembler.select(&points.cloud, mesh.as_deref(), named)?;
     Ok(Discretisation {
-        sets: assembler.select(&points.cloud, mesh.as_deref(), named)?,
-        cracks: assembler.read_cracks(resources)?,
+        cracks: assembler.read_cracks(&points.cloud, &sets, resources)?,
+        sets,
         cloud: Arc::new(points.cloud),
         grids: Grids {
             ratios: points.ratios,

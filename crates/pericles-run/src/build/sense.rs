@@ -221,6 +221,7 @@ fn extent(crack: &Crack) -> (Point, Point) {
             vec![moved(-1.0), moved(1.0)]
         }
         Crack::Triangles { triangles } => triangles.concat(),
+        Crack::Layer { points, .. } => points.clone(),
     };
     let fold = |start: f64, pick: fn(f64, f64) -> f64| {
         std::array::from_fn(|c| corners.iter().map(|corner| corner[c]).fold(start, pick))

@@ -61,12 +61,13 @@ impl Assembler<'_> {
             .chain(names)
             .zip(share)
         {
-            if share > MOST {
-                let path = self.model.assigned_materials();
-                let path = path
-                    .into_iter()
-                    .filter(|(_, _, material)| *material == name);
-                let path = path.map(|(path, _, _)| path).last();
+            let assigned = self.model.assigned_materials().into_iter();
+            let assigned: Vec<_> = assigned
+                .filter(|(_, _, material)| *material == name)
+                .collect();
+            let mut sets = assigned.iter().flat_map(|(_, sets, _)| *sets);
+            if share > MOST && !sets.any(|set| self.model.has_layer(set)) {
+                let path = assigned.iter().map(|(path, _, _)| path.clone()).last();
                 let path = path.unwrap_or_else(|| KeyPath::from("materials").key(name));
                 let material = name.to_owned();
                 warnings.push(Remark::new(

@@ -244,3 +244,88 @@ fn absorbing_boundaries_of_periodic_bars_are_rejected() {
         "deck.toml:17:1: absorbing boundary: a periodic bar has no ends; remove `periodic` or the absorbing boundary"
     );
 }
+
+/// Asserts that a deck has exactly one warning that contains a text, and none with a replacement.
+fn warned_without(deck: &str, says: &str, replace: &str, by: &str) {
+    let found = warnings(deck);
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!(found[0].contains(says), "{found:?}");
+    assert_eq!(deck.matches(replace).count(), 1, "{replace}");
+    assert_eq!(warnings(&deck.replace(replace, by)), [""; 0], "{by}");
+}
+
+#[test]
+fn impactors_narrower_than_the_spacing_and_friction_between_points_are_reported() {
+    let deck = r#"
+body = { shape = "block", size = [6, 6, 3], spacing = 1 }
+material = { density = 1, youngs_modulus = 1, horizon_ratio = 3 }
+impactor = [{ name = "shot", shape = "ball", radius = 0.3, centre = [3, 3, 5], mass = 1, velocity = [0, 0, -0.001] }]
+time = { end = 1 }
+"#;
+    let says = "the impactor is 600 mm wide at its narrowest, less than the spacing of 1.00 m";
+    warned_without(deck, says, "radius = 0.3", "radius = 0.6");
+    let deck = r#"
+body = { shape = "plate", size = [6, 6], spacing = 1, plane = "stress" }
+material = { density = 1, youngs_modulus = 1, horizon_ratio = 3 }
+contact = { friction = { coefficient = 0.2, speed = 0.01 } }
+initial = [{ velocity = [1e-6, 0] }]
+time = { end = 1 }
+"#;
+    let says = "friction between points does not conserve angular momentum";
+    let friction = "friction = { coefficient = 0.2, speed = 0.01 }";
+    warned_without(deck, says, friction, "");
+}
+
+#[test]
+fn surfaces_whose_force_depends_on_the_mesh_are_reported() {
+    let deck = r#"
+body = { shape = "icosphere", level = 3, radius = 1 }
+material = { model = "power", density = 1, alpha = 0.9, p = 3, horizon = 0.5 }
+initial = [{ random_velocity = { radius = 0.1 } }]
+time = { scheme = "newmark", end = 0.1, dt = 1e-3 }
+"#;
+    let says = "the interaction of a vertex with its own area, which the sum over bonds omits";
+    warned_without(deck, says, "alpha = 0.9", "alpha = 0.3");
+    // For p = 2 the interaction is added by default.
+    let linear = deck.replace("p = 3", "p = 2");
+    assert_eq!(warnings(&linear), [""; 0]);
+    let model = Deck::parse(&linear, "deck.toml", &[]).unwrap().model;
+    let material = &model.body.surface().unwrap().material;
+    assert!(material.self_interaction);
+    let weak = linear.replace("alpha = 0.9", "alpha = 0.4");
+    let model = Deck::parse(&weak, "deck.toml", &[]).unwrap().model;
+    assert!(!model.body.surface().unwrap().material.self_interaction);
+}
+
+#[test]
+fn layers_that_bonds_bridge_are_reported() {
+    let deck = |layer: &str, more: &str| {
+        format!(
+            r#"
+body = {{ shape = "plate", size = [12, 30], spacing = 1, plane = "stress" }}
+material = {{ name = "glass", density = 1, youngs_modulus = 1, horizon_ratio = 3 }}
+materials.glue = {{ density = 1, youngs_modulus = 0.1 }}
+assign = [{{ set = "layer", material = "glue" }}]
+sets.layer = {{ where = "{layer}" }}
+initial = [{{ velocity = [1e-6, 0] }}]
+time = {{ end = 1 }}
+{more}
+"#
+        )
+    };
+    // Straight and inclined layers of two cells, and a thin coating, a thick layer and an inclusion.
+    for (layer, more, is_bridged) in [
+        ("14 < y && y < 16", "", true),
+        ("0 < y - x - 9 && y - x - 9 < 2", "", true),
+        ("14 < y && y < 16", "crack = [{ layer = \"layer\" }]", false),
+        ("y < 2", "", false),
+        ("12 < y && y < 18", "", false),
+        ("(x - 6)^2 + (y - 15)^2 < 16", "", false),
+    ] {
+        let found = warnings(&deck(layer, more));
+        let says = "bonds bridge this layer";
+        let count = found.iter().filter(|line| line.contains(says)).count();
+        assert_eq!(count, usize::from(is_bridged), "{layer} {more}: {found:?}");
+        assert_eq!(found.len(), count, "{found:?}");
+    }
+}

@@ -2,12 +2,14 @@
 
 mod facet;
 mod grid;
+mod layer;
 
 use crate::error::{PericlesError, Result};
 use crate::space::{Point, Sites};
 
 use facet::{Facet, Frame, Outline, norm, scaled, sub};
 use grid::FacetGrid;
+use layer::LayerCells;
 
 /// A surface that no bond may cross.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,6 +45,16 @@ pub enum Crack {
         /// Corners of the triangles, m; triangles without area are ignored.
         triangles: Vec<[Point; 3]>,
     },
+    /// A layer of points: bonds between points outside of it do not cross it, while bonds with an end in it remain. For
+    /// layers thinner than the horizon, which bonds would bridge otherwise.
+    Layer {
+        /// Points of the layer, m.
+        points: Vec<Point>,
+        /// Side of the cells of the points, m.
+        spacing: f64,
+        /// Dimension of the body.
+        dimension: usize,
+    },
 }
 
 /// Treatment of bonds that pass exactly through the edge of a crack.
@@ -62,6 +74,7 @@ impl Crack {
             Self::Section { .. } => 1,
             Self::Segment { .. } => 2,
             Self::Polygon { .. } | Self::Disc { .. } | Self::Triangles { .. } => 3,
+            Self::Layer { dimension, .. } => *dimension,
         }
     }
 
@@ -81,6 +94,15 @@ impl Crack {
     /// # Errors
     /// A crack without extent, or a polygon that is not plane.
     pub fn cutter(&self, rule: EndRule, tolerance: f64) -> Result<Cutter> {
+        if let Self::Layer {
+            points,
+            spacing,
+            dimension,
+        } = self
+        {
+            let layer = LayerCells::new(points, *spacing, *dimension);
+            return Ok(Cutter(Facets::Layer(layer)));
+        }
         let Self::Triangles { triangles } = self else {
             return Ok(Cutter(Facets::One(self.facet(rule, tolerance)?)));
         };
@@ -170,9 +192,9 @@ impl Crack {
                 }
                 (Frame::normal_to(*centre, *normal)?, Outline::Disc(*radius))
             }
-            Self::Triangles { .. } => {
+            Self::Triangles { .. } | Self::Layer { .. } => {
                 return Err(PericlesError::BadCrack {
-                    reason: "a surface of triangles is not supported here",
+                    reason: "a surface of triangles or a layer is not supported here",
                 });
             }
         };
@@ -193,6 +215,7 @@ pub struct Cutter(Facets);
 enum Facets {
     One(Facet),
     Many { facets: Vec<Facet>, grid: FacetGrid },
+    Layer(LayerCells),
 }
 
 impl Cutter {
@@ -204,6 +227,7 @@ impl Cutter {
                 let mut near = grid.near(p, q);
                 near.any(|facet| facets[facet as usize].cuts(p, q))
             }
+            Facets::Layer(layer) => layer.cuts(p, q),
         }
     }
 
@@ -244,6 +268,7 @@ impl Cutter {
                 let distances = facets.iter().map(|facet| facet.distance(point));
                 distances.fold(f64::INFINITY, f64::min)
             }
+            Facets::Layer(layer) => layer.distance(point),
         }
     }
 }
