@@ -32,6 +32,7 @@ mod schemes;
 mod sense;
 mod solutions;
 mod state_based;
+mod static_resume;
 mod thermal;
 mod tuned;
 mod wrong;
