@@ -32,6 +32,7 @@ mod schemes;
 mod sense;
 mod solutions;
 mod state_based;
+mod static_breaking;
 mod static_resume;
 mod thermal;
 mod tuned;

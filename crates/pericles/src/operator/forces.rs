@@ -259,6 +259,10 @@ impl Breakable for Forces {
         }
     }
 
+    fn accumulates(&self) -> bool {
+        self.breaking().any(|breaking| breaking.accumulates())
+    }
+
     fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {
         let breaking = self
             .list
