@@ -34,6 +34,7 @@ mod solutions;
 mod state_based;
 mod static_breaking;
 mod static_resume;
+mod stress;
 mod thermal;
 mod tuned;
 mod wrong;

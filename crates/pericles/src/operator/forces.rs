@@ -153,6 +153,7 @@ impl Force for Forces {
             dilatation: self
                 .iter()
                 .find_map(|force| force.capabilities().dilatation),
+            stress: self.iter().find_map(|force| force.capabilities().stress),
             plastic: self.iter().find_map(|force| force.capabilities().plastic),
             thermal: self.iter().find_map(|force| force.capabilities().thermal),
             linear: match (exact, rounded) {
