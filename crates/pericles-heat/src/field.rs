@@ -40,6 +40,8 @@ struct Accepted {
     flows: Flows,
     /// Heat from dissipated energy of each point that has not entered the values, J; empty without this heat.
     pending: Vec<f64>,
+    /// Effort of the solver from the start to this state.
+    effort: Effort,
 }
 
 /// The field between two states, linear in time.
@@ -104,6 +106,7 @@ impl DiffusingField {
             pending: vec![0.0; dissipation.map_or(0, |_| values.len())],
             flows: vec![0.0; problem.conditions().len()],
             values,
+            effort: Effort::default(),
         };
         let state = State {
             solver: Solver::new(&problem),
@@ -187,7 +190,9 @@ impl State {
                 times,
                 power: &power,
             };
+            solver.effort = to.effort;
             advance(problem, scheme, solver, span, &mut to.values, &mut to.flows)?;
+            to.effort = solver.effort;
             for pending in &mut to.pending {
                 *pending -= part * *pending;
             }
@@ -317,9 +322,10 @@ impl SharedField {
         state.problem.explicit_limit(&values)
     }
 
-    /// Returns the number of products with the conductances.
+    /// Returns the number of products with the conductances up to the latest state.
     pub fn effort(&self) -> Effort {
-        self.state().solver.effort
+        let state = self.state();
+        state.ahead.as_ref().unwrap_or(&state.accepted).to.effort
     }
 }
 
@@ -404,6 +410,7 @@ impl SecondaryField for DiffusingField {
 /// Names of arrays in checkpoints.
 const TIMES: &str = "temperature/t";
 const CONTENT: &str = "temperature/initial content";
+const EFFORT: &str = "temperature/effort";
 const INTACT: &str = "temperature/intact bonds";
 const VALUES: [&str; 2] = ["temperature/from", "temperature/to"];
 const FLOWS: [&str; 2] = ["temperature/flows from", "temperature/flows to"];
@@ -415,6 +422,8 @@ impl Checkpointed for DiffusingField {
         let Interval { from, to } = &state.accepted;
         archive.put(TIMES, Values::F64(vec![from.t, to.t]));
         archive.put(CONTENT, Values::F64(vec![state.initial]));
+        let Effort { last, most, total } = to.effort;
+        archive.put(EFFORT, Values::U64(vec![last, most, total]));
         state.problem.diffusion.save_intact(INTACT, archive);
         for (k, one) in [from, to].into_iter().enumerate() {
             let values = Values::F64(one.values.clone());
@@ -445,6 +454,10 @@ impl Checkpointed for DiffusingField {
                 archive.f64_into(PENDING[k], &mut one.pending)?;
             }
         }
+        let mut effort = [0; 3];
+        archive.u64_into(EFFORT, &mut effort)?;
+        let [last, most, total] = effort;
+        state.accepted.to.effort = Effort { last, most, total };
         if let Some(dissipation) = &mut state.dissipation {
             dissipation.restore(archive)?;
         }

@@ -167,7 +167,8 @@ impl OutputFolder {
 
     /// Returns the folder and its existing sub-folders.
     fn places(&self) -> Vec<PathBuf> {
-        let subfolders = SUBFOLDERS.iter().map(|name| self.path.join(name));
+        let within = fs::read_dir(&self.path).into_iter().flatten().flatten();
+        let subfolders = within.map(|entry| entry.path());
         std::iter::once(self.path.clone())
             .chain(subfolders.filter(|place| is_folder(place)))
             .collect()

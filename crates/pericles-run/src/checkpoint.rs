@@ -38,6 +38,8 @@ pub struct Metadata {
     pub instruction_set: String,
     /// Number of completed steps.
     pub step: u64,
+    /// Warnings during the run so far.
+    pub warnings: Vec<String>,
     /// The deck or the model.
     #[serde(flatten)]
     pub source: SourceRecord,
@@ -48,6 +50,8 @@ pub struct Checkpoints {
     folder: CheckpointFolder,
     schedule: Checkpoint,
     source: SourceRecord,
+    /// Warnings during the run so far.
+    warnings: Vec<String>,
     last: Instant,
     /// Time to write the last checkpoint.
     cost: Duration,
@@ -60,9 +64,20 @@ impl Checkpoints {
             folder: CheckpointFolder::new(folder.file("checkpoints")),
             schedule,
             source,
+            warnings: Vec::new(),
             last: Instant::now(),
             cost: Duration::ZERO,
         }
+    }
+
+    /// Records a warning during the run, which a resumed run has as well.
+    pub fn warn(&mut self, warning: String) {
+        self.warnings.push(warning);
+    }
+
+    /// Returns the recorded warnings.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
     }
 
     /// Returns the time to write the last checkpoint; zero before the first.
@@ -154,6 +169,7 @@ impl Checkpoints {
             version: env!("CARGO_PKG_VERSION").into(),
             instruction_set: operator.instruction_set().name().into(),
             step: simulation.state().step,
+            warnings: self.warnings.clone(),
             source: self.source.clone(),
         };
         let mut archive = Archive::default();

@@ -67,7 +67,7 @@ pub struct HeatBalance {
     pub lowest: f64,
     /// Highest temperature, K.
     pub highest: f64,
-    /// Products with the conductances since the start or the last resume.
+    /// Products with the conductances since the start.
     pub products: u64,
     /// Largest number of products of the solution of a linear system.
     pub most_products: u64,

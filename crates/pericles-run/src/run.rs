@@ -103,13 +103,16 @@ impl Run {
             false => Ok(None),
         };
         facts.warnings.extend(agreed(comm, gaps)?);
+        let warnings = stored.metadata.warnings.clone();
+        facts.warnings.extend(warnings.iter().cloned());
         let simulation = observers::simulation(model, assembly, &folder);
         let mut simulation = agreed(comm, simulation)?;
         // The state is still the initial state.
         let start = Start::of(&simulation);
         stored.restore(&mut simulation)?;
         let step = simulation.state().step;
-        let checkpoints = Checkpoints::new(&folder, model.checkpoint, source.record());
+        let mut checkpoints = Checkpoints::new(&folder, model.checkpoint, source.record());
+        warnings.into_iter().for_each(|one| checkpoints.warn(one));
         if is_first {
             checkpoints.forget_failed();
         }
@@ -225,7 +228,7 @@ impl Run {
         }
         let mut trouble = None;
         let mut warned = false;
-        let mut breakage = Breakage::from(&self.simulation);
+        let mut breakage = Breakage::new(&self.simulation, !checkpoints.warnings().is_empty());
         let warnings = &mut self.report.model.warnings;
         let cost = Cell::new(checkpoints.cost());
         let end = deadline.as_ref().map(Deadline::end);
@@ -253,6 +256,7 @@ impl Run {
             });
             if let Some(warning) = breakage.look(simulation) {
                 tell(Event::Warning(&warning));
+                checkpoints.warn(warning.clone());
                 warnings.push(warning);
             }
             let late = |deadline: &mut Deadline| deadline.is_near(checkpoints.cost());

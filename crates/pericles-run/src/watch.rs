@@ -54,19 +54,16 @@ pub struct Breakage {
 }
 
 impl Breakage {
-    /// Starts monitoring at the current state of a run.
-    pub fn from(simulation: &Simulation) -> Self {
+    /// Starts monitoring at the current state of a run, which may have been warned about before.
+    pub fn new(simulation: &Simulation, warned: bool) -> Self {
         let operator = simulation.system().operator();
         let directed = simulation
             .system()
             .domain()
             .count(operator.directed_bonds());
-        let (bonds, broken) = (directed / 2, operator.broken_bonds());
-        // The warning was given before the run was resumed.
-        let warned = broken as f64 > BROKEN_IN_ALL * bonds as f64;
         Self {
-            bonds,
-            broken,
+            bonds: directed / 2,
+            broken: operator.broken_bonds(),
             warned,
         }
     }

@@ -3,7 +3,7 @@
 use pericles::operator::PointSubset;
 use pericles::{StepEnd, System};
 
-use crate::stretch::{any_endangered, endangered, largest_ratio};
+use crate::stretch::{any_endangered, endangered, largest_ratio, load_factor};
 
 /// Rule that selects the bonds that break at a static state among those beyond their limits.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,11 +45,11 @@ impl BreakingRule {
     /// Breaks bonds at displacement `u`. Returns the energy that the body lost at `u` and that is not part of
     /// the dissipated energy, J; `None` if no bond broke. `work` is scratch memory for forces.
     ///
-    /// The selected bonds are those that exceed their critical stretch in displacements scaled down by a
-    /// common factor. They dissipate their energy at the scaled displacements, as in the limit of small load
-    /// steps; the remaining loss of the body counts as energy released after bonds broke. If the scaled
-    /// displacements do not select the same points (large rotations, bonds that break by their energy), and
-    /// in path-dependent bodies, all bonds beyond their limits break and dissipate their energy at `u`.
+    /// The selected bonds are those that exceed their limits in displacements scaled down by a common factor. They
+    /// dissipate their energy at the scaled displacements, as in the limit of small load steps; the remaining loss of
+    /// the body counts as energy released after bonds broke. If other bonds exceed their limits in scaled displacements
+    /// (large rotations), and in path-dependent bodies, all bonds beyond their limits break and dissipate their energy
+    /// at `u`.
     pub fn apply(self, system: &mut System, t: f64, u: &[f64], work: &mut [f64]) -> Option<f64> {
         let broken = system.operator().broken_bonds();
         let mut beyond = 0.0;
@@ -58,6 +58,7 @@ impl BreakingRule {
                 end_step(system, t, u, work);
             }
             Self::WorstFirst { fraction } => match scaled(system, u, fraction) {
+                Scaled::Nothing if accumulates(system) => end_step(system, t, u, work),
                 Scaled::Nothing => return None,
                 Scaled::All => end_step(system, t, u, work),
                 Scaled::By(down) => beyond = at(system, t, (&down, u), work),
@@ -101,6 +102,12 @@ fn end_step(system: &mut System, t: f64, u: &[f64], work: &mut [f64]) {
     system.end_step_on(&StepEnd::sub_step(t, 0.0, u), &PointSubset::All, work);
 }
 
+/// Returns whether the failure criterion accumulates along the deformation.
+fn accumulates(system: &System) -> bool {
+    let breaking = system.operator().capabilities().breaking;
+    breaking.is_some_and(|breaking| breaking.accumulates())
+}
+
 /// Displacements in which only the selected bonds exceed their limits.
 enum Scaled {
     /// No bond exceeds its limits.
@@ -117,17 +124,33 @@ fn scaled(system: &System, u: &[f64], fraction: f64) -> Scaled {
     }
     /// Relative accuracy of the largest stretch, well below the fraction.
     const ACCURACY: f64 = 1e-5;
-    let part = match largest_ratio(system, u, ACCURACY) {
-        Some(largest) => fraction * largest,
-        None => return Scaled::All,
+    let Some(largest) = largest_ratio(system, u, ACCURACY) else {
+        return Scaled::All;
     };
+    let part = fraction * largest;
     if part <= 1.0 {
         return Scaled::All;
     }
-    let down: Vec<f64> = u.iter().map(|u| u / part).collect();
-    let same = endangered(system, u, part) == endangered(system, &down, 1.0);
-    if system.domain().all(same) {
-        Scaled::By(down)
+    let down = |part: f64| -> Vec<f64> { u.iter().map(|u| u / part).collect() };
+    let selected = endangered(system, u, part);
+    let by_ratio = down(part);
+    if system
+        .domain()
+        .all(selected == endangered(system, &by_ratio, 1.0))
+    {
+        return Scaled::By(by_ratio);
+    }
+    // The criterion is not proportional to the displacements: the factor at which the first bond exceeds its limit.
+    let Some(factor) = load_factor(system, u, ACCURACY) else {
+        return Scaled::All;
+    };
+    let by_load = down((fraction / factor).max(1.0));
+    let beyond = endangered(system, u, 1.0);
+    let up = endangered(system, &by_load, 1.0);
+    let own = up.iter().zip(&beyond).all(|(up, beyond)| *beyond || !*up);
+    let any = !system.domain().all(!up.contains(&true));
+    if any && system.domain().all(own) {
+        Scaled::By(by_load)
     } else {
         Scaled::All
     }

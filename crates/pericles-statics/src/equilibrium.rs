@@ -10,7 +10,7 @@ use crate::multigrid::Multigrid;
 use crate::options::StaticOptions;
 use crate::rigid::{FreePiece, free_pieces, spread};
 use crate::sparse::add_multiple;
-use crate::surrogate::Surrogate;
+use crate::surrogate::{Stiffness, Surrogate};
 use crate::tangent::{Tangent, remove, stiffness_into};
 use crate::unknowns::Unknowns;
 
@@ -68,6 +68,8 @@ pub struct Equilibrium {
     replicated: Replicated,
     /// Unknowns of the whole body.
     unknowns: Unknowns,
+    /// Stiffness from which the preconditioner was created, in an earlier state with the same bonds.
+    stiffness: Stiffness,
     multigrid: Multigrid,
     pieces: Vec<FreePiece>,
     /// Rigid-body motions that are projected out.
@@ -85,9 +87,19 @@ impl Equilibrium {
     /// Creates the solver for the intact bonds of a body, with constraints at the entries that are zero in `free`. All
     /// processes must call it together.
     pub fn new(options: StaticOptions, system: &System, free: Vec<f64>) -> Self {
+        Self::with(options, system, free, None)
+    }
+
+    /// Creates the solver with a known stiffness, that of an earlier state with the same bonds.
+    fn with(
+        options: StaticOptions,
+        system: &System,
+        free: Vec<f64>,
+        known: Option<Stiffness>,
+    ) -> Self {
         let replicated = Replicated::new(system.domain());
         let unknowns = Unknowns::new(system.dimension(), &replicated.of(&free));
-        let surrogate = Surrogate::new(system);
+        let (surrogate, stiffness) = Surrogate::with(system, known);
         let multigrid = surrogate.preconditioner(&unknowns);
         let pieces = free_pieces(system, &surrogate, &unknowns);
         let rigid = if options.fix_rigid_modes {
@@ -100,6 +112,7 @@ impl Equilibrium {
         let reduced = || vec![0.0; unknowns.len()];
         Self {
             options,
+            stiffness,
             multigrid,
             pieces,
             rigid,
@@ -114,6 +127,12 @@ impl Equilibrium {
             unknowns,
             free,
         }
+    }
+
+    /// Creates the solver again from its restored state, for a body with the same bonds and constraints.
+    pub(crate) fn recreate(&mut self, system: &System) {
+        let (free, known) = (self.free.clone(), self.stiffness.clone());
+        *self = Self::with(self.options, system, free, Some(known));
     }
 
     /// Returns 1 on free entries, 0 on constrained entries.
@@ -378,6 +397,17 @@ impl Equilibrium {
             length *= 0.5;
         }
         None
+    }
+}
+
+pericles::saved! {
+    impl Checkpointed for Equilibrium {
+        free: points("static/free"),
+        stiffness: part,
+        options: fixed,
+        // By `recreate`.
+        replicated, unknowns, multigrid, pieces, rigid: rebuilt,
+        krylov, reduced, residual, correction, lift, trial, trial_residual: scratch,
     }
 }
 

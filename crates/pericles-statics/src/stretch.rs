@@ -1,4 +1,4 @@
-//! Ratio of bond stretches to their critical stretches.
+//! Ratio of bonds to their limits: of stretches to critical stretches, or that of another failure criterion.
 
 use pericles::System;
 

@@ -272,11 +272,6 @@ impl Checkpointed for FieldSeries {
         let mut entries = 0;
         archive.u64_into(self.name.key(), std::slice::from_mut(&mut entries))?;
         self.outputs = entries as usize;
-        // A series that an earlier release began on points continues on points.
-        let first = self.folder.join(self.name.file(0));
-        if self.outputs > 0 && !VtuFile::has_cell_data(first) {
-            self.cells = None;
-        }
         self.series = (entries > 0)
             .then(|| PvdSeries::reopen(self.series_file(), self.outputs))
             .transpose()

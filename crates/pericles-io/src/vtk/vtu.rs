@@ -45,21 +45,6 @@ impl VtuFile<'_> {
         };
         end().unwrap_or(false)
     }
-
-    /// Whether the fields of a file are those of cells.
-    pub(crate) fn has_cell_data(path: impl AsRef<Path>) -> bool {
-        /// The arrays are announced within so many bytes.
-        const HEAD: u64 = 1 << 16;
-        let head = || -> std::io::Result<Vec<u8>> {
-            let mut head = Vec::new();
-            std::fs::File::open(path)?
-                .take(HEAD)
-                .read_to_end(&mut head)?;
-            Ok(head)
-        };
-        let mark: &[u8] = b"<CellData>";
-        head().is_ok_and(|head| head.windows(mark.len()).any(|window| window == mark))
-    }
 }
 
 impl<'a> VtuFile<'a> {

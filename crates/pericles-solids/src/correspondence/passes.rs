@@ -3,7 +3,7 @@
 use pericles::domain::Field;
 use pericles::lanes::Row;
 use pericles::operator::{
-    AtPoints, BondView, Breakable, Inversion, PlasticView, PointSubset, TwoPass,
+    AtPoints, BondView, Breakable, Inversion, PlasticView, PointSubset, StressView, TwoPass,
 };
 use pericles::parallel::for_each_chunk;
 use pericles::{Expandable, StepEnd, ThermalExpansion};
@@ -167,6 +167,10 @@ impl<const D: usize> TwoPass for CorrespondenceForce<D> {
 
     fn plastic(&self) -> Option<&dyn PlasticView> {
         (!self.history.is_empty()).then_some(self)
+    }
+
+    fn stress(&self) -> Option<&dyn StressView> {
+        Some(self)
     }
 
     fn bonds(&self) -> Option<&dyn BondView> {

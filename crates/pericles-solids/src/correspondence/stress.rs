@@ -42,6 +42,21 @@ impl<const D: usize> CorrespondenceForce<D> {
         all
     }
 
+    /// Returns the Cauchy stress of own points, with the temperature of the last force evaluation.
+    pub(super) fn cauchy_stresses(&self, u: Field<'_>) -> Vec<[[f64; 3]; 3]> {
+        let tensors = self.tensors(&self.packed(u), &self.latest_heat());
+        let n = self.cloud.len();
+        let of_point = |i: usize| {
+            std::array::from_fn(|a| {
+                std::array::from_fn(|b| match a < D && b < D {
+                    true => tensors[(a * D + b) * n + i],
+                    false => 0.0,
+                })
+            })
+        };
+        (0..n).map(of_point).collect()
+    }
+
     /// Returns the entries of the points `on` whose failure index exceeds `limit`.
     pub(super) fn over_stressed(
         &self,

@@ -1,7 +1,7 @@
 //! Views of bonds and plastic strain of correspondence bodies, for output.
 
 use pericles::domain::Field;
-use pericles::operator::{BondAt, BondValues, BondView, PlasticView, PointSubset};
+use pericles::operator::{BondAt, BondValues, BondView, PlasticView, PointSubset, StressView};
 
 use super::bonds::{Bond, Values};
 use super::force::CorrespondenceForce;
@@ -12,6 +12,13 @@ impl<const D: usize> PlasticView for CorrespondenceForce<D> {
         for (i, strain) in out.iter_mut().enumerate() {
             *strain = self.plastic_strain(i);
         }
+    }
+}
+
+impl<const D: usize> StressView for CorrespondenceForce<D> {
+    fn stresses(&self, u: &[f64]) -> Vec<[[f64; 3]; 3]> {
+        let ghosts = self.cloud.domain().ghosts(u);
+        self.cauchy_stresses(Field::new(u, &ghosts))
     }
 }
 

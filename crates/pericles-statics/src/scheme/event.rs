@@ -62,6 +62,12 @@ impl StaticScheme {
         } else {
             self.search(system, &at, &state.u, interrupt)?
         };
+        if between.factor.is_none() && first {
+            return Err(StaticsError::NoEvents {
+                reason: "no bond reaches its limit at any multiple of the loads and displacements at the end of the run (is the body in compression?)",
+            }
+            .into());
+        }
         let factor = between.factor.unwrap_or(self.factor);
         let last = self.factor;
         system.load_proportionally(loading([last; 2]));

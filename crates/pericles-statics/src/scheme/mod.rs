@@ -48,6 +48,8 @@ pub struct StaticScheme {
     equilibrium: Equilibrium,
     /// Number of broken bonds when the solver was created.
     broken: u64,
+    /// Whether the state of the solver was restored from a checkpoint, so that the solver must be created again.
+    restored: bool,
     /// Largest norm of loads or reactions at a static state so far, N.
     largest: f64,
     /// Energy released after bonds broke, J.
@@ -103,6 +105,7 @@ impl StaticScheme {
             options,
             entries: system.dimension() * system.points(),
             broken: system.operator().broken_bonds(),
+            restored: false,
             equilibrium,
             largest: 0.0,
             released: 0.0,
@@ -130,7 +133,10 @@ impl StaticScheme {
         if held_anew || broken != self.broken {
             self.equilibrium = Equilibrium::new(self.options, system, free);
             self.broken = broken;
+        } else if self.restored {
+            self.equilibrium.recreate(system);
         }
+        self.restored = false;
         // Parts that break off keep their displacement; parts that constraints release must be supported otherwise.
         if held_anew {
             self.equilibrium.check_support()?;
@@ -332,8 +338,10 @@ pericles::saved! {
     impl Checkpointed for StaticScheme {
         released, largest, factor: array("static/account"),
         inner: part,
+        broken: array("static/broken"),
+        equilibrium: part,
         options, entries: fixed,
-        equilibrium, effort: scratch,
-        broken: set(u64::MAX),
+        effort: scratch,
+        restored: set(true),
     }
 }

@@ -16,7 +16,7 @@ mod bonds;
 mod probe;
 mod rigid_modes;
 
-pub use probe::Resistance;
+pub use probe::{Resistance, Stiffness};
 pub use rigid_modes::RigidModes;
 
 use bonds::{Bond, Neighbours};
@@ -43,11 +43,18 @@ impl Surrogate {
     /// Creates the surrogate from the intact bonds of a body. Every process of a divided body has the surrogate of the whole
     /// body, with the same bits as on a single process. All processes must call it together.
     pub fn new(system: &System) -> Self {
+        Self::with(system, None).0
+    }
+
+    /// Creates the surrogate of a body with a known stiffness, that of an earlier state with the same bonds, and returns it
+    /// with the stiffness. If `None`, the stiffness is determined in the present state.
+    pub fn with(system: &System, known: Option<Stiffness>) -> (Self, Stiffness) {
         let cloud = &*system.cloud().whole();
         let neighbours = Neighbours::of(system, cloud);
-        let (traces, resistance) = probe::energies(system, &neighbours);
+        let stiffness = known.unwrap_or_else(|| Stiffness::of(system, &neighbours));
+        let resistance = stiffness.resistance;
         let replicated = Replicated::new(system.domain());
-        let traces = &*replicated.of(&traces);
+        let traces = &*replicated.of(&stiffness.traces);
         let d = system.dimension();
         let volumes = cloud.volumes().to_vec();
         let components = match resistance {
@@ -75,13 +82,14 @@ impl Surrogate {
         for c in coefficients.iter_mut().filter(|c| !usual(**c)) {
             *c = mean;
         }
-        Self {
+        let surrogate = Self {
             neighbours,
             coefficients,
             resistance,
             volumes,
             positions: cloud.positions().to_vec(),
-        }
+        };
+        (surrogate, stiffness)
     }
 
     /// Returns the positions of all points, m.

@@ -19,7 +19,9 @@ pub enum Field {
     Reaction,
     /// Force density of contact, with dampers and friction, N/m³.
     ContactForce,
-    /// Virial stress, Pa: ½ Σ f ⊗ (ξ + η) over the bonds of a point. NaN if the force does not list its bonds.
+    /// Cauchy stress, Pa. Correspondence materials: that of the deformation gradient. Other materials: virial stress of
+    /// the bonds of a point, ½ Σ f ⊗ (ξ + η)/J, or ½ Σ f ⊗ ξ for laws of small strains; NaN if the force does not list its
+    /// bonds.
     Stress,
     /// Strain of the displacement gradient fitted to the bonds of a point by least squares. NaN if the force does
     /// not list its bonds.
@@ -31,7 +33,7 @@ pub enum Field {
     /// Dilatation of a state-based material: the relative change of volume, or of area in two dimensions. NaN for
     /// other materials.
     Dilatation,
-    /// Equivalent stress, Pa: von Mises stress of the virial stress; in two dimensions of the in-plane components,
+    /// Equivalent stress, Pa: von Mises stress of [`Field::Stress`]; in two dimensions of the in-plane components,
     /// in a bar the absolute value. NaN if the force does not list its bonds.
     EquivalentStress,
     /// Equivalent plastic strain; NaN for materials that do not yield.
@@ -44,7 +46,7 @@ pub enum Field {
     HeatFlux,
     /// Von Mises stress, Pa: the same numbers as [`Field::EquivalentStress`].
     VonMisesStress,
-    /// Principal stresses, Pa: eigenvalues of the virial stress in descending order, as many as the body has dimensions. As stress.
+    /// Principal stresses, Pa: eigenvalues of [`Field::Stress`] in descending order, as many as the body has dimensions. As stress.
     PrincipalStress,
     /// Half the size of a point's cell, m: ½ (V / section)^(1/dimension). The same at all times.
     Radius,

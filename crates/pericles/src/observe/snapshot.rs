@@ -6,7 +6,9 @@ use std::cell::OnceCell;
 use super::energies::{Energies, StartEnergy};
 use super::field::Field;
 use super::fragments::Fragments;
-use super::tensors::{equivalent_stress, fitted_strain, places, principal_stresses, virial_stress};
+use super::tensors::{
+    components, equivalent_stress, fitted_strain, places, principal_stresses, virial_stress,
+};
 use crate::error::{PericlesError, Result};
 use crate::operator::BondView;
 use crate::space::PointCloud;
@@ -206,7 +208,7 @@ impl<'a> Snapshot<'a> {
                 }
                 reaction
             }),
-            Field::Stress => self.stress.get_or_init(|| self.tensor(virial_stress)),
+            Field::Stress => self.stress.get_or_init(|| self.stress()),
             Field::Strain => self.strain.get_or_init(|| self.tensor(fitted_strain)),
             Field::Dilatation => self.dilatation.get_or_init(|| {
                 let mut dilatation = vec![f64::NAN; self.system.points()];
@@ -276,6 +278,14 @@ impl<'a> Snapshot<'a> {
             Field::KineticEnergyDensity => self
                 .kinetic_density
                 .get_or_init(|| self.kinetic_energy_density()),
+        }
+    }
+
+    /// Returns the stress of the material, or that of the forces of bonds.
+    fn stress(&self) -> Vec<f64> {
+        match self.system.operator().capabilities().stress {
+            Some(view) => components(self.system.cloud(), &view.stresses(&self.state.u)),
+            None => self.tensor(virial_stress),
         }
     }
 

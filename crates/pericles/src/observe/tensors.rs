@@ -89,53 +89,99 @@ fn diagonalise(m: &mut Matrix) {
     }
 }
 
-/// Returns the symmetric part of the virial stress σ_i = ½ Σ_j f_ij ⊗ (ξ + η), Pa, with the force densities f_ij of
-/// the bonds of point i. Under uniform strain it equals the stress of the continuum, except within a horizon of
-/// free surfaces, where bonds are missing.
+/// Returns the symmetric part of the virial stress of the bonds of each point, Pa. With the force densities f_ij it is
+/// σ_i = ½ Σ_j f_ij ⊗ ξ for laws of small strains, and the Cauchy stress σ_i = ½ Σ_j f_ij ⊗ (ξ + η)/J for others, with
+/// J = det(I + G) of the fitted displacement gradient in the dimension of the body. Under uniform strain it equals the
+/// stress of the continuum, except within a horizon of free surfaces, where bonds are missing.
 pub(super) fn virial_stress(cloud: &PointCloud, bonds: &dyn BondView, u: &[f64]) -> Vec<f64> {
     let ghosts = cloud.domain().ghosts(u);
     let values = bonds.values_at(Field::new(u, &ghosts));
+    let volumes = cloud.domain().with_ghosts(cloud.volumes());
     per_point(cloud, |i| {
-        let mut stress = Matrix::default();
+        let (mut stress, mut fit) = (Matrix::default(), Fit::default());
+        let mut is_finite = false;
         bonds.for_each_bond(&values, i, &mut |bond: BondAt| {
+            let along = match bond.small_strain {
+                true => bond.xi,
+                false => std::array::from_fn(|c| bond.xi[c] + bond.eta[c]),
+            };
+            if !bond.small_strain {
+                is_finite = true;
+                fit.add(&bond, volumes[bond.neighbour]);
+            }
             for a in 0..3 {
                 for b in 0..3 {
-                    stress[a][b] += 0.5 * bond.force[a] * (bond.xi[b] + bond.eta[b]);
+                    stress[a][b] += 0.5 * bond.force[a] * along[b];
                 }
             }
         });
-        stress
+        // Bonds that do not span the space, or that are turned inside out, determine no change of volume.
+        let growth = is_finite.then(|| fit.gradient(cloud.dimension()));
+        let growth = growth
+            .flatten()
+            .map_or(1.0, |gradient| volume_ratio(&gradient));
+        let growth = if growth > 0.0 { growth } else { 1.0 };
+        stress.map(|row| row.map(|entry| entry / growth))
     })
+}
+
+/// Returns stresses of all points, component-major.
+pub(super) fn components(cloud: &PointCloud, stresses: &[Matrix]) -> Vec<f64> {
+    per_point(cloud, |i| stresses[i])
 }
 
 /// Returns the strain of the displacement gradient G that minimises Σ_j V_j |η − G ξ|². Zero where the unbroken
 /// bonds do not span the space.
 pub(super) fn fitted_strain(cloud: &PointCloud, bonds: &dyn BondView, u: &[f64]) -> Vec<f64> {
-    let dimension = cloud.dimension();
     let ghosts = cloud.domain().ghosts(u);
     let values = bonds.values_at(Field::new(u, &ghosts));
     let volumes = cloud.domain().with_ghosts(cloud.volumes());
     per_point(cloud, |i| {
-        let (mut shape, mut moment) = (Matrix::default(), Matrix::default());
+        let mut fit = Fit::default();
         bonds.for_each_bond(&values, i, &mut |bond: BondAt| {
-            let volume = volumes[bond.neighbour];
-            for a in 0..3 {
-                for b in 0..3 {
-                    shape[a][b] += volume * bond.xi[a] * bond.xi[b];
-                    moment[a][b] += volume * bond.eta[a] * bond.xi[b];
-                }
-            }
+            fit.add(&bond, volumes[bond.neighbour]);
         });
-        let size = (0..dimension).map(|c| shape[c][c]).sum::<f64>();
+        fit.gradient(cloud.dimension()).unwrap_or_default()
+    })
+}
+
+/// Least-squares fit of a displacement gradient to bonds.
+#[derive(Default)]
+struct Fit {
+    /// Σ V ξ ⊗ ξ
+    shape: Matrix,
+    /// Σ V η ⊗ ξ
+    moment: Matrix,
+}
+
+impl Fit {
+    fn add(&mut self, bond: &BondAt, volume: f64) {
+        for a in 0..3 {
+            for b in 0..3 {
+                self.shape[a][b] += volume * bond.xi[a] * bond.xi[b];
+                self.moment[a][b] += volume * bond.eta[a] * bond.xi[b];
+            }
+        }
+    }
+
+    /// Returns the gradient; `None` if the bonds do not span the space.
+    fn gradient(mut self, dimension: usize) -> Option<Matrix> {
+        let size = (0..dimension).map(|c| self.shape[c][c]).sum::<f64>();
         // A unit diagonal for missing axes makes the inverse block-diagonal.
         for c in dimension..3 {
-            shape[c][c] = size;
+            self.shape[c][c] = size;
         }
-        match inverse(&shape) {
-            Some(inverse) => product(&moment, &inverse),
-            None => Matrix::default(),
-        }
-    })
+        inverse(&self.shape).map(|inverse| product(&self.moment, &inverse))
+    }
+}
+
+/// Returns det(I + G).
+fn volume_ratio(gradient: &Matrix) -> f64 {
+    let f: Matrix = std::array::from_fn(|a| {
+        std::array::from_fn(|b| gradient[a][b] + f64::from(u8::from(a == b)))
+    });
+    let minor = |a: usize, b: usize| f[1][a] * f[2][b] - f[1][b] * f[2][a];
+    f[0][0] * minor(1, 2) - f[0][1] * minor(0, 2) + f[0][2] * minor(0, 1)
 }
 
 /// Returns the symmetric part of a matrix for every point, component-major.

@@ -9,6 +9,12 @@ pub trait Breakable {
     /// Returns whether any bond can break.
     fn can_break(&self) -> bool;
 
+    /// Returns whether the failure criterion accumulates along the deformation, as the work of a bond does. Schemes then
+    /// end a step at each accepted state, even if no bond breaks.
+    fn accumulates(&self) -> bool {
+        false
+    }
+
     /// Returns the number of broken bonds, each counted once.
     fn broken_bonds(&self) -> u64;
 

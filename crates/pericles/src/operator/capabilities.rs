@@ -2,7 +2,7 @@
 
 use super::{
     BondForm, BondView, Breakable, DilatationView, Force, Limit, LinearOperator, LocalForce,
-    PlasticView, SplitForce,
+    PlasticView, SplitForce, StressView,
 };
 use crate::error::{PericlesError, Result};
 use crate::thermal::ThermalExpansion;
@@ -26,6 +26,8 @@ pub struct Capabilities<'a> {
     pub bonds: Option<&'a dyn BondView>,
     /// Dilatations of points, for state-based materials.
     pub dilatation: Option<&'a dyn DilatationView>,
+    /// Stresses of points, for materials whose forces follow from them.
+    pub stress: Option<&'a dyn StressView>,
     /// Plastic strains of points.
     pub plastic: Option<&'a dyn PlasticView>,
     /// Whether the force depends on the history of states. Schemes then end a step at each accepted state,

@@ -153,6 +153,7 @@ impl Force for Forces {
             dilatation: self
                 .iter()
                 .find_map(|force| force.capabilities().dilatation),
+            stress: self.iter().find_map(|force| force.capabilities().stress),
             plastic: self.iter().find_map(|force| force.capabilities().plastic),
             thermal: self.iter().find_map(|force| force.capabilities().thermal),
             linear: match (exact, rounded) {
@@ -257,6 +258,10 @@ impl Breakable for Forces {
         for breaking in forces.filter_map(|force| force.breaking_mut()) {
             breaking.take_dissipated(out);
         }
+    }
+
+    fn accumulates(&self) -> bool {
+        self.breaking().any(|breaking| breaking.accumulates())
     }
 
     fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {

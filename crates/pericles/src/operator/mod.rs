@@ -69,7 +69,7 @@ pub use state_based::{
     LinearSolidForce, LinearSolidGrid, SmallStrain,
 };
 pub use two_pass::{AtPoints, TwoPass, TwoPassForce};
-pub use view::{BondAt, BondValues, BondView, DilatationView, PlasticView};
+pub use view::{BondAt, BondValues, BondView, DilatationView, PlasticView, StressView};
 pub use zoned::{LocalForce, SplitForce};
 
 pub use crate::lanes::InstructionSet;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::pool::{Lent, Pool};
 use super::{
     BondView, Breakable, Capabilities, DilatationView, Force, InstructionSet, Inversion,
-    LinearOperator, Linearity, LocalForce, PlasticView, PointSubset,
+    LinearOperator, Linearity, LocalForce, PlasticView, PointSubset, StressView,
 };
 use crate::archive::{Archive, Checkpointed};
 use crate::domain::Field;
@@ -106,6 +106,11 @@ pub trait TwoPass: Checkpointed + Send + Sync {
     /// Returns whether the force depends on the history of states.
     fn is_path_dependent(&self) -> bool {
         false
+    }
+
+    /// Returns the stresses of points, if the force follows from them.
+    fn stress(&self) -> Option<&dyn StressView> {
+        None
     }
 
     /// Returns the plastic strain, if points can yield.
@@ -290,6 +295,7 @@ impl<F: TwoPass> Force for TwoPassForce<F> {
             split: None,
             bonds: self.force.bonds(),
             dilatation: self.force.dilatation().map(|_| self as &dyn DilatationView),
+            stress: self.force.stress(),
             plastic: self.force.plastic(),
             path_dependent: self.force.is_path_dependent(),
             thermal: self.force.thermal(),

@@ -17,6 +17,9 @@ pub struct BondAt {
     /// Force density of the bond on this end, N/m³, including the partial volume and the volume of the other
     /// end.
     pub force: [f64; 3],
+    /// Whether the law is that of small strains, with forces along ξ: the deformed body is not distinguished from the
+    /// reference body.
+    pub small_strain: bool,
 }
 
 impl BondAt {
@@ -35,6 +38,15 @@ impl BondAt {
             xi: spatial(xi),
             eta: spatial(eta),
             force: spatial(force),
+            small_strain: false,
+        }
+    }
+
+    /// Returns the bond with a law of small strains or not.
+    pub fn of_small_strain(self, small_strain: bool) -> Self {
+        Self {
+            small_strain,
+            ..self
         }
     }
 
@@ -108,6 +120,12 @@ pub trait BondView: Sync {
 pub trait PlasticView: Sync {
     /// Sets the equivalent plastic strain of each point.
     fn plastic_strain_into(&self, out: &mut [f64]);
+}
+
+/// An operator whose material has a stress at every point.
+pub trait StressView: Sync {
+    /// Returns the Cauchy stress of each own point, Pa; missing components are zero. All processes must call it together.
+    fn stresses(&self, u: &[f64]) -> Vec<[[f64; 3]; 3]>;
 }
 
 /// An operator with dilatations of points.

@@ -185,6 +185,7 @@ impl<L: VectorLaw, const D: usize> Force for GridForce<L, D> {
             bonds: Some(self),
             single_precision: !in_doubles,
             dilatation: None,
+            stress: None,
             plastic: None,
             path_dependent: false,
             thermal: self.expansion.as_ref(),

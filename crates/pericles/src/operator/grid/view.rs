@@ -24,7 +24,7 @@ impl<L: VectorLaw, const D: usize> BondView for GridForce<L, D> {
             let pulled = std::array::from_fn(|c| eta[c] - thermal * offset.xi[c]);
             let stiffness = (1.0 + thermal) * stiffness;
             let force = L::force(free, pulled).map(|force| stiffness * force);
-            visit(BondAt::new(j, offset.xi, eta, force));
+            visit(BondAt::new(j, offset.xi, eta, force).of_small_strain(L::LINEAR));
         }
     }
 

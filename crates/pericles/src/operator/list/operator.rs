@@ -123,6 +123,7 @@ impl<L: VectorLaw, const D: usize> Force for BondForce<L, D> {
             bonds: Some(self),
             single_precision: false,
             dilatation: None,
+            stress: None,
             plastic: None,
             path_dependent: false,
             thermal: self.heat.as_ref().map(|heat| &heat.expansion),
@@ -157,7 +158,7 @@ impl<L: VectorLaw, const D: usize> BondView for BondForce<L, D> {
             let (free, pulled, scale) = bonds.expanded([here, b], xi, eta);
             let stiffness = scale * self.stiffness_of(entry, i, b);
             let force = L::force(free, pulled).map(|force| stiffness * force);
-            visit(BondAt::new(sites.point(b), xi, eta, force));
+            visit(BondAt::new(sites.point(b), xi, eta, force).of_small_strain(L::LINEAR));
         }
     }
 

@@ -9,8 +9,9 @@ use super::force::LinearSolidForce;
 use super::kernels::{dilatation_change_rows, force_rows, square_rows, tangent_rows};
 use super::kinematics::Kinematics;
 use crate::domain::Field;
-use crate::lanes::LANES;
+use crate::lanes::{F64x8, LANES, Row};
 use crate::material::PairForce;
+use crate::operator::pool::Lent;
 use crate::operator::{
     AtPoints, BondView, Breakable, CoarseBreak, InstructionSet, PointSubset, TwoPass, damage,
 };
@@ -269,7 +270,10 @@ impl<L: Kinematics, const D: usize> Breakable for LinearSolidForce<L, D> {
         intact.for_each(|(_, b)| visit(sites.point(b)));
     }
 
-    /// The bond energy is that of the work at the end of the last step.
+    fn accumulates(&self) -> bool {
+        self.weakest.energy.is_finite()
+    }
+
     fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]) {
         let ghosts = self.cloud.domain().ghosts(u);
         let u = Field::new(u, &ghosts);
@@ -282,7 +286,23 @@ impl<L: Kinematics, const D: usize> Breakable for LinearSolidForce<L, D> {
 }
 
 impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
-    /// Marks the points with a bond beyond a fraction of its critical stretch or energy.
+    /// Returns rows of displacements; with failure by energy also of p.
+    fn rows_of_limits(&self, u: Field<'_>) -> Lent<'_, Vec<Row>> {
+        if self.influence.is_none() {
+            return self.packed(u);
+        }
+        let mut dilatations = vec![0.0; self.cloud.len()];
+        self.dilatations_into(u, &PointSubset::All, &mut dilatations);
+        let ghosts = self.cloud.domain().ghosts(&dilatations);
+        let (theta, sites) = (Field::new(&dilatations, &ghosts), self.bonds.sites());
+        let pressure = &self.states.pressure;
+        self.packed_beside(u, |site| {
+            pressure[site] * theta.at::<1>(0, sites.point(site))
+        })
+    }
+
+    /// Marks the points with a bond beyond a fraction of its critical stretch or energy. The work of a bond is that at the
+    /// end of the last step plus the work along the straight path from there.
     pub(super) fn mark_by_limits(&self, u: Field<'_>, fraction: f64, marks: &mut [bool]) {
         let bonds = self.view();
         let worked = self
@@ -294,7 +314,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
                 .as_ref()
                 .is_none_or(|bits| bits[entry / LANES] >> (entry % LANES) & 1 == 1)
         };
-        let u = self.packed(u);
+        let u = self.rows_of_limits(u);
         let (stretches, sites) = (self.latest_stretches(), self.bonds.sites());
         let over = |i: usize, entry: usize, b: usize| {
             let a = self.bonds.site(i);
@@ -308,8 +328,14 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
             let limit = heated_limit(fraction * limits.stretch, thermal);
             let (measure, square) = L::Measure::stretch_measure(xi, difference::<D>(&u, a, b));
             let worked = worked.as_ref().is_some_and(|worked| {
-                let kept = self.work[entry / LANES * KEPT + entry % LANES];
-                worked.bond_energy(entry, xi, kept) > fraction * limits.energy
+                let kept = |k: usize| self.work[entry / LANES * KEPT + k * LANES + entry % LANES];
+                let stretch = L::exact_stretch(F64x8([measure / square; LANES])).0[0];
+                let stiffness = &self.states.stiffness;
+                let stiffness = bonds.factor_of(entry) * (stiffness[a] + stiffness[b]);
+                let pull = stretch * stiffness + u[a][3] + u[b][3];
+                let work = kept(0) + 0.5 * (pull + kept(1)) * (stretch - kept(2));
+                // Compressed bonds never break.
+                stretch > 0.0 && worked.bond_energy(entry, xi, work) > fraction * limits.energy
             });
             worked || measure > L::Measure::threshold(limit) * square
         };

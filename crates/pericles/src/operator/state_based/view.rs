@@ -82,7 +82,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
             let s = bonds.factor_of(entry) * stiffness;
             let weight = bonds.weight_of(entry, [here, b], xi);
             let force = force_of_bond::<L, D>(weight, [p, s], xi, eta);
-            visit(BondAt::new(j, xi, eta, force));
+            visit(BondAt::new(j, xi, eta, force).of_small_strain(L::LINEAR));
         }
     }
 }

@@ -153,7 +153,7 @@ impl<L: VectorLaw, const D: usize> BondView for SofteningForce<L, D> {
             let (free, pulled, scale) = bonds.expanded([here, b], xi, eta);
             let stiffness = scale * self.retained(i, entry, b) * list.stiffness_of(entry, i, b);
             let force = L::force(free, pulled).map(|force| stiffness * force);
-            visit(BondAt::new(sites.point(b), xi, eta, force));
+            visit(BondAt::new(sites.point(b), xi, eta, force).of_small_strain(L::LINEAR));
         }
     }
 

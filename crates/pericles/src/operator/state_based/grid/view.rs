@@ -45,7 +45,7 @@ impl<L: Kinematics, const D: usize> BondView for LinearSolidGrid<L, D> {
             let p = pressures.at::<1>(0, i) + pressures.at::<1>(0, j);
             let s = self.states.stiffness[i] + self.states.stiffness[j];
             let force = force_of_bond::<L, D>(offset.weight, [p, s], offset.xi, eta);
-            visit(BondAt::new(j, offset.xi, eta, force));
+            visit(BondAt::new(j, offset.xi, eta, force).of_small_strain(L::LINEAR));
         }
     }
 
