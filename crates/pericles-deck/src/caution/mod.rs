@@ -10,7 +10,7 @@ pub use area::AreaDoubt;
 
 use area::doubtful_area;
 
-use crate::wording::{percent, prefixed, reach, short, spot};
+use crate::wording::{further, percent, prefixed, reach, short, shortened, spot};
 
 /// Kinds of warnings.
 #[derive(Debug, Clone, thiserror::Error)]
@@ -135,6 +135,19 @@ pub enum Caution {
         axis: char,
         /// Its value, m.
         value: f64,
+    },
+    /// Names that are too long for Exodus files.
+    #[error(
+        "the name `{}` is shortened to `{}` in the Exodus file{}",
+        shortened(name), shortened(stored), further(*more)
+    )]
+    LongExodusNames {
+        /// The name.
+        name: String,
+        /// Its form in the file.
+        stored: String,
+        /// Number of further names.
+        more: usize,
     },
     /// An unusual property of a mesh.
     #[error("{problem}")]

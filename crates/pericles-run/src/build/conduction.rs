@@ -270,7 +270,7 @@ impl Assembler<'_> {
         let cloud = &*discretisation.cloud;
         let known = condition
             .area
-            .or_else(|| self.face_area(discretisation.mesh.as_deref(), &condition.set));
+            .or_else(|| self.face_area(&discretisation.meshes, &condition.set));
         if let Some(area) = known {
             return Ok(area);
         }

@@ -32,6 +32,7 @@ mod materials;
 mod memory;
 mod mesh;
 mod mesh_body;
+mod output;
 mod part;
 mod pieces;
 mod plausible;
@@ -60,7 +61,7 @@ pub use discretise::discretise;
 pub use exact::ExactReference;
 pub use forecast::{BANDWIDTH, Forecast, LATENCY, Spread};
 pub use loads::LoadReport;
-pub use mesh_body::MeshBody;
+pub use mesh_body::{MeshBody, Meshes};
 pub(crate) use part::gathered;
 pub use program::Conditions;
 pub use resources::{
