@@ -1,9 +1,9 @@
 //! Meshes as further pieces of a body, and sets of meshes with special names or places.
 
 use pericles_deck::Deck;
-use pericles_mesh::{CellKind, Cells, FaceSet, NamedList};
+use pericles_mesh::{CellKind, Cells, FaceSet, NamedList, RawMesh};
 
-use super::mesh::{block, built, refused};
+use super::mesh::{block, built, cube, refused};
 
 /// A block on a lattice, and beside it a mesh of 8 × 3 × 2 mm rotated about z by a quarter turn.
 const TWO: &str = r#"
@@ -196,4 +196,82 @@ fn names_that_a_deck_or_an_exodus_file_cannot_keep_lead_to_warnings() {
     assert_eq!(set("all"), Some(66));
     assert_eq!(set("bar/all (elements)"), Some(2));
     assert!(!warnings(&mesh, "\"vtkhdf\"").0.contains("shortened"));
+}
+
+#[test]
+fn a_reversed_triangle_of_a_solid_is_named_and_does_not_change_it() {
+    let solid = |open: bool| {
+        format!(
+            r#"
+[body]
+shape = "solid"
+file = "cube.stl"
+unit = "mm"
+spacing = "1 mm"
+open = {open}
+[material]
+density = "2440 kg/m3"
+youngs_modulus = "72 GPa"
+horizon_ratio = 3
+[time]
+end = "1 us"
+"#
+        )
+    };
+    for reversed in [0, 7] {
+        let mut mesh = cube();
+        let mut cells = Cells::default();
+        for (k, (kind, corners)) in cube().cells.iter().enumerate() {
+            let [a, b, c] = [corners[0], corners[1], corners[2]];
+            match k == reversed {
+                true => cells.push(kind, &[a, c, b]),
+                false => cells.push(kind, &[a, b, c]),
+            }
+        }
+        mesh.cells = cells;
+        for open in [false, true] {
+            let body = built(&solid(open), &mesh);
+            assert_eq!(body.cloud.len(), 512, "{reversed} {open}");
+            let lines: Vec<String> = body.warnings.iter().map(|w| w.line()).collect();
+            let told = format!("triangle {} with the corners", reversed + 1);
+            assert!(lines.iter().any(|line| line.contains(&told)), "{lines:?}");
+        }
+    }
+    let quiet = built(&solid(false), &cube());
+    assert!(!quiet.warnings.iter().any(|w| w.line().contains("triangle")));
+}
+
+#[test]
+fn impactors_from_files_that_repeat_corners_are_closed() {
+    let deck = r#"
+[body]
+shape = "block"
+size = ["10 mm", "10 mm", "4 mm"]
+spacing = "1 mm"
+[material]
+density = 2000
+youngs_modulus = "70 GPa"
+horizon_ratio = 3
+[[impactor]]
+name = "tool"
+shape = "surface"
+file = "cube.stl"
+unit = "mm"
+centre = ["5 mm", "5 mm", "20 mm"]
+velocity = [0, 0, "-10 m/s"]
+density = 7800
+[time]
+end = "1 us"
+"#;
+    // Each triangle with three vertices of its own, as in STL.
+    let shared = cube();
+    let mut mesh = RawMesh::default();
+    for (kind, corners) in shared.cells.iter() {
+        let first = mesh.nodes.len() as u32;
+        mesh.nodes
+            .extend(corners.iter().map(|&c| shared.nodes[c as usize]));
+        mesh.cells.push(kind, &[first, first + 1, first + 2]);
+    }
+    let frequency = |mesh: &RawMesh| built(deck, mesh).contact_frequency.unwrap();
+    assert_eq!(frequency(&mesh), frequency(&shared));
 }
