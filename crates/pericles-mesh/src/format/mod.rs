@@ -116,8 +116,7 @@ impl Format {
         let what = match self {
             // An empty file has a cause of its own, which is reported later.
             Self::Gmsh => return Ok(mesh),
-            Self::Stl => "triangles",
-            Self::Obj | Self::Ply | Self::Off => "polygons",
+            Self::Stl | Self::Obj | Self::Ply | Self::Off => "triangles",
             Self::Vtk => "cells",
             Self::Abaqus | Self::Exodus => "elements",
         };

@@ -165,7 +165,7 @@ fn files_without_elements_and_unsupported_sections_are_named() {
             "solid a\nendsolid a\n",
             "the file contains no triangles",
         ),
-        ("obj", "v 0 0 0\n", "the file contains no polygons"),
+        ("obj", "v 0 0 0\n", "the file contains no triangles"),
         (
             "inp",
             "*NODE\n1, 0., 0., 0.\n",
