@@ -22,6 +22,7 @@ use super::assembler::Assembler;
 use super::body::BodyParts;
 use super::discretisation::Discretisation;
 use super::loads::volume_of;
+use super::radiation::judge_radiation;
 use super::refusal::{at, at_path};
 use super::resources::Resources;
 use super::thermal::Given;
@@ -110,6 +111,8 @@ impl Assembler<'_> {
                 for_each_point(cloud.len(), &|i| value.value(cloud.point(i), 0.0))
             }
         };
+        let judged = judge_radiation(thermal, cloud, &start);
+        warnings.extend(discretisation.agreed(judged)?);
         let field = DiffusingField::new(problem, options, 0.0, start);
         field.map(Some).map_err(|error| at("thermal", error))
     }

@@ -38,6 +38,7 @@ mod pieces;
 mod plausible;
 mod points;
 mod program;
+mod radiation;
 mod random;
 mod refusal;
 mod resources;

@@ -28,6 +28,7 @@ mod plate;
 mod plausible;
 mod points;
 mod program;
+mod radiation;
 mod refined;
 mod schemes;
 mod sense;
