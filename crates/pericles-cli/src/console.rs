@@ -6,6 +6,7 @@ use std::fmt::Arguments;
 use std::io::{self, ErrorKind, Write};
 use std::path::Path;
 
+use pericles_deck::is_invisible;
 use pericles_io::{IoError, write_atomically};
 use pericles_run::RunError;
 use serde::Serialize;
@@ -47,9 +48,9 @@ pub(crate) fn note_in_colour(text: Arguments<'_>) {
     let _ = writeln!(io::stderr().lock(), "{text}");
 }
 
-/// Returns the text with control characters escaped, such as `\u{1b}` for ESC; line ends and tabs are kept.
+/// Returns the text with control and format characters escaped, such as `\u{1b}` for ESC; line ends and tabs are kept.
 pub(crate) fn printable(text: &str) -> Cow<'_, str> {
-    let harmful = |c: char| c.is_control() && !matches!(c, '\n' | '\t');
+    let harmful = |c: char| is_invisible(c) && !matches!(c, '\n' | '\t');
     if !text.contains(harmful) {
         return Cow::Borrowed(text);
     }
@@ -75,6 +76,11 @@ mod tests {
         assert_eq!(
             printable("a\u{1b}[2Jb\rc\u{8}d\u{9b}31m"),
             "a\\u{1b}[2Jb\\rc\\u{8}d\\u{9b}31m"
+        );
+        // Reversed text, a zero-width blank and a byte order mark.
+        assert_eq!(
+            printable("a\u{202e}txt\u{200b}\u{feff}"),
+            "a\\u{202e}txt\\u{200b}\\u{feff}"
         );
     }
 }

@@ -14,7 +14,7 @@ use crate::exit::Exit;
 /// The folder has no fields, the file already exists, or files cannot be read or written.
 pub(crate) fn export(args: &ExportArgs) -> Result<Exit, CliError> {
     let results = Results::open(&args.dir)?;
-    if results.fields()?.is_empty() {
+    if !results.has_fields() {
         return Err(CliError::NoFields {
             folder: args.dir.clone(),
         });

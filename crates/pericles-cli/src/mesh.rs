@@ -120,8 +120,10 @@ fn of_points(file: &Path, summary: Summary, unit: f64) -> Results {
 }
 
 fn of_surface(file: &Path, mesh: &RawMesh, surface: &TriangleSurface, unit: f64) -> Results {
-    let volume = surface.signed_volume();
     let mut problems = Vec::new();
+    let (surface, reversed) = surface.repaired();
+    problems.extend(reversed.map(|reversed| reversed.to_string()));
+    let volume = surface.signed_volume();
     let open = surface.unmatched_edges();
     if open > 0 {
         problems.push(format!(

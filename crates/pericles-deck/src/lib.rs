@@ -171,7 +171,7 @@ pub use remark::{BuildError, Keys, ModelProblem, ModelWarning, Remark};
 pub use schema::{json_schema, reference, specimens};
 pub use scheme::{FineRegion, FineStep, Interface, Scheme};
 pub use set::{ALL, Depth, Members, NamedSet};
-pub use source::Location;
+pub use source::{Location, is_invisible};
 pub use state_based::StateBased;
 pub use statics::{RigidModes, StaticBreaking, Statics};
 pub use stop::{StopCondition, StopWhen};

@@ -17,7 +17,7 @@ pub(crate) struct Frame {
     pub(crate) spacing: Option<f64>,
     /// Whether all cells have one size, so that lengths may be given in cells.
     pub(crate) cells: bool,
-    /// Whether the body is a mesh, whose file defines sets and, by default, the spacing.
+    /// Whether the body or a piece of it is a mesh, whose file defines sets and, by default, the spacing.
     pub(crate) mesh: bool,
 }
 

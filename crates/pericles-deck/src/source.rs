@@ -106,13 +106,26 @@ impl Source {
     }
 }
 
-/// Replaces control characters of one byte by a blank and those of two bytes by `¿`, except for line ends and tabs.
+/// Returns whether a character changes how the text around it is shown, or is not shown at all: control characters, and
+/// format characters such as those that reverse the direction of text.
+pub fn is_invisible(c: char) -> bool {
+    c.is_control()
+        || matches!(c,
+            '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}'
+            | '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}')
+}
+
+/// Replaces invisible characters by a visible one of the same length, except for line ends and tabs.
 fn visible(text: &str) -> String {
     let shown = |c: char| match c {
         '\n' | '\r' | '\t' => c,
-        c if c.is_ascii_control() => ' ',
-        c if c.is_control() => '¿',
-        c => c,
+        c if !is_invisible(c) => c,
+        c => match c.len_utf8() {
+            1 => ' ',
+            2 => '¿',
+            3 => char::REPLACEMENT_CHARACTER,
+            _ => '𐄂',
+        },
     };
     text.chars().map(shown).collect()
 }

@@ -51,7 +51,6 @@ pub(crate) const OWN_CONSTANTS: &[&str] = &[
     "bulk_modulus",
     "shear_modulus",
     "poisson_ratio",
-    "modulus",
     "fracture_energy",
     "critical_stretch",
     "strength",

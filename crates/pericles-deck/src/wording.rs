@@ -20,6 +20,14 @@ pub(crate) fn shortened(text: &str) -> String {
     }
 }
 
+/// Returns the end of a message about the first of several names.
+pub(crate) fn further(more: usize) -> String {
+    match more {
+        0 => String::new(),
+        more => format!("; {more} more names are shortened"),
+    }
+}
+
 /// Formats a list: `a`, `b` and `c`.
 pub(crate) fn names(words: &[String]) -> String {
     joined(words, '`')

@@ -20,7 +20,7 @@ use pericles::kernel::{Influence, InfluenceFunction};
 #[derive(Debug, Clone)]
 pub struct KernelWaves {
     dimension: usize,
-    /// r (m), and α(r) r^(d−2) times the quadrature weight.
+    /// Nodes r (m) and weights w of ∫ α(r) r^d f(r) dr = Σ w f(r) for smooth f.
     radii: Vec<[f64; 2]>,
     horizon: f64,
 }
@@ -34,24 +34,45 @@ impl KernelWaves {
         horizon: f64,
         largest: f64,
     ) -> Option<Self> {
-        /// Range of k r (rad) that one panel of 32 nodes resolves to round-off.
-        const PANEL: f64 = 20.0;
+        /// Range of k r (rad) on which a polynomial through 32 nodes resolves a wave to round-off.
+        const PANEL: f64 = 10.0;
         const NODES: NonZeroUsize = NonZeroUsize::new(32).unwrap();
         if matches!(influence.function, InfluenceFunction::Classes(_)) {
             return None;
         }
         let rule = GaussLegendre::new(NODES);
+        let pairs = rule.as_node_weight_pairs();
+        let panels = (horizon * largest / PANEL).ceil().max(1.0);
+        let width = horizon / panels;
+        let pieces = influence.smooth_pieces(horizon);
         let mut radii = Vec::new();
-        for piece in influence.smooth_pieces(horizon).windows(2) {
-            let panels = ((piece[1] - piece[0]) * largest / PANEL).ceil().max(1.0);
-            let width = (piece[1] - piece[0]) / panels;
-            for panel in 0..panels as usize {
-                let start = piece[0] + width * panel as f64;
-                for (node, weight) in rule.as_node_weight_pairs() {
-                    let r = start + 0.5 * width * (node + 1.0);
-                    let density = influence.alpha(r, horizon) * r.powi(dimension as i32 - 2);
-                    radii.push([r, 0.5 * width * weight * density]);
+        for panel in 0..panels as usize {
+            let [start, end] = [panel, panel + 1].map(|k| width * k as f64);
+            // Moments of α r^d with the Legendre polynomials of the panel, from the pieces on which α is smooth. The wave is smooth on
+            // the whole panel, so that the number of nodes does not depend on the number of pieces.
+            let mut moments = vec![0.0; pairs.len()];
+            for piece in pieces.windows(2) {
+                let (a, b) = (piece[0].max(start), piece[1].min(end));
+                if a >= b {
+                    continue;
                 }
+                for (node, weight) in pairs {
+                    let r = a + 0.5 * (b - a) * (node + 1.0);
+                    let density = influence.alpha(r, horizon) * r.powi(dimension as i32);
+                    let share = 0.5 * (b - a) * weight * density;
+                    let values = legendre(2.0 * (r - start) / width - 1.0, moments.len());
+                    for (moment, value) in moments.iter_mut().zip(values) {
+                        *moment += share * value;
+                    }
+                }
+            }
+            for (node, weight) in pairs {
+                let values = legendre(*node, moments.len());
+                let parts = values.zip(&moments).enumerate();
+                let sum: f64 = parts
+                    .map(|(n, (value, moment))| (n as f64 + 0.5) * value * moment)
+                    .sum();
+                radii.push([start + 0.5 * width * (node + 1.0), weight * sum]);
             }
         }
         Some(Self {
@@ -70,8 +91,9 @@ impl KernelWaves {
         for [r, weight] in &self.radii {
             for &(mu, share) in &cosines {
                 let phase = wavenumber * r * mu;
-                // 1 − cos φ and its long-wave limit φ²/2.
-                let values = [2.0 * (0.5 * phase).sin().powi(2), 0.5 * phase * phase];
+                // 1 − cos φ and its long-wave limit φ²/2, over r².
+                let limit = 0.5 * (wavenumber * mu).powi(2);
+                let values = [2.0 * ((0.5 * phase).sin() / r).powi(2), limit];
                 let along = mu * mu;
                 // In 3D the two transverse directions share 1 − μ².
                 let across = (1.0 - along) / (self.dimension.max(2) - 1) as f64;
@@ -118,6 +140,17 @@ impl KernelWaves {
             }
         }
     }
+}
+
+/// Returns the values of the first Legendre polynomials at x.
+fn legendre(x: f64, count: usize) -> impl Iterator<Item = f64> {
+    let mut next = (1.0, x);
+    (0..count).map(move |n| {
+        let (value, after) = next;
+        let m = n as f64 + 1.0;
+        next = (after, ((2.0 * m + 1.0) * x * after - m * value) / (m + 1.0));
+        value
+    })
 }
 
 #[cfg(test)]
@@ -170,6 +203,28 @@ mod tests {
                     (found[branch] - expected).abs() < 2e-3,
                     "{k} {found:?} {expected}"
                 );
+            }
+        }
+    }
+
+    #[test]
+    fn the_number_of_rows_of_a_table_changes_neither_speeds_nor_their_cost() {
+        let table = |rows: usize| {
+            let row = |k: usize| 2.0 * k as f64 / (rows - 1) as f64;
+            let table = (0..rows).map(|k| (row(k), row(k))).collect();
+            InfluenceFunction::Tabulated { table }
+        };
+        for dimension in 1..=3 {
+            let [few, many] = [2, 4001].map(|rows| waves(dimension, table(rows)));
+            assert_eq!(few.radii.len(), many.radii.len());
+            for k in [0.1, 3.0, 30.0] {
+                let pairs = few
+                    .relative_speeds(k)
+                    .into_iter()
+                    .zip(many.relative_speeds(k));
+                for (a, b) in pairs {
+                    assert!((a / b - 1.0).abs() < 1e-12, "{dimension} {k}: {a} {b}");
+                }
             }
         }
     }

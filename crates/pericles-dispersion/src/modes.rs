@@ -17,9 +17,10 @@ impl Mode {
         self.omega_squared.sqrt()
     }
 
-    /// Squared component of the polarisation along a unit vector, 0 … 1: 1 for pressure waves, 0 for shear waves.
+    /// Squared component of the polarisation along a direction of any length, 0 … 1: 1 for pressure waves, 0 for shear
+    /// waves.
     pub fn longitudinal(&self, direction: Vector) -> f64 {
-        dot(self.polarisation, direction).powi(2)
+        dot(self.polarisation, direction).powi(2) / dot(direction, direction)
     }
 }
 

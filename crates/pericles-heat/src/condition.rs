@@ -47,7 +47,8 @@ pub enum Kind {
 pub enum Exchange {
     /// g(T) = T: convection.
     Linear,
-    /// g(T) = T⁴: radiation with the coefficient ε σ.
+    /// g(T) = T³|T|: radiation with the coefficient ε σ. Temperatures below zero are outside its range, but a solution that
+    /// oscillates about zero is still driven towards the ambient temperature.
     FourthPower,
 }
 
@@ -55,14 +56,14 @@ impl Exchange {
     pub(crate) fn value(self, t: f64) -> f64 {
         match self {
             Self::Linear => t,
-            Self::FourthPower => t * t * t * t,
+            Self::FourthPower => t * t * t * t.abs(),
         }
     }
 
     pub(crate) fn derivative(self, t: f64) -> f64 {
         match self {
             Self::Linear => 1.0,
-            Self::FourthPower => 4.0 * t * t * t,
+            Self::FourthPower => 4.0 * t * t * t.abs(),
         }
     }
 }
@@ -102,5 +103,23 @@ impl fmt::Debug for Condition {
             .field("name", &self.name)
             .field("points", &self.points.len())
             .finish()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn radiation_rises_with_the_temperature_on_both_sides_of_zero() {
+        let law = Exchange::FourthPower;
+        assert_eq!(law.value(3.0), 81.0);
+        assert_eq!(law.value(-3.0), -81.0);
+        for t in [-300.0, -2.0, 0.5, 300.0] {
+            let step = 1e-4 * f64::abs(t);
+            let slope = (law.value(t + step) - law.value(t - step)) / (2.0 * step);
+            assert!((law.derivative(t) / slope - 1.0).abs() < 1e-6, "{t}");
+            assert!(slope > 0.0);
+        }
     }
 }

@@ -55,6 +55,13 @@ pub enum IoError {
         path: PathBuf,
     },
 
+    /// A symbolic link at the place of a result.
+    #[error("{} is a symbolic link; results are not written through links: remove it, or choose another folder", path.display())]
+    Link {
+        /// The link.
+        path: PathBuf,
+    },
+
     /// The file or folder to read does not exist.
     #[error("{} does not exist", path.display())]
     NotFound {
@@ -208,6 +215,7 @@ impl IoError {
                 | Self::Locked { .. }
                 | Self::FolderExists { .. }
                 | Self::FolderNotOurs { .. }
+                | Self::Link { .. }
                 | Self::Write { .. }
         )
     }
@@ -221,6 +229,7 @@ impl IoError {
             | Self::Locked { path }
             | Self::FolderExists { path }
             | Self::FolderNotOurs { path }
+            | Self::Link { path }
             | Self::NotFound { path }
             | Self::Damaged { path, .. }
             | Self::UnsupportedVersion { path, .. }

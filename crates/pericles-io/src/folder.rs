@@ -22,7 +22,7 @@ use crate::atomic::{finished_name, folder_of, remove_unfinished};
 const LOCK: &str = ".lock";
 
 /// Sub-folders of a run.
-const SUBFOLDERS: [&str; 3] = ["fields", "pictures", "checkpoints"];
+const SUBFOLDERS: [&str; 5] = ["fields", "cells", "impactors", "pictures", "checkpoints"];
 
 /// The folder of one run, locked against other runs for the lifetime of this value.
 ///
@@ -47,7 +47,8 @@ impl OutputFolder {
     /// Creates the folder `path` and missing parents.
     ///
     /// An existing folder is rejected unless `force` is set; with `force`, the files listed in the manifest
-    /// of an earlier run are removed and all other files are kept. A folder that is neither empty nor the
+    /// of an earlier run are removed and all other files are kept. Symbolic links with their names are removed, not
+    /// their targets. A folder that is neither empty nor the
     /// output of a run is always rejected. Folders of versions without a manifest are recognised by the
     /// content of `run.json`, or if they contain only a lock and files with the names of results.
     pub fn create(path: impl Into<PathBuf>, force: bool) -> Result<Self, IoError> {
@@ -127,6 +128,9 @@ impl OutputFolder {
         if self.lock.is_none() {
             return Ok(path);
         }
+        if path.is_symlink() {
+            return Err(IoError::Link { path });
+        }
         match fs::create_dir(&path) {
             Err(error) if !path.is_dir() => Err(IoError::writing(&path, error)),
             _ => Ok(path),
@@ -137,16 +141,24 @@ impl OutputFolder {
     /// may remove them. `*` stands for one or more digits, as in `fields/fields_*.vtu`.
     ///
     /// # Errors
-    /// Returns an error if the manifest cannot be written.
+    /// Returns an error if the manifest cannot be written, and for a symbolic link with one of the names, or in the place of
+    /// one of their folders: nothing is written through links.
     pub fn claim(&self, names: &[String]) -> Result<(), IoError> {
         if self.lock.is_none() {
             return Ok(());
+        }
+        let claimed = Manifest::named(names);
+        if let Some(path) = self.links(&claimed)?.into_iter().next() {
+            return Err(IoError::Link { path });
         }
         Manifest::add(&self.path, names)
     }
 
     fn lock(path: PathBuf) -> Result<Self, IoError> {
         let lock = path.join(LOCK);
+        if lock.is_symlink() {
+            return Err(IoError::Link { path: lock });
+        }
         // The lock file is never removed: otherwise a run that waits for the old file and one that creates a
         // new file would both own the folder.
         let file = OpenOptions::new()
@@ -174,10 +186,39 @@ impl OutputFolder {
             .collect()
     }
 
+    /// Returns the symbolic links in the folder that have the names of results, or of a folder of results.
+    fn links(&self, manifest: &Manifest) -> Result<Vec<PathBuf>, IoError> {
+        let mut links = Vec::new();
+        for (prefix, place) in self.prefixed_places() {
+            if place.is_symlink() && !prefix.is_empty() {
+                links.extend(manifest.has_any_in(&prefix).then_some(place));
+                continue;
+            }
+            if !is_folder(&place) {
+                continue;
+            }
+            for entry in entries(&place)? {
+                let name = finished_name(&entry.name).unwrap_or(&entry.name);
+                if entry.is_link && manifest.has(&format!("{prefix}{name}")) {
+                    links.push(place.join(&entry.name));
+                }
+            }
+        }
+        Ok(links)
+    }
+
+    /// Returns the folder and its sub-folders, whether they exist or not, with the beginning of the recorded names of
+    /// their files.
+    fn prefixed_places(&self) -> impl Iterator<Item = (String, PathBuf)> {
+        let own = std::iter::once((String::new(), self.path.clone()));
+        own.chain(SUBFOLDERS.map(|name| (format!("{name}/"), self.path.join(name))))
+    }
+
     fn remove_results(&self, manifest: &Manifest) -> Result<(), IoError> {
-        for (prefix, place) in std::iter::once((String::new(), self.path.clone()))
-            .chain(SUBFOLDERS.map(|name| (format!("{name}/"), self.path.join(name))))
-        {
+        for link in self.links(manifest)? {
+            remove(&link)?;
+        }
+        for (prefix, place) in self.prefixed_places() {
             if !is_folder(&place) {
                 continue;
             }
@@ -206,6 +247,7 @@ fn is_folder(path: &Path) -> bool {
 struct Entry {
     name: String,
     is_file: bool,
+    is_link: bool,
 }
 
 fn entries(folder: &Path) -> Result<Vec<Entry>, IoError> {
@@ -213,11 +255,13 @@ fn entries(folder: &Path) -> Result<Vec<Entry>, IoError> {
         fs::read_dir(folder)?
             .map(|entry| {
                 let entry = entry?;
+                let kind = entry.file_type()?;
                 Ok(Entry {
                     // Names that are not UTF-8 are not Pericles files; the lossy form counts them among the
                     // other files.
                     name: entry.file_name().to_string_lossy().into_owned(),
-                    is_file: entry.file_type()?.is_file(),
+                    is_file: kind.is_file(),
+                    is_link: kind.is_symlink(),
                 })
             })
             .collect::<io::Result<_>>()
@@ -263,202 +307,4 @@ fn create_parents(path: &Path) -> Result<(), IoError> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use std::collections::BTreeSet;
-    use std::thread;
-
-    fn populate(folder: &Path, files: &[&str]) {
-        for file in files {
-            let path = folder.join(file);
-            fs::create_dir_all(path.parent().unwrap()).unwrap();
-            fs::write(path, "x").unwrap();
-        }
-    }
-
-    #[test]
-    fn an_existing_folder_is_rejected() {
-        let place = tempfile::tempdir().unwrap();
-        let error = OutputFolder::create(place.path(), false).unwrap_err();
-        assert!(matches!(error, IoError::FolderExists { .. }), "{error}");
-        assert!(error.is_output_problem());
-    }
-
-    #[test]
-    fn missing_parents_are_created() {
-        let place = tempfile::tempdir().unwrap();
-        let path = place.path().join("a/b/c");
-        let folder = OutputFolder::create(&path, false).unwrap();
-        assert!(folder.path().is_dir());
-        assert!(folder.subfolder("fields").unwrap().is_dir());
-        assert!(folder.subfolder("fields").unwrap().is_dir());
-    }
-
-    const STRAYS: [&str; 10] = [
-        "notes.txt",
-        "measured.csv",
-        "fields/mine.vtu",
-        "fields/fields_best.vtu",
-        "pictures/me.png",
-        "pictures/a.svg",
-        "more/run.json",
-        "checkpoints/README",
-        "checkpoints/kept.chk",
-        ".notes.part",
-    ];
-
-    fn assert_removed(path: &Path, results: &[&str]) {
-        for file in results {
-            assert!(!path.join(file).exists(), "{file}");
-        }
-        for file in STRAYS {
-            assert!(path.join(file).exists(), "{file}");
-        }
-    }
-
-    #[test]
-    fn force_removes_only_recorded_files() {
-        let place = tempfile::tempdir().unwrap();
-        let path = place.path().join("out");
-        let names = [
-            "run.json",
-            "own.csv",
-            "fields/fields_*.vtu",
-            "pictures/a.apng",
-        ];
-        let folder = OutputFolder::create(&path, false).unwrap();
-        folder.claim(&names.map(String::from)).unwrap();
-        drop(folder);
-        let results = [
-            "run.json",
-            "own.csv",
-            "fields/fields_000000.vtu",
-            "pictures/a.apng",
-            "fields/.fields_000001.vtu.7-0.part",
-        ];
-        populate(&path, &results);
-        populate(&path, &STRAYS);
-        // A table that this run does not write.
-        populate(&path, &["history.csv"]);
-        let _folder = OutputFolder::create(&path, true).unwrap();
-        assert_removed(&path, &results);
-        assert!(path.join("history.csv").exists());
-        assert!(!path.join(MANIFEST).exists());
-    }
-
-    #[test]
-    fn results_without_a_manifest_are_recognised_by_their_report() {
-        let place = tempfile::tempdir().unwrap();
-        let path = place.path().join("out");
-        let results = [
-            "run.json",
-            "history.csv",
-            "fields.pvd",
-            "fields/fields_000000.vtu",
-            "pictures/Damage-000001.png",
-            "pictures/Velocity_y_2.apng",
-            "checkpoints/step-000000000001.chk",
-            "fields/.fields_000001.vtu.7-0.part",
-        ];
-        populate(&path, &results);
-        populate(&path, &STRAYS);
-        // The report of another program does not permit removal.
-        for foreign in [
-            "x",
-            "{}",
-            r#"{"program": {"name": "other"}, "deck": {"source": ""}}"#,
-        ] {
-            fs::write(path.join("run.json"), foreign).unwrap();
-            let error = OutputFolder::create(&path, true).unwrap_err();
-            assert!(matches!(error, IoError::FolderNotOurs { .. }), "{error}");
-            assert!(path.join("history.csv").exists());
-        }
-        let ours = r#"{"program": {"name": "pericles"}, "deck": {"source": ""}}"#;
-        fs::write(path.join("run.json"), ours).unwrap();
-        let _folder = OutputFolder::create(&path, true).unwrap();
-        assert_removed(&path, &results);
-    }
-
-    #[cfg(unix)]
-    #[test]
-    fn force_does_not_follow_links() {
-        let place = tempfile::tempdir().unwrap();
-        let (path, other) = (place.path().join("out"), place.path().join("other"));
-        populate(&other, &["fields_000000.vtu"]);
-        let folder = OutputFolder::create(&path, false).unwrap();
-        folder.claim(&["fields/fields_*.vtu".into()]).unwrap();
-        drop(folder);
-        std::os::unix::fs::symlink(&other, path.join("fields")).unwrap();
-        OutputFolder::create(&path, true).unwrap();
-        assert!(other.join("fields_000000.vtu").exists());
-    }
-
-    #[test]
-    fn force_rejects_a_folder_of_other_files() {
-        let place = tempfile::tempdir().unwrap();
-        populate(place.path(), &["thesis.tex", "data.csv", "pictures/me.png"]);
-        let error = OutputFolder::create(place.path(), true).unwrap_err();
-        assert!(matches!(error, IoError::FolderNotOurs { .. }), "{error}");
-        assert!(place.path().join("data.csv").exists());
-        assert!(!place.path().join(LOCK).exists());
-    }
-
-    #[test]
-    fn force_accepts_an_empty_folder_and_one_of_a_run_that_stopped_early() {
-        let place = tempfile::tempdir().unwrap();
-        drop(OutputFolder::create(place.path(), true).unwrap());
-        assert!(place.path().join(LOCK).exists());
-        OutputFolder::create(place.path(), true).unwrap();
-        populate(place.path(), &["history.csv"]);
-        fs::create_dir(place.path().join("pictures")).unwrap();
-        OutputFolder::create(place.path(), true).unwrap();
-        assert!(!place.path().join("history.csv").exists());
-        fs::write(place.path().join("notes.txt"), "mine").unwrap();
-        assert!(OutputFolder::create(place.path(), true).is_err());
-    }
-
-    #[test]
-    fn a_second_run_is_locked_out_until_the_first_ends() {
-        let place = tempfile::tempdir().unwrap();
-        let path = place.path().join("out");
-        let first = OutputFolder::create(&path, false).unwrap();
-        first.claim(&["run.json".into()]).unwrap();
-        populate(&path, &["run.json"]);
-        for second in [OutputFolder::open(&path), OutputFolder::create(&path, true)] {
-            assert!(matches!(second, Err(IoError::Locked { .. })), "{second:?}");
-        }
-        assert!(path.join("run.json").exists());
-        drop(first);
-        OutputFolder::open(&path).unwrap();
-    }
-
-    #[test]
-    fn runs_started_simultaneously_get_different_folders() {
-        let place = tempfile::tempdir().unwrap();
-        let stem = place.path().join("bar.v2");
-        let folders: Vec<_> = thread::scope(|scope| {
-            let start = || OutputFolder::create_numbered(&stem).unwrap();
-            let handles: Vec<_> = (0..8).map(|_| scope.spawn(start)).collect();
-            handles.into_iter().map(|run| run.join().unwrap()).collect()
-        });
-        let names: BTreeSet<_> = folders
-            .iter()
-            .map(|folder| folder.path().file_name().unwrap().to_str().unwrap())
-            .collect();
-        let expected = [
-            "bar.v2", "bar.v2-2", "bar.v2-3", "bar.v2-4", "bar.v2-5", "bar.v2-6", "bar.v2-7",
-            "bar.v2-8",
-        ];
-        assert_eq!(names, BTreeSet::from(expected));
-    }
-
-    #[test]
-    fn opening_a_missing_path_or_a_file_fails() {
-        let place = tempfile::tempdir().unwrap();
-        let gone = OutputFolder::open(place.path().join("gone"));
-        assert!(matches!(gone, Err(IoError::NotFound { .. })));
-        populate(place.path(), &["file"]);
-        let file = OutputFolder::open(place.path().join("file"));
-        assert!(matches!(file, Err(IoError::Read { .. })), "{file:?}");
-    }
-}
+mod tests;

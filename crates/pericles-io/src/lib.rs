@@ -50,6 +50,7 @@ mod cache;
 mod checkpoint;
 mod csv;
 mod error;
+mod file_stem;
 mod folder;
 mod mesh;
 mod npz;
@@ -72,6 +73,7 @@ pub use checkpoint::{
 };
 pub use csv::{Cell, Column, CsvData, CsvTable, csv_row, read_csv};
 pub use error::IoError;
+pub use file_stem::file_stem;
 pub use folder::OutputFolder;
 pub use mesh::{
     FieldColumn, FieldData, MESH_ENDINGS, MeshError, Place, SURFACE_ENDINGS, parse_fields,

@@ -1,7 +1,7 @@
 //! Archives of NumPy arrays: `numpy.load("run.npz")["Damage"]`.
 //!
 //! An archive is a ZIP file of uncompressed `.npy` files. Arrays are written in blocks, so that none has to
-//! fit into memory.
+//! fit into memory. Names are UTF-8, which bit 11 of the flags of each file states.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
@@ -130,7 +130,7 @@ impl NpzWriter {
         self.check_complete()?;
         let begin = self.place()?;
         for entry in std::mem::take(&mut self.entries) {
-            let mut record = b"PK\x01\x02\x14\0\x14\0\0\0\0\0\0\0".to_vec();
+            let mut record = b"PK\x01\x02\x14\0\x14\0\0\x08\0\0\0\0".to_vec();
             record.extend(DATE.to_le_bytes());
             record.extend(entry.checksum.to_le_bytes());
             record.extend((entry.size as u32).to_le_bytes());
@@ -173,7 +173,7 @@ impl NpzWriter {
     /// Writes the local header of a file in the archive.
     fn write_local(&mut self, name: &str, size: u64, checksum: u32) -> Result<(), IoError> {
         let name = file_name(name);
-        let mut record = b"PK\x03\x04\x14\0\0\0\0\0\0\0".to_vec();
+        let mut record = b"PK\x03\x04\x14\0\0\x08\0\0\0\0".to_vec();
         record.extend(DATE.to_le_bytes());
         record.extend(checksum.to_le_bytes());
         record.extend((size as u32).to_le_bytes());
@@ -253,6 +253,10 @@ mod tests {
         let mut found = Vec::new();
         for _ in 0..2 {
             assert_eq!(&bytes[record..record + 4], b"PK\x01\x02");
+            // The flags of both headers state that the name is UTF-8.
+            assert_eq!(&bytes[record + 8..record + 10], [0, 8]);
+            let local = u32_at(record + 42);
+            assert_eq!(&bytes[local + 6..local + 8], [0, 8]);
             let (checksum, size, place) = (
                 u32_at(record + 16),
                 u32_at(record + 24),

@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
+use pericles::observe::Field;
 use pericles::space::PointCloud;
-use pericles_mesh::results::{PointList, WriteError};
+use pericles_mesh::results::{FieldSpec, PointList, WriteError};
 
 use crate::IoError;
 use crate::numbering::Numbering;
@@ -67,6 +68,17 @@ impl ResultBody {
             blocks,
             sets,
             numbering,
+        }
+    }
+}
+
+impl ResultBody {
+    /// Returns the volumes as a constant field of a file, unless one of its fields is the volume.
+    pub fn constants(&self, fields: &[FieldSpec]) -> Vec<(FieldSpec, &[f64])> {
+        let volume = FieldSpec::new(Field::Volume.name(), 1);
+        match fields.iter().any(|field| field.name == volume.name) {
+            true => Vec::new(),
+            false => vec![(volume, &self.volumes)],
         }
     }
 }

@@ -87,7 +87,7 @@ pub use assembled::{Assembled, Caching, Means, readers};
 pub use audit::Audit;
 pub use build::{
     Assembly, BANDWIDTH, Conditions, Discretisation, ExactReference, FileError, Forecast, Grids,
-    Interior, KernelQuality, LATENCY, LoadReport, MaterialConstants, MeshBody, MeshReader,
+    Interior, KernelQuality, LATENCY, LoadReport, MaterialConstants, MeshBody, MeshReader, Meshes,
     OutlineReader, PlaneWaves, PointsReader, Polygons, Resources, Sets, Spread, SurfaceReader,
     TableReader, assemble, build, discretise,
 };

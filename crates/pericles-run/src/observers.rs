@@ -10,7 +10,7 @@ use pericles::family::Crack;
 use pericles::observe::{CrackTracker, Schedule};
 use pericles::space::PointCloud;
 use pericles_deck::{
-    ALL, CellChoice, CrackSurface, FieldBlocks, FieldFormat, Model, Picture, PointNumber,
+    ALL, CellChoice, CrackSurface, FieldBlocks, FieldFormat, Model, Picture, Piece, PointNumber,
     Precision, Scheme, StaticBreaking,
 };
 use pericles_io::observers::{
@@ -23,7 +23,7 @@ use pericles_io::{OutputFolder, ResultBody};
 use pericles_manifold::surface::Surface;
 use pericles_manifold::{EnergyInequality, SurfaceMeasure};
 
-use crate::build::{Assembly, ExactReference, MeshBody, Sets, gathered, is_on_grid};
+use crate::build::{Assembly, ExactReference, Meshes, Sets, gathered, is_on_grid};
 use crate::checkpoint;
 use crate::error::RunError;
 use crate::heat::HeatColumns;
@@ -222,7 +222,7 @@ struct FieldBody {
     is_gathered: bool,
     sets: Sets,
     surface: Option<Arc<Surface>>,
-    mesh: Option<Arc<MeshBody>>,
+    meshes: Arc<Meshes>,
     dt: f64,
     steps: u64,
 }
@@ -247,7 +247,7 @@ impl FieldBody {
                 false => assembly.sets.clone(),
             },
             surface: assembly.surface.clone(),
-            mesh: assembly.mesh.clone(),
+            meshes: Arc::clone(&assembly.meshes),
             dt: assembly.dt,
             steps: assembly.steps,
         }
@@ -263,11 +263,12 @@ impl FieldBody {
     /// The cells that fields are written on; none if they are written on points.
     fn cells(&self, model: &Model) -> Option<CellMesh> {
         let is_on_grid = is_on_grid(model, &self.cloud);
-        match (model.output.cells, &self.mesh) {
-            (CellChoice::Never, _) => None,
-            (CellChoice::Always, Some(mesh)) => Some(mesh.cells()),
-            (CellChoice::Auto, _) if self.cloud.len() > CellChoice::MOST_POINTS => None,
-            _ => is_on_grid.then(|| CellMesh::of_boxes(&self.cloud)),
+        let boxes = || is_on_grid.then(|| CellMesh::of_boxes(&self.cloud));
+        match model.output.cells {
+            CellChoice::Never => None,
+            CellChoice::Always => self.meshes.cells_of_all(&self.cloud).or_else(boxes),
+            CellChoice::Auto if self.cloud.len() > CellChoice::MOST_POINTS => None,
+            CellChoice::Auto => boxes(),
         }
     }
 }
@@ -305,6 +306,14 @@ fn point_marks(model: &Model, cloud: &PointCloud, sets: &Sets) -> Vec<PointMark>
         .collect()
 }
 
+/// Returns the arrays of the field files that a model requests.
+pub(crate) fn field_selection(model: &Model, cloud: &PointCloud, sets: &Sets) -> FieldSelection {
+    FieldSelection {
+        fields: model.output.names.clone(),
+        marks: point_marks(model, cloud, sets),
+    }
+}
+
 /// Adds the requested field files; returns their names relative to the folder.
 fn add_fields(
     model: &Model,
@@ -318,12 +327,9 @@ fn add_fields(
         return Ok(names);
     }
     let single = output.precision == Precision::Single;
-    let selection = FieldSelection {
-        fields: output.names.clone(),
-        marks: point_marks(model, &body.cloud, &body.sets),
-    };
+    let selection = field_selection(model, &body.cloud, &body.sets);
     let mut one_file = |name: &str, format: ResultFormat| {
-        let points = result_body(model, &body.cloud, &body.sets, body.mesh.as_deref());
+        let points = result_body(model, &body.cloud, &body.sets, &body.meshes);
         let path = folder.file(name);
         let file = ResultFile::new(path, format, Arc::new(points), selection.clone(), single);
         simulation.observe(output.fields, Box::new(file));
@@ -354,23 +360,18 @@ fn add_fields(
         }
         simulation.observe(output.fields, Box::new(fields));
     }
-    if let (true, Some(mesh)) = (output.mesh_cells, &body.mesh) {
+    if let (true, Some(cells)) = (output.mesh_cells, body.meshes.cells()) {
         names.extend(["cells.pvd".into(), "cells/cells_*.vtu".into()]);
         folder.subfolder("cells")?;
         let fields = FieldSeries::new(folder.path(), single).with(selection.clone());
-        let fields = fields.on_cells(Arc::new(mesh.cells())).as_second();
+        let fields = fields.on_cells(Arc::new(cells)).as_second();
         simulation.observe(output.fields, Box::new(fields));
     }
     Ok(names)
 }
 
 /// Returns the body for result files, with the requested blocks.
-pub fn result_body(
-    model: &Model,
-    cloud: &PointCloud,
-    sets: &Sets,
-    mesh: Option<&MeshBody>,
-) -> ResultBody {
+pub fn result_body(model: &Model, cloud: &PointCloud, sets: &Sets, meshes: &Meshes) -> ResultBody {
     let named = sets.iter().filter(|(name, _)| name != ALL);
     let named = named.map(|(name, points)| (name.as_str(), points.as_slice()));
     let title = model.title.clone().unwrap_or_default();
@@ -381,14 +382,46 @@ pub fn result_body(
             let name = |block: u32| names[block as usize - 1].to_owned();
             ResultBody::new(title, cloud, named, |i| numbers[i], name)
         }
-        _ => {
-            let name = |block: u32| {
-                let group = mesh.and_then(|mesh| mesh.block_name(block));
-                group.map_or_else(|| format!("block_{block}"), String::from)
-            };
-            ResultBody::new(title, cloud, named, |i| cloud.block(i), name)
+        (_, solid) => {
+            let pieces = solid.map_or(&[][..], |solid| solid.shape.pieces());
+            group_blocks(title, cloud, named, pieces, meshes)
         }
     }
+}
+
+/// Returns the body with a block per group of a mesh or block of listed points; pieces have blocks of their own, named
+/// as their sets are.
+fn group_blocks<'a>(
+    title: String,
+    cloud: &PointCloud,
+    sets: impl Iterator<Item = (&'a str, &'a [u32])>,
+    pieces: &[Piece],
+    meshes: &Meshes,
+) -> ResultBody {
+    let kind = |i: usize| (cloud.piece(i), cloud.block(i));
+    let mut kinds: Vec<(u32, u32)> = (0..cloud.len()).map(kind).collect();
+    kinds.sort_unstable();
+    kinds.dedup();
+    let number = |i: usize| kinds.partition_point(|known| *known < kind(i)) as u32;
+    let name = |number: u32| {
+        let (piece, block) = kinds[number as usize];
+        let numbered = || format!("block_{block}");
+        let own = match piece {
+            0 => "",
+            piece => &pieces[piece as usize].name,
+        };
+        if let Some(group) = meshes.block_name(own, block) {
+            return group;
+        }
+        let Some(piece_name) = pieces.get(piece as usize).map(|piece| &piece.name) else {
+            return numbered();
+        };
+        match kinds.iter().filter(|(other, _)| *other == piece).count() {
+            1 => piece_name.clone(),
+            _ => format!("{piece_name}/{}", numbered()),
+        }
+    };
+    ResultBody::new(title, cloud, sets, number, name)
 }
 
 /// Returns the material number of each point, from 1, and the names of the materials, that of the body first.

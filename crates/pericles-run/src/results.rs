@@ -142,6 +142,12 @@ impl Results {
         Ok(PvdSeries::read(series)?.into_iter().map(located).collect())
     }
 
+    /// Returns whether the run wrote fields, in any format.
+    pub fn has_fields(&self) -> bool {
+        let files = ["fields.pvd", "fields.exo", "fields.vtkhdf"];
+        files.iter().any(|file| self.folder.join(file).exists())
+    }
+
     /// Returns the tables, sorted by name.
     pub fn tables(&self) -> Vec<PathBuf> {
         files(&self.folder, "csv")

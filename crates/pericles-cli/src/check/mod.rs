@@ -17,6 +17,7 @@ use pericles_run::units::{
     bytes, count, duration, frequency, percent, quantity, significant, threads,
 };
 use pericles_run::{Assembled, Assembly, Facts, Means, Source, draw_sets};
+use rayon::prelude::*;
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -286,18 +287,17 @@ fn body(model: &Model, facts: &Facts) -> Vec<Line> {
     lines
 }
 
-/// Smallest, mean and largest number of neighbours, if the operator gives access to single bonds.
+/// Smallest, mean and largest number of intact bonds of a point, if the operator gives access to single bonds.
 fn neighbours(assembly: &Assembly) -> Option<Line> {
-    let local = assembly.system.operator().as_local()?;
+    let bonds = assembly.system.operator().capabilities().bonds?;
     let count_of = |i: usize| {
         let mut count = 0u64;
-        local.neighbours(i, &mut |_| count += 1);
-        count
+        bonds.for_each_undeformed(i, &mut |_| count += 1);
+        (count, count, count)
     };
-    let counts = (0..assembly.cloud.len()).map(count_of);
-    let (least, most, sum) = counts.fold((u64::MAX, 0, 0), |(least, most, sum), n| {
-        (least.min(n), most.max(n), sum + n)
-    });
+    let join = |a: (u64, u64, u64), b: (u64, u64, u64)| (a.0.min(b.0), a.1.max(b.1), a.2 + b.2);
+    let points = (0..assembly.cloud.len()).into_par_iter();
+    let (least, most, sum) = points.map(count_of).reduce(|| (u64::MAX, 0, 0), join);
     let mean = sum as f64 / assembly.cloud.len() as f64;
     let text = format!(
         "{} to {} per point, {} on average",

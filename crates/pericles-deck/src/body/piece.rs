@@ -187,6 +187,7 @@ impl Pieces<'_> {
             }
             right &= piece.fits(&read);
         }
+        read.frame.mesh |= self.others.iter().any(|piece| piece.read.frame.mesh);
         let shape = read.shape.take().filter(|_| right);
         read.shape = (|| {
             let mut pieces = vec![Piece::new(self.main?, shape?)];

@@ -10,7 +10,7 @@ pub use area::AreaDoubt;
 
 use area::doubtful_area;
 
-use crate::wording::{percent, prefixed, reach, short, spot};
+use crate::wording::{further, percent, prefixed, reach, short, shortened, spot};
 
 /// Kinds of warnings.
 #[derive(Debug, Clone, thiserror::Error)]
@@ -166,6 +166,25 @@ pub enum Caution {
         axis: char,
         /// Its value, m.
         value: f64,
+    },
+    /// A temperature that is likely to be in degrees Celsius, in a body with radiation.
+    #[error("the temperature is {} in a body with radiation, which depends on absolute temperatures", quantity(*value, "K"))]
+    ColdRadiation {
+        /// The temperature, K.
+        value: f64,
+    },
+    /// Names that are too long for Exodus files.
+    #[error(
+        "the name `{}` is shortened to `{}` in the Exodus file{}",
+        shortened(name), shortened(stored), further(*more)
+    )]
+    LongExodusNames {
+        /// The name.
+        name: String,
+        /// Its form in the file.
+        stored: String,
+        /// Number of further names.
+        more: usize,
     },
     /// An unusual property of a mesh.
     #[error("{problem}")]

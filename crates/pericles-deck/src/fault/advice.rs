@@ -43,9 +43,7 @@ impl Subject for Fault {
             Self::NothingPrescribed => {
                 "set a number for at least one component, or remove the table".into()
             }
-            Self::EmptySet { .. } => {
-                "make the region larger: it must contain at least one cell centre (a layer must be at least half a spacing deep)".into()
-            }
+            Self::EmptySet { advice, .. } => advice.clone(),
             Self::OverlappingPieces { .. } => {
                 "move one of them: points of different pieces must be at least half of a cell apart; points one cell apart touch".into()
             }

@@ -167,11 +167,13 @@ pub enum Fault {
         /// The mean size of the elements, m.
         found: f64,
     },
-    /// A pressure on a set without faces.
-    #[error("the set `{}` has no face on which a pressure can act", shortened(set))]
+    /// A pressure on a set without faces, or with faces inside the body.
+    #[error("{}", words::no_faces(set, *inner))]
     NoFaces {
         /// The set.
         set: String,
+        /// Number of its faces that lie between two elements.
+        inner: usize,
     },
     /// An invalid pre-crack file.
     #[error("{reason}")]
@@ -333,6 +335,8 @@ pub enum Fault {
     /// A set without points.
     #[error("the set `{}` selects no point", shortened(set))]
     EmptySet {
+        /// What to do.
+        advice: String,
         /// The set.
         set: String,
     },

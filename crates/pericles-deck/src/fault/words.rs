@@ -1,8 +1,19 @@
-//! Errors about unknown words.
+//! Texts of errors that depend on numbers or on words.
 
 use super::Fault;
 use crate::nearest::nearest;
 use crate::wording::shortened;
+
+/// A pressure on a set without faces, or with faces inside the body.
+pub(super) fn no_faces(set: &str, inner: usize) -> String {
+    let set = shortened(set);
+    match inner {
+        0 => format!("the set `{set}` has no face on which a pressure can act"),
+        inner => format!(
+            "{inner} face(s) of the set `{set}` lie between two elements of the body, where a pressure has no resultant"
+        ),
+    }
+}
 
 impl Fault {
     /// An unknown word, with the most similar allowed word and the first 30 allowed words.

@@ -82,8 +82,10 @@ fn profile(table: Table<'_>, dimension: Option<usize>, names: &mut Vec<String>) 
 /// A name that is part of a file's.
 fn name(item: &Item<'_>, names: &mut Vec<String>) -> Option<String> {
     let name = item.text()?;
+    /// Maximum length; file systems allow 255 bytes for the name of the file.
+    const LONGEST: usize = 120;
     let usable = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');
-    let reason = if name.is_empty() || !name.chars().all(usable) {
+    let reason = if name.is_empty() || name.len() > LONGEST || !name.chars().all(usable) {
         Some("it is part of a file's name")
     } else if names.contains(&name) {
         Some("another profile has it")
@@ -97,7 +99,7 @@ fn name(item: &Item<'_>, names: &mut Vec<String>) -> Option<String> {
             item.report(Fault::BadName {
                 name,
                 reason,
-                allowed: "allowed: letters, digits, `_` and `-`, a name of its own for each profile",
+                allowed: "allowed: at most 120 letters, digits, `_` and `-`, a name of its own for each profile",
             });
             None
         }

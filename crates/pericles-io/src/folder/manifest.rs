@@ -51,6 +51,20 @@ impl Manifest {
         }
     }
 
+    /// Returns a manifest of these names.
+    pub(super) fn named(names: &[String]) -> Self {
+        Self {
+            names: names.to_vec(),
+            pictures: false,
+        }
+    }
+
+    /// Returns whether a name begins with that of a sub-folder, which ends with `/`.
+    pub(super) fn has_any_in(&self, prefix: &str) -> bool {
+        self.pictures && prefix == "pictures/"
+            || self.names.iter().any(|name| name.starts_with(prefix))
+    }
+
     /// Reads the manifest of a folder; `None` if the folder does not belong to a run.
     ///
     /// # Errors

@@ -7,13 +7,15 @@ use pericles::space::PointCloud;
 use crate::numbering::Numbering;
 use crate::vtk::VtuCells;
 
-/// The cells of a body, one for each point in the user's order.
+/// Cells of a body, one for each of its points or for some of them.
 #[derive(Debug, Clone)]
 pub struct CellMesh {
     /// Positions of the nodes, m: x of all, then y, then z.
     pub nodes: Vec<f64>,
     /// The cells.
     pub cells: VtuCells,
+    /// The point of each cell, in the user's order, ascending.
+    pub points: Vec<u32>,
 }
 
 /// Signs of the corners of a box in the order of VTK; the first two are those of a line, the first four those of a quadrilateral.
@@ -78,6 +80,7 @@ impl CellMesh {
         Self {
             nodes: (0..3).flat_map(along).collect(),
             cells,
+            points: (0..n as u32).collect(),
         }
     }
 

@@ -116,6 +116,18 @@ pub(super) struct Column {
 }
 
 impl Column {
+    /// The column of some of its points, of which there are `all`.
+    pub(super) fn of_points(self, points: &[u32], all: usize) -> Self {
+        let components = self.values.chunks(all);
+        let some = |component: &[f64]| -> Vec<f64> {
+            points.iter().map(|&i| component[i as usize]).collect()
+        };
+        Self {
+            values: components.flat_map(some).collect(),
+            ..self
+        }
+    }
+
     /// The values, component-major.
     pub(super) fn values(&self) -> &[f64] {
         &self.values

@@ -69,7 +69,7 @@ impl FieldSeries {
         self
     }
 
-    /// Writes the fields on cells, one for each point.
+    /// Writes the fields on cells; those of points without a cell are left out.
     pub fn on_cells(mut self, cells: Arc<CellMesh>) -> Self {
         self.cells = Some(cells);
         self
@@ -122,11 +122,17 @@ impl FieldSeries {
             .body
             .get_or_insert_with(|| Arc::new(FixedPart::of(cloud, surface)));
         let columns = self.wanted.columns(snapshot, &body.numbering)?;
+        let columns = columns.into_iter().map(|column| match &self.cells {
+            Some(cells) if cells.points.len() < cloud.len() => {
+                column.of_points(&cells.points, cloud.len())
+            }
+            _ => column,
+        });
         Some(Output {
             body: Arc::clone(body),
             cells: self.cells.clone(),
             time: state.t,
-            columns,
+            columns: columns.collect(),
             single_precision: self.single_precision,
         })
     }
@@ -209,7 +215,10 @@ impl Output {
         if let Some(triangles) = &body.triangles {
             file = file.triangles(triangles);
         }
-        let points = body.positions.len() / body.dimension;
+        let points = match &self.cells {
+            Some(mesh) => mesh.cells.len(),
+            None => body.positions.len() / body.dimension,
+        };
         let arrays = self.columns.iter();
         let arrays: Vec<VtuColumn<'_>> = arrays
             .flat_map(|column| column.in_vtu(body.dimension, points))

@@ -10,6 +10,7 @@ use super::rigid::{RigidMesh, impactors};
 use super::table::{AXES, ObserverTable, misfit, step_and_time, whole};
 use crate::csv::{Cell, Column};
 use crate::error::IoError;
+use crate::file_stem::file_stem;
 use crate::vtk::{PvdSeries, read_polydata, write_polydata};
 
 /// Energies of contact, as columns of a history: energy stored by contact, energy dissipated by dampers and friction,
@@ -142,17 +143,16 @@ impl ImpactorSurfaces {
     }
 
     /// Returns the names of the files of impactors: `impactor-` and the name of the impactor, with other characters than
-    /// letters, digits, `-` and `_` replaced; equal ones are numbered.
+    /// letters, digits, `-` and `_` replaced; long ones are shortened, equal ones numbered.
     pub fn file_names(names: &[String]) -> Vec<String> {
-        let safe = |c: char| match c.is_alphanumeric() || c == '-' || c == '_' {
-            true => c,
-            false => '_',
-        };
         let mut found: Vec<String> = Vec::new();
-        for (k, name) in names.iter().enumerate() {
-            let mut file = format!("impactor-{}", name.chars().map(safe).collect::<String>());
-            if found.contains(&file) {
-                file = format!("{file}-{}", k + 1);
+        for name in names {
+            let stem = format!("impactor-{}", file_stem(name, "-_"));
+            let mut file = stem.clone();
+            let mut number = 2;
+            while found.contains(&file) {
+                file = format!("{stem}-{number}");
+                number += 1;
             }
             found.push(file);
         }

@@ -93,7 +93,7 @@ pub use pictures::Pictures;
 pub use probes::Probes;
 pub use profile::{Profile, Reference};
 pub use reactions::Reactions;
-pub use result_file::{ResultFile, ResultFormat};
+pub use result_file::{RecordedFields, ResultFile, ResultFormat};
 pub use rigid::{RigidMesh, impactors};
 pub use surface::SurfaceCourse;
 

@@ -6,7 +6,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use pericles::observe::{ObserveError, Observer, Snapshot};
 use pericles::{Archive, Checkpointed, Result, Values};
 use pericles_mesh::results::{
-    ExodusLayout, ExodusWriter, FieldSpec, VtkHdfLayout, VtkHdfWriter, WriteError,
+    ExodusLayout, ExodusReader, ExodusWriter, FieldSpec, VtkHdfLayout, VtkHdfReader, VtkHdfWriter,
+    WriteError,
 };
 
 use super::background::Background;
@@ -65,6 +66,50 @@ impl Writer {
     }
 }
 
+enum Reader {
+    Exodus(ExodusReader),
+    VtkHdf(Box<VtkHdfReader>),
+}
+
+/// The outputs in a file of fields.
+pub struct RecordedFields {
+    path: PathBuf,
+    specs: Vec<FieldSpec>,
+    reader: Reader,
+}
+
+impl RecordedFields {
+    /// Returns the number of outputs.
+    pub fn len(&self) -> usize {
+        match &self.reader {
+            Reader::Exodus(reader) => reader.outputs(),
+            Reader::VtkHdf(reader) => reader.outputs(),
+        }
+    }
+
+    /// Returns whether there are no outputs.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Returns the fields.
+    pub fn specs(&self) -> &[FieldSpec] {
+        &self.specs
+    }
+
+    /// Reads the time of an output, s, and the values of the fields in the user's order of points, component-major.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn read(&mut self, output: usize) -> std::result::Result<(f64, Vec<Vec<f64>>), IoError> {
+        let read = match &mut self.reader {
+            Reader::Exodus(reader) => reader.read(output),
+            Reader::VtkHdf(reader) => reader.read(output),
+        };
+        read.map_err(|error| write_error(&self.path, error))
+    }
+}
+
 impl ResultFile {
     /// Creates a file of these fields.
     pub fn new(
@@ -86,22 +131,39 @@ impl ResultFile {
         }
     }
 
+    fn exodus(&self) -> ExodusLayout<'_> {
+        let body = &*self.body;
+        ExodusLayout {
+            title: body.title.clone(),
+            dimension: body.dimension,
+            positions: &body.positions,
+            volumes: &body.volumes,
+            blocks: body.blocks.clone(),
+            sets: body.sets.clone(),
+            globals: Vec::new(),
+            fields: self.wanted.specs(body.dimension),
+            is_single: self.is_single,
+        }
+    }
+
+    fn vtkhdf(&self, outputs: usize) -> VtkHdfLayout<'_> {
+        let body = &*self.body;
+        let fields = self.wanted.specs(body.dimension);
+        VtkHdfLayout {
+            dimension: body.dimension,
+            positions: &body.positions,
+            constants: body.constants(&fields),
+            fields,
+            outputs,
+            is_single: self.is_single,
+        }
+    }
+
     /// The writer after a number of outputs: of a new file if there are none.
     fn open(&self, outputs: usize) -> std::result::Result<Writer, WriteError> {
-        let body = &*self.body;
         match self.format {
             ResultFormat::Exodus => {
-                let layout = ExodusLayout {
-                    title: body.title.clone(),
-                    dimension: body.dimension,
-                    positions: &body.positions,
-                    volumes: &body.volumes,
-                    blocks: body.blocks.clone(),
-                    sets: body.sets.clone(),
-                    globals: Vec::new(),
-                    fields: self.wanted.specs(body.dimension),
-                    is_single: self.is_single,
-                };
+                let layout = self.exodus();
                 let writer = match outputs {
                     0 => ExodusWriter::create(&self.path, &layout),
                     outputs => ExodusWriter::resume(&self.path, &layout, outputs),
@@ -109,14 +171,7 @@ impl ResultFile {
                 writer.map(Writer::Exodus)
             }
             ResultFormat::VtkHdf { outputs: most } => {
-                let layout = VtkHdfLayout {
-                    dimension: body.dimension,
-                    positions: &body.positions,
-                    fields: self.wanted.specs(body.dimension),
-                    constants: vec![(FieldSpec::new("Volume", 1), &body.volumes)],
-                    outputs: most,
-                    is_single: self.is_single,
-                };
+                let layout = self.vtkhdf(most);
                 let writer = match outputs {
                     0 => VtkHdfWriter::create(&self.path, &layout),
                     outputs => VtkHdfWriter::resume(&self.path, &layout, outputs),
@@ -124,6 +179,27 @@ impl ResultFile {
                 writer.map(|writer| Writer::VtkHdf(Box::new(writer)))
             }
         }
+    }
+
+    /// Opens the file of a finished run for reading.
+    ///
+    /// # Errors
+    /// The file cannot be read, or belongs to another run.
+    pub fn recorded(&self) -> std::result::Result<RecordedFields, IoError> {
+        let reader = match self.format {
+            ResultFormat::Exodus => {
+                ExodusReader::open(&self.path, &self.exodus()).map(Reader::Exodus)
+            }
+            ResultFormat::VtkHdf { outputs } => {
+                let reader = VtkHdfReader::open(&self.path, &self.vtkhdf(outputs));
+                reader.map(|reader| Reader::VtkHdf(Box::new(reader)))
+            }
+        };
+        Ok(RecordedFields {
+            specs: self.wanted.specs(self.body.dimension),
+            reader: reader.map_err(|error| write_error(&self.path, error))?,
+            path: self.path.clone(),
+        })
     }
 
     fn write(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), IoError> {

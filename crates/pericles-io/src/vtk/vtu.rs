@@ -177,7 +177,9 @@ impl<'a> VtuFile<'a> {
             self.time
         )?;
         for (section, fields, _) in &sections {
-            if !fields.is_empty() {
+            // The section of the cells shows that the fields belong to them, even if there are none.
+            let is_of_cells = self.cells.is_some() && *section == "CellData";
+            if is_of_cells || !fields.is_empty() {
                 writeln!(out, "<{section}>")?;
                 for field in *fields {
                     places.push(announce(out, &field.header())?);
@@ -207,28 +209,30 @@ impl<'a> VtuFile<'a> {
             "</Cells>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_"
         )?;
 
+        // In the reverse order of their announcements, without gaps. meshio replaces the offsets one by one by others, and takes the
+        // first announcement with the offset of an array: one whose offset has been replaced must not come first.
         let start = out.stream_position()?;
         let mut offsets = Vec::with_capacity(places.len());
-        for (_, fields, places) in sections {
-            for field in fields {
-                offsets.push(out.stream_position()? - start);
-                field.write(out, places)?;
-            }
-        }
+        offsets.push(out.stream_position()? - start);
+        write_array(out, cells, |i| [shape.vtk_type(i)])?;
+        offsets.push(out.stream_position()? - start);
+        write_array(out, cells, |i| (shape.end(i + 1) as i64).to_le_bytes())?;
+        offsets.push(out.stream_position()? - start);
+        write_array(out, shape.end(cells), |k| shape.corner(k).to_le_bytes())?;
         offsets.push(out.stream_position()? - start);
         write_array(out, 3 * points, |k| {
             interleaved(self.positions, points, k).to_le_bytes()
         })?;
-        offsets.push(out.stream_position()? - start);
-        write_array(out, shape.end(cells), |k| shape.corner(k).to_le_bytes())?;
-        offsets.push(out.stream_position()? - start);
-        write_array(out, cells, |i| (shape.end(i + 1) as i64).to_le_bytes())?;
-        offsets.push(out.stream_position()? - start);
-        write_array(out, cells, |i| [shape.vtk_type(i)])?;
+        for (_, fields, places) in sections.into_iter().rev() {
+            for field in fields.iter().rev() {
+                offsets.push(out.stream_position()? - start);
+                field.write(out, places)?;
+            }
+        }
         writeln!(out)?;
         out.write_all(END)?;
 
-        for (place, offset) in places.into_iter().zip(offsets) {
+        for (place, offset) in places.into_iter().rev().zip(offsets) {
             out.seek(SeekFrom::Start(place))?;
             write!(out, "offset=\"{offset}\"")?;
         }
@@ -347,6 +351,60 @@ mod tests {
                     }
                 }
             }
+        }
+    }
+
+    /// Replaces the offsets as meshio 5.3 does, which reads raw appended data by converting it to base64; returns the array that
+    /// each announcement refers to afterwards, by its number in the order of announcements.
+    fn arrays_after_meshio(bytes: &[u8]) -> Vec<Option<usize>> {
+        let mark: &[u8] = b"<AppendedData encoding=\"raw\">\n_";
+        let begin = bytes.windows(mark.len()).position(|w| w == mark).unwrap();
+        let xml = std::str::from_utf8(&bytes[..begin]).unwrap();
+        let data = &bytes[begin + mark.len()..bytes.len() - END.len() - 1];
+        let offset = |tag: &str| {
+            let (_, rest) = tag.split_once("offset=\"")?;
+            rest.split_once('"')?.0.parse::<usize>().ok()
+        };
+        let original: Vec<usize> = xml.split("<DataArray").filter_map(offset).collect();
+        let mut offsets = original.clone();
+        let number = |at: usize| u64::from_le_bytes(data[at..at + 8].try_into().unwrap()) as usize;
+        let (mut at, mut converted) = (0, 0);
+        let mut by_offset = std::collections::BTreeMap::new();
+        while at < data.len() {
+            let tag = offsets.iter().position(|&offset| offset == at).unwrap();
+            offsets[tag] = converted;
+            by_offset.insert(
+                converted,
+                original.iter().position(|&offset| offset == at).unwrap(),
+            );
+            let blocks = number(at);
+            let full = blocks * number(at + 8);
+            let size = match number(at + 16) {
+                0 => full,
+                last => full - number(at + 8) + last,
+            };
+            converted += (8 + size).div_ceil(3) * 4;
+            at += 8 * (3 + blocks) + (0..blocks).map(|k| number(at + 24 + 8 * k)).sum::<usize>();
+        }
+        offsets
+            .iter()
+            .map(|offset| by_offset.get(offset).copied())
+            .collect()
+    }
+
+    #[test]
+    fn meshio_finds_every_array_of_files_of_any_size() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.vtu");
+        for n in (0..400).chain([5000, 12_345]) {
+            let (x, u, e) = (wave(3 * n, 0.0), vec![0.25; 3 * n], vec![1.0; n]);
+            let file = VtuFile::new(3, &x)
+                .field(VtkField::vector("Displacement", &u))
+                .field(VtkField::vector("Velocity", &x))
+                .field(VtkField::scalar("Damage", &e));
+            file.write(&path).unwrap();
+            let found = arrays_after_meshio(&fs::read(&path).unwrap());
+            assert_eq!(found, (0..7).map(Some).collect::<Vec<_>>(), "{n}");
         }
     }
 

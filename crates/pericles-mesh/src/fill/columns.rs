@@ -48,6 +48,7 @@ pub fn fill_nodes(surface: &TriangleSurface, lattice: Lattice) -> Result<Filled,
         return Err(FillError::Open {
             columns,
             all: nx * lattice.counts[1],
+            edges: surface.unmatched_edges(),
             at: [lattice.coordinate(0, column), lattice.coordinate(1, row)],
         });
     }

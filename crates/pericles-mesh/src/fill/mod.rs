@@ -14,6 +14,7 @@
 mod columns;
 mod lattice;
 mod open_parts;
+mod orientation;
 mod outline;
 mod partial;
 mod rows;
@@ -23,6 +24,7 @@ mod winding;
 pub use columns::{fill, fill_nodes};
 pub use lattice::{Filled, Lattice};
 pub use open_parts::fill_open_partially;
+pub use orientation::Reversed;
 pub use outline::Outline;
 pub use partial::{PartialCells, fill_partially};
 pub use surface::TriangleSurface;
@@ -87,7 +89,7 @@ pub enum FillError {
     },
     /// An open surface: lines along z do not enter and leave it equally often.
     #[error(
-        "the surface is open: {columns} of {all} lines along z do not enter and leave it equally often, one of them at {}. Close the surface, or fill it by the winding number",
+        "the surface is open: {columns} of {all} lines along z do not enter and leave it equally often, one of them at {}. Close the surface, which has {edges} triangle edges without a neighbour, or fill it by the winding number",
         crate::digits::place(*at)
     )]
     Open {
@@ -95,6 +97,8 @@ pub enum FillError {
         columns: usize,
         /// The number of all lines.
         all: usize,
+        /// The number of triangle edges without an opposite one.
+        edges: usize,
         /// x and y of one of them, m.
         at: [f64; 2],
     },

@@ -54,7 +54,13 @@ pub fn fill_partially(
     let columns = open.iter().map(Vec::len).sum();
     if let Some(&at) = open.iter().flatten().next() {
         let all = rows.lattice.counts[0] * rows.lattice.counts[1];
-        return Err(FillError::Open { columns, all, at });
+        let edges = surface.unmatched_edges();
+        return Err(FillError::Open {
+            columns,
+            all,
+            edges,
+            at,
+        });
     }
     Ok(gathered(lattice, &parts))
 }

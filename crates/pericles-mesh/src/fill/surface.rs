@@ -54,6 +54,34 @@ impl TriangleSurface {
         Self::new(positions.collect(), mesh.triangles())
     }
 
+    /// Creates a surface from parts of another one.
+    pub(super) fn of_parts(positions: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Self {
+        Self {
+            positions,
+            triangles,
+        }
+    }
+
+    /// Returns the surface with some triangles reversed.
+    pub(super) fn with_turned(mut self, turned: &[bool]) -> Self {
+        for (triangle, turned) in self.triangles.iter_mut().zip(turned) {
+            if *turned {
+                triangle.swap(1, 2);
+            }
+        }
+        self
+    }
+
+    /// Returns the positions of the vertices, m.
+    pub fn positions(&self) -> &[[f64; 3]] {
+        &self.positions
+    }
+
+    /// Returns the vertices of the triangles.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
     /// Returns the number of triangles.
     pub fn len(&self) -> usize {
         self.triangles.len()

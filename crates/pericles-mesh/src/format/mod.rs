@@ -103,7 +103,7 @@ impl Format {
             Some(text) if self != Self::Stl => text,
             _ => content,
         };
-        match self {
+        let mesh = match self {
             Self::Obj => obj::parse(content),
             Self::Ply => ply::parse(content),
             Self::Stl => stl::parse(content),
@@ -112,6 +112,17 @@ impl Format {
             Self::Vtk => vtk::parse(content, memory),
             Self::Abaqus => abaqus::parse(content, include),
             Self::Exodus => exodus::parse(content, memory),
+        }?;
+        let what = match self {
+            // An empty file has a cause of its own, which is reported later.
+            Self::Gmsh => return Ok(mesh),
+            Self::Stl | Self::Obj | Self::Ply | Self::Off => "triangles",
+            Self::Vtk => "cells",
+            Self::Abaqus | Self::Exodus => "elements",
+        };
+        match mesh.cells.is_empty() && mesh.left_out.is_empty() {
+            true => Err(Fault::of_file(format!("the file contains no {what}"))),
+            false => Ok(mesh),
         }
     }
 }

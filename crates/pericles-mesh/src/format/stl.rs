@@ -14,17 +14,31 @@ const TRIANGLE: usize = 50;
 const GLANCE: usize = 1024;
 
 pub(crate) fn parse(content: &[u8]) -> Result<RawMesh, Fault> {
-    // Some binary files also begin with "solid", but soon contain bytes that do not occur in text.
-    let begin = &content[..content.len().min(GLANCE)];
-    let is_text = begin.iter().all(|byte| byte.is_ascii() && *byte != 0);
-    if content.starts_with(b"solid") && is_text {
-        text(content)
-    } else {
-        binary(content)
+    match is_text(content) {
+        true => text(content),
+        false => binary(content),
     }
 }
 
+/// Returns whether a file is text: it begins with the word solid in any case, after blanks or a byte order mark. Some
+/// binary files do so as well, but have the size that their count demands, or bytes that do not occur in text.
+fn is_text(content: &[u8]) -> bool {
+    let start = content.strip_prefix(b"\xef\xbb\xbf").unwrap_or(content);
+    let start = start.trim_ascii_start();
+    let word = start.get(..5).unwrap_or_default();
+    if !word.eq_ignore_ascii_case(b"solid") {
+        return false;
+    }
+    let counted = content.get(HEADER..HEADER + 4).map(|count| {
+        let count = u32::from_le_bytes([count[0], count[1], count[2], count[3]]);
+        HEADER as u64 + 4 + TRIANGLE as u64 * u64::from(count)
+    });
+    let begin = &content[..content.len().min(GLANCE)];
+    counted != Some(content.len() as u64) && !begin.contains(&0)
+}
+
 fn text(content: &[u8]) -> Result<RawMesh, Fault> {
+    let content = content.strip_prefix(b"\xef\xbb\xbf").unwrap_or(content);
     let mut words = Words::new(content, None);
     let mut mesh = RawMesh::default();
     let mut corners = Vec::new();
@@ -33,7 +47,7 @@ fn text(content: &[u8]) -> Result<RawMesh, Fault> {
     words.skip_line();
     let mut ended = false;
     while let Some(word) = words.next() {
-        match word {
+        match word.to_ascii_lowercase().as_str() {
             "vertex" => {
                 corners.push(mesh.nodes.len() as u32);
                 mesh.nodes.push(words.point()?);

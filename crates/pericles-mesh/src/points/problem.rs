@@ -126,6 +126,16 @@ pub enum Problem {
         /// Largest side, m.
         side: f64,
     },
+    /// Warning: a set with the reserved name.
+    #[error(
+        "the set {name:?} of the mesh is available as {other:?}, because {name:?} is the set of all points"
+    )]
+    ReservedName {
+        /// Its name in the file.
+        name: String,
+        /// Its name in decks.
+        other: String,
+    },
     /// Warning: faces of a set that do not belong to any point.
     #[error("{count} face(s) of the set {name:?} do not belong to any element")]
     UnownedFaces {

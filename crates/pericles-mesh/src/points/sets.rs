@@ -29,6 +29,8 @@ pub struct PointSet {
     pub points: Vec<u32>,
     /// Area of the faces, m²; for edges, length times thickness. `None` for other sets.
     pub area: Option<f64>,
+    /// Number of faces between two elements; 0 for other sets.
+    pub inner_faces: usize,
     /// Faces as node numbers of the mesh; empty for other sets.
     pub faces: Cells,
 }
@@ -63,7 +65,7 @@ pub(super) fn point_sets(
 ) -> (Vec<PointSet>, Vec<Problem>) {
     let mut definitions = definitions(mesh, dimension, cells);
     let mut warnings = Vec::new();
-    let areas = own_faces(mesh, cells, &mut definitions, &mut warnings);
+    let measures = own_faces(mesh, cells, &mut definitions, &mut warnings);
     have_nodes(mesh, cells, &mut definitions);
     // Areas of faces; lengths of edges times the thickness.
     let scale = match dimension {
@@ -72,17 +74,18 @@ pub(super) fn point_sets(
     };
     let mut sets: Vec<PointSet> = definitions
         .into_iter()
-        .zip(areas)
+        .zip(measures)
         .filter(|(set, _)| !set.points.is_empty())
-        .map(|(set, area)| PointSet {
+        .map(|(set, (area, inner_faces))| PointSet {
             area: (set.kind == SetKind::Faces).then_some(area * scale),
+            inner_faces,
             name: set.name,
             kind: set.kind,
             points: set.points,
             faces: set.faces,
         })
         .collect();
-    name_uniquely(&mut sets);
+    name_uniquely(&mut sets, cells.len(), &mut warnings);
     (sets, warnings)
 }
 
@@ -138,19 +141,20 @@ fn key(kind: CellKind, corners: impl Iterator<Item = u32>) -> Key {
     (kind, sorted)
 }
 
-/// The sets that contain a face, and whether an element owns it.
+/// The sets that contain a face, and the number of elements that own it.
 struct Owned {
     sets: Vec<u32>,
-    is_owned: bool,
+    owners: u8,
 }
 
-/// Adds the elements that own a face of a face set; returns the area of these faces, in the units of the file.
+/// Adds the elements that own a face of a face set; returns the area of these faces, in the units of the file,
+/// and the number of those between two elements.
 fn own_faces(
     mesh: &RawMesh,
     cells: &[u32],
     definitions: &mut [Definition],
     warnings: &mut Vec<Problem>,
-) -> Vec<f64> {
+) -> Vec<(f64, usize)> {
     let mut faces: HashMap<Key, Owned> = HashMap::new();
     let mut on_face = vec![false; mesh.nodes.len()];
     for (number, set) in (0u32..).zip(definitions.iter()) {
@@ -158,7 +162,7 @@ fn own_faces(
             let entry = faces.entry(key(kind, corners.iter().copied()));
             let owned = entry.or_insert(Owned {
                 sets: Vec::new(),
-                is_owned: false,
+                owners: 0,
             });
             if owned.sets.last() != Some(&number) {
                 owned.sets.push(number);
@@ -176,7 +180,7 @@ fn own_faces(
             }
             let face = key(*kind, places.iter().map(|&place| corners[place]));
             if let Some(owned) = faces.get_mut(&face) {
-                owned.is_owned = true;
+                owned.owners = owned.owners.saturating_add(1);
                 for &set in &owned.sets {
                     let points = &mut definitions[set as usize].points;
                     if points.last() != Some(&point) {
@@ -186,9 +190,9 @@ fn own_faces(
             }
         }
     }
-    let mut areas = Vec::new();
+    let mut measures = Vec::new();
     for set in definitions.iter() {
-        let (mut area, mut unowned) = (0.0, 0);
+        let (mut area, mut unowned, mut inner) = (0.0, 0, 0);
         let mut counted = BTreeSet::new();
         for (kind, corners) in set.faces.iter() {
             let face = key(kind, corners.iter().copied());
@@ -196,7 +200,8 @@ fn own_faces(
                 continue;
             }
             match faces.get(&face) {
-                Some(owned) if owned.is_owned => {
+                Some(owned) if owned.owners > 0 => {
+                    inner += usize::from(owned.owners > 1);
                     area += facet_measure(kind, &mesh.corner_positions(corners));
                 }
                 _ => unowned += 1,
@@ -208,9 +213,9 @@ fn own_faces(
                 count: unowned,
             });
         }
-        areas.push(area);
+        measures.push((area, inner));
     }
-    areas
+    measures
 }
 
 /// Adds the elements that have a node of a node set.
@@ -229,12 +234,16 @@ fn have_nodes(mesh: &RawMesh, cells: &[u32], definitions: &mut [Definition]) {
     }
 }
 
+/// Name of the set of all points in decks, which no set of a mesh may have.
+const ALL: &str = "all";
+
 /// Makes names unique: element sets keep their names, face and node sets get a suffix, and remaining
-/// duplicates are numbered.
-fn name_uniquely(sets: &mut [PointSet]) {
+/// duplicates are numbered. A set with the reserved name gets a suffix, with a warning
+/// if it does not contain all points.
+fn name_uniquely(sets: &mut [PointSet], points: usize, warnings: &mut Vec<Problem>) {
     let mut order: Vec<usize> = (0..sets.len()).collect();
     order.sort_by_key(|&set| sets[set].kind);
-    let mut taken = BTreeSet::new();
+    let mut taken = BTreeSet::from([ALL.to_owned()]);
     for set in order {
         let ending = match sets[set].kind {
             SetKind::Elements => "elements",
@@ -250,6 +259,12 @@ fn name_uniquely(sets: &mut [PointSet]) {
                 _ => format!("{base} ({ending} {number})"),
             };
             number += 1;
+        }
+        if base == ALL && sets[set].points.len() < points {
+            warnings.push(Problem::ReservedName {
+                name: base,
+                other: name.clone(),
+            });
         }
         sets[set].name = name;
     }

@@ -94,8 +94,9 @@ impl Object {
     }
 }
 
-/// Maximum number of members of a group: twice K of the leaf nodes.
-pub(super) const MOST_MEMBERS: usize = 2 * LEAF_K;
+/// Maximum number of members of a group: twice the largest K of its only leaf node.
+pub(super) const MOST_MEMBERS: usize = 2 * u16::MAX as usize;
+/// Smallest K of leaf nodes.
 const LEAF_K: usize = 64;
 const NODE_K: usize = 16;
 const NONE: u64 = u64::MAX;
@@ -193,9 +194,22 @@ pub(super) fn header_of(object: &Object, group: Option<[u64; 2]>) -> Vec<u8> {
     object_header(messages)
 }
 
+/// Returns the largest number of members of a group.
+fn most_members(object: &Object) -> usize {
+    match &object.kind {
+        Kind::Dataset(..) => 0,
+        Kind::Group(members) => {
+            let inner = members.iter().map(most_members).max();
+            inner.unwrap_or(0).max(members.len())
+        }
+    }
+}
+
 /// The metadata of a file: everything except the data of datasets.
 pub(super) struct Skeleton {
     bytes: Vec<u8>,
+    /// Half of the number of members for which a leaf node has space.
+    leaf_k: usize,
     /// Addresses of B-tree and heap of groups, by the address of the header.
     groups: Vec<(u64, [u64; 2])>,
 }
@@ -205,6 +219,7 @@ impl Skeleton {
     /// superblock are reserved for headers with prescribed addresses.
     pub(super) fn new(root: &Object, reserved: usize, file_bytes: u64) -> Self {
         let mut skeleton = Self {
+            leaf_k: most_members(root).div_ceil(2).max(LEAF_K),
             bytes: vec![0; reserved.max(SUPERBLOCK)],
             groups: Vec::new(),
         };
@@ -212,7 +227,7 @@ impl Skeleton {
         let places = skeleton.places_of(header);
         let mut block = b"\x89HDF\r\n\x1a\n".to_vec();
         block.extend([0, 0, 0, 0, 0, 8, 8, 0]);
-        block.extend((LEAF_K as u16).to_le_bytes());
+        block.extend((skeleton.leaf_k as u16).to_le_bytes());
         block.extend((NODE_K as u16).to_le_bytes());
         block.extend([0; 4]);
         for address in [0, NONE, file_bytes, NONE, 0, header] {
@@ -281,7 +296,7 @@ impl Skeleton {
             table.extend(header.to_le_bytes());
             table.extend([0; 24]);
         }
-        table.resize(8 + 40 * MOST_MEMBERS, 0);
+        table.resize(8 + 80 * self.leaf_k, 0);
         let table = self.put(None, &table);
         let names_place = self.put(None, &names);
         let mut heap = b"HEAP\0\0\0\0".to_vec();

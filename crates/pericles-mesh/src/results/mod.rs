@@ -11,15 +11,17 @@
 mod cdf;
 mod exodus;
 mod hdf5;
+mod names;
 mod vtkhdf;
 
-pub use exodus::{ExodusLayout, ExodusWriter, PointList};
-pub use vtkhdf::{VtkHdfLayout, VtkHdfWriter};
+pub use exodus::{ExodusLayout, ExodusReader, ExodusWriter, PointList};
+pub use names::name_in_exodus;
+pub use vtkhdf::{MOST_OUTPUTS, VtkHdfLayout, VtkHdfReader, VtkHdfWriter};
 
 #[cfg(test)]
 mod tests;
 
-use std::io::{self, Seek, SeekFrom, Write};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 
 /// A field on the points.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -110,6 +112,31 @@ struct Numbers {
 impl Numbers {
     fn bytes(self) -> u64 {
         if self.is_single { 4 } else { 8 }
+    }
+
+    /// Reads numbers at an offset of a file.
+    fn read_at(
+        self,
+        file: &mut (impl Read + Seek),
+        place: u64,
+        count: usize,
+    ) -> io::Result<Vec<f64>> {
+        file.seek(SeekFrom::Start(place))?;
+        let width = self.bytes() as usize;
+        let mut bytes = vec![0; count * width];
+        file.read_exact(&mut bytes)?;
+        let number = |bytes: &[u8]| {
+            let mut wide = [0; 8];
+            wide[..width].copy_from_slice(bytes);
+            if !self.is_little {
+                wide[..width].reverse();
+            }
+            match self.is_single {
+                true => f64::from(f32::from_le_bytes([wide[0], wide[1], wide[2], wide[3]])),
+                false => f64::from_le_bytes(wide),
+            }
+        };
+        Ok(bytes.chunks_exact(width).map(number).collect())
     }
 
     /// Writes numbers at an offset of a file.

@@ -6,15 +6,20 @@
 //! `NSteps`. Both are written together after each output, so that a killed run leaves a valid file. Until the
 //! first output the file has another name, because a file without steps cannot be read.
 
+mod reader;
+
+pub use reader::VtkHdfReader;
+
 use std::fs::{File, OpenOptions};
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use super::hdf5::{Kind, MOST_MEMBERS, Object, Skeleton, Type, Value, header_of};
+use super::names::hdf5_names;
 use super::{FieldSpec, Numbers, WriteError, check_fields, check_values, unsuitable};
 
-/// Maximum number of outputs: several numbers for each are kept in memory.
-const MOST_OUTPUTS: usize = 1 << 24;
+/// Maximum number of outputs of a VTKHDF file: several numbers for each are kept in memory.
+pub const MOST_OUTPUTS: usize = 1 << 24;
 
 /// Page size: headers that change are written in one piece.
 const PAGE: u64 = 4096;
@@ -29,7 +34,7 @@ pub struct VtkHdfLayout<'a> {
     pub dimension: usize,
     /// Positions, component-major, m.
     pub positions: &'a [f64],
-    /// Fields on the points.
+    /// Fields on the points. Slashes in their names, which HDF5 does not allow, become underscores.
     pub fields: Vec<FieldSpec>,
     /// Constant fields with their component-major values: volumes, materials.
     pub constants: Vec<(FieldSpec, &'a [f64])>,
@@ -74,9 +79,6 @@ impl VtkHdfLayout<'_> {
             ));
         }
         for (k, field) in all.iter().enumerate() {
-            if field.name.is_empty() || field.name.contains(['/', '\0']) || field.name == "." {
-                return unsuitable(format!("{:?} is not a valid field name", field.name));
-            }
             if all[..k].iter().any(|other| other.name == field.name) {
                 return unsuitable(format!("two fields have the name {:?}", field.name));
             }
@@ -139,18 +141,28 @@ fn lengths(rows: u64, field: &FieldSpec) -> Vec<u64> {
     }
 }
 
-/// Upper bound of the size of the metadata for any fields.
+/// Size of the metadata for usual numbers of fields.
 const METADATA: u64 = 1 << 18;
 
 impl Plan {
     fn new(layout: &VtkHdfLayout<'_>) -> Result<Self, WriteError> {
+        let plan = Self::with_metadata(layout, METADATA)?;
+        // The size of the metadata does not depend on the offsets of the data.
+        match plan.skeleton.bytes().len() as u64 {
+            0..=METADATA => Ok(plan),
+            needed => Self::with_metadata(layout, needed.next_multiple_of(PAGE)),
+        }
+    }
+
+    /// Lays the file out with space for metadata of a size.
+    fn with_metadata(layout: &VtkHdfLayout<'_>, metadata: u64) -> Result<Self, WriteError> {
         let (n, outputs) = (layout.points() as u64, layout.outputs as u64);
         let real = if layout.is_single {
             Type::F32
         } else {
             Type::F64
         };
-        let mut space = Space { next: METADATA };
+        let mut space = Space { next: metadata };
         let mut small = Vec::new();
         let mut small_array =
             |space: &mut Space, name: &str, lengths: &[u64], numbers: Vec<i64>| {
@@ -173,13 +185,17 @@ impl Plan {
             small_array(&mut space, "CellOffsets", &[outputs, 1], zeros())?,
             small_array(&mut space, "ConnectivityIdOffsets", &[outputs, 1], zeros())?,
         ];
+        let constants = layout.constants.iter().map(|(field, _)| field);
+        let given = layout.fields.iter().chain(constants);
+        let names = hdf5_names(given.map(|field| field.name.as_str()));
+        let (field_names, constant_names) = names.split_at(layout.fields.len());
         let mut offsets = Vec::new();
-        for field in &layout.fields {
+        for name in field_names {
             let rows = (0..outputs).map(|k| (k * n) as i64).collect();
-            offsets.push(small_array(&mut space, &field.name, &[outputs], rows)?);
+            offsets.push(small_array(&mut space, name, &[outputs], rows)?);
         }
-        for (field, _) in &layout.constants {
-            offsets.push(small_array(&mut space, &field.name, &[outputs], zeros())?);
+        for name in constant_names {
+            offsets.push(small_array(&mut space, name, &[outputs], zeros())?);
         }
         let count = |number: u64| vec![number as i64];
         let mut members = vec![
@@ -193,13 +209,13 @@ impl Plan {
         let (connectivity, connectivity_place) = space.dataset("Connectivity", Type::I64, &[n])?;
         members.extend([types, points, connectivity]);
         let (mut data, mut fields, mut constants) = (vec![], vec![], vec![]);
-        for (field, _) in &layout.constants {
-            let (object, place) = space.dataset(&field.name, real, &lengths(n, field))?;
+        for ((field, _), name) in layout.constants.iter().zip(constant_names) {
+            let (object, place) = space.dataset(name, real, &lengths(n, field))?;
             data.push(object);
             constants.push(place);
         }
-        for field in &layout.fields {
-            let (object, place) = space.dataset(&field.name, real, &lengths(outputs * n, field))?;
+        for (field, name) in layout.fields.iter().zip(field_names) {
+            let (object, place) = space.dataset(name, real, &lengths(outputs * n, field))?;
             data.push(object);
             fields.push(place);
         }
@@ -219,9 +235,6 @@ impl Plan {
             ],
         );
         let skeleton = Skeleton::new(&root, 2 * PAGE as usize, space.next);
-        if skeleton.bytes().len() as u64 > METADATA {
-            return unsuitable("the names of the fields are too long");
-        }
         Ok(Self {
             skeleton,
             file_bytes: space.next,
@@ -234,6 +247,22 @@ impl Plan {
             small,
             types: types_place,
         })
+    }
+
+    /// Returns the number of outputs in a file with this layout.
+    fn outputs_in(&self, file: &mut File, most: usize) -> Result<usize, WriteError> {
+        let other = || WriteError::NotContinued("its layout belongs to another run".into());
+        if file.metadata()?.len() != self.file_bytes {
+            return Err(other());
+        }
+        let ours = self.skeleton.bytes();
+        let mut found = vec![0; ours.len()];
+        file.read_exact(&mut found)?;
+        // Only the number of steps may differ.
+        let (page, length) = (PAGE as usize, self.page(1).len());
+        let held = (1..=most).find(|&k| found[page..page + length] == self.page(k as u64));
+        let same = found[..page] == ours[..page] && found[page + length..] == ours[page + length..];
+        held.filter(|_| same).ok_or_else(other)
     }
 
     /// Returns the page with the two headers that contain the number of steps.
@@ -285,8 +314,7 @@ impl VtkHdfWriter {
     /// Creates a file without outputs; it gets its final name with the first output.
     ///
     /// # Errors
-    /// Returns an error if the file cannot be written, the array lengths are inconsistent, or a name is not
-    /// allowed in HDF5.
+    /// Returns an error if the file cannot be written, or the array lengths are inconsistent.
     pub fn create(path: impl AsRef<Path>, layout: &VtkHdfLayout<'_>) -> Result<Self, WriteError> {
         layout.check()?;
         let path = path.as_ref();
@@ -373,24 +401,7 @@ impl VtkHdfWriter {
         layout.check()?;
         let plan = Plan::new(layout)?;
         let mut file = OpenOptions::new().read(true).write(true).open(path)?;
-        let other = || WriteError::NotContinued("its layout belongs to another run".into());
-        if file.metadata()?.len() != plan.file_bytes {
-            return Err(other());
-        }
-        let mut found = vec![0; plan.skeleton.bytes().len()];
-        file.read_exact(&mut found)?;
-        // Only the number of steps may differ.
-        let page = PAGE as usize;
-        let held = (1..=layout.outputs).find(|&k| {
-            let own = plan.page(k as u64);
-            found[page..page + own.len()] == own
-        });
-        let ours = plan.skeleton.bytes();
-        let length = plan.page(1).len();
-        let same = found[..page] == ours[..page] && found[page + length..] == ours[page + length..];
-        let Some(held) = held.filter(|_| same) else {
-            return Err(other());
-        };
+        let held = plan.outputs_in(&mut file, layout.outputs)?;
         if held < outputs {
             return Err(WriteError::NotContinued(format!(
                 "it contains {held} outputs; expected at least {outputs}"

@@ -2,6 +2,7 @@
 
 mod cdf;
 mod files;
+mod unusual;
 
 use std::path::Path;
 
@@ -62,7 +63,8 @@ fn every_format_gives_the_same_points_and_sets() {
         let all = match *ending {
             "exo" => "elemset_3",
             "inp" => "ALL",
-            _ => "all",
+            // The name of the set of all points of a deck.
+            _ => "all (elements)",
         };
         assert_eq!(set(&points, all), (SetKind::Elements, vec![0, 1]));
     }
@@ -310,7 +312,7 @@ fn errors_report_their_location_and_what_is_allowed() {
         (
             "inp",
             "*INSTANCE, NAME=I, PART=P\n",
-            vec!["the instance \"I\" refers to a part that is not defined"],
+            vec!["the instance \"I\" has no mesh, and its part is not defined"],
         ),
         (
             "inp",

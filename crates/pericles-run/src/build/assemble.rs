@@ -68,6 +68,7 @@ pub fn assemble(
     assembler.refuse_fields(&bonds)?;
     assembler.check_cells(&discretisation)?;
     assembler.check_point_numbers(sets)?;
+    warnings.extend(assembler.judge_names(sets));
     let mut system = System::new(Arc::clone(cloud), bonds.operator, density.clone())
         .map_err(|error| at("material.density", error))?;
     let temperature = field.as_ref().map(DiffusingField::shared);
@@ -122,6 +123,7 @@ pub fn assemble(
         &mut warnings,
     );
     assembler.check_thermal_steps(&system, steps.dt)?;
+    assembler.check_outputs(steps.dt, steps.count)?;
     assembler.judge_two_steps(&*integrator, &steps, &mut warnings);
     assembler.judge_breaking(&system, &state, constants.as_ref(), &steps, &mut warnings);
     let ends = assembler.add_ends(&mut system, ends, &state, &steps, resources, &mut warnings)?;
@@ -138,14 +140,14 @@ pub fn assemble(
     let Discretisation {
         cloud,
         surface,
-        mesh,
+        meshes,
         sets,
         ..
     } = discretisation;
     Ok(Assembly {
         cloud,
         surface,
-        mesh,
+        meshes,
         sets,
         constants,
         other_materials: others,

@@ -16,7 +16,7 @@ use super::constants::MaterialConstants;
 use super::discretisation::Sets;
 use super::exact::ExactReference;
 use super::loads::LoadReport;
-use super::mesh_body::MeshBody;
+use super::mesh_body::Meshes;
 use super::step::damped_step;
 
 /// An assembled model, ready to run.
@@ -27,8 +27,8 @@ pub struct Assembly {
     pub sets: Sets,
     /// The surface, if the body is one.
     pub surface: Option<Arc<Surface>>,
-    /// The mesh, if the points are its elements.
-    pub mesh: Option<Arc<MeshBody>>,
+    /// The meshes whose elements the points are.
+    pub meshes: Arc<Meshes>,
     /// The constants of the material; `None` for a surface.
     pub constants: Option<MaterialConstants>,
     /// The constants of the other materials, in the order of [`Model::materials`](pericles_deck::Model::materials).

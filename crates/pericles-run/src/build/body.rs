@@ -152,6 +152,13 @@ impl Assembler<'_> {
             Err(at_path(self.field_key(is_meant), fault))
         };
         let wants = |field| self.model.output.wants(field);
+        if capabilities.bonds.is_none() && self.model.output.wants_tensors() {
+            return refuse(
+                Field::is_of_bonds,
+                "the fields Stress, Strain and Equivalent_Stress are",
+                "only bodies with volume whose forces are sums over single bonds have them",
+            );
+        }
         if capabilities.dilatation.is_none() && wants(Field::Dilatation) {
             return refuse(
                 |field| field == Field::Dilatation,
@@ -189,7 +196,7 @@ impl Assembler<'_> {
 
     /// Rejects `cells = true` for a body without cells.
     pub(super) fn check_cells(&self, discretisation: &Discretisation) -> Result<(), BuildError> {
-        let has_cells = discretisation.mesh.is_some()
+        let has_cells = !discretisation.meshes.all.is_empty()
             || discretisation.surface.is_some()
             || is_on_grid(self.model, &discretisation.cloud);
         match self.model.output.cells {

@@ -22,6 +22,7 @@ use super::assembler::Assembler;
 use super::body::BodyParts;
 use super::discretisation::Discretisation;
 use super::loads::volume_of;
+use super::radiation::judge_radiation;
 use super::refusal::{at, at_path};
 use super::resources::Resources;
 use super::thermal::Given;
@@ -115,6 +116,8 @@ impl Assembler<'_> {
                 for_each_point(cloud.len(), &|i| value.value(cloud.point(i), 0.0))
             }
         };
+        let judged = judge_radiation(thermal, cloud, &start);
+        warnings.extend(discretisation.agreed(judged)?);
         let field = DiffusingField::new(problem, options, 0.0, start);
         field.map(Some).map_err(|error| at("thermal", error))
     }
@@ -275,7 +278,7 @@ impl Assembler<'_> {
         let cloud = &*discretisation.cloud;
         let known = condition
             .area
-            .or_else(|| self.face_area(discretisation.mesh.as_deref(), &condition.set));
+            .or_else(|| self.face_area(&discretisation.meshes, &condition.set));
         if let Some(area) = known {
             return Ok(area);
         }

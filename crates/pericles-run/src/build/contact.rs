@@ -12,6 +12,8 @@ use pericles_deck::{
     Remark, Solid,
 };
 
+use pericles_mesh::fill::TriangleSurface;
+
 use super::assembler::Assembler;
 use super::constants::MaterialConstants;
 use super::discretisation::Discretisation;
@@ -65,7 +67,7 @@ impl Assembler<'_> {
         }
         for (k, impactor) in self.model.impactors.iter().enumerate() {
             let path = KeyPath::from("impactor").index(k);
-            let (shape, pose) = self.impactor_shape(&path, impactor, resources)?;
+            let (shape, pose) = self.impactor_shape(&path, impactor, resources, warnings)?;
             warnings.extend(small_impactor(&path, &shape, cloud));
             let motion = impactor_motion(&path, impactor)?;
             let one = Impactor::new(
@@ -138,6 +140,7 @@ impl Assembler<'_> {
         path: &KeyPath,
         impactor: &pericles_deck::Impactor,
         resources: &Resources<'_>,
+        warnings: &mut Vec<ModelWarning>,
     ) -> Result<(Shape, Pose), BuildError> {
         let turned = impactor.rotation.as_ref().map_or(UNIT, matrix);
         let (shape, frame, middle) = match &impactor.shape {
@@ -167,8 +170,16 @@ impl Assembler<'_> {
                     at_path(&key, Fault::BadMesh { reason })
                 };
                 mesh.check().map_err(|error| wrong(error.to_string()))?;
-                let nodes = mesh.nodes.iter().map(|node| node.map(|x| x * unit));
-                let closed = ClosedMesh::new(nodes.collect(), mesh.triangles());
+                let surface = TriangleSurface::of_mesh(&mesh, *unit);
+                let surface = surface.map_err(|error| wrong(error.to_string()))?;
+                // The triangles of some formats, such as STL, have vertices of their own.
+                let (surface, reversed) = surface.repaired();
+                warnings.extend(reversed.map(|reversed| {
+                    let problem = reversed.to_string();
+                    Remark::new(key.clone(), Caution::Mesh { problem })
+                }));
+                let vertices = surface.positions().to_vec();
+                let closed = ClosedMesh::new(vertices, surface.triangles().to_vec());
                 let closed = closed.map_err(|error| wrong(error.to_string()))?;
                 let middle = centroid(&closed);
                 (Shape::Mesh(closed), UNIT, middle)

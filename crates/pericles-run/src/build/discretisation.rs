@@ -7,7 +7,7 @@ use pericles::space::{PointCloud, PointSet};
 use pericles_deck::{Body, BuildError, Fault, KeyPath, Model, ModelWarning};
 use pericles_manifold::surface::Surface;
 
-use super::mesh_body::MeshBody;
+use super::mesh_body::Meshes;
 use super::program::Conditions;
 use super::refusal::at_path;
 
@@ -24,8 +24,8 @@ pub struct Discretisation {
     pub grids: Grids,
     /// The surface, if the body is one; its vertices are the points.
     pub surface: Option<Arc<Surface>>,
-    /// The mesh, if the points are its elements.
-    pub mesh: Option<Arc<MeshBody>>,
+    /// The meshes whose elements the points are.
+    pub meshes: Arc<Meshes>,
     /// The sets of these points with their names: "all", those of a mesh, those of the deck.
     pub sets: Sets,
     /// The surfaces of the pre-cracks.

@@ -1,13 +1,14 @@
 //! Points and sets of a model.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use pericles::space::{GradedCloud, PointCloud, PointSet};
-use pericles_deck::{ALL, Body, BuildError, Fault, KeyPath, Members, Model, Remark};
+use pericles_deck::{ALL, Body, BuildError, Fault, KeyPath, Members, Model, Remark, piece_path};
 
 use super::assembler::Assembler;
 use super::discretisation::{Discretisation, Grids, Sets};
-use super::mesh_body::MeshBody;
+use super::mesh_body::Meshes;
 use super::program::Conditions;
 use super::refusal::at_path;
 use super::resources::Resources;
@@ -53,8 +54,7 @@ pub fn discretise(model: &Model, resources: &Resources<'_>) -> Result<Discretisa
     model.check()?;
     let assembler = Assembler::new(model);
     let mut warnings = Vec::new();
-    let mut mesh = None;
-    let mut named = Sets::new();
+    let mut meshes = Meshes::default();
     let (points, surface) = match &model.body {
         Body::Surface(body) => {
             if let (Some(_), Some((keys, reason))) = (resources.several(), assembler.undivided()) {
@@ -67,12 +67,11 @@ pub fn discretise(model: &Model, resources: &Resources<'_>) -> Result<Discretisa
             let points = assembler.own_points(resources, || {
                 assembler.points(solid, resources, &mut warnings)
             })?;
-            mesh = points.mesh.map(Arc::new);
-            named = points.sets;
+            meshes = points.meshes;
             (points.cloud, None)
         }
     };
-    let sets = assembler.select(&points.cloud, mesh.as_deref(), named)?;
+    let sets = assembler.select(&points.cloud, &meshes)?;
     Ok(Discretisation {
         cracks: assembler.read_cracks(&points.cloud, &sets, resources)?,
         sets,
@@ -82,24 +81,48 @@ pub fn discretise(model: &Model, resources: &Resources<'_>) -> Result<Discretisa
             of_point: points.grid_of_point,
         },
         surface,
-        mesh,
+        meshes: Arc::new(meshes),
         conditions: Conditions::default(),
         warnings,
     })
 }
 
+/// Returns the advice on a set that contains no points.
+fn advice_on_empty(members: &Members, cloud: &PointCloud) -> String {
+    /// Largest number of listed blocks.
+    const LISTED: usize = 8;
+    let Members::Blocks(_) = members else {
+        return "make the region larger: it must contain at least one cell centre (a layer must be at least half a spacing deep)".into();
+    };
+    let own = (0..cloud.len()).map(|i| f64::from(cloud.block(i)));
+    let known: BTreeSet<u32> = cloud
+        .domain()
+        .collect_everywhere(own.collect())
+        .concat()
+        .into_iter()
+        .map(|block| block as u32)
+        .collect();
+    let listed: Vec<String> = known.iter().take(LISTED).map(u32::to_string).collect();
+    let more = if known.len() > LISTED { ", ..." } else { "" };
+    format!("the blocks of the body are {}{more}", listed.join(", "))
+}
+
 impl Assembler<'_> {
-    fn select(
-        &self,
-        cloud: &PointCloud,
-        mesh: Option<&MeshBody>,
-        named: Sets,
-    ) -> Result<Sets, BuildError> {
+    fn select(&self, cloud: &PointCloud, meshes: &Meshes) -> Result<Sets, BuildError> {
         let mut sets = vec![(ALL.to_owned(), (0..cloud.len() as u32).collect())];
-        sets.extend(mesh.iter().flat_map(|mesh| mesh.sets(cloud)));
-        sets.extend(named);
-        sets.extend(self.pieces_as_sets(cloud));
+        sets.extend(meshes.sets(cloud));
         let mut problems = Vec::new();
+        for (k, (name, points)) in self.pieces_as_sets(cloud).into_iter().enumerate() {
+            if sets.iter().any(|(known, _)| *known == name) {
+                let fault = Fault::BadName {
+                    name: name.clone(),
+                    reason: "a mesh of the body has a set of this name",
+                    allowed: "allowed: another name; pieces and sets of meshes are available as sets under their names",
+                };
+                problems.push(Remark::new(piece_path(k).key("name"), fault));
+            }
+            sets.push((name, points));
+        }
         for set in &self.model.sets {
             let path = KeyPath::from("sets").key(&set.name);
             if sets.iter().any(|(name, _)| *name == set.name) {
@@ -111,12 +134,15 @@ impl Assembler<'_> {
                 problems.push(Remark::new(path, fault));
                 continue;
             }
-            match self.points_of(&set.members, cloud, mesh, &path) {
+            match self.points_of(&set.members, cloud, meshes, &path) {
                 Err(error) => problems.extend(error.into_problems()),
                 Ok(points) => {
                     if cloud.domain().count(points.len() as u64) == 0 {
-                        let set = set.name.clone();
-                        problems.push(Remark::new(path, Fault::EmptySet { set }));
+                        let fault = Fault::EmptySet {
+                            set: set.name.clone(),
+                            advice: advice_on_empty(&set.members, cloud),
+                        };
+                        problems.push(Remark::new(path, fault));
                     }
                     sets.push((set.name.clone(), points));
                 }
@@ -144,17 +170,18 @@ impl Assembler<'_> {
         &self,
         members: &Members,
         cloud: &PointCloud,
-        mesh: Option<&MeshBody>,
+        meshes: &Meshes,
         path: &KeyPath,
     ) -> Result<PointSet, BuildError> {
         let (faces, depth) = match members {
             Members::NearFaces { faces, depth } => (faces, *depth),
             members => return Ok(members.of(cloud).unwrap_or_default()),
         };
-        let near = mesh.and_then(|mesh| mesh.near_faces(cloud, faces, depth));
+        let near = meshes.near_faces(cloud, faces, depth);
         near.ok_or_else(|| {
-            let known: Vec<&str> = mesh.iter().flat_map(|mesh| mesh.face_sets()).collect();
-            let fault = Fault::unknown_word("face set", faces, known.into_iter());
+            let known: Vec<String> = meshes.face_sets().collect();
+            let known = known.iter().map(String::as_str);
+            let fault = Fault::unknown_word("face set", faces, known);
             at_path(path.key("near_faces").key("faces"), fault)
         })
     }

@@ -8,7 +8,7 @@ use super::area::LoadedCells;
 use super::assembler::Assembler;
 use super::discretisation::Discretisation;
 use super::loads::volume_of;
-use super::mesh_body::MeshBody;
+use super::mesh_body::Meshes;
 use super::refusal::at_path;
 
 /// The amplitude of a pressure, and the loaded area, m².
@@ -17,15 +17,14 @@ pub(super) type PressureLoad = (LoadDensity, f64);
 impl Assembler<'_> {
     /// Returns the area of the faces of a mesh in a set, m²: of a face set, or of the face set near the points of a
     /// set.
-    pub(super) fn face_area(&self, mesh: Option<&MeshBody>, set: &str) -> Option<f64> {
-        let mesh = mesh?;
+    pub(super) fn face_area(&self, meshes: &Meshes, set: &str) -> Option<f64> {
         let named = self.model.sets.iter().find(|named| named.name == set);
         let faces = match named.map(|named| &named.members) {
             None => set,
             Some(Members::NearFaces { faces, .. }) => faces,
             Some(_) => return None,
         };
-        mesh.face_set(faces)?.area
+        meshes.face_set(faces)?.1.area
     }
 
     /// Returns a pressure on a face set of a mesh or on a layer, as a force density on the points with these faces.
@@ -37,8 +36,19 @@ impl Assembler<'_> {
         discretisation: &Discretisation,
         points: &[u32],
     ) -> Result<PressureLoad, BuildError> {
-        let (cloud, mesh) = (&*discretisation.cloud, discretisation.mesh.as_deref());
-        let forces = match mesh.and_then(|mesh| mesh.face_vectors(cloud, &load.set, points)) {
+        let cloud = &*discretisation.cloud;
+        let of_faces = match discretisation.meshes.face_set(&load.set) {
+            Some((_, set)) if set.inner_faces > 0 => {
+                let fault = Fault::NoFaces {
+                    set: load.set.clone(),
+                    inner: set.inner_faces,
+                };
+                return Err(at_path(path.key("pressure"), fault));
+            }
+            Some((mesh, set)) => mesh.face_vectors(cloud, set, points),
+            None => None,
+        };
+        let forces = match of_faces {
             Some(found) => found,
             None => self.layer_vectors(path, load, cloud, points)?,
         };
@@ -72,7 +82,10 @@ impl Assembler<'_> {
         let region = named.and_then(|named| named.members.region());
         let Some(Region::Layer { face, .. }) = region.filter(|_| has_cells) else {
             let set = load.set.clone();
-            return Err(at_path(path.key("pressure"), Fault::NoFaces { set }));
+            return Err(at_path(
+                path.key("pressure"),
+                Fault::NoFaces { set, inner: 0 },
+            ));
         };
         let area = LoadedCells::new(cloud, points).seen_along(face.axis);
         let volume = volume_of(cloud, points);

@@ -22,7 +22,7 @@ impl Assembler<'_> {
         resources: &Resources<'_>,
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<GradedCloud, BuildError> {
-        let enclosure = self.enclosure(shape, resources)?;
+        let enclosure = self.enclosure(shape, resources, warnings)?;
         let bounds = enclosure.bounds();
         let (dimension, spacing) = (shape.boundary.dimension(), shape.spacing);
         let cells: f64 = (0..dimension)
@@ -114,12 +114,18 @@ impl Assembler<'_> {
         &self,
         shape: &FilledShape,
         resources: &Resources<'_>,
+        warnings: &mut Vec<ModelWarning>,
     ) -> Result<Enclosure, BuildError> {
         let refused = |error| self.no_fill(shape, error);
         match &shape.boundary {
             Boundary::Surface { path, unit, open } => {
                 let mesh = self.read_mesh("body.file", &resources.beside(path), resources)?;
                 let surface = TriangleSurface::of_mesh(&mesh, *unit).map_err(refused)?;
+                let (surface, reversed) = surface.repaired();
+                warnings.extend(reversed.map(|reversed| {
+                    let problem = reversed.to_string();
+                    Remark::new("body.file", Caution::Mesh { problem })
+                }));
                 Ok(match open {
                     true => Enclosure::Open(surface),
                     false => Enclosure::Surface(surface),

@@ -38,7 +38,6 @@ impl Assembler<'_> {
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<Vec<Option<f64>>, BuildError> {
         let cloud = &*discretisation.cloud;
-        let mesh = discretisation.mesh.as_deref();
         let mut areas = Vec::new();
         for (k, load) in self.model.loads.iter().enumerate() {
             let path = KeyPath::from("load").index(k);
@@ -58,13 +57,14 @@ impl Assembler<'_> {
                     (spread(traction, 1.0)?, Some(volume))
                 }
                 LoadAmplitude::Traction { traction, area } => {
-                    let area = match area.or_else(|| self.face_area(mesh, &load.set)) {
-                        Some(area) => area,
-                        None => {
-                            let path = path.key("traction");
-                            self.loaded_area(cloud, load, &points, traction, &path, warnings)?
-                        }
-                    };
+                    let area =
+                        match area.or_else(|| self.face_area(&discretisation.meshes, &load.set)) {
+                            Some(area) => area,
+                            None => {
+                                let path = path.key("traction");
+                                self.loaded_area(cloud, load, &points, traction, &path, warnings)?
+                            }
+                        };
                     (spread(traction, area / volume)?, Some(area))
                 }
                 LoadAmplitude::Pressure(pressure) => {

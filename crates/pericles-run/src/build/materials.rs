@@ -304,7 +304,7 @@ impl<'m> Assembler<'m> {
     }
 
     /// Returns the constants of the bonds of a material. Force kernels with integrals, spectral or with Gauss nodes,
-    /// use constants of the continuum instead of lattice sums.
+    /// use constants of the continuum instead of lattice sums; spectral forces have their stiffness.
     pub(super) fn constants_of(
         &self,
         solid: &Solid,
@@ -319,7 +319,11 @@ impl<'m> Assembler<'m> {
         let mut right = material.clone();
         right.modulus.calibration = Calibration::Continuum;
         let right = right.constants(cloud, solid.state)?;
-        let error = constants.micromodulus / right.micromodulus - 1.0;
+        let ratio = constants.micromodulus / right.micromodulus;
+        let error = match solid.shape.has_gauss_nodes() {
+            true => ratio * gauss_stiffness(material, &right, cloud) - 1.0,
+            false => ratio - 1.0,
+        };
         Ok(BondConstants {
             stiffness_error: error,
             shear_error: error,
@@ -339,6 +343,29 @@ impl<'m> Assembler<'m> {
             warnings.push(Remark::new(path, Caution::LargeStretch { stretch }));
         }
     }
+}
+
+/// Returns the stiffness in the interior of a bar with two Gauss nodes per cell relative to the given one: the sum
+/// ½ Σ c α(ξ) κ V ξ over the bonds of a node.
+fn gauss_stiffness(material: &BondMaterial, right: &BondConstants, cloud: &PointCloud) -> f64 {
+    let (node, volume, horizon) = (cloud.spacing(), cloud.volumes()[0], material.horizon);
+    let cell = 2.0 * node;
+    let between = cell / 3.0f64.sqrt();
+    let reach = material.volume_correction.reach(horizon, node);
+    let share = |length: f64| {
+        let factor = material.volume_correction.factor(length, horizon, node);
+        match length <= reach {
+            true => material.influence.alpha(length, horizon) * factor * volume * length,
+            false => 0.0,
+        }
+    };
+    let most = (reach / cell).floor() as usize + 1;
+    let around = |k: usize| {
+        let length = k as f64 * cell;
+        2.0 * share(length) + share(length + between) + share(length - between)
+    };
+    let sum = share(between) + (1..=most).map(around).sum::<f64>();
+    0.5 * right.micromodulus * sum / right.young
 }
 
 /// Returns the key that determines the critical stretch of a material.

@@ -7,7 +7,7 @@ use pericles_deck::{BuildError, Caution, Fault, KeyPath, MeshFile, ModelWarning,
 use pericles_mesh::{MeshPoints, PointOptions, Problem, RawMesh};
 
 use super::assembler::Assembler;
-use super::mesh_body::MeshBody;
+use super::mesh_body::{MeshBody, Placement};
 use super::refusal::{at, at_path};
 use super::resources::Resources;
 
@@ -48,6 +48,7 @@ impl Assembler<'_> {
             mesh,
             points,
             unit: file.unit,
+            placement: Placement::default(),
         };
         let listed = ListedPoints {
             positions: body.points.positions.clone(),

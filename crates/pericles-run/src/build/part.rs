@@ -12,7 +12,7 @@ use pericles_deck::{Body, BoundaryCondition, BuildError, Fault, Keys, MaterialMo
 use pericles_waves::ForceForm;
 
 use super::assembler::Assembler;
-use super::discretisation::{Discretisation, Sets};
+use super::discretisation::Discretisation;
 use super::points::BodyPoints;
 use super::refusal::{at, at_path};
 use super::resources::Resources;
@@ -87,20 +87,13 @@ impl Assembler<'_> {
         let part = self.divided(&cloud, &cloud, comm);
         let part = part.map_err(|error| at("body", error))?;
         let numbers = part.domain().own_numbers();
-        let own = |(name, set): (String, PointSet)| {
-            let own = (0..)
-                .zip(&numbers)
-                .filter(|(_, number)| set.binary_search(number).is_ok());
-            (name, own.map(|(k, _)| k).collect())
-        };
         Ok(BodyPoints {
             cloud: GradedCloud {
                 ratios,
                 grid_of_point: numbers.iter().map(|&k| grid_of_point[k as usize]).collect(),
                 cloud: part,
             },
-            mesh: whole.mesh,
-            sets: whole.sets.into_iter().map(own).collect::<Sets>(),
+            meshes: whole.meshes,
         })
     }
 

@@ -1,15 +1,15 @@
 //! Points of bodies of several pieces.
 
 use pericles::family::pairs_within;
-use pericles::space::{GradedCloud, Lattice, ListedPoints, Point, PointCloud, PointSet};
+use pericles::space::{GradedCloud, Lattice, ListedPoints, Point, PointCloud};
 use pericles_deck::{BuildError, Fault, KeyPath, ModelWarning, Piece, Solid, piece_path};
 
 use super::assembler::Assembler;
-use super::mesh_body::MeshBody;
+use super::mesh_body::{MeshBody, Meshes, Placement};
 use super::points::BodyPoints;
 use super::refusal::{at, at_path};
 use super::resources::Resources;
-use super::rotation::{matrix, times};
+use super::rotation::matrix;
 
 /// Distance of points of different pieces, in mean cell sizes, below which the pieces overlap.
 const CLOSEST: f64 = 0.5;
@@ -23,7 +23,7 @@ const NODES: f64 = 32.0;
 /// The points of a piece at their positions.
 struct Placed {
     cloud: PointCloud,
-    mesh: Option<MeshBody>,
+    meshes: Meshes,
     /// Displacement of the lattice; `None` after a rotation.
     moved: Option<Point>,
     positions: Vec<Point>,
@@ -60,8 +60,7 @@ impl Assembler<'_> {
         let joined = match on_common_lattice(&placed, pieces)? {
             Some(cloud) => BodyPoints {
                 cloud: GradedCloud::of_one_grid(cloud),
-                mesh: None,
-                sets: Vec::new(),
+                meshes: Meshes::default(),
             },
             None => self.listed_pieces(solid, pieces, placed, resources)?,
         };
@@ -74,20 +73,31 @@ impl Assembler<'_> {
         &self,
         solid: &Solid,
         pieces: &[Piece],
-        mut placed: Vec<Placed>,
+        placed: Vec<Placed>,
         resources: &Resources<'_>,
     ) -> Result<BodyPoints, BuildError> {
         let mut listed = ListedPoints::default();
         let mut of_entry = Vec::new();
-        let mut starts = Vec::new();
-        for (k, piece) in placed.iter().enumerate() {
-            starts.push(listed.positions.len() as u32);
+        let mut meshes = Meshes::default();
+        for (k, piece) in placed.into_iter().enumerate() {
+            let first = listed.positions.len();
             for i in piece.order() {
                 listed.positions.push(piece.positions[i]);
                 listed.volumes.push(piece.cloud.volumes()[i]);
                 listed.blocks.push(piece.cloud.block(i));
                 of_entry.push(k as u32);
             }
+            meshes.all.extend(piece.meshes.all.into_iter().map(|mesh| {
+                let placement = Placement {
+                    piece: match k {
+                        0 => String::new(),
+                        k => pieces[k].name.clone(),
+                    },
+                    first,
+                    ..mesh.placement
+                };
+                MeshBody { placement, ..mesh }
+            }));
         }
         if let Some((a, b)) = listed.first_twins() {
             let at = listed.positions[a];
@@ -108,25 +118,9 @@ impl Assembler<'_> {
             .with_pieces(of_point)
             .map_err(|error| at("body.piece", error))?;
         self.check_listed(solid, &cloud, resources)?;
-        let mut place = vec![0; cloud.len()];
-        for i in 0..cloud.len() {
-            place[cloud.user_number(i)] = i as u32;
-        }
-        let mut sets = Vec::new();
-        for (k, piece) in placed.iter().enumerate().skip(1) {
-            let Some(mesh) = &piece.mesh else { continue };
-            for (name, points) in mesh.sets(&piece.cloud) {
-                let number = |&i: &u32| starts[k] + piece.cloud.user_number(i as usize) as u32;
-                let points = points.iter().map(|i| place[number(i) as usize]);
-                let mut points: PointSet = points.collect();
-                points.sort_unstable();
-                sets.push((format!("{}/{name}", pieces[k].name), points));
-            }
-        }
         Ok(BodyPoints {
             cloud: GradedCloud::of_one_grid(cloud),
-            mesh: placed.swap_remove(0).mesh,
-            sets,
+            meshes,
         })
     }
 }
@@ -143,25 +137,28 @@ impl Placed {
 /// Moves the points of a piece to their positions.
 fn place(piece: &Piece, made: BodyPoints) -> Placed {
     let cloud = made.cloud.cloud;
-    let shift = |x: Point| -> Point { std::array::from_fn(|c| x[c] + piece.origin[c]) };
-    let mut positions: Vec<Point> = (0..cloud.len()).map(|i| shift(cloud.point(i))).collect();
-    if let Some(rotation) = &piece.rotation {
+    let mut placement = Placement {
+        origin: piece.origin,
+        ..Placement::default()
+    };
+    placement.rotation = piece.rotation.as_ref().map(|rotation| {
         let middle = || {
             let bounds = cloud.bounds();
-            shift(std::array::from_fn(|c| 0.5 * (bounds[0][c] + bounds[1][c])))
+            placement.moved(std::array::from_fn(|c| 0.5 * (bounds[0][c] + bounds[1][c])))
         };
         let centre = rotation.centre.unwrap_or_else(middle);
-        let turn = matrix(rotation);
-        for x in &mut positions {
-            let arm = times(&turn, std::array::from_fn(|c| x[c] - centre[c]));
-            *x = std::array::from_fn(|c| centre[c] + arm[c]);
-        }
+        (matrix(rotation), centre)
+    });
+    let mut meshes = made.meshes;
+    for mesh in &mut meshes.all {
+        mesh.placement = placement.clone();
     }
+    let all = 0..cloud.len();
     Placed {
         moved: piece.rotation.is_none().then_some(piece.origin),
-        mesh: made.mesh,
+        meshes,
+        positions: all.map(|i| placement.moved(cloud.point(i))).collect(),
         cloud,
-        positions,
     }
 }
 

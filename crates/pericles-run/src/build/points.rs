@@ -12,19 +12,15 @@ use pericles_deck::{
 };
 
 use super::assembler::Assembler;
-use super::discretisation::Sets;
-use super::mesh_body::MeshBody;
+use super::mesh_body::Meshes;
 use super::random::{Space, nodes_of};
 use super::refusal::{at, at_path, refined_key};
 use super::resources::Resources;
 
-/// The points of a body, and the mesh if they are its elements.
+/// The points of a body, and the meshes whose elements they are.
 pub(super) struct BodyPoints {
     pub(super) cloud: GradedCloud,
-    /// The mesh of the first piece.
-    pub(super) mesh: Option<MeshBody>,
-    /// Sets of the meshes of further pieces.
-    pub(super) sets: Sets,
+    pub(super) meshes: Meshes,
 }
 
 /// Returns whether the points of a grid are the centres of equal cells, so that a process can create its own ones only.
@@ -41,7 +37,7 @@ impl Assembler<'_> {
         resources: &Resources<'_>,
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<BodyPoints, BuildError> {
-        let mut mesh = None;
+        let mut meshes = Meshes::default();
         let cloud = match &solid.shape {
             SolidShape::Pieces(pieces) => {
                 return self.piece_points(solid, pieces, resources, warnings);
@@ -54,7 +50,7 @@ impl Assembler<'_> {
             SolidShape::Mesh(file) => {
                 let made = self.mesh_points(solid, file, resources, warnings);
                 made.map(|(cloud, body)| {
-                    mesh = Some(body);
+                    meshes.all.push(body);
                     GradedCloud::of_one_grid(cloud)
                 })
             }
@@ -68,11 +64,7 @@ impl Assembler<'_> {
                 Caution::TinySpacing { spacing },
             ));
         }
-        Ok(BodyPoints {
-            cloud,
-            mesh,
-            sets: Sets::new(),
-        })
+        Ok(BodyPoints { cloud, meshes })
     }
 
     fn listed_points(

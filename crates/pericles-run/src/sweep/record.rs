@@ -1,5 +1,6 @@
 //! Record of a sweep: the deck, the values of its keys, and the runs of all combinations.
 
+use pericles_io::file_stem;
 use serde::{Deserialize, Serialize};
 
 use super::axis::Axis;
@@ -52,14 +53,7 @@ impl Record {
         let parts: Vec<String> = (self.axes.iter().zip(values))
             .map(|(axis, value)| format!("{}={value}", axis.name()))
             .collect();
-        let plain = |c: char| {
-            if c.is_alphanumeric() || "+-.=,".contains(c) {
-                c
-            } else {
-                '_'
-            }
-        };
-        parts.join(",").chars().map(plain).collect()
+        file_stem(&parts.join(","), "+-.=,")
     }
 
     fn member(&self, name: String, values: Vec<String>) -> Member {

@@ -12,7 +12,7 @@ use crate::common::{Build, Built};
 
 /// Returns a box of nx × ny × nz cubes of 1 mm, in mm, optionally cut into six tetrahedra each, with the groups "left
 /// half" and "right half" and the faces at both ends along x.
-fn block(counts: [usize; 3], tetrahedra: bool) -> RawMesh {
+pub(super) fn block(counts: [usize; 3], tetrahedra: bool) -> RawMesh {
     let [nx, ny, nz] = counts;
     let node = |i: usize, j: usize, k: usize| ((k * (ny + 1) + j) * (nx + 1) + i) as u32;
     let mut mesh = RawMesh::default();
@@ -647,7 +647,7 @@ fn blocks_of_result_files_are_groups_or_materials() {
         let model = Deck::parse(&text, "deck.toml", &[]).unwrap().model;
         let body = built(&text, &mesh);
         let sets = &body.sets;
-        let result = pericles_run::result_body(&model, &body.cloud, sets, body.mesh.as_deref());
+        let result = pericles_run::result_body(&model, &body.cloud, sets, &body.meshes);
         let found: Vec<(&str, usize)> = result
             .blocks
             .iter()

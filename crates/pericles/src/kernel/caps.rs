@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::Influence;
-use super::quadrature::integral;
+use super::quadrature::piecewise;
 
 /// Integrals over the bonds that cross a plane from points on one side of it.
 ///
@@ -35,10 +35,9 @@ impl Influence {
         let power = (dimension + 1) as i32;
         let square = |z: f64| (self.cap(dimension, horizon, z) / whole).powi(2);
         let breaks = self.breaks_of_distances(horizon);
-        let pieces = breaks.windows(2);
         CapIntegrals {
             share: half * self.moment((dimension + 2) as f64, horizon) / whole,
-            share_squared: pieces.map(|ends| integral(ends[0], ends[1], square)).sum(),
+            share_squared: piecewise(&breaks, square),
             volume: half * horizon.powi(power) / f64::from(power),
         }
     }
@@ -59,11 +58,8 @@ impl Influence {
             let r = z + x * x;
             2.0 * x * self.alpha(r, horizon) * r * r * crossing(r)
         };
-        let root = |r: f64| (r - z).sqrt();
-        let pieces = breaks.windows(2);
-        pieces
-            .map(|ends| integral(root(ends[0]), root(ends[1]), integrand))
-            .sum()
+        let roots: Vec<f64> = breaks.iter().map(|r| (r - z).sqrt()).collect();
+        piecewise(&roots, integrand)
     }
 
     /// Returns the ends of pieces of 0 … horizon on which the caps are smooth. They are halved towards zero,
@@ -85,6 +81,7 @@ fn sphere(dimension: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::kernel::quadrature::integral;
     use crate::kernel::{ActsOn, InfluenceFunction};
 
     fn of(function: InfluenceFunction) -> Influence {

@@ -1,7 +1,7 @@
 //! Moments of influence functions.
 
 use super::influence::{cosines, interpolate};
-use super::quadrature::integral;
+use super::quadrature::piecewise;
 use super::{Influence, InfluenceFunction};
 
 impl Influence {
@@ -23,7 +23,7 @@ impl Influence {
                 // exact.
                 let end = end.min(7.0 * length + 7.0 * length * q.max(0.0).sqrt());
                 let pieces = (end / length).ceil().max(1.0) as usize;
-                quadrature(&equal_pieces(end, pieces), |r| {
+                piecewise(&equal_pieces(end, pieces), |r| {
                     (-(r / length).powi(2)).exp() * r.powf(q)
                 })
             }
@@ -34,7 +34,7 @@ impl Influence {
                 coefficients,
             } => {
                 let breaks = equal_pieces(horizon, self.cosine_waves(horizon).ceil() as usize);
-                quadrature(&breaks, |r| {
+                piecewise(&breaks, |r| {
                     cosines(coefficients, wavenumber * r) * r.powf(q)
                 })
             }
@@ -78,19 +78,11 @@ fn polygon(table: &[(f64, f64)], q: f64, horizon: f64) -> f64 {
     let inside = table.iter().map(|(r, _)| *r);
     breaks.extend(inside.filter(|r| *r > 0.0 && *r < horizon));
     breaks.push(horizon);
-    quadrature(&breaks, |r| interpolate(table, r) * r.powf(q))
+    piecewise(&breaks, |r| interpolate(table, r) * r.powf(q))
 }
 
 fn equal_pieces(end: f64, pieces: usize) -> Vec<f64> {
     (0..=pieces)
         .map(|k| end * k as f64 / pieces as f64)
         .collect()
-}
-
-/// Gauss–Legendre quadrature with 32 nodes on each piece.
-fn quadrature(breaks: &[f64], integrand: impl Fn(f64) -> f64) -> f64 {
-    breaks
-        .windows(2)
-        .map(|piece| integral(piece[0], piece[1], &integrand))
-        .sum()
 }

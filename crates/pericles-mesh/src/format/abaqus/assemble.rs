@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use super::resolve::{Placed, Resolver};
-use super::scope::{FaceLabel, Instance, Member, Model, Position, Scope};
+use super::resolve::{Placed, Resolver, undefined};
+use super::scope::{FaceLabel, Instance, Model, Position, Scope};
 use super::types::facet_of;
 use crate::cell::CellKind;
 use crate::fault::Fault;
@@ -58,14 +58,20 @@ impl Model {
 
     /// Returns a translated and rotated copy of the part of an instance and the instance's own content.
     fn copy(&self, instance: Instance) -> Result<Scope, Fault> {
-        let part = self.parts.iter().find(|(name, ..)| *name == instance.part);
-        let Some((_, _, part)) = part else {
-            return Err(Fault::of_file(format!(
-                "the instance {:?} refers to a part that is not defined",
-                instance.shown
-            )));
+        let named = instance.part.as_ref();
+        let part = self.parts.iter().find(|(name, ..)| Some(name) == named);
+        let mut scope = match part {
+            Some((_, _, part)) => part.clone(),
+            // The instance has its own mesh.
+            None if !instance.scope.nodes.is_empty() => Scope::default(),
+            None => {
+                return Err(Fault::of_file(format!(
+                    "the instance {:?} has no mesh, and its part is not defined",
+                    instance.shown
+                )));
+            }
         };
-        let mut scope = part.clone();
+        scope.replace(&instance.scope);
         scope.append(instance.scope);
         for (_, x, _) in &mut scope.nodes {
             for (x, t) in x.iter_mut().zip(instance.translation) {
@@ -183,7 +189,11 @@ fn add_sets(mesh: &mut RawMesh, placed: &[Placed], cells: &Cells) -> Result<(), 
         for surface in &place.scope.surfaces {
             let mut faces = Cells::default();
             for (member, label) in &surface.faces {
-                add_faces(&mut resolver, scope, member, *label, &mut faces)?;
+                let cells = resolver.member(scope, false, member, 0)?;
+                let Some(cells) = cells else {
+                    return Err(undefined("surface", &surface.shown, member));
+                };
+                add_faces(resolver.cells, &cells, *label, &mut faces)?;
             }
             if !faces.is_empty() {
                 let name = format!("{}{}", place.prefix, surface.shown);
@@ -195,14 +205,11 @@ fn add_sets(mesh: &mut RawMesh, placed: &[Placed], cells: &Cells) -> Result<(), 
 }
 
 fn add_faces(
-    resolver: &mut Resolver<'_>,
-    scope: usize,
-    member: &Member,
+    cells: &Cells,
+    members: &[u32],
     label: FaceLabel,
     faces: &mut Cells,
 ) -> Result<(), Fault> {
-    let members = resolver.member(scope, false, member, 0)?;
-    let cells = resolver.cells;
     let face = |cell: u32, facet: usize| {
         let corners = cells.corners(cell as usize);
         let (kind, places) = cells.kind(cell as usize).facets()[facet];
@@ -223,7 +230,7 @@ fn add_faces(
                 *owners.entry((kind, nodes)).or_default() += 1;
             }
         }
-        for &cell in &members {
+        for &cell in members {
             for facet in 0..cells.kind(cell as usize).facets().len() {
                 let (kind, nodes) = face(cell, facet);
                 let mut sorted = nodes.clone();
@@ -235,7 +242,7 @@ fn add_faces(
         }
         return Ok(());
     }
-    for &cell in &members {
+    for &cell in members {
         let kind = cells.kind(cell as usize);
         match label {
             FaceLabel::Number(number) => {

@@ -31,6 +31,18 @@ impl Name {
         }
     }
 
+    /// Splits `instance.number` into instance and number.
+    pub(super) fn numbered(&self) -> Option<(Self, i64)> {
+        let (instance, number) = self.key.rsplit_once('.')?;
+        let key = instance.trim_matches('"').to_owned();
+        Some((Self { key }, number.trim().parse().ok()?))
+    }
+
+    /// Returns the compared form, for messages.
+    pub(super) fn key(&self) -> &str {
+        &self.key
+    }
+
     /// Splits `instance.set` into instance and set.
     pub(super) fn parts(&self) -> Option<(Self, Self)> {
         let (instance, set) = self.key.split_once('.')?;

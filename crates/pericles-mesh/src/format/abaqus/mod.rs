@@ -6,6 +6,7 @@
 
 mod assemble;
 mod keyword;
+mod members;
 mod reading;
 mod resolve;
 mod scope;

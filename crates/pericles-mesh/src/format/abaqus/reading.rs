@@ -2,6 +2,7 @@
 
 use super::super::Include;
 use super::keyword::{Keyword, Name, real, whole, words};
+use super::members::{member, members, push_number};
 use super::scope::{FaceLabel, Instance, Member, Model, Position, Scope, SurfaceDefinition};
 use super::types::{ElementType, element_type};
 use crate::fault::Fault;
@@ -13,8 +14,8 @@ const DEPTH: usize = 8;
 const MOST_NUMBERS: usize = 64;
 
 /// Keywords that generate nodes or elements.
-const GENERATORS: [&str; 8] = [
-    "NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SYSTEM", "SUBMODEL",
+const GENERATORS: [&str; 7] = [
+    "NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SUBMODEL",
 ];
 
 /// Level of a keyword.
@@ -172,14 +173,23 @@ impl Reading {
                         "the nodes are given in the coordinate system {system}; allowed: R (rectangular). Write the mesh in rectangular coordinates"
                     ));
                 }
-                self.section = Section::Nodes { set: owned("NSET") };
+                let set = owned("NSET");
+                if let Some(set) = &set {
+                    self.scope().set(true, set);
+                }
+                self.section = Section::Nodes { set };
             }
             "ELEMENT" => {
                 let name = keyword.needed("TYPE", line)?.to_ascii_uppercase();
+                let set = owned("ELSET");
+                if let Some(set) = &set {
+                    // Also of elements that are left out.
+                    self.scope().set(false, set);
+                }
                 self.section = Section::Elements {
                     element: element_type(&name),
                     name,
-                    set: owned("ELSET"),
+                    set,
                     pending: Vec::new(),
                     begin: 0,
                 };
@@ -201,6 +211,12 @@ impl Reading {
                     _ => {}
                 }
             }
+            "SYSTEM" => {
+                return fault(
+                    "*SYSTEM gives the following nodes in a local coordinate system, which is not supported; write all nodes in global coordinates"
+                        .into(),
+                );
+            }
             key if GENERATORS.contains(&key) => {
                 return fault(format!(
                     "*{key} generates nodes or elements, which is not supported; write the complete mesh, for example from Abaqus/CAE"
@@ -217,7 +233,7 @@ impl Reading {
             return Err(Fault::at_line(line, reason));
         }
         let (name, shown) = Name::of(keyword.needed("NAME", line)?);
-        let (part, _) = Name::of(keyword.needed("PART", line)?);
+        let part = keyword.value("PART").map(|part| Name::of(part).0);
         self.level = Level::Instance(self.model.instances.len());
         self.model.instances.push(Instance {
             name,
@@ -409,7 +425,11 @@ impl Reading {
                 FaceLabel::Number(number)
             }
         };
-        let member = member(region);
+        let member = match region {
+            // A blank region is the whole body.
+            "" => Member::Range(i64::MIN, i64::MAX, 1),
+            region => member(region),
+        };
         if let Some(surface) = self.scope().surfaces.last_mut() {
             surface.faces.push((member, label));
         }
@@ -446,44 +466,5 @@ impl Reading {
             }
         }
         Ok(())
-    }
-}
-
-/// Adds a number, extending a range of consecutive numbers.
-fn push_number(members: &mut Vec<(Option<Name>, Member)>, number: i64) {
-    match members.last_mut() {
-        Some((None, Member::Range(_, last, 1))) if last.checked_add(1) == Some(number) => {
-            *last = number;
-        }
-        _ => members.push((None, Member::Range(number, number, 1))),
-    }
-}
-
-fn member(word: &str) -> Member {
-    match word.parse() {
-        Ok(number) => Member::Number(number),
-        Err(_) => Member::Set(Name::of(word).0),
-    }
-}
-
-/// Parses the members of a set in a line.
-fn members(text: &str, line: usize, generate: bool) -> Result<Vec<Member>, Fault> {
-    if !generate {
-        let words = words(text).filter(|word| !word.is_empty());
-        return Ok(words.map(member).collect());
-    }
-    let numbers = words(text)
-        .map(|word| whole(word, line))
-        .collect::<Result<Vec<i64>, Fault>>()?;
-    match *numbers {
-        [first] => Ok(vec![Member::Range(first, first, 1)]),
-        [first, last] => Ok(vec![Member::Range(first, last, 1)]),
-        [first, last, step] if step > 0 => Ok(vec![Member::Range(first, last, step)]),
-        _ => Err(Fault::at_line(
-            line,
-            format!(
-                "invalid range {text:?} for GENERATE; allowed: first, last and a positive step"
-            ),
-        )),
     }
 }

@@ -68,7 +68,11 @@ impl<'a> Resolver<'a> {
                     }
                 },
             };
-            members.extend(self.member(scope, of_nodes, member, depth)?);
+            let own = self.member(scope, of_nodes, member, depth)?;
+            let Some(own) = own else {
+                return Err(undefined("set", &definition.shown, member));
+            };
+            members.extend(own);
         }
         members.sort_unstable();
         members.dedup();
@@ -81,14 +85,15 @@ impl<'a> Resolver<'a> {
         scopes.position(|placed| placed.name.as_ref() == Some(instance))
     }
 
-    /// Returns the nodes or cells of a set member. Numbers that do not exist are ignored.
+    /// Returns the nodes or cells of a set member; `None` for a name that is not defined. Numbers that do not exist are
+    /// ignored.
     pub(super) fn member(
         &mut self,
         scope: usize,
         of_nodes: bool,
         member: &Member,
         depth: usize,
-    ) -> Result<Vec<u32>, Fault> {
+    ) -> Result<Option<Vec<u32>>, Fault> {
         let placed = &self.placed[scope];
         let numbering = if of_nodes {
             &placed.nodes
@@ -96,24 +101,32 @@ impl<'a> Resolver<'a> {
             &placed.elements
         };
         match member {
-            Member::Number(number) => Ok(numbering.get(*number).into_iter().collect()),
+            Member::Number(number) => Ok(Some(numbering.get(*number).into_iter().collect())),
             Member::Range(first, last, step) => {
-                Ok(in_range(placed, of_nodes, *first, *last, *step))
+                Ok(Some(in_range(placed, of_nodes, *first, *last, *step)))
             }
             Member::Set(name) => match self.find(scope, of_nodes, name) {
-                Some(key) => self.set(key, depth + 1),
-                None => Ok(Vec::new()),
+                Some(key) => self.set(key, depth + 1).map(Some),
+                None => {
+                    let Some((instance, number)) = name.numbered() else {
+                        return Ok(None);
+                    };
+                    let Some(scope) = self.scope_of(&instance) else {
+                        return Ok(None);
+                    };
+                    self.member(scope, of_nodes, &Member::Number(number), depth)
+                }
             },
             Member::NodesOf(name) => {
                 let Some(key) = self.find(scope, false, name) else {
-                    return Ok(Vec::new());
+                    return Ok(None);
                 };
                 let cells = self.set(key, depth + 1)?;
                 let corners = cells.iter().flat_map(|&c| self.cells.corners(c as usize));
                 let mut nodes: Vec<u32> = corners.copied().collect();
                 nodes.sort_unstable();
                 nodes.dedup();
-                Ok(nodes)
+                Ok(Some(nodes))
             }
         }
     }
@@ -128,6 +141,17 @@ impl<'a> Resolver<'a> {
         let scope = self.scope_of(&instance)?;
         Some((scope, of_nodes, place(scope, &set)?))
     }
+}
+
+/// Creates the error for a member that is not defined.
+pub(super) fn undefined(what: &str, shown: &str, member: &Member) -> Fault {
+    let name = match member {
+        Member::Set(name) | Member::NodesOf(name) => name.key(),
+        Member::Number(_) | Member::Range(..) => "a number",
+    };
+    Fault::of_file(format!(
+        "the {what} {shown:?} refers to {name}, which is not defined; allowed: numbers, names of sets, and INSTANCE.SET or INSTANCE.NUMBER"
+    ))
 }
 
 fn sets_of(scope: &Scope, of_nodes: bool) -> &[super::scope::SetDefinition] {

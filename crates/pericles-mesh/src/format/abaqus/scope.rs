@@ -1,6 +1,6 @@
 //! Content of a part, an instance or the model.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::keyword::Name;
 use crate::cell::CellKind;
@@ -107,6 +107,32 @@ impl Scope {
         self.places.get(&(of_nodes, name.clone())).copied()
     }
 
+    /// Removes the nodes and elements that another scope defines again.
+    pub(super) fn replace(&mut self, other: &Self) {
+        let nodes: HashSet<i64> = other.nodes.iter().map(|(number, ..)| *number).collect();
+        self.nodes.retain(|(number, ..)| !nodes.contains(number));
+        let again: HashSet<i64> = other.elements.numbers.iter().copied().collect();
+        if self
+            .elements
+            .numbers
+            .iter()
+            .all(|number| !again.contains(number))
+        {
+            return;
+        }
+        let old = std::mem::take(&mut self.elements);
+        let mut corners = old.corners.into_iter();
+        for (place, kind) in old.kinds.into_iter().enumerate() {
+            let own: Vec<i64> = corners.by_ref().take(kind.corners()).collect();
+            if !again.contains(&old.numbers[place]) {
+                self.elements.kinds.push(kind);
+                self.elements.numbers.push(old.numbers[place]);
+                self.elements.corners.extend(own);
+                self.elements.positions.push(old.positions[place]);
+            }
+        }
+    }
+
     /// Appends the content of another scope.
     pub(super) fn append(&mut self, other: Self) {
         self.nodes.extend(other.nodes);
@@ -130,7 +156,8 @@ impl Scope {
 pub(super) struct Instance {
     pub(super) name: Name,
     pub(super) shown: String,
-    pub(super) part: Name,
+    /// The part; an instance with a mesh of its own needs none.
+    pub(super) part: Option<Name>,
     pub(super) scope: Scope,
     pub(super) translation: [f64; 3],
     /// Two points of the axis and an angle in degrees; the rotation follows the translation.

@@ -50,6 +50,11 @@ pub(crate) fn parse(content: &[u8]) -> Result<RawMesh, Fault> {
             ("Nodes" | "Elements", None) => {
                 return Err(words.fault(format!("${section} appears before $MeshFormat")));
             }
+            ("ParametricNodes", _) => {
+                return Err(words.fault(
+                    "the section $ParametricNodes is not supported; save the mesh without parametric coordinates (Mesh.SaveParametric = 0)",
+                ));
+            }
             ("PhysicalNames", _) => reading.groups.read_names(&mut words)?,
             ("Entities", Some((mut numbers, format))) if format.version == Version::Four => {
                 reading.groups.read_entities(&mut numbers)?;

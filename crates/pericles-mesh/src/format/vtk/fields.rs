@@ -44,7 +44,9 @@ impl FieldData {
 pub fn parse_fields(content: &[u8], memory: u64) -> Result<FieldData, Fault> {
     let file = File::new(content, memory)?;
     let nodes = file.array("Points", None)?.real();
-    let is_on_cells = file.columns("CellData").next().is_some();
+    let has = |section: &str| file.columns(section).next().is_some();
+    // A file without fields has an empty section.
+    let is_on_cells = has("CellData") || file.has("CellData") && !has("PointData");
     let (section, points) = match is_on_cells {
         true => ("CellData", centroids(&file, &nodes)?),
         false => ("PointData", nodes),
@@ -52,7 +54,7 @@ pub fn parse_fields(content: &[u8], memory: u64) -> Result<FieldData, Fault> {
     let count = points.len() / 3;
     let mut fields = Vec::new();
     for (name, components) in file.columns(section) {
-        let values = file.array(section, Some(name))?.real();
+        let values = file.array(section, Some(&name))?.real();
         if components == 0 || Some(values.len()) != count.checked_mul(components) {
             return Err(Fault::of_file(format!(
                 "{name} has {} values; {count} points with {components} components need {}",
@@ -61,7 +63,7 @@ pub fn parse_fields(content: &[u8], memory: u64) -> Result<FieldData, Fault> {
             )));
         }
         fields.push(FieldColumn {
-            name: name.to_owned(),
+            name: name.into_owned(),
             components,
             values,
         });

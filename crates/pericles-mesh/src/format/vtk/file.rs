@@ -1,5 +1,6 @@
 //! XML structure of a VTK file: elements and arrays.
 
+use std::borrow::Cow;
 use std::cell::Cell;
 use std::ops::Range;
 
@@ -59,6 +60,45 @@ impl<'a> Element<'a> {
             Some(&value[..value.find(quote)?])
         })
     }
+}
+
+/// Replaces the entities of XML by their characters.
+fn unescaped(text: &str) -> Cow<'_, str> {
+    if !text.contains('&') {
+        return Cow::Borrowed(text);
+    }
+    let entity = |name: &str| match name {
+        "lt" => Some('<'),
+        "gt" => Some('>'),
+        "quot" => Some('"'),
+        "apos" => Some('\''),
+        "amp" => Some('&'),
+        name => {
+            let number = name.strip_prefix('#')?;
+            let code = match number.strip_prefix('x') {
+                Some(digits) => u32::from_str_radix(digits, 16),
+                None => number.parse(),
+            };
+            char::from_u32(code.ok()?)
+        }
+    };
+    let mut out = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some((before, after)) = rest.split_once('&') {
+        out.push_str(before);
+        let found = after.split_once(';');
+        match found.and_then(|(name, rest)| Some((entity(name)?, rest))) {
+            Some((character, after)) => {
+                out.push(character);
+                rest = after;
+            }
+            None => {
+                out.push('&');
+                rest = after;
+            }
+        }
+    }
+    Cow::Owned(out + rest)
 }
 
 impl<'a> File<'a> {
@@ -163,7 +203,7 @@ impl<'a> File<'a> {
     }
 
     /// Returns names and numbers of components of the arrays in the first section of this name.
-    pub(crate) fn columns(&self, section: &str) -> impl Iterator<Item = (&'a str, usize)> {
+    pub(crate) fn columns(&self, section: &str) -> impl Iterator<Item = (Cow<'a, str>, usize)> {
         self.columns_in(0..self.elements.len(), section)
     }
 
@@ -172,12 +212,12 @@ impl<'a> File<'a> {
         &self,
         within: Range<usize>,
         section: &str,
-    ) -> impl Iterator<Item = (&'a str, usize)> {
+    ) -> impl Iterator<Item = (Cow<'a, str>, usize)> {
         self.arrays(within, section).map(|array| {
             let components = array.attribute("NumberOfComponents");
             let components = components.and_then(|count| count.trim().parse().ok());
             (
-                array.attribute("Name").unwrap_or_default(),
+                unescaped(array.attribute("Name").unwrap_or_default()),
                 components.unwrap_or(1),
             )
         })
@@ -196,9 +236,12 @@ impl<'a> File<'a> {
         name: Option<&str>,
     ) -> Result<Numbers, Fault> {
         let what = name.unwrap_or(section);
-        let array = self
-            .arrays(within, section)
-            .find(|element| name.is_none() || element.attribute("Name") == name);
+        let array = self.arrays(within, section).find(|element| match name {
+            None => true,
+            Some(name) => element
+                .attribute("Name")
+                .is_some_and(|own| unescaped(own) == name),
+        });
         let Some(array) = array else {
             return Err(Fault::of_file(format!(
                 "the array {what} is missing in {section}"
@@ -288,4 +331,19 @@ fn tags(xml: &[u8]) -> Result<Vec<Element<'_>>, Fault> {
         }
     }
     Ok(tags)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn entities_of_names_are_replaced() {
+        assert_eq!(
+            unescaped("a &lt;b&gt; &amp;lt; &quot;c&apos;"),
+            "a <b> &lt; \"c'"
+        );
+        assert_eq!(unescaped("&#223;&#xe4;"), "ßä");
+        assert_eq!(unescaped("a & b &x; &"), "a & b &x; &");
+    }
 }

@@ -137,12 +137,14 @@ fn read_piece(
         if components != 1 || !GROUPING.iter().any(|word| lower.contains(word)) {
             continue;
         }
-        let Numbers::Whole(numbers) = file.array_in(piece.clone(), "CellData", Some(name))? else {
+        let Numbers::Whole(numbers) = file.array_in(piece.clone(), "CellData", Some(&name))? else {
             continue;
         };
         if numbers.len() == offsets.len() {
             for (number, range) in numbers.into_iter().zip(places.windows(2)) {
-                let group = groups.entry((name.to_owned(), number)).or_default();
+                let group = groups
+                    .entry((name.clone().into_owned(), number))
+                    .or_default();
                 group.extend(range[0]..range[1]);
             }
         }

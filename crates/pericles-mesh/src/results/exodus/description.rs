@@ -3,9 +3,9 @@
 use std::fs::File;
 use std::io::{Seek, SeekFrom, Write};
 
-use super::names::{NAME, column_names, names};
 use super::{ExodusLayout, PointList};
 use crate::results::cdf::{Attribute, Header, Type};
+use crate::results::names::{NAME, column_names, names};
 use crate::results::{Numbers, WriteError};
 
 /// Constant values of a variable.

@@ -5,7 +5,6 @@
 //! after a number of records.
 
 mod description;
-mod names;
 
 use std::fs::{File, OpenOptions};
 use std::io::{Read, Seek, SeekFrom, Write};
@@ -155,13 +154,7 @@ impl ExodusWriter {
         layout.check()?;
         let places = Description::new(layout)?.header.places()?;
         let mut file = OpenOptions::new().read(true).write(true).open(path)?;
-        let mut begin = vec![0; places.header.len()];
-        let other = || WriteError::NotContinued("its header belongs to another run".into());
-        file.read_exact(&mut begin).map_err(|_| other())?;
-        if begin[..4] != places.header[..4] || begin[8..] != places.header[8..] {
-            return Err(other());
-        }
-        let found = u32::from_be_bytes([begin[4], begin[5], begin[6], begin[7]]);
+        let found = records_of(&mut file, &places)?;
         let needed = u32::try_from(outputs).unwrap_or(u32::MAX);
         let end = places.first_record + u64::from(needed) * places.record_bytes;
         if found < needed || file.metadata()?.len() < end {
@@ -206,8 +199,7 @@ impl ExodusWriter {
                 self.globals
             ));
         }
-        let mut place =
-            self.places.first_record + u64::from(self.records) * self.places.record_bytes;
+        let mut place = self.record(self.outputs());
         let doubles = Numbers {
             is_single: false,
             is_little: false,
@@ -232,10 +224,74 @@ impl ExodusWriter {
         self.publish()
     }
 
+    /// Returns the offset of a record.
+    fn record(&self, number: usize) -> u64 {
+        self.places.first_record + number as u64 * self.places.record_bytes
+    }
+
     /// Updates the number of records in the header.
     fn publish(&mut self) -> Result<(), WriteError> {
         self.file.seek(SeekFrom::Start(4))?;
         self.file.write_all(&self.records.to_be_bytes())?;
         Ok(())
+    }
+}
+
+/// Returns the number of outputs in a file with the header of a layout.
+fn records_of(file: &mut File, places: &Places) -> Result<u32, WriteError> {
+    let mut begin = vec![0; places.header.len()];
+    let other = || WriteError::NotContinued("its header belongs to another run".into());
+    file.read_exact(&mut begin).map_err(|_| other())?;
+    if begin[..4] != places.header[..4] || begin[8..] != places.header[8..] {
+        return Err(other());
+    }
+    Ok(u32::from_be_bytes([begin[4], begin[5], begin[6], begin[7]]))
+}
+
+/// Reader of a file that [`ExodusWriter`] has written.
+#[derive(Debug)]
+pub struct ExodusReader(ExodusWriter);
+
+impl ExodusReader {
+    /// Opens a file.
+    ///
+    /// # Errors
+    /// Returns an error if the file cannot be read or has another layout.
+    pub fn open(path: impl AsRef<Path>, layout: &ExodusLayout<'_>) -> Result<Self, WriteError> {
+        layout.check()?;
+        let places = Description::new(layout)?.header.places()?;
+        let mut file = File::open(path)?;
+        let records = records_of(&mut file, &places)?;
+        Ok(Self(ExodusWriter::of(file, places, layout, records)))
+    }
+
+    /// Returns the number of outputs.
+    pub fn outputs(&self) -> usize {
+        self.0.outputs()
+    }
+
+    /// Reads the time of an output, s, and a component-major array for each field.
+    ///
+    /// # Errors
+    /// Returns an error if the file cannot be read or does not have such an output.
+    pub fn read(&mut self, output: usize) -> Result<(f64, Vec<Vec<f64>>), WriteError> {
+        let Self(own) = self;
+        let mut place = own.record(output);
+        let doubles = Numbers {
+            is_single: false,
+            is_little: false,
+        };
+        let time = doubles.read_at(&mut own.file, place, 1)?[0];
+        place += 8 * (1 + own.globals as u64);
+        let mut all = Vec::new();
+        for field in &own.fields {
+            let mut values =
+                own.numbers
+                    .read_at(&mut own.file, place, field.columns() * own.points)?;
+            place += own.numbers.bytes() * values.len() as u64;
+            values.truncate(field.components * own.points);
+            all.push(values);
+        }
+        Ok((time, all))
     }
 }

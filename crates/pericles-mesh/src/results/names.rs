@@ -1,11 +1,30 @@
-//! Unique names of at most 32 bytes.
+//! Names that a format can store: of at most 32 bytes in Exodus, without slashes in HDF5.
 
 use std::collections::BTreeSet;
 
 use crate::results::FieldSpec;
 
-/// Maximum length of a name, without its terminating byte.
+/// Maximum length of a name in Exodus, without its terminating byte.
 pub(super) const NAME: usize = 32;
+
+/// Returns the name of a block, set or scalar field in an Exodus file, if no other name becomes equal to it.
+pub fn name_in_exodus(name: &str) -> &str {
+    cut(name, NAME)
+}
+
+/// Returns the name of a field in a VTKHDF file, if no other name becomes equal to it: a slash separates groups in HDF5.
+fn name_in_vtkhdf(name: &str) -> String {
+    match name {
+        "" | "." => "_".to_owned(),
+        name => name.replace(['/', '\0'], "_"),
+    }
+}
+
+/// Returns unique names of fields in a VTKHDF file.
+pub(super) fn hdf5_names<'a>(given: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let names: Vec<String> = given.map(name_in_vtkhdf).collect();
+    unique(names.iter().map(|name| (name.as_str(), usize::MAX)))
+}
 
 /// Returns the longest prefix of a name with at most `most` bytes.
 fn cut(name: &str, most: usize) -> &str {
@@ -24,7 +43,7 @@ fn unique<'a>(given: impl Iterator<Item = (&'a str, usize)>) -> Vec<String> {
         let mut number = 2;
         while !taken.insert(short.clone()) {
             let ending = format!("_{number}");
-            short = cut(name, most - ending.len()).to_owned() + &ending;
+            short = cut(name, most.saturating_sub(ending.len())).to_owned() + &ending;
             number += 1;
         }
         short
