@@ -12,6 +12,7 @@ use crate::fault::Fault;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 use crate::set::{self, SetNames};
+use crate::time::Time;
 use crate::vocabulary::LOADS;
 
 /// Initial displacement and velocity of a set.
@@ -205,10 +206,28 @@ fn random(table: Table<'_>) -> Option<RandomVelocity> {
     })
 }
 
+/// Returns the time function of loads and displacements without one: constant, but in static runs a ramp over all load steps.
+/// A static run with initial displacements starts from a loaded body, whose loads do not grow from zero.
+pub(crate) fn usual_function(time: Option<&Time>, initial: Option<&[Initial]>) -> TimeHistory {
+    let displaced = |one: &Initial| one.displacement.is_some() || one.file.is_some();
+    match time {
+        Some(time)
+            if time.scheme.is_static() && !initial.is_some_and(|all| all.iter().any(displaced)) =>
+        {
+            TimeHistory::Ramp {
+                start: 0.0,
+                duration: time.end,
+            }
+        }
+        _ => TimeHistory::Constant,
+    }
+}
+
 pub(crate) fn constraint(
     table: Table<'_>,
     dimension: Option<usize>,
     sets: &SetNames,
+    usual: &TimeHistory,
 ) -> Option<Constraint> {
     let set = table.required("set").and_then(|item| sets.reference(&item));
     let motion = table
@@ -223,14 +242,20 @@ pub(crate) fn constraint(
         });
     let function = smooth_function(&table);
     let until = table.maybe("until", |item| item.positive(Quantity::Time));
+    let is_given = table.has("function");
     table.finish();
-    let (kind, amplitude) = motion?;
+    let ((kind, amplitude), until) = (motion?, until?);
+    let varies = amplitude.iter().flatten().any(Component::depends_on_time);
+    let is_constant = kind == MotionKind::Displacement && !varies && until.is_none();
     Some(Constraint {
         set: set?,
         kind,
         amplitude,
-        function: function?,
-        until: until?,
+        function: match is_constant && !is_given {
+            true => usual.clone(),
+            false => function?,
+        },
+        until,
     })
 }
 
@@ -265,7 +290,12 @@ fn amplitude(
     amplitude
 }
 
-pub(crate) fn load(table: Table<'_>, dimension: Option<usize>, sets: &SetNames) -> Option<Load> {
+pub(crate) fn load(
+    table: Table<'_>,
+    dimension: Option<usize>,
+    sets: &SetNames,
+    usual: &TimeHistory,
+) -> Option<Load> {
     let set = table.required("set").and_then(|item| sets.reference(&item));
     let force = table.exactly_one(LOADS).and_then(|(key, item)| {
         if key == "pressure" {
@@ -302,6 +332,7 @@ pub(crate) fn load(table: Table<'_>, dimension: Option<usize>, sets: &SetNames) 
     };
     let function = function(&table);
     let window = window(&table);
+    let is_given = table.has("function");
     table.finish();
     let amplitude = match force? {
         LoadAmplitude::Traction { traction, .. } => LoadAmplitude::Traction {
@@ -311,10 +342,18 @@ pub(crate) fn load(table: Table<'_>, dimension: Option<usize>, sets: &SetNames) 
         other => other,
     };
     let [from, until] = window?;
+    let varies = amplitude
+        .components()
+        .iter()
+        .any(Component::depends_on_time);
+    let is_constant = !varies && from.is_none() && until.is_none();
     Some(Load {
         set: set?,
         amplitude,
-        function: function?,
+        function: match is_constant && !is_given {
+            true => usual.clone(),
+            false => function?,
+        },
         from,
         until,
     })

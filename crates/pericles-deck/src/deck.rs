@@ -214,11 +214,15 @@ fn model(root: Table<'_>, further: &[String]) -> Option<Model> {
     let initial = each(&root, "initial", |table| {
         conditions::initial(table, frame.dimension, &names)
     });
+    let time = root
+        .required("time")
+        .and_then(|item| time::read(item.table()?, &names));
+    let usual = conditions::usual_function(time.as_ref(), initial.as_deref());
     let constraints = each(&root, "constraint", |table| {
-        conditions::constraint(table, frame.dimension, &names)
+        conditions::constraint(table, frame.dimension, &names, &usual)
     });
     let loads = each(&root, "load", |table| {
-        conditions::load(table, frame.dimension, &names)
+        conditions::load(table, frame.dimension, &names, &usual)
     });
     let boundaries = each(&root, "boundary", boundary::read);
     let probes = conditions::probes(root.tables("probe"), frame.dimension, &names);
@@ -227,12 +231,9 @@ fn model(root: Table<'_>, further: &[String]) -> Option<Model> {
     });
     let contact = root.maybe("contact", |item| contact::read(item.table()?));
     let impactors = each(&root, "impactor", |table| {
-        impactor::read(table, frame.dimension)
+        impactor::read(table, frame.dimension, &usual)
     });
     let damping = root.maybe("damping", |item| damping::read(item.table()?));
-    let time = root
-        .required("time")
-        .and_then(|item| time::read(item.table()?, &names));
     let output = root.table_or_empty("output").and_then(|table| {
         let driven = constraints.iter().flatten().any(Constraint::moves);
         output::read(

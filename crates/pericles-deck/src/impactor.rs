@@ -132,7 +132,11 @@ enum Kind {
 }
 
 /// Reads an entry of `[[impactor]]`.
-pub(crate) fn read(table: Table<'_>, dimension: Option<usize>) -> Option<Impactor> {
+pub(crate) fn read(
+    table: Table<'_>,
+    dimension: Option<usize>,
+    usual: &TimeHistory,
+) -> Option<Impactor> {
     const KINDS: [(&str, Kind); 5] = [
         ("ball", Kind::Ball),
         ("box", Kind::Box),
@@ -174,7 +178,7 @@ pub(crate) fn read(table: Table<'_>, dimension: Option<usize>) -> Option<Impacto
         }
         _ => table.maybe("rotation", |item| rotation(item.table()?, dimension, false)),
     };
-    let motion = motion(&table, kind, dimension);
+    let motion = motion(&table, kind, dimension, usual);
     table.finish();
     Some(Impactor {
         name: name?,
@@ -241,6 +245,7 @@ fn motion(
     table: &Table<'_>,
     kind: Option<Kind>,
     dimension: Option<usize>,
+    usual: &TimeHistory,
 ) -> Option<ImpactorMotion> {
     const WORDS: [(&str, bool); 2] = [("free", true), ("prescribed", false)];
     let motion = table.optional("motion");
@@ -284,7 +289,7 @@ fn motion(
         "an impactor of prescribed motion does not rotate; it requires motion = \"free\"",
     );
     let found = table.at_most_one(&["velocity", "displacement"])?;
-    let function = smooth_function(table);
+    let (function, is_given) = (smooth_function(table), table.has("function"));
     let (kind, amplitude) = match found {
         None => (MotionKind::Displacement, Some([0.0; 3])),
         Some(("velocity", item)) => (
@@ -296,10 +301,14 @@ fn motion(
             item.vector(Quantity::Length, dimension),
         ),
     };
+    let is_constant = kind == MotionKind::Displacement;
     Some(ImpactorMotion::Prescribed {
         kind,
         amplitude: amplitude?,
-        function: function?,
+        function: match is_constant && !is_given {
+            true => usual.clone(),
+            false => function?,
+        },
     })
 }
 

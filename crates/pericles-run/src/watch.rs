@@ -10,6 +10,9 @@
 //! | points close to failure in a run without broken bonds | [`ENDANGERED`] of the points have bonds above [`NEAR`] of the critical stretch |
 //! | points of correspondence materials that lost all bonds because the remaining ones did not span the space | any |
 //! | bonds broken within coarse steps | [`COARSE`] of the broken bonds |
+//! | energy balance of multirate schemes | [`ENERGY`] of the dissipated energy, if bonds broke |
+//! | load steps of relaxation schemes with inelastic deformation | fewer than [`LOAD_STEPS`] |
+//! | energy dissipated by failure | negative, by more than [`CREATED`] of the energy exchanged |
 //! | mirror symmetry of a run with symmetric data | displacements deviate from the symmetry by [`ASYMMETRY`] of the largest, by [`STATIC_ASYMMETRY`] in static states without broken bonds |
 //!
 //! Static states have no momentum. Waves that the grid does not resolve are reported before the run (`pericles check`).
@@ -33,6 +36,12 @@ const REACTIONS: f64 = 1e-4;
 const NEAR: f64 = 0.9;
 const ENDANGERED: f64 = 0.01;
 const COARSE: f64 = 0.05;
+/// The error of the work of mean forces is about 2 % with ten load steps.
+const LOAD_STEPS: u64 = 10;
+/// Share of the work that inelastic deformation dissipates.
+const INELASTIC: f64 = 0.01;
+/// Rounding errors of sums over all broken bonds.
+const CREATED: f64 = 1e-10;
 /// Rounding errors that do not grow are ten orders of magnitude smaller.
 const ASYMMETRY: f64 = 1e-6;
 /// Static states are as accurate as the tolerance of the scheme allows, which limits forces, not displacements.
@@ -103,6 +112,9 @@ pub fn warnings(simulation: &Simulation, audit: &Audit) -> Vec<String> {
         reactions(simulation, audit),
         endangered(simulation, audit),
         coarse_breaking(audit),
+        created_energy(simulation, audit),
+        fracture_energy(simulation, audit),
+        few_load_steps(simulation, audit),
         dropped(simulation),
         asymmetry(simulation, audit),
     ];
@@ -135,6 +147,34 @@ fn energy(simulation: &Simulation, audit: &Audit) -> Option<String> {
         format!(
             "the error of the energy balance reaches {}: {advice}",
             percent(drift)
+        )
+    })
+}
+
+/// Checks the energy balance of multirate schemes against the dissipated energy, which the interface between the zones may
+/// falsify where it is small relative to the work.
+fn fracture_energy(simulation: &Simulation, audit: &Audit) -> Option<String> {
+    simulation.integrator().refinement()?;
+    let share = audit.balance.abs() / audit.dissipated_energy.abs();
+    (audit.broken_bonds > 0 && share > ENERGY && share.is_finite()).then(|| {
+        format!(
+            "the error of the energy balance is {} of the dissipated energy: fracture energies of this multirate run are no more accurate than that; reduce dt or the ratio of the steps and compare the results",
+            percent(share)
+        )
+    })
+}
+
+/// Checks that the work of inelastic deformation is integrated over enough static states by schemes of low order.
+fn few_load_steps(simulation: &Simulation, audit: &Audit) -> Option<String> {
+    let (integrator, system) = (simulation.integrator(), simulation.system());
+    let steps = simulation.state().step;
+    let is_coarse = integrator.is_static() && integrator.order() <= 2 && steps < LOAD_STEPS;
+    let inelastic = system.operator().capabilities().path_dependent
+        && audit.dissipated_energy > INELASTIC * system.ledger().exchanged;
+    (is_coarse && inelastic).then(|| {
+        format!(
+            "the work and the dissipated energy of inelastic deformation are those of the mean forces between {} static states: with so few load steps they may be wrong by tens of per cent; set time.load_steps to {LOAD_STEPS} or more and compare the results",
+            steps + 1
         )
     })
 }
@@ -226,6 +266,18 @@ fn coarse_breaking(audit: &Audit) -> Option<String> {
         format!(
             "{} of the broken bonds were stretched from compression, or to more than twice the critical stretch, within one step; reduce dt and compare the results",
             percent(share)
+        )
+    })
+}
+
+/// Checks that breaking bonds and inelastic deformation did not supply energy.
+fn created_energy(simulation: &Simulation, audit: &Audit) -> Option<String> {
+    let dissipated = simulation.system().operator().dissipated();
+    let exchanged = simulation.system().ledger().exchanged + audit.initial_energy.abs();
+    (dissipated < -CREATED * exchanged).then(|| {
+        format!(
+            "the energy dissipated by breaking bonds and inelastic deformation is negative, {}: failure has supplied energy to the body; reduce the time step or the load steps and compare the results",
+            quantity(dissipated, "J")
         )
     })
 }

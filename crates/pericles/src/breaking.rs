@@ -3,6 +3,9 @@
 //! A breaking bond acts for half of its step. A linear bond with elongation η before and η′ after the step thus
 //! dissipates ½ k η η′, which converges to the energy at the critical elongation, ½ k η_c². Where one step
 //! stretches a bond to many times η_c the two are unrelated, and a compressed bond (η < 0) would create energy.
+//! Points of state-based and correspondence materials, whose energy is not a sum over bonds, dissipate the loss of
+//! their energy by all bonds that they lose in a step; the reference is this loss where the bonds reach η_c on the
+//! straight path of the step.
 //! Such a bond is taken to have broken at η_c within the step: the difference is removed from, or added to, the
 //! relative velocity of its ends along the bond by two equal and opposite impulses, which conserve momentum and
 //! angular momentum. All bonds of a step are corrected at once from the same velocities, so that the result does
@@ -39,13 +42,17 @@ impl System {
             [a, b] if a > b => bond.reversed(),
             _ => bond,
         };
-        let breaks = at_both_ends(&domain, breaks).into_iter();
+        let (gains, coarse) = breaks.into_iter().partition(|bond| bond.gains);
+        let kinds = [(coarse, false), (gains, true)];
+        let breaks = kinds.map(|(breaks, gains)| at_both_ends(&domain, breaks, gains));
+        let breaks = breaks.into_iter().flatten();
         let mut breaks: Vec<CoarseBreak> = breaks.map(oriented).collect();
-        breaks.sort_by_key(numbers);
+        breaks.sort_by_key(|bond| (numbers(bond), bond.gains));
         let own: Vec<usize> = (0..breaks.len())
             .filter(|&k| self.is_ours(&breaks[k]))
             .collect();
-        self.coarse_breaks.add(own.len() as u64);
+        let coarse = own.iter().filter(|&&k| !breaks[k].gains).count();
+        self.coarse_breaks.add(coarse as u64);
         let mut ends = Ends::new(self, t, v.len());
         let shares: Vec<f64> = breaks.iter().map(|bond| bond.missing.abs()).collect();
         let all = domain.sum(own.len(), |k| shares[own[k]]);
@@ -162,7 +169,7 @@ impl System {
 
 /// Returns the bonds that broke at own points, each once. A sweep over a part of the body records a bond at one end only,
 /// which sends it to the owner of the other end. All processes must call it together.
-fn at_both_ends(domain: &Domain, breaks: Vec<CoarseBreak>) -> Vec<CoarseBreak> {
+fn at_both_ends(domain: &Domain, breaks: Vec<CoarseBreak>, gains: bool) -> Vec<CoarseBreak> {
     if !domain.is_divided() {
         return breaks;
     }
@@ -185,6 +192,7 @@ fn at_both_ends(domain: &Domain, breaks: Vec<CoarseBreak>) -> Vec<CoarseBreak> {
             points: [letter.to as u32, letter.from as u32],
             along: [-x, -y, -z],
             missing,
+            gains,
         }
     });
     each_once(breaks.into_iter().chain(arrived).collect())

@@ -169,6 +169,19 @@ impl<'a> StepEnd<'a> {
         }
     }
 
+    /// Returns whether the forces at both ends act for half of the step each, so that bonds that break have a state at the
+    /// start of the step, from which the points moved with their mean velocity.
+    pub fn has_halves(&self) -> bool {
+        matches!(self.path, Path::MeanVelocity(_))
+    }
+
+    /// Returns the energy (J) dissipated when an elastic energy is released that was `energy` at the start of the step and
+    /// grew there with `rate` (W): the energy plus the work that its forces still did in the first half of the step. It equals
+    /// [`StepEnd::dissipated_energy`] for linear forces, and holds also for bonds that turn around within the step.
+    pub fn dissipated_from_start(&self, energy: f64, rate: f64) -> f64 {
+        energy + 0.5 * self.dt * rate
+    }
+
     /// Returns ∫ b dt and ∫ b v dt of a force b with the values `first`, `middle` and `last` at the start, middle
     /// and end of the step, for one entry.
     pub(crate) fn push_and_work(

@@ -150,6 +150,9 @@ impl Subject for Caution {
             Self::TornAtOnce { .. } => {
                 "check speeds, displacements and the critical stretch; use a ramp, a lower speed, or no_fail for the points near supports"
             }
+            Self::NoHistory => {
+                "this is correct for a body that was elastic until then; otherwise compute its history in this run"
+            }
             Self::EmptyClasses { .. } => {
                 "use a positive lower_bound such as 0.5, or a shorter horizon"
             }
@@ -218,6 +221,7 @@ impl Subject for Caution {
             Self::ShortWaves { .. } => "short waves",
             Self::GrowingWaves { .. } => "unstable",
             Self::PoorTuning { .. } => "poorly tuned",
+            Self::NoHistory => "incomplete state",
             Self::EmptyClasses { .. } => "no stiffness",
             Self::FastMotion { .. } | Self::TornAtOnce { .. } => "fast motion",
             Self::HistoricalKernels { .. } => "growing error",

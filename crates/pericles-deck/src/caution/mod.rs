@@ -462,6 +462,11 @@ pub enum Caution {
         /// The step, s.
         dt: f64,
     },
+    /// Initial displacements without the internal variables of the material.
+    #[error(
+        "the file contains no internal variables: the body starts without plastic or viscous strain and without softened bonds"
+    )]
+    NoHistory,
     /// Bonds that break but have no stiffness.
     #[error(
         "{empty} of {of} bond classes have the coefficient 0: these bonds carry no force, but they break and count as damage"

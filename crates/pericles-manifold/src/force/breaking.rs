@@ -6,7 +6,7 @@ use super::bonds::SurfaceBonds;
 use super::law::SurfaceLaw;
 use pericles::lanes::{F64x8, Real};
 use pericles::operator::records::Records;
-use pericles::operator::{CoarseBreak, PointDissipation, PointSubset};
+use pericles::operator::{CoarseBreak, PointDissipation, PointSubset, turns_around};
 use pericles::parallel::BLOCK;
 use pericles::{Archive, BreakingBond, StepEnd, Values};
 use pericles::{PericlesError, Result};
@@ -122,12 +122,17 @@ impl Breaking {
                 critical,
                 weight: step.areas[i] * weight,
             };
-            let dissipated = step.end.dissipated(&bond);
+            let (dissipated, coarse) = CoarseBreak::judge(step.end, &bond, |moved: [f64; 3]| {
+                let before = std::array::from_fn(|c| eta[c] - moved[c]);
+                let force = law.force(lanes(xi), lanes(before)).map(|force| force.0[0]);
+                let energy = law.energy(lanes(xi), lanes(before)).0[0];
+                turns_around(&xi, &before, &eta).then_some((force, energy))
+            });
             self.dissipated += dissipated;
             for end in bond.ends {
                 self.of_points.add(end, 0.5 * dissipated);
             }
-            self.coarse.extend(CoarseBreak::of(&bond, dissipated));
+            self.coarse.extend(coarse);
             self.cut(bonds, entry);
             let back = bonds.row(j).find(|&(_, other)| other == i);
             if let Some((back, _)) = back {

@@ -125,6 +125,7 @@ pub fn assemble(
     assembler.check_thermal_steps(&system, steps.dt)?;
     assembler.check_outputs(steps.dt, steps.count)?;
     assembler.judge_two_steps(&*integrator, &steps, &mut warnings);
+    assembler.check_initial_files(&system, &state, &mut warnings)?;
     assembler.judge_breaking(&system, &state, constants.as_ref(), &steps, &mut warnings);
     let ends = assembler.add_ends(&mut system, ends, &state, &steps, resources, &mut warnings)?;
     assembler.add_damping_layers(&mut system, layers, integrator.step_kind(), &steps)?;

@@ -1,18 +1,62 @@
 //! Warnings about velocities that break most bonds instead of forming cracks.
 
-use pericles::System;
 use pericles::operator::PointSubset;
 use pericles::time::State;
-use pericles_deck::{Caution, KeyPath, ModelWarning, Remark};
+use pericles::{PericlesError, System};
+use pericles_deck::{BuildError, Caution, Fault, KeyPath, ModelWarning, Remark};
 
 use super::assembler::Assembler;
 use super::constants::MaterialConstants;
+use super::refusal::at_path;
 use super::step::Steps;
+
+/// Initial displacements from a file at which intact bonds are beyond their limits.
+#[derive(Debug, thiserror::Error)]
+#[error(
+    "the displacements of the file stretch intact bonds of {points} of {of} points beyond their limits: the file contains no broken bonds, so that bonds that broke in the run it comes from would be intact and break again at once, with a release of energy; \
+     allowed: displacements at which no bond exceeds its limit; represent the crack by [[crack]], or load and release the body in one run"
+)]
+struct HealedBonds {
+    points: usize,
+    of: usize,
+}
 
 /// Number of times at which prescribed velocities are sampled.
 const SAMPLES: usize = 200;
 
 impl Assembler<'_> {
+    /// Checks initial displacements from files, which contain neither broken bonds nor internal variables.
+    ///
+    /// # Errors
+    /// Intact bonds beyond their limits: bonds that were broken would be intact again and break at once.
+    pub(super) fn check_initial_files(
+        &self,
+        system: &System,
+        state: &State,
+        warnings: &mut Vec<ModelWarning>,
+    ) -> Result<(), BuildError> {
+        let mut initial = self.model.initial.iter();
+        let Some(k) = initial.position(|initial| initial.file.is_some()) else {
+            return Ok(());
+        };
+        if system.domain().all(state.u.iter().all(|u| *u == 0.0)) {
+            return Ok(());
+        }
+        let path = KeyPath::from("initial").index(k).key("file");
+        if system.operator().capabilities().path_dependent {
+            warnings.push(Remark::new(&path, Caution::NoHistory));
+        }
+        match torn(system, &state.u) {
+            0 => Ok(()),
+            points => {
+                let of = system.domain().whole_points();
+                let healed = HealedBonds { points, of };
+                let error = PericlesError::Extension(Box::new(healed));
+                Err(at_path(path, Fault::Model(error)))
+            }
+        }
+    }
+
     /// Warns of initial and prescribed velocities above the Rayleigh speed, and of velocities that stretch bonds
     /// beyond the critical stretch within the first step, if bonds can break. Static states have no velocities.
     pub(super) fn judge_breaking(

@@ -63,7 +63,10 @@ impl Assembler<'_> {
                         reason: "it is unconditionally stable and has no automatic step; give dt",
                     })
                     .map_err(refuse)?;
-                let undamped = system.stable_contact_step(frequency.stable_step(limit, 1.0), limit);
+                let breaking = system.operator().capabilities().breaking;
+                let stiffening = breaking.map_or(1.0, |breaking| breaking.stiffening());
+                let stable = frequency.stable_step(limit, 1.0) / stiffening;
+                let undamped = system.stable_contact_step(stable, limit);
                 let damped = damped + self.rayleigh_rates().at(limit / undamped);
                 let stable = safety * damped_step(undamped, damped);
                 let stable = stable.min(system.longest_contact_step());

@@ -172,3 +172,44 @@ end = "10 us"
     );
     assert!(refusal(text).to_string().contains("no reader for"));
 }
+
+/// A plate with initial displacements and velocities from a file.
+const HANDED_OVER: &str = r#"
+body = { shape = "plate", size = [20, 10], spacing = 1, plane = "stress" }
+material = { density = 1, youngs_modulus = 10, horizon_ratio = 3, MATERIAL }
+initial = [{ file = "state.txt" }]
+time = { end = 1 }
+"#;
+
+/// The file contains no broken bonds: an open crack would heal.
+#[test]
+fn displacements_that_break_intact_bonds_at_once_are_refused() {
+    let open = |x: f64| if x > 10.0 { 0.5 } else { 0.0 };
+    let stretched = |x: f64| 1e-3 * x;
+    for material in [
+        "critical_stretch = 0.01",
+        "model = \"state-based\", poisson_ratio = 0.3, critical_stretch = 0.01",
+        "model = \"state-based\", poisson_ratio = 0.3, fracture_energy = 1e-3, failure = \"bond-energy\"",
+        "model = \"state-based\", poisson_ratio = 0.3, failure = \"principal-stress\", strength = 0.1",
+        "model = \"correspondence\", poisson_ratio = 0.3, critical_stretch = 0.01",
+    ] {
+        let text = HANDED_OVER.replace("MATERIAL", material);
+        let deck = Deck::parse(&text, "deck.toml", &[]).unwrap();
+        let read = |moved: &(dyn Fn(f64) -> f64 + Sync)| {
+            deck.build_with(Resources {
+                read_table: &|_, points, _, _| {
+                    // In the order of the field files, row by row along x.
+                    let row = |k: usize| [moved(0.5 + (k % 20) as f64), 0.0, 0.0, 0.0];
+                    Ok((0..points).flat_map(row).collect())
+                },
+                ..Resources::default()
+            })
+        };
+        assert!(read(&stretched).is_ok(), "{material}");
+        let error = match read(&open) {
+            Ok(_) => panic!("{material}"),
+            Err(error) => error.to_string(),
+        };
+        assert!(error.contains("contains no broken bonds"), "{error}");
+    }
+}

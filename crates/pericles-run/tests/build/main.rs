@@ -5,6 +5,7 @@ mod common;
 #[path = "../../../pericles-deck/tests/common/mod.rs"]
 mod decks;
 
+mod breaking_energy;
 mod compatibility;
 mod composition;
 mod conditions;
@@ -35,6 +36,7 @@ mod sense;
 mod solutions;
 mod state_based;
 mod static_breaking;
+mod static_ramp;
 mod static_resume;
 mod stiffness;
 mod stress;

@@ -12,12 +12,14 @@ use pericles::domain::{Field, Letter};
 use pericles::lanes::{LANES, Row};
 use pericles::material::{BondStretch, PairForce};
 use pericles::operator::rows::Rows;
-use pericles::operator::{Breakable, CoarseBreak, PointSubset};
+use pericles::operator::{
+    Breakable, CoarseBreak, Crossing, LostBond, PointSubset, both_ends, turns_around,
+};
 use pericles::parallel::{BLOCK, for_each_chunk};
 use pericles::sum::BinnedSum;
 use rayon::prelude::*;
 
-use super::force::{CorrespondenceForce, PointShape};
+use super::force::{CorrespondenceForce, PointShape, STIFFENING};
 use super::heat::Heat;
 use super::plasticity::History;
 use super::tensor::{combination, unit};
@@ -32,8 +34,8 @@ struct Before<const D: usize> {
 pub(super) type Entries = Vec<(usize, usize)>;
 
 impl<const D: usize> CorrespondenceForce<D> {
-    /// Breaks the bonds of the points `on` that exceed their critical stretch or strength, and all bonds of
-    /// points whose remaining bonds do not span the space. Adds the dissipated energy.
+    /// Breaks the bonds of the points `on` that exceed their critical stretch or strength, and all bonds of points whose
+    /// remaining bonds do not span the space. Adds the dissipated energy.
     pub(super) fn break_bonds(&mut self, step: &StepEnd<'_>, u: Field<'_>, on: &PointSubset<'_>) {
         let domain = self.cloud.domain().clone();
         let heat = self.heat_at(step.t);
@@ -170,20 +172,29 @@ impl<const D: usize> CorrespondenceForce<D> {
             let sites = self.bonds.list.sites();
             pericles::operator::records::pack_sites::<D>(velocity, sites, &mut velocities);
         }
+        // Displacements at the start of the step.
+        let moved = |(row, velocity): (&Row, &Row)| -> Row {
+            Row(std::array::from_fn(|c| row[c] - step.dt * velocity[c]))
+        };
+        let earlier: Vec<Row> = rows.iter().zip(&velocities).map(moved).collect();
         for (i, before) in before {
             let (groups, shape) = (self.bonds.list.groups(i), self.shapes[i]);
             let after = self.intact[groups.clone()].to_vec();
-            let velocities = &velocities[..];
-            let [energy, power] = self.energy_and_power(i, &shape, [rows, velocities], heat);
-            self.intact[groups.clone()].copy_from_slice(&before.intact);
-            let [more, stronger] =
-                self.energy_and_power(i, &before.shape, [rows, velocities], heat);
-            self.intact[groups].copy_from_slice(&after);
-            let volume = volumes.volumes()[i];
-            let lost =
-                step.dissipated_energy(volume * (more - energy), volume * (stronger - power));
-            self.dissipated.add(lost);
-            self.of_points.add(i, lost);
+            let (velocities, volume) = (&velocities[..], volumes.volumes()[i]);
+            let (crossing, lost) = self.lost_bonds(i, &before.intact, [rows, &earlier], heat);
+            let mut loss = |rows: &[Row]| -> [f64; 2] {
+                let [energy, power] = self.energy_and_power(i, &shape, [rows, velocities], heat);
+                self.intact[groups.clone()].copy_from_slice(&before.intact);
+                let [more, stronger] =
+                    self.energy_and_power(i, &before.shape, [rows, velocities], heat);
+                self.intact[groups.clone()].copy_from_slice(&after);
+                [volume * (more - energy), volume * (stronger - power)]
+            };
+            let end = loss(rows);
+            let judged = crossing.judge(step, end, || loss(&earlier));
+            self.dissipated.add(judged.dissipated);
+            self.of_points.add(i, judged.dissipated);
+            self.coarse.extend(judged.records(i, &lost));
             let count = |bits: &[u8]| -> u64 {
                 let ones = bits.iter().map(|byte| u64::from(byte.count_ones()));
                 ones.sum()
@@ -191,6 +202,48 @@ impl<const D: usize> CorrespondenceForce<D> {
             let broken = count(&before.intact) - count(&after);
             self.broken = self.broken.saturating_add(broken);
         }
+    }
+
+    /// Returns the bonds of point i that are intact in `before` and broken now, and where within the step they reached their
+    /// limits; `rows` and `earlier` are displacements at the end and the start of the step, the latter empty if unknown.
+    fn lost_bonds(
+        &self,
+        i: usize,
+        before: &[u8],
+        [rows, earlier]: [&[Row]; 2],
+        heat: &Heat,
+    ) -> (Crossing, Vec<LostBond<D>>) {
+        let here = self.bonds.list.site(i);
+        let (now, sites) = (self.bits(i), self.bonds.list.sites());
+        let broken: Vec<u8> = before.iter().zip(now).map(|(a, b)| a & !b).collect();
+        let (mut crossing, mut lost) = (Crossing::default(), Vec::new());
+        self.bonds.for_each::<D>(i, &broken, |bond| {
+            let stretch = |rows: &[Row]| {
+                let eta = Self::eta(rows, here, &bond);
+                let (xi, eta) = heat.expanded(sites, [here, bond.site], bond.xi, eta);
+                let length = |x: [f64; D]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
+                length(std::array::from_fn(|c| xi[c] + eta[c])) / length(xi) - 1.0
+            };
+            let end = stretch(rows);
+            let start = if earlier.is_empty() {
+                end
+            } else {
+                stretch(earlier)
+            };
+            let square: f64 = bond.xi.iter().map(|x| x * x).sum();
+            let share = bond.weight * square * end * end;
+            let eta = Self::eta(rows, here, &bond);
+            let turned = !earlier.is_empty()
+                && turns_around(&bond.xi, &Self::eta(earlier, here, &bond), &eta);
+            let critical = self.limits.stretch(here, bond.site);
+            crossing.add(share, [start, end], critical, turned);
+            lost.push(LostBond {
+                neighbour: sites.point(bond.site),
+                along: std::array::from_fn(|c| bond.xi[c] + eta[c]),
+                share,
+            });
+        });
+        (crossing, lost)
     }
 
     /// Returns the energy W of a point with a shape (J/m³), including the plastic work of the step so that
@@ -207,7 +260,7 @@ impl<const D: usize> CorrespondenceForce<D> {
         let f = combination(1.0, &unit::<D>(), 1.0, &gradient);
         let solid = self.classes.solid(i).expanded(heat.factor(i));
         let (_, plastic_work) = solid.advanced(&f, &self.history_of(i));
-        let energy = self.energy_of(i, shape, rows, heat) + plastic_work;
+        let energy = self.energy_of(i, shape, rows, heat) + shape.share * plastic_work;
         if velocities.is_empty() {
             return [energy, 0.0];
         }
@@ -247,7 +300,7 @@ impl<const D: usize> CorrespondenceForce<D> {
                     let (next, work) = solid.advanced(&f, &History::of(kept));
                     next.keep(kept);
                     if work != 0.0 {
-                        let work = work * self.cloud.volumes()[i];
+                        let work = self.shapes[i].share * work * self.cloud.volumes()[i];
                         sum.add(work);
                         works.push((i, work));
                     }
@@ -298,10 +351,16 @@ impl<const D: usize> Breakable for CorrespondenceForce<D> {
         self.of_points.take_into(out);
     }
 
-    /// Returns no breaks, because the energy of a bond at its critical stretch depends on the other bonds of
-    /// its end points.
+    fn stiffening(&self) -> f64 {
+        if self.can_break() {
+            STIFFENING.sqrt()
+        } else {
+            1.0
+        }
+    }
+
     fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {
-        Vec::new()
+        both_ends(self.cloud.domain(), std::mem::take(&mut self.coarse))
     }
 
     fn damage_into(&self, out: &mut [f64]) {

@@ -88,6 +88,14 @@ impl<const D: usize> Control<D> {
         }
     }
 
+    /// Returns a multiple of Z.
+    pub fn scaled(self, factor: f64) -> Self {
+        match self {
+            Self::Scalar(z) => Self::Scalar(factor * z),
+            Self::Tensor(z) => Self::Tensor(z.map(|row| row.map(|entry| factor * entry))),
+        }
+    }
+
     /// Returns Z : A for a symmetric tensor A.
     pub fn contraction(&self, a: &Matrix<D>) -> f64 {
         trace(&self.times(a))

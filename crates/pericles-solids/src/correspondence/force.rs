@@ -8,7 +8,7 @@ use pericles::lanes::{LANES, Row};
 use pericles::operator::pool::{Lent, Pool};
 use pericles::operator::records::pack_sites;
 use pericles::operator::rows::Rows;
-use pericles::operator::{DamageMeasure, PointDissipation, PointSubset};
+use pericles::operator::{CoarseBreak, DamageMeasure, PointDissipation, PointSubset};
 use pericles::parallel::{BLOCK, components_mut, for_each_block, for_each_chunk};
 use pericles::space::PointCloud;
 use pericles::sum::BinnedSum;
@@ -22,7 +22,7 @@ use super::error::SingularShape;
 use super::heat::Heat;
 use super::plasticity::History;
 use super::shape::Shape;
-use super::tensor::{Matrix, combination, product, unit};
+use super::tensor::{Matrix, combination, principal_axes, product, unit};
 
 /// Force density of correspondence materials, N/m³, in two passes over a bond list.
 ///
@@ -57,12 +57,16 @@ pub struct CorrespondenceForce<const D: usize> {
     pub(super) plastic_work: BinnedSum,
     /// Terms of both by points.
     pub(super) of_points: PointDissipation,
+    /// Parts of own points of the bonds that broke in the last step, if it was too large for them.
+    pub(super) coarse: Vec<CoarseBreak>,
     /// Number of broken directed bonds.
     pub(super) broken: u64,
     /// Number of points whose remaining bonds did not span the space.
     pub(super) dropped: u64,
     /// First point whose volume was not positive at the end of the last step, and its dilatation.
     pub(super) inverted: Option<(usize, f64)>,
+    /// Largest principal value of K⁻¹ of each point at full stiffness; empty if no bond can break.
+    pub(super) softest: Vec<f64>,
     /// Thermal expansion, if the body is heated.
     pub(super) expansion: Option<ThermalExpansion>,
     displaced: Pool<Vec<Row>>,
@@ -78,22 +82,30 @@ saved! {
         dropped: by(Laid::new("operator/dropped", Layout::Count)),
         dissipated: under("operator/dissipated"),
         plastic_work: under("operator/plastic-work"),
-        cloud, bonds, classes, limits, weakest, breakable, damage, spring, expansion: fixed,
+        cloud, bonds, classes, limits, weakest, breakable, damage, spring, softest, expansion: fixed,
         shapes: rebuilt,
         inverted: set(None),
-        of_points, displaced, sites, points: scratch,
+        of_points, coarse, displaced, sites, points: scratch,
     } then |force| {
         force.of_points.clear();
+        force.coarse.clear();
         force.rebuild_shapes();
         Ok(())
     }
 }
+
+/// Largest ratio of the stiffness of a damaged point to that of the intact one. The stiffness grows with the largest principal
+/// value of K⁻¹: with few bonds, or bonds of similar directions, a point would oscillate faster than the time step allows. The
+/// energy of a point whose K⁻¹ exceeds this ratio is multiplied by a factor that keeps the stiffness at it.
+pub(super) const STIFFENING: f64 = 4.0;
 
 /// K⁻¹ and Z of a point; zero if its bonds do not span the space.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PointShape<const D: usize> {
     pub inverse: Matrix<D>,
     pub control: Control<D>,
+    /// Factor of the energy of the point, at most 1; see [`STIFFENING`]. The control includes it.
+    pub share: f64,
 }
 
 /// Result of the pass over points.
@@ -152,9 +164,11 @@ impl<const D: usize> CorrespondenceForce<D> {
             dissipated: BinnedSum::default(),
             plastic_work: BinnedSum::default(),
             of_points: PointDissipation::default(),
+            coarse: Vec::new(),
             broken: 0,
             dropped: 0,
             inverted: None,
+            softest: Vec::new(),
             expansion: None,
             displaced: Pool::new(1, move || vec![Row::default(); sites]),
             sites: Pool::new(1, move || vec![SiteState::default(); sites]),
@@ -173,6 +187,10 @@ impl<const D: usize> CorrespondenceForce<D> {
             }
         }
         force.rebuild_shapes();
+        if force.weakest.is_finite() || force.limits.has_criteria() {
+            let limit = |shape: &PointShape<D>| STIFFENING * largest(&shape.inverse);
+            force.softest = force.shapes.iter().map(limit).collect();
+        }
         Ok(force)
     }
 
@@ -236,11 +254,18 @@ impl<const D: usize> CorrespondenceForce<D> {
             return PointShape {
                 inverse: [[0.0; D]; D],
                 control: Control::NONE,
+                share: 1.0,
             };
         };
         let stabilisation = self.classes.stabilisation();
         let control = stabilisation.control(self.classes.solid(i), &inverse, self.spring[i]);
-        PointShape { inverse, control }
+        let limit = self.softest.get(i).copied().unwrap_or(f64::INFINITY);
+        let share = (limit / largest(&inverse)).min(1.0);
+        PointShape {
+            inverse,
+            control: control.scaled(share),
+            share,
+        }
     }
 
     fn rebuild_shapes(&mut self) {
@@ -327,6 +352,7 @@ impl<const D: usize> CorrespondenceForce<D> {
         let solid = self.classes.solid(i).expanded(heat.factor(i));
         let stress = solid.stress(&f, &self.history_of(i)).stress;
         let push = product(&stress, &shape.inverse);
+        let push = push.map(|row| row.map(|entry| shape.share * entry));
         let state = SiteState {
             push: combination(1.0, &push, -1.0, &shape.control.times(&gradient)),
             control: shape.control,
@@ -354,7 +380,7 @@ impl<const D: usize> CorrespondenceForce<D> {
             penalty += bond.weight * (0..D).map(|c| z[c] * pull[c]).sum::<f64>();
         });
         let solid = self.classes.solid(i).expanded(heat.factor(i));
-        solid.stress(&f, &self.history_of(i)).energy + 0.5 * penalty
+        shape.share * solid.stress(&f, &self.history_of(i)).energy + 0.5 * penalty
     }
 
     /// Sets the values of the points `on` to the results of `of`.
@@ -455,4 +481,10 @@ fn breakable(list: &pericles::family::BondList, no_fail: &[u32]) -> Option<Vec<u
         }
     }
     Some(bits)
+}
+
+/// Returns the largest principal value of a tensor.
+fn largest<const D: usize>(tensor: &Matrix<D>) -> f64 {
+    let (values, _) = principal_axes(tensor);
+    values.into_iter().fold(0.0, f64::max)
 }

@@ -35,6 +35,7 @@ impl<const D: usize> TwoPass for CorrespondenceForce<D> {
             let solid = self.classes.solid(i).expanded(heat.factor(i));
             let stress = solid.stress_change(&f, &change, &history);
             let push = product(&stress, &shape.inverse);
+            let push = push.map(|row| row.map(|entry| shape.share * entry));
             let state = SiteState {
                 push: combination(1.0, &push, -1.0, &shape.control.times(&change)),
                 control: Control::NONE,
@@ -81,7 +82,7 @@ impl<const D: usize> TwoPass for CorrespondenceForce<D> {
             let (values, _) = principal_axes(&shape.inverse);
             let largest = values.into_iter().fold(0.0, f64::max);
             let stiffest = self.classes.constants(i).stiffest();
-            (stiffest * largest).max(shape.control.largest())
+            (shape.share * stiffest * largest).max(shape.control.largest())
         };
         let springs: Vec<f64> = (0..self.cloud.len()).map(spring).collect();
         let springs = self.bonds.list.sites().spread(&springs);

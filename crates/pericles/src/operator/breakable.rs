@@ -24,6 +24,11 @@ pub trait Breakable {
         0
     }
 
+    /// Returns the largest factor by which the highest frequency of the body may grow when bonds break.
+    fn stiffening(&self) -> f64 {
+        1.0
+    }
+
     /// Returns the energy dissipated by breaking bonds and by plastic flow, J.
     fn dissipated(&self) -> f64;
 

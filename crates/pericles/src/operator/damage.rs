@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::coarse::{CoarseBreak, Judged, LostBond, both_ends, each_once};
 use super::dissipation::PointDissipation;
 use crate::archive::{Archive, Counter, Layout, SavedUnder, Storage, Values};
 use crate::domain::Domain;
@@ -35,28 +36,6 @@ pub(super) struct BreakEvent {
     pub dissipated: f64,
 }
 
-/// A bond that broke in a step too large for it: the energy recorded for it differs strongly from its energy
-/// at the critical stretch.
-///
-/// The energy dissipated by a breaking bond follows from the work of its force over the step
-/// ([`StepEnd::dissipated`]). For a bond that is compressed at the start of the step and over-stretched at
-/// its end this energy is negative, as if breaking released energy; a bond stretched far beyond its critical
-/// stretch dissipates many times its energy.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CoarseBreak {
-    /// Both ends, the smaller index first.
-    pub points: [u32; 2],
-    /// Direction of the force on the first of these ends, with any nonzero length; missing components are zero.
-    pub along: [f64; 3],
-    /// Energy at the critical stretch minus the recorded energy, J.
-    pub missing: f64,
-}
-
-/// Range of the recorded energy of a broken bond, relative to its energy at the critical stretch, that is
-/// accepted without correction. Errors of both signs within this range cancel: they are of first order in the
-/// step for one bond, of second order in the mean.
-const RESOLVED: std::ops::RangeInclusive<f64> = 0.0..=4.0;
-
 /// Broken bonds and dissipated energy of a block.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Tally {
@@ -81,33 +60,6 @@ pub(super) struct BlockDamage {
     pub tally: Tally,
 }
 
-impl CoarseBreak {
-    /// Returns a record of a broken bond if its dissipated energy, J, is outside the accepted range; `None`
-    /// if the energy at the critical stretch is unknown.
-    pub fn of<const D: usize>(bond: &BreakingBond<D>, dissipated: f64) -> Option<Self> {
-        let critical = bond.weight * bond.critical?;
-        let resolved = critical * RESOLVED.start()..=critical * RESOLVED.end();
-        let record = Self {
-            points: bond.ends.map(|end| end as u32),
-            along: std::array::from_fn(|c| bond.force.get(c).copied().unwrap_or(0.0)),
-            missing: critical - dissipated,
-        };
-        let is_first = bond.ends[0] < bond.ends[1];
-        let outside = !resolved.contains(&dissipated);
-        outside.then(|| if is_first { record } else { record.reversed() })
-    }
-
-    /// Returns the same record seen from the other end.
-    pub(crate) fn reversed(self) -> Self {
-        let [i, j] = self.points;
-        Self {
-            points: [j, i],
-            along: self.along.map(|component| -component),
-            ..self
-        }
-    }
-}
-
 impl Tally {
     /// Adds energy dissipated by point i, J.
     pub fn dissipate(&mut self, i: usize, energy: f64) {
@@ -115,14 +67,25 @@ impl Tally {
         self.of_points.add(i, energy);
     }
 
+    /// Records the energy that point i dissipates by losing bonds.
+    pub fn lose<const D: usize>(&mut self, i: usize, judged: Judged, lost: &[LostBond<D>]) {
+        self.dissipate(i, judged.dissipated);
+        self.coarse.extend(judged.records(i, lost));
+    }
+
     /// Records half of the energy that a bond dissipates at the end of a step, for its first end, and returns
-    /// that half, J.
-    pub fn book<const D: usize>(&mut self, step: &StepEnd<'_>, bond: &BreakingBond<D>) -> f64 {
-        let dissipated = step.dissipated(bond);
+    /// that half, J. `before` is that of [`CoarseBreak::judge`].
+    pub fn book<const D: usize>(
+        &mut self,
+        step: &StepEnd<'_>,
+        bond: &BreakingBond<D>,
+        before: impl FnOnce([f64; D]) -> Option<([f64; D], f64)>,
+    ) -> f64 {
+        let (dissipated, coarse) = CoarseBreak::judge(step, bond, before);
         let half = 0.5 * dissipated;
         self.dissipate(bond.ends[0], half);
         self.broken.add(1);
-        self.coarse.extend(CoarseBreak::of(bond, dissipated));
+        self.coarse.extend(coarse);
         half
     }
 }
@@ -137,11 +100,11 @@ pub(super) fn take_coarse_breaks(blocks: &mut [BlockDamage]) -> Vec<CoarseBreak>
     each_once(coarse)
 }
 
-/// Sorts bonds by their ends and removes duplicates.
-pub fn each_once(mut coarse: Vec<CoarseBreak>) -> Vec<CoarseBreak> {
-    coarse.sort_by_key(|bond| bond.points);
-    coarse.dedup_by_key(|bond| bond.points);
-    coarse
+/// Returns and clears the bonds of points whose energy is not a sum over bonds, of which each end has recorded its part.
+pub(super) fn take_coarse_parts(domain: &Domain, blocks: &mut [BlockDamage]) -> Vec<CoarseBreak> {
+    let parts = blocks.iter_mut();
+    let parts = parts.flat_map(|block| std::mem::take(&mut block.tally.coarse));
+    both_ends(domain, parts.collect())
 }
 
 /// Adds energy dissipated by point i, J.

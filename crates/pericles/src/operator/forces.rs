@@ -260,6 +260,11 @@ impl Breakable for Forces {
         }
     }
 
+    fn stiffening(&self) -> f64 {
+        let all = self.breaking().map(|breaking| breaking.stiffening());
+        all.fold(1.0, f64::max)
+    }
+
     fn accumulates(&self) -> bool {
         self.breaking().any(|breaking| breaking.accumulates())
     }

@@ -21,6 +21,7 @@ mod assemble;
 mod breakable;
 mod by_law;
 mod capabilities;
+mod coarse;
 mod composite;
 mod damage;
 mod dissipation;
@@ -50,8 +51,11 @@ pub use assemble::{AssembledBonds, BondBody};
 pub use breakable::Breakable;
 pub use by_law::{ByLaw, by_law};
 pub use capabilities::{Capabilities, Linearity};
+pub use coarse::{
+    CoarseBreak, Crossing, Judged, LostBond, Released, both_ends, each_once, turns_around,
+};
 pub use composite::CompositeBody;
-pub use damage::{Breaking, CoarseBreak, DamageMeasure, each_once};
+pub use damage::{Breaking, DamageMeasure};
 pub use dissipation::PointDissipation;
 pub use fast_law::{FixedBond, VectorLaw};
 pub use forces::Forces;

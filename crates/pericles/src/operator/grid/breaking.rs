@@ -7,6 +7,7 @@ use super::thresholds::PlaceThresholds;
 use crate::domain::Field;
 use crate::lanes::LANES;
 use crate::lanes::Lanes;
+use crate::operator::coarse::turns_around;
 use crate::operator::damage::{BreakEvent, Tally};
 use crate::operator::fast_law::VectorLaw;
 use crate::step_end::{BreakingBond, StepEnd, relative_velocity};
@@ -151,7 +152,10 @@ fn book<L: VectorLaw, N: GridNumber, const D: usize>(
             critical: Some(L::energy(xi, xi.map(|component| stretch * component))),
             weight: rule.volume * stiffness,
         };
-        let dissipated = tally.book(rule.step, &bond);
+        let dissipated = tally.book(rule.step, &bond, |moved: [f64; D]| {
+            let before = std::array::from_fn(|c| eta[c] - moved[c]);
+            turns_around(&xi, &before, &eta).then(|| (L::force(xi, before), L::energy(xi, before)))
+        });
         if rule.note_events {
             tally.events.push(BreakEvent {
                 point: chunk.point,

@@ -4,6 +4,7 @@ use super::arrays::Bonds;
 use crate::domain::Field;
 use crate::lanes::LANES;
 use crate::material::PairForce;
+use crate::operator::coarse::turns_around;
 use crate::operator::damage::{BreakEvent, Tally};
 use crate::operator::records::Records;
 use crate::operator::thresholds::PairThresholds;
@@ -89,7 +90,11 @@ pub(super) fn break_row<L: PairForce, const D: usize>(
                     critical: Some(L::energy(xi, xi.map(|component| stretch * component))),
                     weight: rule.volumes[i] * stiffness,
                 };
-                let dissipated = tally.book(rule.step, &bond);
+                let dissipated = tally.book(rule.step, &bond, |moved: [f64; D]| {
+                    let before = std::array::from_fn(|c| eta[c] - moved[c]);
+                    turns_around(&xi, &before, &eta)
+                        .then(|| (L::force(xi, before), L::energy(xi, before)))
+                });
                 if rule.note_events {
                     tally.events.push(BreakEvent {
                         point: i as u32,

@@ -10,6 +10,7 @@ use super::kinematics::Kinematics;
 use crate::domain::Field;
 use crate::lanes::{F64x8, LANES, dot};
 use crate::material::{PairForce, SolidClasses};
+use crate::operator::coarse::{Crossing, Judged, LostBond, turns_around};
 use crate::operator::damage::{BreakEvent, Tally};
 use crate::operator::records::Records;
 use crate::space::Sites;
@@ -178,7 +179,13 @@ pub(super) fn take_bonds<L: Kinematics, const D: usize>(
         return false;
     }
     tally.broken.add(u64::from(count));
-    tally.dissipate(i, dissipated::<L, D>(bonds, rule, u, i, intact, broken));
+    let (loss, lost) = loss_of::<L, D>(bonds, rule, u, i, intact, broken);
+    let site = bonds.list.site(i);
+    tally.lose(
+        i,
+        loss.judge(rule.states, [i, site], rule.volumes[i], rule.step),
+        &lost,
+    );
     let first = bonds.list.start()[i];
     for (k, (intact, broken)) in intact.iter_mut().zip(broken).enumerate() {
         *intact &= !broken;
@@ -194,18 +201,18 @@ pub(super) fn take_bonds<L: Kinematics, const D: usize>(
     true
 }
 
-/// Returns the energy dissipated by a point whose bonds `broken` break at the end of a step, J.
-fn dissipated<L: Kinematics, const D: usize>(
+/// Returns the loss of a point whose bonds `broken` break at the end of a step, and these bonds.
+fn loss_of<L: Kinematics, const D: usize>(
     bonds: &SolidBonds<'_>,
     rule: &BreakRule<'_>,
     u: &Records,
     i: usize,
     intact: &[u8],
     broken: &[u8],
-) -> f64 {
+) -> (Loss, Vec<LostBond<D>>) {
     let (first, here) = (bonds.list.start()[i], bonds.list.site(i));
     let sites = bonds.list.sites();
-    let mut loss = Loss::default();
+    let (mut loss, mut lost) = (Loss::new(rule.step), Vec::new());
     for (k, intact) in intact.iter().enumerate() {
         let neighbours = bonds.list.group(first + k);
         for lane in (0..LANES).filter(|lane| intact >> lane & 1 == 1) {
@@ -214,6 +221,7 @@ fn dissipated<L: Kinematics, const D: usize>(
             let xi = bonds.vector::<D>(here, j);
             let velocity = rule.velocity.map(|v| v.difference([i, sites.point(j)]));
             let bond = LosingBond {
+                neighbour: sites.point(j),
                 xi,
                 eta: difference(u, here, j),
                 velocity: velocity.unwrap_or([0.0; D]),
@@ -221,15 +229,18 @@ fn dissipated<L: Kinematics, const D: usize>(
                 factor: bonds.factor_of(entry),
                 stored: rule.stored.map_or([0.0; 2], |stored| stored(i, entry)),
                 thermal: rule.stretches.map_or(0.0, |stretches| stretches[i]),
+                critical: rule.limit(sites, [here, j]),
             };
-            loss.add::<L, D>(&bond, broken[k] >> lane & 1 == 1);
+            lost.extend(loss.add::<L, D>(&bond, broken[k] >> lane & 1 == 1));
         }
     }
-    loss.dissipated(rule.states, [i, here], rule.volumes[i], rule.step)
+    (loss, lost)
 }
 
 /// A bond of a point with breaking bonds.
 pub(super) struct LosingBond<const D: usize> {
+    /// The other end.
+    pub neighbour: usize,
     pub xi: [f64; D],
     pub eta: [f64; D],
     /// Relative velocity of its ends; zero if the failure criterion does not need it.
@@ -242,13 +253,16 @@ pub(super) struct LosingBond<const D: usize> {
     pub stored: [f64; 2],
     /// Thermal stretch τ of the point.
     pub thermal: f64,
+    /// Critical stretch with thermal stretch; infinite for other criteria.
+    pub critical: f64,
 }
 
-/// Sums over all bonds of a point and over its breaking bonds.
-#[derive(Default)]
+/// Sums over all bonds of a point and over its breaking bonds, at the end and at the start of a step.
 pub(super) struct Loss {
-    whole: Sums,
-    lost: Sums,
+    dt: f64,
+    whole: [Sums; 2],
+    lost: [Sums; 2],
+    crossing: Crossing,
 }
 
 /// Sums over bonds of a point.
@@ -261,31 +275,55 @@ struct Sums {
 }
 
 impl Loss {
-    /// Adds a bond that is intact before the failure.
-    pub fn add<L: Kinematics, const D: usize>(&mut self, bond: &LosingBond<D>, broken: bool) {
-        let square = dot(bond.xi, bond.xi);
-        let t = F64x8([strain::<L, D>(bond.xi, bond.eta); LANES]);
-        let stretch = L::exact_stretch(t).0[0] - bond.thermal;
-        // dψ/dt for the mean velocity.
-        let along = dot(direction::<L, D>(bond.xi, bond.eta), bond.velocity);
-        let rate = along * L::contraction(t).0[0] / square;
-        let weight = bond.weight * square;
-        self.whole.add(weight, bond, [stretch, rate]);
-        if broken {
-            self.lost.add(weight, bond, [stretch, rate]);
+    /// Creates empty sums for the end of a step.
+    pub fn new(step: &StepEnd<'_>) -> Self {
+        Self {
+            dt: step.dt,
+            whole: Default::default(),
+            lost: Default::default(),
+            crossing: Crossing::default(),
         }
     }
 
-    /// Returns the energy dissipated at the end of a step by a point at a site, J:
-    /// [`StepEnd::dissipated_energy`] of its loss of energy.
-    pub fn dissipated(
-        &self,
-        states: &States,
-        [i, site]: [usize; 2],
-        volume: f64,
-        step: &StepEnd<'_>,
-    ) -> f64 {
-        let Self { whole, lost } = self;
+    /// Adds a bond that is intact before the failure. Returns the bond if it breaks.
+    pub fn add<L: Kinematics, const D: usize>(
+        &mut self,
+        bond: &LosingBond<D>,
+        broken: bool,
+    ) -> Option<LostBond<D>> {
+        let square = dot(bond.xi, bond.xi);
+        let weight = bond.weight * square;
+        let before: [f64; D] = std::array::from_fn(|c| bond.eta[c] - self.dt * bond.velocity[c]);
+        let mut stretches = [0.0; 2];
+        for (k, eta) in [bond.eta, before].into_iter().enumerate() {
+            let t = F64x8([strain::<L, D>(bond.xi, eta); LANES]);
+            stretches[k] = L::exact_stretch(t).0[0];
+            let stretch = stretches[k] - bond.thermal;
+            // dψ/dt for the mean velocity.
+            let along = dot(direction::<L, D>(bond.xi, eta), bond.velocity);
+            let rate = along * L::contraction(t).0[0] / square;
+            self.whole[k].add(weight, bond, [stretch, rate]);
+            if broken {
+                self.lost[k].add(weight, bond, [stretch, rate]);
+            }
+        }
+        broken.then(|| {
+            let [end, start] = stretches;
+            let share = weight * end * end;
+            let turned = turns_around(&bond.xi, &before, &bond.eta);
+            self.crossing
+                .add(share, [start, end], bond.critical, turned);
+            LostBond {
+                neighbour: bond.neighbour,
+                along: direction::<L, D>(bond.xi, bond.eta),
+                share,
+            }
+        })
+    }
+
+    /// Returns the energy that a point at a site loses, J, and its rate, W, at the end or the start of the step.
+    fn at(&self, k: usize, states: &States, [i, site]: [usize; 2], volume: f64) -> [f64; 2] {
+        let (whole, lost) = (&self.whole[k], &self.lost[k]);
         let [theta, theta_rate] = whole.extension.map(|sum| states.dilatation[i] * sum);
         let [loss, loss_rate] = lost.extension.map(|sum| states.dilatation[i] * sum);
         // Decrease of θ² and of its rate.
@@ -294,7 +332,20 @@ impl Loss {
             + 0.5 * states.stiffness[site] * lost.square[0];
         let power = states.bulk[i] * (loss_rate * left + theta_rate * loss)
             + states.stiffness[site] * lost.square[1];
-        step.dissipated_energy(volume * energy, volume * power)
+        [volume * energy, volume * power]
+    }
+
+    /// Returns the energy dissipated at the end of a step by a point at a site.
+    pub fn judge(
+        &self,
+        states: &States,
+        ends: [usize; 2],
+        volume: f64,
+        step: &StepEnd<'_>,
+    ) -> Judged {
+        let end = self.at(0, states, ends, volume);
+        let start = || self.at(1, states, ends, volume);
+        self.crossing.judge(step, end, start)
     }
 }
 

@@ -4,6 +4,7 @@ use super::arrays::Arrays;
 use crate::domain::Field;
 use crate::lanes::LANES;
 use crate::material::{PairForce, SolidClasses};
+use crate::operator::coarse::LostBond;
 use crate::operator::damage::{BreakEvent, Tally};
 use crate::operator::grid::families::Families;
 use crate::operator::grid::layout::Chunk;
@@ -32,6 +33,19 @@ pub(super) struct StencilRule<'a, const D: usize> {
     pub stretches: Option<&'a [f64]>,
 }
 
+impl<const D: usize> StencilRule<'_, D> {
+    /// Returns the critical stretch of a bond between two places, including thermal stretch.
+    fn limit(&self, ends: [usize; 2]) -> f64 {
+        let layout = self.families.layout;
+        let [a, b] = ends.map(|place| layout.site_at(place));
+        let limit = self.classes.limits(a, b).stretch;
+        self.stretches.map_or(limit, |stretches| {
+            let [i, j] = ends.map(|place| layout.point_at(place));
+            heated_limit(limit, 0.5 * (stretches[i] + stretches[j]))
+        })
+    }
+}
+
 /// A chunk whose bonds are checked individually.
 #[derive(Clone, Copy)]
 pub(super) struct ChunkBonds<'a> {
@@ -56,7 +70,7 @@ pub(super) fn break_chunk<L: Kinematics, const D: usize>(
     intact: &mut [u8],
     tally: &mut Tally,
 ) -> bool {
-    let (place, layout) = (arrays.place(bonds.chunk), rule.families.layout);
+    let place = arrays.place(bonds.chunk);
     let mut broken = vec![0; intact.len()];
     let mut any = false;
     for (k, offset) in arrays.offsets.iter().enumerate() {
@@ -67,12 +81,7 @@ pub(super) fn break_chunk<L: Kinematics, const D: usize>(
             let (measure, square) = L::Measure::stretch_measure(offset.xi, eta);
             if measure > rule.threshold * square {
                 let ends = [here, here.wrapping_add_signed(offset.shift)];
-                let [a, b] = ends.map(|place| layout.site_at(place - arrays.margin));
-                let limit = rule.classes.limits(a, b).stretch;
-                let limit = rule.stretches.map_or(limit, |stretches| {
-                    let [i, j] = ends.map(|place| layout.point_at(place - arrays.margin));
-                    heated_limit(limit, 0.5 * (stretches[i] + stretches[j]))
-                });
+                let limit = rule.limit(ends.map(|place| place - arrays.margin));
                 over |= u8::from(measure > L::Measure::threshold(limit) * square) << lane;
             }
         }
@@ -103,11 +112,10 @@ pub(super) fn take_bonds<L: Kinematics, const D: usize>(
             continue;
         }
         tally.broken.add(count as u64);
-        let loss = loss_of::<L, D>(arrays, rule, [arrays.place(bonds.chunk), lane], i, |k| {
-            [intact[k], broken[k]]
-        });
-        let volume = rule.volumes[i];
-        tally.dissipate(i, loss.dissipated(rule.states, [i, i], volume, rule.step));
+        let place = [arrays.place(bonds.chunk), lane];
+        let (loss, lost) = loss_of::<L, D>(arrays, rule, place, i, |k| [intact[k], broken[k]]);
+        let judged = loss.judge(rule.states, [i, i], rule.volumes[i], rule.step);
+        tally.lose(i, judged, &lost);
     }
     for (k, (intact, broken)) in intact.iter_mut().zip(broken).enumerate() {
         *intact &= !broken;
@@ -124,28 +132,27 @@ pub(super) fn take_bonds<L: Kinematics, const D: usize>(
     }
 }
 
-/// Returns the loss of point i in a lane of the chunk at a place; `bits` are the intact and the breaking
-/// bonds of an offset.
+/// Returns the loss of point i in a lane of the chunk at a place, and the breaking bonds; `bits` are the intact and the
+/// breaking bonds of an offset.
 fn loss_of<L: Kinematics, const D: usize>(
     arrays: &Arrays<'_, D>,
     rule: &StencilRule<'_, D>,
     [place, lane]: [usize; 2],
     i: usize,
     bits: impl Fn(usize) -> [u8; 2],
-) -> Loss {
+) -> (Loss, Vec<LostBond<D>>) {
     let here = place + lane;
-    let mut loss = Loss::default();
+    let (mut loss, mut lost) = (Loss::new(rule.step), Vec::new());
     for (k, offset) in arrays.offsets.iter().enumerate() {
         let [left, broken] = bits(k).map(|bits| bits >> lane & 1 == 1);
         if !left {
             continue;
         }
-        let there = here.wrapping_add_signed(offset.shift) - arrays.margin;
-        let velocity = |field: Field<'_>| {
-            let j = rule.families.layout.point_at(there);
-            field.difference([i, j])
-        };
+        let ends = [here, here.wrapping_add_signed(offset.shift)];
+        let j = rule.families.layout.point_at(ends[1] - arrays.margin);
+        let velocity = |field: Field<'_>| field.difference([i, j]);
         let bond = LosingBond {
+            neighbour: j,
             xi: offset.xi,
             eta: arrays.difference(here, offset.shift),
             velocity: rule.velocity.map_or([0.0; D], velocity),
@@ -153,10 +160,11 @@ fn loss_of<L: Kinematics, const D: usize>(
             factor: 1.0,
             stored: [0.0; 2],
             thermal: rule.stretches.map_or(0.0, |stretches| stretches[i]),
+            critical: rule.limit(ends.map(|place| place - arrays.margin)),
         };
-        loss.add::<L, D>(&bond, broken);
+        lost.extend(loss.add::<L, D>(&bond, broken));
     }
-    loss
+    (loss, lost)
 }
 
 /// Returns the lanes whose bits are set.

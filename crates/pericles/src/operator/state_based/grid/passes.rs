@@ -211,9 +211,8 @@ impl<L: Kinematics, const D: usize> Breakable for LinearSolidGrid<L, D> {
         damage::take_dissipated(&mut self.blocks, out);
     }
 
-    /// Always empty: the energy of a bond at its critical stretch depends on the other bonds of its ends.
     fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {
-        Vec::new()
+        damage::take_coarse_parts(self.cloud.domain(), &mut self.blocks)
     }
 
     fn broken_bonds(&self) -> u64 {
