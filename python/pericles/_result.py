@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -27,6 +28,28 @@ def optional(name: str, extra: str) -> Any:
         return importlib.import_module(name)
     except ImportError:
         raise PericlesError(f'this needs the package {name}: pip install {name}, or pip install "pericles[{extra}]"') from None
+
+
+_SECONDS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "\u00b5s": 1e-6, "\u03bcs": 1e-6, "ns": 1e-9, "ps": 1e-12, "min": 60.0, "h": 3600.0}
+
+
+def seconds(time: float | str) -> float:
+    """Return a time in seconds: a number, or a text with a unit as in decks."""
+    if isinstance(time, str):
+        number = re.fullmatch(r"\s*([-+0-9.eE]+)\s*(\S*)\s*", time)
+        unit = _SECONDS.get(number.group(2) or "s") if number else None
+        try:
+            if number and unit is not None:
+                return float(number.group(1)) * unit
+        except ValueError:
+            pass
+    else:
+        try:
+            return float(time)
+        except (TypeError, ValueError):
+            pass
+    units = ", ".join(name for name in _SECONDS if name.isascii())
+    raise PericlesError(f"the time is {time!r}; allowed: a number in s, or a text with one of the units {units}, such as \"3 us\"")
 
 
 class Table(Mapping[str, "NDArray[np.float64]"]):
@@ -246,14 +269,14 @@ class Result:
             return np.array(self._recording.times())
         return np.array([time for time, _ in self._series()])
 
-    def _output(self, time: float | None, output: int | None) -> int:
+    def _output(self, time: float | str | None, output: int | None) -> int:
         times = self.times
         if time is not None and output is not None:
             raise PericlesError("give time or output, not both")
         if len(times) == 0:
             raise PericlesError("the run has no outputs of fields; request them under [output] of the deck, or by `keep`")
         if time is not None:
-            return int(np.argmin(np.abs(times - time)))
+            return int(np.argmin(np.abs(times - seconds(time))))
         index = -1 if output is None else int(output)
         if not -len(times) <= index < len(times):
             raise PericlesError(f"output {index} does not exist; there are {len(times)}, from 0 to {len(times) - 1}")
@@ -285,15 +308,15 @@ class Result:
     def _dimension(self) -> int:
         return int((self._report.get("model") or {}).get("dimension") or 3)
 
-    def field(self, name: str, *, time: float | None = None, output: int | None = None) -> NDArray[np.float64]:
+    def field(self, name: str, *, time: float | str | None = None, output: int | None = None) -> NDArray[np.float64]:
         """Return a field of an output.
 
         Parameters
         ----------
         name : str
             Name in lower case, such as ``"displacement"`` or ``"strain_energy_density"``.
-        time : float, optional
-            The output nearest to this time, s.
+        time : float or str, optional
+            The output nearest to this time: a number in s, or a text with a unit, such as ``"3 us"``.
         output : int, optional
             The number of the output; by default the last one, -1.
 
@@ -317,7 +340,7 @@ class Result:
             return values.reshape(-1)
         return values[:, : self._dimension] if values.shape[1] == 3 else values
 
-    def to_pyvista(self, *, time: float | None = None, output: int | None = None, cells: bool = True) -> Any:
+    def to_pyvista(self, *, time: float | str | None = None, output: int | None = None, cells: bool = True) -> Any:
         """Return all fields of an output as a PyVista data set.
 
         Parameters
@@ -349,7 +372,7 @@ class Result:
             data[shown] = values if values.ndim == 1 or values.shape[1] > 3 else _padded(values)
         return mesh
 
-    def to_meshio(self, *, time: float | None = None, output: int | None = None) -> Any:
+    def to_meshio(self, *, time: float | str | None = None, output: int | None = None) -> Any:
         """Return the points with all fields of an output as a meshio mesh of vertices."""
         meshio = optional("meshio", "all")
         index = self._output(time, output)
@@ -366,7 +389,7 @@ class Result:
         field: str = "damage",
         *,
         component: int | str | None = None,
-        time: float | None = None,
+        time: float | str | None = None,
         output: int | None = None,
         scale: float = 1.0,
         range: tuple[float, float] | None = None,

@@ -119,4 +119,5 @@ def _is_of(found: Result, deck: Any) -> bool:
 
 def _name(chosen: Mapping[str, Any]) -> str:
     parts = ",".join(f"{key.split('.')[-1]}={value}" for key, value in chosen.items())
-    return re.sub(r"[^\w+\-.=,]", "_", parts)
+    # File systems allow 255 bytes for a name.
+    return re.sub(r"[^\w+\-.=,]", "_", parts)[:100]

@@ -31,8 +31,11 @@ def _text(text: str) -> str:
 
 def plain(value: Any, path: str = "") -> Any:
     """Return a deck value without NumPy types."""
-    if isinstance(value, (str, bool, int, float)) or value is None:
+    if isinstance(value, (str, bool)) or value is None:
         return value
+    # Subclasses, such as `numpy.float64`, have a form of their own as text.
+    if isinstance(value, (int, float)):
+        return int(value) if isinstance(value, int) else float(value)
     if isinstance(value, Mapping):
         return {key: plain(inner, f"{path}.{key}".strip(".")) for key, inner in value.items()}
     if hasattr(value, "item") and getattr(value, "ndim", None) == 0:
@@ -58,13 +61,13 @@ def _value(value: Any) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, int):
-        return str(value)
+        return str(int(value))
     if isinstance(value, float):
         if value != value:
             return "nan"
         if value in (float("inf"), float("-inf")):
             return "inf" if value > 0 else "-inf"
-        return repr(value)
+        return repr(float(value))
     if isinstance(value, str):
         return _text(value)
     if isinstance(value, Mapping):

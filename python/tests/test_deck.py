@@ -120,8 +120,13 @@ def test_numpy_values_and_copies(bar):
     bar["body"]["spacing"] = np.float32(0.125)
     bar["material"]["density"] = np.int64(7850)
     bar["initial"] = [{"velocity": np.array([1.5])}]
+    # The text of a `numpy.float64` is not that of a number.
+    bar["material"]["youngs_modulus"] = np.float64(2.1e11)
     deck = pc.Deck.from_dict(bar)
     assert deck.values()["body"]["spacing"] == 0.125
+    assert deck.values()["material"]["youngs_modulus"] == 2.1e11
+    assert deck.with_({"time.end": np.float64(1e-4)}).values()["time"]["end"] == 1e-4
+    assert "np." not in deck.with_({"load.0": {"set": "all", "body_force": [np.float64(1)]}}).to_toml()
     copy = deck.copy()
     copy["body"]["spacing"] = "1 cm"
     assert deck["body"]["spacing"] == 0.125

@@ -75,6 +75,11 @@ def test_results_of_a_run(plate, tmp_path):
     assert len(result.times) == 5 and np.all(np.diff(result.times) > 0)
     middle = result.field("displacement", time=result.times[2] * 1.01)
     assert np.array_equal(middle, result.field("displacement", output=2))
+    text = f"{result.times[2] * 1e6} us"
+    assert np.array_equal(middle, result.field("displacement", time=text))
+    for wrong in ("3 kg", "soon", [1.0, 2.0]):
+        with pytest.raises(pc.PericlesError, match="number in s"):
+            result.field("displacement", time=wrong)
     assert result.field("damage").shape == (n,)
     assert result.history["time"][-1] == pytest.approx(4e-6)
     assert result.history.units["kinetic_energy"] == "J"

@@ -35,6 +35,15 @@ pub(crate) struct Entry {
 }
 
 impl Value {
+    /// Returns whether it is a table or a list of tables.
+    pub(crate) fn is_table(&self) -> bool {
+        match self {
+            Self::Table(_) => true,
+            Self::Array(items) => items.first().is_some_and(|item| item.value.is_table()),
+            _ => false,
+        }
+    }
+
     /// Returns the type in words.
     pub(crate) fn kind(&self) -> &'static str {
         match self {

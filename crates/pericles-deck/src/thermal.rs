@@ -165,9 +165,6 @@ const TEMPERATURES: &[&str] = &["temperature", "file"];
 /// Keys that heat conduction needs together.
 const CONDUCTION: &[&str] = &["conductivity", "specific_heat"];
 
-/// Largest allowed coefficient, above that of any solid, 1/K.
-pub(crate) const LARGEST: f64 = 0.01;
-
 /// Why steady states have no heat from dissipated energy.
 pub(crate) const STORES_NO_HEAT: &str = "with scheme = \"steady\" the temperature stores no heat; use scheme = \"explicit\", \"trapezoidal\" or \"backward-euler\"";
 
@@ -252,11 +249,7 @@ pub(crate) fn read(
 }
 
 fn expansion(item: &Item<'_>) -> Option<f64> {
-    item.within(
-        Quantity::Expansion,
-        "a number from -0.01 to 0.01 in 1/K (steel: 12e-6)",
-        |value| value.abs() <= LARGEST,
-    )
+    item.quantity(Quantity::Expansion)
 }
 
 fn conductivity(item: &Item<'_>) -> Option<f64> {

@@ -40,12 +40,11 @@ impl Subject for Caution {
             Self::UnusedCoordinate { .. } => {
                 "set the coordinate to 0, or set `dimension` so that all coordinates are used"
             }
-            Self::ColdRadiation { .. } => "add 273.15 to temperatures in °C",
             Self::LongExodusNames { .. } => {
                 "use names of at most 32 bytes (arrays `Set_NAME`: 28), or another format"
             }
             // The message contains the advice.
-            Self::Mesh { .. } => return None,
+            Self::Mesh { .. } | Self::DoubtfulHeat { .. } => return None,
             Self::FilledVolume { .. } => {
                 "use a smaller spacing or cells = \"partial\"; where surfaces overlap, the enclosed volume counts twice but is filled once"
             }
@@ -193,7 +192,7 @@ impl Subject for Caution {
             Self::TinySpacing { .. } => "small spacing",
             Self::ClosePoints { .. } => "close points",
             Self::UnusedCoordinate { .. } => "not used",
-            Self::ColdRadiation { .. } => "low temperature",
+            Self::DoubtfulHeat { .. } => "unlikely",
             Self::LongExodusNames { .. } => "name shortened",
             Self::IdleHole | Self::NothingBreaks { .. } | Self::NothingDissipates { .. } => {
                 "no effect"

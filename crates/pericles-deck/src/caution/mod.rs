@@ -167,11 +167,11 @@ pub enum Caution {
         /// Its value, m.
         value: f64,
     },
-    /// A temperature that is likely to be in degrees Celsius, in a body with radiation.
-    #[error("the temperature is {} in a body with radiation, which depends on absolute temperatures", quantity(*value, "K"))]
-    ColdRadiation {
-        /// The temperature, K.
-        value: f64,
+    /// An unlikely temperature or coefficient of thermal expansion.
+    #[error("{problem}")]
+    DoubtfulHeat {
+        /// Description, with advice.
+        problem: String,
     },
     /// Names that are too long for Exodus files.
     #[error(

@@ -33,13 +33,13 @@ pub(super) fn read(
             "it requires model = \"state-based\" or \"correspondence\", whose points have a stress",
         );
     }
-    for key in ["yield_stress", "hardening"] {
+    for key in ["yield_stress", "hardening", "failure"] {
         table.forbid(
             key,
             "it requires model = \"state-based\" or \"correspondence\"",
         );
     }
-    for key in ["strains", "failure", "stretch_definition", "viscosity"] {
+    for key in ["strains", "stretch_definition", "viscosity"] {
         table.forbid(key, "it requires model = \"state-based\"");
     }
     let dimension = body.frame.dimension;

@@ -168,17 +168,26 @@ fn names(item: &Item<'_>, dimension: Option<usize>, sets: &SetNames) -> Option<N
             item.text();
             return Some(Name::Number(number));
         }
-        let words = field_names(dimension);
-        let fields = words.iter().map(|(word, one)| (word.as_str(), Some(*one)));
+        let names = field_names(dimension);
+        let is_part = |word: &str| {
+            let mut parts = names
+                .iter()
+                .filter(|(_, (_, component))| component.is_some());
+            parts.any(|(name, _)| name == word)
+        };
+        if item.word().is_some_and(is_part) {
+            item.out_of_range("whole fields: components are part of them");
+            return None;
+        }
+        let whole = names
+            .iter()
+            .filter(|(_, (_, component))| component.is_none());
+        let fields = whole.map(|(word, (field, _))| (word.as_str(), Some(*field)));
         let numbers = [PointNumber::MATERIAL, PointNumber::PIECE, "Set_<name>"];
         let numbers = numbers.map(|name| (name, None));
-        let words: Vec<(&str, Option<FieldComponent>)> = fields.chain(numbers).collect();
+        let words: Vec<(&str, Option<Field>)> = fields.chain(numbers).collect();
         match item.choice("field", &words)? {
-            Some((field, None)) => Some(Name::Field(field)),
-            Some((_, Some(_))) => {
-                item.out_of_range("whole fields: components are part of them");
-                None
-            }
+            Some(field) => Some(Name::Field(field)),
             None => {
                 item.out_of_range("\"Set_\" followed by the name of a set, such as \"Set_top\"");
                 None

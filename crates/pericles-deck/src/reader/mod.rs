@@ -27,7 +27,7 @@ use crate::source::{Place, Sources};
 use crate::wording::shortened;
 
 /// Returns the table to which a key belongs.
-pub(crate) type HomeOf = fn(&str) -> Option<&'static str>;
+pub(crate) type HomeOf = fn(&str, bool) -> Option<&'static str>;
 
 /// Problems and values recorded while a deck is read.
 pub(crate) struct Ledger {
@@ -83,8 +83,8 @@ impl Ledger {
     }
 
     /// Returns the table to which a key belongs.
-    fn home_of(&self, key: &str) -> Option<&'static str> {
-        self.home_of.and_then(|home_of| home_of(key))
+    fn home_of(&self, key: &str, is_table: bool) -> Option<&'static str> {
+        self.home_of.and_then(|home_of| home_of(key, is_table))
     }
 
     /// Returns the root table.

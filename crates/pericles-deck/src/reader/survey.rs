@@ -142,6 +142,14 @@ impl Survey {
         self.values.values()
     }
 
+    /// Returns all values with their places.
+    #[cfg(test)]
+    pub(crate) fn places(&self) -> impl Iterator<Item = (&str, &ValueSurvey)> {
+        self.values
+            .iter()
+            .map(|(place, value)| (place.as_str(), value))
+    }
+
     /// Returns all tables with their places.
     pub(crate) fn tables(&self) -> impl Iterator<Item = (&str, &TableSurvey)> {
         self.tables

@@ -341,7 +341,7 @@ impl<'a> Table<'a> {
                     // A key of other bodies does not belong to this table either.
                     home: nearest
                         .is_none()
-                        .then(|| self.ledger.home_of(&entry.key))
+                        .then(|| self.ledger.home_of(&entry.key, entry.node.value.is_table()))
                         .flatten()
                         .filter(|home| *home != self.path.to_string()),
                     allowed: owned(&allowed),

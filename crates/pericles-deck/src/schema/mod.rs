@@ -11,15 +11,15 @@ mod json;
 mod markdown;
 mod specimens;
 
-use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::OnceLock;
 
 use serde_json::Value as Json;
 
 use self::descriptions::Descriptions;
 use crate::deck::Deck;
-use crate::reader::{Form, Survey};
+use crate::reader::{Form, Survey, below};
 use crate::vocabulary::synonyms;
 
 /// Returns the JSON Schema of decks, draft 2020-12, with which editors complete keys and words and mark errors.
@@ -42,16 +42,40 @@ pub fn specimens() -> impl Iterator<Item = (&'static str, Vec<String>)> {
 }
 
 /// Returns the table to which a key belongs, as written in a deck: `[body]`, `[[output.picture]]`. None for
-/// unknown keys, or if several tables at the same depth have it.
-pub(crate) fn home_of(key: &str) -> Option<&'static str> {
-    static HOMES: OnceLock<BTreeMap<&'static str, Option<String>>> = OnceLock::new();
-    HOMES
-        .get_or_init(|| homes(&Schema::new()))
-        .get(key)?
-        .as_deref()
+/// unknown keys, if several tables at the same depth have it, or if `is_table` and it takes no table.
+pub(crate) fn home_of(key: &str, is_table: bool) -> Option<&'static str> {
+    static HOMES: OnceLock<(Homes, BTreeSet<&'static str>)> = OnceLock::new();
+    let (homes, of_tables) = HOMES.get_or_init(|| {
+        let schema = Schema::new();
+        (homes(&schema), of_tables(&schema))
+    });
+    if is_table && !of_tables.contains(key) {
+        return None;
+    }
+    homes.get(key)?.as_deref()
 }
 
-fn homes(schema: &Schema) -> BTreeMap<&'static str, Option<String>> {
+/// The table of each key; `None` for keys of several tables.
+type Homes = BTreeMap<&'static str, Option<String>>;
+
+/// Returns the names of the keys whose values may be tables or lists of tables.
+fn of_tables(schema: &Schema) -> BTreeSet<&'static str> {
+    let takes_tables = |place: String| {
+        [format!("{place}[]"), place].iter().any(|place| {
+            let forms = schema.forms(place).into_iter();
+            let mut forms =
+                forms.map(|form| matches!(form, Form::Table | Form::Names(_) | Form::Defined(_)));
+            forms.any(|is_table| is_table)
+        })
+    };
+    let tables = schema.survey.tables();
+    let keys = tables.flat_map(|(place, table)| table.keys().map(move |key| (place, key)));
+    keys.filter(|(place, key)| takes_tables(below(place, key)))
+        .flat_map(|(_, key)| names(key))
+        .collect()
+}
+
+fn homes(schema: &Schema) -> Homes {
     let definitions = schema.survey.definitions();
     let mut found: BTreeMap<&'static str, ((usize, bool), Option<String>)> = BTreeMap::new();
     for (place, table) in schema.survey.tables() {
@@ -160,7 +184,9 @@ fn names(key: &'static str) -> impl Iterator<Item = &'static str> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::reader::below;
+    use crate::deck::Document;
+    use crate::document::{Node, Value};
+    use crate::reader::Ledger;
 
     /// Returns all keys with their places.
     fn keys(schema: &Schema) -> Vec<String> {
@@ -200,8 +226,13 @@ mod tests {
             ("radius", Some("[body]")),
             ("unheard_of", None),
         ] {
-            assert_eq!(home_of(key), home, "{key}");
+            assert_eq!(home_of(key, false), home, "{key}");
         }
+        // `[[step]]` is not the time step of heat conduction; `[[hole]]` belongs to the body.
+        assert_eq!(home_of("step", false), Some("[thermal]"));
+        assert_eq!(home_of("step", true), None);
+        assert_eq!(home_of("hole", true), Some("[body]"));
+        assert_eq!(home_of("picture", true), Some("[output]"));
     }
 
     #[test]
@@ -223,6 +254,80 @@ mod tests {
             "descriptions.toml lacks {unexplained:#?}"
         );
         assert!(formless.is_empty(), "no specimen has {formless:#?}");
+    }
+
+    /// Returns the number of keys of a document, in all tables.
+    fn count(node: &Node) -> usize {
+        match &node.value {
+            Value::Table(entries) => entries.iter().map(|entry| 1 + count(&entry.node)).sum(),
+            Value::Array(items) => items.iter().map(count).sum(),
+            _ => 0,
+        }
+    }
+
+    /// Removes a key by its place in the order of [`count`]; returns what is left to count.
+    fn remove(node: &mut Node, mut number: usize) -> Result<(), usize> {
+        match &mut node.value {
+            Value::Table(entries) => {
+                for k in 0..entries.len() {
+                    if number == 0 {
+                        entries.remove(k);
+                        return Ok(());
+                    }
+                    match remove(&mut entries[k].node, number - 1) {
+                        Ok(()) => return Ok(()),
+                        Err(left) => number = left,
+                    }
+                }
+            }
+            Value::Array(items) => {
+                for item in items {
+                    match remove(item, number) {
+                        Ok(()) => return Ok(()),
+                        Err(left) => number = left,
+                    }
+                }
+            }
+            _ => {}
+        }
+        Err(number)
+    }
+
+    #[test]
+    fn the_reference_has_every_default_that_the_reader_fills_in() {
+        let schema = Schema::new();
+        let mut wrong = BTreeSet::new();
+        let mut valid = 0;
+        for specimen in specimens::SPECIMENS {
+            let changes: Vec<String> = specimen.changes.iter().map(|&text| text.into()).collect();
+            let document = || Document::of(specimen.deck, "specimen", &changes).unwrap();
+            for number in 0..count(&document().root) {
+                let mut document = document();
+                remove(&mut document.root, number).unwrap();
+                let ledger = Ledger::surveyed(document.sources, Survey::default());
+                let read = Deck::read_with(ledger, &document.root, document.outdated, &[]);
+                // A required key.
+                let Ok((_, filled)) = read else { continue };
+                valid += 1;
+                // The default of their schedules is that of the history.
+                let places = filled
+                    .places()
+                    .filter(|(place, _)| !place.starts_with("output.cracks."));
+                for (place, value) in places {
+                    let known = schema.survey.value(place).map(|known| &known.defaults[..]);
+                    for default in &value.defaults {
+                        if !known.unwrap_or_default().contains(default) {
+                            wrong.insert(format!("{place}: {default}"));
+                        }
+                    }
+                }
+            }
+        }
+        assert!(valid > 1000, "{valid}");
+        assert!(
+            wrong.is_empty(),
+            "add specimens without these keys: {wrong:#?}"
+        );
     }
 
     #[test]

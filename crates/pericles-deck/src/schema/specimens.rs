@@ -280,6 +280,12 @@ pub(super) const SPECIMENS: &[Specimen] = &[
     specimen(BLOCK, &["body.periodic=false", "body.piece=[{ name = 'far', shape = 'ball', radius = 2, centre = [0, 0, 30], rotation = { angle = 1, axis = [1, 0, 0] } }]"]),
     // Contact.
     specimen(PLATE, &["contact={ pairs = 'pieces', law = 'power', exponent = 1.5, stiffness = 2, distance = 1, closing = 1, damping = 0.3, friction = { coefficient = 0.2, speed = 1 } }"]),
+    specimen(PLATE, &["contact={}"]),
+    specimen(BAR, &["damping={ mass = 1 }"]),
+    specimen(BAR, &["output={ fragments = { smallest = 0.5 } }"]),
+    specimen(PLATE, &["material={ model = 'state-based', density = 1, youngs_modulus = 2, poisson_ratio = 0.3, horizon_ratio = 3, yield_stress = 1 }"]),
+    specimen(PLATE, &["material={ model = 'correspondence', density = 1, youngs_modulus = 2, poisson_ratio = 0.3, horizon_ratio = 3, yield_stress = 1 }"]),
+    specimen(PLATE, &["material.influence={ function = 'tuned', method = 'least-squares', combination = 'separated' }"]),
     specimen(BAR, &["contact={ law = 'emu' }", "impactor=[{ name = 'a', shape = 'half-space', normal = 1, centre = 0 }]"]),
     specimen(
         BAR,

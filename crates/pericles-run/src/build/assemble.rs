@@ -69,6 +69,7 @@ pub fn assemble(
     assembler.check_cells(&discretisation)?;
     assembler.check_point_numbers(sets)?;
     warnings.extend(assembler.judge_names(sets));
+    warnings.extend(assembler.judge_expansion());
     let mut system = System::new(Arc::clone(cloud), bonds.operator, density.clone())
         .map_err(|error| at("material.density", error))?;
     let temperature = field.as_ref().map(DiffusingField::shared);

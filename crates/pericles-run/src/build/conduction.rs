@@ -22,7 +22,7 @@ use super::assembler::Assembler;
 use super::body::BodyParts;
 use super::discretisation::Discretisation;
 use super::loads::volume_of;
-use super::radiation::judge_radiation;
+use super::plausible_heat::judge_radiation;
 use super::refusal::{at, at_path};
 use super::resources::Resources;
 use super::thermal::Given;

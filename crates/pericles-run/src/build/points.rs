@@ -1,7 +1,7 @@
 //! Points of a body: on a grid, or listed in a file.
 
 use pericles::PericlesError;
-use pericles::family::pairs_within;
+use pericles::family::{VolumeCorrection, pairs_within};
 use pericles::space::{
     GradedCloud, GradedGrid, Grid, ListedPoints, PointCloud, PointSource, Shape, gauss_bar,
     idle_holes, rectangular_body,
@@ -86,7 +86,9 @@ impl Assembler<'_> {
             .cloud(file.dimension, solid.shape.section())
             .map_err(|error| at("body.file", error))?;
         let (given, found) = (file.spacing, cloud.spacing());
-        if (1.0 / OFF..=OFF).contains(&(found / given)) {
+        // Without partial volumes the size of the cells has no influence.
+        let is_used = solid.material.volume_correction() != VolumeCorrection::None;
+        if !is_used || (1.0 / OFF..=OFF).contains(&(found / given)) {
             self.check_listed(solid, &cloud, resources)?;
             warnings.extend(self.judge_listed(&listed, &cloud));
             return Ok(cloud);

@@ -75,3 +75,24 @@ fn negative_temperatures_are_refused_and_those_of_rooms_in_celsius_lead_to_a_war
     let quiet = build(&celsius);
     assert!(!quiet.warnings.iter().any(|w| w.line().contains("273.15")));
 }
+
+#[test]
+fn large_coefficients_of_expansion_lead_to_a_warning() {
+    let deck = |alpha: &str| {
+        format!(
+            "[body]\nshape = \"bar\"\nlength = 10\nspacing = 1\n[material]\ndensity = 1\nyoungs_modulus = 1\nhorizon = 3\n\
+             [thermal]\nexpansion = {alpha}\ntemperature = 1\nreference = 0\n[time]\nend = 1\ndt = 0.1\n"
+        )
+    };
+    let told = |alpha: &str| {
+        let built = build(&deck(alpha));
+        let lines = built.warnings.iter().map(|warning| warning.line());
+        lines
+            .filter(|line| line.contains("thermal expansion is"))
+            .count()
+    };
+    assert_eq!(
+        [told("12e-6"), told("0.01"), told("0.05"), told("-0.02")],
+        [0, 0, 1, 1]
+    );
+}

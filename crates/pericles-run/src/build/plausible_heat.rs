@@ -1,4 +1,4 @@
-//! Temperatures of bodies with radiation, which must be absolute.
+//! Unlikely coefficients of thermal expansion, and temperatures of bodies with radiation, which must be absolute.
 
 use pericles::space::PointCloud;
 use pericles::units::quantity;
@@ -6,6 +6,7 @@ use pericles_deck::{
     BuildError, Caution, Component, Fault, KeyPath, ModelWarning, Remark, Thermal, ThermalAmplitude,
 };
 
+use super::assembler::Assembler;
 use super::refusal::at_path;
 
 /// Temperatures that are likely to be in degrees Celsius if there is radiation, K: below are temperatures of outer space,
@@ -63,8 +64,43 @@ pub(super) fn judge_radiation(
             return Err(at_path(path, fault));
         }
         if DOUBTFUL.contains(&value) {
-            warnings.push(Remark::new(path, Caution::ColdRadiation { value }));
+            let problem = format!(
+                "the temperature is {} in a body with radiation, which depends on absolute temperatures; add 273.15 to \
+                 temperatures in °C",
+                quantity(value, "K")
+            );
+            warnings.push(Remark::new(path, Caution::DoubtfulHeat { problem }));
         }
     }
     Ok(warnings)
+}
+
+impl Assembler<'_> {
+    /// Warns of coefficients of thermal expansion that no solid has.
+    pub(super) fn judge_expansion(&self) -> Vec<ModelWarning> {
+        /// Largest coefficient of solids with a margin, 1/K: that of rubber is 2e-4.
+        const LARGEST: f64 = 0.01;
+        let Some(thermal) = &self.model.thermal else {
+            return Vec::new();
+        };
+        let key = KeyPath::from("thermal");
+        let own = thermal.materials.iter().enumerate();
+        let own = own.filter_map(|(k, material)| {
+            let key = key.key("material").index(k).key("expansion");
+            Some((key, material.expansion?))
+        });
+        let all = thermal.expansion.map(|value| (key.key("expansion"), value));
+        let large = all
+            .into_iter()
+            .chain(own)
+            .filter(|(_, value)| value.abs() > LARGEST);
+        let caution = |(key, value)| {
+            let problem = format!(
+                "the coefficient of thermal expansion is {value} 1/K, larger than that of any solid (steel: 12e-6 1/K); \
+                 check its unit"
+            );
+            Remark::new(key, Caution::DoubtfulHeat { problem })
+        };
+        large.map(caution).collect()
+    }
 }
