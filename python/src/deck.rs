@@ -38,12 +38,6 @@ impl Deck {
         self.deck().to_json().to_string()
     }
 
-    /// Warnings about the text.
-    fn warnings(&self) -> Vec<String> {
-        let warnings = self.deck().warnings();
-        warnings.iter().map(pericles_deck::Warning::line).collect()
-    }
-
     /// The title.
     #[getter]
     fn title(&self) -> Option<String> {

@@ -128,7 +128,6 @@ fn decks_of_the_book_are_valid() {
             let name = root().join("examples/geometry/page.toml");
             let deck = Deck::parse(&text, &name.display().to_string(), &[]);
             let deck = deck.unwrap_or_else(|error| panic!("{place}: {error}\n{text}"));
-            assert!(deck.warnings().is_empty(), "{place}: {:?}", deck.warnings());
             let built = build(&deck, &readers());
             built.unwrap_or_else(|error| panic!("{place}: {error}\n{text}"));
             count += 1;

@@ -1,6 +1,5 @@
 //! The deck: text, model and the location of every value.
 
-use std::collections::HashSet;
 use std::path::{Path as FilePath, PathBuf};
 
 use serde_json::Value as Json;
@@ -8,7 +7,6 @@ use serde_json::Value as Json;
 use crate::assign::{self, Assignable, Assignment};
 use crate::body::{self, BodyRead, SurfaceRead};
 use crate::boundary;
-use crate::caution::Caution;
 use crate::conditions::{self, Constraint};
 use crate::contact;
 use crate::crack;
@@ -17,8 +15,7 @@ use crate::document::{self, Node};
 use crate::error::DeckError;
 use crate::exact;
 use crate::fault::Fault;
-use crate::finding::{Finding, Warning};
-use crate::former::{self, Former};
+use crate::finding::Finding;
 use crate::impactor;
 use crate::inheritance::inherit;
 use crate::interface::{self, MaterialInterface};
@@ -31,7 +28,6 @@ use crate::region::Frame;
 use crate::remark::{BuildError, Remark};
 use crate::set::{self, SetNames};
 use crate::source::Sources;
-use crate::spelling::{self, Renamed};
 use crate::subject::Subject;
 use crate::surface::{self, SurfaceBody};
 use crate::thermal::{self, Thermal};
@@ -43,21 +39,12 @@ pub struct Deck {
     /// The model, as plain data.
     pub model: Model,
     record: Record,
-    outdated: Outdated,
 }
 
-/// Deprecated names and tables in a deck.
-#[derive(Debug, Clone)]
-pub(crate) struct Outdated {
-    renamed: Vec<Renamed>,
-    tables: Option<Former>,
-}
-
-/// The document of a deck with its overrides, with deprecated names and tables replaced.
+/// The document of a deck with its overrides.
 pub(crate) struct Document {
     pub(crate) root: Node,
     pub(crate) sources: Sources,
-    pub(crate) outdated: Outdated,
 }
 
 impl Deck {
@@ -69,7 +56,7 @@ impl Deck {
     ) -> Result<Survey, DeckError> {
         let document = Document::of(text, "specimen", overrides)?;
         let ledger = Ledger::surveyed(document.sources, survey);
-        let (_, survey) = Self::read_with(ledger, &document.root, document.outdated, &[])?;
+        let (_, survey) = Self::read_with(ledger, &document.root, &[])?;
         Ok(survey)
     }
 
@@ -77,7 +64,6 @@ impl Deck {
     pub(crate) fn read_with(
         ledger: Ledger,
         root: &Node,
-        outdated: Outdated,
         sets: &[String],
     ) -> Result<(Self, Survey), DeckError> {
         let model = ledger.root(root).and_then(|root| model(root, sets));
@@ -87,7 +73,6 @@ impl Deck {
                 let deck = Self {
                     model,
                     record: closed.record,
-                    outdated,
                 };
                 Ok((deck, closed.survey))
             }
@@ -124,29 +109,6 @@ impl Deck {
     /// Returns the overrides.
     pub fn overrides(&self) -> impl Iterator<Item = &str> {
         (1..self.record.sources.count()).map(|k| self.record.sources.text(k))
-    }
-
-    /// Returns warnings about the text itself: deprecated names and tables.
-    pub fn warnings(&self) -> Vec<Warning> {
-        let locate = |caution, place| Finding::new(caution, self.record.sources.locate(place));
-        let renamed = &self.outdated.renamed;
-        let names = renamed.first().map(|first| {
-            let mut names: Vec<_> = renamed
-                .iter()
-                .map(|one| (one.former, one.present))
-                .collect();
-            let mut seen = HashSet::new();
-            names.retain(|name| seen.insert(*name));
-            locate(Caution::FormerNames { names }, first.place)
-        });
-        let tables = self.outdated.tables.as_ref().map(|former| {
-            let caution = Caution::FormerTables {
-                tables: former.tables.clone(),
-                text: former.text.clone(),
-            };
-            locate(caution, former.place)
-        });
-        names.into_iter().chain(tables).collect()
     }
 
     /// Adds the location in the text to a finding about the model.
@@ -281,16 +243,8 @@ impl Document {
         for text in overrides {
             overrides::apply(&mut root, text, &mut sources)?;
         }
-        let outdated = Outdated {
-            renamed: spelling::modernise(&mut root),
-            tables: former::rewrite(&mut root, &sources),
-        };
         inherit(&mut root);
-        Ok(Self {
-            root,
-            sources,
-            outdated,
-        })
+        Ok(Self { root, sources })
     }
 }
 

@@ -9,7 +9,6 @@ use crate::error::DeckError;
 use crate::fault::Fault;
 use crate::finding::Problem;
 use crate::source::{Place, Sources};
-use crate::spelling::present;
 use crate::vocabulary::{canonical, replaces};
 
 /// Larger than the nesting depth of any deck.
@@ -62,7 +61,6 @@ fn set(root: &mut Node, text: &str, source: usize) -> Result<(), Refusal> {
     }
     let new = value(written, source, path.len() + 1);
     let mut node = root;
-    let mut table = Vec::new();
     for (k, (step, start)) in steps.iter().enumerate() {
         let place = Place {
             source,
@@ -71,11 +69,7 @@ fn set(root: &mut Node, text: &str, source: usize) -> Result<(), Refusal> {
         };
         let last = k + 1 == steps.len();
         node = match &mut node.value {
-            Value::Table(entries) => {
-                let found = descend(entries, (&table, step), place, last);
-                table.push(present(&table, step));
-                found
-            }
+            Value::Table(entries) => descend(entries, step, place, last),
             Value::Array(items) => {
                 let count = items.len();
                 let item = step.parse::<usize>().ok().and_then(|k| items.get_mut(k));
@@ -132,24 +126,18 @@ fn value(written: &str, source: usize, offset: usize) -> Node {
 }
 
 /// Returns the value of a key of a table, inserting it if it is missing.
-fn descend<'n>(
-    entries: &'n mut Vec<Entry>,
-    (table, step): (&[&str], &str),
-    place: Place,
-    last: bool,
-) -> &'n mut Node {
-    let name = present(table, step);
+fn descend<'n>(entries: &'n mut Vec<Entry>, name: &str, place: Place, last: bool) -> &'n mut Node {
     let known = entries
         .iter()
-        .position(|entry| canonical(present(table, &entry.key)) == canonical(name));
+        .position(|entry| canonical(&entry.key) == canonical(name));
     if last {
-        entries.retain(|entry| !replaces(name, present(table, &entry.key)));
+        entries.retain(|entry| !replaces(name, &entry.key));
     } else if let Some(known) = known {
         return &mut entries[known].node;
     }
     let at = entries.len();
     entries.push(Entry {
-        key: step.into(),
+        key: name.into(),
         key_place: place,
         node: Node {
             place,

@@ -57,7 +57,7 @@ impl Deck {
     ) -> Result<Self, DeckError> {
         let document = Document::of(text, file_name, overrides)?;
         let ledger = Ledger::new(document.sources, home_of);
-        let (deck, _) = Self::read_with(ledger, &document.root, document.outdated, sets)?;
+        let (deck, _) = Self::read_with(ledger, &document.root, sets)?;
         deck.refuse_unstable_table()?;
         Ok(deck)
     }

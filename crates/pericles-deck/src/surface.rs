@@ -5,7 +5,6 @@ use pericles_manifold::geodesic::{Ball, GeodesicMethod};
 use serde::{Deserialize, Serialize};
 
 use crate::body::{SurfaceShape, VertexAreas};
-use crate::material::forbid_former_tables;
 use crate::quantity::Quantity;
 use crate::reader::Table;
 use crate::set::SetNames;
@@ -59,7 +58,6 @@ pub(crate) fn material(
     spacing: Option<f64>,
     sets: &SetNames,
 ) -> Option<(PowerMaterial, Vec<String>)> {
-    forbid_former_tables(&table);
     table.choice_or_first("model", "model", &[("power", ())]);
     table.maybe("name", |item| item.text());
     let positive = |key, quantity| table.required(key).and_then(|item| item.positive(quantity));

@@ -1,6 +1,5 @@
 //! Properties of a run before its first step, for reports, `check` and `run.json`.
 
-use pericles::material::{BondMaterial, Fracture, FractureCalibration, SurfaceCorrection};
 use pericles_deck::{Body, Deck, Model, ModelWarning};
 use pericles_waves::absorbing::{EndReport, KernelMethod, Side};
 use serde::Serialize;
@@ -109,9 +108,6 @@ pub struct Facts {
     pub instruction_set: &'static str,
     /// Warnings about the run.
     pub warnings: Vec<String>,
-    /// Defaults used by the deck that have changed since the last release.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub changed_defaults: Vec<String>,
 }
 
 /// The energy of a crack along a lattice plane.
@@ -304,21 +300,15 @@ impl Facts {
             ends: assembly.ends.iter().map(EndFacts::of).collect(),
             instruction_set: operator.instruction_set().name(),
             warnings,
-            changed_defaults: Vec::new(),
         }
     }
 
-    /// Returns the properties of the assembly of a deck, with locations of warnings and changed defaults.
+    /// Returns the properties of the assembly of a deck, with locations of warnings.
     pub fn of_deck(deck: &Deck, assembly: &Assembly) -> Self {
         let waves = assembly.judge_waves(&deck.model);
         let warnings = assembly.warnings.iter().chain(&waves);
         let located = |warning: &ModelWarning| deck.located(warning.clone()).line();
-        let of_text = deck.warnings().into_iter().map(|warning| warning.line());
-        let warnings = of_text.chain(warnings.map(located)).collect();
-        Self {
-            changed_defaults: changed_defaults(deck, assembly),
-            ..Self::with(&deck.model, assembly, warnings)
-        }
+        Self::with(&deck.model, assembly, warnings.map(located).collect())
     }
 }
 
@@ -330,41 +320,4 @@ fn plane_facts(constants: &MaterialConstants) -> Vec<PlaneFacts> {
         deviation: plane.energy() / constants.fracture_energy() - 1.0,
     });
     facts.collect()
-}
-
-/// Returns the defaults used by the deck that have changed since the last release.
-fn changed_defaults(deck: &Deck, assembly: &Assembly) -> Vec<String> {
-    let mut changed = Vec::new();
-    let Some(solid) = deck.model.body.solid() else {
-        return changed;
-    };
-    let constants = assembly.constants.as_ref();
-    let bonds = constants.and_then(MaterialConstants::bonds);
-    let Some((material, constants)) = solid.material.bonds().zip(bonds) else {
-        return changed;
-    };
-    let lattice = constants.fracture_calibration == Some(FractureCalibration::Lattice);
-    if lattice && !deck.gives("material.fracture_calibration") {
-        let continuum = BondMaterial {
-            fracture: Fracture::Energy {
-                energy: constants.fracture_energy,
-                calibration: FractureCalibration::Continuum,
-            },
-            ..material.clone()
-        };
-        let before = continuum.constants(&assembly.cloud, solid.state);
-        let before = before.map_or(f64::NAN, |constants| constants.critical_stretch);
-        changed.push(format!(
-            "fracture_calibration = \"lattice\" gives the critical stretch {}; the former default \"continuum\" gives {}",
-            significant(constants.critical_stretch, 4),
-            significant(before, 4)
-        ));
-    }
-    if solid.material.surface_correction == SurfaceCorrection::Energy {
-        changed.push(
-            "surface_correction = \"energy\" has factors for three directions at each point; formerly it had one factor for all directions"
-                .into(),
-        );
-    }
-    changed
 }

@@ -86,9 +86,6 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
     for end in &facts.ends {
         lines.push(Line::new("absorbing boundary", end.line()));
     }
-    for changed in &facts.changed_defaults {
-        lines.push(Line::new("changed default", changed.clone()));
-    }
     let divided = ranks::forecasts(&source, &assembly, &args.ranks)?;
     let mut cost = None;
     if model.time.scheme.is_static() {

@@ -11,12 +11,6 @@ impl Subject for Caution {
 
     fn advice(&self) -> Option<String> {
         let advice = match self {
-            Self::FormerTables { text, .. } => {
-                return Some(format!(
-                    "replace it with the equivalent present form:\n\n{text}"
-                ));
-            }
-            Self::FormerNames { .. } => "both still work; write the present name",
             Self::UnusedMaterial { .. } => {
                 "assign it with [[assign]] set = …, material = …, or remove it"
             }
@@ -176,8 +170,6 @@ impl Subject for Caution {
 
     fn label(&self) -> &'static str {
         match self {
-            Self::FormerNames { .. } => "deprecated name",
-            Self::FormerTables { .. } => "deprecated table",
             Self::CrackCutsNothing | Self::UnusedMaterial { .. } => "no effect",
             Self::CrackOutside { .. } => "outside the body",
             Self::Pieces { .. } => "disconnected",

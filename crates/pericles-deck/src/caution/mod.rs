@@ -16,20 +16,6 @@ use crate::wording::{further, percent, prefixed, reach, short, shortened, spot};
 #[derive(Debug, Clone, thiserror::Error)]
 #[non_exhaustive]
 pub enum Caution {
-    /// Deprecated names.
-    #[error("deprecated {}: {}", if names.len() == 1 { "name" } else { "names" }, renamed(names))]
-    FormerNames {
-        /// Former and present names.
-        names: Vec<(&'static str, &'static str)>,
-    },
-    /// Deprecated tables.
-    #[error("{} {} deprecated", tables.join(", "), if tables.len() == 1 { "is" } else { "are" })]
-    FormerTables {
-        /// Their headings.
-        tables: Vec<&'static str>,
-        /// The equivalent tables that replace them.
-        text: String,
-    },
     /// A material without points.
     #[error("the material `{material}` is not assigned to any set")]
     UnusedMaterial {
@@ -535,12 +521,4 @@ fn net(force: Option<f64>, moment: Option<f64>) -> String {
     let moment = moment.map(|moment| format!("a net moment of {}", quantity(moment, "N m")));
     let both: Vec<String> = force.into_iter().chain(moment).collect();
     both.join(" and ")
-}
-
-fn renamed(names: &[(&str, &str)]) -> String {
-    let each: Vec<String> = names
-        .iter()
-        .map(|(former, present)| format!("`{former}` is now `{present}`"))
-        .collect();
-    each.join(", ")
 }

@@ -2,9 +2,7 @@
 
 use pericles::material::{Approximation, BondMaterial, CubicLaw, PairLaw};
 
-use super::keys::{
-    damage, density, forbid_former_tables, form, horizon, no_fail, setting, volume_correction,
-};
+use super::keys::{damage, density, form, horizon, no_fail, setting, volume_correction};
 use super::scatter::scatter;
 use super::softening::{forbid_softening, softening};
 use super::types::{Material, MaterialModel};
@@ -25,7 +23,6 @@ pub(super) fn read(
     sets: &SetNames,
     shared: bool,
 ) -> Option<Material> {
-    forbid_former_tables(&table);
     correspondence::forbid_keys(&table);
     for (_, key) in BY_STATE {
         table.forbid(

@@ -3,9 +3,7 @@
 use pericles::kernel::Influence;
 use pericles::material::{LinearSolid, StateInfluence, SurfaceCorrection};
 
-use super::keys::{
-    damage, density, forbid_former_tables, form, horizon, no_fail, setting, volume_correction,
-};
+use super::keys::{damage, density, form, horizon, no_fail, setting, volume_correction};
 use super::scatter::scatter;
 use super::softening::forbid_softening;
 use super::types::Material;
@@ -23,7 +21,6 @@ pub(super) fn read(
     sets: &SetNames,
     shared: bool,
 ) -> Option<Material> {
-    forbid_former_tables(&table);
     for (key, reason) in FORBIDDEN {
         table.forbid(key, reason);
     }

@@ -13,16 +13,6 @@ use crate::region::Frame;
 use crate::set::SetNames;
 use crate::vocabulary::HORIZONS;
 
-/// Refuses deprecated tables that could not be converted.
-pub(crate) fn forbid_former_tables(table: &Table<'_>) {
-    table.forbid(
-        "part",
-        "define materials in [materials.NAME] and assign them to sets with [[assign]]",
-    );
-    table.forbid("inclusion", "set `stiffness` in [[assign]]");
-    table.forbid("interface", "define interfaces in [[interface]]");
-}
-
 pub(super) fn density(table: &Table<'_>) -> Option<f64> {
     let item = table.required("density");
     item.and_then(|item| item.positive(Quantity::Density))

@@ -15,7 +15,6 @@ pub use scatter::{Scatter, ScatteredStrength};
 pub use softening::{BondSoftening, SofteningWord};
 pub use types::{Material, MaterialModel, NamedMaterial};
 
-pub(crate) use keys::forbid_former_tables;
 pub(crate) use several::{Materials, read};
 pub(crate) use shared::difference;
 

@@ -305,7 +305,7 @@ mod tests {
                 let mut document = document();
                 remove(&mut document.root, number).unwrap();
                 let ledger = Ledger::surveyed(document.sources, Survey::default());
-                let read = Deck::read_with(ledger, &document.root, document.outdated, &[]);
+                let read = Deck::read_with(ledger, &document.root, &[]);
                 // A required key.
                 let Ok((_, filled)) = read else { continue };
                 valid += 1;

@@ -10,8 +10,7 @@ use pericles::{Archive, Values};
 use serde_json::Value;
 
 use super::block::{Coder, entries};
-use super::former;
-use super::head::{Draft, Entry, FORMER, Head, Opening, Placed};
+use super::head::{Draft, Entry, Head, Opening, Placed};
 use super::section::{Codec, Section};
 use crate::{IoError, write_atomically};
 
@@ -111,10 +110,6 @@ impl Container {
         memory: u64,
     ) -> Result<Self, IoError> {
         let opening = Opening::read(path, &mut file, length, memory)?;
-        if opening.version == FORMER {
-            let (metadata, sections) = former::read(path, &opening, file, memory)?;
-            return Ok(Self { metadata, sections });
-        }
         let head = Head::read(path, opening, &mut file, memory)?;
         let mut coder = Coder::default();
         let mut sections = BTreeMap::new();

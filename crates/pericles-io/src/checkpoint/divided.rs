@@ -14,10 +14,9 @@ use pericles::domain::{self, Comm, all, collect, distribute, text_message, text_
 use pericles::{PericlesError, Values};
 use serde_json::Value;
 
-use super::Container;
 use super::block::{Block, Coder, entries};
 use super::container::read_section;
-use super::head::{Draft, Entry, FORMER, Head, Opening, Placed};
+use super::head::{Draft, Entry, Head, Opening, Placed};
 use super::kind::Kind;
 use super::section::{Codec, Section};
 use crate::IoError;
@@ -219,10 +218,8 @@ pub struct DividedCheckpoint {
 enum Content {
     /// Nothing: the process cannot open the file.
     None,
-    /// A file of the present version.
+    /// The file.
     Blocks(File, Head),
-    /// A file of an earlier version.
-    Whole(Container),
 }
 
 impl Content {
@@ -231,9 +228,6 @@ impl Content {
         let mut file = File::open(path).map_err(reading)?;
         let length = file.metadata().map_err(reading)?.len();
         let opening = Opening::read(path, &mut file, length, memory)?;
-        if opening.version == FORMER {
-            return Container::read(path, memory).map(Self::Whole);
-        }
         let head = Head::read(path, opening, &mut file, memory)?;
         Ok(Self::Blocks(file, head))
     }
@@ -281,9 +275,6 @@ impl DividedCheckpoint {
         };
         if let Content::Blocks(_, head) = &mut checkpoint.content {
             checkpoint.metadata = std::mem::take(&mut head.metadata);
-        }
-        if let Content::Whole(container) = &mut checkpoint.content {
-            checkpoint.metadata = std::mem::take(&mut container.metadata);
         }
         checkpoint.verify(comm)?;
         Ok(checkpoint)
@@ -372,12 +363,6 @@ impl ArraySource for DividedCheckpoint {
                     .filter_map(|one| of(&one.name, one.kind, one.len))
                     .collect()
             }
-            Content::Whole(container) => {
-                let sections = container.sections.iter();
-                sections
-                    .filter_map(|(name, one)| of(name, one.kind(), one.len() as u64))
-                    .collect()
-            }
             Content::None => Vec::new(),
         }
     }
@@ -400,10 +385,6 @@ impl ArraySource for DividedCheckpoint {
                 let range = range.start as u64..range.end as u64;
                 read_section(&self.path, file, head, placed, range, &mut self.coder)
                     .map_err(|error| bad(error.to_string()))?
-            }
-            Content::Whole(container) => {
-                let section = container.sections.get(name).ok_or_else(missing)?;
-                section.slice(range)
             }
             Content::None => return Err(missing()),
         };

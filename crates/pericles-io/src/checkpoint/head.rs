@@ -15,10 +15,8 @@ use super::section::Codec;
 use crate::IoError;
 
 const MAGIC: &[u8; 8] = b"PERICLES";
-/// The version that is written.
+/// Version of the format.
 pub(super) const VERSION: u32 = 2;
-/// The oldest version that is read.
-pub(super) const FORMER: u32 = 1;
 /// Bytes of magic, version, and length and CRC-32 of the header.
 const PREFIX: u64 = 24;
 /// Bytes of the CRC-32 of the table of blocks.
@@ -90,9 +88,8 @@ impl Draft {
     }
 }
 
-/// Version and header of a file.
+/// Header of a file.
 pub(super) struct Opening {
-    pub(super) version: u32,
     pub(super) json: Vec<u8>,
     crc32: u32,
     /// Bytes of the file after the header.
@@ -120,7 +117,7 @@ impl Opening {
             return Err(damaged("it is not a Pericles checkpoint".into()));
         }
         let version = u32_at(&prefix, 8);
-        if !(FORMER..=VERSION).contains(&version) {
+        if version != VERSION {
             return Err(IoError::UnsupportedVersion {
                 path: path.to_path_buf(),
                 found: version,
@@ -141,7 +138,6 @@ impl Opening {
             return Err(damaged("the CRC-32 of the header does not match".into()));
         }
         Ok(Self {
-            version,
             json,
             crc32,
             rest: length - PREFIX - room,
@@ -169,7 +165,7 @@ pub(super) struct Head {
 }
 
 impl Head {
-    /// Reads what follows the opening of a file of the present version.
+    /// Reads what follows the opening of a file.
     pub(super) fn read(
         path: &Path,
         opening: Opening,

@@ -16,8 +16,7 @@
 //! A section is cut into blocks of 512 KiB, the last of which may be shorter. The bytes of a block are shuffled (the first
 //! bytes of all elements, then their second bytes …), which groups slowly varying exponents, and compressed in the block format
 //! of LZ4; a block that would not become smaller is stored as it is. Every size is checked against the length of the file
-//! before data are read, and no block is decoded before its CRC-32 is verified. Files of version 1, in which every section is
-//! one LZ4 frame, are also read.
+//! before data are read, and no block is decoded before its CRC-32 is verified.
 //!
 //! The blocks do not depend on each other, so that processes that share a divided body encode and write them in parallel
 //! ([`CheckpointFolder::write_divided`]); the file is the same, byte for byte, for any number of processes.
@@ -40,7 +39,6 @@ mod block;
 mod container;
 mod divided;
 mod folder;
-mod former;
 mod head;
 mod kind;
 mod section;

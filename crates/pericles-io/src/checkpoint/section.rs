@@ -1,7 +1,6 @@
 //! A named array: its element types and its blocks.
 
 use std::io;
-use std::ops::Range;
 
 use pericles::Values;
 use serde::{Deserialize, Serialize};
@@ -100,16 +99,6 @@ impl Section {
             Kind::U64 => Self::U64(Vec::new()),
             Kind::U32 => Self::U32(Vec::new()),
             Kind::U8 => Self::U8(Vec::new()),
-        }
-    }
-
-    /// Returns a range of the elements.
-    pub(super) fn slice(&self, range: Range<usize>) -> Self {
-        match self {
-            Self::F64(values) => Self::F64(values[range].to_vec()),
-            Self::U64(values) => Self::U64(values[range].to_vec()),
-            Self::U32(values) => Self::U32(values[range].to_vec()),
-            Self::U8(values) => Self::U8(values[range].to_vec()),
         }
     }
 

@@ -1,4 +1,4 @@
-//! Several materials in one body: assignments, interfaces, and decks of former releases.
+//! Several materials in one body: assignments and interfaces.
 
 use pericles::{Control, Simulation};
 use pericles_deck::{Deck, Model};
@@ -26,8 +26,7 @@ fn run(text: &str) -> Simulation {
     run
 }
 
-/// A notched plate of three materials and a stiffened corner that fractures. FORMER and PRESENT are placeholders for
-/// the tables below.
+/// A notched plate of three materials and a stiffened corner that fractures.
 const PLATE: &str = r#"
 [body]
 shape = "plate"
@@ -41,47 +40,11 @@ density = "2440 kg/m3"
 youngs_modulus = "72 GPa"
 horizon_ratio = 3
 fracture_energy = "135 J/m2"
-FORMER
 [sets]
 right = { where = "x > 0.014" }
 grain = { ball = { centre = ["10 mm", "12 mm"], radius = "3 mm" } }
 corner = { box = { max = ["6 mm", "5 mm"] } }
-PRESENT
-[[crack]]
-segment = [[0, "8 mm"], ["8 mm", "8 mm"]]
-[[initial]]
-velocity = [0, { expression = "12*(y - 0.008)/0.008" }]
-[time]
-end = "3 us"
-"#;
-
-const FORMER: &str = r#"[[material.part]]
-name = "steel"
-set = "right"
-density = "7850 kg/m3"
-youngs_modulus = "210 GPa"
-critical_stretch = 0.002
-[[material.part]]
-name = "hard grain"
-set = "grain"
-density = "3000 kg/m3"
-bulk_modulus = "100 GPa"
-modulus = "lattice"
-fracture_energy = "30 J/m2"
-[[material.part]]
-name = "listed"
-block = 1
-density = "2500 kg/m3"
-youngs_modulus = "60 GPa"
-[[material.inclusion]]
-set = "corner"
-stiffness = 1.7
-[material.interface]
-rule = "weaker"
-pair = [{ between = ["glass", "steel"], critical_stretch = 5e-4 }]"#;
-
-/// The same without the part of a block, which would cover the plate, in the current form.
-const PRESENT: &str = r#"[materials.steel]
+[materials.steel]
 density = "7850 kg/m3"
 youngs_modulus = "210 GPa"
 critical_stretch = 0.002
@@ -103,67 +66,32 @@ stiffness = 1.7
 rule = "weaker"
 [[interface]]
 between = ["glass", "steel"]
-critical_stretch = 5e-4"#;
-
-fn former() -> String {
-    let listed = FORMER.find("[[material.part]]\nname = \"listed\"").unwrap();
-    let inclusion = FORMER.find("[[material.inclusion]]").unwrap();
-    let tables = FORMER[..listed].to_owned() + &FORMER[inclusion..];
-    PLATE.replace("FORMER", &tables).replace("PRESENT", "")
-}
-
-fn present() -> String {
-    PLATE.replace("FORMER", "").replace("PRESENT", PRESENT)
-}
+critical_stretch = 5e-4
+[[crack]]
+segment = [[0, "8 mm"], ["8 mm", "8 mm"]]
+[[initial]]
+velocity = [0, { expression = "12*(y - 0.008)/0.008" }]
+[time]
+end = "3 us"
+"#;
 
 #[test]
-fn a_deck_of_a_former_release_runs_like_its_current_form() {
-    let (former, present) = (former(), present());
-    assert_eq!(model(&former), model(&present));
-    assert!(parse(&present).warnings().is_empty());
-    let run = run_every_way(&former);
+fn a_plate_of_several_materials_breaks_alike_with_every_kernel() {
+    let run = run_every_way(PLATE);
     assert!(run.broken > 10, "{}", run.broken);
-    assert_eq!(run.archive, run_every_way(&present).archive);
 }
 
+/// Overrides change tables of materials and interfaces.
 #[test]
-fn the_warning_about_former_tables_contains_their_replacement() {
-    for (tables, without) in [
-        (FORMER.to_owned(), PLATE.replace("PRESENT", "")),
-        (
-            "part = [{ name = 'a b', block = [1, 2], density = 1e3, E = 1e9, Gc = 10 }]\n\
-             inclusion = [{ set = \"corner\", stiffness = 2 }]"
-                .to_owned(),
-            PLATE.replace("PRESENT", ""),
-        ),
-    ] {
-        let deck = parse(&without.replace("FORMER", &tables));
-        let [warning] = &deck.warnings()[..] else {
-            panic!("one warning")
-        };
-        let line = warning.line();
-        assert!(line.starts_with("deck.toml:14:"), "{line}");
-        assert!(line.contains("deprecated"), "{line}");
-        let (_, text) = line.split_once("\n\n").unwrap();
-        let pasted = without.replace("FORMER", "") + text;
-        let again = parse(&pasted);
-        assert!(again.warnings().is_empty());
-        assert_eq!(again.model, deck.model, "{pasted}");
-    }
-}
-
-/// Tables changed or added by an override are converted as well.
-#[test]
-fn overrides_apply_to_former_tables() {
+fn overrides_apply_to_materials_and_interfaces() {
     let overrides = [
-        "material.part.0.rho=8000".to_owned(),
-        "material.interface.rule=arithmetic".to_owned(),
+        "materials.steel.rho=8000".to_owned(),
+        "interface.0.rule=arithmetic".to_owned(),
     ];
-    let deck = Deck::parse(&former(), "deck.toml", &overrides).unwrap();
+    let deck = Deck::parse(PLATE, "deck.toml", &overrides).unwrap();
     assert_eq!(deck.model.materials[0].model.density(), 8000.0);
     let json = deck.to_json();
-    // The override comes after the pair.
-    assert_eq!(json["interface"][1]["rule"], "arithmetic");
+    assert_eq!(json["interface"][0]["rule"], "arithmetic");
     assert_eq!(json["materials"]["steel"]["density"], 8000.0);
 }
 
@@ -361,7 +289,7 @@ fn models_with_materials_round_trip_through_json() {
     let state_based = laminate("state-based")
         + "[[interface]]\nbetween = [\"soft\", \"hard\"]\nfracture_energy = 1\nfailure = \"bond-energy\"\n";
     let modulus = laminate("linear") + "[[interface]]\nyoungs_modulus = 3\nfracture_energy = 1\n";
-    for text in [former(), present(), state_based, modulus] {
+    for text in [PLATE.to_owned(), state_based, modulus] {
         let model = model(&text);
         let json = serde_json::to_string(&model).unwrap();
         let read: Model = serde_json::from_str(&json).unwrap();

@@ -9,9 +9,8 @@ use pericles::sum::BinnedSum;
 use pericles::{Archive, Values};
 use serde_json::json;
 
-use super::super::former;
 use super::*;
-use crate::CheckpointFolder;
+use crate::{CheckpointFolder, Container};
 
 /// The process of point k of a number of points.
 type Owner = fn(k: usize, points: usize, size: usize) -> usize;
@@ -312,23 +311,4 @@ fn the_previous_checkpoint_replaces_a_damaged_one_on_all_processes() {
     for found in &found[1..] {
         assert!(matches!(found, Err(IoError::OnAnotherProcess { .. })));
     }
-}
-
-#[test]
-fn a_file_of_version_1_is_read_by_the_first_process_for_all() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("a.chk");
-    fs::write(&path, former::tests::file(&whole(1000))).unwrap();
-    Threads::run(3, |comm| {
-        let mut opened = DividedCheckpoint::open(&path, u64::MAX, &*comm).unwrap();
-        let domain = domain(1000, ALTERNATING, comm);
-        if domain.is_first() {
-            assert_eq!(opened.metadata(), &metadata());
-        }
-        let own = archive(1000, &domain);
-        let read = Archive::part_of(&own, &mut opened, &domain).unwrap();
-        for name in ["u", "set", "bits", "t"] {
-            assert_eq!(read.arrays()[name], own.arrays()[name], "{name}");
-        }
-    });
 }
