@@ -107,6 +107,11 @@ mod tests {
             }
             prop_assert!(modes[0].omega_squared <= modes[1].omega_squared);
             prop_assert!(dot(modes[0].polarisation, modes[2].polarisation).abs() < 1e-13);
+            // The shares along a wave vector of any length add up to one.
+            for k in [[3e4, 0.0, 0.0], [0.2, -0.1, 0.05], [-700.0, 20.0, 1e3]] {
+                let sum: f64 = modes.iter().map(|mode| mode.longitudinal(k)).sum();
+                prop_assert!((sum - 1.0).abs() < 1e-12);
+            }
         }
     }
 

@@ -89,7 +89,7 @@ impl TriangleSurface {
                 next += 1;
                 let own = turned[triangle as usize] == Some(true);
                 for &(other, is_alike) in &neighbours[triangle as usize] {
-                    let wanted = own != !is_alike;
+                    let wanted = own == is_alike;
                     match turned[other as usize] {
                         None => {
                             turned[other as usize] = Some(wanted);

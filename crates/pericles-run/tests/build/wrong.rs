@@ -7,7 +7,7 @@ use super::decks::{SURFACE, WAVE, Wrong, explained, wrong};
 
 #[rustfmt::skip]
 const WRONG_WAVES: &[Wrong] = &[
-    wrong("periodic = true", "periodic = false", (14, 9), "\"spectral\"", &["bonds = \"spectral\" is not available for this body", "body.periodic = true"]),
+    wrong("periodic = true", "periodic = false", (14, 9), "\"spectral\"", &["the force kernel \"spectral\" (key `bonds`) is not available for this body", "body.periodic = true"]),
     wrong("model = \"linear\"", "model = \"bond-stretch\"", (17, 12), "\"nonlocal-pulse\"", &["requires model = \"linear\""]),
     wrong("bonds = \"spectral\"", "bonds = \"spectral\"\ncritical_stretch = 0.1", (14, 9), "\"spectral\"", &["the same bonds at every point"]),
     wrong("periodic = true", "periodic = true\nquadrature = \"gauss\"", (7, 1), "quadrature", &["`quadrature` is not allowed in [body]", "not periodic"]),

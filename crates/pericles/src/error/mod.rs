@@ -243,7 +243,7 @@ pub enum PericlesError {
     )]
     NotPeriodic,
     /// A form of the forces is not available for the body.
-    #[error("bonds = \"{form}\" is not available for this body: {reason}")]
+    #[error("the force kernel \"{form}\" (key `bonds`) is not available for this body: {reason}")]
     FormNotUsable {
         /// The form, as in decks.
         form: &'static str,

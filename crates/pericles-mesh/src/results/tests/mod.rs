@@ -456,3 +456,47 @@ fn inconsistent_vtkhdf_layouts_are_rejected() {
     );
     assert!(refused(&|l| l.outputs = usize::MAX).contains("allowed: 1 to 16777216"));
 }
+
+#[test]
+fn vtkhdf_files_take_any_names_and_numbers_of_fields_and_are_read_back() {
+    let place = tempfile::tempdir().unwrap();
+    let path = place.path().join("many.vtkhdf");
+    let (x, v) = (positions(2), volumes());
+    let mut layout = vtkhdf_layout(&x, &v, 2, true);
+    layout.fields = (0..300)
+        .map(|k| FieldSpec::new(format!("field {k}"), 1))
+        .collect();
+    for name in ["a/b", "a_b", ".", &"x".repeat(2000)] {
+        layout.fields.push(FieldSpec::new(name, 2));
+    }
+    layout.constants.clear();
+    let value = |k: usize, i: usize| k as f64 + 0.25 * i as f64;
+    let arrays: Vec<Vec<f64>> = (0..layout.fields.len())
+        .map(|k| {
+            (0..layout.fields[k].components * POINTS)
+                .map(|i| value(k, i))
+                .collect()
+        })
+        .collect();
+    let arrays: Vec<&[f64]> = arrays.iter().map(Vec::as_slice).collect();
+    let mut writer = VtkHdfWriter::create(&path, &layout).unwrap();
+    writer.append(0.5, &arrays).unwrap();
+    let file = Hdf5::new(std::fs::read(&path).unwrap());
+    let first = |name: &str| file.real(&format!("/VTKHDF/PointData/{name}"))[0];
+    assert_eq!(first("field 299"), 299.0);
+    for (k, name) in [
+        (300, "a_b"),
+        (301, "a_b_2"),
+        (302, "_"),
+        (303, &*"x".repeat(2000)),
+    ] {
+        assert_eq!(first(name), f64::from(k), "{name}");
+    }
+    let mut reader = VtkHdfReader::open(&path, &layout).unwrap();
+    assert_eq!(reader.outputs(), 1);
+    let (time, values) = reader.read(0).unwrap();
+    assert_eq!(time, 0.5);
+    assert_eq!(values, arrays);
+    let other = vtkhdf_layout(&x, &v, 2, true);
+    assert!(VtkHdfReader::open(&path, &other).is_err());
+}
