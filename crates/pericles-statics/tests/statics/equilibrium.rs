@@ -187,7 +187,7 @@ fn unbalanced_loads_on_a_free_body_are_errors() {
     assert!(error.contains("not in balance"), "{error}");
 }
 
-/// Loads that are in balance but for a small resultant, as from the pressure on the faces of a mesh, stretch a free body as
+/// Loads that are in balance except for a small resultant, as from the pressure on the faces of a mesh, stretch a free body as
 /// balanced ones do; the resultant is reported.
 #[test]
 fn a_small_resultant_of_the_loads_on_a_free_body_is_left_out() {
