@@ -665,3 +665,26 @@ output = { fields = "never" }
     fs::write(place.path().join("deck.toml"), deck).unwrap();
     succeed(place.path(), "run deck.toml --quiet --out out --force");
 }
+
+/// Work and dissipated energy of plastic flow within one load step are both those of the mean forces, so that the energy
+/// balance closes although the work is wrong.
+#[test]
+fn few_load_steps_with_inelastic_deformation_are_reported() {
+    let deck = r#"
+body = { shape = "plate", size = [16, 8], spacing = 1, plane = "stress" }
+material = { model = "state-based", density = 1, youngs_modulus = 10, poisson_ratio = 0.3, strains = "small", horizon_ratio = 3, yield_stress = 0.02 }
+sets = { left = { layer = { side = "-x", cells = 3 } }, right = { layer = { side = "+x", cells = 3 } } }
+constraint = [{ set = "left", displacement = [0, 0] }, { set = "right", displacement = [0.1, 0] }]
+time = { scheme = "adaptive-dynamic-relaxation" }
+output = { fields = "never" }
+"#;
+    let says = [
+        "inelastic deformation",
+        "2 static states",
+        "time.load_steps",
+    ];
+    warned_of(deck, &says, "--set time.load_steps=10");
+    let elastic = deck.replace("yield_stress = 0.02", "yield_stress = 20");
+    let place = tempfile::tempdir().unwrap();
+    assert!(warnings(place.path(), &elastic, "").is_empty());
+}

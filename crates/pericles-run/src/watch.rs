@@ -107,6 +107,7 @@ impl Breakage {
 pub fn warnings(simulation: &Simulation, audit: &Audit) -> Vec<String> {
     let found = [
         simulation.instability().map(ToString::to_string),
+        simulation.integrator().remark(),
         energy(simulation, audit),
         momentum(simulation, audit),
         reactions(simulation, audit),

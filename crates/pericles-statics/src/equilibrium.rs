@@ -74,6 +74,8 @@ pub struct Equilibrium {
     pieces: Vec<FreePiece>,
     /// Rigid-body motions that are projected out.
     rigid: Vec<Vec<f64>>,
+    /// Largest resultant of loads along rigid-body motions that was projected out, relative to the norm of the loads.
+    left_out: f64,
     krylov: KrylovWork,
     reduced: [Vec<f64>; 2],
     residual: Vec<f64>,
@@ -116,6 +118,7 @@ impl Equilibrium {
             multigrid,
             pieces,
             rigid,
+            left_out: 0.0,
             krylov: KrylovWork::new(entries),
             reduced: [reduced(), reduced()],
             residual: zeros(),
@@ -133,6 +136,11 @@ impl Equilibrium {
     pub(crate) fn recreate(&mut self, system: &System) {
         let (free, known) = (self.free.clone(), self.stiffness.clone());
         *self = Self::with(self.options, system, free, Some(known));
+    }
+
+    /// Returns the largest resultant of loads along rigid-body motions that was projected out, relative to their norm.
+    pub fn left_out(&self) -> f64 {
+        self.left_out
     }
 
     /// Returns 1 on free entries, 0 on constrained entries.
@@ -274,8 +282,9 @@ impl Equilibrium {
         }
     }
 
-    /// Returns the norm of the loads on free entries, N; an error for loads that move a free body.
-    fn load_norm(&self, system: &System, target: &Target<'_>) -> Result<f64> {
+    /// Returns the norm of the loads on free entries, N; an error for loads that move a free body. A small resultant is
+    /// projected out.
+    fn load_norm(&mut self, system: &System, target: &Target<'_>) -> Result<f64> {
         let (n, volumes) = (system.points(), system.cloud().volumes());
         let force = |k: usize| self.free[k] * volumes[k % n] * target.load[k];
         let load = system
@@ -289,8 +298,13 @@ impl Equilibrium {
         let part = self.rigid.iter().map(along).fold(0.0, f64::max);
         /// Tolerance for round-off of sums and positions.
         const BALANCED: f64 = 1e-9;
-        if part > BALANCED.max(0.1 * self.options.tolerance) {
+        /// Loads that are in balance on a surface act on points at some distance from it, which causes a resultant moment.
+        const MOST: f64 = 0.01;
+        if part > MOST {
             return Err(StaticsError::Unbalanced { t: target.t, part }.into());
+        }
+        if part > BALANCED.max(0.1 * self.options.tolerance) {
+            self.left_out = self.left_out.max(part);
         }
         Ok(load)
     }
@@ -406,7 +420,7 @@ pericles::saved! {
         stiffness: part,
         options: fixed,
         // By `recreate`.
-        replicated, unknowns, multigrid, pieces, rigid: rebuilt,
+        replicated, unknowns, multigrid, pieces, rigid, left_out: rebuilt,
         krylov, reduced, residual, correction, lift, trial, trial_residual: scratch,
     }
 }

@@ -83,7 +83,7 @@ pub enum StaticsError {
     #[error(
         "no static state found at t = {}: at the fraction {} of the load step the relative residual is {} (tolerance {}){}; \
          the body may be unstable under this load (buckling, softening, a part that separates), or the tolerance may be below \
-         round-off; use shorter load steps, a larger tolerance or a dynamic scheme",
+         round-off; use shorter load steps, breaking = \"event\" (no load step to choose), scheme = \"fire\", a larger tolerance, or stop the run before by [[time.stop_when]]",
         quantity(*.t, "s"), significant(*.fraction, 3), significant(*.residual, 3), significant(*.tolerance, 3),
         if *.indefinite { ", and the tangent is not positive definite" } else { "" }
     )]
@@ -105,6 +105,17 @@ impl From<StaticsError> for PericlesError {
     fn from(error: StaticsError) -> Self {
         Self::Extension(Box::new(error))
     }
+}
+
+/// Returns whether an error is that of Newton's method without a static state.
+pub(crate) fn is_no_equilibrium(error: &PericlesError) -> bool {
+    let PericlesError::Extension(inner) = error else {
+        return false;
+    };
+    matches!(
+        inner.downcast_ref::<StaticsError>(),
+        Some(StaticsError::NoEquilibrium { .. })
+    )
 }
 
 fn list(names: &[&str]) -> String {

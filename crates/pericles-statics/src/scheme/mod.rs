@@ -4,17 +4,18 @@ mod event;
 
 use pericles::boundary::{Exchange, ProportionalLoading};
 use pericles::operator::PointSubset;
-use pericles::time::{InnerIterations, Integrator, State};
+use pericles::time::{Damping, InnerIterations, Integrator, Relaxation, RelaxationOptions, State};
 use pericles::{
     Interrupt, Need, Path, PericlesError, Requirement, Result, StepEnd, System, require,
 };
 
 use crate::breaking::BreakingRule;
 use crate::equilibrium::{Effort, Equilibrium};
-use crate::error::{MOST_REPLICATED, StaticsError};
+use crate::error::{MOST_REPLICATED, StaticsError, is_no_equilibrium};
 use crate::events;
 use crate::options::StaticOptions;
 use crate::path::{Follower, LoadStep};
+use pericles::units::significant;
 
 /// Static integrator: each step is a load step to the next static state. Loads and supports have their values
 /// at the end of the step, and f(u) + b = 0 is solved on the free entries by Newton's method.
@@ -56,6 +57,12 @@ pub struct StaticScheme {
     released: f64,
     /// Factor of loads and displacements of supports at the last event.
     factor: f64,
+    /// Largest resultant of the loads on free bodies that was left out, relative to their norm.
+    left_out: f64,
+    /// Number of load steps with states that were found by damped dynamics.
+    relaxed: u64,
+    /// Whether states of the present load step are found by damped dynamics.
+    relaxing: bool,
     inner: InnerIterations,
     /// Effort of the last step.
     effort: Effort,
@@ -110,6 +117,9 @@ impl StaticScheme {
             largest: 0.0,
             released: 0.0,
             factor: 0.0,
+            left_out: 0.0,
+            relaxed: 0,
+            relaxing: false,
             inner: InnerIterations::default(),
             effort: Effort::default(),
         })
@@ -160,9 +170,50 @@ impl StaticScheme {
             exchanged: system.ledger().exchanged,
         };
         let followed = follower.follow(u, with_work)?;
+        self.left_out = self.left_out.max(self.equilibrium.left_out());
         self.effort.add(followed.effort);
         self.largest = self.largest.max(followed.effort.acting);
         Ok(followed.work)
+    }
+
+    /// Advances `u` along a load step, or by damped dynamics to a state at its end if there are no static states along it: a body
+    /// that splits or buckles moves to its next state. Returns the work done; `None` if the path is not static.
+    fn reach(
+        &mut self,
+        system: &System,
+        step: LoadStep<'_>,
+        (u, with_work): (&mut Vec<f64>, bool),
+        interrupt: Interrupt<'_>,
+    ) -> Result<Option<f64>> {
+        let (t, largest) = (step.t, self.largest.max(step.largest));
+        let failed = if self.relaxing {
+            None
+        } else {
+            match self.follow(system, step, (u, with_work), interrupt) {
+                Ok(work) => return Ok(Some(work)),
+                Err(error) if is_no_equilibrium(&error) => Some(error),
+                Err(error) => return Err(error),
+            }
+        };
+        /// Largest number of iterations of damped dynamics.
+        const ITERATIONS: u32 = 200_000;
+        let options = RelaxationOptions {
+            damping: Damping::Fire,
+            tolerance: self.options.tolerance,
+            iterations: ITERATIONS,
+        };
+        let mut relaxation = Relaxation::new(options, system)?;
+        match relaxation.find(system, t, u, largest, interrupt) {
+            Ok((residual, iterations)) => {
+                self.relaxing = true;
+                self.effort.forces += iterations;
+                self.effort.products += iterations;
+                self.effort.residual = residual;
+                Ok(None)
+            }
+            Err(PericlesError::Interrupted) => Err(PericlesError::Interrupted),
+            Err(error) => Err(failed.unwrap_or(error)),
+        }
     }
 
     /// Breaks bonds beyond their limits and recomputes the static state until no bond breaks.
@@ -174,7 +225,11 @@ impl StaticScheme {
         interrupt: Interrupt<'_>,
     ) -> Result<()> {
         loop {
-            let rule = self.options.breaking;
+            // A body that moves to its next state breaks everywhere.
+            let rule = match self.relaxing {
+                true => BreakingRule::All,
+                false => self.options.breaking,
+            };
             let Some(beyond) = rule.apply(system, t, &state.u, &mut state.a) else {
                 return Ok(());
             };
@@ -188,7 +243,7 @@ impl StaticScheme {
                 supports: [&before; 2],
                 largest: self.largest,
             };
-            self.follow(system, step, (&mut state.u, false), interrupt)?;
+            self.reach(system, step, (&mut state.u, false), interrupt)?;
             system.book_equilibrium(&chord(t, 0.0, &state.u, &before, false), &mut state.a);
             self.released +=
                 elastic - system.stored_energy(t, &state.u) + system.ledger().work - work;
@@ -197,6 +252,7 @@ impl StaticScheme {
 
     /// Records the effort of a step and advances the time to its end.
     fn close_step(&mut self, state: &mut State, t_next: f64) {
+        self.relaxed += u64::from(self.relaxing);
         let InnerIterations { most, total, .. } = self.inner;
         self.inner = InnerIterations {
             last: self.effort.products,
@@ -264,6 +320,23 @@ impl Integrator for StaticScheme {
         true
     }
 
+    fn remark(&self) -> Option<String> {
+        let left_out = (self.left_out > 0.0).then(|| {
+            format!(
+                "the loads on a free body are not exactly in balance: their resultant along rigid-body motions, {} % of their norm, is left out (rigid_modes = \"fix\")",
+                significant(100.0 * self.left_out, 2)
+            )
+        });
+        let relaxed = (self.relaxed > 0).then(|| {
+            format!(
+                "{} load steps have no static path, because the body splits, softens or buckles: their states were found by damped dynamics, and the energy released on the way is part of the scheme correction",
+                self.relaxed
+            )
+        });
+        let all: Vec<String> = [left_out, relaxed].into_iter().flatten().collect();
+        (!all.is_empty()).then(|| all.join("; "))
+    }
+
     fn start(&mut self, system: &mut System, state: &mut State) {
         if let BreakingRule::Event { reference, .. } = self.options.breaking {
             let factors = [0.0; 2];
@@ -292,11 +365,6 @@ impl Integrator for StaticScheme {
         let before = state.u.clone();
         // An initial displacement is not a static state: the first load step is a jump.
         let displaced = first && !system.domain().all(before.iter().all(|u| *u == 0.0));
-        let elastic = if displaced {
-            system.stored_energy(state.t, &before)
-        } else {
-            0.0
-        };
         let mut loads = [vec![0.0; self.entries], vec![0.0; self.entries]];
         if !first {
             system.load_density_into(state.t, &mut loads[0]);
@@ -312,19 +380,21 @@ impl Integrator for StaticScheme {
             supports: [&before, &supports],
             largest: self.largest.max(system.thermal_force(t_next, &before)),
         };
-        let work = self.follow(system, step, (&mut state.u, !displaced), interrupt)?;
+        self.relaxing = false;
+        let elastic = system.stored_energy(state.t, &before);
+        let work = self.reach(system, step, (&mut state.u, !displaced), interrupt)?;
         let booked = system.ledger().work;
         let end = chord(t_next, t_next - state.t, &state.u, &before, first);
         let heating = system.operator().heating(&end);
         system.book_equilibrium(&end, &mut state.a);
         let of_means = system.ledger().work - booked;
-        if displaced {
-            self.released += elastic - system.stored_energy(t_next, &state.u) + of_means;
-        } else {
-            system.book_exchange(Exchange {
+        match work {
+            Some(work) if !displaced => system.book_exchange(Exchange {
                 work: work + heating - of_means,
                 impulse: [0.0; 3],
-            });
+            }),
+            // A jump: the body releases what it does not store.
+            _ => self.released += elastic - system.stored_energy(t_next, &state.u) + of_means,
         }
         if system.operator().changes_at_step_ends() {
             self.settle(system, state, (t_next, &loads[1]), interrupt)?;
@@ -336,12 +406,12 @@ impl Integrator for StaticScheme {
 
 pericles::saved! {
     impl Checkpointed for StaticScheme {
-        released, largest, factor: array("static/account"),
+        released, largest, factor, left_out: array("static/account"),
         inner: part,
-        broken: array("static/broken"),
+        broken, relaxed: array("static/counts"),
         equilibrium: part,
         options, entries: fixed,
-        effort: scratch,
+        effort, relaxing: scratch,
         restored: set(true),
     }
 }

@@ -187,6 +187,35 @@ fn unbalanced_loads_on_a_free_body_are_errors() {
     assert!(error.contains("not in balance"), "{error}");
 }
 
+/// Loads that are in balance except for a small resultant, as from the pressure on the faces of a mesh, stretch a free body as
+/// balanced ones do; the resultant is reported.
+#[test]
+fn a_small_resultant_of_the_loads_on_a_free_body_is_left_out() {
+    let run_of = |excess: f64| {
+        let mut system = bar(false);
+        let all = (0..system.points() as u32).collect();
+        let load = Load::new(all, [excess, 0.0, 0.0], TimeFunction::Constant);
+        system.add_load(load).unwrap();
+        let options = StaticOptions {
+            fix_rigid_modes: true,
+            ..StaticOptions::default()
+        };
+        let scheme = StaticScheme::new(options, &system).unwrap();
+        let state = State::of(&system);
+        let mut run = Simulation::new(system, Box::new(scheme), state, 1.0, 1).unwrap();
+        run.run_to_end().map(|_| run)
+    };
+    let stretch = |run: &Simulation| run.state().u.last().unwrap() - run.state().u[0];
+    let balanced = run_of(0.0).unwrap();
+    assert_eq!(balanced.integrator().remark(), None);
+    let nearly = run_of(1e-4).unwrap();
+    let remark = nearly.integrator().remark().unwrap();
+    assert!(remark.contains("not exactly in balance"), "{remark}");
+    let ratio = stretch(&nearly) / stretch(&balanced);
+    assert!((ratio - 1.0).abs() < 0.01, "{ratio}");
+    assert!(run_of(1e-3).is_err());
+}
+
 /// A bond-based bar that breaks, in tension in four load steps.
 pub fn torn_bar() -> Simulation {
     let dx = 0.02;

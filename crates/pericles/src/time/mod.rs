@@ -192,6 +192,11 @@ pub trait Integrator: Checkpointed + Send {
         false
     }
 
+    /// Returns what a user should know about how the scheme found its states, if anything.
+    fn remark(&self) -> Option<String> {
+        None
+    }
+
     /// Reason why the energy drifts by design and how to avoid it; `None` for schemes whose drift is an error.
     fn intended_drift(&self) -> Option<&'static str> {
         None

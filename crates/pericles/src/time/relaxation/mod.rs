@@ -155,6 +155,26 @@ impl Relaxation {
         self.inner.total
     }
 
+    /// Moves `u` to the equilibrium at time t with the current bonds, without bookkeeping. The residual is relative to
+    /// `largest` (N) at least, the largest norm of loads or reactions before. Returns the relative residual and the number of
+    /// iterations.
+    ///
+    /// # Errors
+    /// [`PericlesError::NoEquilibrium`]; [`PericlesError::Interrupted`].
+    pub fn find(
+        &mut self,
+        system: &System,
+        t: f64,
+        u: &mut [f64],
+        largest: f64,
+        interrupt: Interrupt<'_>,
+    ) -> Result<(f64, u64)> {
+        self.largest = self.largest.max(largest);
+        self.iterations = 0;
+        let residual = self.relax(system, t, u, interrupt)?;
+        Ok((residual, self.iterations))
+    }
+
     /// Moves `u` to the equilibrium at time t with the current bonds; returns the relative residual.
     fn relax(
         &mut self,
