@@ -67,7 +67,7 @@ impl Assembler<'_> {
                 .collect();
             let mut sets = assigned.iter().flat_map(|(_, sets, _)| *sets);
             if share > MOST && !sets.any(|set| self.model.has_layer(set)) {
-                let path = assigned.iter().map(|(path, _, _)| path.clone()).last();
+                let path = assigned.last().map(|(path, _, _)| path.clone());
                 let path = path.unwrap_or_else(|| KeyPath::from("materials").key(name));
                 let material = name.to_owned();
                 warnings.push(Remark::new(
