@@ -137,7 +137,7 @@ pub use body::{
     piece_path,
 };
 pub use boundary::BoundaryCondition;
-pub use caution::{AreaDoubt, Caution};
+pub use caution::{AreaDoubt, Caution, ContactCaution};
 pub use component::{Component, VectorField};
 pub use conditions::{Constraint, Initial, Load, LoadAmplitude, Probe, ProbePlace, RandomVelocity};
 pub use contact::{Contact, ContactFriction, ContactLaw, ContactPairs, ContactStiffness};

@@ -1,54 +1,21 @@
 //! Trigonometric integrators: the exact flow of the linear part.
 
+mod engine;
+
 use rayon::prelude::*;
 
-use crate::function::{Chebyshev, Eigenvectors, Lanczos, MatrixFunction, Term, WaveFunction};
+pub use engine::FunctionMethod;
+
+use crate::function::{Term, WaveFunction};
+use engine::{Engine, NAME, add, apply, engine, subtract};
 use pericles::Interrupt;
 use pericles::StepKind;
-use pericles::operator::{FunctionOf, PointSubset};
+use pericles::System;
+use pericles::operator::PointSubset;
 use pericles::parallel::BLOCK;
 use pericles::time::{Integrator, State};
 use pericles::{Need, Requirement, require};
 use pericles::{PericlesError, Result};
-use pericles::{PointScalar, System};
-
-/// Method for functions of the stiffness (see [`crate::function`]).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum FunctionMethod {
-    /// Fourier if the operator is diagonal in plane waves and no point is constrained, otherwise Chebyshev.
-    #[default]
-    Fastest,
-    /// Chebyshev series.
-    Chebyshev,
-    /// Plane waves.
-    Fourier,
-    /// Krylov spaces.
-    Lanczos,
-    /// All eigenvectors: a reference for small bodies.
-    Eigenvectors,
-}
-
-impl FunctionMethod {
-    /// All methods, the default first.
-    pub const ALL: [Self; 5] = [
-        Self::Fastest,
-        Self::Chebyshev,
-        Self::Fourier,
-        Self::Lanczos,
-        Self::Eigenvectors,
-    ];
-
-    /// Name in decks.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Fastest => "fastest",
-            Self::Chebyshev => "chebyshev",
-            Self::Fourier => "fourier",
-            Self::Lanczos => "lanczos",
-            Self::Eigenvectors => "eigenvectors",
-        }
-    }
-}
 
 /// Quadrature of time-dependent loads within a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -111,13 +78,6 @@ pub struct Trigonometric {
     next: [Vec<f64>; 2],
 }
 
-enum Engine {
-    Fourier(f64),
-    Krylov(Box<dyn MatrixFunction>),
-}
-
-const NAME: &str = "trigonometric";
-
 impl Trigonometric {
     /// Requirements on a system.
     pub const REQUIREMENTS: &'static [Requirement] = &[
@@ -154,7 +114,7 @@ impl Trigonometric {
         let entries = system.dimension() * system.points();
         let array = || vec![0.0; entries];
         let reference = array();
-        let engine = engine(options, system, &reference, 0.0)?;
+        let engine = engine((options.functions, regularisation), system, &reference, 0.0)?;
         let linear = system.operator().as_linear().is_some();
         Ok(Self {
             options,
@@ -174,7 +134,8 @@ impl Trigonometric {
     fn follow_supports(&mut self, system: &System, t_next: f64) -> Result<()> {
         let held = system.holding(t_next);
         if held != self.held && self.options.functions == FunctionMethod::Eigenvectors {
-            self.engine = engine(self.options, system, &self.reference, t_next)?;
+            let functions = (self.options.functions, self.options.regularisation);
+            self.engine = engine(functions, system, &self.reference, t_next)?;
         }
         self.held = held;
         Ok(())
@@ -257,8 +218,7 @@ impl Trigonometric {
                 Term::times(-factor, of_v, tau, v_next),
             ];
             apply(
-                &mut self.engine,
-                self.options,
+                (&mut self.engine, self.options.regularisation),
                 system,
                 (&self.reference, t_next),
                 (&self.change, terms),
@@ -281,8 +241,7 @@ impl Trigonometric {
             Term::new(WaveFunction::Cosine, tau, v),
         ];
         apply(
-            &mut self.engine,
-            self.options,
+            (&mut self.engine, self.options.regularisation),
             system,
             (&self.reference, t_next),
             (&self.push, by_velocity),
@@ -293,8 +252,7 @@ impl Trigonometric {
             Term::new(WaveFunction::Sine, tau, v),
         ];
         apply(
-            &mut self.engine,
-            self.options,
+            (&mut self.engine, self.options.regularisation),
             system,
             (&self.reference, t_next),
             (&self.pull, by_force),
@@ -325,8 +283,7 @@ impl Trigonometric {
                     Term::times(weight * tau, WaveFunction::Cosine, left, v),
                 ];
                 apply(
-                    &mut self.engine,
-                    self.options,
+                    (&mut self.engine, self.options.regularisation),
                     system,
                     (&self.reference, t + tau),
                     (&self.change, terms),
@@ -336,115 +293,6 @@ impl Trigonometric {
         }
         Ok(())
     }
-}
-
-/// Creates the functions of the stiffness with the points that are constrained at time t.
-fn engine(
-    options: TrigonometricOptions,
-    system: &System,
-    reference: &[f64],
-    t: f64,
-) -> Result<Engine> {
-    let diagonal = system
-        .operator()
-        .as_linear()
-        .and_then(|linear| linear.as_diagonal());
-    let uniform = match system.density() {
-        PointScalar::Uniform(density) if diagonal.is_some() && system.motions().is_empty() => {
-            Some(*density)
-        }
-        _ => None,
-    };
-    let bound = system
-        .operator()
-        .frequency_bound(&|i| system.density().at(i));
-    if uniform.is_none() && !(bound > 0.0 && bound.is_finite()) {
-        return Err(PericlesError::SchemeNotUsable {
-            scheme: NAME,
-            reason: "its forces have no linear part at rest (as on a surface with p > 2), which this scheme solves \
-                exactly; use scheme = \"rk4\", \"newmark\" or \"discrete-gradient\"",
-        });
-    }
-    Ok(match (options.functions, uniform) {
-        (FunctionMethod::Fastest | FunctionMethod::Fourier, Some(density)) => {
-            Engine::Fourier(density)
-        }
-        (FunctionMethod::Fourier, None) => {
-            return Err(PericlesError::SchemeNotUsable {
-                scheme: "trigonometric with Fourier functions",
-                reason: "it needs bonds = \"spectral\" and no prescribed motion; functions = \"chebyshev\" supports \
-                    any body",
-            });
-        }
-        (FunctionMethod::Fastest | FunctionMethod::Chebyshev, _) => {
-            let square = bound * bound + options.regularisation;
-            Engine::Krylov(Box::new(Chebyshev::new(square, reference.len())))
-        }
-        (FunctionMethod::Lanczos, _) => Engine::Krylov(Box::new(Lanczos::new(system.masses()))),
-        (FunctionMethod::Eigenvectors, _) => {
-            // Constrained points exert no force, so that the matrix is symmetric.
-            let mut free = vec![0.0; reference.len()];
-            let mut shifted = |x: &[f64], out: &mut [f64]| {
-                free.copy_from_slice(x);
-                system.hold_at(t, &mut free);
-                system.vibration_at(t, reference, &free, out);
-                add(out, options.regularisation, x);
-            };
-            Engine::Krylov(Box::new(Eigenvectors::new(&mut shifted, &system.masses())?))
-        }
-    })
-}
-
-/// Adds functions of the stiffness applied to `x`, whose constrained entries are zero.
-fn apply(
-    engine: &mut Engine,
-    options: TrigonometricOptions,
-    system: &System,
-    (reference, t_next): (&[f64], f64),
-    (x, mut terms): (&[f64], [Term<'_>; 2]),
-    interrupt: Interrupt<'_>,
-) -> Result<()> {
-    match engine {
-        Engine::Fourier(density) => {
-            let linear = system.operator().as_linear();
-            if let Some(diagonal) = linear.and_then(|linear| linear.as_diagonal()) {
-                let values = terms.each_ref().map(|term| {
-                    let (function, tau, factor) = (term.function, term.tau, term.factor);
-                    move |square: f64| factor * function.value(tau, square)
-                });
-                let mut functions: Vec<_> = terms
-                    .iter_mut()
-                    .zip(&values)
-                    .map(|(term, value)| FunctionOf {
-                        value,
-                        out: &mut *term.out,
-                    })
-                    .collect();
-                diagonal.add_functions(*density, options.regularisation, x, &mut functions);
-            }
-            Ok(())
-        }
-        Engine::Krylov(engine) => {
-            let mut product = |x: &[f64], out: &mut [f64]| {
-                system.vibration_at(t_next, reference, x, out);
-                if options.regularisation > 0.0 {
-                    add(out, options.regularisation, x);
-                }
-            };
-            engine.add(&mut product, x, &mut terms, interrupt)
-        }
-    }
-}
-
-/// y += factor x.
-fn add(y: &mut [f64], factor: f64, x: &[f64]) {
-    y.par_chunks_mut(BLOCK)
-        .zip(x.par_chunks(BLOCK))
-        .for_each(|(y, x)| y.iter_mut().zip(x).for_each(|(y, x)| *y += factor * x));
-}
-
-fn subtract(y: &mut [f64], x: &[f64]) {
-    add(y, -1.0, x);
 }
 
 impl Integrator for Trigonometric {

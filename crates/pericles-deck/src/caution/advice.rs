@@ -1,7 +1,6 @@
 //! Advice and labels of warnings.
 
 use miette::Severity;
-use pericles::units::quantity;
 
 use super::Caution;
 use crate::subject::Subject;
@@ -83,22 +82,7 @@ impl Subject for Caution {
             Self::NoContact { .. } => {
                 "add [contact], or [contact] with pairs = \"pieces\" for the pieces only"
             }
-            Self::FastImpact { .. } => {
-                "use a larger `contact.stiffness` with a smaller step, fewer spacings per horizon, or a smaller speed; the history shows the overlap of impactors"
-            }
-            Self::SmallImpactor { .. } => "use a smaller spacing or a wider impactor",
-            Self::FrictionTorque => {
-                "the error of a sliding body is of the order of μ times the spacing over its size; a smaller spacing reduces it"
-            }
-            Self::FewContactSteps { longest, .. } => {
-                return Some(format!(
-                    "use dt = \"auto\" or at most {}",
-                    quantity(*longest, "s")
-                ));
-            }
-            Self::CoarseImpact { .. } => {
-                "broken bonds then depend on the time step; repeat the run with a smaller dt and compare"
-            }
+            Self::Contact(caution) => return Some(caution.advice()),
             Self::NoSupport { .. } => {
                 "constrain them with [[constraint]]; without supports, a static state exists only if the loads on them are in equilibrium"
             }
@@ -174,10 +158,7 @@ impl Subject for Caution {
             Self::CrackOutside { .. } => "outside the body",
             Self::Pieces { .. } => "disconnected",
             Self::NoContact { .. } => "no contact",
-            Self::FastImpact { .. } => "fast impact",
-            Self::FewContactSteps { .. } | Self::CoarseImpact { .. } => "large step",
-            Self::SmallImpactor { .. } => "narrow impactor",
-            Self::FrictionTorque => "angular momentum",
+            Self::Contact(caution) => caution.label(),
             Self::LargeStretch { .. } => "large critical stretch",
             Self::SoftSolid { .. } => "low modulus",
             Self::HeavySolid { .. } => "large density",

@@ -8,8 +8,8 @@ use pericles_contact::{
     ImpactorMotion, Inertia, PairLaw, PointContact, Pose, Shape, usual_overlap,
 };
 use pericles_deck::{
-    BuildError, Caution, Contact, Fault, ImpactorInertia, ImpactorShape, KeyPath, ModelWarning,
-    Remark, Solid,
+    BuildError, Caution, Contact, ContactCaution, Fault, ImpactorInertia, ImpactorShape, KeyPath,
+    ModelWarning, Remark, Solid,
 };
 
 use pericles_mesh::fill::TriangleSurface;
@@ -62,7 +62,10 @@ impl Assembler<'_> {
                 .and_then(|points| system.add_interaction(Box::new(points)))
                 .map_err(|error| at("contact", error))?;
             if law.friction.is_some() && cloud.dimension() > 1 {
-                warnings.push(Remark::new("contact.friction", Caution::FrictionTorque));
+                warnings.push(Remark::new(
+                    "contact.friction",
+                    Caution::Contact(ContactCaution::FrictionTorque),
+                ));
             }
         }
         for (k, impactor) in self.model.impactors.iter().enumerate() {
@@ -253,12 +256,12 @@ impl Assembler<'_> {
             pericles_deck::ContactStiffness::Absolute(_) => 0.0,
         };
         if overlap > LARGE {
-            let caution = Caution::FastImpact {
+            let caution = ContactCaution::FastImpact {
                 speed: facts.speed,
                 wave_speed,
                 overlap,
             };
-            warnings.push(Remark::new("contact.stiffness", caution));
+            warnings.push(Remark::new("contact.stiffness", Caution::Contact(caution)));
         }
     }
 
@@ -275,17 +278,17 @@ impl Assembler<'_> {
             return;
         }
         if dt > longest * (1.0 + 1e-9) {
-            let caution = Caution::FewContactSteps { dt, longest };
-            warnings.push(Remark::new("time.dt", caution));
+            let caution = ContactCaution::FewContactSteps { dt, longest };
+            warnings.push(Remark::new("time.dt", Caution::Contact(caution)));
         }
         let critical = own.map_or(f64::INFINITY, MaterialConstants::critical_stretch);
         let stretched = facts.speed * dt / spacing;
         if stretched > critical {
-            let caution = Caution::CoarseImpact {
+            let caution = ContactCaution::CoarseImpact {
                 speed: facts.speed,
                 times: stretched / critical,
             };
-            warnings.push(Remark::new("time.dt", caution));
+            warnings.push(Remark::new("time.dt", Caution::Contact(caution)));
         }
     }
 }
@@ -379,10 +382,10 @@ fn small_impactor(path: &KeyPath, shape: &Shape, cloud: &PointCloud) -> Option<M
         shape.smallest_half_width(cloud.dimension()),
         cloud.spacing(),
     );
-    let caution = Caution::SmallImpactor {
+    let caution = ContactCaution::SmallImpactor {
         width: 2.0 * half_width,
         spacing,
     };
     let is_small = cloud.dimension() > 1 && half_width < 0.5 * spacing;
-    is_small.then(|| Remark::new(path, caution))
+    is_small.then(|| Remark::new(path, Caution::Contact(caution)))
 }
