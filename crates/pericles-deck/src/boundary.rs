@@ -22,7 +22,7 @@ pub enum BoundaryCondition {
         #[serde(with = "crate::form")]
         plan: AbsorbingBoundaryPlan,
         /// Distance over which the initial fields continue beyond the end, m; none if they are zero there.
-        #[serde(default, alias = "exterior_data")]
+        #[serde(default)]
         exterior_extent: Option<f64>,
     },
     /// A damping layer at a side of any body.

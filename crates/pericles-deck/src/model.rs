@@ -109,7 +109,7 @@ pub struct Model {
     #[serde(default)]
     pub initial: Vec<Initial>,
     /// `[[constraint]]`
-    #[serde(default, rename = "constraint", alias = "prescribe")]
+    #[serde(default, rename = "constraint")]
     pub constraints: Vec<Constraint>,
     /// `[[load]]`
     #[serde(default, rename = "load")]

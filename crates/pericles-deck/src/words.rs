@@ -58,8 +58,7 @@ fn write<T: Worded, S: Serializer>(value: T, serializer: S) -> Result<S::Ok, S::
 }
 
 fn read<'de, T: Worded, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
-    // The deprecated word of the law, alone and with an approximation.
-    let word = String::deserialize(deserializer)?.replace("literal57", "cubic-softening");
+    let word = String::deserialize(deserializer)?;
     let words = T::words();
     let found = words.iter().find(|(known, _)| *known == word);
     found.map(|(_, value)| *value).ok_or_else(|| {

@@ -59,10 +59,8 @@ pub enum SurfaceFormula {
         /// Radius of the tube, m.
         minor: f64,
         /// Number of vertices along the centre line.
-        #[serde(alias = "around")]
         major_segments: u32,
         /// Number of vertices around the tube.
-        #[serde(alias = "across")]
         minor_segments: u32,
     },
     /// A cylinder about the z axis with hemispherical caps.

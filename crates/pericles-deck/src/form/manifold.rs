@@ -18,7 +18,6 @@ struct PowerMaterialForm {
     horizon: f64,
     #[serde(with = "crate::form")]
     bond: SurfaceBond,
-    #[serde(alias = "self_cell")]
     self_interaction: bool,
     // Infinity: bonds never break.
     #[serde(with = "crate::form")]

@@ -14,7 +14,6 @@ struct FollowForm {
     every: u32,
     threshold: f64,
     layers: u32,
-    #[serde(alias = "hold")]
     keep_checks: u32,
 }
 

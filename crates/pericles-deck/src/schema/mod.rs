@@ -4,7 +4,7 @@
 //! [`specimens`], so that schema and reader cannot disagree. Only the descriptions are written by hand, in
 //! `descriptions.toml`. Tests require a form and a description for every key of the reader, and a key for
 //! every description. The schema does not know which keys need which shape, model or scheme: it allows more
-//! than the reader, never less. It omits deprecated tables, so that editors mark them.
+//! than the reader, never less.
 
 mod descriptions;
 mod json;
