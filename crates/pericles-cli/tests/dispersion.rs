@@ -207,11 +207,7 @@ end = 1
     // Parts of the deck that the analysis of the first material does not include.
     let two = text.replace(
         "[time]",
-        "[material.inclusion]\n[sets]\nleft = { layer = { side = \"-x\", cells = 3 } }\n[time]",
-    );
-    let two = two.replace(
-        "[material.inclusion]\n",
-        "[[material.inclusion]]\nset = \"left\"\nstiffness = 2\n",
+        "[[assign]]\nset = \"left\"\nstiffness = 2\n[sets]\nleft = { layer = { side = \"-x\", cells = 3 } }\n[time]",
     );
     let two = two.replace(
         "influence =",

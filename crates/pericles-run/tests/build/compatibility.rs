@@ -91,7 +91,7 @@ fn deck_with(feature: Feature, form: &Form) -> String {
     let model = match feature {
         BondStretch => "bond-stretch",
         GreenStrain | GreenStrainBar => "green-strain",
-        OtherCubic => "literal57",
+        OtherCubic => "cubic-softening",
         StateBased | BondEnergy | StressFailure => "state-based",
         Correspondence => "correspondence",
         _ => "linear",

@@ -105,7 +105,7 @@ fn invalid_absorbing_boundaries_are_rejected() {
         ),
         (
             "side = \"+x\"\n[time]",
-            "side = \"+x\"\nexterior_data = \"9 mm\"\n[time]\nscheme = \"implicit-midpoint\"\ndt = \"1 us\"",
+            "side = \"+x\"\nexterior_extent = \"9 mm\"\n[time]\nscheme = \"implicit-midpoint\"\ndt = \"1 us\"",
             (20, 1),
             "exterior_extent needs scheme = \"velocity-verlet\"",
         ),
@@ -173,7 +173,7 @@ fn initial_fields_may_extend_beyond_a_boundary() {
         run.state().u.clone()
     };
     let long = displacement(&bell.replace("100 mm", "200 mm"));
-    let data = "side = \"+x\"\nexterior_data = \"70 mm\"";
+    let data = "side = \"+x\"\nexterior_extent = \"70 mm\"";
     let short = displacement(&bell.replace("side = \"+x\"", data));
     let pairs = long.iter().zip(&short);
     let error = pairs.fold(0.0, |a: f64, (u, v)| a.max((u - v).abs()));
@@ -222,13 +222,16 @@ fn exterior_fields_are_compared_with_the_field_of_the_body() {
         "set = \"middle\"\nvelocity = \"1 m/s\"",
         "displacement = { expression = \"exp(-((x-0.05)/0.008)^2) + 8e-21\" }",
     );
-    let text = text.replace("side = \"+x\"", "side = \"+x\"\nexterior_data = \"20 mm\"");
+    let text = text.replace(
+        "side = \"+x\"",
+        "side = \"+x\"\nexterior_extent = \"20 mm\"",
+    );
     build(&text);
 }
 
 #[test]
 fn the_memory_of_the_exterior_is_checked_before_allocation() {
-    let text = BAR.replace("side = \"+x\"", "side = \"+x\"\nexterior_data = 1e15");
+    let text = BAR.replace("side = \"+x\"", "side = \"+x\"\nexterior_extent = 1e15");
     let message = refusal(&text).to_string();
     assert!(message.contains("of memory"), "{message}");
 }

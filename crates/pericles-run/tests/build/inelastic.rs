@@ -11,7 +11,7 @@ const HELD: &str = r#"
 body = { shape = "plate", size = [46, 12], origin = [-23, -6], spacing = 1, plane = "stress" }
 material = { model = "state-based", strains = "small", density = 1, youngs_modulus = 10, poisson_ratio = 0.35, horizon_ratio = 3, OTHER }
 sets = { left = { where = "x < -20" }, right = { where = "x > 20" } }
-constraint = [{ set = "left", displacement = [-0.02, "free"] }, { set = "right", displacement = [0.02, "free"] }]
+constraint = [{ set = "left", displacement = [-0.02, "free"], function = { kind = "constant" } }, { set = "right", displacement = [0.02, "free"], function = { kind = "constant" } }]
 time = { scheme = "adaptive-dynamic-relaxation", tolerance = 1e-8, end = 4, load_steps = 16 }
 "#;
 

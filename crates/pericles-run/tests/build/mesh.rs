@@ -261,7 +261,7 @@ fn pressures_on_tetrahedra_have_the_resultant_of_their_faces() {
 
 #[test]
 fn a_material_can_be_assigned_to_a_mesh_group() {
-    let part = "[[material.part]]\nname = \"soft\"\nset = \"right half\"\ndensity = 1200\nyoungs_modulus = \"3 GPa\"\n[sets]";
+    let part = "[materials.soft]\ndensity = 1200\nyoungs_modulus = \"3 GPa\"\n[[assign]]\nset = \"right half\"\nmaterial = \"soft\"\n[sets]";
     let body = built(&MESH.replacen("[sets]", part, 1), &block([8, 3, 2], false));
     assert_eq!(body.other_materials.len(), 1);
 }

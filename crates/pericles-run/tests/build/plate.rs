@@ -215,9 +215,13 @@ fn sets_have_their_own_density_and_strength() {
         .iter()
         .map(|warning| warning.line())
         .collect();
-    assert_eq!(lines.len(), 1, "{lines:?}");
-    assert!(
-        lines[0].contains("deck.toml:12:20: the critical stretch is 30 %"),
+    let count = |says: &str| lines.iter().filter(|line| line.contains(says)).count();
+    assert_eq!(
+        count("deck.toml:12:20: the critical stretch is 30 %"),
+        1,
         "{lines:?}"
     );
+    // The glue is two cells thick.
+    assert_eq!(count("bonds bridge this layer"), 1, "{lines:?}");
+    assert_eq!(lines.len(), 2, "{lines:?}");
 }
