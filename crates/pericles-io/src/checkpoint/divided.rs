@@ -25,8 +25,8 @@ use crate::atomic::{create_beside, finish};
 /// Opens the unfinished file that the first process has created.
 type Open<'a> = &'a (dyn Fn(&Path) -> io::Result<File> + Sync);
 
-/// Writes the checkpoint of a divided body atomically, with the bytes that [`Container::write`] writes for the whole body. The
-/// metadata are those of the first process. All processes must call it together.
+/// Writes the checkpoint of a divided body atomically, with the bytes that
+/// [`Container::write`](super::Container::write) writes for the whole body. The metadata are those of the first process. All processes must call it together.
 ///
 /// # Errors
 /// The file cannot be written by one of the processes: the others return [`IoError::OnAnotherProcess`]. An existing file is then

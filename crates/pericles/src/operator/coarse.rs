@@ -110,8 +110,8 @@ impl Crossing {
         }
     }
 
-    /// Returns the energy that a point dissipates whose energy decreases by `end`[0] (J) when its bonds break at the end of the
-    /// step, with the rate `end`[1] (W) for the mean velocity; `start` returns both at the start of the step.
+    /// Returns the energy that a point dissipates whose energy decreases by `end[0]` (J) when its bonds break at the end of the
+    /// step, with the rate `end[1]` (W) for the mean velocity; `start` returns both at the start of the step.
     pub fn judge(
         &self,
         step: &StepEnd<'_>,
