@@ -53,7 +53,7 @@ impl Method {
             // The scheme of the deck is replaced by one created from the model.
             Self::Uniform(_) | Self::Verlet => Vec::new(),
             Self::Two(order, ratio) => vec![
-                format!("time.scheme=rk{order}-mts"),
+                format!("time.scheme=multirate-rk{order}"),
                 format!("time.ratio={ratio}"),
             ],
             Self::Respa(ratio) => vec!["time.scheme=respa".into(), format!("time.ratio={ratio}")],
