@@ -91,9 +91,9 @@ fn add_chunks_body<T: Lanes>(
                 if let [incomplete, excess @ ..] = stencil.surface {
                     let both = T::load(incomplete, at) * T::load(incomplete, place);
                     let mut sum = zero;
-                    for (field, &c) in excess.iter().zip(&stencil.directions[k]) {
-                        let ends = T::load(field, at) + T::load(field, place);
-                        sum = ends.mul_add(T::splat(c), sum);
+                    for c in 0..excess.len() {
+                        let ends = T::load(&excess[c], at) + T::load(&excess[c], place);
+                        sum = ends.mul_add(T::splat(stencil.directions[k][c]), sum);
                     }
                     conductivity = (both * sum).mul_add(mean, mean);
                 }
