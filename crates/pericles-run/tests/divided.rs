@@ -209,7 +209,7 @@ fn schemes_have_the_files_of_one_process() {
 }
 
 /// The block is torn apart quasi-statically.
-const OPEN: &str = "displacement = [0, 0.2, 0]\nfunction = { kind = \"constant\" }\n[[constraint]]\nset = \"bottom\"\ndisplacement = [0, 0, 0]\n[time]\nscheme = \"static\"\nload_steps = 4\n";
+const OPEN: &str = "displacement = [0, 0.2, 0]\n[[constraint]]\nset = \"bottom\"\ndisplacement = [0, 0, 0]\n[time]\nscheme = \"static\"\nload_steps = 4\n";
 
 #[test]
 fn static_states_have_the_files_of_one_process() {
