@@ -1,4 +1,4 @@
-//! What a resumed run reports and writes besides its tables: warnings, counters, field files.
+//! Resumed runs: warnings, counters and field files equal those of an uninterrupted run.
 
 mod common;
 
