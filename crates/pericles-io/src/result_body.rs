@@ -4,7 +4,7 @@ use std::path::Path;
 
 use pericles::observe::Field;
 use pericles::space::PointCloud;
-use pericles_mesh::results::{FieldSpec, PointList, WriteError};
+use pericles_mesh::results::{ExodusLayout, FieldSpec, PointList, VtkHdfLayout, WriteError};
 
 use crate::IoError;
 use crate::numbering::Numbering;
@@ -68,6 +68,40 @@ impl ResultBody {
             blocks,
             sets,
             numbering,
+        }
+    }
+}
+
+impl ResultBody {
+    /// Returns the layout of an Exodus file with these fields, in single precision if `is_single`.
+    pub fn exodus(&self, fields: Vec<FieldSpec>, is_single: bool) -> ExodusLayout<'_> {
+        ExodusLayout {
+            title: self.title.clone(),
+            dimension: self.dimension,
+            positions: &self.positions,
+            volumes: &self.volumes,
+            blocks: self.blocks.clone(),
+            sets: self.sets.clone(),
+            globals: Vec::new(),
+            fields,
+            is_single,
+        }
+    }
+
+    /// Returns the layout of a VTKHDF file with these fields and number of outputs, in single precision if `is_single`.
+    pub fn vtkhdf(
+        &self,
+        fields: Vec<FieldSpec>,
+        outputs: usize,
+        is_single: bool,
+    ) -> VtkHdfLayout<'_> {
+        VtkHdfLayout {
+            dimension: self.dimension,
+            positions: &self.positions,
+            constants: self.constants(&fields),
+            fields,
+            outputs,
+            is_single,
         }
     }
 }

@@ -8,9 +8,7 @@ use std::sync::Arc;
 
 use pericles_io::write_error;
 use pericles_io::{Column, CsvTable, IoError, NpzWriter, ResultBody};
-use pericles_mesh::results::{
-    ExodusLayout, ExodusWriter, FieldSpec, VtkHdfLayout, VtkHdfWriter, WriteError,
-};
+use pericles_mesh::results::{ExodusWriter, FieldSpec, VtkHdfWriter, WriteError};
 
 use crate::build::{Resources, discretise};
 use crate::error::RunError;
@@ -90,18 +88,7 @@ impl Export<'_> {
     }
 
     fn exodus(&mut self) -> Result<(), RunError> {
-        let body = self.body;
-        let layout = ExodusLayout {
-            title: body.title.clone(),
-            dimension: body.dimension,
-            positions: &body.positions,
-            volumes: &body.volumes,
-            blocks: body.blocks.clone(),
-            sets: body.sets.clone(),
-            globals: Vec::new(),
-            fields: self.specs.clone(),
-            is_single: false,
-        };
+        let layout = self.body.exodus(self.specs.clone(), false);
         let mut writer = self.written(ExodusWriter::create(self.path, &layout))?;
         for output in 0..self.outputs() {
             let (time, values) = self.fields.read(output)?;
@@ -112,15 +99,7 @@ impl Export<'_> {
     }
 
     fn vtkhdf(&mut self) -> Result<(), RunError> {
-        let fields = self.specs.clone();
-        let layout = VtkHdfLayout {
-            dimension: self.body.dimension,
-            positions: &self.body.positions,
-            constants: self.body.constants(&fields),
-            fields,
-            outputs: self.outputs(),
-            is_single: false,
-        };
+        let layout = self.body.vtkhdf(self.specs.clone(), self.outputs(), false);
         let mut writer = self.written(VtkHdfWriter::create(self.path, &layout))?;
         for output in 0..self.outputs() {
             let (time, values) = self.fields.read(output)?;

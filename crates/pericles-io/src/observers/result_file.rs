@@ -132,31 +132,13 @@ impl ResultFile {
     }
 
     fn exodus(&self) -> ExodusLayout<'_> {
-        let body = &*self.body;
-        ExodusLayout {
-            title: body.title.clone(),
-            dimension: body.dimension,
-            positions: &body.positions,
-            volumes: &body.volumes,
-            blocks: body.blocks.clone(),
-            sets: body.sets.clone(),
-            globals: Vec::new(),
-            fields: self.wanted.specs(body.dimension),
-            is_single: self.is_single,
-        }
+        let fields = self.wanted.specs(self.body.dimension);
+        self.body.exodus(fields, self.is_single)
     }
 
     fn vtkhdf(&self, outputs: usize) -> VtkHdfLayout<'_> {
-        let body = &*self.body;
-        let fields = self.wanted.specs(body.dimension);
-        VtkHdfLayout {
-            dimension: body.dimension,
-            positions: &body.positions,
-            constants: body.constants(&fields),
-            fields,
-            outputs,
-            is_single: self.is_single,
-        }
+        let fields = self.wanted.specs(self.body.dimension);
+        self.body.vtkhdf(fields, outputs, self.is_single)
     }
 
     /// The writer after a number of outputs: of a new file if there are none.
