@@ -1,8 +1,7 @@
 //! Inner products and linear combinations of blocks of vectors.
 
+use pericles::parallel::for_each_chunk;
 use rayon::prelude::*;
-
-use crate::chunks::for_each_chunk;
 
 /// Entries per block, so that blocks of all vectors remain in the cache.
 const BLOCK: usize = 2048;
@@ -30,6 +29,7 @@ pub(crate) fn symmetric_products(a: &[Vec<f64>], b: &[Vec<f64>], weights: &[f64]
     };
     let blocks: Vec<Vec<f64>> = (0..weights.len().div_ceil(BLOCK))
         .into_par_iter()
+        .with_min_len(8)
         .map(of_block)
         .collect();
     let mut total = vec![0.0; n * n];

@@ -430,7 +430,7 @@ fn residual_into(system: &System, target: &Target<'_>, u: &[f64], out: &mut [f64
     out.copy_from_slice(target.load);
     add_internal(system, [target.t, target.place], u, out);
     let (n, volumes) = (system.points(), system.cloud().volumes());
-    crate::chunks::for_each_chunk(out, &|first, chunk| {
+    pericles::parallel::for_each_chunk(out, &|first, chunk| {
         for (k, out) in chunk.iter_mut().enumerate() {
             *out *= volumes[(first + k) % n];
         }

@@ -1,9 +1,9 @@
 //! Preconditioned conjugate gradients on the free entries of a body.
 
 use pericles::domain::Domain;
+use pericles::parallel::for_each_chunk;
 use pericles::{Interrupt, Result};
 
-use crate::chunks::for_each_chunk;
 use crate::sparse::add_multiple;
 
 /// Linear problem A d = r on the free entries of vectors that also have constrained entries.

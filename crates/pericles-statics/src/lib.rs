@@ -15,7 +15,6 @@
 
 mod block;
 mod breaking;
-mod chunks;
 mod eigen;
 mod equilibrium;
 mod error;

@@ -2,10 +2,8 @@
 //!
 //! Each row is computed by one thread in a fixed order, so that results do not depend on the number of threads.
 
-use pericles::parallel::BLOCK;
+use pericles::parallel::{BLOCK, Cost, for_each_chunk, for_each_chunk_of};
 use rayon::prelude::*;
-
-use crate::chunks::for_each_chunk;
 
 /// Receives the column and value of an entry.
 pub type Push<'a> = dyn FnMut(usize, f64) + 'a;
@@ -145,7 +143,7 @@ impl SparseMatrix {
 
     /// `out` = A x.
     pub fn multiply_into(&self, x: &[f64], out: &mut [f64]) {
-        for_each_chunk(out, &|first, chunk| {
+        for_each_chunk_of(out, self.cost(), &|first, chunk| {
             for (k, out) in chunk.iter_mut().enumerate() {
                 *out = self.row_product(first + k, x);
             }
@@ -154,7 +152,7 @@ impl SparseMatrix {
 
     /// `out` −= A x.
     pub fn subtract_product(&self, x: &[f64], out: &mut [f64]) {
-        for_each_chunk(out, &|first, chunk| {
+        for_each_chunk_of(out, self.cost(), &|first, chunk| {
             for (k, out) in chunk.iter_mut().enumerate() {
                 *out -= self.row_product(first + k, x);
             }
@@ -163,11 +161,16 @@ impl SparseMatrix {
 
     /// `out` += A x.
     pub fn add_product(&self, x: &[f64], out: &mut [f64]) {
-        for_each_chunk(out, &|first, chunk| {
+        for_each_chunk_of(out, self.cost(), &|first, chunk| {
             for (k, out) in chunk.iter_mut().enumerate() {
                 *out += self.row_product(first + k, x);
             }
         });
+    }
+
+    /// Returns the cost of a product with a vector.
+    fn cost(&self) -> Cost {
+        Cost::bonds(self.value.len() as u64)
     }
 
     fn row_product(&self, i: usize, x: &[f64]) -> f64 {

@@ -2,8 +2,8 @@
 
 use pericles::System;
 use pericles::domain::Replicated;
+use pericles::parallel::for_each_chunk;
 
-use crate::chunks::for_each_chunk;
 use crate::krylov::LinearProblem;
 use crate::multigrid::Multigrid;
 use crate::unknowns::Unknowns;

@@ -5,6 +5,11 @@
 //!
 //! Loops take a reference to a closure that computes a whole block, so that the code which distributes blocks is
 //! compiled once and not for every loop.
+//!
+//! Handing work to another thread takes about as long as a thousand bonds. Each loop therefore states its [`Cost`]: short
+//! loops run on the calling thread, and long ones are divided into tasks that are long enough. A thread outside of the
+//! pool waits about 50 µs for each divided loop; programs make their main thread a part of the pool
+//! (`rayon::ThreadPoolBuilder::use_current_thread`).
 
 use std::ops::Range;
 
@@ -82,14 +87,59 @@ pub type PartWork<'a, const D: usize, S> = dyn Fn(usize, [&mut [f64]; D], &mut S
 /// Number of points in a block.
 pub const BLOCK: usize = 512;
 
+/// Estimated duration of a loop on one thread. It determines the number of tasks of the loop; results do not depend on it.
+#[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
+pub struct Cost {
+    nanoseconds: f64,
+}
+
+impl Cost {
+    /// Duration of the shortest task, ns: about ten times the time in which another thread takes a task.
+    const TASK: f64 = 4000.0;
+
+    /// A loop with a few operations for each of `count` entries of an array.
+    pub const fn entries(count: usize) -> Self {
+        Self {
+            nanoseconds: 0.5 * count as f64,
+        }
+    }
+
+    /// A loop over `count` directed bonds.
+    pub const fn bonds(count: u64) -> Self {
+        Self {
+            nanoseconds: count as f64,
+        }
+    }
+
+    /// The part of the loop over all of `points` points that belongs to a subset.
+    pub fn on(self, subset: &PointSubset<'_>, points: usize) -> Self {
+        let share = subset.count(points) as f64 / points.max(1) as f64;
+        Self {
+            nanoseconds: share * self.nanoseconds,
+        }
+    }
+
+    /// Returns the number of parts of each task, for a loop over `parts` parts; all parts if the loop is not divided.
+    pub fn parts_per_task(self, parts: usize) -> usize {
+        let tasks = (self.nanoseconds / Self::TASK) as usize;
+        if tasks < 2 {
+            parts.max(1)
+        } else {
+            parts.div_ceil(tasks)
+        }
+    }
+}
+
 /// Calls `work(first point, one slice per component, state of the block)` for every block in parallel, without
 /// allocation.
 pub fn for_each_block<const D: usize, S: Send>(
     out: [&mut [f64]; D],
     states: &mut [S],
+    cost: Cost,
     work: &PartWork<'_, D, S>,
 ) {
-    for_each_part(out, states, &|block| block * BLOCK, &|block, out, state| {
+    let first = |block| block * BLOCK;
+    for_each_part(out, states, cost, &first, &|block, out, state| {
         work(block * BLOCK, out, state);
     });
 }
@@ -100,48 +150,99 @@ pub fn for_each_block<const D: usize, S: Send>(
 pub(crate) fn for_each_part<const D: usize, S: Send>(
     out: [&mut [f64]; D],
     states: &mut [S],
+    cost: Cost,
     first: &(dyn Fn(usize) -> usize + Sync),
     work: &PartWork<'_, D, S>,
 ) {
-    split(0, out, states, first, work);
+    let parts_per_task = cost.parts_per_task(states.len());
+    let division = Division {
+        parts_per_task,
+        first,
+        work,
+    };
+    division.run(0, out, states);
 }
 
-fn split<const D: usize, S: Send>(
-    part: usize,
-    out: [&mut [f64]; D],
-    states: &mut [S],
-    first: &(dyn Fn(usize) -> usize + Sync),
-    work: &PartWork<'_, D, S>,
-) {
-    match states {
-        [] => {}
-        [state] => work(part, out, state),
-        _ => {
+/// Division of a loop over parts into tasks.
+struct Division<'a, const D: usize, S> {
+    parts_per_task: usize,
+    first: &'a (dyn Fn(usize) -> usize + Sync),
+    work: &'a PartWork<'a, D, S>,
+}
+
+impl<const D: usize, S: Send> Division<'_, D, S> {
+    /// Computes the parts from `part` on, one for each state.
+    fn run(&self, part: usize, mut out: [&mut [f64]; D], states: &mut [S]) {
+        if states.len() > self.parts_per_task {
             let middle = states.len() / 2;
-            let points = first(part + middle) - first(part);
+            let (low, high) = cut(out, (self.first)(part + middle) - (self.first)(part));
             let (low_states, high_states) = states.split_at_mut(middle);
-            let mut high: [&mut [f64]; D] = std::array::from_fn(|_| Default::default());
-            let mut component = 0;
-            let low = out.map(|slice| {
-                let (low, rest) = slice.split_at_mut(points);
-                high[component] = rest;
-                component += 1;
-                low
-            });
             rayon::join(
-                || split(part, low, low_states, first, work),
-                || split(part + middle, high, high_states, first, work),
+                || self.run(part, low, low_states),
+                || self.run(part + middle, high, high_states),
             );
+            return;
+        }
+        let parts = states.len();
+        for (k, state) in states.iter_mut().enumerate() {
+            if k + 1 == parts {
+                return (self.work)(part + k, out, state);
+            }
+            let (own, rest) = cut(out, (self.first)(part + k + 1) - (self.first)(part + k));
+            (self.work)(part + k, own, state);
+            out = rest;
         }
     }
 }
 
-/// Calls `work(first entry, entries)` for every block of entries in parallel.
+/// Cuts all components after a number of points.
+fn cut<const D: usize>(out: [&mut [f64]; D], points: usize) -> ([&mut [f64]; D], [&mut [f64]; D]) {
+    let mut high: [&mut [f64]; D] = std::array::from_fn(|_| Default::default());
+    let mut component = 0;
+    let low = out.map(|slice| {
+        let (low, rest) = slice.split_at_mut(points);
+        high[component] = rest;
+        component += 1;
+        low
+    });
+    (low, high)
+}
+
+/// Calls `work(first entry, entries)` for every block of entries in parallel; the work on an entry takes a few
+/// operations.
 pub fn for_each_chunk<T: Send>(entries: &mut [T], work: &(dyn Fn(usize, &mut [T]) + Sync)) {
-    entries
-        .par_chunks_mut(BLOCK)
-        .enumerate()
-        .for_each(|(block, chunk)| work(block * BLOCK, chunk));
+    let cost = Cost::entries(entries.len());
+    for_each_chunk_of(entries, cost, work);
+}
+
+/// Calls `work(first entry, entries)` for every block of entries in parallel, for a loop of the given cost.
+pub fn for_each_chunk_of<T: Send>(
+    entries: &mut [T],
+    cost: Cost,
+    work: &(dyn Fn(usize, &mut [T]) + Sync),
+) {
+    fn divide<T: Send>(
+        first: usize,
+        entries: &mut [T],
+        length: usize,
+        work: &(dyn Fn(usize, &mut [T]) + Sync),
+    ) {
+        if entries.len() > length {
+            let blocks = entries.len().div_ceil(BLOCK);
+            let middle = (blocks / 2) * BLOCK;
+            let (low, high) = entries.split_at_mut(middle);
+            rayon::join(
+                || divide(first, low, length, work),
+                || divide(first + middle, high, length, work),
+            );
+        } else {
+            for (block, chunk) in entries.chunks_mut(BLOCK).enumerate() {
+                work(first + block * BLOCK, chunk);
+            }
+        }
+    }
+    let blocks = entries.len().div_ceil(BLOCK);
+    divide(0, entries, cost.parts_per_task(blocks) * BLOCK, work);
 }
 
 /// Evaluates a function at all points in parallel.
@@ -189,7 +290,7 @@ fn in_set(
     points: &[u32],
     work: &(dyn Fn(usize, &mut [f64]) + Sync),
 ) {
-    if points.len() <= 2 * BLOCK {
+    if Cost::entries(points.len()).parts_per_task(2) == 2 {
         for run in runs(points) {
             work(run.start, &mut entries[run.start - first..run.end - first]);
         }
@@ -260,7 +361,7 @@ mod tests {
         let mut out = vec![0.0; 2 * n];
         let mut states = vec![0usize; n.div_ceil(BLOCK)];
         let [x, y] = components_mut::<2>(&mut out, n);
-        for_each_block([x, y], &mut states, &|first, [x, y], state| {
+        for_each_block([x, y], &mut states, cost, &|first, [x, y], state| {
             *state = x.len();
             for k in 0..x.len() {
                 x[k] += (first + k) as f64;

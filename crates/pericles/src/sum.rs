@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use crate::archive::{Archive, Layout, SavedUnder, Values};
 use crate::error::{PericlesError, Result};
 use crate::lanes::{InstructionSet, for_each_instruction_set};
-use crate::parallel::BLOCK;
+use crate::parallel::{BLOCK, Cost};
 
 /// Bits per bin: the unit of bin b is 2^(40 b).
 const WIDTH: i32 = 40;
@@ -62,8 +62,12 @@ impl BinnedSum {
     /// Returns the sum of n terms that `fill(first term, terms)` computes block by block.
     fn of_blocks(n: usize, fill: &(dyn Fn(usize, &mut [f64]) + Sync)) -> Self {
         let set = InstructionSet::detect();
-        (0..n.div_ceil(BLOCK))
+        // The exact sum of a term takes about as long as two bonds.
+        let blocks = n.div_ceil(BLOCK);
+        let blocks_per_task = Cost::bonds(2 * n as u64).parts_per_task(blocks);
+        (0..blocks)
             .into_par_iter()
+            .with_min_len(blocks_per_task)
             .map(|block| {
                 let first = block * BLOCK;
                 let mut terms = [0.0; BLOCK];

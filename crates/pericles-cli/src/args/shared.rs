@@ -124,11 +124,13 @@ impl Threads {
         self.start_or(0)
     }
 
-    /// Starts the thread pool; by default with `other` threads.
+    /// Starts the thread pool, by default with `other` threads; the calling thread is one of them, so that it computes without
+    /// handing its work over.
     pub(crate) fn start_or(&self, other: usize) -> Result<usize, RunError> {
         let count = self.count_or(other);
         rayon::ThreadPoolBuilder::new()
             .num_threads(count)
+            .use_current_thread()
             .build_global()?;
         Ok(rayon::current_num_threads())
     }

@@ -3,7 +3,7 @@
 use pericles::operator::{
     Capabilities, Force, InstructionSet, LinearOperator, Linearity, PointSubset,
 };
-use pericles::parallel::{BLOCK, components, components_mut, for_each_block};
+use pericles::parallel::{BLOCK, Cost, components, components_mut, for_each_block};
 use pericles::sum::sum;
 use pericles::{PericlesError, Result};
 
@@ -126,7 +126,8 @@ impl PeriodicForce {
         match on {
             PointSubset::All => {
                 let mut nothing = vec![(); n.div_ceil(BLOCK)];
-                for_each_block(out, &mut nothing, &|first, out, ()| {
+                let cost = Cost::bonds(self.directed_bonds());
+                for_each_block(out, &mut nothing, cost, &|first, out, ()| {
                     for k in 0..out[0].len() {
                         let force = self.force_of(&u, first + k);
                         for c in 0..D {

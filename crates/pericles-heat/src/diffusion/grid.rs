@@ -4,6 +4,7 @@ use pericles::archive::Layout;
 use pericles::domain::Domain;
 use pericles::lanes::{InstructionSet, LANES};
 use pericles::operator::pool::Pool;
+use pericles::parallel::Cost;
 use pericles::space::Sites;
 use pericles::{PericlesError, Result};
 use rayon::prelude::*;
@@ -238,22 +239,20 @@ impl GridBonds {
             weights: &self.weights,
             scale,
         };
-        self.split(
-            (&stencil, bonds, set),
-            0..self.chunks.len().div_ceil(TASK),
-            out,
-        );
+        let tasks = self.chunks.len().div_ceil(TASK);
+        let least = Cost::bonds((LANES * bonds.len()) as u64).parts_per_task(tasks);
+        self.split((&stencil, bonds, set), (0..tasks, least), out);
     }
 
     fn split(
         &self,
         work: (&Stencil<'_>, &[u8], InstructionSet),
-        tasks: std::ops::Range<usize>,
+        (tasks, least): (std::ops::Range<usize>, usize),
         out: &mut [f64],
     ) {
         let first = tasks.start * TASK;
         let end = (tasks.end * TASK).min(self.chunks.len());
-        if tasks.len() <= 1 {
+        if tasks.len() <= least {
             let (stencil, bonds, set) = work;
             let m = self.shifts.len();
             let chunks = &self.chunks[first..end];
@@ -272,8 +271,8 @@ impl GridBonds {
         let points = (self.chunks[middle * TASK].point - self.chunks[first].point) as usize;
         let (low, high) = out.split_at_mut(points);
         rayon::join(
-            || self.split(work, tasks.start..middle, low),
-            || self.split(work, middle..tasks.end, high),
+            || self.split(work, (tasks.start..middle, least), low),
+            || self.split(work, (middle..tasks.end, least), high),
         );
     }
 
@@ -293,8 +292,8 @@ impl Bonds for GridBonds {
         let mut padded = self.work.take();
         let (margin, points) = (self.margin, &self.points);
         padded[margin..margin + points.len()]
-            .par_chunks_mut(TASK * LANES)
-            .zip(points.par_chunks(TASK * LANES))
+            .par_chunks_mut(8 * TASK * LANES)
+            .zip(points.par_chunks(8 * TASK * LANES))
             .for_each(|(padded, points)| {
                 for (padded, &point) in padded.iter_mut().zip(points) {
                     if point != NONE {

@@ -3,7 +3,7 @@
 use pericles::archive::Layout;
 use pericles::family::BondList;
 use pericles::lanes::{InstructionSet, LANES};
-use pericles::parallel::{for_each_chunk, for_each_point};
+use pericles::parallel::{PointSubset, for_each_chunk_of, for_each_point};
 use pericles::{PericlesError, Result};
 
 use super::surface::{Visit, direction};
@@ -112,7 +112,7 @@ impl ListBonds {
 impl Bonds for ListBonds {
     fn add_flow(&self, values: &[f64], _set: InstructionSet, out: &mut [f64]) {
         let at_sites = self.list.sites().spread(values);
-        for_each_chunk(out, &|first, out| {
+        for_each_chunk_of(out, self.list.cost(&PointSubset::All), &|first, out| {
             for (k, out) in out.iter_mut().enumerate() {
                 let i = first + k;
                 let here = values[i];

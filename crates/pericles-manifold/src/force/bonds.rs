@@ -5,6 +5,7 @@ use std::ops::Range;
 use crate::geodesic::GeodesicPairs;
 use pericles::lanes::LANES;
 use pericles::operator::prefetch::prefetch;
+use pericles::parallel::{Cost, PointSubset};
 
 /// Bonds in compressed rows, padded to groups of eight, each with the force factor w_ij A_j: 12 bytes per
 /// directed bond, plus padding.
@@ -94,6 +95,11 @@ impl SurfaceBonds {
     /// Number of directed bonds.
     pub fn directed(&self) -> u64 {
         self.present.iter().map(|g| u64::from(g.count_ones())).sum()
+    }
+
+    /// Returns the cost of a loop over the bonds of a subset of the points.
+    pub fn cost(&self, on: &PointSubset<'_>) -> Cost {
+        Cost::bonds((LANES * self.present.len()) as u64).on(on, self.len())
     }
 
     /// Groups of a point.

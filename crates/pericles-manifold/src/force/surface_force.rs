@@ -102,6 +102,7 @@ impl<L: SurfaceLaw> SurfaceForce<L> {
         for_each_block(
             components_mut::<C>(out, n),
             &mut nothing,
+            self.bonds.cost(on),
             &|first, mut out, ()| {
                 if let Some(wanted) = Rows::of_block(on, first, out[0].len()) {
                     rows(&wanted, &mut out);

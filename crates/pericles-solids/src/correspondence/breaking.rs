@@ -15,7 +15,7 @@ use pericles::operator::rows::Rows;
 use pericles::operator::{
     Breakable, CoarseBreak, Crossing, LostBond, PointSubset, both_ends, turns_around,
 };
-use pericles::parallel::{BLOCK, for_each_chunk};
+use pericles::parallel::{BLOCK, for_each_chunk_of};
 use pericles::sum::BinnedSum;
 use rayon::prelude::*;
 
@@ -364,26 +364,30 @@ impl<const D: usize> Breakable for CorrespondenceForce<D> {
     }
 
     fn damage_into(&self, out: &mut [f64]) {
-        for_each_chunk(out, &|first, out| {
-            for (i, damage) in (first..).zip(out) {
-                let (mut whole, mut left) = (0.0, 0.0);
-                let (list, here) = (&self.bonds.list, self.bonds.list.site(i));
-                for (entry, site) in list.family(i) {
-                    if !(list.is_present(entry) || self.damage.count_precut) {
-                        continue;
+        for_each_chunk_of(
+            out,
+            self.bonds.list.cost(&PointSubset::All),
+            &|first, out| {
+                for (i, damage) in (first..).zip(out) {
+                    let (mut whole, mut left) = (0.0, 0.0);
+                    let (list, here) = (&self.bonds.list, self.bonds.list.site(i));
+                    for (entry, site) in list.family(i) {
+                        if !(list.is_present(entry) || self.damage.count_precut) {
+                            continue;
+                        }
+                        let weight = match self.damage.count {
+                            true => 1.0,
+                            false => list.volume_factor(here, site) * list.volume(site),
+                        };
+                        whole += weight;
+                        if self.is_intact(entry) {
+                            left += weight;
+                        }
                     }
-                    let weight = match self.damage.count {
-                        true => 1.0,
-                        false => list.volume_factor(here, site) * list.volume(site),
-                    };
-                    whole += weight;
-                    if self.is_intact(entry) {
-                        left += weight;
-                    }
+                    *damage = if whole > 0.0 { 1.0 - left / whole } else { 0.0 };
                 }
-                *damage = if whole > 0.0 { 1.0 - left / whole } else { 0.0 };
-            }
-        });
+            },
+        );
     }
 
     fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
@@ -418,18 +422,22 @@ impl<const D: usize> Breakable for CorrespondenceForce<D> {
                 marks[i] = true;
             }
         }
-        for_each_chunk(marks, &|first, marks| {
-            for (i, mark) in (first..).zip(marks) {
-                let here = self.bonds.list.site(i);
-                self.bonds.for_each::<D>(i, self.bits(i), |bond| {
-                    let eta = Self::eta(&rows, here, &bond);
-                    let (xi, eta) = heat.expanded(sites, [here, bond.site], bond.xi, eta);
-                    let (measure, square) = BondStretch::stretch_measure(xi, eta);
-                    let limit = fraction * self.limits.stretch(here, bond.site);
-                    *mark |= self.may_break(bond.entry)
-                        && measure > BondStretch::threshold(limit) * square;
-                });
-            }
-        });
+        for_each_chunk_of(
+            marks,
+            self.bonds.list.cost(&PointSubset::All),
+            &|first, marks| {
+                for (i, mark) in (first..).zip(marks) {
+                    let here = self.bonds.list.site(i);
+                    self.bonds.for_each::<D>(i, self.bits(i), |bond| {
+                        let eta = Self::eta(&rows, here, &bond);
+                        let (xi, eta) = heat.expanded(sites, [here, bond.site], bond.xi, eta);
+                        let (measure, square) = BondStretch::stretch_measure(xi, eta);
+                        let limit = fraction * self.limits.stretch(here, bond.site);
+                        *mark |= self.may_break(bond.entry)
+                            && measure > BondStretch::threshold(limit) * square;
+                    });
+                }
+            },
+        );
     }
 }

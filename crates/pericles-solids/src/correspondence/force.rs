@@ -9,7 +9,7 @@ use pericles::operator::pool::{Lent, Pool};
 use pericles::operator::records::pack_sites;
 use pericles::operator::rows::Rows;
 use pericles::operator::{CoarseBreak, DamageMeasure, PointDissipation, PointSubset};
-use pericles::parallel::{BLOCK, components_mut, for_each_block, for_each_chunk};
+use pericles::parallel::{BLOCK, components_mut, for_each_block, for_each_chunk_of};
 use pericles::space::PointCloud;
 use pericles::sum::BinnedSum;
 use pericles::{Result, ThermalExpansion, saved};
@@ -392,7 +392,7 @@ impl<const D: usize> CorrespondenceForce<D> {
     ) {
         let n = self.cloud.len();
         let mut points = self.points.take();
-        for_each_chunk(&mut points, &|first, chunk| {
+        for_each_chunk_of(&mut points, self.bonds.list.cost(on), &|first, chunk| {
             let Some(rows) = Rows::of_block(on, first, chunk.len()) else {
                 return;
             };
@@ -444,22 +444,27 @@ impl<const D: usize> CorrespondenceForce<D> {
         // A vector of `()` takes no memory.
         let mut nothing = vec![(); n.div_ceil(BLOCK)];
         let out = components_mut::<D>(out, n);
-        for_each_block(out, &mut nothing, &|first, mut out, ()| {
-            let Some(rows) = Rows::of_block(on, first, out[0].len()) else {
-                return;
-            };
-            for k in 0..rows.count() {
-                let i = rows.at(k);
-                let here = self.bonds.list.site(i);
-                let mut sum = [0.0; D];
-                self.bonds.for_each::<D>(i, self.bits(i), |bond| {
-                    of_bond(here, &bond, &mut sum);
-                });
-                for (out, sum) in out.iter_mut().zip(sum) {
-                    out[i - first] += sum;
+        for_each_block(
+            out,
+            &mut nothing,
+            self.bonds.list.cost(on),
+            &|first, mut out, ()| {
+                let Some(rows) = Rows::of_block(on, first, out[0].len()) else {
+                    return;
+                };
+                for k in 0..rows.count() {
+                    let i = rows.at(k);
+                    let here = self.bonds.list.site(i);
+                    let mut sum = [0.0; D];
+                    self.bonds.for_each::<D>(i, self.bits(i), |bond| {
+                        of_bond(here, &bond, &mut sum);
+                    });
+                    for (out, sum) in out.iter_mut().zip(sum) {
+                        out[i - first] += sum;
+                    }
                 }
-            }
-        });
+            },
+        );
     }
 }
 

@@ -5,7 +5,7 @@ use pericles::lanes::Row;
 use pericles::operator::{
     AtPoints, BondView, Breakable, Inversion, PlasticView, PointSubset, StressView, TwoPass,
 };
-use pericles::parallel::for_each_chunk;
+use pericles::parallel::for_each_chunk_of;
 use pericles::{Expandable, StepEnd, ThermalExpansion};
 
 use super::bonds::{SiteState, Values};
@@ -66,11 +66,15 @@ impl<const D: usize> TwoPass for CorrespondenceForce<D> {
 
     fn add_energy_density(&self, t: f64, at: AtPoints<'_>, out: &mut [f64]) {
         let (rows, heat) = (self.packed(at.u), self.heat_at(t));
-        for_each_chunk(out, &|first, out| {
-            for (i, energy) in (first..).zip(out) {
-                *energy += self.energy_of(i, &self.shapes[i], &rows, &heat);
-            }
-        });
+        for_each_chunk_of(
+            out,
+            self.bonds.list.cost(&PointSubset::All),
+            &|first, out| {
+                for (i, energy) in (first..).zip(out) {
+                    *energy += self.energy_of(i, &self.shapes[i], &rows, &heat);
+                }
+            },
+        );
     }
 
     /// Bounds the undeformed body by springs ω (k_i + k_j) V_i, to which Gershgorin's theorem applies: with

@@ -1,9 +1,9 @@
 //! Chebyshev smoothing.
 
-use crate::chunks::for_each_chunk;
 use crate::eigen::symmetric_eigen;
 use crate::sparse::SparseMatrix;
 use pericles::domain::Domain;
+use pericles::parallel::for_each_chunk;
 
 /// Number of products with the matrix in one smoothing.
 const DEGREE: usize = 3;

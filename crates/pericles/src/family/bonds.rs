@@ -9,6 +9,7 @@ use super::search::{bond_vector, distance, pairs_of};
 use super::{Crack, EndRule, VolumeCorrection};
 use crate::error::{PericlesError, Result, positive};
 use crate::lanes::LANES;
+use crate::parallel::{Cost, PointSubset};
 use crate::space::{PointCloud, PointSet, Sites, check_length};
 
 /// The effect of a crack on a neighbour list.
@@ -286,6 +287,11 @@ impl BondList {
     /// Number of directed bonds after pre-cutting: each bond counts twice.
     pub fn directed_bonds(&self) -> u64 {
         self.present.iter().map(|g| u64::from(g.count_ones())).sum()
+    }
+
+    /// Returns the cost of a loop over the bonds of a subset of the points.
+    pub fn cost(&self, on: &PointSubset<'_>) -> Cost {
+        Cost::bonds((LANES * self.present.len()) as u64).on(on, self.len())
     }
 
     /// Horizon δ, m; the largest if there are several.

@@ -32,10 +32,10 @@ pub fn pack_part<const D: usize>(field: &[f64], n: usize, first: usize, records:
 /// Writes a vector on points to the rows of all sites.
 pub fn pack_sites<const D: usize>(field: Field<'_>, sites: &Sites, records: &mut Records) {
     records
-        .par_chunks_mut(BLOCK)
+        .par_chunks_mut(8 * BLOCK)
         .enumerate()
         .for_each(|(part, records)| {
-            for (site, record) in (part * BLOCK..).zip(records) {
+            for (site, record) in (part * 8 * BLOCK..).zip(records) {
                 for c in 0..D {
                     record[c] = field.at::<D>(c, sites.point(site));
                 }

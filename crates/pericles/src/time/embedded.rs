@@ -181,7 +181,7 @@ fn largest(array: &[f64]) -> f64 {
         }
     };
     array
-        .par_chunks(BLOCK)
+        .par_chunks(16 * BLOCK)
         .map(of_chunk)
         .reduce(|| 0.0, f64::max)
 }

@@ -6,6 +6,9 @@ use crate::operator::PointSubset;
 use crate::parallel::BLOCK;
 use crate::space::PointSet;
 
+/// Smallest number of points of a piece: enough work for a task.
+const PIECE: usize = 8 * BLOCK;
+
 /// A point set as runs of consecutive numbers, grouped into pieces of about equal size for parallel loops.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Zone {
@@ -22,7 +25,7 @@ impl Zone {
         let mut runs: Vec<Range<u32>> = Vec::new();
         for &i in &points {
             match runs.last_mut() {
-                Some(run) if run.end == i && run.len() < 2 * BLOCK => run.end += 1,
+                Some(run) if run.end == i && run.len() < PIECE => run.end += 1,
                 _ => runs.push(i..i + 1),
             }
         }
@@ -30,7 +33,7 @@ impl Zone {
         let mut size = 0;
         for (k, run) in runs.iter().enumerate() {
             size += run.len();
-            if size >= 2 * BLOCK {
+            if size >= PIECE {
                 pieces.push(k + 1);
                 size = 0;
             }

@@ -6,7 +6,7 @@ use crate::error::{PericlesError, Result};
 use crate::lanes::LANES;
 use crate::operator::DamageMeasure;
 use crate::operator::damage::BlockDamage;
-use crate::parallel::{components_mut, for_each_part};
+use crate::parallel::{Cost, components_mut, for_each_part};
 use crate::space::PointCloud;
 
 /// The intact bonds of a lattice body and those cut by pre-cracks.
@@ -86,6 +86,7 @@ impl<const D: usize> Families<'_, D> {
         for_each_part(
             components_mut::<1>(values, self.cloud.len()),
             &mut nothing,
+            Cost::bonds((m * self.cloud.len()) as u64),
             &|block| self.layout.first_point(block),
             &|block, [values], ()| {
                 let first = self.layout.first_point(block);

@@ -23,7 +23,7 @@ use crate::material::{BondConstants, BondMaterial, MaterialPairs};
 use crate::operator::damage::{BlockDamage, Tally, bonds_left};
 use crate::operator::fast_law::VectorLaw;
 use crate::operator::{DamageMeasure, Force, InstructionSet, PointSubset};
-use crate::parallel::{components_mut, for_each_part};
+use crate::parallel::{Cost, components_mut, for_each_part};
 use crate::space::{PointCloud, Sites};
 use crate::step_end::StepEnd;
 use crate::thermal::ThermalExpansion;
@@ -265,6 +265,11 @@ impl<L: VectorLaw, const D: usize> GridForce<L, D> {
         ChunkBlock::of(&self.layout, lanes, block)
     }
 
+    /// Returns the cost of a loop over the bonds of a subset of the points.
+    fn cost(&self, on: &PointSubset<'_>) -> Cost {
+        Cost::bonds(self.directed_bonds).on(on, self.points())
+    }
+
     /// Runs a read-only loop over all blocks at displacement u and the thermal stretches of own points and ghosts.
     pub(super) fn sweep<N: GridNumber, const C: usize>(
         &self,
@@ -283,6 +288,7 @@ impl<L: VectorLaw, const D: usize> GridForce<L, D> {
             for_each_part(
                 components_mut::<C>(out, self.points()),
                 &mut nothing,
+                self.cost(on),
                 &|block| self.layout.first_point(block),
                 &|block, mut out, ()| {
                     if let Some(chunk_block) = self.chunk_block(lanes, block) {
@@ -323,7 +329,7 @@ impl<L: VectorLaw, const D: usize> GridForce<L, D> {
         match &self.floats {
             Some(working) => working.with(&self.layout, u, on, |grid, lanes| {
                 self.decide_blocks(
-                    lanes,
+                    (on, lanes),
                     partners,
                     &mut blocks,
                     out,
@@ -336,7 +342,7 @@ impl<L: VectorLaw, const D: usize> GridForce<L, D> {
             }),
             None => self.doubles.with(&self.layout, u, on, |grid, lanes| {
                 self.decide_blocks(
-                    lanes,
+                    (on, lanes),
                     partners,
                     &mut blocks,
                     out,
@@ -355,7 +361,7 @@ impl<L: VectorLaw, const D: usize> GridForce<L, D> {
     /// Applies the failure criterion in all blocks, only to bonds to partners if given.
     fn decide_blocks(
         &self,
-        lanes: Option<&[u8]>,
+        (on, lanes): (&PointSubset<'_>, Option<&[u8]>),
         partners: Option<&Partners>,
         blocks: &mut [BlockDamage],
         out: &mut [f64],
@@ -364,6 +370,7 @@ impl<L: VectorLaw, const D: usize> GridForce<L, D> {
         for_each_part(
             components_mut::<D>(out, self.cloud.len()),
             blocks,
+            self.cost(on),
             &|block| self.layout.first_point(block),
             &|block, mut out, state| {
                 let Some(chunk_block) = self.chunk_block(lanes, block) else {

@@ -6,8 +6,10 @@ use rayon::prelude::*;
 
 use crate::lanes::LANES;
 
-/// Number of entries copied by a task.
+/// Number of entries that are copied in one call.
 const PIECE: usize = 4096;
+/// Smallest number of calls in a task.
+const PIECES: usize = 4;
 
 /// Calls `fill` for the given columns of all rows of `stride` places in parallel, with the row and the first column of each piece
 /// of a row.
@@ -22,6 +24,7 @@ pub(super) fn for_each_piece<N: Send>(
         let rows = PIECE / stride;
         padded
             .par_chunks_mut(rows * stride)
+            .with_min_len(PIECES)
             .enumerate()
             .for_each(|(group, padded)| {
                 for (k, padded) in padded.chunks_mut(stride).enumerate() {
@@ -38,6 +41,7 @@ pub(super) fn for_each_piece<N: Send>(
             if !columns.is_empty() {
                 padded[columns.clone()]
                     .par_chunks_mut(PIECE)
+                    .with_min_len(PIECES)
                     .enumerate()
                     .for_each(|(k, padded)| fill((row, columns.start + k * PIECE), padded));
             }

@@ -7,7 +7,7 @@ use crate::domain::Field;
 use crate::lanes::LANES;
 use crate::operator::fast_law::VectorLaw;
 use crate::operator::{Breakable, CoarseBreak, Force, damage};
-use crate::parallel::{BLOCK, for_each_chunk};
+use crate::parallel::{BLOCK, PointSubset, for_each_chunk_of};
 
 impl<L: VectorLaw, const D: usize> Breakable for BondForce<L, D> {
     fn dissipated(&self) -> f64 {
@@ -39,7 +39,7 @@ impl<L: VectorLaw, const D: usize> Breakable for BondForce<L, D> {
     }
 
     fn damage_into(&self, out: &mut [f64]) {
-        for_each_chunk(out, &|first, out| {
+        for_each_chunk_of(out, self.bonds.cost(&PointSubset::All), &|first, out| {
             for (i, damage) in (first..).zip(out) {
                 let (mut whole, mut left) = (0.0, 0.0);
                 let here = self.bonds.site(i);
@@ -116,12 +116,16 @@ impl<L: VectorLaw, const D: usize> Breakable for BondForce<L, D> {
                 .as_ref()
                 .is_none_or(|bits| bits[entry / LANES] >> (entry % LANES) & 1 == 1)
         };
-        for_each_chunk(marks, &|first, marks| {
-            for (i, mark) in (first..).zip(marks) {
-                *mark |= self.bonds.family(i).any(|(entry, b)| {
-                    self.is_intact(i, entry) && may_break(entry) && over(self.bonds.site(i), b)
-                });
-            }
-        });
+        for_each_chunk_of(
+            marks,
+            self.bonds.cost(&PointSubset::All),
+            &|first, marks| {
+                for (i, mark) in (first..).zip(marks) {
+                    *mark |= self.bonds.family(i).any(|(entry, b)| {
+                        self.is_intact(i, entry) && may_break(entry) && over(self.bonds.site(i), b)
+                    });
+                }
+            },
+        );
     }
 }

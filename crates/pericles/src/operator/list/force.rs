@@ -262,6 +262,7 @@ impl<L: VectorLaw, const D: usize> BondForce<L, D> {
         for_each_block(
             components_mut::<C>(out, n),
             &mut nothing,
+            self.bonds.cost(on),
             &|first, mut out, ()| {
                 if let Some(wanted) = Rows::of_block(on, first, out[0].len()) {
                     rows(&self.blocks[first / BLOCK].intact, &wanted, &mut out);
@@ -301,6 +302,7 @@ impl<L: VectorLaw, const D: usize> BondForce<L, D> {
             for_each_block(
                 components_mut::<D>(out, n),
                 &mut blocks,
+                self.bonds.cost(on),
                 &|first, mut out, block| {
                     let len = n.min(first + BLOCK) - first;
                     if let Some(wanted) = Rows::of_block(on, first, len) {

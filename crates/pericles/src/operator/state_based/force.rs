@@ -225,6 +225,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         for_each_block(
             components_mut::<C>(out, n),
             &mut nothing,
+            self.bonds.cost(on),
             &|first, mut out, ()| {
                 if let Some(wanted) = Rows::of_block(on, first, out[0].len()) {
                     rows(&self.blocks[first / BLOCK].intact, &wanted, &mut out);
@@ -293,21 +294,26 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
             rule.stretches = Some(stretches);
         }
         let u = self.packed(u);
-        for_each_block([dilatations], &mut blocks, &|first, mut out, block| {
-            let len = n.min(first + BLOCK) - first;
-            if let Some(wanted) = Rows::of_block(on, first, len) {
-                accept_rows::<L, D>(
-                    self.instruction_set,
-                    &bonds,
-                    &rule,
-                    &u,
-                    &mut block.intact,
-                    &wanted,
-                    &mut out,
-                    &mut block.tally,
-                );
-            }
-        });
+        for_each_block(
+            [dilatations],
+            &mut blocks,
+            self.bonds.cost(on),
+            &|first, mut out, block| {
+                let len = n.min(first + BLOCK) - first;
+                if let Some(wanted) = Rows::of_block(on, first, len) {
+                    accept_rows::<L, D>(
+                        self.instruction_set,
+                        &bonds,
+                        &rule,
+                        &u,
+                        &mut block.intact,
+                        &wanted,
+                        &mut out,
+                        &mut block.tally,
+                    );
+                }
+            },
+        );
         self.clear_other_ends(&rule, &u, &mut blocks);
         drop(u);
         self.blocks = blocks;
@@ -344,6 +350,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         for_each_block(
             [dilatations],
             &mut with_work(&mut blocks, &mut work),
+            self.bonds.cost(on),
             &|first, mut out, (block, kept)| {
                 let len = n.min(first + BLOCK) - first;
                 if let Some(wanted) = Rows::of_block(on, first, len) {

@@ -15,7 +15,7 @@ use crate::operator::pool::Lent;
 use crate::operator::{
     AtPoints, BondView, Breakable, CoarseBreak, InstructionSet, PointSubset, TwoPass, damage,
 };
-use crate::parallel::{BLOCK, for_each_chunk};
+use crate::parallel::{BLOCK, for_each_chunk, for_each_chunk_of};
 use crate::step_end::StepEnd;
 use crate::thermal::{Expandable, ThermalExpansion};
 
@@ -219,7 +219,7 @@ impl<L: Kinematics, const D: usize> Breakable for LinearSolidForce<L, D> {
     }
 
     fn damage_into(&self, out: &mut [f64]) {
-        for_each_chunk(out, &|first, out| {
+        for_each_chunk_of(out, self.bonds.cost(&PointSubset::All), &|first, out| {
             for (i, damage) in (first..).zip(out) {
                 let (mut whole, mut left) = (0.0, 0.0);
                 let here = self.bonds.site(i);
@@ -338,12 +338,16 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
             });
             worked || measure > L::Measure::threshold(limit) * square
         };
-        for_each_chunk(marks, &|first, marks| {
-            for (i, mark) in (first..).zip(marks) {
-                *mark |= self.bonds.family(i).any(|(entry, j)| {
-                    self.is_intact(i, entry) && may_break(entry) && over(i, entry, j)
-                });
-            }
-        });
+        for_each_chunk_of(
+            marks,
+            self.bonds.cost(&PointSubset::All),
+            &|first, marks| {
+                for (i, mark) in (first..).zip(marks) {
+                    *mark |= self.bonds.family(i).any(|(entry, j)| {
+                        self.is_intact(i, entry) && may_break(entry) && over(i, entry, j)
+                    });
+                }
+            },
+        );
     }
 }

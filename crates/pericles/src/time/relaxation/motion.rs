@@ -79,10 +79,10 @@ impl Motion {
             self.from_rest = false;
         }
         self.velocity
-            .par_chunks_mut(BLOCK)
-            .zip(u.par_chunks_mut(BLOCK))
-            .zip(force.par_chunks(BLOCK))
-            .zip(self.free.par_chunks(BLOCK))
+            .par_chunks_mut(8 * BLOCK)
+            .zip(u.par_chunks_mut(8 * BLOCK))
+            .zip(force.par_chunks(8 * BLOCK))
+            .zip(self.free.par_chunks(8 * BLOCK))
             .for_each(|(((velocity, u), force), free)| {
                 for k in 0..u.len() {
                     velocity[k] = free[k] * (keep * velocity[k] + push * force[k]);

@@ -7,7 +7,7 @@ use crate::domain::Field;
 use crate::lanes::LANES;
 use crate::operator::fast_law::VectorLaw;
 use crate::operator::{Breakable, CoarseBreak};
-use crate::parallel::for_each_chunk;
+use crate::parallel::{PointSubset, for_each_chunk_of};
 
 impl<L: VectorLaw, const D: usize> Breakable for SofteningForce<L, D> {
     fn dissipated(&self) -> f64 {
@@ -41,7 +41,7 @@ impl<L: VectorLaw, const D: usize> Breakable for SofteningForce<L, D> {
     /// Damage of a point: the missing fraction of its family, in which each bond counts with its damage d.
     fn damage_into(&self, out: &mut [f64]) {
         let (list, bonds) = (&self.list, &self.list.bonds);
-        for_each_chunk(out, &|first, out| {
+        for_each_chunk_of(out, list.bonds.cost(&PointSubset::All), &|first, out| {
             for (i, damage) in (first..).zip(out) {
                 let (mut whole, mut left) = (0.0, 0.0);
                 let here = bonds.site(i);
@@ -95,12 +95,16 @@ impl<L: VectorLaw, const D: usize> Breakable for SofteningForce<L, D> {
             let bits = list.breakable.as_ref();
             bits.is_none_or(|bits| bits[entry / LANES] >> (entry % LANES) & 1 == 1)
         };
-        for_each_chunk(marks, &|first, marks| {
-            for (i, mark) in (first..).zip(marks) {
-                *mark |= list.bonds.family(i).any(|(entry, b)| {
-                    list.is_intact(i, entry) && may_break(entry) && over(list.bonds.site(i), b)
-                });
-            }
-        });
+        for_each_chunk_of(
+            marks,
+            list.bonds.cost(&PointSubset::All),
+            &|first, marks| {
+                for (i, mark) in (first..).zip(marks) {
+                    *mark |= list.bonds.family(i).any(|(entry, b)| {
+                        list.is_intact(i, entry) && may_break(entry) && over(list.bonds.site(i), b)
+                    });
+                }
+            },
+        );
     }
 }

@@ -128,6 +128,7 @@ impl<L: VectorLaw, const D: usize> SofteningForce<L, D> {
             for_each_block(
                 components_mut::<D>(out, n),
                 &mut parts,
+                list.bonds.cost(on),
                 &|first, mut out, part| {
                     let len = n.min(first + BLOCK) - first;
                     if let Some(wanted) = Rows::of_block(on, first, len) {

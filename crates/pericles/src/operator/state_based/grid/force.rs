@@ -25,7 +25,7 @@ use crate::operator::state_based::breaking::States;
 use crate::operator::state_based::heat::Heat;
 use crate::operator::state_based::kinematics::Kinematics;
 use crate::operator::{InstructionSet, PointSubset};
-use crate::parallel::{components_mut, for_each_chunk, for_each_part};
+use crate::parallel::{Cost, components_mut, for_each_chunk, for_each_part};
 use crate::space::PointCloud;
 use crate::step_end::StepEnd;
 
@@ -256,6 +256,11 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
         work(&arrays, (!all).then(|| wanted.lanes()))
     }
 
+    /// Returns the cost of a loop over the bonds of a subset of the points.
+    fn cost(&self, on: &PointSubset<'_>) -> Cost {
+        Cost::bonds(self.directed_bonds).on(on, self.cloud.len())
+    }
+
     /// Sets p = A θ/m with the thermal pull of all points, those of ghosts after own points.
     fn pressures_into(&self, values: Field<'_>, out: &mut [f64]) {
         let n = self.cloud.len();
@@ -296,6 +301,7 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
         for_each_part(
             components_mut::<C>(out, self.cloud.len()),
             &mut nothing,
+            self.cost(&PointSubset::All),
             &|block| self.layout.first_point(block),
             &|block, mut out, ()| {
                 if let Some(chunk_block) = ChunkBlock::of(&self.layout, lanes, block) {
@@ -345,6 +351,7 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
             for_each_part(
                 [dilatations],
                 &mut blocks,
+                self.cost(on),
                 &|block| self.layout.first_point(block),
                 &|block, mut out, state: &mut BlockDamage| {
                     if let Some(block) = ChunkBlock::of(&self.layout, lanes, block) {

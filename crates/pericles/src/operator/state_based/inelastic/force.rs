@@ -224,12 +224,17 @@ impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
         let (n, rule) = (self.solid.cloud.len(), self.rule(step));
         let u = self.solid.packed(u);
         let (points, mut parts) = history.split(self.solid.bonds.start(), &mut blocks);
-        for_each_block(points, &mut parts, &|first, mut out, part| {
-            let len = n.min(first + BLOCK) - first;
-            if let Some(wanted) = Rows::of_block(on, first, len) {
-                advance_rows::<L, D>(set, &bonds, &rule, &u, part, &wanted, &mut out);
-            }
-        });
+        for_each_block(
+            points,
+            &mut parts,
+            self.solid.bonds.cost(on),
+            &|first, mut out, part| {
+                let len = n.min(first + BLOCK) - first;
+                if let Some(wanted) = Rows::of_block(on, first, len) {
+                    advance_rows::<L, D>(set, &bonds, &rule, &u, part, &wanted, &mut out);
+                }
+            },
+        );
         drop(u);
         self.solid.blocks = blocks;
         self.history = history;
@@ -244,14 +249,19 @@ impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
         let u = self.solid.packed(u);
         let start = self.solid.bonds.start();
         let ([_, volumes, ..], mut parts) = history.split(start, &mut blocks);
-        for_each_block([volumes], &mut parts, &|first, mut out, part| {
-            let len = n.min(first + BLOCK) - first;
-            if let Some(rows) = Rows::of_block(&PointSubset::All, first, len)
-                && part.damage.tally.broken.get() != before[first / BLOCK]
-            {
-                sum_rows::<D>(set, &bonds, &rule, &u, part, &rows, &mut out);
-            }
-        });
+        for_each_block(
+            [volumes],
+            &mut parts,
+            self.solid.bonds.cost(&PointSubset::All),
+            &|first, mut out, part| {
+                let len = n.min(first + BLOCK) - first;
+                if let Some(rows) = Rows::of_block(&PointSubset::All, first, len)
+                    && part.damage.tally.broken.get() != before[first / BLOCK]
+                {
+                    sum_rows::<D>(set, &bonds, &rule, &u, part, &rows, &mut out);
+                }
+            },
+        );
         drop(u);
         self.solid.blocks = blocks;
         self.history = history;
