@@ -25,7 +25,20 @@ const SMALLEST: f64 = 1e-12;
 /// Returns a lower bound of the largest ratio of stretch to critical stretch of breakable bonds, to a
 /// relative `accuracy`; `None` if no bond is stretched or the ratio exceeds 1e12.
 pub(crate) fn largest_ratio(system: &System, u: &[f64], accuracy: f64) -> Option<f64> {
-    largest(accuracy, |part| any_endangered(system, u, part))
+    let breaking = system.operator().capabilities().breaking?;
+    // Points without a bond beyond a fraction have none beyond a larger one: they are marked beforehand, hence skipped.
+    let mut idle = vec![false; system.points()];
+    largest(accuracy, |part| {
+        let mut marks = idle.clone();
+        breaking.mark_endangered(u, part, &mut marks);
+        let is_beyond = |(mark, idle): (&bool, &bool)| *mark && !*idle;
+        let any = !system.domain().all(!marks.iter().zip(&idle).any(is_beyond));
+        if any {
+            let pairs = idle.iter_mut().zip(&marks);
+            pairs.for_each(|(idle, mark)| *idle |= !*mark);
+        }
+        any
+    })
 }
 
 /// Returns the factor by which the displacements may be multiplied until the first bond breaks, to a relative
@@ -46,7 +59,7 @@ pub(crate) fn load_factor(system: &System, u: &[f64], accuracy: f64) -> Option<f
 }
 
 /// Returns a lower bound of the largest number for which `any` holds.
-fn largest(accuracy: f64, any: impl Fn(f64) -> bool) -> Option<f64> {
+fn largest(accuracy: f64, mut any: impl FnMut(f64) -> bool) -> Option<f64> {
     let (mut low, mut high) = (1.0, 1.0);
     if any(1.0) {
         while any(high) {

@@ -64,7 +64,7 @@ impl Breaking {
             .par_iter_mut()
             .enumerate()
             .with_min_len(BLOCK)
-            .for_each(|(i, mark)| *mark |= near(i));
+            .for_each(|(i, mark)| *mark = *mark || near(i));
     }
 
     /// Breaks the overstretched bonds of the points in `on`. Both ends of a bond compute the same |η|, bit for

@@ -426,7 +426,7 @@ impl<const D: usize> Breakable for CorrespondenceForce<D> {
             marks,
             self.bonds.list.cost(&PointSubset::All),
             &|first, marks| {
-                for (i, mark) in (first..).zip(marks) {
+                for (i, mark) in (first..).zip(marks).filter(|(_, mark)| !**mark) {
                     let here = self.bonds.list.site(i);
                     self.bonds.for_each::<D>(i, self.bits(i), |bond| {
                         let eta = Self::eta(&rows, here, &bond);

@@ -62,6 +62,6 @@ pub trait Breakable {
     fn for_each_broken_count(&self, visit: &mut dyn FnMut(Range<usize>, u64));
 
     /// Marks the points with an intact breakable bond whose stretch exceeds `fraction` of the critical
-    /// stretch.
+    /// stretch. Points that are already marked are skipped.
     fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]);
 }

@@ -121,9 +121,12 @@ impl<L: VectorLaw, const D: usize> Breakable for BondForce<L, D> {
             self.bonds.cost(&PointSubset::All),
             &|first, marks| {
                 for (i, mark) in (first..).zip(marks) {
-                    *mark |= self.bonds.family(i).any(|(entry, b)| {
-                        self.is_intact(i, entry) && may_break(entry) && over(self.bonds.site(i), b)
-                    });
+                    *mark = *mark
+                        || self.bonds.family(i).any(|(entry, b)| {
+                            self.is_intact(i, entry)
+                                && may_break(entry)
+                                && over(self.bonds.site(i), b)
+                        });
                 }
             },
         );

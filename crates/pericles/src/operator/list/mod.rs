@@ -17,3 +17,4 @@ mod zoned;
 
 pub use force::BondForce;
 pub use softening::SofteningForce;
+pub(in crate::operator) use softening::no_softening;

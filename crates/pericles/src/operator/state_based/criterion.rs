@@ -209,7 +209,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         let ghosts = self.cloud.domain().ghosts(&own);
         let tensors = Field::new(&own, &ghosts);
         marks.par_iter_mut().enumerate().for_each(|(i, mark)| {
-            *mark |= self.beyond(tensors, u, stretches, i, limit).is_some();
+            *mark = *mark || self.beyond(tensors, u, stretches, i, limit).is_some();
         });
     }
 

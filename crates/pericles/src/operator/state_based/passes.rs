@@ -343,9 +343,10 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
             self.bonds.cost(&PointSubset::All),
             &|first, marks| {
                 for (i, mark) in (first..).zip(marks) {
-                    *mark |= self.bonds.family(i).any(|(entry, j)| {
-                        self.is_intact(i, entry) && may_break(entry) && over(i, entry, j)
-                    });
+                    *mark = *mark
+                        || self.bonds.family(i).any(|(entry, j)| {
+                            self.is_intact(i, entry) && may_break(entry) && over(i, entry, j)
+                        });
                 }
             },
         );

@@ -100,9 +100,12 @@ impl<L: VectorLaw, const D: usize> Breakable for SofteningForce<L, D> {
             list.bonds.cost(&PointSubset::All),
             &|first, marks| {
                 for (i, mark) in (first..).zip(marks) {
-                    *mark |= list.bonds.family(i).any(|(entry, b)| {
-                        list.is_intact(i, entry) && may_break(entry) && over(list.bonds.site(i), b)
-                    });
+                    *mark = *mark
+                        || list.bonds.family(i).any(|(entry, b)| {
+                            list.is_intact(i, entry)
+                                && may_break(entry)
+                                && over(list.bonds.site(i), b)
+                        });
                 }
             },
         );

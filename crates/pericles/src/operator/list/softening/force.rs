@@ -39,6 +39,14 @@ crate::saved! {
     }
 }
 
+/// Returns the error of pair laws whose force is not proportional to the stretch.
+pub(in crate::operator) fn no_softening() -> PericlesError {
+    PericlesError::FormNotUsable {
+        form: "list",
+        reason: "softening needs a force proportional to the stretch of a bond; use model = \"bond-stretch\" or \"linear\"",
+    }
+}
+
 impl<L: VectorLaw, const D: usize> SofteningForce<L, D> {
     /// Creates the force from a list, whose critical stretches determine the area under the curves. `classes`
     /// are the materials of the list, if there are several.
@@ -52,10 +60,7 @@ impl<L: VectorLaw, const D: usize> SofteningForce<L, D> {
         softening: &Softening,
     ) -> Result<Self> {
         if !L::OF_STRETCH {
-            return Err(PericlesError::FormNotUsable {
-                form: "list",
-                reason: "softening needs a force proportional to the stretch of a bond; use model = \"bond-stretch\" or \"linear\"",
-            });
+            return Err(no_softening());
         }
         let classes = classes.map(|classes| classes.on_sites(list.bonds.sites()));
         let curves = Curves::new(softening, list.critical_stretch, classes)?;

@@ -8,3 +8,4 @@ mod kernels;
 mod operator;
 
 pub use force::SofteningForce;
+pub(in crate::operator) use force::no_softening;

@@ -260,9 +260,15 @@ impl<L: Kinematics, const D: usize> Breakable for LinearSolidGrid<L, D> {
             let (measure, square) = L::Measure::stretch_measure(self.offsets[k].xi, eta);
             measure > threshold * square
         };
-        let mut found = vec![0.0; self.cloud.len()];
+        let mut found: Vec<f64> = marks
+            .iter()
+            .map(|&mark| f64::from(u8::from(mark)))
+            .collect();
         families.for_each_block(&mut found, |first, number, intact, found| {
             let chunk = &self.layout.chunks()[number];
+            if chunk.points().all(|(_, i)| found[i - first] > 0.0) {
+                return;
+            }
             for k in 0..m {
                 let bits = intact[k] & families.breakable(chunk, k);
                 for (lane, i) in chunk.points() {
@@ -274,7 +280,7 @@ impl<L: Kinematics, const D: usize> Breakable for LinearSolidGrid<L, D> {
             }
         });
         for (mark, found) in marks.iter_mut().zip(found) {
-            *mark |= found > 0.0;
+            *mark = found > 0.0;
         }
     }
 }
