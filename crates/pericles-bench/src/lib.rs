@@ -22,6 +22,7 @@ mod case;
 mod clock;
 mod machine;
 mod scalar;
+mod small;
 
 use std::time::Instant;
 
@@ -34,6 +35,7 @@ pub use case::Case;
 pub use clock::cpu_seconds;
 pub use machine::{fma_seconds, read};
 pub use scalar::StoredList;
+pub use small::{SmallBody, SmallTiming, small_bodies};
 
 /// Timing of a case.
 #[derive(Debug, Clone, PartialEq)]

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use pericles_bench::{Case, Timing};
+use pericles_bench::{Case, SmallTiming, Timing, small_bodies};
 use pericles_run::{RunError, machine};
 use serde::Serialize;
 
@@ -54,16 +54,101 @@ impl From<&Timing> for CaseResult {
     }
 }
 
-/// Measures one case, or all.
+/// Name of the bench of small bodies.
+const SMALL: &str = "small-bodies";
+/// Number of rounds for small bodies.
+const SMALL_ROUNDS: usize = 7;
+/// Numbers of threads for small bodies.
+const SMALL_THREADS: [usize; 2] = [1, 2];
+
+/// The JSON output for small bodies.
+#[derive(Serialize)]
+struct SmallResults {
+    machine: String,
+    threads: [usize; 2],
+    bodies: Vec<SmallResult>,
+}
+
+#[derive(Serialize)]
+struct SmallResult {
+    body: &'static str,
+    points: usize,
+    force_ns_per_point: f64,
+    evaluations: f64,
+    step_ns_per_point: Vec<f64>,
+}
+
+/// Measures small bodies on one and two threads.
+fn bench_small(args: &BenchArgs) -> Result<Exit, CliError> {
+    let pools =
+        SMALL_THREADS.map(|count| rayon::ThreadPoolBuilder::new().num_threads(count).build());
+    let pools = pools
+        .into_iter()
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(RunError::from)?;
+    let machine = machine::words();
+    let table = args.json.as_deref() != Some(Path::new("-"));
+    if table {
+        console::print(format_args!(
+            "{machine}; ns per point\n{:<20} {:>8} {:>16} {:>12} {:>15} {:>16}",
+            "body", "points", "force, 1 thread", "forces/step", "step, 1 thread", "step, 2 threads"
+        ))?;
+    }
+    let mut bodies = Vec::new();
+    small_bodies(
+        &pools,
+        SMALL_ROUNDS,
+        usize::MAX,
+        &mut |timing: SmallTiming| {
+            if table {
+                console::print(format_args!(
+                    "{:<20} {:>8} {:>16.2} {:>12.2} {:>15.2} {:>16.2}",
+                    timing.body,
+                    timing.points,
+                    timing.force_ns,
+                    timing.evaluations,
+                    timing.step_ns[0],
+                    timing.step_ns[1]
+                ))?;
+            }
+            bodies.push(SmallResult {
+                body: timing.body,
+                points: timing.points,
+                force_ns_per_point: timing.force_ns,
+                evaluations: timing.evaluations,
+                step_ns_per_point: timing.step_ns,
+            });
+            Ok::<(), CliError>(())
+        },
+    )?;
+    if let Some(path) = &args.json {
+        let threads = SMALL_THREADS;
+        console::write_json(
+            path,
+            &SmallResults {
+                machine,
+                threads,
+                bodies,
+            },
+        )?;
+    }
+    Ok(Exit::Done)
+}
+
+/// Measures one case, all cases, or small bodies.
 ///
 /// # Errors
 /// The case is unknown, or output cannot be written.
 pub(crate) fn bench(args: &BenchArgs) -> Result<Exit, CliError> {
+    if args.case.as_deref() == Some(SMALL) {
+        return bench_small(args);
+    }
     let cases = match &args.case {
         None => Case::all(),
         Some(name) => vec![Case::named(name).ok_or_else(|| {
             let cases = Case::all();
-            let names: Vec<&str> = cases.iter().map(|case| case.name.as_str()).collect();
+            let mut names: Vec<&str> = cases.iter().map(|case| case.name.as_str()).collect();
+            names.push(SMALL);
             let all = format!(
                 "bar-N, plate-N or block-N with N cells per axis, followed by any of -list, -lps, -f32, -scalar, -avx2, -moved, such as {}",
                 names.join(", ")

@@ -356,22 +356,42 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_point_is_visited_exactly_once() {
+    fn every_point_is_visited_exactly_once_at_any_cost() {
         let n = 5 * BLOCK + 17;
-        let mut out = vec![0.0; 2 * n];
-        let mut states = vec![0usize; n.div_ceil(BLOCK)];
-        let [x, y] = components_mut::<2>(&mut out, n);
-        for_each_block([x, y], &mut states, cost, &|first, [x, y], state| {
-            *state = x.len();
-            for k in 0..x.len() {
-                x[k] += (first + k) as f64;
-                y[k] += 1.0;
+        for cost in [Cost::entries(0), Cost::bonds(12_000), Cost::bonds(u64::MAX)] {
+            let mut out = vec![0.0; 2 * n];
+            let mut states = vec![0usize; n.div_ceil(BLOCK)];
+            let [x, y] = components_mut::<2>(&mut out, n);
+            for_each_block([x, y], &mut states, cost, &|first, [x, y], state| {
+                *state = x.len();
+                for k in 0..x.len() {
+                    x[k] += (first + k) as f64;
+                    y[k] += 1.0;
+                }
+            });
+            for_each_chunk_of(&mut out, cost, &|first, chunk| {
+                chunk
+                    .iter_mut()
+                    .zip(first..)
+                    .for_each(|(x, k)| *x += k as f64);
+            });
+            for i in 0..n {
+                assert_eq!((out[i], out[n + i]), (2.0 * i as f64, 1.0 + (n + i) as f64));
             }
-        });
-        for i in 0..n {
-            assert_eq!((out[i], out[n + i]), (i as f64, 1.0));
+            assert_eq!(states.iter().sum::<usize>(), n);
         }
-        assert_eq!(states.iter().sum::<usize>(), n);
+    }
+
+    #[test]
+    fn loops_are_divided_into_tasks_that_are_long_enough() {
+        let all = Cost::bonds(100_000);
+        assert_eq!(Cost::bonds(7_000).parts_per_task(10), 10);
+        assert_eq!(all.parts_per_task(100), 4);
+        assert_eq!(all.parts_per_task(10), 1);
+        // A fifth of the points has a fifth of the bonds.
+        let fifth = all.on(&PointSubset::Range(0..20), 100);
+        assert_eq!(fifth, Cost::bonds(20_000));
+        assert_eq!(fifth.parts_per_task(100), 20);
     }
 
     #[test]

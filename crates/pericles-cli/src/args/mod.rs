@@ -419,7 +419,7 @@ pub(crate) struct DiffArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct BenchArgs {
-    /// The case, such as block-46 [default: all]
+    /// The case, such as block-46, or small-bodies: complete steps of small bodies on one and two threads [default: all cases]
     pub(crate) case: Option<String>,
     /// Write the results as JSON to a file; `-` writes to standard output and suppresses other output
     #[arg(long, value_name = "FILE")]
