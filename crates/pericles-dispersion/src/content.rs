@@ -5,9 +5,8 @@
 //! shorter than these.
 
 use nalgebra::DMatrix;
-use realfft::RealFftPlanner;
-
 use pericles::space::PointCloud;
+use pericles_waves::fourier::RealPlanner;
 
 /// Returns the fraction of the energy of a signal g(t), 0 ≤ t ≤ `end`, zero before, above an angular frequency:
 /// Σ|ĝ|² above it divided by Σ|ĝ|² without the mean.
@@ -28,7 +27,7 @@ pub fn time_content(g: impl Fn(f64) -> f64, end: f64, frequency: f64) -> f64 {
     // Rest before the start; then the signal forwards and backwards, so that its end does not introduce a jump.
     let mut signal = vec![0.0; samples];
     signal.extend((0..samples).map(|k| g((k as f64 + 0.5) * dt)));
-    let mut planner = RealFftPlanner::new();
+    let mut planner = RealPlanner::default();
     let [beyond, all] = energies_of(&mut planner, &mirrored(&signal), frequency * dt, false);
     if all > 0.0 { beyond / all } else { 0.0 }
 }
@@ -65,7 +64,7 @@ pub fn space_content(
     let noise = ROUND_OFF * field.iter().map(|x| x * x).sum::<f64>();
     let mut worst: Option<f64> = None;
     // Lines of equal length share an FFT plan.
-    let mut planner = RealFftPlanner::new();
+    let mut planner = RealPlanner::default();
     for axis in 0..dimension {
         let mut order: Vec<usize> = (0..n).collect();
         let line = |i: usize| {
@@ -182,14 +181,9 @@ fn mirrored(values: &[f64]) -> Vec<f64> {
 }
 
 /// Returns the energy beyond `limit` (rad per sample), and the total without the mean.
-fn energies_of(
-    planner: &mut RealFftPlanner<f64>,
-    signal: &[f64],
-    limit: f64,
-    strain: bool,
-) -> [f64; 2] {
+fn energies_of(planner: &mut RealPlanner, signal: &[f64], limit: f64, strain: bool) -> [f64; 2] {
     let n = signal.len();
-    let transform = planner.plan_fft_forward(n);
+    let transform = planner.forward(n);
     let mut input = signal.to_vec();
     let mut output = transform.make_output_vec();
     if transform.process(&mut input, &mut output).is_err() {

@@ -14,6 +14,7 @@ pub mod absorbing;
 mod assemble;
 pub mod exact;
 mod form;
+pub mod fourier;
 pub mod function;
 pub mod linear;
 mod trigonometric;

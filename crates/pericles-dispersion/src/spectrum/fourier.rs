@@ -2,15 +2,14 @@
 
 use std::sync::Arc;
 
-use rustfft::num_complex::Complex64;
-use rustfft::{Fft, FftPlanner};
+use pericles_waves::fourier::{Complex64, ComplexPlan, complex_plans};
 
 /// Forward and inverse transforms of arrays of n^dimension numbers, x fastest.
 pub struct CubeTransform {
     nodes: usize,
     dimension: usize,
-    forward: Arc<dyn Fft<f64>>,
-    inverse: Arc<dyn Fft<f64>>,
+    forward: ComplexPlan,
+    inverse: ComplexPlan,
     turned: Vec<Complex64>,
     scratch: Vec<Complex64>,
 }
@@ -18,9 +17,7 @@ pub struct CubeTransform {
 impl CubeTransform {
     /// Creates the plans for cubes with `nodes` points along each axis.
     pub fn new(nodes: usize, dimension: usize) -> Self {
-        let mut planner = FftPlanner::new();
-        let forward = planner.plan_fft_forward(nodes);
-        let inverse = planner.plan_fft_inverse(nodes);
+        let [forward, inverse] = complex_plans(nodes);
         let scratch = forward
             .get_inplace_scratch_len()
             .max(inverse.get_inplace_scratch_len());
@@ -38,19 +35,19 @@ impl CubeTransform {
     /// Forward transform Σ_x v(x) exp(−2πi m·x/n), in place.
     pub fn forward(&mut self, values: &mut [Complex64]) {
         let plan = Arc::clone(&self.forward);
-        self.transform(values, &*plan);
+        self.transform(values, &plan);
     }
 
     /// Inverse transform n^−d Σ_m v(m) exp(2πi m·x/n), in place.
     pub fn inverse(&mut self, values: &mut [Complex64]) {
         let plan = Arc::clone(&self.inverse);
-        self.transform(values, &*plan);
+        self.transform(values, &plan);
         let factor = 1.0 / values.len() as f64;
         values.iter_mut().for_each(|value| *value *= factor);
     }
 
     /// Transforms the fastest axis and makes it the slowest, once per axis, which restores the original order.
-    fn transform(&mut self, values: &mut [Complex64], plan: &dyn Fft<f64>) {
+    fn transform(&mut self, values: &mut [Complex64], plan: &ComplexPlan) {
         let (n, lines) = (self.nodes, values.len() / self.nodes);
         for _ in 0..self.dimension {
             plan.process_with_scratch(values, &mut self.scratch);

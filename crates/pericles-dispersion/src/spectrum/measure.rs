@@ -4,9 +4,8 @@ use crate::DispersionError;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+use pericles_waves::fourier::{Complex64, complex_plans};
 use rayon::prelude::*;
-use rustfft::FftPlanner;
-use rustfft::num_complex::Complex64;
 
 use super::super::contour::Contour;
 use super::super::lattice::BondLattice;
@@ -292,7 +291,8 @@ fn power(mut series: Vec<Complex64>) -> Vec<f64> {
     for (t, z) in series.iter_mut().enumerate() {
         *z *= 0.5 - 0.5 * (TAU * t as f64 / n as f64).cos();
     }
-    FftPlanner::new().plan_fft_forward(n).process(&mut series);
+    let [forward, _] = complex_plans(n);
+    forward.process(&mut series);
     (0..=n / 2)
         .map(|f| {
             let mirror = (n - f) % n;

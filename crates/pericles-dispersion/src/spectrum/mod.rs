@@ -22,6 +22,6 @@ mod periodic;
 
 pub use fourier::CubeTransform;
 pub use measure::{BranchSpectrum, MeasuredSpectrum, SpectrumRun, WaveSpectrum, measure};
-pub use periodic::PeriodicForce;
 /// Complex number type of [`CubeTransform`].
-pub use rustfft::num_complex::Complex64;
+pub use pericles_waves::fourier::Complex64;
+pub use periodic::PeriodicForce;

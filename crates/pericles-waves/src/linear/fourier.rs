@@ -1,24 +1,22 @@
 //! Fourier transforms of lines, and convolution by them.
 
-use std::sync::Arc;
-
 use realfft::num_complex::Complex;
-use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
-use rustfft::{Fft, FftPlanner};
+
+use crate::fourier::{ComplexPlan, RealInverse, RealPlan, RealPlanner, complex_plans};
 
 /// Forward and inverse transforms of a real line of fixed length.
 #[derive(Clone)]
 pub(crate) struct LineTransform {
-    forward: Arc<dyn RealToComplex<f64>>,
-    inverse: Arc<dyn ComplexToReal<f64>>,
+    forward: RealPlan,
+    inverse: RealInverse,
 }
 
 impl LineTransform {
     pub fn new(length: usize) -> Self {
-        let mut planner = RealFftPlanner::new();
+        let mut planner = RealPlanner::default();
         Self {
-            forward: planner.plan_fft_forward(length),
-            inverse: planner.plan_fft_inverse(length),
+            forward: planner.forward(length),
+            inverse: planner.inverse(length),
         }
     }
 
@@ -143,18 +141,12 @@ pub(super) fn stride(length: usize) -> usize {
 /// Complex transform of an axis; none if the axis has one node.
 pub(super) struct AxisTransform {
     pub length: usize,
-    plans: Option<[Arc<dyn Fft<f64>>; 2]>,
+    plans: Option<[ComplexPlan; 2]>,
 }
 
 impl AxisTransform {
     pub fn new(length: usize) -> Self {
-        let plans = (length > 1).then(|| {
-            let mut planner = FftPlanner::new();
-            [
-                planner.plan_fft_forward(length),
-                planner.plan_fft_inverse(length),
-            ]
-        });
+        let plans = (length > 1).then(|| complex_plans(length));
         Self { length, plans }
     }
 
