@@ -41,7 +41,6 @@ pub struct Metadata {
     /// Warnings during the run so far.
     pub warnings: Vec<String>,
     /// The deck or the model.
-    #[serde(flatten)]
     pub source: SourceRecord,
 }
 

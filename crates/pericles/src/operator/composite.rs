@@ -3,6 +3,7 @@
 use super::assemble::fastest_form;
 use super::by_law::{ByLaw, by_law};
 use super::limits::{Feature, Features};
+use super::list::no_softening;
 use super::{
     AssembledBonds, BondBody, BondForce, BondForm, Breaking, Force, GridForce, SofteningForce,
 };
@@ -192,10 +193,20 @@ impl CompositeBody<'_> {
         &self,
         list: BondForce<L, D>,
     ) -> Result<Box<dyn Force>> {
-        Ok(match &self.softening {
-            Some(softening) => Box::new(SofteningForce::new(list, self.classes, softening)?),
-            None => Box::new(list),
-        })
+        match &self.softening {
+            None => Ok(Box::new(list)),
+            // The loops of softening are compiled for laws that support it only.
+            Some(softening) => {
+                if L::OF_STRETCH {
+                    return Ok(Box::new(SofteningForce::new(
+                        list,
+                        self.classes,
+                        softening,
+                    )?));
+                }
+                Err(no_softening())
+            }
+        }
     }
 }
 
