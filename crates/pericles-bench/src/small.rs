@@ -22,7 +22,7 @@ const DT: f64 = 1e-7;
 const ROUND: f64 = 0.02;
 /// Step ratio of the multirate scheme.
 const RATIO: u32 = 8;
-/// Fraction of the points with the fine step.
+/// Fraction of the width of the plate with the fine step, at least four spacings.
 const FINE: f64 = 0.1;
 
 /// A body and the scheme of its steps.
@@ -34,7 +34,7 @@ pub enum SmallBody {
     Verlet,
     /// Bond-based plate, classical Runge–Kutta.
     RungeKutta,
-    /// Bond-based plate, multirate Runge–Kutta with eight fine steps on a tenth of the points.
+    /// Bond-based plate, multirate Runge–Kutta with eight fine steps on a tenth of the width.
     Multirate,
     /// Plate of a linear peridynamic solid, velocity Verlet.
     LinearSolid,
@@ -117,12 +117,14 @@ impl SmallBody {
                 Box::new(RungeKutta::new(&Tableau::rk4(), &system))
             }
             Self::Multirate => {
-                let [low, high] = system.cloud().bounds();
-                let width = FINE * (high[0] - low[0]);
+                let cloud = system.cloud();
+                let [low, high] = cloud.bounds();
+                // At least as thick as the longest bond.
+                let width = (FINE * (high[0] - low[0])).max(4.0 * cloud.spacing());
+                let is_fine =
+                    |i: usize| (cloud.point(i)[0] - 0.5 * (low[0] + high[0])).abs() <= 0.5 * width;
                 let fine: Vec<u32> = (0..system.points())
-                    .filter(|&i| {
-                        (system.cloud().point(i)[0] - 0.5 * (low[0] + high[0])).abs() <= 0.5 * width
-                    })
+                    .filter(|&i| is_fine(i))
                     .map(|i| i as u32)
                     .collect();
                 let share = fine.len() as f64 / system.points() as f64;
@@ -286,8 +288,8 @@ mod tests {
         };
         assert_eq!(evaluations("plate-verlet"), 1.0);
         assert_eq!(evaluations("plate-rk4"), 4.0);
-        // A tenth of the points takes eight steps.
-        assert!((evaluations("plate-multirate-rk4") - 4.0 * 1.7).abs() < 1e-12);
+        // Four of ten columns take eight steps.
+        assert!((evaluations("plate-multirate-rk4") - 4.0 * 3.8).abs() < 1e-12);
         assert_eq!(evaluations("sphere-verlet"), 1.0);
     }
 }
