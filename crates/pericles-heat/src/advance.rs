@@ -1,4 +1,7 @@
 //! Time integration of a diffusing field.
+//!
+//! An implicit step ends with T = T₀ + dt/(C V) × the rates at the solution of the linear system. The content then
+//! changes by exactly the recorded flows, and the residual of the solver changes the values by its own size only.
 
 use pericles::Result;
 

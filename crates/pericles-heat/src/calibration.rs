@@ -1,4 +1,7 @@
 //! Pair conductivity κ(ξ) from the conductivity.
+//!
+//! Conductances have the influence function and volume correction of the forces, and broken bonds of the forces do
+//! not conduct.
 
 use pericles::family::VolumeCorrection;
 use pericles::kernel::Influence;

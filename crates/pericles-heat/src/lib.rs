@@ -25,6 +25,9 @@
 //! the field together; results have the same bits for every number of processes.
 //!
 //! The crate uses only public items of [`pericles`] and the multigrid of [`pericles_statics`].
+//!
+//! The solver is independent of the physical quantity: it has capacities, conductances and conditions. For heat the
+//! capacity is ρ c and the conductivity k; a concentration would use the same code.
 
 mod advance;
 mod calibration;

@@ -1,4 +1,6 @@
 //! Assembly of a deck or model with a cache, a memory limit, and readers of input files.
+//!
+//! Readers of files are passed to the code that builds a body, so that `pericles-deck` accesses no files.
 
 use std::fmt;
 use std::path::PathBuf;

@@ -1,4 +1,7 @@
 //! Input files of a deck or model with their digests, so that a run is not resumed with changed files.
+//!
+//! Checkpoints and `run.json` contain the SHA-256 digest of every file named by the deck; a run with changed inputs
+//! is not resumed.
 
 use std::fs::File;
 use std::io::{self, Read};

@@ -1,4 +1,6 @@
 //! Thermal expansion: temperatures of points and the thermal stretch of bonds.
+//!
+//! A heated bond is a longer bond, (1 + τ) ξ with the thermal stretch τ, in every pair law.
 
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};

@@ -1,4 +1,9 @@
 //! Rigid bodies that touch the points.
+//!
+//! Every process has a copy of each rigid body. Forces and moments are exact sums over the points of all processes,
+//! so that all copies move identically. Moments about the centre use the positions of the points, not the nearest
+//! positions on the surface of the body: the energy is then invariant under rotations, and angular momentum is
+//! conserved to rounding.
 
 mod contact;
 mod mass;

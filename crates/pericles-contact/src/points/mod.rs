@@ -1,4 +1,15 @@
 //! Contact between points.
+//!
+//! A pair of points without an intact bond can touch. The contact distance is at most the distance in the reference
+//! configuration, so that the force is zero when a bond breaks in tension, and no energy appears.
+//!
+//! The search is repeated when points have moved relative to each other by more than the skin; only rows of blocks in
+//! which bonds broke change in between. Pieces that are far apart may approach each other without a new search until
+//! then.
+//!
+//! The energy that dampers and friction dissipate is minus the mean of their forces at both ends of a step times the
+//! relative displacement, which is the work that velocity Verlet does. The stored energy differs from this work in
+//! the steps in which a contact begins or ends, by terms of order dt².
 
 mod cells;
 mod contact;

@@ -1,4 +1,9 @@
 //! Points of other processes that own points may touch.
+//!
+//! The search also finds the points of other processes within the contact distance and the skin of the box of own
+//! points, and makes a second domain of them: the loops see a body of own points and these ghosts. All processes
+//! decide together whether a search is due, by the ranges of their displacements. Bonds lead to ghosts of another
+//! domain, so that points are compared by their numbers in the whole body.
 
 use std::borrow::Cow;
 use std::sync::Arc;

@@ -5,6 +5,9 @@
 //! `descriptions.toml`. Tests require a form and a description for every key of the reader, and a key for
 //! every description. The schema does not know which keys need which shape, model or scheme: it allows more
 //! than the reader, never less.
+//!
+//! A table of keys as data would repeat name, type, unit, range and default next to the code that creates the value,
+//! or need a language for conditions.
 
 mod descriptions;
 mod json;

@@ -1,4 +1,7 @@
 //! The cells of a body, one for each point.
+//!
+//! Cells are derived from the points: field files of grids have cell data, those of other bodies point data. Readers
+//! use centroids of cells as points.
 
 use std::collections::HashMap;
 

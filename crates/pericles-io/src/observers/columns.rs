@@ -1,4 +1,7 @@
 //! Optional columns of histories.
+//!
+//! Every scalar time history is a column of `history.csv`: inner iterations, errors against a known solution, bounds
+//! of the energy.
 
 use pericles::observe::{Field, Snapshot};
 use pericles::space::PointSet;

@@ -1,4 +1,6 @@
 //! Impactors as triangles and lines, for pictures and files.
+//!
+//! Pictures, `.vtp` files and re-rendered pictures use the same description of an impactor at its present place.
 
 use std::f64::consts::TAU;
 

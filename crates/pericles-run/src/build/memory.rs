@@ -20,6 +20,9 @@
 //!
 //! The constants are measured peaks of blocks, plates, bars, surfaces and absorbing boundaries. The estimate is
 //! between 0.75 and 2.5 times the actual peak.
+//!
+//! A body that does not fit is rejected by its numbers of cells, neighbours and steps. The program determines the
+//! available memory; the engine and decks do not query the machine.
 
 use pericles::material::BondFailure;
 use pericles::space::{GradedGrid, PointCloud, Shape};

@@ -1,4 +1,8 @@
 //! Points of a mesh.
+//!
+//! Data from files are not part of the model: the spacing of a mesh is known when the file is read. Keys that count
+//! in spacings are therefore rejected for meshes, and names of mesh sets are checked after reading, with their
+//! location in the deck.
 
 use std::path::Path;
 

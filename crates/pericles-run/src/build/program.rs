@@ -1,4 +1,8 @@
 //! Initial state, loads and prescribed motions given by a program.
+//!
+//! Arrays and functions of a program are conditions on points and sets of the discretisation, next to those of the
+//! deck; a deck may refer to sets that the program adds. `run.json` names the additions, and only the program can
+//! resume such a run.
 
 use pericles::System;
 use pericles::boundary::{Load, PrescribedMotion};

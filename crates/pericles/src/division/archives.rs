@@ -3,6 +3,11 @@
 //! The arrays of the whole body are in the order of the point numbers in the body, so that they do not depend on the
 //! division. [`DividedArchive`] and [`Archive::part_of`] transfer them in ranges of bounded size, so that no process needs the
 //! memory of a whole array.
+//!
+//! An array is transferred in rounds of a bounded number of blocks per process: in each round a process receives the
+//! entries of its blocks from their owners and compresses them, and only the compressed sizes are exchanged to find
+//! the places of the blocks in the file. Blocks of any size therefore need no padding, and the memory of a round does
+//! not depend on the size of the body.
 
 use std::borrow::Cow;
 use std::ops::Range;

@@ -1,4 +1,8 @@
 //! Vectors of the whole body on every process.
+//!
+//! The preconditioner of static states and the network of implicit heat conduction are replicated: a divided
+//! multigrid would need aggregates and coarse factors that do not depend on the division. Forces, products and sums
+//! remain divided.
 
 use std::borrow::Cow;
 

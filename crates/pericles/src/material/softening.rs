@@ -1,4 +1,7 @@
 //! Softening of bonds beyond the elastic limit.
+//!
+//! The area below every curve equals that of the brittle bond, ½ s₀², so that calibration, interfaces and scatter do
+//! not depend on the law.
 
 use crate::error::{PericlesError, Result};
 

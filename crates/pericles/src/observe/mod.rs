@@ -2,6 +2,11 @@
 //!
 //! The time loop passes a [`Snapshot`] to every [`Observer`] whose [`Schedule`] contains the step. Fields that need
 //! an evaluation are computed on first use, once per snapshot.
+//!
+//! All processes evaluate observers, because values of the whole body need communication; tables and files are
+//! written by the first process, where [`Snapshot::is_written`] is true. It has one field of the whole body at a
+//! time, and its files are those of a run on a single process, byte for byte. It collects points and sets of the
+//! whole body only for output that needs them: fields, pictures, profiles, crack tips, impactors.
 
 mod crack;
 mod energies;

@@ -1,4 +1,7 @@
 //! Bond-based bodies with cells of several sizes or materials of different horizons.
+//!
+//! A uniform strain is not in equilibrium within one horizon of the interface between two grids, as at a free
+//! surface; momentum is conserved to round-off.
 
 use std::sync::Arc;
 

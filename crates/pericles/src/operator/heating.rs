@@ -1,4 +1,7 @@
 //! Work of changing temperatures within a step.
+//!
+//! Heating is the change of the energy with time at fixed displacements, averaged over both ends of a step: one rule
+//! for all forces whose energy depends on time through the temperature only.
 
 use crate::step_end::{Path, StepEnd};
 use crate::thermal::ThermalExpansion;

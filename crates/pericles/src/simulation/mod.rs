@@ -1,4 +1,6 @@
 //! The time loop.
+//!
+//! The time is step · dt, never a sum of steps. Work arrays are allocated in constructors, not in steps.
 
 mod builder;
 mod failure;

@@ -1,4 +1,6 @@
 //! Graded grids: grids with smaller cells in some regions.
+//!
+//! The division of cells does not depend on the body: refined grids and refined filled shapes use the same code.
 
 use super::grid::Cells;
 use super::{Grid, Point, PointCloud, Region};

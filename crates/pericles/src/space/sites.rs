@@ -1,4 +1,12 @@
 //! Sites: the positions to which bonds lead.
+//!
+//! Periodic faces and divided bodies use the same mechanism, in neighbour lists and in stencils: loops read rows of
+//! values packed by site. Where all points are computed, bond failure needs no communication, because both ends of a
+//! bond reach the same decision; where only a part is computed, the other end is informed by messages. Direct solvers
+//! require whole bodies with free faces.
+//!
+//! The positions of sites can be released and restored ([`Sites::release_places`]): stencil kernels need them during
+//! set-up, and later for output and tangents only.
 
 use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
