@@ -61,7 +61,7 @@ output = { fields = "never", history = "never" }
 
 #[test]
 fn momentum_error_at_a_moving_constraint_is_reported() {
-    // The impulse of a constraint is computed from its reactions at the ends of the steps; the body receives that of
+    // The impulse of a constraint is computed from its reactions at the ends of the steps; the body receives the impulse of
     // the intermediate stages.
     let deck = r#"
 body = { shape = "bar", length = 10, spacing = 1 }
@@ -603,7 +603,7 @@ output = {{ fields = "never" }}
 #[test]
 fn implicit_schemes_accept_residuals_of_rounding_errors() {
     let place = tempfile::tempdir().unwrap();
-    // A support moves slowly and comes to rest: in the end the force is that of the static state.
+    // A support moves slowly and comes to rest: in the end the force equals the force of the static state.
     for scheme in ["discrete-gradient", "implicit-midpoint", "trapezoidal"] {
         for dt in ["1e-6", "1e-5"] {
             let deck = format!(
@@ -666,7 +666,7 @@ output = { fields = "never" }
     succeed(place.path(), "run deck.toml --quiet --out out --force");
 }
 
-/// Work and dissipated energy of plastic flow within one load step are both those of the mean forces, so that the energy
+/// Work and dissipated energy of plastic flow within one load step are both computed with the mean forces, so that the energy
 /// balance closes although the work is wrong.
 #[test]
 fn few_load_steps_with_inelastic_deformation_are_reported() {

@@ -54,7 +54,7 @@ const SAFETY: f64 = 0.95;
 pub(crate) struct Span<'a> {
     /// Start and end, s.
     pub times: [f64; 2],
-    /// Constant inflow into each point within the interval besides that of conditions, W for heat; none if empty.
+    /// Constant inflow into each point within the interval besides the inflow by conditions, W for heat; none if empty.
     pub power: &'a [f64],
 }
 

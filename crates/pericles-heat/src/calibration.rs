@@ -48,7 +48,7 @@ impl PairConductivity {
     /// Calibrates with sums over the full family of a lattice point: a linear field conducts exactly the given heat.
     ///
     /// # Errors
-    /// Those of [`PairConductivity::of_continuum`]; a cloud without a lattice is calibrated as a continuum;
+    /// The errors of [`PairConductivity::of_continuum`]; a cloud without a lattice is calibrated as a continuum;
     /// [`HeatError::Anisotropic`].
     pub fn of_lattice(
         influence: &Influence,
@@ -131,7 +131,7 @@ fn check(influence: &Influence, horizon: f64, dimension: usize) -> Result<()> {
     }
 }
 
-/// Returns the volume of a cell of a lattice, m³: that of its points, which are equal.
+/// Returns the volume of a cell of a lattice, m³: the volume of its points, which are equal.
 pub(crate) fn cell_volume(cloud: &PointCloud) -> f64 {
     let sides = (0..cloud.dimension()).map(|c| cloud.cell_side(c));
     // A process may own no points of a divided body.

@@ -72,8 +72,8 @@ struct State {
     dissipation: Option<Dissipation>,
 }
 
-/// A computed field, shared by the system and the forces that depend on it. Values are those of own points, contents, flows and
-/// extremes those of the whole body: all processes must call its functions together.
+/// A computed field, shared by the system and the forces that depend on it. Values belong to own points, contents, flows and
+/// extremes to the whole body: all processes must call its functions together.
 #[derive(Clone)]
 pub struct SharedField(Arc<Mutex<State>>);
 

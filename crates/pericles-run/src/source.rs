@@ -95,9 +95,9 @@ impl Source {
     }
 
     /// Converts an error of the model: for a deck it has the location in the text, for a model the keys.
-    pub fn refusal(&self, error: BuildError) -> RunError {
+    pub fn rejection(&self, error: BuildError) -> RunError {
         match self {
-            Self::Deck { deck, .. } => deck.refusal(error).into(),
+            Self::Deck { deck, .. } => deck.rejection(error).into(),
             Self::Model(_) => error.into(),
         }
     }

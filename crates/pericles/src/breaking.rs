@@ -92,7 +92,7 @@ impl System {
             free[entry] * impulse[entry] * impulse[entry] / self.mass(entry % n)
         });
         let scale = separating_impulse(rate, compliance, missing);
-        // Impulses opposite to those of the bonds would not separate their ends.
+        // Impulses opposite to the impulses of the bonds would not separate their ends.
         if scale <= 0.0 || !scale.is_finite() {
             return 0.0;
         }

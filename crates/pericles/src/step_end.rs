@@ -123,7 +123,7 @@ impl<'a> StepEnd<'a> {
     }
 
     /// Returns the mean velocities over the step where breaking needs them, that is for [`Path::MeanVelocity`].
-    /// `ghosts` are those of [`StepEnd::ghost_velocities`].
+    /// `ghosts` are the values of [`StepEnd::ghost_velocities`].
     pub fn velocities(&self, ghosts: &'a [f64]) -> Option<Field<'a>> {
         match self.path {
             Path::MeanVelocity(mean) => Some(Field::new(mean, ghosts)),

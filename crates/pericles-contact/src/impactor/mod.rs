@@ -116,13 +116,13 @@ impl Impactor {
         let name = name.into();
         let dimension = cloud.dimension();
         check_shape(&name, &shape, dimension)?;
-        let refuse = |reason: &str| ContactError::Impactor {
+        let reject = |reason: &str| ContactError::Impactor {
             name: name.clone(),
             reason: reason.to_owned(),
         };
         if pose.error() > ROUNDING || !pose.centre.iter().all(|x| x.is_finite()) {
             return Err(
-                refuse("its pose is not a position and a rotation (an orthogonal matrix with determinant 1)").into(),
+                reject("its pose is not a position and a rotation (an orthogonal matrix with determinant 1)").into(),
             );
         }
         let shape = shape.extended(dimension);
@@ -143,7 +143,7 @@ impl Impactor {
                 function,
             } => {
                 if off_plane(amplitude) {
-                    return Err(refuse("it moves along an axis that the points do not have").into());
+                    return Err(reject("it moves along an axis that the points do not have").into());
                 }
                 let start = pose.centre;
                 let along = Course {
@@ -167,14 +167,14 @@ impl Impactor {
                     _ => false,
                 };
                 if off_plane(velocity) || turns {
-                    return Err(refuse(
+                    return Err(reject(
                         "it moves along or turns about an axis that the points do not have",
                     )
                     .into());
                 }
                 let solid = mass::solid(&shape, dimension, cloud.section());
                 let found = inertia.of(solid, dimension).ok_or_else(|| {
-                    refuse(
+                    reject(
                         "it moves freely, but its mass and inertia are not positive and finite; allowed: a density or a \
                          mass above 0 for a shape with a volume, or a prescribed motion",
                     )
@@ -214,7 +214,7 @@ impl Impactor {
         Ok(impactor)
     }
 
-    /// Refuses bodies that contain points deeper than half of their cell at the start. All processes must call it together.
+    /// Rejects bodies that contain points deeper than half of their cell at the start. All processes must call it together.
     fn check_start(&self) -> Result<()> {
         let none = vec![0.0; self.touching.cloud.dimension() * self.touching.cloud.len()];
         let found = self.touches(&self.state.pose(), &none);

@@ -36,7 +36,7 @@ const SKIN: f64 = 0.3;
 
 /// Contact between the points of a body: pieces that meet, fragments that collide, faces of cracks that close.
 ///
-/// The law is that of [`ContactLaw`]. Each end of a pair computes its force from the same numbers, so that forces are
+/// The law is [`ContactLaw`]. Each end of a pair computes its force from the same numbers, so that forces are
 /// equal and opposite, and adds the pairs in ascending order, so that results do not depend on threads or on the search.
 pub struct PointContact {
     touching: Touching,
@@ -87,7 +87,7 @@ impl PointContact {
     /// Makes the contact between the points of a body. If they are divided among processes, all of them must call it together.
     ///
     /// # Errors
-    /// Those of [`ContactLaw::check`]; numbers of points that are not positive or not one per point.
+    /// The errors of [`ContactLaw::check`]; numbers of points that are not positive or not one per point.
     pub fn new(cloud: Arc<PointCloud>, law: ContactLaw, bodies: ContactBodies) -> Result<Self> {
         let touching = Touching::new(cloud, law, bodies)?;
         let entries = match law.is_conservative() {

@@ -59,7 +59,7 @@ impl Manifest {
         }
     }
 
-    /// Returns whether a name begins with that of a sub-folder, which ends with `/`.
+    /// Returns whether a name begins with the name of a sub-folder, which ends with `/`.
     pub(super) fn has_any_in(&self, prefix: &str) -> bool {
         self.pictures && prefix == "pictures/"
             || self.names.iter().any(|name| name.starts_with(prefix))

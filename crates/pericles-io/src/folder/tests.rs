@@ -158,7 +158,7 @@ fn results_are_never_written_through_links() {
     }
     // Not the name of a result.
     symlink(&victim, path.join("notes")).unwrap();
-    // A resumed run refuses the links, one that overwrites the results removes them.
+    // A resumed run rejects the links, one that overwrites the results removes them.
     let folder = OutputFolder::open(&path).unwrap();
     assert!(matches!(folder.claim(&names), Err(IoError::Link { .. })));
     assert!(matches!(
@@ -172,7 +172,7 @@ fn results_are_never_written_through_links() {
         assert!(!path.join(link).is_symlink(), "{link}");
     }
     assert!(path.join("notes").is_symlink());
-    // A link with a name that no earlier run has recorded is refused.
+    // A link with a name that no earlier run has recorded is rejected.
     symlink(&victim, path.join("probes.csv")).unwrap();
     let error = folder.claim(&["probes.csv".into()]).unwrap_err();
     assert!(

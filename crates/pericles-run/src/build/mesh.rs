@@ -12,7 +12,7 @@ use pericles_mesh::{MeshPoints, PointOptions, Problem, RawMesh};
 
 use super::assembler::Assembler;
 use super::mesh_body::{MeshBody, Placement};
-use super::refusal::{at, at_path};
+use super::rejection::{at, at_path};
 use super::resources::Resources;
 
 impl Assembler<'_> {
@@ -68,7 +68,7 @@ impl Assembler<'_> {
             let problem = problem.to_string();
             warnings.push(Remark::new("body.file", Caution::Mesh { problem }));
         }
-        warnings.extend(self.judge_listed(&listed, &cloud));
+        warnings.extend(self.check_listed_points(&listed, &cloud));
         Ok((cloud, body))
     }
 

@@ -18,7 +18,7 @@ use pericles_waves::ForceForm;
 use super::assembler::Assembler;
 use super::discretisation::Discretisation;
 use super::points::BodyPoints;
-use super::refusal::{at, at_path};
+use super::rejection::{at, at_path};
 use super::resources::Resources;
 use crate::division::cuts_of;
 

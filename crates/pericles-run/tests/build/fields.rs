@@ -145,7 +145,7 @@ fn arrays_that_a_deck_asks_for_have_their_values_and_units() {
 }
 
 #[test]
-fn cells_of_a_body_without_cells_and_unknown_sets_are_refused() {
+fn cells_of_a_body_without_cells_and_unknown_sets_are_rejected() {
     let place = tempfile::tempdir().unwrap();
     std::fs::write(
         place.path().join("points.txt"),

@@ -28,7 +28,7 @@ fn field(deck: &str, field: Field) -> Vec<f64> {
     run.snapshot().field(field).to_vec()
 }
 
-/// The stress of a correspondence material follows from the deformation gradient: under uniform strain it is that of
+/// The stress of a correspondence material follows from the deformation gradient: under uniform strain it is the stress of
 /// Hooke's law at every point, surfaces included.
 #[test]
 fn correspondence_bodies_of_uniform_strain_have_the_stress_of_hookes_law_everywhere() {
@@ -94,7 +94,7 @@ fn no_point_of_a_perfectly_plastic_correspondence_body_exceeds_the_yield_stress(
     let snapshot = run.snapshot();
     let largest = snapshot.field(Field::VonMisesStress);
     let largest = largest.iter().fold(0.0, |most: f64, s| most.max(*s));
-    // The yield function is that of the Kirchhoff stress.
+    // The yield function depends on the Kirchhoff stress.
     assert!((0.0198..0.0201).contains(&largest), "{largest}");
 }
 

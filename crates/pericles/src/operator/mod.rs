@@ -61,7 +61,7 @@ pub use breakable::Breakable;
 pub use by_law::{ByLaw, by_law};
 pub use capabilities::{Capabilities, Linearity};
 pub use coarse::{
-    CoarseBreak, Crossing, Judged, LostBond, Released, both_ends, each_once, turns_around,
+    CoarseBreak, Crossing, Dissipated, LostBond, Released, both_ends, each_once, turns_around,
 };
 pub use composite::CompositeBody;
 pub use damage::{Breaking, DamageMeasure};

@@ -52,7 +52,7 @@ impl Count {
 
 impl Zones {
     /// Determines the zones from marked fine points. Only the bonds of fine points and, for forces that reach beyond
-    /// one bond, those of the border are visited. All processes must call it together.
+    /// one bond, the bonds of the border are visited. All processes must call it together.
     pub(super) fn new(force: &dyn LocalForce, domain: &Domain, is_fine: Vec<bool>) -> Self {
         let n = is_fine.len();
         let known = domain.marks_with_ghosts(&is_fine);
