@@ -13,8 +13,7 @@ use sha2::{Digest, Sha256};
 
 use crate::error::RunError;
 
-/// The input files of a model at the start of the run. Empty for models without files, and for runs of versions that
-/// did not record them.
+/// The input files of a model at the start of the run. Empty for models without files.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Inputs {
     /// The base folder of relative paths; absolute.
@@ -80,7 +79,7 @@ impl Inputs {
     /// Checks that the files have not changed since the start of the run; paths are relative to `folder`.
     ///
     /// # Errors
-    /// A file no longer exists, or its content has changed.
+    /// A file is missing, or its content has changed.
     pub fn check(&self, folder: &Path) -> Result<(), RunError> {
         for input in &self.files {
             let path = folder.join(&input.file);

@@ -7,7 +7,6 @@ use std::time::Instant;
 
 use pericles::observe::{Observer, Schedule};
 use pericles::{Archive, Checkpointed, Control, Interrupt, Outcome, Simulation, SimulationError};
-use pericles_deck::Model;
 use pericles_io::{OutputFolder, PvdSeries, VtuFile};
 
 use crate::animations;
@@ -96,7 +95,7 @@ impl Run {
         } = Assembled::of(&source, means, tell)?;
         let is_first = comm.rank() == 0;
         if is_first {
-            facts.warnings.extend(warnings(&stored, model, &facts));
+            facts.warnings.extend(resume_warnings(&stored, &facts));
         }
         let gaps = match is_first {
             true => incomplete(&folder),
@@ -350,7 +349,7 @@ fn is_finished(folder: &OutputFolder) -> bool {
 }
 
 /// Returns warnings about differences between a resumed and an uninterrupted run.
-fn warnings(stored: &Stored, model: &Model, facts: &Facts) -> Vec<String> {
+fn resume_warnings(stored: &Stored, facts: &Facts) -> Vec<String> {
     let mut warnings: Vec<String> = stored
         .rejected
         .iter()
@@ -368,13 +367,6 @@ fn warnings(stored: &Stored, model: &Model, facts: &Facts) -> Vec<String> {
         warnings.push(format!(
             "the run was started with instruction set {} and is resumed with {}: results may not be bitwise identical",
             metadata.instruction_set, facts.instruction_set
-        ));
-    }
-    let files = model.files();
-    if let (Some(file), true) = (files.first(), metadata.source.inputs().is_empty()) {
-        let file = file.display();
-        warnings.push(format!(
-            "the version that started the run did not record the content of {file}; it may have changed since"
         ));
     }
     warnings
