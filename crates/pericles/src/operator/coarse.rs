@@ -183,12 +183,16 @@ pub fn both_ends(domain: &Domain, parts: Vec<CoarseBreak>) -> Vec<CoarseBreak> {
     bonds
 }
 
-fn of_kind(domain: &Domain, mut parts: Vec<CoarseBreak>, gains: bool) -> Vec<CoarseBreak> {
-    if domain.all(parts.is_empty()) {
-        return parts;
-    }
+/// Returns records of own points, which all have the same `gains`, followed by those from other processes: a sweep over a part
+/// of the body records a bond at one end only, which sends it to the owner of the other end. All processes must call it
+/// together.
+pub fn with_received(
+    domain: &Domain,
+    mut bonds: Vec<CoarseBreak>,
+    gains: bool,
+) -> Vec<CoarseBreak> {
     let mut letters = Vec::new();
-    for bond in &parts {
+    for bond in &bonds {
         // Ghosts are counted after the own points.
         let [own, other] = bond.points.map(|point| point as usize);
         if other >= domain.owned_points() {
@@ -200,13 +204,21 @@ fn of_kind(domain: &Domain, mut parts: Vec<CoarseBreak>, gains: bool) -> Vec<Coa
             });
         }
     }
-    parts.extend(domain.deliver(letters).into_iter().map(|letter| {
+    bonds.extend(domain.deliver(letters).into_iter().map(|letter| {
         let [x, y, z, missing] = letter.numbers;
         CoarseBreak {
             gains,
             ..CoarseBreak::between([letter.to, letter.from], &[-x, -y, -z], missing)
         }
     }));
+    bonds
+}
+
+fn of_kind(domain: &Domain, mut parts: Vec<CoarseBreak>, gains: bool) -> Vec<CoarseBreak> {
+    if domain.all(parts.is_empty()) {
+        return parts;
+    }
+    parts = with_received(domain, parts, gains);
     let numbers = |bond: &CoarseBreak| {
         let mut numbers = bond.points.map(|point| domain.number(point as usize));
         numbers.sort_unstable();

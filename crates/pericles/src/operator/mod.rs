@@ -62,6 +62,7 @@ pub use by_law::{ByLaw, by_law};
 pub use capabilities::{Capabilities, Linearity};
 pub use coarse::{
     CoarseBreak, Crossing, Dissipated, LostBond, Released, both_ends, each_once, turns_around,
+    with_received,
 };
 pub use composite::CompositeBody;
 pub use damage::{Breaking, DamageMeasure};
