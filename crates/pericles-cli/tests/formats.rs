@@ -172,7 +172,7 @@ fn deck(dimension: usize, body: &str, piece: &str) -> String {
     )
 }
 
-const FIELDS: [&str; 26] = [
+const FIELDS: [&str; 25] = [
     "Displacement",
     "Velocity",
     "Force_Density",
@@ -183,7 +183,6 @@ const FIELDS: [&str; 26] = [
     "Stress",
     "Strain",
     "Equivalent_Stress",
-    "Von_Mises_Stress",
     "Principal_Stress",
     "Dilatation",
     "Plastic_Strain",
