@@ -166,7 +166,7 @@ fn large_stiffness_errors_lead_to_warnings() {
     assert!(found[0].contains("deck.toml:8:11"), "{found:?}");
     assert!(found[0].contains("% of the given one"), "{found:?}");
     assert!(found[0].contains("modulus = \"lattice\""), "{found:?}");
-    // The constant function that acts on displacements is no longer 500 times too soft.
+    // The constant function that acts on displacements: the micromodulus 3 E/δ³ of the integral.
     let constant = "modulus = \"unmodified\"\nhorizon_ratio = 3\n\
                     influence = { function = \"constant\", acts_on = \"displacement\" }";
     let bar = model(BAR, constant);
