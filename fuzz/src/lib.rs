@@ -1,4 +1,4 @@
-//! What the fuzz targets share: an allocator that knows when it is too much, a clock that runs with the work, surfaces by the ending of their file, and changes to arrays.
+//! Shared parts of the fuzz targets: an allocator with a limit, a clock that counts work, surfaces by the extension of their file, and changes to arrays.
 
 pub mod decks;
 
@@ -95,7 +95,7 @@ fn processor_time() -> Duration {
     Duration::new(time.tv_sec as u64, time.tv_nsec as u32)
 }
 
-/// Runs some steps of a simulation; what runs may fail of is no trouble.
+/// Runs some steps of a simulation; errors of the run are accepted.
 pub fn advance(simulation: &mut Simulation, steps: u32) {
     let mut left = steps;
     let _ = simulation.run(|_| {

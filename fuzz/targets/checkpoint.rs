@@ -14,7 +14,7 @@ pericles_fuzz::target!(|content: &[u8]| {
     }
 });
 
-/// The first line is the header, the rest the stored arrays; the checksums written in the header as `"crc32":0` are those of the arrays in their order.
+/// The first line is the header, the rest the stored arrays; the checksums written in the header as `"crc32":0` belong to the arrays in their order.
 fn sealed(content: &[u8]) -> Vec<u8> {
     let mut parts = content.splitn(2, |&byte| byte == b'\n');
     let header = parts.next().unwrap_or_default();

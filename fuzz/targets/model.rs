@@ -1,5 +1,5 @@
 #![no_main]
-//! Decks that are right as texts, built and begun: any deck runs or is refused, within the memory it is allowed.
+//! Decks that are right as texts, built and begun: any deck runs or is rejected, within the memory it is allowed.
 
 use std::sync::LazyLock;
 
@@ -13,7 +13,7 @@ const STEPS: u32 = 3;
 
 static KEPT: LazyLock<Memory> = LazyLock::new(Memory::default);
 
-/// Surfaces are made to know how far apart their vertices are: those of more than some thousand are left to a test. Counts written in other ways only take longer.
+/// Surfaces are made for the distances of their vertices: surfaces with more than some thousand vertices are left to a test. Counts written in other ways only take longer.
 fn is_large(content: &str) -> bool {
     const MOST: [(&str, u32); 5] = [("level", 4), ("around", 99), ("across", 99), ("segments", 99), ("rings", 99)];
     MOST.iter().any(|(key, most)| {

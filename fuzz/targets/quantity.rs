@@ -1,5 +1,5 @@
 #![no_main]
-//! Numbers with units, of every dimension a deck knows.
+//! Numbers with units, of every dimension in decks.
 
 use pericles_deck::Deck;
 

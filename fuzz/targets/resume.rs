@@ -49,7 +49,7 @@ pericles_fuzz::target!(|content: &[u8]| {
             advance(simulation, AFTER);
         }
         if let Err(error) = simulation.restore(stored) {
-            panic!("the true state is refused: {error}");
+            panic!("the true state is rejected: {error}");
         }
         assert!(state(simulation) == *stored, "the true state is not what was stored");
     });

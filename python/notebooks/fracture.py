@@ -111,7 +111,7 @@ plt.savefig("damage.png", dpi=150, bbox_inches="tight")
 # %% [markdown]
 # ## Convergence of the effective stiffness
 #
-# The elastic energy converges with spacing and horizon to that of the local theory. The effective modulus is that of a homogeneous
+# The elastic energy converges with spacing and horizon to that of the local theory. The effective modulus belongs to a homogeneous
 # plate with the same energy at the same mean strain; it lies below the Voigt bound, the mean of the moduli.
 
 # %%

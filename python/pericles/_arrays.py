@@ -32,7 +32,7 @@ def as_vectors(given: Any, points: int, dimension: int, what: str = "the values"
 
 
 def finite(array: NDArray[np.float64], what: str) -> NDArray[np.float64]:
-    """Refuse NaN and infinity."""
+    """Reject NaN and infinity."""
     wrong = ~np.isfinite(array)
     if wrong.any():
         row = int(np.argwhere(wrong)[0][0])

@@ -89,7 +89,7 @@ class Deck(MutableMapping[str, Any]):
         path : path
             The file.
         set : mapping, optional
-            Values of keys that replace those of the file, such as ``{"time.end": "30 us"}``.
+            Values of keys that replace those in the file, such as ``{"time.end": "30 us"}``.
         """
         try:
             text = Path(path).read_text(encoding="utf-8")
@@ -205,7 +205,7 @@ class Deck(MutableMapping[str, Any]):
         points : array of shape (n, dimension), optional
             Positions of the points, m; the deck's ``[body]`` then has no shape.
         volumes : array of shape (n,) or float, optional
-            Volumes of the points, m³; by default those of cells with the sides ``spacing``.
+            Volumes of the points, m³; by default the volumes of cells with the sides ``spacing``.
         blocks : array of int of shape (n,), optional
             Block numbers of the points, which sets of the deck may select (``block = 2``); by default 1.
         sets : mapping of str to mask or point numbers, optional
@@ -272,7 +272,7 @@ def parsed(text: str, name: str, overrides: list[str], sets: list[str]) -> Any:
 
 
 def located(error: DeckError, text: str, name: str) -> None:
-    """Add its key to every problem, and to the message if nobody has seen the text: that of a dict."""
+    """Add its key to every problem, and to the message if nobody has seen the text, as for a dict."""
     problems = []
     for problem in error.problems:
         path = problem.path or (_toml.path_at(text, problem.line) if problem.file == name else _of_override(problem))

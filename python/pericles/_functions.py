@@ -133,7 +133,7 @@ def check(deck: Any, *, set: Mapping[str, Any] | None = None) -> Check:
     deck : Deck, dict or path
         The deck.
     set : mapping, optional
-        Values of keys that replace those of the deck.
+        Values of keys that replace those in the deck.
 
     Raises
     ------
@@ -158,7 +158,7 @@ def modes(deck: Any, *, count: int = 12, prestress: bool = False, set: Mapping[s
     prestress : bool
         About the last static state of the deck instead of the undeformed body.
     set : mapping, optional
-        Values of keys that replace those of the deck.
+        Values of keys that replace those in the deck.
     """
     deck = as_deck(deck, set)
     dimension = _dimension(deck)
@@ -208,7 +208,7 @@ def dispersion(
     measure : bool
         Also measure the spectrum in a run.
     set : mapping, optional
-        Values of keys that replace those of the deck.
+        Values of keys that replace those in the deck.
     """
     deck = as_deck(deck, set)
     deck._core()
@@ -325,7 +325,7 @@ def run(
     deck : Deck, dict or path
         The deck.
     set : mapping, optional
-        Values of keys that replace those of the deck, such as ``{"time.end": "30 us"}``.
+        Values of keys that replace those in the deck, such as ``{"time.end": "30 us"}``.
     out : path, optional
         The output folder; by default the name of the deck in the current folder, with a number if it exists.
     force : bool

@@ -27,7 +27,7 @@ _SECTIONS = {1: "area", 2: "thickness"}
 class Model:
     """A body with its conditions, ready to run.
 
-    Made by :meth:`Deck.build`. Arrays have one row for each point in the user's order: that of the array or file of the
+    Made by :meth:`Deck.build`. Arrays have one row for each point in the user's order: the order of the array or file of the
     points, or of the grid.
 
     Attributes

@@ -451,7 +451,7 @@ class Result:
         ax.set_ylim(x[:, 1].min() - margin, x[:, 1].max() + margin)
         ax.set_aspect("equal")
         ax.set_ylabel(f"y ({unit})")
-        # As high as the axes, whose height follows from that of the body.
+        # As high as the axes, whose height follows from the height of the body.
         beside = ax.inset_axes((1.03, 0.0, 0.03, 1.0))
         ax.figure.colorbar(drawn, cax=beside, label=label)
         return ax

@@ -111,7 +111,7 @@ def sweep(
 
 
 def _is_of(found: Result, deck: Any) -> bool:
-    """Return whether results are those of a deck."""
+    """Return whether results belong to a deck."""
     kept = found.info.get("deck") or {}
     text = deck._text if deck._text is not None else deck.to_toml()
     return kept.get("source") == text and list(kept.get("overrides") or []) == deck._overrides

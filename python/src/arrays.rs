@@ -108,7 +108,7 @@ impl Selection {
         numbers
     }
 
-    /// Reorders component-major values from the user's order to that of the points.
+    /// Reorders component-major values from the user's order to the order of the points.
     pub fn ordered(&self, given: &[f64]) -> Vec<f64> {
         let n = self.points.len();
         let columns = given.chunks(n.max(1));

@@ -17,7 +17,7 @@ static USED: AtomicBool = AtomicBool::new(false);
 /// Whether this process was forked from one that had computed in parallel: its threads were not copied.
 static FORKED: AtomicBool = AtomicBool::new(false);
 
-/// Refuses computations that would wait for ever for threads that do not exist.
+/// Rejects computations that would wait for ever for threads that do not exist.
 pub fn enter() -> PyResult<()> {
     if FORKED.load(Ordering::Relaxed) {
         return Err(errors::plain(

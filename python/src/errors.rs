@@ -43,7 +43,7 @@ fn too_large(message: &str, needed: Option<f64>, allowed: Option<u64>) -> PyErr 
     })
 }
 
-/// Refuses results that do not fit into memory.
+/// Rejects results that do not fit into memory.
 pub fn check_memory(needed: f64, allowed: u64) -> PyResult<()> {
     if needed <= allowed as f64 {
         return Ok(());

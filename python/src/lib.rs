@@ -2,7 +2,7 @@
 //!
 //! Arrays, runs and results cross the border here; names, messages for people, and everything without numbers are written
 //! in Python (`python/pericles`). A computation runs without the interpreter's lock. Arrays inside callbacks are copies,
-//! those of results are views that keep their owner alive.
+//! arrays of results are views that keep their owner alive.
 
 mod arrays;
 mod callback;

@@ -106,7 +106,7 @@ type NumberedSet = (String, Vec<u32>);
 
 /// Selects a set of points.
 fn selected(cloud: &PointCloud, name: &str, numbers: &[u32]) -> Result<Vec<u32>, BuildError> {
-    let refuse = |reason: String| {
+    let reject = |reason: String| {
         let path = KeyPath::from("sets").key(name);
         Err(Remark::new(path, Fault::BadDiscretisation { reason }).into())
     };
@@ -115,13 +115,13 @@ fn selected(cloud: &PointCloud, name: &str, numbers: &[u32]) -> Result<Vec<u32>,
         .find(|&&number| number as usize >= cloud.len())
     {
         let points = cloud.len();
-        return refuse(format!(
+        return reject(format!(
             "the set `{name}` has point {number}, but the {points} points are numbered from 0 to {}",
             points - 1
         ));
     }
     if numbers.is_empty() {
-        return refuse(format!("the set `{name}` has no points"));
+        return reject(format!("the set `{name}` has no points"));
     }
     Ok(Selection::of_numbers(cloud, numbers).points)
 }

@@ -53,6 +53,6 @@ def _own_folder(tmp_path, monkeypatch):
 
 
 def program():
-    """The program as a command: that of the environment, or that of the wheel."""
+    """The program as a command: given by the environment, or the one in the wheel."""
     given = os.environ.get("PERICLES_PROGRAM")
     return [given] if given else [sys.executable, "-m", "pericles"]

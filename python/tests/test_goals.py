@@ -1,4 +1,4 @@
-"""Speed of the border. Limits are those of the design; a debug build of the extension is not measured.
+"""Speed of the border. Limits are design goals; a debug build of the extension is not measured.
 
 Where one thread works, its processor time is measured, which other processes change least.
 """

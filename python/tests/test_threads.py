@@ -104,7 +104,7 @@ def test_two_threads_on_one_simulation():
     deadline = time.monotonic() + 20
     while simulation.steps_done < 5 and time.monotonic() < deadline:
         time.sleep(0.001)
-    # Reading needs no lock; everything else is refused at once.
+    # Reading needs no lock; everything else is rejected at once.
     assert simulation.time > 0
     for busy in (lambda: simulation.step(1), lambda: simulation.field("damage"), lambda: simulation.energies, lambda: simulation.save("c")):
         began = time.monotonic()
@@ -144,7 +144,7 @@ def test_spawned_processes_run(bar):
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
-def test_forked_processes_are_refused_and_do_not_hang(tmp_path):
+def test_forked_processes_are_rejected_and_do_not_hang(tmp_path):
     script = tmp_path / "fork.py"
     script.write_text(
         textwrap.dedent(

@@ -20,7 +20,7 @@ folder = Path(tempfile.mkdtemp())
 
 def report(path):
     text = subprocess.run([program, str(path)], capture_output=True, text=True, check=True).stdout
-    assert "refused" not in text, text
+    assert "rejected" not in text, text
     sets = {}
     for body in re.findall(r"SetSummary \{(.*?)\n        \}", text, re.S):
         area = re.search(r"area: Some\(\s*([-0-9.e]+)", body)
@@ -79,7 +79,7 @@ meshio.write(folder / "meshio.vtu", plain)
 meshio.write(folder / "meshio.exo", plain, file_format="exodus")
 answer = subprocess.run([program, str(folder / "meshio.exo")], capture_output=True, text=True, check=True).stdout
 paths = [folder / "meshio.vtu"]
-if "refused" in answer:
+if "rejected" in answer:
     assert "nccopy -k cdf5" in answer and "feature netcdf4" in answer, answer
     print("meshio.exo: netCDF-4, rejected with the conversion command")
 else:

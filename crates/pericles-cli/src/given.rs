@@ -23,7 +23,7 @@ pub(crate) fn deck(path: &Path, overrides: &[String]) -> Result<Deck, CliError> 
             },
             path,
         },
-        refused => refused.into(),
+        rejected => rejected.into(),
     })
 }
 
@@ -37,10 +37,10 @@ fn hint(path: &Path, kind: ErrorKind) -> Option<String> {
             .map(|found| format!("did you mean {}?", found.display())),
         ErrorKind::NotFound => {
             /// Names with a lower similarity are not suggested.
-            const ALIKE: f64 = 0.8;
+            const LEAST_SIMILARITY: f64 = 0.8;
             let example = new::id_of(&path.to_string_lossy());
-            let found =
-                beside(path, ALIKE).map(|found| format!("did you mean {}?", found.display()));
+            let found = beside(path, LEAST_SIMILARITY)
+                .map(|found| format!("did you mean {}?", found.display()));
             found.or_else(|| {
                 Some(format!(
                     "an example has this name; copy it here with `pericles new {}`",

@@ -92,7 +92,7 @@ pub fn command(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     }
     let processes = match Processes::start(cli.command.is_shared()) {
         Ok(processes) => processes,
-        Err(error) => return processes::refused(&error),
+        Err(error) => return processes::rejected(&error),
     };
     let outcome = match cli.command {
         Command::Run(args) => run::run(&args, &processes),

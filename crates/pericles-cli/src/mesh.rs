@@ -69,7 +69,7 @@ pub(crate) fn mesh(args: &MeshArgs) -> Result<Exit, CliError> {
         thickness: args.thickness.metres,
         blocks: (!args.blocks.is_empty()).then(|| args.blocks.clone()),
     };
-    let refused = |problem: String| CliError::Mesh {
+    let rejected = |problem: String| CliError::Mesh {
         file: args.file.clone(),
         problem,
     };
@@ -78,10 +78,10 @@ pub(crate) fn mesh(args: &MeshArgs) -> Result<Exit, CliError> {
         // Triangles that do not lie in a plane: a surface to be filled.
         Err(Problem::NotPlane { .. }) if options.blocks.is_none() => {
             let surface = TriangleSurface::of_mesh(&mesh, unit);
-            let surface = surface.map_err(|error| refused(error.to_string()))?;
+            let surface = surface.map_err(|error| rejected(error.to_string()))?;
             of_surface(&args.file, &mesh, &surface, unit)
         }
-        Err(problem) => return Err(refused(problem.to_string())),
+        Err(problem) => return Err(rejected(problem.to_string())),
     };
     if let Some(path) = &args.json {
         console::write_json(path, &results)?;

@@ -35,7 +35,7 @@ fn every_instruction_set_breaks_the_same_bonds() {
 }
 
 #[test]
-fn an_unknown_instruction_set_is_refused() {
+fn an_unknown_instruction_set_is_rejected() {
     let place = with_plate();
     let (status, message) = fail(place.path(), "check plate.toml --instruction-set sse9");
     assert_eq!(status, 2);

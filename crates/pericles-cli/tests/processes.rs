@@ -1,4 +1,4 @@
-//! Copies of the program that a launcher starts: a program without MPI refuses to run as several. Runs on several processes are
+//! Copies of the program that a launcher starts: a program without MPI does not run as several. Runs on several processes are
 //! tested by `.ci/mpi`.
 #![cfg(not(feature = "mpi"))]
 
@@ -46,7 +46,7 @@ fn copies_of_a_program_without_mpi_write_nothing_and_explain_once() {
 }
 
 #[test]
-fn commands_of_one_process_refuse_several() {
+fn commands_of_one_process_reject_several() {
     let place = tempfile::tempdir().unwrap();
     std::fs::write(place.path().join("plate.toml"), PLATE).unwrap();
     let variables = [("PMI_SIZE", "3"), ("PMI_RANK", "0")];

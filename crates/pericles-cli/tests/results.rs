@@ -208,8 +208,8 @@ fn control_characters_in_titles_and_names_are_escaped() {
     let ran = succeed(place.path(), "run plate.toml --set time.end=1e-6");
     let check = succeed(place.path(), "check plate.toml");
     let info = succeed(place.path(), "info plate");
-    let refused = run(place.path(), "check plate.toml --set \u{1b}[2J=1");
-    for output in [ran, check, info, refused] {
+    let rejected = run(place.path(), "check plate.toml --set \u{1b}[2J=1");
+    for output in [ran, check, info, rejected] {
         for said in [text(&output.stdout), text(&output.stderr)] {
             let control = |c: char| (c.is_control() && c != '\n') || c == '\u{202e}';
             assert!(!said.contains(control), "{said:?}");

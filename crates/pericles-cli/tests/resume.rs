@@ -421,7 +421,7 @@ fn a_run_is_resumed_from_another_folder() {
 fn a_changed_input_file_is_reported_by_name() {
     let place = tempfile::tempdir().unwrap();
     stopped_ring(place.path(), "ring");
-    let refused = |command: &str, file: &str, says: &str| {
+    let rejected = |command: &str, file: &str, says: &str| {
         let (status, message) = fail(place.path(), command);
         assert_eq!(status, 3, "{message}");
         assert!(
@@ -452,18 +452,18 @@ fn a_changed_input_file_is_reported_by_name() {
         let before = fs::read_to_string(&path).unwrap();
         assert_ne!(change(&before), before);
         fs::write(&path, change(&before)).unwrap();
-        refused(
+        rejected(
             "resume ring",
             file,
             "its content has changed since the run started",
         );
-        refused(
+        rejected(
             "plot ring --field Velocity",
             file,
             "its content has changed",
         );
         fs::remove_file(&path).unwrap();
-        refused("resume ring", file, "it no longer exists");
+        rejected("resume ring", file, "it no longer exists");
         fs::write(&path, before).unwrap();
     }
     succeed(place.path(), "resume ring");

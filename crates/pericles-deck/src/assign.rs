@@ -14,7 +14,7 @@ use crate::vocabulary::ASSIGNED;
 pub struct Assignment {
     /// Names of the sets, at least one.
     pub sets: Vec<String>,
-    /// Name of the material, if one is assigned: that of an entry of [`Model::materials`](crate::Model::materials), or
+    /// Name of the material, if one is assigned: the name of an entry of [`Model::materials`](crate::Model::materials), or
     /// [`Material::name`](method@crate::Material::name) of the body's material.
     #[serde(default)]
     pub material: Option<String>,
@@ -43,7 +43,7 @@ pub(crate) fn read(
         .required("set")
         .and_then(|item| sets.references(&item));
     if !ASSIGNED.iter().any(|key| table.has(key)) {
-        table.lacks_one_of(ASSIGNED);
+        table.requires_one_of(ASSIGNED);
     }
     let material = match assignable {
         Assignable::Surface => {

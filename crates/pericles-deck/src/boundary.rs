@@ -55,7 +55,7 @@ pub(crate) fn read(table: Table<'_>) -> Option<BoundaryCondition> {
         .and_then(|item| item.choice("kind of boundary", &kinds));
     match kind {
         Some(Kind::DampingLayer) => damping_layer(table),
-        // The keys of an unknown kind are read as those of the first.
+        // The keys of an unknown kind are read as for the first kind.
         _ => absorbing(table).filter(|_| kind.is_some()),
     }
 }

@@ -112,7 +112,7 @@ pub enum LoadAmplitude {
     Traction {
         /// The traction.
         traction: VectorField,
-        /// Area, m²; if none, that of the face of the set's bounding box normal to the load.
+        /// Area, m²; if none, the area of the face of the set's bounding box normal to the load.
         #[serde(default)]
         area: Option<f64>,
     },
@@ -181,7 +181,7 @@ pub(crate) fn initial(
     if let (Some(None), Some(None), Some(None), Some(None)) =
         (&displacement, &velocity, &random_velocity, &file)
     {
-        table.lacks_one_of(&["displacement", "velocity", "random_velocity", "file"]);
+        table.requires_one_of(&["displacement", "velocity", "random_velocity", "file"]);
     }
     table.finish();
     Some(Initial {

@@ -67,7 +67,7 @@ impl ConstantRules {
         })
     }
 
-    pub(crate) fn judge_volume_correction(&self, table: &Table<'_>) {
+    pub(crate) fn check_volume_correction(&self, table: &Table<'_>) {
         if matches!(self.sums, Sums::Spectral) {
             table.forbid(
                 "volume_correction",

@@ -63,7 +63,7 @@ impl Correspondence {
 /// Keys of correspondence materials only.
 const OWN_KEYS: [&str; 2] = ["law", "stabilisation"];
 
-/// Refuses these keys in the table of another model.
+/// Rejects these keys in the table of another model.
 pub(crate) fn forbid_keys(table: &Table<'_>) {
     for key in OWN_KEYS {
         table.forbid(key, "it requires model = \"correspondence\"");

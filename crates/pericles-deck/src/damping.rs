@@ -24,7 +24,7 @@ pub(crate) fn read(table: Table<'_>) -> Option<Damping> {
         })
     };
     if !table.has("mass") && !table.has("stiffness") {
-        table.lacks_one_of(&["mass", "stiffness"]);
+        table.requires_one_of(&["mass", "stiffness"]);
     }
     let mass = factor("mass", Quantity::Rate);
     let stiffness = factor("stiffness", Quantity::Time);

@@ -76,7 +76,7 @@ impl Deck {
                 };
                 Ok((deck, closed.survey))
             }
-            _ => Err(DeckError::refused(closed.problems)),
+            _ => Err(DeckError::rejected(closed.problems)),
         }
     }
 
@@ -119,13 +119,13 @@ impl Deck {
     }
 
     /// Adds locations in the text to the errors of a model.
-    pub fn refusal(&self, error: BuildError) -> DeckError {
+    pub fn rejection(&self, error: BuildError) -> DeckError {
         let problems = error.into_problems().into_iter();
-        DeckError::refused(problems.map(|problem| self.located(problem)).collect())
+        DeckError::rejected(problems.map(|problem| self.located(problem)).collect())
     }
 
-    /// Refuses tuned coefficients that make the lattice unstable, unless `time.allow_unstable` is set.
-    pub(crate) fn refuse_unstable_table(&self) -> Result<(), DeckError> {
+    /// Rejects tuned coefficients that make the lattice unstable, unless `time.allow_unstable` is set.
+    pub(crate) fn reject_unstable_table(&self) -> Result<(), DeckError> {
         let solid = self.model.body.solid();
         match solid.and_then(|solid| solid.material.tuned.as_ref()) {
             Some(table)
@@ -134,7 +134,7 @@ impl Deck {
                 let smallest = table.assessment.stability.smallest;
                 let fault = Fault::UnstableTable { smallest };
                 let problem = Remark::new("material.influence", fault);
-                Err(self.refusal(problem.into()))
+                Err(self.rejection(problem.into()))
             }
             _ => Ok(()),
         }

@@ -79,7 +79,7 @@ pub(crate) fn parse(sources: &Sources) -> Result<Node, DeckError> {
             let fault = Fault::Syntax {
                 message: error.message().to_owned(),
             };
-            Err(DeckError::refused(vec![Problem::new(
+            Err(DeckError::rejected(vec![Problem::new(
                 fault,
                 sources.locate(place),
             )]))
@@ -109,7 +109,7 @@ fn node(value: &DeValue<'_>, span: std::ops::Range<usize>, source: usize, offset
         DeValue::String(text) => Value::Text(text.to_string()),
         DeValue::Integer(integer) => match i64::from_str_radix(integer.as_str(), integer.radix()) {
             Ok(integer) => Value::Integer(integer),
-            // Beyond 64 bits: only the magnitude matters; the reader refuses infinite numbers.
+            // Beyond 64 bits: only the magnitude matters; the reader rejects infinite numbers.
             Err(_) => Value::Float(integer.as_str().parse().unwrap_or(f64::INFINITY)),
         },
         DeValue::Float(float) => Value::Float(float.as_str().parse().unwrap_or(f64::NAN)),

@@ -23,7 +23,7 @@ pub enum DeckError {
     },
     /// The deck has errors.
     #[error("{}", listed(problems))]
-    Refused {
+    Rejected {
         /// At least one problem, in the order of the text.
         problems: Vec<Problem>,
     },
@@ -34,15 +34,15 @@ impl DeckError {
     pub const SHOWN: usize = 50;
 
     /// Sorts the problems into the order of the text.
-    pub(crate) fn refused(mut problems: Vec<Problem>) -> Self {
+    pub(crate) fn rejected(mut problems: Vec<Problem>) -> Self {
         problems.sort_by_key(|problem| problem.location().order());
-        Self::Refused { problems }
+        Self::Rejected { problems }
     }
 
     /// Returns the problems in the order of the text; empty if the file cannot be read.
     pub fn problems(&self) -> &[Problem] {
         match self {
-            Self::Refused { problems } => problems,
+            Self::Rejected { problems } => problems,
             Self::Unreadable { .. } => &[],
         }
     }

@@ -17,7 +17,7 @@ pub struct Exact {
     /// Half-width of the window of comparison around the centre of the pulse or the origin, m; none for all points.
     #[serde(default)]
     pub window: Option<f64>,
-    /// Whether the initial displacement is that of the solution.
+    /// Whether the initial displacement is taken from the solution.
     #[serde(default)]
     pub start: bool,
 }

@@ -101,7 +101,7 @@ pub enum ImpactorMotion {
 pub enum ImpactorInertia {
     /// Mass and moments of inertia of the shape with this density, kg/m³.
     Density(f64),
-    /// Mass, kg, and principal moments of inertia about the axes of the shape, kg m²; those of the shape with this
+    /// Mass, kg, and principal moments of inertia about the axes of the shape, kg m²; moments of the shape with this
     /// mass if none.
     Mass {
         /// Mass, kg.

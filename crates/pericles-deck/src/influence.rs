@@ -166,7 +166,7 @@ fn of_form(
 fn unit(table: &Table<'_>, setting: &Setting) -> Option<(Option<f64>, Quantity)> {
     const UNITS: [(&str, usize); 3] = [("length", 0), ("spacing", 1), ("horizon", 2)];
     let unit = table.choice_or_first("r", "unit of lengths", &UNITS)?;
-    refuse_spacing(table, setting, unit == 1);
+    reject_spacing(table, setting, unit == 1);
     let quantity = if unit == 0 {
         Quantity::Length
     } else {
@@ -178,8 +178,8 @@ fn unit(table: &Table<'_>, setting: &Setting) -> Option<(Option<f64>, Quantity)>
     ))
 }
 
-/// Refuses lengths in spacings if the spacing is unknown before a mesh is read.
-fn refuse_spacing(table: &Table<'_>, setting: &Setting, counts_spacings: bool) {
+/// Rejects lengths in spacings if the spacing is unknown before a mesh is read.
+fn reject_spacing(table: &Table<'_>, setting: &Setting, counts_spacings: bool) {
     if setting.automatic && counts_spacings {
         table.report(Fault::OutOfRange {
             value: "spacing".into(),
@@ -207,7 +207,7 @@ fn tabulated(table: &Table<'_>, setting: &Setting) -> Option<InfluenceFunction> 
 fn cosines(table: &Table<'_>, setting: &Setting) -> Option<InfluenceFunction> {
     const UNITS: [(&str, usize); 2] = [("spacing", 0), ("horizon", 1)];
     let unit = table.choice_or_first("r", "unit of lengths", &UNITS);
-    refuse_spacing(table, setting, unit == Some(0));
+    reject_spacing(table, setting, unit == Some(0));
     let wavenumber = table
         .required("wavenumber")
         .and_then(|item| item.positive(Quantity::Number));

@@ -76,7 +76,7 @@ fn inherit_in_pieces(body: &mut [Entry]) {
 }
 
 /// Returns whether a failure rule applies to a table: it needs the key that the criterion requires, a fracture energy
-/// or that of [`BY_STATE`]; `stretch_definition` also its failure criterion.
+/// or the key of [`BY_STATE`]; `stretch_definition` also its failure criterion.
 fn counts(own: &[Entry], rule: &Entry) -> bool {
     let has = |key: &str| own.iter().any(|entry| canonical(&entry.key) == key);
     let by_state = BY_STATE.iter().find(|(word, _)| {

@@ -79,13 +79,13 @@ fn interface(
         };
         match (given.iter().any(same), table.optional("between")) {
             (true, Some(item)) => item.out_of_range("each pair of materials once, in either order"),
-            (true, None) => table.lacks_one_of(&["between"]),
+            (true, None) => table.requires_one_of(&["between"]),
             (false, _) => {}
         }
         given.push(between.clone());
     }
     if !INTERFACE_KEYS.iter().any(|key| table.has(key)) {
-        table.lacks_one_of(INTERFACE_KEYS);
+        table.requires_one_of(INTERFACE_KEYS);
     }
     let breaks = STRENGTHS.iter().any(|key| table.has(key));
     let calibration = constants::fracture_calibration(&table, body, false);

@@ -4,7 +4,7 @@
 //! `pericles-run` discretises, assembles and runs. Reading is strict: unknown keys, wrong units, vectors of
 //! the wrong length and undefined set names are errors that report file, line, column and what is allowed;
 //! all errors are reported at once. Errors found later, while the model is discretised and assembled, are a
-//! [`BuildError`] that names keys; [`Deck::refusal`] adds their locations in the text.
+//! [`BuildError`] that names keys; [`Deck::rejection`] adds their locations in the text.
 //!
 //! ```
 //! use pericles_deck::Deck;
@@ -137,7 +137,7 @@ pub use body::{
     piece_path,
 };
 pub use boundary::BoundaryCondition;
-pub use caution::{AreaDoubt, Caution, ContactCaution};
+pub use caution::{AreaCaution, Caution, ContactCaution};
 pub use component::{Component, VectorField};
 pub use conditions::{Constraint, Initial, Load, LoadAmplitude, Probe, ProbePlace, RandomVelocity};
 pub use contact::{Contact, ContactFriction, ContactLaw, ContactPairs, ContactStiffness};

@@ -19,30 +19,30 @@ pub(crate) fn apply(root: &mut Node, text: &str, sources: &mut Sources) -> Resul
     // Messages name the key to identify the override.
     let key = text.split('=').next().unwrap_or_default().trim();
     let source = sources.add(&format!("--set {key}"), text);
-    set(root, text, source).map_err(|refusal| {
+    set(root, text, source).map_err(|rejection| {
         let fault = Fault::BadOverride {
             text: text.into(),
-            reason: refusal.reason,
-            allowed: refusal.allowed,
+            reason: rejection.reason,
+            allowed: rejection.allowed,
         };
         let place = Place {
             source,
-            start: refusal.start,
-            end: refusal.end,
+            start: rejection.start,
+            end: rejection.end,
         };
-        DeckError::refused(vec![Problem::new(fault, sources.locate(place))])
+        DeckError::rejected(vec![Problem::new(fault, sources.locate(place))])
     })
 }
 
-struct Refusal {
+struct Rejection {
     reason: String,
     allowed: String,
     start: usize,
     end: usize,
 }
 
-fn set(root: &mut Node, text: &str, source: usize) -> Result<(), Refusal> {
-    let whole = |reason: &str| Refusal {
+fn set(root: &mut Node, text: &str, source: usize) -> Result<(), Rejection> {
+    let whole = |reason: &str| Rejection {
         reason: reason.into(),
         allowed: "allowed: key=value with a dotted key, such as time.dt=auto or crack.0.ends=open"
             .into(),
@@ -73,7 +73,7 @@ fn set(root: &mut Node, text: &str, source: usize) -> Result<(), Refusal> {
             Value::Array(items) => {
                 let count = items.len();
                 let item = step.parse::<usize>().ok().and_then(|k| items.get_mut(k));
-                item.ok_or_else(|| Refusal {
+                item.ok_or_else(|| Rejection {
                     reason: format!("`{step}` is not the index of an entry"),
                     allowed: match count {
                         0 => "the list is empty".into(),
@@ -85,7 +85,7 @@ fn set(root: &mut Node, text: &str, source: usize) -> Result<(), Refusal> {
                 })?
             }
             other => {
-                return Err(Refusal {
+                return Err(Rejection {
                     reason: format!("`{step}` cannot be a key of {}", other.kind()),
                     allowed: "only tables and lists have parts".into(),
                     start: place.start,

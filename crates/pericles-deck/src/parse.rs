@@ -58,7 +58,7 @@ impl Deck {
         let document = Document::of(text, file_name, overrides)?;
         let ledger = Ledger::new(document.sources, home_of);
         let (deck, _) = Self::read_with(ledger, &document.root, sets)?;
-        deck.refuse_unstable_table()?;
+        deck.reject_unstable_table()?;
         Ok(deck)
     }
 }

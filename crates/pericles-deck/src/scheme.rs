@@ -322,7 +322,7 @@ pub(crate) fn read(table: &Table<'_>, names: &SetNames) -> Option<Scheme> {
     })
 }
 
-/// Reads keys of some schemes only and refuses them for other schemes. The outer option is none after an error.
+/// Reads keys of some schemes only and rejects them for other schemes. The outer option is none after an error.
 fn only<T>(
     belongs: bool,
     table: &Table<'_>,

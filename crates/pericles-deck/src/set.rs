@@ -63,7 +63,7 @@ impl Depth {
 }
 
 impl Members {
-    /// Returns the points of a cloud; none for points near faces of a mesh, which a cloud does not know.
+    /// Returns the points of a cloud; none for points near faces of a mesh, which are not part of a cloud.
     pub fn of(&self, cloud: &PointCloud) -> Option<PointSet> {
         let those = |belongs: &dyn Fn(usize) -> bool| {
             let all = 0..cloud.len() as u32;

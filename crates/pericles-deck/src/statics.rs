@@ -41,7 +41,7 @@ pub enum StaticBreaking {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RigidModes {
-    /// The body is refused.
+    /// The body is rejected.
     #[default]
     Refuse,
     /// They are removed; loads must be in equilibrium.

@@ -39,7 +39,7 @@ pub struct Thermal {
     pub conduction: Option<Conduction>,
 }
 
-/// Thermal constants of a material; none for those of the body.
+/// Thermal constants of a material; none for the constants of the body.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MaterialThermal {
@@ -67,7 +67,7 @@ pub struct Conduction {
     /// Time integration.
     #[serde(default)]
     pub scheme: ConductionScheme,
-    /// Thermal time step, s; none for that of the body.
+    /// Thermal time step, s; none for the time step of the body.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub step: Option<f64>,
     /// Mean conductivity of bonds between materials.
@@ -125,7 +125,7 @@ pub struct ThermalCondition {
     pub set: String,
     /// The condition.
     pub amplitude: ThermalAmplitude,
-    /// Area of the set for flux, convection and radiation, m²; none for that of its face.
+    /// Area of the set for flux, convection and radiation, m²; none for the area of its face.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub area: Option<f64>,
     /// Time function: multiplies flux and source, and the difference of temperatures to the reference temperature.

@@ -418,7 +418,7 @@ mod tests {
     }
 
     #[test]
-    fn invalid_quantities_are_refused() {
+    fn invalid_quantities_are_rejected() {
         assert_eq!(parse(""), Err(UnitError::NoNumber));
         assert_eq!(parse("mm"), Err(UnitError::NoNumber));
         assert_eq!(parse("nan m"), Err(UnitError::NoNumber));

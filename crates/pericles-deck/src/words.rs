@@ -109,7 +109,7 @@ words! {
         ("arithmetic", InterfaceRule::Arithmetic),
         ("weaker", InterfaceRule::Weaker),
     ];
-    // The word of `model`, followed by that of `approximation`.
+    // The word of `model`, followed by the word of `approximation`.
     PairLaw: [
         ("linear", PairLaw::Linear),
         ("bond-stretch", PairLaw::BondStretch),

@@ -25,8 +25,8 @@ impl Validator {
     fn says(&self, text: &str) -> String {
         let table: toml::Table = toml::from_str(text).unwrap();
         let deck = json(&toml::Value::Table(table));
-        let judged = self.schemas.validate(&deck, self.deck);
-        judged.map_or_else(|error| error.to_string(), |()| String::new())
+        let checked = self.schemas.validate(&deck, self.deck);
+        checked.map_or_else(|error| error.to_string(), |()| String::new())
     }
 }
 
@@ -82,7 +82,7 @@ fn every_valid_deck_satisfies_the_schema() {
 
 #[test]
 fn the_schema_detects_typos_and_wrong_types_only() {
-    /// Errors that a schema can detect: keys, types, words, signs. It does not know the dimension of the
+    /// Errors that a schema can detect: keys, types, words, signs. It does not contain the dimension of the
     /// body, so that it accepts a single value for several axes.
     const SEEN: [&str; 8] = [
         "decimal-comma",

@@ -60,18 +60,18 @@ const WRONG: &[Wrong] = &[
     wrong("spacing =", "spaceing =", (6, 1), "spaceing", &["unknown key `spaceing` in [body]", "did you mean `spacing`?", "`piece`, `shape`, `spacing`, `size`, `origin`, `thickness`, `plane`, `hole`, `refine`, `positions` and `periodic`"]),
     wrong("[time]", "[tme]", (33, 2), "tme", &["unknown key `tme` in the deck", "did you mean `time`?"]),
     wrong("depth =", "deep =", (16, 24), "deep", &["unknown key `deep` in [sets.top.layer]", "`side`, `depth` and `cells`"]),
-    wrong("spacing = \"0.25 mm\"\n", "", (3, 1), "[body]", &["[body] lacks `spacing`", "alternative names: `dx`"]),
-    wrong("[body]\n", "[corpus]\n", (1, 1), "", &["the deck lacks `body`"]),
+    wrong("spacing = \"0.25 mm\"\n", "", (3, 1), "[body]", &["[body] requires `spacing`", "alternative names: `dx`"]),
+    wrong("[body]\n", "[corpus]\n", (1, 1), "", &["the deck requires `body`"]),
     wrong("density =", "rho = 1\ndensity =", (11, 1), "density", &["`rho` and `density` are given together in [material]", "only one"]),
     wrong("horizon =", "horizon_ratio = 3\nhorizon =", (13, 11), "\"0.75 mm\"", &["`horizon` and `horizon_ratio` are given together"]),
-    wrong("horizon = \"0.75 mm\"\n", "", (9, 1), "[material]", &["[material] lacks one of `horizon` and `horizon_ratio`"]),
+    wrong("horizon = \"0.75 mm\"\n", "", (9, 1), "[material]", &["[material] requires one of `horizon` and `horizon_ratio`"]),
     wrong("fracture_energy", "bulk_modulus = 1\nfracture_energy", (13, 16), "1", &["`youngs_modulus` and `bulk_modulus`", "`shear_modulus`"]),
     wrong("spacing =", "area = 1\nspacing =", (6, 1), "area", &["`area` is not allowed in [body]", "only a bar"]),
     wrong("dt = \"auto\"", "dt = 1e-9\nsafety = 0.5", (36, 1), "safety", &["`safety` is not allowed", "dt = \"auto\""]),
-    wrong("segment =", "section =", (18, 1), "[[crack]]", &["[crack.0] lacks `segment`", "`section` requires a bar"]),
+    wrong("segment =", "section =", (18, 1), "[[crack]]", &["[crack.0] requires `segment`", "`section` requires a bar"]),
     wrong("traction =", "body_force = [0, 1]\narea = 1\n# traction =", (28, 1), "area", &["`area` is not allowed in [load.0]", "`traction`"]),
     // Pieces, contact, impactors.
-    wrong("[material]", "[[body.piece]]\nshape = \"plate\"\nsize = [1, 1]\n[material]", (9, 1), "[[body.piece]]", &["[body.piece.0] lacks `name`"]),
+    wrong("[material]", "[[body.piece]]\nshape = \"plate\"\nsize = [1, 1]\n[material]", (9, 1), "[[body.piece]]", &["[body.piece.0] requires `name`"]),
     wrong("[material]", "[[body.piece]]\nname = \"main\"\nshape = \"plate\"\nsize = [1, 1]\n[material]", (10, 8), "\"main\"", &["another piece has this name"]),
     wrong("[material]", "[[body.piece]]\nname = \"a\"\nshape = \"ball\"\nradius = 1\n[material]", (11, 9), "\"ball\"", &["shapes of the dimension of the body"]),
     wrong("[material]", "[[body.piece]]\nname = \"a\"\nshape = \"plate\"\nsize = [1, 1]\nperiodic = true\n[material]", (11, 9), "\"plate\"", &["not periodic"]),
@@ -81,10 +81,10 @@ const WRONG: &[Wrong] = &[
     wrong("[material]", "[contact]\npairs = \"all\"\nclosing = 1\n[material]", (11, 11), "1", &["at most 0.9"]),
     wrong("[material]", "[contact]\nexponent = 2\n[material]", (10, 1), "exponent", &["`exponent` is not allowed in [contact]", "law = \"power\""]),
     wrong("[material]", "[contact]\nstiffness = \"3 MPa\"\n[material]", (10, 13), "\"3 MPa\"", &["a stiffness"]),
-    wrong("[material]", "[contact]\nfriction = { coefficient = 0.1 }\n[material]", (10, 12), "{ coefficient = 0.1 }", &["lacks `speed`"]),
+    wrong("[material]", "[contact]\nfriction = { coefficient = 0.1 }\n[material]", (10, 12), "{ coefficient = 0.1 }", &["requires `speed`"]),
     wrong("[material]", "[[impactor]]\nname = \"a\"\nshape = \"half-space\"\nnormal = [0, 1]\ncentre = [0, 0]\nmotion = \"free\"\n[material]", (14, 10), "\"free\"", &["no finite mass"]),
     wrong("[material]", "[[impactor]]\nname = \"a\"\nshape = \"ball\"\nradius = 1\ncentre = [0, 0]\nmotion = \"prescribed\"\ndensity = 1\n[material]", (15, 1), "density", &["`density` is not allowed in [impactor.0]", "does not depend on mass"]),
-    wrong("[material]", "[[impactor]]\nname = \"a\"\nshape = \"ball\"\nradius = 1\ncentre = [0, 0]\n[material]", (9, 1), "[[impactor]]", &["lacks one of `density` and `mass`"]),
+    wrong("[material]", "[[impactor]]\nname = \"a\"\nshape = \"ball\"\nradius = 1\ncentre = [0, 0]\n[material]", (9, 1), "[[impactor]]", &["requires one of `density` and `mass`"]),
     wrong("[material]", "[[impactor]]\nname = \"a\"\nshape = \"cylinder\"\nradius = 1\nheight = 1\ncentre = [0, 0]\ndensity = 1\n[material]", (11, 9), "\"cylinder\"", &["require a 3D body"]),
     // Meshes, random positions, formats.
     wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "near_faces = { faces = \"a\", depth = 1 }", (16, 14), "{ faces", &["requires shape = \"mesh\"", "`layer`"]),
@@ -93,7 +93,7 @@ const WRONG: &[Wrong] = &[
     wrong("spacing = \"0.25 mm\"", "spacing = \"0.25 mm\"\njitter = 0.1", (7, 1), "jitter", &["`jitter` is not allowed in [body]", "jittered"]),
     wrong("spacing = \"0.25 mm\"", "spacing = \"0.25 mm\"\npositions = \"random\"", (7, 13), "\"random\"", &["unknown kind of positions `random`", "\"blue-noise\""]),
     wrong("spacing = \"0.25 mm\"", "spacing = \"0.25 mm\"\npositions = \"jittered\"\njitter = 0.5", (8, 10), "0.5", &["out of range", "below 0.5"]),
-    wrong(BODY, "shape = \"mesh\"\nfile = \"a.msh\"\ndimension = 2\nplane = \"strain\"", (3, 1), "[body]", &["[body] lacks `unit`"]),
+    wrong(BODY, "shape = \"mesh\"\nfile = \"a.msh\"\ndimension = 2\nplane = \"strain\"", (3, 1), "[body]", &["[body] requires `unit`"]),
     wrong(BODY, "shape = \"mesh\"\nfile = \"a.msh\"\nunit = \"mmm\"\ndimension = 2\nplane = \"strain\"", (6, 8), "\"mmm\"", &["unknown unit `mmm`", "the unit of length of the file"]),
     wrong(BODY, "shape = \"mesh\"\nfile = \"a.msh\"\nunit = \"mm\"\ndimension = 1\nplane = \"strain\"", (7, 13), "1", &["out of range", "2 or 3"]),
     wrong(BODY, "shape = \"outline\"\nfile = \"a.txt\"\nunit = \"mm\"\nspacing = 1e-4\nplane = \"strain\"\npositions = \"jittered\"\ncells = \"partial\"", (10, 1), "cells", &["`cells` is not allowed in [body]", "partial cells require positions = \"lattice\""]),
@@ -111,10 +111,10 @@ const WRONG: &[Wrong] = &[
     wrong("dt = \"auto\"", "scheme = \"rk3\"\nalpha = 0", (36, 9), "0", &["out of range", "Heun"]),
     wrong("dt = \"auto\"", "scheme = \"rk4\"\ntolerance = 1", (36, 1), "tolerance", &["not allowed", "dormand-prince"]),
     wrong("dt = \"auto\"", "scheme = \"dormand-prince\"\ntolerance = 0", (36, 13), "0", &["above 0 and below 1"]),
-    wrong("dt = \"auto\"", "scheme = \"multirate-rk4\"\nfine = \"top\"", (33, 1), "[time]", &["[time] lacks `ratio`"]),
+    wrong("dt = \"auto\"", "scheme = \"multirate-rk4\"\nfine = \"top\"", (33, 1), "[time]", &["[time] requires `ratio`"]),
     wrong("dt = \"auto\"", "scheme = \"multirate-rk4\"\nratio = 0\nfine = \"top\"", (36, 9), "0", &["whole number of at least 1"]),
     wrong("dt = \"auto\"", "scheme = \"multirate-rk4\"\nratio = 2000\nfine = \"top\"", (36, 9), "2000", &["from 1 to 1000"]),
-    wrong("dt = \"auto\"", "scheme = \"respa\"\nratio = 4", (33, 1), "[time]", &["lacks one of `fine` and `adaptive`"]),
+    wrong("dt = \"auto\"", "scheme = \"respa\"\nratio = 4", (33, 1), "[time]", &["requires one of `fine` and `adaptive`"]),
     wrong("dt = \"auto\"", "scheme = \"respa\"\nratio = 4\nfine = \"tip\"", (37, 8), "\"tip\"", &["unknown set `tip`", "did you mean `top`?"]),
     wrong("dt = \"auto\"", "scheme = \"respa\"\nratio = 4\nfine = \"top\"\nadaptive = {}", (38, 12), "{}", &["`fine` and `adaptive` are given together"]),
     wrong("dt = \"auto\"", "scheme = \"respa\"\nratio = 4\nfine = \"top\"\npredictor = \"structured\"", (38, 1), "predictor", &["not allowed", "multirate-rk3"]),
@@ -127,7 +127,7 @@ const WRONG: &[Wrong] = &[
     wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "where = \"z > 0\"", (16, 9), "\"z > 0\"", &["unknown name `z`", "Variables: x, y, block"]),
     wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "block = 1.5", (16, 9), "1.5", &["a whole number of at least 0"]),
     wrong("layer = {", "where = \"x > 0\"\nlayer = {", (17, 9), "{ side", &["`layer` and `where` are given together", "`block`"]),
-    wrong("\"plate\"\nsize = [\"100 mm\", \"40 mm\"]\n", "\"points\"\n", (3, 1), "[body]", &["[body] lacks `file`"]),
+    wrong("\"plate\"\nsize = [\"100 mm\", \"40 mm\"]\n", "\"points\"\n", (3, 1), "[body]", &["[body] requires `file`"]),
     wrong("\"plate\"\nsize = [\"100 mm\", \"40 mm\"]\n", "\"points\"\nfile = \"a.txt\"\ndimension = 4\n", (6, 13), "4", &["allowed: 1, 2 or 3"]),
     wrong("\"plate\"\nsize = [\"100 mm\", \"40 mm\"]\n", "\"points\"\nfile = \"a.txt\"\n", (7, 1), "plane", &["`plane` is not allowed in [body]"]),
     // Several materials, static schemes.
@@ -138,19 +138,19 @@ const WRONG: &[Wrong] = &[
     wrong("fracture_energy", "fracture_calibration = \"grid\"\nfracture_energy", (13, 24), "\"grid\"", &["unknown fracture calibration `grid`", "\"lattice\" and \"continuum\""]),
     wrong("fracture_energy = \"135 J/m2\"", "fracture_calibration = \"lattice\"", (13, 1), "fracture_calibration", &["not allowed in [material]", "bonds without `fracture_energy` never break"]),
     wrong("[sets.top]", "[materials.a]\ndensity = 1\nyoungs_modulus = 1\nfracture_calibration = \"lattice\"\n[sets.top]", (18, 1), "fracture_calibration", &["not allowed", "never break"]),
-    wrong("[sets.top]", "[[assign]]\nset = \"top\"\n[sets.top]", (15, 1), "[[assign]]", &["[assign.0] lacks one of `material` and `stiffness`"]),
+    wrong("[sets.top]", "[[assign]]\nset = \"top\"\n[sets.top]", (15, 1), "[[assign]]", &["[assign.0] requires one of `material` and `stiffness`"]),
     wrong("[sets.top]", "[[assign]]\nset = \"tip\"\nstiffness = 2\n[sets.top]", (16, 7), "\"tip\"", &["unknown set `tip`", "did you mean `top`?"]),
     wrong("[sets.top]", "[[assign]]\nset = \"top\"\nmaterial = \"glue\"\n[sets.top]", (17, 12), "\"glue\"", &["unknown material `glue`", "\"default\""]),
     wrong("[sets.top]", "[[assign]]\nset = [\"top\"]\nstiffness = -1\n[sets.top]", (17, 13), "-1", &["a positive number"]),
-    wrong("[sets.top]", "[materials.a]\nyoungs_modulus = 1\n[sets.top]", (15, 1), "[materials.a]", &["[materials.a] lacks `density`"]),
+    wrong("[sets.top]", "[materials.a]\nyoungs_modulus = 1\n[sets.top]", (15, 1), "[materials.a]", &["[materials.a] requires `density`"]),
     wrong("[sets.top]", "[materials.a]\nname = \"b\"\ndensity = 1\nyoungs_modulus = 1\n[sets.top]", (16, 1), "name", &["not allowed in [materials.a]", "the heading of the table"]),
     wrong("[sets.top]", "[materials.default]\ndensity = 1\nyoungs_modulus = 1\n[sets.top]", (15, 1), "[materials.default]", &["the name `default` cannot be used", "[material] has this name"]),
     wrong("[sets.top]", "[materials.a]\ndensity = 1\nyoungs_modulus = 1\ninfluence = { function = \"conical\" }\n[sets.top]", (18, 13), "{ function = \"conical\" }", &["`influence` in [materials.a] differs"]),
     wrong("[sets.top]", "[materials.a]\ndensity = 1\nyoungs_modulus = 1\nmodel = \"linear\"\n[sets.top]", (18, 9), "\"linear\"", &["`model` in [materials.a] differs"]),
-    wrong("[sets.top]", "[materials.a]\ndensity = 1\nyoungs_modulus = 1\n[[interface]]\nbetween = [\"a\", \"default\"]\n[sets.top]", (18, 1), "[[interface]]", &["[interface.0] lacks one of `rule`", "`fracture_energy`"]),
+    wrong("[sets.top]", "[materials.a]\ndensity = 1\nyoungs_modulus = 1\n[[interface]]\nbetween = [\"a\", \"default\"]\n[sets.top]", (18, 1), "[[interface]]", &["[interface.0] requires one of `rule`", "`fracture_energy`"]),
     wrong("[sets.top]", "[materials.a]\ndensity = 1\nyoungs_modulus = 1\n[[interface]]\nrule = \"weaker\"\nyoungs_modulus = 1\n[sets.top]", (20, 18), "1", &["`rule` and `youngs_modulus` are given together in [interface.0]"]),
     wrong("[sets.top]", "[materials.a]\ndensity = 1\nyoungs_modulus = 1\n[[interface]]\nrule = \"weaker\"\nfailure = \"stretch\"\n[sets.top]", (20, 1), "failure", &["not allowed", "state-based"]),
-    wrong("[sets.top]", "[materials.a]\ndensity = 1\nyoungs_modulus = 1\n[[interface]]\nrule = \"weaker\"\n[[interface]]\nfracture_energy = 1\n[sets.top]", (20, 1), "[[interface]]", &["[interface.1] lacks one of `between`"]),
+    wrong("[sets.top]", "[materials.a]\ndensity = 1\nyoungs_modulus = 1\n[[interface]]\nrule = \"weaker\"\n[[interface]]\nfracture_energy = 1\n[sets.top]", (20, 1), "[[interface]]", &["[interface.1] requires one of `between`"]),
     wrong("fracture_energy", "surface_correction = \"force\"\nfracture_energy", (13, 22), "\"force\"", &["unknown surface correction `force`", "\"energy\" and \"ghosts\""]),
     wrong("dt = \"auto\"", "scheme = \"adaptive-dynamic-relaxation\"\ndt = 1", (36, 1), "dt", &["`dt` is not allowed in [time]", "set load_steps"]),
     wrong("dt = \"auto\"", "scheme = \"adaptive-dynamic-relaxation\"\ndamping = 3", (36, 11), "3", &["\"adaptive\", or a number above 0 and below 2"]),
@@ -246,7 +246,7 @@ const WRONG: &[Wrong] = &[
     wrong("youngs_modulus = \"72 GPa\"\n", "youngs_modulus = \"72 GPa\"\ncriterion = \"stress_1\"\n", (12, 1), "criterion", &["not allowed", "state-based"]),
     wrong("youngs_modulus = \"72 GPa\"\n", "youngs_modulus = \"72 GPa\"\nlaw = \"neo-hooke\"\n", (12, 1), "law", &["not allowed", "correspondence"]),
     // Stop conditions.
-    wrong("[output]", "[[time.stop_when]]\nset = \"top\"\n[output]", (37, 1), "[[time.stop_when]]", &["[time.stop_when.0] lacks one of `reaction_below` and `damage_above`"]),
+    wrong("[output]", "[[time.stop_when]]\nset = \"top\"\n[output]", (37, 1), "[[time.stop_when]]", &["[time.stop_when.0] requires one of `reaction_below` and `damage_above`"]),
     wrong("[output]", "[[time.stop_when]]\nset = \"tip\"\ndamage_above = 0.9\n[output]", (38, 7), "\"tip\"", &["unknown set `tip`", "did you mean `top`?"]),
     wrong("[output]", "[[time.stop_when]]\nset = \"top\"\nreaction_below = 2\n[output]", (39, 18), "2", &["out of range", "fraction of the largest reaction"]),
     wrong("[output]", "[[time.stop_when]]\nset = \"top\"\ndamage_above = 1\n[output]", (39, 16), "1", &["out of range", "below 1"]),
@@ -257,19 +257,19 @@ const WRONG: &[Wrong] = &[
     // Boundaries.
     wrong("[time]", "[[boundary]]\nkind = \"absorbent\"\nside = \"-x\"\n[time]", (34, 8), "\"absorbent\"", &["unknown kind of boundary `absorbent`", "did you mean `absorbing`?"]),
     wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\nside = \"-y\"\n[time]", (35, 8), "\"-y\"", &["unknown side `-y`", "\"-x\" and \"+x\""]),
-    wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\n[time]", (33, 1), "[[boundary]]", &["[boundary.0] lacks `side`"]),
+    wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\n[time]", (33, 1), "[[boundary]]", &["[boundary.0] requires `side`"]),
     wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\nside = \"-x\"\nhistory = \"long\"\n[time]", (36, 11), "\"long\"", &["unknown history `long`", "\"blocked\""]),
     wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\nside = \"-x\"\nhistory = \"blocked\"\ntolerance = 1e-9\n[time]", (37, 1), "tolerance", &["not allowed", "\"exponentials\""]),
     wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\nside = \"-x\"\nhistory = \"direct\"\nverify = true\n[time]", (37, 1), "verify", &["not allowed", "\"exponentials\""]),
     wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\nside = \"-x\"\nhistory = \"exponentials\"\nmethod = \"semi-discrete\"\n[time]", (36, 1), "history", &["not allowed", "\"discrete\""]),
     wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\nside = \"-x\"\nmethod = \"exact\"\n[time]", (36, 10), "\"exact\"", &["unknown method `exact`", "\"semi-discrete\""]),
     wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\nside = \"-x\"\ntolerance = 2\n[time]", (36, 13), "2", &["above 1e-14 and below 1"]),
-    wrong("[time]", "[[boundary]]\nkind = \"damping-layer\"\nside = \"+x\"\n[time]", (33, 1), "[[boundary]]", &["[boundary.0] lacks `thickness`"]),
+    wrong("[time]", "[[boundary]]\nkind = \"damping-layer\"\nside = \"+x\"\n[time]", (33, 1), "[[boundary]]", &["[boundary.0] requires `thickness`"]),
     wrong("[time]", "[[boundary]]\nkind = \"damping-layer\"\nside = \"+x\"\nthickness = \"1 mm\"\nreflection = 2\n[time]", (37, 14), "2", &["above 1e-12 and below 1"]),
     wrong("[time]", "[[boundary]]\nkind = \"damping-layer\"\nside = \"+x\"\nthickness = \"1 mm\"\npower = -1\n[time]", (37, 9), "-1", &["from 0 to 10"]),
     // Refinement.
-    wrong("[material]", "[[body.refine]]\nball = { centre = [0, 0], radius = 1 }\n[material]", (9, 1), "[[body.refine]]", &["[body.refine.0] lacks `ratio`"]),
-    wrong("[material]", "[[body.refine]]\nratio = 2\n[material]", (9, 1), "[[body.refine]]", &["[body.refine.0] lacks one of", "`ball`"]),
+    wrong("[material]", "[[body.refine]]\nball = { centre = [0, 0], radius = 1 }\n[material]", (9, 1), "[[body.refine]]", &["[body.refine.0] requires `ratio`"]),
+    wrong("[material]", "[[body.refine]]\nratio = 2\n[material]", (9, 1), "[[body.refine]]", &["[body.refine.0] requires one of", "`ball`"]),
     wrong("[material]", "[[body.refine]]\nall = true\nratio = 1\n[material]", (11, 9), "1", &["from 2 to 16"]),
     // Anisotropic spacing.
     wrong("spacing = \"0.25 mm\"", "spacing = [\"0.25 mm\", 0]", (6, 23), "0", &["a positive number"]),
@@ -314,7 +314,7 @@ const WRONG: &[Wrong] = &[
     wrong("set = \"top\"\nvelocity", "set = \"topp\"\nvelocity", (22, 7), "\"topp\"", &["unknown set `topp`", "did you mean `top`?", "\"all\" and \"top\""]),
     wrong("[sets.top]", "[sets.all]", (15, 7), "all", &["`all` cannot be used", "reserved for the set of all points"]),
     wrong("\"+y\"", "\"+z\"", (16, 18), "\"+z\"", &["unknown side `+z`", "\"-x\", \"+x\", \"-y\" and \"+y\""]),
-    wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "layer = { side = \"+y\" }", (16, 9), "{ side", &["lacks one of `depth` and `cells`"]),
+    wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "layer = { side = \"+y\" }", (16, 9), "{ side", &["requires one of `depth` and `cells`"]),
     wrong("layer = {", "all = true\nlayer = {", (17, 9), "{ side", &["`all` and `layer` are given together", "`complement`"]),
     wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "cylinder = { centre = [0, 0], radius = 1 }", (16, 12), "{ centre", &["needs a body of dimension 3", "dimension 2"]),
     wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "box = { min = [1, 0], max = [0, 1] }", (16, 29), "[0, 1]", &["not below the lower corner"]),
@@ -348,7 +348,7 @@ const WRONG_SURFACES: &[Wrong] = &[
     wrong("method = \"edge\"", "method = \"edge\"\nball = \"euclidean\"", (8, 8), "\"euclidean\"", &["did you mean `euclid`?", "\"geodesic\""]),
     wrong("alpha = 0.5", "alpha = 1", (12, 9), "1", &["above 0 and below 1"]),
     wrong("alpha = 0.5", "alpha = 0", (12, 9), "0", &["above 0 and below 1"]),
-    wrong("alpha = 0.5\n", "", (9, 1), "[material]", &["[material] lacks `alpha`"]),
+    wrong("alpha = 0.5\n", "", (9, 1), "[material]", &["[material] requires `alpha`"]),
     wrong("p = 3", "p = 1.5", (13, 5), "1.5", &["at least 2"]),
     wrong("horizon = 0.8", "horizon = 0.01", (14, 11), "0.01", &["mean edge length"]),
     wrong("\"power\"", "\"linear\"", (10, 9), "\"linear\"", &["unknown model", "power"]),
@@ -359,7 +359,7 @@ const WRONG_SURFACES: &[Wrong] = &[
     wrong("radius = 0.1, seed", "radius = -1, seed", (17, 30), "-1", &["a positive number"]),
     wrong("random_velocity = { radius = 0.1, seed = 3 }", "file = \"u.txt\"\nvelocity = [0, 0, 1]", (18, 1), "velocity", &["`velocity` is not allowed", "`file` contains both displacement and velocity"]),
     wrong("random_velocity = { radius = 0.1, seed = 3 }", "file = 3", (17, 8), "3", &["a string in quotes"]),
-    wrong("random_velocity = { radius = 0.1, seed = 3 }", "set = \"all\"", (16, 1), "[[initial]]", &["lacks one of `displacement`, `velocity`, `random_velocity` and `file`"]),
+    wrong("random_velocity = { radius = 0.1, seed = 3 }", "set = \"all\"", (16, 1), "[[initial]]", &["requires one of `displacement`, `velocity`, `random_velocity` and `file`"]),
     wrong("seed = 3", "seed = 3, generator = \"mt19937\"", (17, 57), "\"mt19937\"", &["splitmix64"]),
     wrong("[[load]]", "[[crack]]\nsection = 1\n[[load]]", (19, 3), "crack", &["pre-cracks in 2-manifolds"]),
     wrong("scheme = \"newmark\"", "scheme = \"newmark\"\nbeta = 0.6", (27, 8), "0.6", &["from 0 to 0.5"]),
@@ -373,7 +373,7 @@ const WRONG_SURFACES: &[Wrong] = &[
     wrong("scheme = \"newmark\"", "scheme = \"discrete-gradient\"\ntolerance = 1", (27, 13), "1", &["1e-14"]),
 ];
 
-fn refusal(text: &str) -> DeckError {
+fn rejection(text: &str) -> DeckError {
     match Deck::parse(text, "plate.toml", &[]) {
         Ok(_) => panic!("this invalid deck is accepted:\n{text}"),
         Err(error) => error,
@@ -406,14 +406,14 @@ fn many_problems_are_found_quickly_and_counted() {
         .map(|k| format!("unknown_{k} = {k}\n"))
         .collect();
     keys += RIGHT;
-    let error = refusal(&keys);
+    let error = rejection(&keys);
     assert_eq!(error.problems().len(), 40_000);
     let message = error.to_string();
     assert!(message.ends_with("and 39950 more"), "{message}");
     let loads: String = (0..40_000)
         .map(|k| format!("[[load]]\nset = \"no_{k}\"\nbody_force = [1, 0]\n"))
         .collect();
-    let error = refusal(&format!("{RIGHT}{loads}"));
+    let error = rejection(&format!("{RIGHT}{loads}"));
     assert_eq!(error.problems().len(), 40_000);
     assert!(began.elapsed().as_secs() < 20, "{:?}", began.elapsed());
 }
@@ -434,7 +434,7 @@ fn long_texts_are_cut_in_messages() {
         ("title =", format!("\"{long}\" =")),
         ("\"0.75 mm\"", format!("\"1 {}\"", "m".repeat(100_000))),
     ] {
-        let message = refusal(&RIGHT.replace(replace, &by)).to_string();
+        let message = rejection(&RIGHT.replace(replace, &by)).to_string();
         assert!(
             message.len() < 2000,
             "{} characters: {:.300}",
@@ -451,7 +451,7 @@ fn all_problems_are_found_at_once_and_in_order() {
         .replace("72 GPa", "72 Gpa")
         .replace("\"free\"", "\"fre\"")
         .replace("dt = \"auto\"", "dt = -1\nscheme = \"euler\"");
-    let error = refusal(&text);
+    let error = rejection(&text);
     let lines: Vec<usize> = error
         .problems()
         .iter()
@@ -465,7 +465,7 @@ fn all_problems_are_found_at_once_and_in_order() {
 
 #[test]
 fn a_single_problem_is_a_diagnostic_with_its_text() {
-    let error = refusal(&RIGHT.replace("\"strain\"", "\"strian\""));
+    let error = rejection(&RIGHT.replace("\"strain\"", "\"strian\""));
     let [problem] = error.problems() else {
         panic!("{error}")
     };

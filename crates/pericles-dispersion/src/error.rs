@@ -13,7 +13,7 @@ pub enum DispersionError {
     /// The bonds of the lattice cannot represent an isotropic medium.
     #[error(
         "the {classes} bond class(es) within {ratio} spacings cannot represent an isotropic medium: the relative \
-        error of the long-wave speeds is {miss:.1e}; in two and three dimensions use a horizon ratio of at least √2 \
+        error of the long-wave speeds is {error:.1e}; in two and three dimensions use a horizon ratio of at least √2 \
         and the Poisson's ratio of the bond-based model"
     )]
     Anisotropic {
@@ -22,7 +22,7 @@ pub enum DispersionError {
         /// Horizon divided by spacing.
         ratio: f64,
         /// Relative residual of the constraints.
-        miss: f64,
+        error: f64,
     },
     /// The lower bound is too large for a solution.
     #[error(

@@ -182,7 +182,7 @@ mod tests {
         let (coarse, fine) = (lattice(3.0), lattice(9.0));
         let grid = [&coarse, &fine].map(|l| PhaseErrors::of_grid(l, &continuum).resolved(0.05));
         let whole = [&coarse, &fine].map(|l| PhaseErrors::new(l).resolved(0.05));
-        // The dispersion of the grid decreases, that of the kernel stays.
+        // The dispersion of the grid decreases, the dispersion of the kernel stays.
         assert!(grid[1].wavenumber > 2.0 * grid[0].wavenumber, "{grid:?}");
         let ratio = whole[1].wavenumber / whole[0].wavenumber;
         assert!((0.8..1.25).contains(&ratio), "{whole:?}");

@@ -1,4 +1,7 @@
 //! Time integration of a diffusing field.
+//!
+//! An implicit step ends with T = T₀ + dt/(C V) × the rates at the solution of the linear system. The content then
+//! changes by exactly the recorded flows, and the residual of the solver changes the values by its own size only.
 
 use pericles::Result;
 
@@ -51,7 +54,7 @@ const SAFETY: f64 = 0.95;
 pub(crate) struct Span<'a> {
     /// Start and end, s.
     pub times: [f64; 2],
-    /// Constant inflow into each point within the interval besides that of conditions, W for heat; none if empty.
+    /// Constant inflow into each point within the interval besides the inflow by conditions, W for heat; none if empty.
     pub power: &'a [f64],
 }
 

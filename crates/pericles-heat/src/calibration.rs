@@ -1,4 +1,7 @@
 //! Pair conductivity κ(ξ) from the conductivity.
+//!
+//! Conductances have the influence function and volume correction of the forces, and broken bonds of the forces do
+//! not conduct.
 
 use pericles::family::VolumeCorrection;
 use pericles::kernel::Influence;
@@ -45,7 +48,7 @@ impl PairConductivity {
     /// Calibrates with sums over the full family of a lattice point: a linear field conducts exactly the given heat.
     ///
     /// # Errors
-    /// Those of [`PairConductivity::of_continuum`]; a cloud without a lattice is calibrated as a continuum;
+    /// The errors of [`PairConductivity::of_continuum`]; a cloud without a lattice is calibrated as a continuum;
     /// [`HeatError::Anisotropic`].
     pub fn of_lattice(
         influence: &Influence,
@@ -128,7 +131,7 @@ fn check(influence: &Influence, horizon: f64, dimension: usize) -> Result<()> {
     }
 }
 
-/// Returns the volume of a cell of a lattice, m³: that of its points, which are equal.
+/// Returns the volume of a cell of a lattice, m³: the volume of its points, which are equal.
 pub(crate) fn cell_volume(cloud: &PointCloud) -> f64 {
     let sides = (0..cloud.dimension()).map(|c| cloud.cell_side(c));
     // A process may own no points of a divided body.

@@ -1,4 +1,8 @@
 //! A diffusing field as a secondary field of a system.
+//!
+//! Values do not depend on earlier evaluations: the field at a time after the accepted state is one step, or several
+//! sub-steps of fixed length, from that state, and is kept for the last requested time only. Steps of a given length
+//! end at fixed multiples of it, between which the field is linear in time.
 
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -68,8 +72,8 @@ struct State {
     dissipation: Option<Dissipation>,
 }
 
-/// A computed field, shared by the system and the forces that depend on it. Values are those of own points, contents, flows and
-/// extremes those of the whole body: all processes must call its functions together.
+/// A computed field, shared by the system and the forces that depend on it. Values belong to own points, contents, flows and
+/// extremes to the whole body: all processes must call its functions together.
 #[derive(Clone)]
 pub struct SharedField(Arc<Mutex<State>>);
 

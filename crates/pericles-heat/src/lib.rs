@@ -21,10 +21,13 @@
 //! | [`DiffusingField`] | computed field of a system: temperature of thermal expansion, end of steps, checkpoints |
 //! | [`FixedBody`] | time integrator of a body that does not move |
 //!
-//! A body may be divided among processes. Conditions, values and capacities are then those of own points, and all processes evaluate
+//! A body may be divided among processes. Conditions, values and capacities then belong to own points, and all processes evaluate
 //! the field together; results have the same bits for every number of processes.
 //!
 //! The crate uses only public items of [`pericles`] and the multigrid of [`pericles_statics`].
+//!
+//! The solver is independent of the physical quantity: it has capacities, conductances and conditions. For heat the
+//! capacity is ρ c and the conductivity k; a concentration would use the same code.
 
 mod advance;
 mod calibration;

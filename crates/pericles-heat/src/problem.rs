@@ -28,7 +28,7 @@ pub(crate) struct Sampled {
 }
 
 impl Problem {
-    /// Makes a problem; capacities (J/K for heat) are those of whole points. All processes must call it together.
+    /// Makes a problem; capacities (J/K for heat) are given per point. All processes must call it together.
     ///
     /// # Errors
     /// Capacities that are not positive, or not one per point; conditions on points that do not exist; two prescribed

@@ -3,6 +3,8 @@
 //!
 //! On a body divided among processes every process has the network and the multigrid of the whole body, with the bits of a single
 //! process; each of them selects the conductors of its own points.
+//!
+//! The network has the energy of unit gradients of the body, so that materials, cracks and surfaces need no rules.
 
 mod network;
 

@@ -101,12 +101,12 @@ pub enum IoError {
     },
 
     /// No valid checkpoint in a folder.
-    #[error("{} contains no usable checkpoint ({} refused{})", path.display(), refused.len(), first_reason(refused))]
+    #[error("{} contains no usable checkpoint ({} rejected{})", path.display(), rejected.len(), first_reason(rejected))]
     NoValidCheckpoint {
         /// The folder of checkpoints.
         path: PathBuf,
         /// Errors of the rejected checkpoints, newest first.
-        refused: Vec<IoError>,
+        rejected: Vec<IoError>,
     },
 
     /// Data passed for a file have inconsistent lengths.
@@ -162,8 +162,8 @@ fn size(bytes: u64) -> String {
     quantity(bytes as f64, "B")
 }
 
-fn first_reason(refused: &[IoError]) -> String {
-    refused
+fn first_reason(rejected: &[IoError]) -> String {
+    rejected
         .first()
         .map(|error| format!("; {error}"))
         .unwrap_or_default()

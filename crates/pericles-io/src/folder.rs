@@ -48,9 +48,7 @@ impl OutputFolder {
     ///
     /// An existing folder is rejected unless `force` is set; with `force`, the files listed in the manifest
     /// of an earlier run are removed and all other files are kept. Symbolic links with their names are removed, not
-    /// their targets. A folder that is neither empty nor the
-    /// output of a run is always rejected. Folders of versions without a manifest are recognised by the
-    /// content of `run.json`, or if they contain only a lock and files with the names of results.
+    /// their targets. A folder that is neither empty nor the output of a run is always rejected.
     pub fn create(path: impl Into<PathBuf>, force: bool) -> Result<Self, IoError> {
         let path = path.into();
         create_parents(&path)?;
@@ -278,19 +276,10 @@ fn owned(path: &Path) -> Result<Manifest, IoError> {
         return Ok(manifest);
     }
     let all = entries(path)?;
-    let usual = Manifest::usual();
-    let locked = all.iter().any(|entry| entry.name == LOCK);
-    // A run of a version without a manifest that stopped before its first report leaves the lock, sub-folders
-    // and tables.
-    let begun = all.iter().all(|entry| {
-        let name = finished_name(&entry.name);
-        entry.name == LOCK
-            || name.is_some()
-            || locked && entry.is_file && entry.name != "run.json" && usual.has(&entry.name)
-            || locked && !entry.is_file && SUBFOLDERS.contains(&entry.name.as_str())
-    });
-    if begun {
-        Ok(usual)
+    // A run that stopped before it recorded its files leaves the lock and files that are not complete.
+    let is_begun = |entry: &Entry| entry.name == LOCK || finished_name(&entry.name).is_some();
+    if all.iter().all(is_begun) {
+        Ok(Manifest::default())
     } else {
         Err(IoError::FolderNotOurs {
             path: path.to_path_buf(),

@@ -23,6 +23,8 @@
 //! path or number of threads. Readers take a `memory` limit in bytes and reject content that would exceed it.
 //! [`IoError`] classifies errors by what the user can do about them.
 //!
+//! Readers of external data have entry points that take bytes, which fuzz targets, tests and file input share.
+//!
 //! ```
 //! use pericles_io::{CheckpointFolder, Column, CsvTable, OutputFolder, PvdSeries, VtkField, VtuFile};
 //! # fn main() -> Result<(), pericles_io::IoError> {

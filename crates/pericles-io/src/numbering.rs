@@ -9,7 +9,7 @@ use pericles::space::PointCloud;
 pub(crate) struct Numbering(Option<Vec<usize>>);
 
 impl Numbering {
-    /// Returns the numbering of a cloud. The part of a divided body, whose numbers are those of the whole body, keeps its order.
+    /// Returns the numbering of a cloud. The part of a divided body, whose numbers belong to the whole body, keeps its order.
     pub(crate) fn of(cloud: &PointCloud) -> Self {
         if cloud.domain().is_divided() {
             return Self(None);

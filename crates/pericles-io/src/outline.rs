@@ -32,9 +32,9 @@ pub fn parse_outline(
     let mut polygons: Vec<Vec<[f64; 2]>> = Vec::new();
     let mut is_open = false;
     for (k, line) in content.split(|&byte| byte == b'\n').enumerate() {
-        let refused = |reason: String| TextError::line(&name, k + 1, reason);
+        let rejected = |reason: String| TextError::line(&name, k + 1, reason);
         let line =
-            std::str::from_utf8(line).map_err(|_| refused("the line is not UTF-8 text".into()))?;
+            std::str::from_utf8(line).map_err(|_| rejected("the line is not UTF-8 text".into()))?;
         let words = words(line);
         if words.is_empty() {
             is_open = false;
@@ -49,7 +49,7 @@ pub fn parse_outline(
             [x, y] if words.len() == 2 => [x, y],
             _ => {
                 let line = line.trim();
-                return Err(refused(format!(
+                return Err(rejected(format!(
                     "`{line}` is not a corner; expected two finite numbers `x y`"
                 )));
             }

@@ -257,7 +257,7 @@ fn read_point(words: &[&str], columns: &[Column], points: &mut ListedPoints) -> 
     }
     let mut place = [0.0; 3];
     for (word, column) in words.iter().zip(columns) {
-        let refuse = |allowed: &str| {
+        let reject = |allowed: &str| {
             Err(format!(
                 "the {} is `{word}`; allowed: {allowed}",
                 column.name()
@@ -266,16 +266,16 @@ fn read_point(words: &[&str], columns: &[Column], points: &mut ListedPoints) -> 
         let number = word.parse().unwrap_or(f64::NAN);
         match *column {
             Column::Coordinate(c) if number.is_finite() => place[c] = number,
-            Column::Coordinate(_) => return refuse("a finite number, in m"),
+            Column::Coordinate(_) => return reject("a finite number, in m"),
             // Many tools write all columns as reals.
             Column::Block
                 if number.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&number) =>
             {
                 points.blocks.push(number as u32);
             }
-            Column::Block => return refuse("a whole number, 0 or greater"),
+            Column::Block => return reject("a whole number, 0 or greater"),
             Column::Volume if number > 0.0 && number.is_finite() => points.volumes.push(number),
-            Column::Volume => return refuse("a positive number, in m³"),
+            Column::Volume => return reject("a positive number, in m³"),
         }
     }
     points.positions.push(place);
@@ -314,7 +314,7 @@ mod tests {
         parse(text.as_bytes(), dimension).unwrap_or_else(|wrong| panic!("{wrong:?}"))
     }
 
-    fn refusal(text: &str, dimension: usize) -> (usize, String) {
+    fn rejection(text: &str, dimension: usize) -> (usize, String) {
         match parse(text.as_bytes(), dimension) {
             Err(Some(Wrong { line, reason })) => (line, reason),
             other => panic!("{other:?}"),
@@ -406,7 +406,7 @@ mod tests {
             ),
         ];
         for (text, dimension, line, says) in cases {
-            let (found, reason) = refusal(text, dimension);
+            let (found, reason) = rejection(text, dimension);
             assert!(
                 found == line && reason.contains(says),
                 "{text:?}: {found}: {reason}"

@@ -39,20 +39,20 @@ pub fn parse_rows(
     let content = content.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(content);
     let mut numbers = Vec::new();
     for (k, line) in content.split(|&byte| byte == b'\n').enumerate() {
-        let refused = |reason: String| TextError::line(&name, k + 1, reason);
+        let rejected = |reason: String| TextError::line(&name, k + 1, reason);
         let line =
-            std::str::from_utf8(line).map_err(|_| refused("the line is not UTF-8 text".into()))?;
+            std::str::from_utf8(line).map_err(|_| rejected("the line is not UTF-8 text".into()))?;
         let words = words(line);
         if words.is_empty() {
             continue;
         }
         if numbers.len() == rows * columns.len() {
-            return Err(refused(format!(
+            return Err(rejected(format!(
                 "too many lines of numbers; expected {rows}"
             )));
         }
         if words.len() != columns.len() {
-            return Err(refused(format!(
+            return Err(rejected(format!(
                 "{} numbers, expected {}: {}",
                 words.len(),
                 columns.len(),
@@ -62,7 +62,7 @@ pub fn parse_rows(
         for (word, column) in words.iter().zip(columns) {
             let number = word.parse().ok().filter(|number: &f64| number.is_finite());
             let number = number.ok_or_else(|| {
-                refused(format!(
+                rejected(format!(
                     "{column} is `{word}`; allowed: a finite number (column names only after `#`)"
                 ))
             })?;

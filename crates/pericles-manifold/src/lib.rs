@@ -7,6 +7,9 @@
 //! * [`SurfaceMeasure`], [`EnergyInequality`] – quantities measured on such bodies.
 //!
 //! The crate uses only the public interface of the engine, [`pericles`].
+//!
+//! A surface is a separate kind of body with its own material. An assembled system treats it like any other body, and
+//! so do schemes and observers.
 
 mod energy_inequality;
 pub mod force;

@@ -149,7 +149,7 @@ fn quadrilateral(x: [[f64; 3]; 4]) -> (f64, [f64; 3]) {
 /// Returns the length of a line or the area of a triangle or quadrilateral in space, never negative; 1 for a
 /// point and 0 for solids.
 ///
-/// The area of a non-planar quadrilateral is that of the bilinear surface, integrated with two Gauss points
+/// The area of a non-planar quadrilateral is the area of the bilinear surface, integrated with two Gauss points
 /// per axis.
 pub fn facet_measure(kind: CellKind, corners: &[[f64; 3]]) -> f64 {
     let norm = |a: [f64; 3]| dot(a, a).sqrt();

@@ -263,7 +263,7 @@ fn element_volumes_add_up_to_the_volume_of_a_box() {
         let points = mesh.points(&options).unwrap();
         let volume: f64 = points.volumes.iter().sum();
         assert!((volume / unit.powi(3) - 1.0).abs() < 1e-13, "{volume}");
-        // The first moment of the volume is that of the cube.
+        // The first moment of the volume equals the moment of the cube.
         for c in 0..3 {
             let moment: f64 = points
                 .volumes
@@ -298,7 +298,7 @@ fn element_volumes_add_up_to_the_volume_of_a_box() {
 fn invalid_meshes_are_rejected_with_clear_messages() {
     let (_, cube, ..) = references().swap_remove(3);
     let corners: Vec<u32> = (0..8).collect();
-    let refused = |nodes: Vec<Point>, kind: CellKind, corners: &[u32]| {
+    let rejected = |nodes: Vec<Point>, kind: CellKind, corners: &[u32]| {
         let mut mesh = RawMesh {
             nodes,
             ..Default::default()
@@ -308,7 +308,7 @@ fn invalid_meshes_are_rejected_with_clear_messages() {
     };
     let mut folded = cube.clone();
     folded[6] = [-0.5, -0.5, -0.5];
-    let problem = refused(folded, CellKind::Hexahedron, &corners);
+    let problem = rejected(folded, CellKind::Hexahedron, &corners);
     assert!(
         problem
             .to_string()
@@ -316,7 +316,7 @@ fn invalid_meshes_are_rejected_with_clear_messages() {
         "{problem}"
     );
     let flat = cube.iter().map(|x| [x[0], x[1], 0.0]).collect();
-    let problem = refused(flat, CellKind::Hexahedron, &corners);
+    let problem = rejected(flat, CellKind::Hexahedron, &corners);
     assert_eq!(
         problem,
         Problem::NoVolume {
@@ -328,7 +328,7 @@ fn invalid_meshes_are_rejected_with_clear_messages() {
         problem.to_string(),
         "1 element(s) have zero volume, the first is element 812"
     );
-    let problem = refused(cube.clone(), CellKind::Quadrilateral, &[0, 1, 6, 7]);
+    let problem = rejected(cube.clone(), CellKind::Quadrilateral, &[0, 1, 6, 7]);
     assert!(matches!(problem, Problem::NotPlane { .. }), "{problem}");
     assert!(
         problem
@@ -336,12 +336,12 @@ fn invalid_meshes_are_rejected_with_clear_messages() {
             .contains("z from 0 to 1.75; a plane mesh must lie in a plane of constant z"),
         "{problem}"
     );
-    let problem = refused(cube.clone(), CellKind::Line, &[0, 1]);
+    let problem = rejected(cube.clone(), CellKind::Line, &[0, 1]);
     assert!(
         problem.to_string().contains("the mesh has 1 line only"),
         "{problem}"
     );
-    let problem = refused(cube.clone(), CellKind::Tetrahedron, &[0, 1, 2, 8]);
+    let problem = rejected(cube.clone(), CellKind::Tetrahedron, &[0, 1, 2, 8]);
     assert!(
         problem
             .to_string()
@@ -350,14 +350,14 @@ fn invalid_meshes_are_rejected_with_clear_messages() {
     );
     let mut infinite = cube.clone();
     infinite[2][1] = f64::INFINITY;
-    let problem = refused(infinite, CellKind::Hexahedron, &corners);
+    let problem = rejected(infinite, CellKind::Hexahedron, &corners);
     assert!(problem.to_string().contains("node 2"), "{problem}");
     let empty = RawMesh::default()
         .points(&PointOptions::default())
         .unwrap_err();
     assert!(empty.to_string().contains("Mesh.SaveAll"), "{empty}");
     // A cube of 1 mm and one of 100 km.
-    for (unit, doubted) in [(1.0, false), (1e-4, true), (1e5, true)] {
+    for (unit, warned) in [(1.0, false), (1e-4, true), (1e5, true)] {
         let mut mesh = RawMesh {
             nodes: cube.clone(),
             ..Default::default()
@@ -368,7 +368,7 @@ fn invalid_meshes_are_rejected_with_clear_messages() {
             ..Default::default()
         };
         let points = mesh.points(&options).unwrap();
-        assert_eq!(!points.warnings.is_empty(), doubted, "{unit}");
+        assert_eq!(!points.warnings.is_empty(), warned, "{unit}");
         if let [warning] = &points.warnings[..] {
             // The largest side of the bounding box of the centroids plus one element: the cube root of 11/8.
             let words = warning.to_string();
@@ -405,7 +405,7 @@ fn invalid_meshes_are_rejected_with_clear_messages() {
 }
 
 #[test]
-fn doubtful_element_sizes_are_reported_with_both_positions() {
+fn implausible_element_sizes_are_reported_with_both_positions() {
     // A cube of side 1 and one of side 0.1, disconnected.
     let mut mesh = RawMesh::default();
     for (place, side) in [(0.0, 1.0), (2.0, 0.1)] {

@@ -494,7 +494,7 @@ fn area_fractions_of_plane_cells_are_exact() {
             }
         }
     }
-    // Rings with a hole, with either orientation of both polygons: the area is that of the polygons.
+    // Rings with a hole, with either orientation of both polygons: the area equals the area between the polygons.
     for (n, spacing) in [(3, 0.3), (7, 0.21), (400, 0.1), (400, 3.0)] {
         for turned in [false, true] {
             let mut hole = regular(n, 0.4, [0.1, -0.05]);

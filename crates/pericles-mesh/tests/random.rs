@@ -194,8 +194,8 @@ fn random_displacements_stay_within_the_amplitude_and_the_body() {
             .all(|(x, &node)| x[2] == lattice.position(node)[2])
     );
     for value in [-0.1, 0.5, f64::NAN] {
-        let refused = jittered(&lattice, &nodes, 3, value, 7, &is_in_ball);
-        assert!(matches!(refused, Err(FillError::Amplitude { .. })));
+        let rejected = jittered(&lattice, &nodes, 3, value, 7, &is_in_ball);
+        assert!(matches!(rejected, Err(FillError::Amplitude { .. })));
     }
     assert!(matches!(
         blue_noise(BALL, 3, 0.0, 1, &is_in_ball),

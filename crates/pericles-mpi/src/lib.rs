@@ -1,7 +1,7 @@
 //! Communication between the processes of an MPI job.
 //!
 //! [`Mpi`] implements [`Comm`]. A program divides its body with [`division`](pericles::division) and computes the part of its
-//! process; the results are those of a single process, bit for bit. `examples/plate.rs` is a complete program.
+//! process; the results equal the results of a single process, bit for bit. `examples/plate.rs` is a complete program.
 //!
 //! The crate needs an MPI library with its compiler wrapper `mpicc`, and libclang while it is built.
 

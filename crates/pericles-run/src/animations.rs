@@ -32,7 +32,7 @@ pub fn gaps(folder: &Path) -> Vec<String> {
             let drawn = numbers.iter().max()? + 1;
             let missing = drawn - numbers.len();
             (missing > 0).then(|| {
-                format!("{stem}.apng lacks {missing} of {drawn} pictures, which were removed from the folder")
+                format!("{stem}.apng does not contain {missing} of {drawn} pictures, which were removed from the folder")
             })
         })
         .collect();
@@ -58,7 +58,10 @@ mod tests {
         }
         let said = gaps(place.path());
         assert_eq!(said.len(), 1);
-        assert!(said[0].starts_with("Damage.apng lacks 2 of 4"), "{said:?}");
+        assert!(
+            said[0].starts_with("Damage.apng does not contain 2 of 4"),
+            "{said:?}"
+        );
         assert!(gaps(&place.path().join("nowhere")).is_empty());
     }
 }

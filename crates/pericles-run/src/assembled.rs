@@ -1,4 +1,6 @@
 //! Assembly of a deck or model with a cache, a memory limit, and readers of input files.
+//!
+//! Readers of files are passed to the code that builds a body, so that `pericles-deck` accesses no files.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -101,7 +103,7 @@ impl Assembled {
     /// folder of the source.
     ///
     /// # Errors
-    /// Those of `make`, with locations in the text of a deck.
+    /// The errors of `make`, with locations in the text of a deck.
     pub fn made(
         source: &Source,
         means: &Means,
@@ -117,7 +119,7 @@ impl Assembled {
         });
         let assembly = assembly.map_err(|error| match is_elsewhere(&error) {
             true => PericlesError::OnAnotherProcess.into(),
-            false => source.refusal(error),
+            false => source.rejection(error),
         })?;
         let facts = match source {
             Source::Deck { deck, .. } => Facts::of_deck(deck, &assembly),

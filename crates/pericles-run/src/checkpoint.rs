@@ -179,9 +179,9 @@ impl Checkpoints {
 
 /// The state in a checkpoint.
 enum Content {
-    /// That of a body on a single process.
+    /// The archive of a body on a single process.
     Whole(Archive),
-    /// That of a divided body, which the processes read together.
+    /// The archive of a divided body, which the processes read together.
     Divided(Box<DividedCheckpoint>),
 }
 
@@ -192,7 +192,7 @@ pub struct Stored {
     /// The metadata.
     pub metadata: Metadata,
     /// Errors of newer checkpoints that cannot be used, on the first process.
-    pub refused: Vec<IoError>,
+    pub rejected: Vec<IoError>,
     content: Content,
 }
 
@@ -204,12 +204,12 @@ impl Stored {
     /// No checkpoint is complete, it is from another program, or it needs more memory.
     pub fn latest(folder: &OutputFolder, memory: u64, comm: &dyn Comm) -> Result<Self, RunError> {
         let folder = CheckpointFolder::new(folder.file("checkpoints"));
-        let (path, metadata, content, refused) = if comm.size() > 1 {
-            let (checkpoint, refused) = folder.latest_divided(memory, comm)?;
+        let (path, metadata, content, rejected) = if comm.size() > 1 {
+            let (checkpoint, rejected) = folder.latest_divided(memory, comm)?;
             let path = checkpoint.path().to_path_buf();
             let metadata = checkpoint.metadata().clone();
             let content = Content::Divided(Box::new(checkpoint));
-            (path, metadata, content, refused)
+            (path, metadata, content, rejected)
         } else {
             let latest = folder.latest_valid(memory)?;
             let container = latest.container.into_archive();
@@ -221,7 +221,7 @@ impl Stored {
                 latest.path,
                 metadata,
                 Content::Whole(archive),
-                latest.refused,
+                latest.rejected,
             )
         };
         // Other processes may not see the file.
@@ -236,7 +236,7 @@ impl Stored {
         Ok(Self {
             metadata: metadata.map_or_else(|| serde_json::from_str(&text), Ok)?,
             path,
-            refused,
+            rejected,
             content,
         })
     }

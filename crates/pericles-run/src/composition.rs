@@ -180,21 +180,21 @@ pub const FORMS: [Form; 7] = [
 
 impl Form {
     /// Returns why the kernel does not represent a feature of a body, or `None` if it does.
-    pub fn refusal_of_feature(&self, feature: Feature) -> Option<&'static str> {
+    pub fn rejection_of_feature(&self, feature: Feature) -> Option<&'static str> {
         let limits = self.choice.map_or(&[][..], ForceForm::limits);
-        Limit::refusal(limits, feature.into())
+        Limit::rejection(limits, feature.into())
     }
 }
 
 impl Scheme {
     /// Returns why the scheme is not compatible with a force kernel, or `None` if it is.
-    pub fn refusal_of_form(&self, form: &Form) -> Option<&'static str> {
-        self.refusal(|need| !OF_FORMS.contains(&need) || form.offers.contains(&need))
+    pub fn rejection_of_form(&self, form: &Form) -> Option<&'static str> {
+        self.rejection(|need| !OF_FORMS.contains(&need) || form.offers.contains(&need))
     }
 
     /// Returns why the scheme is not compatible with a condition, or `None` if it is.
-    pub fn refusal_of_condition(&self, condition: Condition) -> Option<&'static str> {
-        let unmet = self.refusal(|need| !condition.breaks(need));
+    pub fn rejection_of_condition(&self, condition: Condition) -> Option<&'static str> {
+        let unmet = self.rejection(|need| !condition.breaks(need));
         let kinds = condition.kinds();
         let kind_fits = kinds.is_empty() || kinds.contains(&self.kind);
         match unmet {
@@ -203,7 +203,7 @@ impl Scheme {
         }
     }
 
-    fn refusal(&self, meets: impl Fn(Need) -> bool) -> Option<&'static str> {
+    fn rejection(&self, meets: impl Fn(Need) -> bool) -> Option<&'static str> {
         let unmet = self.requirements.iter().find(|one| !meets(one.need));
         unmet.map(|one| one.reason)
     }
@@ -316,14 +316,14 @@ pub fn tables() -> String {
     let conditions = Condition::ALL.map(Condition::words);
     let mut text = head("scheme", &forms);
     let of_forms = SCHEMES.iter().map(|scheme| {
-        let cells = FORMS.iter().map(|form| scheme.refusal_of_form(form));
+        let cells = FORMS.iter().map(|form| scheme.rejection_of_form(form));
         (scheme.words, cells.collect())
     });
     rows(&mut text, of_forms, &mut reasons);
     text.push('\n');
     text.push_str(&head("scheme", &conditions));
     let of_conditions = SCHEMES.iter().map(|scheme| {
-        let cells = Condition::ALL.map(|condition| scheme.refusal_of_condition(condition));
+        let cells = Condition::ALL.map(|condition| scheme.rejection_of_condition(condition));
         (scheme.words, cells.to_vec())
     });
     rows(&mut text, of_conditions, &mut reasons);
@@ -333,7 +333,7 @@ pub fn tables() -> String {
     let words: Vec<&str> = chosen.iter().map(|form| form.words).collect();
     text.push_str(&head("body", &words));
     let of_features = Feature::ALL.into_iter().map(|feature| {
-        let cells = chosen.iter().map(|form| form.refusal_of_feature(feature));
+        let cells = chosen.iter().map(|form| form.rejection_of_feature(feature));
         (feature.words(), cells.collect())
     });
     rows(&mut text, of_features, &mut reasons);

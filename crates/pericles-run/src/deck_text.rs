@@ -39,8 +39,7 @@ impl DeckText {
     /// Reads the deck again, independent of the current folder.
     ///
     /// # Errors
-    /// This version no longer accepts the deck, an input file has changed, or a program added to the deck what it does
-    /// not contain.
+    /// The deck is rejected, an input file has changed, or a program added conditions that the deck does not contain.
     pub fn read(&self) -> Result<Deck, RunError> {
         if !self.amended.is_empty() {
             return Err(RunError::Amended {

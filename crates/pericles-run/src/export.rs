@@ -46,7 +46,7 @@ pub fn export(results: &Results, format: ExportFormat, path: &Path) -> Result<us
         ..readers()
     };
     let points = discretise(model, &resources);
-    let points = points.map_err(|error| source.refusal(error))?;
+    let points = points.map_err(|error| source.rejection(error))?;
     let body = result_body(model, &points.cloud, &points.sets, &points.meshes);
     let body = Arc::new(body);
     let selection = field_selection(model, &points.cloud, &points.sets);

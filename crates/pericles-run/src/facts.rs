@@ -216,7 +216,7 @@ impl Facts {
     /// Returns the properties of an assembled model. Warnings name their keys. All processes that share the body must call it
     /// together.
     pub fn of(model: &Model, assembly: &Assembly) -> Self {
-        let waves = assembly.judge_waves(model);
+        let waves = assembly.check_waves(model);
         let warnings = assembly.warnings.iter().chain(&waves);
         Self::with(model, assembly, warnings.map(ModelWarning::line).collect())
     }
@@ -305,7 +305,7 @@ impl Facts {
 
     /// Returns the properties of the assembly of a deck, with locations of warnings.
     pub fn of_deck(deck: &Deck, assembly: &Assembly) -> Self {
-        let waves = assembly.judge_waves(&deck.model);
+        let waves = assembly.check_waves(&deck.model);
         let warnings = assembly.warnings.iter().chain(&waves);
         let located = |warning: &ModelWarning| deck.located(warning.clone()).line();
         Self::with(&deck.model, assembly, warnings.map(located).collect())

@@ -1,4 +1,7 @@
 //! Input files of a deck or model with their digests, so that a run is not resumed with changed files.
+//!
+//! Checkpoints and `run.json` contain the SHA-256 digest of every file named by the deck; a run with changed inputs
+//! is not resumed.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -10,8 +13,7 @@ use sha2::{Digest, Sha256};
 
 use crate::error::RunError;
 
-/// The input files of a model at the start of the run. Empty for models without files, and for runs of versions that
-/// did not record them.
+/// The input files of a model at the start of the run. Empty for models without files.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Inputs {
     /// The base folder of relative paths; absolute.
@@ -77,7 +79,7 @@ impl Inputs {
     /// Checks that the files have not changed since the start of the run; paths are relative to `folder`.
     ///
     /// # Errors
-    /// A file no longer exists, or its content has changed.
+    /// A file is missing, or its content has changed.
     pub fn check(&self, folder: &Path) -> Result<(), RunError> {
         for input in &self.files {
             let path = folder.join(&input.file);

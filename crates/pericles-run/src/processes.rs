@@ -57,7 +57,7 @@ pub(crate) fn agreed<T, E: From<PericlesError>>(
 /// together.
 ///
 /// # Errors
-/// Those of `create`, and [`PericlesError::OnAnotherProcess`] on the others.
+/// The errors of `create`, and [`PericlesError::OnAnotherProcess`] on the others.
 pub fn shared_folder<E: From<PericlesError> + From<RunError>>(
     comm: &dyn Comm,
     create: impl FnOnce() -> Result<OutputFolder, E>,

@@ -32,7 +32,7 @@ pub struct RefinementFacts {
     pub border_points: u64,
     /// Whether the fine region follows damage.
     pub follows_damage: bool,
-    /// The highest frequency of the whole body; the coarse step is limited by that of the coarse part.
+    /// The highest frequency of the whole body; the coarse step is limited by the frequency of the coarse part.
     pub body_frequency: Option<f64>,
     /// The frequency that limits the coarse step, times that step.
     pub omega_dt: Option<f64>,

@@ -7,7 +7,6 @@ use std::time::Instant;
 
 use pericles::observe::{Observer, Schedule};
 use pericles::{Archive, Checkpointed, Control, Interrupt, Outcome, Simulation, SimulationError};
-use pericles_deck::Model;
 use pericles_io::{OutputFolder, PvdSeries, VtuFile};
 
 use crate::animations;
@@ -96,7 +95,7 @@ impl Run {
         } = Assembled::of(&source, means, tell)?;
         let is_first = comm.rank() == 0;
         if is_first {
-            facts.warnings.extend(doubts(&stored, model, &facts));
+            facts.warnings.extend(resume_warnings(&stored, &facts));
         }
         let gaps = match is_first {
             true => incomplete(&folder),
@@ -136,7 +135,7 @@ impl Run {
         self.simulation.observe(schedule, observer);
     }
 
-    /// Replaces the state of the simulation by that of a checkpoint of the same run.
+    /// Replaces the state of the simulation by the state of a checkpoint of the same run.
     ///
     /// # Errors
     /// The archive does not match the run.
@@ -350,34 +349,27 @@ fn is_finished(folder: &OutputFolder) -> bool {
 }
 
 /// Returns warnings about differences between a resumed and an uninterrupted run.
-fn doubts(stored: &Stored, model: &Model, facts: &Facts) -> Vec<String> {
-    let mut doubts: Vec<String> = stored
-        .refused
+fn resume_warnings(stored: &Stored, facts: &Facts) -> Vec<String> {
+    let mut warnings: Vec<String> = stored
+        .rejected
         .iter()
         .map(|error| format!("{error}; the previous checkpoint is used"))
         .collect();
     let metadata = &stored.metadata;
     let version = env!("CARGO_PKG_VERSION");
     if metadata.version != version {
-        doubts.push(format!(
+        warnings.push(format!(
             "the run was started with version {} and is resumed with version {version}: results may not be bitwise identical",
             metadata.version
         ));
     }
     if metadata.instruction_set != facts.instruction_set {
-        doubts.push(format!(
+        warnings.push(format!(
             "the run was started with instruction set {} and is resumed with {}: results may not be bitwise identical",
             metadata.instruction_set, facts.instruction_set
         ));
     }
-    let files = model.files();
-    if let (Some(file), true) = (files.first(), metadata.source.inputs().is_empty()) {
-        let file = file.display();
-        doubts.push(format!(
-            "the version that started the run did not record the content of {file}; it may have changed since"
-        ));
-    }
-    doubts
+    warnings
 }
 
 /// Returns a warning about missing or truncated field files. The run does not need them, but its results have gaps.

@@ -95,9 +95,9 @@ impl Source {
     }
 
     /// Converts an error of the model: for a deck it has the location in the text, for a model the keys.
-    pub fn refusal(&self, error: BuildError) -> RunError {
+    pub fn rejection(&self, error: BuildError) -> RunError {
         match self {
-            Self::Deck { deck, .. } => deck.refusal(error).into(),
+            Self::Deck { deck, .. } => deck.rejection(error).into(),
             Self::Model(_) => error.into(),
         }
     }
@@ -115,7 +115,7 @@ impl SourceRecord {
     /// Restores the source, independent of the current folder.
     ///
     /// # Errors
-    /// This version no longer accepts the deck, or an input file has changed or no longer exists.
+    /// The deck is rejected, or an input file is missing or has changed.
     pub fn read(self) -> Result<Source, RunError> {
         match self {
             Self::Deck(text) => Ok(Source::Deck {
@@ -126,14 +126,6 @@ impl SourceRecord {
                 data.inputs.check(data.inputs.folder())?;
                 Ok(Source::Model(data))
             }
-        }
-    }
-
-    /// Returns the input files with their digests.
-    pub(crate) fn inputs(&self) -> &Inputs {
-        match self {
-            Self::Deck(text) => &text.inputs,
-            Self::Model(data) => &data.inputs,
         }
     }
 }

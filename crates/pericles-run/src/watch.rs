@@ -159,7 +159,7 @@ fn fracture_energy(simulation: &Simulation, audit: &Audit) -> Option<String> {
     let share = audit.balance.abs() / audit.dissipated_energy.abs();
     (audit.broken_bonds > 0 && share > ENERGY && share.is_finite()).then(|| {
         format!(
-            "the error of the energy balance is {} of the dissipated energy: fracture energies of this multirate run are no more accurate than that; reduce dt or the ratio of the steps and compare the results",
+            "the error of the energy balance is {} of the dissipated energy: fracture energies of this multirate run have at least this error; reduce dt or the ratio of the steps and compare the results",
             percent(share)
         )
     })
@@ -174,7 +174,7 @@ fn few_load_steps(simulation: &Simulation, audit: &Audit) -> Option<String> {
         && audit.dissipated_energy > INELASTIC * system.ledger().exchanged;
     (is_coarse && inelastic).then(|| {
         format!(
-            "the work and the dissipated energy of inelastic deformation are those of the mean forces between {} static states: with so few load steps they may be wrong by tens of per cent; set time.load_steps to {LOAD_STEPS} or more and compare the results",
+            "the work and the dissipated energy of inelastic deformation are computed with the mean forces between {} static states: with so few load steps they may be wrong by tens of per cent; set time.load_steps to {LOAD_STEPS} or more and compare the results",
             steps + 1
         )
     })
@@ -206,7 +206,7 @@ fn momentum(simulation: &Simulation, audit: &Audit) -> Option<String> {
     })
 }
 
-/// Checks the energy balance of static states, whose work is that of the mean of the forces at both.
+/// Checks the energy balance of static states, whose work is computed with the mean of the forces at both.
 fn static_energy(simulation: &Simulation, audit: &Audit) -> Option<String> {
     if reactions(simulation, audit).is_some() {
         // The states are not in equilibrium; this is reported instead.
@@ -217,7 +217,7 @@ fn static_energy(simulation: &Simulation, audit: &Audit) -> Option<String> {
     let drift = audit.largest_balance / exchanged.max(audit.initial_energy.abs());
     (drift > STATIC_ENERGY).then(|| {
         format!(
-            "the error of the energy balance of the static states reaches {} of the work done, because the work between two states is that of the mean forces; apply loads and displacements \
+            "the error of the energy balance of the static states reaches {} of the work done, because the work between two states is computed with the mean forces; apply loads and displacements \
              over more load steps (function = {{ kind = \"ramp\", … }} and time.load_steps)",
             percent(drift)
         )

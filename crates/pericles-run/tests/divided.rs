@@ -135,7 +135,7 @@ fn examples_divided_among_processes_have_the_files_of_one_process() {
         let folder = place.path().join(format!("{k}-3"));
         let found = Threads::run(3, |comm| begin(deck, &folder, comm));
         if let Some(error) = found.iter().find_map(|one| one.as_ref().err()) {
-            // All processes refuse a model alike, before they create a folder.
+            // All processes reject a model, before they create a folder.
             assert!(found.iter().all(Result::is_err), "{name}: {error}");
             assert!(!folder.exists(), "{name}: {error}");
             println!("{name}: {error}");

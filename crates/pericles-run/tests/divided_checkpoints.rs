@@ -108,8 +108,8 @@ fn damaged_checkpoints_are_errors_of_all_processes() {
     let bytes = fs::read(&older).unwrap();
     fs::write(&older, &bytes[..bytes.len() - 100]).unwrap();
     let errors = Threads::run(3, |comm| resume_error(&folder, comm));
-    let refused = |error: &RunError| matches!(error, RunError::Io(IoError::NoValidCheckpoint { refused, .. }) if refused.len() == 2);
-    assert!(refused(&errors[0]), "{}", errors[0]);
+    let rejected = |error: &RunError| matches!(error, RunError::Io(IoError::NoValidCheckpoint { rejected, .. }) if rejected.len() == 2);
+    assert!(rejected(&errors[0]), "{}", errors[0]);
     assert!(errors[1..].iter().all(RunError::is_elsewhere));
 }
 

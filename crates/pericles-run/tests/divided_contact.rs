@@ -1,4 +1,4 @@
-//! Contact and impactors on bodies divided among processes: the files are those of a run on a single process.
+//! Contact and impactors on bodies divided among processes: the files equal the files of a run on a single process.
 
 mod common;
 

@@ -1,4 +1,4 @@
-//! Heat conduction in bodies divided among processes: the files are those of a run on a single process.
+//! Heat conduction in bodies divided among processes: the files equal the files of a run on a single process.
 
 mod common;
 

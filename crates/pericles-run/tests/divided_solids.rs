@@ -1,4 +1,4 @@
-//! Stress and strain of solids on bodies divided among processes: the files are those of a run on a single process.
+//! Stress and strain of solids on bodies divided among processes: the files equal the files of a run on a single process.
 
 mod common;
 

@@ -403,7 +403,7 @@ fn event_by_event_run_under_loads_writes_load_factors_and_a_load_displacement_cu
     let column = |file: &str, name: &str| {
         let table = pericles_io::read_csv(folder.join(file)).unwrap();
         let found = table.column(name).map(<[f64]>::to_vec);
-        found.unwrap_or_else(|| panic!("{file} lacks {name}"))
+        found.unwrap_or_else(|| panic!("{file} does not contain {name}"))
     };
     let factors = column("history.csv", "load_factor");
     let work = column("history.csv", "external_work");

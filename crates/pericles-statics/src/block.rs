@@ -1,4 +1,6 @@
 //! Inner products and linear combinations of blocks of vectors.
+//!
+//! Sums are not exact sums over processes: modes are computed for whole bodies only.
 
 use pericles::parallel::for_each_chunk;
 use rayon::prelude::*;

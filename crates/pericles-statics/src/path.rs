@@ -1,4 +1,7 @@
 //! Load steps: static states along a linear path of loads and supports, and the work done.
+//!
+//! Rigid bodies in contact are at their positions of intermediate times, and their work is integrated like that of
+//! the loads.
 
 use pericles::{Interrupt, Result, System};
 

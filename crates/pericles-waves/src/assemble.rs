@@ -79,7 +79,7 @@ pub fn assemble(composite: &CompositeBody<'_>, form: ForceForm) -> Result<Assemb
 fn convolution_is_fastest(body: &BondBody<'_>, features: Features) -> bool {
     /// Approximate cost of a bond in a list relative to a stencil.
     const GRID_GAIN: f64 = 5.0;
-    if ForceForm::Convolution.refusal(features).is_some() {
+    if ForceForm::Convolution.rejection(features).is_some() {
         return false;
     }
     // The cost estimate holds for free faces only.

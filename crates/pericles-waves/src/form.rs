@@ -143,8 +143,8 @@ impl ForceForm {
     }
 
     /// Returns the reason why the form does not represent a body with these features; `None` if it does.
-    pub fn refusal(self, features: Features) -> Option<&'static str> {
-        Limit::refusal(self.limits(), features)
+    pub fn rejection(self, features: Features) -> Option<&'static str> {
+        Limit::rejection(self.limits(), features)
     }
 
     /// Returns an error if the form does not represent a body with these features.

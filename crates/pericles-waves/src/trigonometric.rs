@@ -1,4 +1,7 @@
 //! Trigonometric integrators: the exact flow of the linear part.
+//!
+//! The step adds increments to u and v, with the acceleration that is already computed. Rigid motion and constant
+//! loads are exact, nothing is inverted, and no root of a matrix is needed, because all functions are entire in W².
 
 mod engine;
 

@@ -11,8 +11,8 @@
 //! angular momentum. All bonds of a step are corrected at once from the same velocities, so that the result does
 //! not depend on their order. The energy actually removed enters the energy balance, which closes to rounding.
 
-use crate::domain::{Domain, Field, Letter};
-use crate::operator::{CoarseBreak, each_once};
+use crate::domain::{Domain, Field};
+use crate::operator::{CoarseBreak, each_once, with_received};
 use crate::system::System;
 
 /// Largest number of passes over the broken bonds of a step. One is enough where few bonds share a point; where all
@@ -92,7 +92,7 @@ impl System {
             free[entry] * impulse[entry] * impulse[entry] / self.mass(entry % n)
         });
         let scale = separating_impulse(rate, compliance, missing);
-        // Impulses opposite to those of the bonds would not separate their ends.
+        // Impulses opposite to the impulses of the bonds would not separate their ends.
         if scale <= 0.0 || !scale.is_finite() {
             return 0.0;
         }
@@ -167,35 +167,12 @@ impl System {
     }
 }
 
-/// Returns the bonds that broke at own points, each once. A sweep over a part of the body records a bond at one end only,
-/// which sends it to the owner of the other end. All processes must call it together.
+/// Returns the bonds that broke at own points, each once. All processes must call it together.
 fn at_both_ends(domain: &Domain, breaks: Vec<CoarseBreak>, gains: bool) -> Vec<CoarseBreak> {
-    if !domain.is_divided() {
-        return breaks;
+    match domain.is_divided() {
+        true => each_once(with_received(domain, breaks, gains)),
+        false => breaks,
     }
-    let mut letters = Vec::new();
-    for bond in &breaks {
-        // Ghosts are counted after the own points.
-        let [own, other] = bond.points.map(|point| point as usize);
-        if other >= domain.owned_points() {
-            let [x, y, z] = bond.along;
-            letters.push(Letter {
-                from: own,
-                to: other,
-                numbers: [x, y, z, bond.missing],
-            });
-        }
-    }
-    let arrived = domain.deliver(letters).into_iter().map(|letter| {
-        let [x, y, z, missing] = letter.numbers;
-        CoarseBreak {
-            points: [letter.to as u32, letter.from as u32],
-            along: [-x, -y, -z],
-            missing,
-            gains,
-        }
-    });
-    each_once(breaks.into_iter().chain(arrived).collect())
 }
 
 /// Data of the ends of bonds, including those owned by other processes.

@@ -21,7 +21,7 @@ pub struct Configuration<'a> {
     pub forces: &'a dyn Force,
 }
 
-/// The end of a step as an interaction sees it: bonds have broken, and internal forces and loads are known.
+/// Data passed to an interaction at the end of a step: bonds have broken, and internal forces and loads are known.
 #[derive(Clone, Copy)]
 pub struct InteractionStep<'a> {
     /// The step.
@@ -47,7 +47,7 @@ impl<'a> InteractionStep<'a> {
 /// bodies that move on their own.
 ///
 /// Unlike a [`Force`] it may have bodies with a state, depend on velocities at the end of steps, and exchange work and
-/// impulse with the outside. Its sign convention is that of forces on the points. Like a force, it acts inside the
+/// impulse with the outside. Its sign convention is the same as for forces on the points. Like a force, it acts inside the
 /// evaluation of the acceleration, so that reactions of constrained points contain it.
 ///
 /// If the body is divided among processes, each evaluates the forces on its own points; bodies and energies are the same on all
@@ -82,7 +82,7 @@ pub trait Interaction: Any + Checkpointed + Send + Sync {
         0.0
     }
 
-    /// Ends a step: moves free bodies to its end, adds all force densities to `out`, which contains those of bonds and
+    /// Ends a step: moves free bodies to its end, adds all force densities to `out`, which contains the forces of bonds and
     /// loads, and returns work and impulse on points and bodies by the outside. Steps of length zero start a run.
     fn end_step(&mut self, end: &InteractionStep<'_>, out: &mut [f64]) -> Exchange {
         self.add_force(&end.configuration(), &PointSubset::All, out);

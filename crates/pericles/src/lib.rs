@@ -140,7 +140,7 @@
 //! **A force** in addition to the bonds (a foundation, another material model) implements
 //! [`Force`](operator::Force): force density on a subset of the points, energy, tangent, and an upper bound
 //! of its frequency. Optional features are reported by its [`Capabilities`](operator::Capabilities); a scheme
-//! that needs a missing one is refused with the reason. A force whose bonds depend on other bonds implements
+//! that needs a missing one is rejected with the reason. A force whose bonds depend on other bonds implements
 //! [`TwoPass`](operator::TwoPass).
 //!
 //! **An observer** implements [`Observer`](observe::Observer). It receives a [`Snapshot`](observe::Snapshot)

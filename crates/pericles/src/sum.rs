@@ -202,7 +202,7 @@ impl BinnedSum {
         numbers
     }
 
-    /// Returns the sum from its stored numbers; `None` if they are not those of a sum.
+    /// Returns the sum from its stored numbers; `None` if they do not form a sum.
     pub(crate) fn of_stored(numbers: &[u64]) -> Option<Self> {
         /// Far larger than the integers of any run and far below overflow.
         const MOST: u128 = 1 << 100;

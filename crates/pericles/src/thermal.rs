@@ -1,4 +1,6 @@
 //! Thermal expansion: temperatures of points and the thermal stretch of bonds.
+//!
+//! A heated bond is a longer bond, (1 + τ) ξ with the thermal stretch τ, in every pair law.
 
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -17,7 +19,7 @@ pub trait Temperature: fmt::Debug + Send + Sync {
         false
     }
 
-    /// Returns a number that changes when the temperature at a given time may have changed: that of a computed field
+    /// Returns a number that changes when the temperature at a given time may have changed: the temperature of a computed field
     /// depends on its last accepted state.
     fn revision(&self) -> u64 {
         0
@@ -99,7 +101,7 @@ impl ThermalExpansion {
         self.temperature.temperatures_into(t, out);
     }
 
-    /// Returns τ of all own points, followed by that of ghosts, at a time; zero at t = −∞, before the body is
+    /// Returns τ of all own points, followed by ghosts, at a time; zero at t = −∞, before the body is
     /// heated. All processes must call it together.
     pub fn stretches(&self, t: f64) -> Arc<Vec<f64>> {
         if t == f64::NEG_INFINITY {

@@ -493,7 +493,7 @@ fn softening_curves_depend_on_materials_and_strengths() {
 #[test]
 fn bodies_without_support_for_softening_are_errors() {
     let cloud = Arc::new(Grid::plate([8.0, 4.0], 1.0, 1.0).points().unwrap());
-    let refusal = |material: &BondMaterial, onset: f64, form: BondForm| {
+    let rejection = |material: &BondMaterial, onset: f64, form: BondForm| {
         let constants = material
             .constants(&cloud, StressState::PlaneStress)
             .unwrap();
@@ -507,11 +507,11 @@ fn bodies_without_support_for_softening_are_errors() {
         body.operator(form).err().map(|error| error.to_string())
     };
     let own = material(PairLaw::Linear);
-    assert_eq!(refusal(&own, 0.01, BondForm::Fastest), None);
-    let stencil = refusal(&own, 0.01, BondForm::Grid).unwrap();
+    assert_eq!(rejection(&own, 0.01, BondForm::Fastest), None);
+    let stencil = rejection(&own, 0.01, BondForm::Grid).unwrap();
     assert!(stencil.contains("largest stretch"), "{stencil}");
-    let onset = refusal(&own, 0.03, BondForm::List).unwrap();
+    let onset = rejection(&own, 0.03, BondForm::List).unwrap();
     assert!(onset.contains("below the critical stretch"), "{onset}");
-    let green = refusal(&material(PairLaw::GreenStrain), 0.01, BondForm::List).unwrap();
+    let green = rejection(&material(PairLaw::GreenStrain), 0.01, BondForm::List).unwrap();
     assert!(green.contains("bond-stretch"), "{green}");
 }

@@ -32,7 +32,7 @@ Examples:
   pericles check examples/fracture/branching.toml     size, memory, time step and run time, without running
   pericles run examples/fracture/branching.toml       results in ./branching, then ./branching-2, ...
   pericles run deck.toml --out results --force        results in ./results, replacing earlier ones
-  pericles run deck.toml --set time.end='\"20 us\"' --set material.Gc=100
+  pericles run deck.toml --set time.end=20us --set material.fracture_energy=100
   pericles run deck.toml --sweep body.spacing=1e-3,2e-3     one run per value, summarised in a table
   pericles resume branching                           continue after Ctrl-C, with identical results
   pericles dispersion deck.toml --measure             dispersion curves, computed and measured
@@ -117,7 +117,7 @@ Results are written to ./<deck's name>-dispersion, then -2, -3, ..., or to the f
     Dispersion(DispersionArgs),
     /// Compute the lowest natural frequencies and mode shapes of a deck's body
     #[command(after_help = "\
-The modes are those of the undeformed body with its constraints or, with --prestress, of the body under its static
+The modes belong to the undeformed body with its constraints or, with --prestress, of the body under its static
 loads. Results are written to ./<deck's name>-modes, then -2, -3, ..., or to the folder given by --out:
   modes.csv         frequency and residual of each mode
   modes.pvd         mode shapes for ParaView: the time value is the mode number
@@ -160,7 +160,7 @@ number of run.json such as audit.elastic_energy.
   pericles converge bar.toml --m 2,4,8 --horizon '40 mm' --scalar tip_u_x
   pericles converge bar.toml --dt '1 us,0.5 us,0.25 us' --scalar tip_u_x
 With --dx, the horizon is m times the spacing and both are refined (δ-convergence); with --horizon, the horizon is
-fixed and the spacing is horizon/m (m-convergence); with --dt, the grid is that of the deck. The observed order follows from the errors against --reference or,
+fixed and the spacing is horizon/m (m-convergence); with --dt, the grid is given by the deck. The observed order follows from the errors against --reference or,
 without it, from three successive results. Results are written to ./<deck's name>-converge, then -2, -3, ..., or to the
 folder given by --out: convergence.csv and .png, and a folder per run. `pericles resume` continues the runs.")]
     Converge(ConvergeArgs),

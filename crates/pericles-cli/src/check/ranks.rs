@@ -19,7 +19,7 @@ pub(super) fn forecasts(
 ) -> Result<Vec<Forecast>, CliError> {
     let forecast = |&processes: &u32| {
         let found = assembly.forecast(source.model(), processes as usize);
-        found.map_err(|error| source.refusal(error).into())
+        found.map_err(|error| source.rejection(error).into())
     };
     counts.iter().map(forecast).collect()
 }

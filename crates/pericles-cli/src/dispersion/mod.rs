@@ -35,7 +35,7 @@ pub(crate) fn dispersion(args: &DispersionArgs) -> Result<Exit, CliError> {
     let assembly = build(&deck, &readers())?;
     let model = &deck.model;
     let interior = assembly.interior(model);
-    let interior = interior.map_err(|error| deck.refusal(error))?;
+    let interior = interior.map_err(|error| deck.rejection(error))?;
     let (solid, title) = (interior.solid, model.title.as_deref());
     let material = interior.material;
     let study = Analysis::of(interior, assembly.dt, args)?;

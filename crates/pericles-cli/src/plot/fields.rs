@@ -37,7 +37,7 @@ pub(super) fn draw(
         ..readers()
     };
     let points = discretise(model, &resources);
-    let points = points.map_err(|error| source.refusal(error))?;
+    let points = points.map_err(|error| source.rejection(error))?;
     let (cloud, surface) = (points.cloud, points.surface);
     let overlay = overlay(model, &cloud, &points.sets).map(Arc::new);
     let body = Body {
@@ -94,7 +94,7 @@ pub(super) fn draw(
     Ok(stills.into_iter().flatten().chain(written).collect())
 }
 
-/// Returns the fields to render: those requested, else those of the deck's pictures, else the damage if there is any,
+/// Returns the fields to render: the requested ones, else the fields of the deck's pictures, else the damage if there is any,
 /// else the displacement.
 fn wanted(
     model: &Model,

@@ -23,7 +23,7 @@ impl Cores {
             .lines()
             .find_map(|line| line.strip_prefix("Cpus_allowed_list:"));
         let allowed = list.and_then(numbers).unwrap_or_else(|| {
-            // Where the system does not report the numbers, those of an unbound process.
+            // Where the system does not report the numbers, the numbers of an unbound process.
             (0..thread::available_parallelism().map_or(1, |count| count.get())).collect()
         });
         Self::shared(allowed, machine)

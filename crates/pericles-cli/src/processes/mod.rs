@@ -1,7 +1,7 @@
 //! Processes that share a run: started by `mpirun` or `srun`, connected by MPI.
 //!
 //! A run is divided among all processes that a launcher has started; the first one prints. Commands that cannot be divided, and
-//! programs built without MPI, refuse to run as several copies, which would write the same files.
+//! programs built without MPI, do not run as several copies, which would write the same files.
 
 #[cfg(not(feature = "mpi"))]
 mod absent;
@@ -210,7 +210,7 @@ fn reported(outcome: Result<Exit, CliError>) -> Exit {
 }
 
 /// Reports an error of processes that are not connected, once, and returns the exit status.
-pub(crate) fn refused(error: &CliError) -> u8 {
+pub(crate) fn rejected(error: &CliError) -> u8 {
     /// Launchers end all processes when one fails; the first one needs time to print.
     const PAUSE: Duration = Duration::from_secs(1);
     match Launch::of_process() {

@@ -65,7 +65,7 @@ impl Impactor {
         blocks.collect::<Vec<_>>().concat()
     }
 
-    /// Position and orientation at time t: the prescribed one, or that of the last accepted state.
+    /// Position and orientation at time t: the prescribed one, or the position of the last accepted state.
     fn pose_at(&self, t: f64) -> Pose {
         match &self.course {
             None => self.state.pose(),
@@ -117,7 +117,7 @@ impl Impactor {
         let pressure = (touch.force - damper * dot(relative, touch.normal)).max(0.0);
         let mut drag = scaled(pressure - touch.force, touch.normal);
         if let Some(friction) = law.friction {
-            // The tangential velocity of the next step if nothing held the point back.
+            // The tangential velocity of the next step without friction.
             let free = plus(
                 relative,
                 step.dt / self.touching.bodies.density.at(i),
@@ -153,7 +153,7 @@ impl Impactor {
     }
 
     /// Returns the sums of vectors over the points in contact of all processes: exact ones, so that every process moves the
-    /// body alike, for every division. All processes must call it together.
+    /// body identically, for every division. All processes must call it together.
     fn totals<const N: usize>(&self, vectors: &[[V3; N]]) -> [V3; N] {
         let domain = self.touching.cloud.domain();
         std::array::from_fn(|k| {
@@ -250,7 +250,7 @@ impl Interaction for Impactor {
         // The same on all processes, also on one without points.
         let with_drag = !self.touching.law.is_conservative();
         let mut drag = vec![0.0; self.drag.len()];
-        // Force and moment on the points, and those of dampers and friction.
+        // Force and moment on the points, and the force and moment of dampers and friction.
         let mut acting = Vec::with_capacity(touches.len());
         for touch in &touches {
             let i = touch.point;

@@ -15,7 +15,7 @@ pub enum Inertia {
     Mass {
         /// Mass, kg.
         mass: f64,
-        /// Inertia tensor about the centre in the frame of the shape, kg m²; that of a homogeneous body if missing.
+        /// Inertia tensor about the centre in the frame of the shape, kg m²; if missing, the tensor of a homogeneous body.
         inertia: Option<[[f64; 3]; 3]>,
     },
 }

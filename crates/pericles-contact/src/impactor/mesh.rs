@@ -10,7 +10,7 @@ use crate::vector::{V3, cross, dot, minus, norm, plus, scaled};
 
 /// A body bounded by triangles whose normals point outwards.
 ///
-/// The distance is that to the nearest triangle, and its sign is that of the angle-weighted normal of the nearest
+/// The distance is measured to the nearest triangle, and its sign follows from the angle-weighted normal of the nearest
 /// feature: the normal of a face, the sum of both at an edge, the sum weighted by angles at a vertex (Bærentzen & Aanæs
 /// 2005). Along concave edges the gradient of the distance jumps.
 #[derive(Debug, Clone)]

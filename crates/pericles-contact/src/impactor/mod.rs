@@ -1,4 +1,9 @@
 //! Rigid bodies that touch the points.
+//!
+//! Every process has a copy of each rigid body. Forces and moments are exact sums over the points of all processes,
+//! so that all copies move identically. Moments about the centre use the positions of the points, not the nearest
+//! positions on the surface of the body: the energy is then invariant under rotations, and angular momentum is
+//! conserved to rounding.
 
 mod contact;
 mod mass;
@@ -111,13 +116,13 @@ impl Impactor {
         let name = name.into();
         let dimension = cloud.dimension();
         check_shape(&name, &shape, dimension)?;
-        let refuse = |reason: &str| ContactError::Impactor {
+        let reject = |reason: &str| ContactError::Impactor {
             name: name.clone(),
             reason: reason.to_owned(),
         };
         if pose.error() > ROUNDING || !pose.centre.iter().all(|x| x.is_finite()) {
             return Err(
-                refuse("its pose is not a position and a rotation (an orthogonal matrix with determinant 1)").into(),
+                reject("its pose is not a position and a rotation (an orthogonal matrix with determinant 1)").into(),
             );
         }
         let shape = shape.extended(dimension);
@@ -138,7 +143,7 @@ impl Impactor {
                 function,
             } => {
                 if off_plane(amplitude) {
-                    return Err(refuse("it moves along an axis that the points do not have").into());
+                    return Err(reject("it moves along an axis that the points do not have").into());
                 }
                 let start = pose.centre;
                 let along = Course {
@@ -162,14 +167,14 @@ impl Impactor {
                     _ => false,
                 };
                 if off_plane(velocity) || turns {
-                    return Err(refuse(
+                    return Err(reject(
                         "it moves along or turns about an axis that the points do not have",
                     )
                     .into());
                 }
                 let solid = mass::solid(&shape, dimension, cloud.section());
                 let found = inertia.of(solid, dimension).ok_or_else(|| {
-                    refuse(
+                    reject(
                         "it moves freely, but its mass and inertia are not positive and finite; allowed: a density or a \
                          mass above 0 for a shape with a volume, or a prescribed motion",
                     )
@@ -209,7 +214,7 @@ impl Impactor {
         Ok(impactor)
     }
 
-    /// Refuses bodies that contain points deeper than half of their cell at the start. All processes must call it together.
+    /// Rejects bodies that contain points deeper than half of their cell at the start. All processes must call it together.
     fn check_start(&self) -> Result<()> {
         let none = vec![0.0; self.touching.cloud.dimension() * self.touching.cloud.len()];
         let found = self.touches(&self.state.pose(), &none);

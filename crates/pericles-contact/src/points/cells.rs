@@ -109,7 +109,7 @@ impl Cells {
         }
     }
 
-    /// A coordinate of a cell and those of its neighbours.
+    /// A coordinate of a cell and the coordinates of its neighbours.
     fn around(&self, c: usize, x: usize) -> [Option<usize>; 3] {
         let count = self.counts[c];
         if c >= self.dimension {
@@ -127,7 +127,7 @@ impl Cells {
     }
 }
 
-/// Number of cells in each direction: those of the box of all points and one beyond, with a limit on their product.
+/// Number of cells in each direction: in the box of all points and one beyond, with a limit on their product.
 fn counts(low: V3, high: V3, dimension: usize, side: f64, points: usize) -> [usize; 3] {
     const LEAST: usize = 3;
     let most = 2 * points + 64;

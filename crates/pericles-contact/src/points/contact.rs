@@ -118,7 +118,7 @@ impl Touching {
     }
 }
 
-/// The points and pairs of an evaluation: own points, and those of other processes near them.
+/// The points and pairs of an evaluation: own points, and points of other processes near them.
 #[derive(Clone, Copy)]
 struct Evaluation<'a> {
     list: &'a Candidates,
@@ -198,7 +198,7 @@ fn each<T: Send>(points: &[u32], of_point: impl Fn(usize) -> T + Sync + Send, in
     points.map(|&i| of_point(i as usize)).collect_into_vec(into);
 }
 
-/// Returns those of the given points, in ascending order, that belong to a task, and the place of the first.
+/// Returns the given points, in ascending order, that belong to a task, and the place of the first.
 fn within(points: &[u32], task: usize) -> (usize, &[u32]) {
     let place = |point: usize| points.partition_point(|&i| (i as usize) < point);
     let first = place(task * TASK);

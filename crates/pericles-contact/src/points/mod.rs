@@ -1,4 +1,15 @@
 //! Contact between points.
+//!
+//! A pair of points without an intact bond can touch. The contact distance is at most the distance in the reference
+//! configuration, so that the force is zero when a bond breaks in tension, and no energy appears.
+//!
+//! The search is repeated when points have moved relative to each other by more than the skin; only rows of blocks in
+//! which bonds broke change in between. Pieces that are far apart may approach each other without a new search until
+//! then.
+//!
+//! The energy that dampers and friction dissipate is minus the mean of their forces at both ends of a step times the
+//! relative displacement, which is the work that velocity Verlet does. The stored energy differs from this work in
+//! the steps in which a contact begins or ends, by terms of order dt².
 
 mod cells;
 mod contact;
@@ -25,7 +36,7 @@ const SKIN: f64 = 0.3;
 
 /// Contact between the points of a body: pieces that meet, fragments that collide, faces of cracks that close.
 ///
-/// The law is that of [`ContactLaw`]. Each end of a pair computes its force from the same numbers, so that forces are
+/// The law is [`ContactLaw`]. Each end of a pair computes its force from the same numbers, so that forces are
 /// equal and opposite, and adds the pairs in ascending order, so that results do not depend on threads or on the search.
 pub struct PointContact {
     touching: Touching,
@@ -76,7 +87,7 @@ impl PointContact {
     /// Makes the contact between the points of a body. If they are divided among processes, all of them must call it together.
     ///
     /// # Errors
-    /// Those of [`ContactLaw::check`]; numbers of points that are not positive or not one per point.
+    /// The errors of [`ContactLaw::check`]; numbers of points that are not positive or not one per point.
     pub fn new(cloud: Arc<PointCloud>, law: ContactLaw, bodies: ContactBodies) -> Result<Self> {
         let touching = Touching::new(cloud, law, bodies)?;
         let entries = match law.is_conservative() {

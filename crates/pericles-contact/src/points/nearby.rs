@@ -1,4 +1,9 @@
 //! Points of other processes that own points may touch.
+//!
+//! The search also finds the points of other processes within the contact distance and the skin of the box of own
+//! points, and makes a second domain of them: the loops see a body of own points and these ghosts. All processes
+//! decide together whether a search is due, by the ranges of their displacements. Bonds lead to ghosts of another
+//! domain, so that points are compared by their numbers in the whole body.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -10,9 +15,9 @@ use super::span::Span;
 use crate::bodies::Touching;
 use crate::vector::V3;
 
-/// The points that take part in the contact of a process: its own ones, followed by those of other processes near them.
+/// The points that take part in the contact of a process: its own ones, followed by points of other processes near them.
 ///
-/// Any two points may touch, so that these ghosts are others than those of bonds, and change with every search.
+/// Any two points may touch, so that these ghosts differ from the ghosts of bonds, and change with every search.
 #[derive(Debug, Clone)]
 pub(super) struct Nearby {
     /// Numbers of all these points, and the exchange of their values.
@@ -56,7 +61,7 @@ impl Nearby {
         self.domain.owned_points()
     }
 
-    /// Returns whether own points are numbered as in the whole body, so that their order is that of their numbers.
+    /// Returns whether own points are numbered as in the whole body, so that they are in the order of their numbers.
     pub(super) fn are_own(&self) -> bool {
         self.touching.is_none()
     }
@@ -67,7 +72,7 @@ impl Nearby {
         self.domain.number(point as usize)
     }
 
-    /// Returns the data of all points, of those of own points.
+    /// Returns the data of all points, from the data of own points.
     pub(super) fn touching<'a>(&'a self, own: &'a Touching) -> &'a Touching {
         self.touching.as_deref().unwrap_or(own)
     }

@@ -22,7 +22,7 @@ use crate::vector::{dot, minus};
 /// points.
 #[derive(Debug, Clone)]
 pub(super) struct Candidates {
-    /// Own points, and those of other processes near them.
+    /// Own points, and points of other processes near them.
     nearby: Nearby,
     /// First entry of each row.
     starts: Vec<usize>,
@@ -119,7 +119,7 @@ impl Candidates {
         self.ranges.are_kept(u, domain)
     }
 
-    /// The points in the rows: own points and those of other processes near them.
+    /// The points in the rows: own points and points of other processes near them.
     pub(super) fn nearby(&self) -> &Nearby {
         &self.nearby
     }

@@ -206,7 +206,7 @@ fn a_mesh_pressed_into_a_divided_block_does_the_work_of_one_process() {
 }
 
 #[test]
-fn all_processes_refuse_an_impactor_that_contains_points() {
+fn all_processes_reject_an_impactor_that_contains_points() {
     let whole = block([9.0, 8.0, 5.0]);
     let reasons = Threads::run(3, |comm| {
         let cloud = part(&whole, comm);

@@ -12,7 +12,7 @@ use pericles_contact::{
 
 use crate::setup::{ELASTIC, bars, steady};
 
-/// A ball of radius 3 and mass 40 that falls on a free block of 8 × 8 × 5 cells. The expected values are those of a horizon
+/// A ball of radius 3 and mass 40 that falls on a free block of 8 × 8 × 5 cells. The expected values belong to a horizon
 /// of 3 (1 + 1e-6) with the micromodulus of a horizon of 3: a second independent program gives all their digits so, and
 /// ours for a horizon of exactly 3, which differ by up to 4e-6.
 fn ball_on_block(steps: u64) -> Simulation {
@@ -254,12 +254,12 @@ fn runge_kutta_keeps_the_energy_of_elastic_contact() {
 }
 
 #[test]
-fn schemes_refuse_what_they_cannot_integrate() {
+fn schemes_reject_what_they_cannot_integrate() {
     let damped = ContactLaw {
         damping: 0.3,
         ..ELASTIC
     };
-    let refused = |body: crate::setup::Bars, what: &str| {
+    let rejected = |body: crate::setup::Bars, what: &str| {
         let scheme = RungeKutta::new(&Tableau::rk4(), &body.system);
         let found = pericles::check_compatibility(&body.system, &scheme, 10);
         let text = found.unwrap_err().to_string();
@@ -267,7 +267,7 @@ fn schemes_refuse_what_they_cannot_integrate() {
         let fine = pericles::check_compatibility(&body.system, &VelocityVerlet, 10);
         assert!(fine.is_ok());
     };
-    refused(bars(4, &[4, 4], 0.1).touching(damped), "damp");
+    rejected(bars(4, &[4, 4], 0.1).touching(damped), "damp");
     let free = ImpactorMotion::Free {
         inertia: Inertia::Mass {
             mass: 1.0,
@@ -289,11 +289,11 @@ fn schemes_refuse_what_they_cannot_integrate() {
     body.system
         .add_interaction(Box::new(ball.unwrap()))
         .unwrap();
-    refused(body, "freely");
+    rejected(body, "freely");
 }
 
 #[test]
-fn invalid_bodies_and_laws_are_refused() {
+fn invalid_bodies_and_laws_are_rejected() {
     let body = bars(4, &[4], 0.1);
     let law = |closing: f64| ContactLaw { closing, ..ELASTIC };
     let contact = PointContact::new(body.cloud.clone(), law(1.2), body.bodies.clone());

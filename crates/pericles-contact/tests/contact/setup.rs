@@ -12,7 +12,7 @@ use pericles_contact::{
 
 use crate::bonded::Bonded;
 
-/// A law whose frequency is that of the default stiffness.
+/// A law with the frequency of the default stiffness.
 pub const ELASTIC: ContactLaw = ContactLaw {
     pairs: pericles_contact::ContactPairs::Unbonded,
     law: pericles_contact::PairLaw::Linear,
@@ -63,7 +63,7 @@ pub fn bars(cells: usize, counts: &[usize], gap: f64) -> Bars {
     }
     let n = x.len();
     let cloud = Arc::new(PointCloud::new(1, x, vec![dx; n], 1.0).unwrap());
-    // E of the lattice is 6 c dx², that of the continuum ½ c δ² = 4.5 c dx².
+    // E of the lattice is 6 c dx², of the continuum ½ c δ² = 4.5 c dx².
     let mut material =
         BondMaterial::new(ElasticModulus::Young(0.75), 1.0, 3.0 * dx).with_law(PairLaw::Linear);
     material.volume_correction = VolumeCorrection::None;

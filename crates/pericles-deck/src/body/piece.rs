@@ -10,7 +10,7 @@ use crate::set::bad_name;
 /// Name of the piece that `[body]` describes, unless it has another one.
 const MAIN: &str = "main";
 
-/// The pieces of a body other than that of `[body]`, as far as they could be read.
+/// The pieces of a body after the first one, `[body]`, as far as they could be read.
 pub(super) struct Pieces<'a> {
     /// Name of the piece of `[body]`.
     main: Option<String>,
@@ -25,7 +25,7 @@ struct PieceRead<'a> {
     rest: Option<Rest>,
 }
 
-/// The keys of a piece other than those of its shape.
+/// The keys of a piece that do not belong to its shape.
 struct Rest {
     name: String,
     origin: [f64; 3],
@@ -104,7 +104,7 @@ fn one<'a>(table: Table<'a>, shape: impl Fn(Table<'a>) -> BodyRead) -> PieceRead
     }
 }
 
-/// Reads the name of a piece, which is that of a set.
+/// Reads the name of a piece, also the name of a set.
 fn name(item: &Item<'_>) -> Option<String> {
     let name = item.text()?;
     match bad_name(&name) {
@@ -155,7 +155,7 @@ pub(crate) fn rotation(
 }
 
 impl Pieces<'_> {
-    /// Returns the names of all pieces, that of `[body]` first; empty for a body of one piece.
+    /// Returns the names of all pieces, `[body]` first; empty for a body of one piece.
     pub(super) fn names(&self) -> Vec<String> {
         let others = self.others.iter();
         let others = others.filter_map(|piece| piece.name.as_ref()?.word());
@@ -232,10 +232,10 @@ impl PieceRead<'_> {
             item.out_of_range("a piece with the `plane`, `thickness` and `area` of [body]");
             return false;
         }
-        let refused = |shape: &SolidShape| {
+        let rejected = |shape: &SolidShape| {
             shape.is_periodic() || shape.has_gauss_nodes() || shape.is_refined()
         };
-        if refused(own) || refused(whole) {
+        if rejected(own) || rejected(whole) {
             item.out_of_range(
                 "pieces that are not periodic, have one point per cell and one cell size each",
             );

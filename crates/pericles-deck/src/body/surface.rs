@@ -155,7 +155,7 @@ impl SurfaceFormula {
     }
 
     /// Returns the mean distance of vertices, m. Available memory is unknown here, so that large surfaces are
-    /// not built: their area is that of the smooth surface, which differs by less than 1e-4.
+    /// not built: the area of the smooth surface is used, which differs by less than 1e-4.
     ///
     /// # Errors
     /// Errors of the constructors of [`Surface`], unless it is large.
@@ -167,7 +167,7 @@ impl SurfaceFormula {
         /// The finest icosphere.
         const FINEST: u32 = 10;
         let area = match *self {
-            // The constructor refuses surfaces that are too fine.
+            // The constructor rejects surfaces that are too fine.
             Self::Icosphere { level, .. } | Self::Ellipsoid { level, .. } if level > FINEST => {
                 self.made()?.area()
             }

@@ -24,7 +24,7 @@ pub enum SolidShape {
     Mesh(MeshFile),
     /// Cells in a closed surface or an outline.
     Filled(FilledShape),
-    /// Several pieces that no bond joins, at least one; the first one is that of `[body]`.
+    /// Several pieces that no bond joins, at least one; the first one is described by `[body]`.
     Pieces(Vec<Piece>),
 }
 
@@ -125,7 +125,7 @@ impl SolidShape {
         }
     }
 
-    /// Returns the spacing, m: the largest one of a grid, that of the first piece; none for a mesh with automatic
+    /// Returns the spacing, m: the largest one of a grid, of several pieces the spacing of the first; none for a mesh with automatic
     /// spacing.
     pub fn spacing(&self) -> Option<f64> {
         match self {
@@ -196,7 +196,7 @@ impl SolidShape {
         }
     }
 
-    /// Returns the spacing along each axis, m, of a box with anisotropic spacing, that of the first piece.
+    /// Returns the spacing along each axis, m, of a box with anisotropic spacing, of several pieces the spacing of the first.
     pub fn rectangular(&self) -> Option<&[f64]> {
         match self {
             Self::Pieces(_) => self.first()?.rectangular(),
@@ -209,7 +209,7 @@ impl SolidShape {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Piece {
-    /// Name, which is also that of the set of its points.
+    /// Name, also the name of the set of its points.
     pub name: String,
     /// Source of its points.
     pub shape: SolidShape,
@@ -219,10 +219,10 @@ pub struct Piece {
     /// Rotation, applied to the points at their positions.
     #[serde(default)]
     pub rotation: Option<Rotation>,
-    /// Name of its material; that of the body if none. Assignments to sets of its points replace it.
+    /// Name of its material; the material of the body if none. Assignments to sets of its points replace it.
     #[serde(default)]
     pub material: Option<String>,
-    /// Initial velocity, m/s, to which those of `[[initial]]` are added.
+    /// Initial velocity, m/s, to which the velocities of `[[initial]]` are added.
     #[serde(default)]
     pub velocity: Option<[f64; 3]>,
 }
@@ -291,7 +291,7 @@ pub(crate) struct BodyRead {
 }
 
 impl Default for BodyRead {
-    /// A body of which nothing is known.
+    /// Placeholder for a body that could not be read.
     fn default() -> Self {
         Self {
             shape: None,

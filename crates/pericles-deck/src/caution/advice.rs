@@ -37,7 +37,7 @@ impl Subject for Caution {
                 "use names of at most 32 bytes (arrays `Set_NAME`: 28), or another format"
             }
             // The message contains the advice.
-            Self::Mesh { .. } | Self::DoubtfulHeat { .. } => return None,
+            Self::Mesh { .. } | Self::ImplausibleHeat { .. } => return None,
             Self::FilledVolume { .. } => {
                 "use a smaller spacing or cells = \"partial\"; where surfaces overlap, the enclosed volume counts twice but is filled once"
             }
@@ -165,7 +165,7 @@ impl Subject for Caution {
             Self::TinySpacing { .. } => "small spacing",
             Self::ClosePoints { .. } => "close points",
             Self::UnusedCoordinate { .. } => "not used",
-            Self::DoubtfulHeat { .. } => "unlikely",
+            Self::ImplausibleHeat { .. } => "unlikely",
             Self::LongExodusNames { .. } => "name shortened",
             Self::IdleHole | Self::NothingBreaks { .. } | Self::NothingDissipates { .. } => {
                 "no effect"

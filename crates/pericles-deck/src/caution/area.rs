@@ -2,10 +2,10 @@
 
 use crate::wording::short;
 
-/// Reasons why the projected area of a set may not be that of the intended face.
+/// Reasons why the projected area of a set may differ from the area of the intended face.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub enum AreaDoubt {
+pub enum AreaCaution {
     /// The set is thinner along another axis.
     Thinner {
         /// The axis of projection.
@@ -26,10 +26,10 @@ pub enum AreaDoubt {
     },
 }
 
-pub(super) fn doubtful_area(doubt: &AreaDoubt) -> String {
+pub(super) fn area_caution(caution: &AreaCaution) -> String {
     let name = |axis: &usize| ['x', 'y', 'z'][*axis];
-    match doubt {
-        AreaDoubt::Thinner {
+    match caution {
+        AreaCaution::Thinner {
             axis,
             area,
             other,
@@ -41,7 +41,7 @@ pub(super) fn doubtful_area(doubt: &AreaDoubt) -> String {
             name(other),
             square_millimetres(*face)
         ),
-        AreaDoubt::Parts { axis, area } => format!(
+        AreaCaution::Parts { axis, area } => format!(
             "the set of this traction is not a single layer on one face: the force on {}, the area of the set projected along {}, is distributed over all its points",
             square_millimetres(*area),
             name(axis)

@@ -7,10 +7,10 @@ mod contact;
 use pericles::units::{precise, quantity, significant};
 use pericles_manifold::surface::SurfaceCaution;
 
-pub use area::AreaDoubt;
+pub use area::AreaCaution;
 pub use contact::ContactCaution;
 
-use area::doubtful_area;
+use area::area_caution;
 
 use crate::wording::{further, percent, prefixed, reach, short, shortened, spot};
 
@@ -157,7 +157,7 @@ pub enum Caution {
     },
     /// An unlikely temperature or coefficient of thermal expansion.
     #[error("{problem}")]
-    DoubtfulHeat {
+    ImplausibleHeat {
         /// Description, with advice.
         problem: String,
     },
@@ -220,8 +220,8 @@ pub enum Caution {
         reach: usize,
     },
     /// A traction on a set that is not a single layer on one face.
-    #[error("{}", doubtful_area(.0))]
-    LoadedArea(AreaDoubt),
+    #[error("{}", area_caution(.0))]
+    LoadedArea(AreaCaution),
     /// A load on constrained points.
     #[error("{} constrained along it: there the supports take the load", share(*held, *points))]
     LoadOnHeld {
@@ -352,7 +352,7 @@ pub enum Caution {
         share: f64,
         /// Relative deviation of their speed.
         tolerance: f64,
-        /// Whether the reference is the speed in the nonlocal continuum; otherwise that of long waves.
+        /// Whether the reference is the speed in the nonlocal continuum; otherwise the speed of long waves.
         nonlocal: bool,
         /// The shortest period that the grid resolves, s.
         period: f64,

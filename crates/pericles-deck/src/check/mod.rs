@@ -13,7 +13,7 @@ use crate::remark::BuildError;
 use crate::set::Members;
 
 impl Model {
-    /// Refuses numbers out of range. The ranges are those of decks, so that a model read from a deck always passes.
+    /// Rejects numbers out of range. Decks have the same ranges, so that a model read from a deck always passes.
     ///
     /// # Errors
     /// All numbers out of range, with their keys.

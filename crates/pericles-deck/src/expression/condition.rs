@@ -52,7 +52,7 @@ impl Condition {
     /// Parses a condition on the variables named by `allowed`.
     pub(crate) fn parse(text: &str, allowed: &[&str]) -> Result<Self, Malformed> {
         if text.len() > LONGEST {
-            return refuse(format!(
+            return reject(format!(
                 "it has {} characters; allowed: at most {LONGEST}",
                 text.len()
             ));
@@ -78,11 +78,11 @@ impl Condition {
 impl Test {
     fn parse(text: &str, allowed: &[&str], depth: usize) -> Result<Self, Malformed> {
         if depth > DEEPEST {
-            return refuse(format!("it is nested more than {DEEPEST} deep"));
+            return reject(format!("it is nested more than {DEEPEST} deep"));
         }
         let text = text.trim();
         if text.is_empty() {
-            return refuse("it has an empty part".into());
+            return reject("it has an empty part".into());
         }
         for (sign, join) in [("||", Self::Any as fn(_) -> _), ("&&", Self::Every)] {
             let (parts, _) = split(text, &[sign])?;
@@ -105,7 +105,7 @@ impl Test {
                 .and_then(|rest| rest.strip_suffix(')'))
             {
                 Some(inner) => Self::parse(inner, allowed, depth + 1),
-                None => refuse(format!(
+                None => reject(format!(
                     "`{text}` is not a comparison; allowed: comparisons (< <= > >= == !=) such as x > 0.1, combined with && (and), || (or), ! (not)"
                 )),
             };
@@ -147,7 +147,7 @@ impl Test {
     }
 }
 
-fn refuse<T>(reason: String) -> Result<T, Malformed> {
+fn reject<T>(reason: String) -> Result<T, Malformed> {
     Err(Malformed { reason })
 }
 
@@ -162,7 +162,7 @@ fn split<'t>(text: &'t str, signs: &[&str]) -> Result<(Vec<&'t str>, Vec<usize>)
         match character {
             '(' => depth += 1,
             ')' if depth == 0 => {
-                return refuse("a closing parenthesis has no opening one".into());
+                return reject("a closing parenthesis has no opening one".into());
             }
             ')' => depth -= 1,
             _ if depth == 0 => {
@@ -178,7 +178,7 @@ fn split<'t>(text: &'t str, signs: &[&str]) -> Result<(Vec<&'t str>, Vec<usize>)
         }
     }
     if depth > 0 {
-        return refuse("a parenthesis is not closed".into());
+        return reject("a parenthesis is not closed".into());
     }
     parts.push(&text[from..]);
     Ok((parts, found))
@@ -244,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn invalid_conditions_are_refused() {
+    fn invalid_conditions_are_rejected() {
         for (text, says) in [
             ("x + 1", "is not a comparison"),
             ("(x > 1", "not closed"),

@@ -22,14 +22,14 @@ enum Token<'a> {
 /// Returns the expression with `(base)^(exponent)` for every power and `(-(…))` for every sign.
 pub(super) fn group_powers(text: &str, variables: &[&str]) -> Result<String, Malformed> {
     if text.len() > LONGEST {
-        return refuse(format!(
+        return reject(format!(
             "it has {} characters; allowed: at most {LONGEST}",
             text.len()
         ));
     }
     let tokens = tokens(text)?;
     if tokens.is_empty() {
-        return refuse("it is empty".into());
+        return reject("it is empty".into());
     }
     let mut reader = Reader {
         tokens: &tokens,
@@ -39,12 +39,12 @@ pub(super) fn group_powers(text: &str, variables: &[&str]) -> Result<String, Mal
     let grouped = reader.sum()?;
     match reader.tokens.first() {
         None => Ok(grouped),
-        Some(Token::Sign(')')) => refuse("a closing parenthesis has no opening one".into()),
-        Some(token) => refuse(format!("an operator is missing before {}", shown(token))),
+        Some(Token::Sign(')')) => reject("a closing parenthesis has no opening one".into()),
+        Some(token) => reject(format!("an operator is missing before {}", shown(token))),
     }
 }
 
-fn refuse<T>(reason: String) -> Result<T, Malformed> {
+fn reject<T>(reason: String) -> Result<T, Malformed> {
     Err(Malformed { reason })
 }
 
@@ -66,7 +66,7 @@ fn tokens(text: &str) -> Result<Vec<Token<'_>>, Malformed> {
                 .unwrap_or(rest.len()),
             '+' | '-' | '*' | '/' | '^' | '(' | ')' => 1,
             other => {
-                return refuse(format!(
+                return reject(format!(
                     "it contains `{other}`; allowed: numbers, names, + - * / ^ and parentheses"
                 ));
             }
@@ -75,7 +75,7 @@ fn tokens(text: &str) -> Result<Vec<Token<'_>>, Malformed> {
         tokens.push(match first {
             '0'..='9' | '.' => match token.parse::<f64>() {
                 Ok(value) if value.is_finite() => Token::Number(token, value),
-                _ => return refuse(format!("`{token}` is not a number")),
+                _ => return reject(format!("`{token}` is not a number")),
             },
             c if c.is_ascii_alphabetic() => Token::Name(token),
             sign => Token::Sign(sign),
@@ -165,7 +165,7 @@ impl Reader<'_> {
 
     fn value(&mut self) -> Result<String, Malformed> {
         let Some((token, rest)) = self.tokens.split_first() else {
-            return refuse("it ends where a value is expected".into());
+            return reject("it ends where a value is expected".into());
         };
         self.tokens = rest;
         match token {
@@ -173,7 +173,7 @@ impl Reader<'_> {
             Token::Number(_, value) => Ok(format!("{value}")),
             Token::Name(name) => self.named(name),
             Token::Sign('(') => self.parenthesis(),
-            Token::Sign(sign) => refuse(format!("a value is missing before `{sign}`")),
+            Token::Sign(sign) => reject(format!("a value is missing before `{sign}`")),
         }
     }
 
@@ -184,8 +184,8 @@ impl Reader<'_> {
                 self.tokens = &self.tokens[1..];
                 Ok(format!("({inner})"))
             }
-            Some(token) => refuse(format!("an operator is missing before {}", shown(token))),
-            None => refuse("a parenthesis is not closed".into()),
+            Some(token) => reject(format!("an operator is missing before {}", shown(token))),
+            None => reject("a parenthesis is not closed".into()),
         }
     }
 
@@ -193,7 +193,7 @@ impl Reader<'_> {
         if FUNCTIONS.contains(&name) {
             return match self.take_sign(&['(']) {
                 Some(_) => Ok(format!("{name}{}", self.parenthesis()?)),
-                None => refuse(format!(
+                None => reject(format!(
                     "the function `{name}` needs its argument in parentheses"
                 )),
             };
@@ -211,7 +211,7 @@ impl Reader<'_> {
             [] => "none".to_owned(),
             names => names.join(", "),
         };
-        refuse(format!(
+        reject(format!(
             "unknown name `{name}`{hint} Variables: {variables}; constants: {}; functions: {}",
             CONSTANTS.join(", "),
             FUNCTIONS.join(", ")
@@ -223,7 +223,7 @@ impl Reader<'_> {
         read: impl FnOnce(&mut Self) -> Result<String, Malformed>,
     ) -> Result<String, Malformed> {
         if self.depth == DEEPEST {
-            return refuse(format!("it is nested more than {DEEPEST} deep"));
+            return reject(format!("it is nested more than {DEEPEST} deep"));
         }
         self.depth += 1;
         let read = read(self);

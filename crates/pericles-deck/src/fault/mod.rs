@@ -33,17 +33,17 @@ pub enum Fault {
         allowed: Vec<String>,
     },
     /// A missing required key.
-    #[error("{table} lacks `{key}`, which is required")]
+    #[error("{table} requires `{key}`")]
     MissingKey {
         /// The key.
         key: String,
         /// Other names of the key.
         synonyms: Vec<String>,
-        /// The table that lacks it.
+        /// The table that requires it.
         table: String,
     },
     /// Several alternative keys, none of which is given.
-    #[error("{table} lacks one of {}", names(allowed))]
+    #[error("{table} requires one of {}", names(allowed))]
     MissingChoice {
         /// The table.
         table: String,
@@ -486,7 +486,7 @@ pub enum Fault {
 }
 
 impl Fault {
-    /// Returns whether the model is refused because it exceeds the memory limit.
+    /// Returns whether the model is rejected because it exceeds the memory limit.
     pub fn is_too_large(&self) -> bool {
         matches!(
             self,

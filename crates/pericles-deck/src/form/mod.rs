@@ -1,4 +1,4 @@
-//! Serialised form of the engine's types in a model. Keys and words are those of decks where they exist there.
+//! Serialised form of the engine's types in a model. Keys and words are taken from decks where they exist there.
 //!
 //! A field with `#[serde(with = "crate::form")]` has a type that is [`Described`], or an option, list, box or
 //! pair of such types.

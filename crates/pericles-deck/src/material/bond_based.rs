@@ -72,7 +72,7 @@ pub(super) fn read(
         sums: Sums::of(influence.as_ref(), form, body),
         fracture: fracture_calibration,
     };
-    rules.judge_volume_correction(&table);
+    rules.check_volume_correction(&table);
     let modulus = rules.modulus(&table, modulus);
     let fracture = rules.fracture(fracture);
     table.finish();

@@ -12,7 +12,7 @@ use crate::vocabulary::{HORIZONS, OWN_CONSTANTS};
 
 /// The materials of a deck.
 pub(crate) struct Materials {
-    /// Names, that of the body's material first, including materials that could not be read.
+    /// Names, the body's material first, including materials that could not be read.
     pub(crate) names: Vec<String>,
     /// The body's material: `[material]` if it has constants of its own, otherwise `[materials.default]`,
     /// otherwise the first of `[materials]`.

@@ -38,7 +38,7 @@ pub enum SofteningWord {
 const KNEE: [f64; 2] = [1.0 / 3.0, 2.0 / 9.0];
 
 impl BondSoftening {
-    /// The softening as the engine knows it.
+    /// Converts to the engine's type.
     pub fn softening(&self) -> Softening {
         let law = match self.law {
             SofteningWord::Linear => SofteningLaw::Linear,
@@ -55,7 +55,7 @@ impl BondSoftening {
     }
 }
 
-/// Refuses the key in the table of a material whose bonds cannot soften.
+/// Rejects the key in the table of a material whose bonds cannot soften.
 pub(super) fn forbid_softening(table: &Table<'_>) {
     table.forbid(
         "softening",

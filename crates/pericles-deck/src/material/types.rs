@@ -104,7 +104,7 @@ impl From<MaterialModel> for Material {
 pub struct NamedMaterial {
     /// Name.
     pub name: String,
-    /// Law, constants, horizon and failure; shared properties must be those of the body's material.
+    /// Law, constants, horizon and failure; shared properties must equal those of the body's material.
     pub model: MaterialModel,
 }
 

@@ -105,9 +105,9 @@ pub(super) fn cells(table: &Table<'_>) -> Option<CellChoice> {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum PointNumber {
-    /// The material of the point: 1 for that of the body, 2 for the first of `[materials]` …
+    /// The material of the point: 1 for the material of the body, 2 for the first of `[materials]` …
     Material,
-    /// The piece of the point: 1 for that of `[body]`, 2 for the first of `[[body.piece]]` …
+    /// The piece of the point: 1 for `[body]`, 2 for the first of `[[body.piece]]` …
     Piece,
     /// 1 for the points of a set, 0 for others.
     Set(String),
@@ -328,10 +328,7 @@ pub(super) fn quantity(field: Field) -> Quantity {
         Field::ForceDensity | Field::ExternalForce | Field::Reaction | Field::ContactForce => {
             Quantity::ForceDensity
         }
-        Field::Stress
-        | Field::EquivalentStress
-        | Field::VonMisesStress
-        | Field::PrincipalStress => Quantity::Traction,
+        Field::Stress | Field::EquivalentStress | Field::PrincipalStress => Quantity::Traction,
         Field::Damage
         | Field::Strain
         | Field::Dilatation

@@ -330,7 +330,7 @@ impl CrackOutput {
     const THRESHOLD: f64 = 0.35;
 }
 
-/// Reads the table of crack tips; the default schedule is that of the history.
+/// Reads the table of crack tips; the default schedule is the schedule of the history.
 fn cracks(table: &Table<'_>, history: Option<Schedule>) -> Option<Option<CrackOutput>> {
     const THRESHOLD: f64 = CrackOutput::THRESHOLD;
     if is_never(table, "cracks") {
@@ -422,7 +422,7 @@ fn picture(table: Table<'_>, dimension: Option<usize>) -> Option<Picture> {
 }
 
 impl Output {
-    /// Returns the table of crack tips; the default schedule is that of the history.
+    /// Returns the table of crack tips; the default schedule is the schedule of the history.
     pub fn cracks(&self) -> CrackOutput {
         self.cracks.unwrap_or(CrackOutput {
             schedule: self.history,

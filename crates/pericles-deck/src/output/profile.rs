@@ -14,7 +14,7 @@ use crate::reader::{Item, Table};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Profile {
-    /// The name, part of those of its files.
+    /// The name, part of the names of its files.
     pub name: String,
     /// The field.
     #[serde(with = "crate::form")]

@@ -213,7 +213,7 @@ impl Record {
             .map_or_else(Place::default, |path| self.place(path))
     }
 
-    /// Returns the location of a value, or of the table that lacks it.
+    /// Returns the location of a value, or of the table that requires it.
     pub(crate) fn place(&self, path: &KeyPath) -> Place {
         let mut path = path.clone();
         loop {

@@ -187,13 +187,13 @@ impl<'a> Table<'a> {
     ) -> Option<(&'static str, Item<'a>)> {
         let found = self.choice_of(keys, true)?;
         if found.is_none() {
-            self.lacks_one_of(keys);
+            self.requires_one_of(keys);
         }
         found
     }
 
     /// Reports that none of several keys is given.
-    pub(crate) fn lacks_one_of(&self, keys: &[&str]) {
+    pub(crate) fn requires_one_of(&self, keys: &[&str]) {
         self.report(Fault::MissingChoice {
             table: self.path.to_string(),
             allowed: owned(keys),
@@ -269,7 +269,7 @@ impl<'a> Table<'a> {
             .unwrap_or_default()
     }
 
-    /// Refuses a key that is not allowed in this table, with the reason.
+    /// Rejects a key that is not allowed in this table, with the reason.
     pub(crate) fn forbid(&self, key: &'static str, allowed: &str) {
         for entry in self
             .entries

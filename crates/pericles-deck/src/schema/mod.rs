@@ -3,8 +3,11 @@
 //! Keys, forms, words, ranges and defaults are those that the reader requests while it reads the
 //! [`specimens`], so that schema and reader cannot disagree. Only the descriptions are written by hand, in
 //! `descriptions.toml`. Tests require a form and a description for every key of the reader, and a key for
-//! every description. The schema does not know which keys need which shape, model or scheme: it allows more
+//! every description. The schema does not contain which keys need which shape, model or scheme: it allows more
 //! than the reader, never less.
+//!
+//! A table of keys as data would repeat name, type, unit, range and default next to the code that creates the value,
+//! or need a language for conditions.
 
 mod descriptions;
 mod json;
@@ -121,7 +124,7 @@ impl Schema {
         for specimen in specimens::SPECIMENS {
             let changes: Vec<String> = specimen.changes.iter().map(|&text| text.into()).collect();
             survey = Deck::survey(specimen.deck, &changes, survey)
-                .unwrap_or_else(|error| panic!("a specimen is refused: {changes:?} {error}"));
+                .unwrap_or_else(|error| panic!("a specimen is rejected: {changes:?} {error}"));
         }
         Self {
             survey,
@@ -146,7 +149,7 @@ impl Schema {
             .collect()
     }
 
-    /// Returns the description of a value: that of the key, the table or the definition.
+    /// Returns the description of a value: of the key, the table or the definition.
     fn description(&self, place: &str) -> Option<&str> {
         let own = self.descriptions.of_key(place);
         let defined = || {
@@ -198,7 +201,7 @@ mod tests {
 
     #[test]
     fn every_specimen_is_valid() {
-        let refusals: Vec<String> = specimens::SPECIMENS
+        let rejections: Vec<String> = specimens::SPECIMENS
             .iter()
             .filter_map(|specimen| {
                 let changes: Vec<String> =
@@ -207,7 +210,7 @@ mod tests {
                 Some(format!("{changes:?} {error}"))
             })
             .collect();
-        assert!(refusals.is_empty(), "{refusals:#?}");
+        assert!(rejections.is_empty(), "{rejections:#?}");
     }
 
     #[test]
@@ -251,7 +254,7 @@ mod tests {
         }
         assert!(
             unexplained.is_empty(),
-            "descriptions.toml lacks {unexplained:#?}"
+            "descriptions.toml has no entries for {unexplained:#?}"
         );
         assert!(formless.is_empty(), "no specimen has {formless:#?}");
     }
@@ -309,7 +312,7 @@ mod tests {
                 // A required key.
                 let Ok((_, filled)) = read else { continue };
                 valid += 1;
-                // The default of their schedules is that of the history.
+                // Their default schedule is the schedule of the history.
                 let places = filled
                     .places()
                     .filter(|(place, _)| !place.starts_with("output.cracks."));

@@ -103,7 +103,7 @@ pub const fn wrong(
     }
 }
 
-/// Requires every wrong deck to be refused at the location and with the fragments of its case.
+/// Requires every wrong deck to be rejected at the location and with the fragments of its case.
 pub fn explained(right: &str, wrong: &[Wrong], read: &dyn Fn(&str) -> Result<(), DeckError>) {
     for case in wrong {
         assert_eq!(

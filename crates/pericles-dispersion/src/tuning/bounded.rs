@@ -3,7 +3,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::least_squares::{Refusal, least_squares};
+use super::least_squares::{Rejection, least_squares};
 
 /// Minimises ‖E y − f‖ subject to G y ≥ h; returns y and the active constraints.
 pub(super) fn bounded(
@@ -11,9 +11,9 @@ pub(super) fn bounded(
     values: &DVector<f64>,
     normals: &DMatrix<f64>,
     margin: &DVector<f64>,
-) -> std::result::Result<(DVector<f64>, Vec<usize>), Refusal> {
+) -> std::result::Result<(DVector<f64>, Vec<usize>), Rejection> {
     let p = rows.ncols();
-    let undetermined = Refusal::Undetermined {
+    let undetermined = Rejection::Undetermined {
         rank: 0,
         unknowns: p,
     };
@@ -38,7 +38,7 @@ pub(super) fn bounded(
         }
         // An unknown determined by the equations.
         if margin[c] > 1e-12 * margin.amax() {
-            return Err(Refusal::Infeasible);
+            return Err(Rejection::Infeasible);
         }
         g.row_mut(c).fill(0.0);
         h[c] = 0.0;
@@ -53,13 +53,13 @@ pub(super) fn bounded(
     let u = non_negative(&matrix, &last);
     let residual = &last - &matrix * &u;
     if residual.norm() < 1e-9 {
-        return Err(Refusal::Infeasible);
+        return Err(Rejection::Infeasible);
     }
     let z = residual.rows(0, p) * (-unit / residual[p]);
     // Marginally infeasible bounds leave a small residual instead of none.
     let violated = (&h * unit - &g * &z).max();
     if violated > 1e-9 * unit.max(z.amax()) {
-        return Err(Refusal::Infeasible);
+        return Err(Rejection::Infeasible);
     }
     let y = inverse * (z + target);
     let active = (0..u.len()).filter(|c| u[*c] > 0.0).collect();

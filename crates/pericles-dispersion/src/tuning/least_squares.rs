@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 /// Reason why there is no solution.
-pub(super) enum Refusal {
+pub(super) enum Rejection {
     /// The equations are inconsistent by this relative amount.
     Inconsistent(f64),
     /// Fewer independent rows than unknowns.
@@ -16,13 +16,13 @@ pub(super) enum Refusal {
 pub(super) fn least_squares(
     rows: &DMatrix<f64>,
     values: &DVector<f64>,
-) -> std::result::Result<(DVector<f64>, f64), Refusal> {
+) -> std::result::Result<(DVector<f64>, f64), Rejection> {
     let unknowns = rows.ncols();
     if unknowns == 0 {
         return Ok((DVector::zeros(0), 1.0));
     }
     if rows.nrows() < unknowns {
-        return Err(Refusal::Undetermined {
+        return Err(Rejection::Undetermined {
             rank: rows.nrows(),
             unknowns,
         });
@@ -45,12 +45,12 @@ pub(super) fn least_squares(
         .filter(|s| **s > 1e-13 * high)
         .count();
     if rank < unknowns {
-        return Err(Refusal::Undetermined { rank, unknowns });
+        return Err(Rejection::Undetermined { rank, unknowns });
     }
     // Both factors were computed and no singular value is cut off, so this cannot fail.
     let solved = svd.solve(&right.rows(0, unknowns).into_owned(), 0.0);
     let Ok(mut solution) = solved else {
-        return Err(Refusal::Undetermined { rank: 0, unknowns });
+        return Err(Rejection::Undetermined { rank: 0, unknowns });
     };
     solution.component_mul_assign(&scale);
     Ok((solution, high / low))

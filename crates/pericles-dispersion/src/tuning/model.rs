@@ -73,7 +73,7 @@ pub struct Assessment {
 /// Bond-based lattice with one unknown coefficient α per bond class, in units of the spacing D and the speed V =
 /// √(E/ρ).
 ///
-/// The bond constant is that of α ≡ 1 with δ = `horizon_ratio` · D:
+/// The bond constant belongs to α ≡ 1 with δ = `horizon_ratio` · D:
 ///
 /// | | c V² D^… | V_p² | V_s² | ν |
 /// |---|---|---|---|---|

@@ -12,7 +12,7 @@ use nalgebra::{DMatrix, DVector};
 use pericles::Result;
 
 use super::bounded::bounded;
-use super::least_squares::{Refusal, least_squares};
+use super::least_squares::{Rejection, least_squares};
 
 /// Least-squares problem in n unknowns.
 #[derive(Debug, Clone)]
@@ -53,7 +53,10 @@ struct Affine {
 }
 
 impl Affine {
-    fn new(equations: &DMatrix<f64>, targets: &DVector<f64>) -> std::result::Result<Self, Refusal> {
+    fn new(
+        equations: &DMatrix<f64>,
+        targets: &DVector<f64>,
+    ) -> std::result::Result<Self, Rejection> {
         let n = equations.ncols();
         let mut range: Vec<DVector<f64>> = Vec::new();
         let norms: Vec<f64> = equations.row_iter().map(|row| row.norm()).collect();
@@ -86,9 +89,9 @@ impl Affine {
         } else {
             &range * least_squares(&(equations * &range), targets)?.0
         };
-        let miss = (equations * &origin - targets).norm() / targets.norm().max(f64::MIN_POSITIVE);
-        if miss > INCONSISTENT {
-            return Err(Refusal::Inconsistent(miss));
+        let error = (equations * &origin - targets).norm() / targets.norm().max(f64::MIN_POSITIVE);
+        if error > INCONSISTENT {
+            return Err(Rejection::Inconsistent(error));
         }
         Ok(Self { origin, basis })
     }
@@ -111,7 +114,7 @@ fn push_orthogonal(basis: &mut Vec<DVector<f64>>, mut vector: DVector<f64>, shor
 
 impl Problem {
     /// Solves the problem.
-    pub fn solve(&self) -> std::result::Result<Solution, Refusal> {
+    pub fn solve(&self) -> std::result::Result<Solution, Rejection> {
         let affine = Affine::new(&self.equations, &self.targets)?;
         let rows = &self.rows * &affine.basis;
         let values = &self.values - &self.rows * &affine.origin;
@@ -120,7 +123,7 @@ impl Problem {
         let violated = |lower: &f64| !alpha.iter().all(|a| a >= lower);
         let (alpha, active, condition) = match self.lower.filter(violated) {
             None => (alpha, Vec::new(), condition),
-            Some(_) if affine.basis.ncols() == 0 => return Err(Refusal::Infeasible),
+            Some(_) if affine.basis.ncols() == 0 => return Err(Rejection::Infeasible),
             Some(lower) => {
                 let margin = affine.origin.map(|a| lower - a);
                 let (y, active) = bounded(&rows, &values, &affine.basis, &margin)?;
@@ -233,19 +236,19 @@ impl Problem {
         low
     }
 
-    /// Converts a refusal to an error message.
-    pub fn refused(&self, refusal: Refusal, ratio: f64) -> DispersionError {
+    /// Converts a rejection to an error message.
+    pub fn rejected(&self, rejection: Rejection, ratio: f64) -> DispersionError {
         let classes = self.rows.ncols();
-        match refusal {
-            Refusal::Inconsistent(miss) => DispersionError::Anisotropic {
+        match rejection {
+            Rejection::Inconsistent(error) => DispersionError::Anisotropic {
                 classes,
                 ratio,
-                miss,
+                error,
             },
-            Refusal::Undetermined { rank, unknowns } => {
+            Rejection::Undetermined { rank, unknowns } => {
                 DispersionError::Undetermined { rank, unknowns }
             }
-            Refusal::Infeasible => DispersionError::InfeasibleBound {
+            Rejection::Infeasible => DispersionError::InfeasibleBound {
                 bound: self.lower.unwrap_or(f64::NEG_INFINITY),
                 classes,
                 largest: self.largest_bound(),
@@ -257,7 +260,7 @@ impl Problem {
     pub fn solution(&self, ratio: f64) -> Result<Solution> {
         Ok(self
             .solve()
-            .map_err(|refusal| self.refused(refusal, ratio))?)
+            .map_err(|rejection| self.rejected(rejection, ratio))?)
     }
 }
 
@@ -304,10 +307,10 @@ mod tests {
     fn infeasible_bounds_report_the_largest_feasible_one() {
         // α₀ + 1.1 α₁ = 3 and both at least l: l ≤ 3/2.1.
         let problem = problem(&[0.3, -0.7, 1.1], 2, 1.5);
-        let Err(refusal) = problem.solve() else {
+        let Err(rejection) = problem.solve() else {
             panic!("1.5 is too large")
         };
-        let error = problem.refused(refusal, 1.0);
+        let error = problem.rejected(rejection, 1.0);
         let DispersionError::InfeasibleBound { largest, .. } = error else {
             panic!("{error}")
         };
@@ -319,6 +322,6 @@ mod tests {
         let mut problem = problem(&[0.3, -0.7, 1.1], 3, 0.0);
         problem.equations = DMatrix::from_row_slice(2, 3, &[1.0, 1.0, 0.0, 2.0, 2.0, 0.0]);
         problem.targets = DVector::from_row_slice(&[1.0, 1.0]);
-        assert!(matches!(problem.solve(), Err(Refusal::Inconsistent(_))));
+        assert!(matches!(problem.solve(), Err(Rejection::Inconsistent(_))));
     }
 }

@@ -138,7 +138,7 @@ impl ScalingModel {
                 allowed: "a finite number (usually 0.5)",
             });
         }
-        let refuse = |choice, with, allowed| {
+        let reject = |choice, with, allowed| {
             Err(DispersionError::TuningChoice {
                 choice,
                 with,
@@ -148,17 +148,17 @@ impl ScalingModel {
         };
         let plain = tuning.combination == Combination::Separated;
         match tuning.method {
-            Method::LiteralGalerkin if self.state().dimension() > 1 => refuse(
+            Method::LiteralGalerkin if self.state().dimension() > 1 => reject(
                 "the literal Galerkin method",
                 "in two and three dimensions",
                 "allowed there: least-squares, point-collocation, subdomain-collocation, galerkin, absolute",
             ),
-            Method::LeastSquares if !plain => refuse(
+            Method::LeastSquares if !plain => reject(
                 "the least-squares method",
                 "with this combination of branches",
                 "allowed: separated",
             ),
-            Method::Absolute if tuning.combination == Combination::SignedSum => refuse(
+            Method::Absolute if tuning.combination == Combination::SignedSum => reject(
                 "the absolute method",
                 "with signed sums",
                 "allowed: separated, absolute (equivalent here)",

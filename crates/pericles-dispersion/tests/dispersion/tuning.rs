@@ -146,10 +146,10 @@ fn galerkin_coefficients_equal_their_closed_form() {
         let determinant = q / p - p / q;
         // Both sides have the round-off of the first coefficients, about N², times their conditioning.
         let [x, y] = [a * q - b / q, b / p - a * p].map(|x| x / determinant);
-        let misses = [table.alpha[n - 2] - x, table.alpha[n - 1] - y];
+        let errors = [table.alpha[n - 2] - x, table.alpha[n - 1] - y];
         assert!(
-            misses.iter().all(|miss| miss.abs() < 1e-9 * square),
-            "{n}: {misses:?} {}",
+            errors.iter().all(|error| error.abs() < 1e-9 * square),
+            "{n}: {errors:?} {}",
             table.condition
         );
         assert!(table.condition < 1e6, "{n}: {}", table.condition);
@@ -434,15 +434,15 @@ fn tuning_supports_other_horizons_and_partial_volumes() {
 
 #[test]
 fn infeasible_tuning_problems_are_errors() {
-    let refused = |state, n: f64, tuning| {
+    let rejected = |state, n: f64, tuning| {
         ScalingModel::new(state, n, VolumeCorrection::None).and_then(|model| model.tune(tuning))
     };
     for n in [0.9, f64::NAN, -3.0, 1e9] {
-        let error = refused(StressState::Uniaxial, n, Tuning::default()).unwrap_err();
+        let error = rejected(StressState::Uniaxial, n, Tuning::default()).unwrap_err();
         assert!(matches!(error, PericlesError::OutOfRange { .. }), "{error}");
     }
     for state in [StressState::PlaneStrain, StressState::Spatial] {
-        let error = refused(state, 1.2, Tuning::default()).unwrap_err();
+        let error = rejected(state, 1.2, Tuning::default()).unwrap_err();
         assert!(
             matches!(error.extension(), Some(DispersionError::Anisotropic { .. })),
             "{error}"
@@ -452,7 +452,7 @@ fn infeasible_tuning_problems_are_errors() {
         lower_bound: Some(2.0),
         ..Default::default()
     };
-    let error = refused(StressState::PlaneStrain, 3.0, high).unwrap_err();
+    let error = rejected(StressState::PlaneStrain, 3.0, high).unwrap_err();
     let Some(&DispersionError::InfeasibleBound { largest, .. }) = error.extension() else {
         panic!("{error}")
     };
@@ -461,13 +461,13 @@ fn infeasible_tuning_problems_are_errors() {
         lower_bound: Some(bound),
         ..Default::default()
     };
-    assert!(refused(StressState::PlaneStrain, 3.0, at(largest - 1e-6)).is_ok());
-    assert!(refused(StressState::PlaneStrain, 3.0, at(largest + 1e-6)).is_err());
+    assert!(rejected(StressState::PlaneStrain, 3.0, at(largest - 1e-6)).is_ok());
+    assert!(rejected(StressState::PlaneStrain, 3.0, at(largest + 1e-6)).is_err());
     let literal = Tuning {
         method: LITERAL,
         ..Default::default()
     };
-    let error = refused(StressState::PlaneStrain, 3.0, literal).unwrap_err();
+    let error = rejected(StressState::PlaneStrain, 3.0, literal).unwrap_err();
     assert!(matches!(
         error.extension(),
         Some(DispersionError::TuningChoice { .. })
@@ -479,7 +479,7 @@ fn infeasible_tuning_problems_are_errors() {
         },
         ..Default::default()
     };
-    assert!(refused(StressState::PlaneStrain, 3.0, weight).is_err());
+    assert!(rejected(StressState::PlaneStrain, 3.0, weight).is_err());
     assert!(
         model(StressState::PlaneStrain, 3.0)
             .assess(&[1.0; 5])

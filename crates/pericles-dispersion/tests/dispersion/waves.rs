@@ -226,8 +226,8 @@ fn tables_that_do_not_fit_the_body_are_errors() {
             volume_correction: correction,
             ..fits.clone()
         };
-        let refused = other.constants(&cloud, strain).is_err();
-        assert_eq!(refused, correction == VolumeCorrection::Extended);
+        let rejected = other.constants(&cloud, strain).is_err();
+        assert_eq!(rejected, correction == VolumeCorrection::Extended);
     }
     let shorter = BondMaterial {
         horizon: 2.0 * DX,
@@ -385,7 +385,7 @@ fn fitted_cosines_follow_the_interpolated_table() {
         function: polygon(table),
         acts_on: ActsOn::Stretch,
     };
-    let miss = |terms| {
+    let error = |terms| {
         let fit = Influence {
             function: fit_cosines(table, horizon, wave, terms).unwrap(),
             acts_on: ActsOn::Stretch,
@@ -396,8 +396,8 @@ fn fitted_cosines_follow_the_interpolated_table() {
             .sum();
         (square / 300.0).sqrt()
     };
-    assert!(miss(8) < miss(4) && miss(4) < miss(2));
-    assert!(miss(8) < 0.05, "{}", miss(8));
+    assert!(error(8) < error(4) && error(4) < error(2));
+    assert!(error(8) < 0.05, "{}", error(8));
     assert!(fit_cosines(table, horizon, 0.0, 3).is_err());
 }
 

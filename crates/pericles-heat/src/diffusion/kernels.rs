@@ -116,7 +116,7 @@ fn add_chunks_body<T: Lanes>(
 }
 
 for_each_instruction_set! {
-    /// Adds the flows of the points of consecutive chunks to `out`, whose first entry is that of `first_point`.
+    /// Adds the flows of the points of consecutive chunks to `out`, whose first entry belongs to `first_point`.
     pub(super) fn add_chunks [] <> (
         stencil: &Stencil<'_>,
         chunks: &[Chunk],

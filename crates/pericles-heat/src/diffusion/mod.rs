@@ -99,7 +99,7 @@ trait Bonds: Send + Sync {
 /// The conductances of all bonds: T ↦ Σ_j G_ij (T_j − T_i), the flow into each point (W for heat).
 ///
 /// Every point adds the flows of its bonds in a fixed order, so that results do not depend on the number of threads and processes.
-/// On a body divided among processes, values and flows are those of own points; the values of ghosts are exchanged.
+/// On a body divided among processes, values and flows belong to own points; the values of ghosts are exchanged.
 pub struct Diffusion {
     cloud: Arc<PointCloud>,
     bonds: Box<dyn Bonds>,
@@ -122,7 +122,7 @@ impl DiffusionBody {
     /// Makes the operator with a neighbour list, for comparison.
     ///
     /// # Errors
-    /// Those of [`DiffusionBody::build`].
+    /// The errors of [`DiffusionBody::build`].
     pub fn build_list(&self) -> Result<Diffusion> {
         self.build_as(false)
     }
@@ -298,7 +298,7 @@ impl Diffusion {
             if k == read.len() {
                 read.push(0);
             }
-            // Pre-cracks are no broken bonds: all points are read once.
+            // Bonds cut by pre-cracks do not count as broken, so every point is read at the start.
             if first || read[k] != count {
                 changed.push(range);
                 read[k] = count;

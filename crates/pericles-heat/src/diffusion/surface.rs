@@ -34,7 +34,7 @@ pub(super) fn direction(dimension: usize, xi: [f64; 3]) -> [f64; 6] {
 /// conductance of a bond with the direction n is multiplied by the mean of n·S n of its ends.
 ///
 /// S has the principal axes of the family. Along an axis on both sides of which there are neighbours, such as the tangents of a
-/// surface, S makes the energy of a unit gradient that of the continuum:
+/// surface, S makes the energy of a unit gradient equal to the energy of the continuum:
 /// Σ_j κ_ij g_ij (ξ·e_a)² V_j = 2 with the factor g_ij of each bond. Along other axes, such as the normal of a surface,
 /// S is the ratio of these energies without correction. Bonds of points with complete families have the factor 1, so that linear
 /// fields are exact there.
@@ -244,7 +244,7 @@ impl Moments {
         })
     }
 
-    /// Returns the principal axes, those of the body's dimensions first, with the factors that would complete the energy if all
+    /// Returns the principal axes, the axes of the body's dimensions first, with the factors that would complete the energy if all
     /// bonds had them.
     fn axes(&self, i: usize, d: usize, for_each_bond: &dyn Fn(usize, &mut Visit<'_>)) -> [Axis; 3] {
         /// Share of the energy of a complete family below which the points are treated as one row or layer.

@@ -269,7 +269,7 @@ fn a_steady_state_is_the_limit_of_implicit_steps() {
 }
 
 #[test]
-fn a_steady_state_without_a_given_temperature_is_refused() {
+fn a_steady_state_without_a_given_temperature_is_rejected() {
     let (problem, values, _) = wave();
     let options = FieldOptions {
         scheme: Scheme::Steady,

@@ -156,7 +156,7 @@ fn a_strip_that_is_not_parallel_to_the_axes_conducts_the_heat_of_fourier() {
         let on_axes = corrected(cells(&[40, rows as usize]), 3.0);
         let mut tilted = corrected(cloud, 3.0);
         tilted.prescribed = ends(&tilted, [cosine, sine, 0.0]);
-        // The pair conductivity of listed points is that of the continuum, which the correction of the strip replaces.
+        // The pair conductivity of listed points is calibrated with the continuum, which the correction of the strip replaces.
         let (error, residual) = errors(&tilted, [cosine, sine, 0.0], true);
         assert!(
             error < ITERATION && residual < 1e-9,

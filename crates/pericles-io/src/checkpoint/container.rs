@@ -242,7 +242,7 @@ mod tests {
         let path = folder.path().join("a.chk");
         example().write(&path).unwrap();
         let good = fs::read(&path).unwrap();
-        let refused = |bytes: &[u8], what: String| {
+        let rejected = |bytes: &[u8], what: String| {
             fs::write(&path, bytes).unwrap();
             let error = Container::read(&path, u64::MAX).expect_err(&what);
             let told = matches!(
@@ -255,11 +255,11 @@ mod tests {
             for bit in 0..8 {
                 let mut bytes = good.clone();
                 bytes[at] ^= 1 << bit;
-                refused(&bytes, format!("bit {bit} of byte {at}"));
+                rejected(&bytes, format!("bit {bit} of byte {at}"));
             }
-            refused(&good[..at], format!("cut at {at}"));
+            rejected(&good[..at], format!("cut at {at}"));
         }
-        refused(&[&good[..], b"x"].concat(), "one byte more".into());
+        rejected(&[&good[..], b"x"].concat(), "one byte more".into());
     }
 
     /// A file with this header and what follows it.

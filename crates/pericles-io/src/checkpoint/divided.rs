@@ -26,7 +26,7 @@ use crate::atomic::{create_beside, finish};
 type Open<'a> = &'a (dyn Fn(&Path) -> io::Result<File> + Sync);
 
 /// Writes the checkpoint of a divided body atomically, with the bytes that
-/// [`Container::write`](super::Container::write) writes for the whole body. The metadata are those of the first process. All processes must call it together.
+/// [`Container::write`](super::Container::write) writes for the whole body. The metadata come from the first process. All processes must call it together.
 ///
 /// # Errors
 /// The file cannot be written by one of the processes: the others return [`IoError::OnAnotherProcess`]. An existing file is then
@@ -246,7 +246,7 @@ impl DividedCheckpoint {
     /// processes must call it together.
     ///
     /// # Errors
-    /// The file cannot be read, is damaged or exceeds the memory: the error is that of the first process, also for what
+    /// The file cannot be read, is damaged or exceeds the memory: the error comes from the first process, also for what
     /// another one finds; the others return [`IoError::OnAnotherProcess`].
     pub fn open(path: &Path, memory: u64, comm: &dyn Comm) -> Result<Self, IoError> {
         let size = comm.size();

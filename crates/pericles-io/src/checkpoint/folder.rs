@@ -32,7 +32,7 @@ pub struct LatestCheckpoint {
     /// Its content.
     pub container: Container,
     /// Errors of newer checkpoints that were rejected, newest first.
-    pub refused: Vec<IoError>,
+    pub rejected: Vec<IoError>,
 }
 
 impl CheckpointFolder {
@@ -130,7 +130,7 @@ impl CheckpointFolder {
     /// Reads the newest valid checkpoint and reports newer ones that were rejected. Its content may take at
     /// most `memory` bytes.
     pub fn latest_valid(&self, memory: u64) -> Result<LatestCheckpoint, IoError> {
-        let mut refused = Vec::new();
+        let mut rejected = Vec::new();
         for step in self.steps()?.into_iter().rev() {
             let path = self.file(step);
             match Container::read(&path, memory) {
@@ -139,17 +139,17 @@ impl CheckpointFolder {
                         step,
                         path,
                         container,
-                        refused,
+                        rejected,
                     });
                 }
                 // The previous checkpoint needs the same memory.
                 Err(error @ IoError::TooLarge { .. }) => return Err(error),
-                Err(error) => refused.push(error),
+                Err(error) => rejected.push(error),
             }
         }
         Err(IoError::NoValidCheckpoint {
             path: self.path.clone(),
-            refused,
+            rejected,
         })
     }
 
@@ -168,20 +168,20 @@ impl CheckpointFolder {
         let steps = agreed(comm, &self.path, steps)?;
         let words = steps.map(|steps| steps.into_iter().rev().map(f64::from_bits).collect());
         let words = words.map(|words: Vec<f64>| vec![words; comm.size()]);
-        let mut refused = Vec::new();
+        let mut rejected = Vec::new();
         for word in distribute(comm, words) {
             match DividedCheckpoint::open(&self.file(word.to_bits()), memory, comm) {
-                Ok(checkpoint) => return Ok((checkpoint, refused)),
-                Err(error) => refused.push(error),
+                Ok(checkpoint) => return Ok((checkpoint, rejected)),
+                Err(error) => rejected.push(error),
             }
             // The previous checkpoint needs the same memory.
-            let last = refused.pop_if(|error| matches!(error, IoError::TooLarge { .. }));
+            let last = rejected.pop_if(|error| matches!(error, IoError::TooLarge { .. }));
             agreed(comm, &self.path, last.map_or(Ok(()), Err))?;
         }
         Err(match comm.rank() {
             0 => IoError::NoValidCheckpoint {
                 path: self.path.clone(),
-                refused,
+                rejected,
             },
             _ => IoError::OnAnotherProcess {
                 path: self.path.clone(),
@@ -233,8 +233,8 @@ mod tests {
         damage(&folder.file(200));
         let latest = folder.latest_valid(u64::MAX).unwrap();
         assert_eq!((latest.step, latest.container), (100, state(100)));
-        assert_eq!(latest.refused.len(), 1);
-        assert_eq!(latest.refused[0].path(), folder.file(200));
+        assert_eq!(latest.rejected.len(), 1);
+        assert_eq!(latest.rejected[0].path(), folder.file(200));
 
         // The run resumes from step 100: the damaged file must not displace valid ones.
         folder.write(150, &state(150)).unwrap();
@@ -243,7 +243,9 @@ mod tests {
         damage(&folder.file(100));
         damage(&folder.file(150));
         let none = folder.latest_valid(u64::MAX).unwrap_err();
-        assert!(matches!(&none, IoError::NoValidCheckpoint { refused, .. } if refused.len() == 2));
+        assert!(
+            matches!(&none, IoError::NoValidCheckpoint { rejected, .. } if rejected.len() == 2)
+        );
         assert!(none.to_string().contains("CRC-32"), "{none}");
     }
 

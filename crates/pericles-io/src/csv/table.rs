@@ -254,16 +254,16 @@ mod tests {
         table.append(&[1.into(), 2.5.into(), 3.5.into()]).unwrap();
         let length = table.len_bytes();
         drop(table);
-        let refused = |columns: &[Column], length| {
+        let rejected = |columns: &[Column], length| {
             let error = CsvTable::reopen(&path, columns, length).unwrap_err();
             assert!(matches!(error, IoError::Damaged { .. }), "{error}");
             assert_eq!(fs::metadata(&path).unwrap().len(), header + 10);
         };
-        refused(&columns(), length + 1);
-        refused(&columns(), length - 1);
-        refused(&columns(), 0);
-        refused(&columns(), header - 1);
-        refused(&columns()[..2], length);
+        rejected(&columns(), length + 1);
+        rejected(&columns(), length - 1);
+        rejected(&columns(), 0);
+        rejected(&columns(), header - 1);
+        rejected(&columns()[..2], length);
         CsvTable::reopen(&path, &columns(), length).unwrap();
         let gone = CsvTable::reopen(folder.path().join("gone.csv"), &columns(), 1);
         assert!(matches!(gone, Err(IoError::NotFound { .. })));

@@ -1,15 +1,11 @@
 //! Manifest: the files that a run may write into its folder, recorded in advance; `--force` removes only these.
 //!
 //! The file `.manifest` has one line per name, relative to the folder; `*` stands for one or more digits, for
-//! series such as `fields/fields_*.vtu`. Folders of versions without a manifest are recognised by the content
-//! of `run.json`.
+//! series such as `fields/fields_*.vtu`.
 
 use std::fs;
 use std::io::{ErrorKind, Write};
 use std::path::Path;
-
-use pericles::observe::Field;
-use serde_json::Value;
 
 use crate::{IoError, write_atomically};
 
@@ -18,54 +14,26 @@ pub(super) const MANIFEST: &str = ".manifest";
 
 const HEADING: &str = "# Files of a Pericles run";
 
-/// Files of a run other than field pictures, whose names begin with a field name.
-const USUAL: [&str; 12] = [
-    "run.json",
-    "report.html",
-    "fields.pvd",
-    "history.csv",
-    "reactions.csv",
-    "probes.csv",
-    "cracks.csv",
-    "fragments.csv",
-    "surface.csv",
-    "fields/fields_*.vtu",
-    "checkpoints/step-*.chk",
-    "checkpoints/failed.chk",
-];
-
 /// Recorded names.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Manifest {
     names: Vec<String>,
-    /// Whether pictures of fields are included, which versions without a manifest did not record.
-    pictures: bool,
 }
 
 impl Manifest {
-    /// Returns the names that versions without a manifest wrote.
-    pub(super) fn usual() -> Self {
-        Self {
-            names: USUAL.map(String::from).to_vec(),
-            pictures: true,
-        }
-    }
-
     /// Returns a manifest of these names.
     pub(super) fn named(names: &[String]) -> Self {
         Self {
             names: names.to_vec(),
-            pictures: false,
         }
     }
 
-    /// Returns whether a name begins with that of a sub-folder, which ends with `/`.
+    /// Returns whether a name begins with the name of a sub-folder, which ends with `/`.
     pub(super) fn has_any_in(&self, prefix: &str) -> bool {
-        self.pictures && prefix == "pictures/"
-            || self.names.iter().any(|name| name.starts_with(prefix))
+        self.names.iter().any(|name| name.starts_with(prefix))
     }
 
-    /// Reads the manifest of a folder; `None` if the folder does not belong to a run.
+    /// Reads the manifest of a folder; `None` if there is no manifest, or the file is not one.
     ///
     /// # Errors
     /// Returns an error if a file cannot be read.
@@ -73,9 +41,7 @@ impl Manifest {
         let path = folder.join(MANIFEST);
         match fs::read_to_string(&path) {
             Ok(text) => Ok(Self::parse(&text)),
-            Err(error) if error.kind() == ErrorKind::NotFound => {
-                Ok(is_report(&folder.join("run.json")).then(Self::usual))
-            }
+            Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
             Err(error) => Err(IoError::reading(&path, error)),
         }
     }
@@ -87,7 +53,6 @@ impl Manifest {
         }
         Some(Self {
             names: lines.map(str::to_owned).collect(),
-            pictures: false,
         })
     }
 
@@ -118,7 +83,7 @@ impl Manifest {
 
     /// Returns whether a file name, relative to the folder, is recorded; `/` separates a sub-folder.
     pub(super) fn has(&self, name: &str) -> bool {
-        self.names.iter().any(|pattern| matches(pattern, name)) || self.pictures && is_picture(name)
+        self.names.iter().any(|pattern| matches(pattern, name))
     }
 }
 
@@ -135,35 +100,6 @@ fn matches(pattern: &str, name: &str) -> bool {
 
 fn is_number(text: &str) -> bool {
     !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit())
-}
-
-/// Returns whether a name is that of a field picture or animation.
-fn is_picture(name: &str) -> bool {
-    let Some(name) = name.strip_prefix("pictures/") else {
-        return false;
-    };
-    let stem = match name.strip_suffix(".apng") {
-        Some(stem) => Some(stem),
-        None => name
-            .strip_suffix(".png")
-            .and_then(|stem| stem.rsplit_once('-'))
-            .filter(|(_, number)| number.len() >= 6 && is_number(number))
-            .map(|(stem, _)| stem),
-    };
-    stem.is_some_and(|stem| {
-        Field::ALL
-            .iter()
-            .any(|field| stem.starts_with(field.name()))
-    })
-}
-
-/// Returns whether a file is the report of a Pericles run: other programs write a `run.json` as well.
-fn is_report(path: &Path) -> bool {
-    let report = || -> Option<Value> { serde_json::from_str(&fs::read_to_string(path).ok()?).ok() };
-    report().is_some_and(|report| {
-        report.pointer("/program/name") == Some(&Value::from("pericles"))
-            && report.pointer("/deck/source").is_some()
-    })
 }
 
 #[cfg(test)]
@@ -183,16 +119,6 @@ mod tests {
             assert!(!matches(pattern, other), "{other}");
         }
         assert!(matches("run.json", "run.json") && !matches("run.json", "old-run.json"));
-        for (name, ours) in [
-            ("pictures/Damage-000002.png", true),
-            ("pictures/Velocity_y_2-000002.png", true),
-            ("pictures/Damage.apng", true),
-            ("pictures/Damage-best.png", false),
-            ("pictures/me-000001.png", false),
-            ("Damage-000002.png", false),
-        ] {
-            assert_eq!(is_picture(name), ours, "{name}");
-        }
     }
 
     #[test]

@@ -83,36 +83,15 @@ fn force_removes_only_recorded_files() {
 }
 
 #[test]
-fn results_without_a_manifest_are_recognised_by_their_report() {
+fn force_rejects_results_without_a_manifest() {
     let place = tempfile::tempdir().unwrap();
     let path = place.path().join("out");
-    let results = [
-        "run.json",
-        "history.csv",
-        "fields.pvd",
-        "fields/fields_000000.vtu",
-        "pictures/Damage-000001.png",
-        "pictures/Velocity_y_2.apng",
-        "checkpoints/step-000000000001.chk",
-        "fields/.fields_000001.vtu.7-0.part",
-    ];
-    populate(&path, &results);
-    populate(&path, &STRAYS);
-    // The report of another program does not permit removal.
-    for foreign in [
-        "x",
-        "{}",
-        r#"{"program": {"name": "other"}, "deck": {"source": ""}}"#,
-    ] {
-        fs::write(path.join("run.json"), foreign).unwrap();
-        let error = OutputFolder::create(&path, true).unwrap_err();
-        assert!(matches!(error, IoError::FolderNotOurs { .. }), "{error}");
-        assert!(path.join("history.csv").exists());
-    }
-    let ours = r#"{"program": {"name": "pericles"}, "deck": {"source": ""}}"#;
-    fs::write(path.join("run.json"), ours).unwrap();
-    let _folder = OutputFolder::create(&path, true).unwrap();
-    assert_removed(&path, &results);
+    populate(&path, &["run.json", "history.csv"]);
+    let report = r#"{"program": {"name": "pericles"}, "deck": {"source": ""}}"#;
+    fs::write(path.join("run.json"), report).unwrap();
+    let error = OutputFolder::create(&path, true).unwrap_err();
+    assert!(matches!(error, IoError::FolderNotOurs { .. }), "{error}");
+    assert!(path.join("history.csv").exists());
 }
 
 #[cfg(unix)]
@@ -158,7 +137,7 @@ fn results_are_never_written_through_links() {
     }
     // Not the name of a result.
     symlink(&victim, path.join("notes")).unwrap();
-    // A resumed run refuses the links, one that overwrites the results removes them.
+    // A resumed run rejects the links, one that overwrites the results removes them.
     let folder = OutputFolder::open(&path).unwrap();
     assert!(matches!(folder.claim(&names), Err(IoError::Link { .. })));
     assert!(matches!(
@@ -172,7 +151,7 @@ fn results_are_never_written_through_links() {
         assert!(!path.join(link).is_symlink(), "{link}");
     }
     assert!(path.join("notes").is_symlink());
-    // A link with a name that no earlier run has recorded is refused.
+    // A link with a name that no earlier run has recorded is rejected.
     symlink(&victim, path.join("probes.csv")).unwrap();
     let error = folder.claim(&["probes.csv".into()]).unwrap_err();
     assert!(
@@ -206,10 +185,8 @@ fn force_accepts_an_empty_folder_and_one_of_a_run_that_stopped_early() {
     drop(OutputFolder::create(place.path(), true).unwrap());
     assert!(place.path().join(LOCK).exists());
     OutputFolder::create(place.path(), true).unwrap();
-    populate(place.path(), &["history.csv"]);
-    fs::create_dir(place.path().join("pictures")).unwrap();
+    populate(place.path(), &["..manifest.7-0.part"]);
     OutputFolder::create(place.path(), true).unwrap();
-    assert!(!place.path().join("history.csv").exists());
     fs::write(place.path().join("notes.txt"), "mine").unwrap();
     assert!(OutputFolder::create(place.path(), true).is_err());
 }

@@ -1,4 +1,6 @@
 //! Writing of output in a background thread.
+//!
+//! Observers settle before a checkpoint, so that a checkpoint never refers to missing files.
 
 use std::sync::{Mutex, PoisonError};
 use std::thread::{self, JoinHandle};

@@ -1,4 +1,7 @@
 //! The cells of a body, one for each point.
+//!
+//! Cells are derived from the points: field files of grids have cell data, files of other bodies point data. Readers
+//! use centroids of cells as points.
 
 use std::collections::HashMap;
 
@@ -18,7 +21,7 @@ pub struct CellMesh {
     pub points: Vec<u32>,
 }
 
-/// Signs of the corners of a box in the order of VTK; the first two are those of a line, the first four those of a quadrilateral.
+/// Signs of the corners of a box in the order of VTK; the first two form a line, the first four a quadrilateral.
 const CORNERS: [[f64; 3]; 8] = [
     [-1.0, -1.0, -1.0],
     [1.0, -1.0, -1.0],

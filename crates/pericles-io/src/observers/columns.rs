@@ -1,10 +1,13 @@
 //! Optional columns of histories.
+//!
+//! Every scalar time history is a column of `history.csv`: inner iterations, errors against a known solution, bounds
+//! of the energy.
 
 use pericles::observe::{Field, Snapshot};
 use pericles::space::PointSet;
 use pericles::{Archive, Checkpointed, Result};
 use pericles_manifold::EnergyInequality;
-use pericles_waves::exact::{ExactSolution, Miss};
+use pericles_waves::exact::{ExactSolution, SolutionError};
 
 use super::picture_of::{name_of, scalar_of};
 use super::table::whole;
@@ -114,13 +117,13 @@ impl HistoryColumns for ErrorColumns {
         let mut exact = vec![0.0; places.len()];
         self.solution
             .displacement_into(state.t, &places, &mut exact);
-        let miss = Miss::between(&pick(&u), &exact);
-        self.largest = if miss.largest.is_nan() {
+        let error = SolutionError::between(&pick(&u), &exact);
+        self.largest = if error.largest.is_nan() {
             f64::NAN
         } else {
-            self.largest.max(miss.largest)
+            self.largest.max(error.largest)
         };
-        [miss.largest, self.largest, miss.relative]
+        [error.largest, self.largest, error.relative]
             .map(Cell::from)
             .to_vec()
     }

@@ -69,7 +69,7 @@ impl FieldSeries {
         self
     }
 
-    /// Writes the fields on cells; those of points without a cell are left out.
+    /// Writes the fields on cells; values of points without a cell are left out.
     pub fn on_cells(mut self, cells: Arc<CellMesh>) -> Self {
         self.cells = Some(cells);
         self

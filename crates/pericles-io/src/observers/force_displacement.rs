@@ -14,7 +14,7 @@ use crate::picture::{Axis, Curve, LineChart};
 /// other axes: `force_displacement.csv`, and a chart `force_displacement.png` at the end of the run.
 ///
 /// Columns: step, time, then `<name>_displacement_<axis>` in metres and `<name>_force_<axis>` in newtons. The
-/// force is that of the support or load on the body. Displacements are taken from the body, so that they are correct
+/// force acts from the support or load on the body. Displacements are taken from the body, so that they are correct
 /// if a scheme scales the prescribed values. The chart shows the motions whose displacement changes.
 pub struct ForceDisplacement {
     table: ObserverTable,

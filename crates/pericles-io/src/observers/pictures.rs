@@ -1,4 +1,7 @@
 //! Pictures of a field over time.
+//!
+//! A picture is drawn during the run with the range of its state and, unless the range is fixed, again at the end
+//! with the common range, from files with the drawn states that are then removed.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

@@ -16,7 +16,7 @@ pub struct Reactions {
 }
 
 impl Reactions {
-    /// Creates the observer for a system with these motions, which must be those of the system.
+    /// Creates the observer for a system with these motions, which must belong to the system.
     pub fn new(path: impl Into<PathBuf>, motions: &[PrescribedMotion]) -> Self {
         let mut columns = step_and_time();
         for motion in motions {

@@ -1,4 +1,6 @@
 //! Impactors as triangles and lines, for pictures and files.
+//!
+//! Pictures, `.vtp` files and re-rendered pictures use the same description of an impactor at its present place.
 
 use std::f64::consts::TAU;
 
@@ -19,7 +21,7 @@ pub struct RigidMesh {
     pub vertices: Vec<[f64; 3]>,
     /// Triangles between the corners, anticlockwise seen from outside; empty for bodies in the plane.
     pub triangles: Vec<[u32; 3]>,
-    /// Whether the corners of a body in the plane are those of a closed polygon.
+    /// Whether the corners of a body in the plane form a closed polygon.
     pub closed: bool,
 }
 
@@ -258,7 +260,7 @@ fn block(half: [f64; 3]) -> RigidMesh {
 mod tests {
     use super::*;
 
-    /// Returns the volume enclosed by triangles; that of anticlockwise ones is positive.
+    /// Returns the volume enclosed by triangles, positive for anticlockwise ones.
     fn volume(mesh: &RigidMesh) -> f64 {
         let six = |[a, b, c]: [[f64; 3]; 3]| {
             a[0] * (b[1] * c[2] - b[2] * c[1])

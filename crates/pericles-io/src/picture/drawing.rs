@@ -1,4 +1,8 @@
 //! A picture as a list of shapes, from which pixels or SVG are produced.
+//!
+//! Charts and frames are shapes; the cells of a body are always pixels. Cells are rendered by our code, with a depth
+//! buffer in which the smallest key wins, so that the result does not depend on the order; lines are clipped in
+//! doubles, because curves may leave their chart by any factor.
 
 use super::bitmap::{Bitmap, Pen, Rgb};
 use super::raster::Raster;

@@ -31,7 +31,7 @@ enum Layout {
     Scalar,
     /// Three components, missing ones zero.
     Vector,
-    /// Six components XX, YY, ZZ, XY, YZ, XZ; those of a body of so many dimensions are given.
+    /// Six components XX, YY, ZZ, XY, YZ, XZ; those that exist in the dimensions of the body are given.
     Tensor(usize),
 }
 

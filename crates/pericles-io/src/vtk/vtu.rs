@@ -91,7 +91,7 @@ impl<'a> VtuFile<'a> {
         self
     }
 
-    /// Writes the file, whole or not at all.
+    /// Writes the file atomically.
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), IoError> {
         let path = path.as_ref();
         let points = self.check(path)?;
@@ -429,7 +429,7 @@ mod tests {
         let (x, long) = (wave(6, 0.0), wave(4, 0.0));
         let good = wave(3, 0.0);
         let file = || VtuFile::new(2, &x);
-        for refused in [
+        for rejected in [
             file().field(VtkField::scalar("a", &long)),
             file().field(VtkField::vector("a", &long)),
             file().field(VtkField::bytes("a", &[1, 2])),
@@ -441,7 +441,7 @@ mod tests {
             VtuFile::new(4, &x),
             VtuFile::new(2, &x[..5]),
         ] {
-            let error = refused.write(&path).unwrap_err();
+            let error = rejected.write(&path).unwrap_err();
             let data = matches!(error, IoError::Shape { .. } | IoError::Unsuitable { .. });
             assert!(data && !error.is_output_problem(), "{error}");
         }

@@ -122,12 +122,13 @@ impl Breaking {
                 critical,
                 weight: step.areas[i] * weight,
             };
-            let (dissipated, coarse) = CoarseBreak::judge(step.end, &bond, |moved: [f64; 3]| {
-                let before = std::array::from_fn(|c| eta[c] - moved[c]);
-                let force = law.force(lanes(xi), lanes(before)).map(|force| force.0[0]);
-                let energy = law.energy(lanes(xi), lanes(before)).0[0];
-                turns_around(&xi, &before, &eta).then_some((force, energy))
-            });
+            let (dissipated, coarse) =
+                CoarseBreak::dissipated(step.end, &bond, |moved: [f64; 3]| {
+                    let before = std::array::from_fn(|c| eta[c] - moved[c]);
+                    let force = law.force(lanes(xi), lanes(before)).map(|force| force.0[0]);
+                    let energy = law.energy(lanes(xi), lanes(before)).0[0];
+                    turns_around(&xi, &before, &eta).then_some((force, energy))
+                });
             self.dissipated += dissipated;
             for end in bond.ends {
                 self.of_points.add(end, 0.5 * dissipated);

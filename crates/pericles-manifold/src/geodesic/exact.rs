@@ -115,7 +115,7 @@ struct Search<'a> {
     seen: Vec<u32>,
     windows: Vec<Window>,
     free: Vec<u32>,
-    /// Min-heap of distances and events. Distances are stored as bits, which for positive numbers sort alike.
+    /// Min-heap of distances and events. Distances are stored as bits, which for positive numbers have the same order.
     queue: BinaryHeap<Reverse<(u64, u32)>>,
 }
 

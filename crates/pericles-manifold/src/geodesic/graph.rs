@@ -186,7 +186,7 @@ fn edge_links<'a>(
 struct Front {
     distance: Vec<f64>,
     touched: Vec<u32>,
-    /// Min-heap of distances and nodes. Distances are stored as bits, which for positive numbers sort alike.
+    /// Min-heap of distances and nodes. Distances are stored as bits, which for positive numbers have the same order.
     heap: BinaryHeap<Reverse<(u64, u32)>>,
 }
 

@@ -16,6 +16,9 @@
 //! threads. [`geodesic_pairs_cached`] stores them between runs. [`Ball`] selects the bonds: pairs within a
 //! geodesic or a Euclidean ball.
 //!
+//! Exact distances are the default, because distances along edges do not converge under refinement. The rules that
+//! discard windows keep those that are uncertain within rounding; tests compare with rays traced without these rules.
+//!
 //! ```
 //! use pericles_manifold::geodesic::{GeodesicMethod, geodesic_pairs};
 //! use pericles_manifold::surface::Surface;

@@ -89,7 +89,7 @@ impl Surface {
     }
 
     /// Creates a capsule about the z axis: a tube of the given length between two half spheres. It has
-    /// `segments` vertices around it; the distance between rings is about that of vertices within a ring.
+    /// `segments` vertices around it; the distance between rings is about the distance of vertices within a ring.
     pub fn capsule(radius: f64, length: f64, segments: u32) -> Result<Self, SurfaceError> {
         positive("the radius of the capsule, m", radius)?;
         positive("the length of the capsule's tube, m", length)?;

@@ -12,7 +12,7 @@ use super::winding::{WindingTree, fill_open_nodes};
 const SAMPLES: usize = 4;
 
 /// Finds the cells of a lattice that are at least partly inside a surface with holes. The volume fraction of
-/// a cell is that of 4 × 4 × 4 samples with a winding number above ½, a multiple of 1/64. Only cells that may
+/// a cell is the share of 4 × 4 × 4 samples with a winding number above ½, a multiple of 1/64. Only cells that may
 /// intersect a triangle, and those with a neighbour on the other side, are sampled; the others are full or
 /// empty. A cell with a fraction below 0.1 distributes its volume equally among its nearest neighbours above
 /// 0.1.

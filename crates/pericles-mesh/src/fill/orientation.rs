@@ -43,7 +43,7 @@ impl fmt::Display for Reversed {
 
 impl TriangleSurface {
     /// Returns the surface with one vertex for all corners at one position, without triangles that have two corners
-    /// there, and with the triangles of each connected part in one orientation: that of most of them. Parts that cannot
+    /// there, and with the triangles of each connected part in one orientation, which most of them have. Parts that cannot
     /// be oriented are kept.
     pub fn repaired(&self) -> (Self, Option<Reversed>) {
         let welded = self.welded();

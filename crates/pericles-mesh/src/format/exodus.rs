@@ -90,7 +90,7 @@ impl Reading<'_> {
         Ok(())
     }
 
-    /// Returns the names of blocks or sets: those of the file, or a word and the ID.
+    /// Returns the names of blocks or sets: as in the file, or a word and the ID.
     fn names(
         &self,
         names: &str,

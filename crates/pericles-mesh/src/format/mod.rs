@@ -87,7 +87,7 @@ impl Format {
     }
 
     /// Parses the content of a mesh file. `include` reads files included by an Abaqus file. Arrays of VTK and
-    /// netCDF-4 files may be compressed and may take up to `memory` bytes; those of other formats take little
+    /// netCDF-4 files may be compressed and may take up to `memory` bytes; files of other formats take little
     /// more than the content.
     ///
     /// # Errors

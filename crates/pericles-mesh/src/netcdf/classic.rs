@@ -1,7 +1,7 @@
 //! Classic netCDF files: CDF-1, CDF-2 (64-bit offsets) and CDF-5 (64-bit data).
 //!
 //! All numbers are big-endian. A file consists of a magic number, the number of records, dimensions,
-//! attributes, variables with the offsets of their values, then the values: those of fixed variables one
+//! attributes, variables with the offsets of their values, then the values: of fixed variables one
 //! after the other, then records with the values of all variables that have the record dimension. Lengths in
 //! the header of a variable may be wrong by design (beyond 4 GiB) and are computed instead.
 

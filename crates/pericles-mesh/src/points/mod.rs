@@ -130,7 +130,7 @@ impl MeshPoints {
 /// Volume relative to the cube of the element's size below which it counts as zero.
 const NO_VOLUME: f64 = 1e-14;
 
-/// Range of the largest side of a body, m, outside which the unit is doubtful.
+/// Range of the largest side of a body, m, outside which the unit is implausible.
 const LIKELY_SIDES: [f64; 2] = [1e-3, 100.0];
 
 impl RawMesh {
@@ -157,7 +157,7 @@ impl RawMesh {
         let elements: Vec<_> = cells.par_iter().map(|&cell| self.element(cell)).collect();
         for (&cell, element) in cells.iter().zip(elements) {
             let Measure { volume, centroid } = element?;
-            if self.lacks_volume(cell, volume) {
+            if self.has_no_volume(cell, volume) {
                 let number = self.cells.number(cell as usize);
                 let (_, count) = empty.get_or_insert((number, 0));
                 *count += 1;
@@ -262,7 +262,7 @@ impl RawMesh {
         }
     }
 
-    fn lacks_volume(&self, cell: u32, volume: f64) -> bool {
+    fn has_no_volume(&self, cell: u32, volume: f64) -> bool {
         let kind = self.cells.kind(cell as usize);
         let positions = self.corner_positions(self.cells.corners(cell as usize));
         let side = (0..3)
@@ -308,7 +308,7 @@ impl MeshPoints {
         // Centroids are half an element inside.
         let side = (0..3).map(extent).fold(0.0, f64::max) + self.mean_size();
         if !(LIKELY_SIDES[0]..=LIKELY_SIDES[1]).contains(&side) {
-            self.warnings.push(Problem::DoubtfulUnit { side });
+            self.warnings.push(Problem::ImplausibleUnit { side });
         }
     }
 }

@@ -122,7 +122,7 @@ pub enum Problem {
     },
     /// Warning: a body of unlikely size.
     #[error("the largest side of the mesh is {} m; check the unit of the file", short(*side))]
-    DoubtfulUnit {
+    ImplausibleUnit {
         /// Largest side, m.
         side: f64,
     },

@@ -45,7 +45,7 @@ struct Discs<'a> {
 }
 
 /// Creates random points in a body with a mean spacing of about `spacing`; their minimum distance is 0.748,
-/// 0.835 or 0.902 times `spacing` in 1, 2 or 3 dimensions. Coordinates beyond `dimension` are those of the
+/// 0.835 or 0.902 times `spacing` in 1, 2 or 3 dimensions. Coordinates beyond `dimension` are taken from the
 /// lower corner of `bounds`, a box that contains the body. Regions thinner than half a spacing may be missed.
 /// Points are ordered by their cells; x varies fastest.
 ///

@@ -63,7 +63,7 @@ Bar.2.2, S4
 }
 
 #[test]
-fn names_that_are_not_defined_are_refused() {
+fn names_that_are_not_defined_are_rejected() {
     for (sets, name) in [
         ("*ELSET, ELSET=a\ngone\n", "GONE"),
         ("*ELSET, ELSET=a\nBar-3.1\n", "BAR-3.1"),

@@ -3,9 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use pericles::space::{PointCloud, Region};
-use pericles_deck::AreaDoubt;
+use pericles_deck::AreaCaution;
 
-/// Returns the axis normal to the loaded face: the axis of a layer's face, otherwise that of the load.
+/// Returns the axis normal to the loaded face: the axis of a layer's face, otherwise the axis of the load.
 pub(crate) fn normal_axis(
     region: Option<&Region>,
     acts_along: &[bool; 3],
@@ -67,9 +67,9 @@ impl LoadedCells {
         }
     }
 
-    /// Returns the doubt about the projected area along `axis` of a set that is not defined as a layer; `None` if its points form
+    /// Returns the caution about the projected area along `axis` of a set that is not defined as a layer; `None` if its points form
     /// a single layer at one face.
-    pub(crate) fn doubt(&self, axis: usize) -> Option<AreaDoubt> {
+    pub(crate) fn caution(&self, axis: usize) -> Option<AreaCaution> {
         /// Largest depth of a layer along the axis, relative to another axis.
         const DEEPER: f64 = 1.5;
         /// Largest depth of a column, relative to the median; caps of spheres and cylinders are uneven.
@@ -86,12 +86,12 @@ impl LoadedCells {
         depths.sort_unstable();
         let uneven = depths[depths.len() - 1] > UNEVEN * depths[depths.len() / 2];
         if uneven || levels.values().any(apart) {
-            return Some(AreaDoubt::Parts { axis, area });
+            return Some(AreaCaution::Parts { axis, area });
         }
         let depth = |axis: usize| self.cells.len() as f64 / self.columns(axis).len() as f64;
         let others = (0..self.dimension).filter(|&c| c != axis);
         let other = others.min_by(|&a, &b| depth(a).total_cmp(&depth(b)))?;
-        (depth(axis) > DEEPER * depth(other)).then(|| AreaDoubt::Thinner {
+        (depth(axis) > DEEPER * depth(other)).then(|| AreaCaution::Thinner {
             axis,
             area,
             other,
@@ -100,7 +100,7 @@ impl LoadedCells {
     }
 
     /// Returns the projected area of the set along an axis, m²: the area of the cells that no other cell of the set hides. For a
-    /// box it is the area of a face, for a layer of a cylinder that of the cells of its base.
+    /// box it is the area of a face, for a layer of a cylinder the area of the cells of its base.
     pub(crate) fn seen_along(&self, axis: usize) -> f64 {
         let count = self.columns(axis).len();
         let across = (0..self.dimension).filter(|&c| c != axis);
@@ -188,10 +188,10 @@ mod tests {
         };
         let close = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-12, "{a} {b}");
         let right = set(&|x, _| x > 7.7);
-        assert_eq!(LoadedCells::new(&cloud, &right).doubt(0), None);
+        assert_eq!(LoadedCells::new(&cloud, &right).caution(0), None);
         // Shear on a box three cells deep: the projection along the load is its narrow side.
-        match LoadedCells::new(&cloud, &right).doubt(1) {
-            Some(AreaDoubt::Thinner {
+        match LoadedCells::new(&cloud, &right).caution(1) {
+            Some(AreaCaution::Thinner {
                 axis: 1,
                 area,
                 other: 0,
@@ -207,10 +207,10 @@ mod tests {
             set(&|x, _| !(0.3..7.7).contains(&x)),
             set(&|x, y| x > 7.7 || y > 3.7),
         ] {
-            let doubt = LoadedCells::new(&cloud, &union).doubt(0);
+            let caution = LoadedCells::new(&cloud, &union).caution(0);
             assert!(
-                matches!(doubt, Some(AreaDoubt::Parts { axis: 0, .. })),
-                "{doubt:?}"
+                matches!(caution, Some(AreaCaution::Parts { axis: 0, .. })),
+                "{caution:?}"
             );
         }
     }

@@ -13,7 +13,7 @@ use super::boundary::exterior_frequency;
 use super::damping::strongest;
 use super::discretisation::Discretisation;
 use super::discretise::discretise;
-use super::refusal::{at, at_path};
+use super::rejection::{at, at_path};
 use super::resources::Resources;
 
 /// Builds forces, conditions and scheme of a model on its points, and determines the time step. All processes that share a body
@@ -65,11 +65,11 @@ pub fn assemble(
         cracks: tracked,
         density,
     } = parts;
-    assembler.refuse_fields(&bonds)?;
+    assembler.reject_fields(&bonds)?;
     assembler.check_cells(&discretisation)?;
     assembler.check_point_numbers(sets)?;
-    warnings.extend(assembler.judge_names(sets));
-    warnings.extend(assembler.judge_expansion());
+    warnings.extend(assembler.check_names(sets));
+    warnings.extend(assembler.check_expansion());
     let mut system = System::new(Arc::clone(cloud), bonds.operator, density.clone())
         .map_err(|error| at("material.density", error))?;
     let temperature = field.as_ref().map(DiffusingField::shared);
@@ -90,11 +90,11 @@ pub fn assemble(
     discretisation.conditions.add_loads(&mut system)?;
     assembler.add_motions(&mut system, place, &state)?;
     discretisation.conditions.add_motions(&mut system)?;
-    assembler.judge_conditions(&system, cloud, &mut warnings);
-    warnings.extend(assembler.judge_idle_keys(&system));
-    warnings.extend(assembler.judge_dissipation(&system));
+    assembler.check_conditions(&system, cloud, &mut warnings);
+    warnings.extend(assembler.check_idle_keys(&system));
+    warnings.extend(assembler.check_dissipation(&system));
     if discretisation.conditions.is_empty() {
-        warnings.extend(assembler.judge_rest(system.domain(), &state));
+        warnings.extend(assembler.check_rest(system.domain(), &state));
     }
     let contact = assembler.add_contact(
         &mut system,
@@ -116,7 +116,7 @@ pub fn assemble(
         (exterior, damping),
         &mut warnings,
     )?;
-    assembler.judge_contact_step(
+    assembler.check_contact_step(
         (steps.dt, system.longest_contact_step()),
         contact,
         constants.as_ref(),
@@ -125,17 +125,17 @@ pub fn assemble(
     );
     assembler.check_thermal_steps(&system, steps.dt)?;
     assembler.check_outputs(steps.dt, steps.count)?;
-    assembler.judge_two_steps(&*integrator, &steps, &mut warnings);
+    assembler.check_two_steps(&*integrator, &steps, &mut warnings);
     assembler.check_initial_files(&system, &state, &mut warnings)?;
-    assembler.judge_breaking(&system, &state, constants.as_ref(), &steps, &mut warnings);
+    assembler.check_breaking(&system, &state, constants.as_ref(), &steps, &mut warnings);
     let ends = assembler.add_ends(&mut system, ends, &state, &steps, resources, &mut warnings)?;
     assembler.add_damping_layers(&mut system, layers, integrator.step_kind(), &steps)?;
     assembler.add_rayleigh_damping(&mut system, &*integrator)?;
     check_compatibility(&system, &*integrator, steps.count)
         .map_err(|error| at("time.scheme", error))?;
-    discretisation.agreed(assembler.refuse_lost_values(&system, &steps))?;
+    discretisation.agreed(assembler.reject_lost_values(&system, &steps))?;
     if !system.domain().is_divided() {
-        assembler.judge_supports(&system, steps.count as f64 * steps.dt, &mut warnings);
+        assembler.check_supports(&system, steps.count as f64 * steps.dt, &mut warnings);
     }
     let stops = assembler.stops(&system, sets)?;
     let loads = assembler.load_reports(&system, areas, steps.count as f64 * steps.dt);
@@ -176,7 +176,7 @@ pub fn assemble(
     })
 }
 
-/// Discretises and assembles the model of a deck. Paths are relative to the folder of the deck, not that of the
+/// Discretises and assembles the model of a deck. Paths are relative to the folder of the deck, not the folder of the
 /// resources.
 ///
 /// # Errors
@@ -188,5 +188,5 @@ pub fn build(deck: &Deck, resources: &Resources<'_>) -> Result<Assembly, DeckErr
     };
     let assembly = discretise(&deck.model, &resources)
         .and_then(|discretisation| assemble(&deck.model, discretisation, &resources));
-    assembly.map_err(|error| deck.refusal(error))
+    assembly.map_err(|error| deck.rejection(error))
 }

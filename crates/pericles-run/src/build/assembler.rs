@@ -5,7 +5,7 @@ use pericles::space::PointSet;
 use pericles_deck::{BuildError, Fault, Keys, Model};
 
 use super::discretisation::Sets;
-use super::refusal::at_path;
+use super::rejection::at_path;
 
 /// Builds the parts of an assembly; the modules of this folder add methods.
 #[derive(Clone, Copy)]

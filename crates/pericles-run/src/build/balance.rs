@@ -85,7 +85,7 @@ impl Part {
     }
 
     /// Updates the largest imbalance with the loads of one time.
-    fn judge(&mut self) {
+    fn check(&mut self) {
         let rest = self.free(self.net);
         if norm(&rest) > BALANCED * self.loads {
             self.is_unbalanced = true;
@@ -114,7 +114,7 @@ impl Part {
 impl Assembler<'_> {
     /// Warns of a static body with a part that can move as a rigid body until `end` (s), because the loads on it are
     /// not in equilibrium or it has no constraint.
-    pub(super) fn judge_supports(
+    pub(super) fn check_supports(
         &self,
         system: &System,
         end: f64,
@@ -240,6 +240,6 @@ fn load(system: &System, end: f64, parts: &mut [Part], part_of: &[u32]) {
                 part.loads += force.abs();
             }
         }
-        parts.iter_mut().for_each(Part::judge);
+        parts.iter_mut().for_each(Part::check);
     }
 }

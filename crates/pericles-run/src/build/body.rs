@@ -18,7 +18,7 @@ use super::constants::MaterialConstants;
 use super::discretisation::{Discretisation, Grids, Sets, is_on_grid};
 use super::graded::have_several_horizons;
 use super::materials::{Between, Composition};
-use super::refusal::{at_material, at_path};
+use super::rejection::{at_material, at_path};
 use super::resources::Resources;
 use crate::composition::has_need;
 
@@ -67,9 +67,9 @@ impl Assembler<'_> {
             .constants_of(solid, material, cloud)
             .map_err(at_material)?;
         let known = MaterialConstants::Bonds(constants.clone());
-        warnings.extend(self.judge_speed(solid, &known));
-        warnings.extend(self.judge_classes(material, &constants));
-        warnings.extend(self.judge_solid(solid, &known));
+        warnings.extend(self.check_speed(solid, &known));
+        warnings.extend(self.check_classes(material, &constants));
+        warnings.extend(self.check_solid(solid, &known));
         let no_fail = self.union_of(sets, &solid.material.no_fail)?;
         let stiffness = self.stiffness_of(cloud, sets)?;
         let Composition {
@@ -97,8 +97,8 @@ impl Assembler<'_> {
         let all = (&materials[..], &interfaces[..]);
         let (bonds, cracks) =
             self.bonds(solid, composite, (grids, all), discretisation, warnings)?;
-        let refused = bonds.form.refusal(Feature::Tensors.into());
-        if let (true, Some(reason)) = (self.model.output.wants_tensors(), refused) {
+        let rejected = bonds.form.rejection(Feature::Tensors.into());
+        if let (true, Some(reason)) = (self.model.output.wants_tensors(), rejected) {
             let fields = "the fields Stress, Strain and Equivalent_Stress are";
             return Err(at_path(
                 self.field_key(Field::is_of_bonds),
@@ -124,7 +124,7 @@ impl Assembler<'_> {
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<BodyParts, BuildError> {
         let Discretisation { cloud, sets, .. } = discretisation;
-        self.refuse_body_forces()?;
+        self.reject_body_forces()?;
         let operator = self.surface_operator(body, surface, cloud, sets, resources.cache)?;
         let neighbours = operator.directed_bonds() as f64 / cloud.len() as f64;
         for caution in surface.cautions(body.material.horizon, neighbours) {
@@ -145,22 +145,22 @@ impl Assembler<'_> {
     }
 
     /// Rejects output of dilatation, plastic strain or temperature for bodies without them.
-    pub(super) fn refuse_fields(&self, bonds: &AssembledForce) -> Result<(), BuildError> {
+    pub(super) fn reject_fields(&self, bonds: &AssembledForce) -> Result<(), BuildError> {
         let capabilities = bonds.operator.capabilities();
-        let refuse = |is_meant, fields, reason| {
+        let reject = |is_meant, fields, reason| {
             let fault = Fault::NoFields { fields, reason };
             Err(at_path(self.field_key(is_meant), fault))
         };
         let wants = |field| self.model.output.wants(field);
         if capabilities.bonds.is_none() && self.model.output.wants_tensors() {
-            return refuse(
+            return reject(
                 Field::is_of_bonds,
                 "the fields Stress, Strain and Equivalent_Stress are",
                 "only bodies with volume whose forces are sums over single bonds have them",
             );
         }
         if capabilities.dilatation.is_none() && wants(Field::Dilatation) {
-            return refuse(
+            return reject(
                 |field| field == Field::Dilatation,
                 "the field Dilatation is",
                 "only state-based and correspondence materials (model = \"state-based\" or \"correspondence\") have a dilatation",
@@ -169,7 +169,7 @@ impl Assembler<'_> {
         if capabilities.plastic.is_none()
             && (wants(Field::PlasticStrain) || wants(Field::YieldFlag))
         {
-            return refuse(
+            return reject(
                 |field| matches!(field, Field::PlasticStrain | Field::YieldFlag),
                 "the fields Plastic_Strain and Yield_Flag are",
                 "only materials with a `yield_stress` have a plastic strain",
@@ -178,14 +178,14 @@ impl Assembler<'_> {
         let conducts =
             (self.model.thermal.as_ref()).is_some_and(|thermal| thermal.conduction.is_some());
         if !conducts && wants(Field::HeatFlux) {
-            return refuse(
+            return reject(
                 |field| field == Field::HeatFlux,
                 "the field Heat_Flux is",
                 "only bodies with heat conduction have a heat flux; set `conductivity` and `specific_heat` in [thermal]",
             );
         }
         if !conducts && capabilities.thermal.is_none() && wants(Field::Temperature) {
-            return refuse(
+            return reject(
                 |field| field == Field::Temperature,
                 "the field Temperature is",
                 "only bodies with thermal expansion have a temperature; add [thermal]",

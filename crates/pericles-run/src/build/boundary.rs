@@ -15,7 +15,7 @@ use pericles_waves::absorbing::{
 
 use super::assembler::Assembler;
 use super::discretisation::Sets;
-use super::refusal::{at, at_path};
+use super::rejection::{at, at_path};
 use super::resources::Resources;
 use super::step::Steps;
 
@@ -54,7 +54,7 @@ impl Assembler<'_> {
         }
         for (k, boundary) in self.model.boundaries.iter().enumerate() {
             let path = KeyPath::from("boundary").index(k);
-            let refuse = |error| at_path(&path, PericlesError::from(error).into());
+            let reject = |error| at_path(&path, PericlesError::from(error).into());
             let kind = integrator.step_kind();
             let wrong_scheme = |what, needed| {
                 let error = PericlesError::BoundaryScheme {
@@ -78,17 +78,17 @@ impl Assembler<'_> {
             };
             if scheme != LatticeScheme::VelocityVerlet && exterior_extent.is_some() {
                 let what = "exterior_extent";
-                return Err(refuse(AbsorbingError::VerletOnly { what }));
+                return Err(reject(AbsorbingError::VerletOnly { what }));
             }
             if sides.contains(&side) {
                 let side = side.name();
-                return Err(refuse(AbsorbingError::Twice { side }));
+                return Err(reject(AbsorbingError::Twice { side }));
             }
             sides.push(side);
             let (layer, beyond) = match exterior_extent {
                 None => (OuterLayer::of(system, side, state, &no_fail), None),
                 Some(depth) => {
-                    self.refuse_initial_files()?;
+                    self.reject_initial_files()?;
                     exterior += depth / system.cloud().spacing();
                     self.check_exterior(&path.key("exterior_extent"), exterior, resources)?;
                     let layer = OuterLayer::with_motion_beyond(system, side, &no_fail);
@@ -96,7 +96,7 @@ impl Assembler<'_> {
                 }
             };
             ends.push(End {
-                layer: layer.map_err(refuse)?,
+                layer: layer.map_err(reject)?,
                 path,
                 scheme,
                 plan,
@@ -107,7 +107,7 @@ impl Assembler<'_> {
     }
 
     /// Rejects initial states from files if the initial fields extend beyond the body.
-    fn refuse_initial_files(&self) -> Result<(), BuildError> {
+    fn reject_initial_files(&self) -> Result<(), BuildError> {
         let Some(k) = self
             .model
             .initial
@@ -171,15 +171,15 @@ impl Assembler<'_> {
         let mut sites = 0;
         for mut end in ends {
             let path = end.path;
-            let refuse = |error| at_path(&path, PericlesError::from(error).into());
+            let reject = |error| at_path(&path, PericlesError::from(error).into());
             let stencil = end.layer.stencil.clone();
             let step = LatticeStep {
                 scheme: end.scheme,
                 dt: steps.dt,
             };
-            step.check(&stencil).map_err(refuse)?;
+            step.check(&stencil).map_err(reject)?;
             if let Some(solid) = self.model.body.solid() {
-                warnings.extend(self.judge_reach(solid, &stencil, system.cloud()));
+                warnings.extend(self.check_reach(solid, &stencil, system.cloud()));
             }
             let neglected = end.layer.neglected;
             if neglected > NOTABLE_FIELD {
@@ -219,7 +219,7 @@ impl Assembler<'_> {
                 end.plan.form = Some(HistoryForm::Blocked);
                 made = make(end.plan);
             }
-            let (history, report) = made.map_err(refuse)?;
+            let (history, report) = made.map_err(reject)?;
             if let Some(growth) = report.growth {
                 warnings.push(Remark::new(
                     path.key("method"),
@@ -229,21 +229,21 @@ impl Assembler<'_> {
             reports.push((end.layer.side, report));
             if end.scheme == LatticeScheme::Midpoint {
                 let made = MidpointEnd::new(end.layer, history, steps.dt);
-                system.add_boundary(Box::new(made.map_err(refuse)?));
+                system.add_boundary(Box::new(made.map_err(reject)?));
                 continue;
             }
-            let mut made = AbsorbingEnd::new(end.layer, history, steps.dt).map_err(refuse)?;
+            let mut made = AbsorbingEnd::new(end.layer, history, steps.dt).map_err(reject)?;
             if let Some([u, v]) = &end.beyond {
-                let another = || make(end.plan).map(|(history, _)| history).map_err(refuse);
+                let another = || make(end.plan).map(|(history, _)| history).map_err(reject);
                 let histories = [another()?, another()?];
                 let wave = FreeWave::new(&stencil, steps.dt, [u, v], largest, histories);
-                let refuse = |error| {
+                let reject = |error| {
                     at_path(
                         path.key("exterior_extent"),
                         PericlesError::from(error).into(),
                     )
                 };
-                made = made.with_free_wave(wave.map_err(refuse)?);
+                made = made.with_free_wave(wave.map_err(reject)?);
             }
             system.add_boundary(Box::new(made));
         }
@@ -252,7 +252,7 @@ impl Assembler<'_> {
 
     /// Warns if the longest bonds of a table of classes have no stiffness: the exterior, derived from the bonds,
     /// lacks them.
-    fn judge_reach(
+    fn check_reach(
         &self,
         solid: &Solid,
         stencil: &LatticeStencil,

@@ -7,7 +7,7 @@ use pericles_deck::{BuildError, Caution, Fault, KeyPath, ModelWarning, Remark};
 
 use super::assembler::Assembler;
 use super::constants::MaterialConstants;
-use super::refusal::at_path;
+use super::rejection::at_path;
 use super::step::Steps;
 
 /// Initial displacements from a file at which intact bonds are beyond their limits.
@@ -59,7 +59,7 @@ impl Assembler<'_> {
 
     /// Warns of initial and prescribed velocities above the Rayleigh speed, and of velocities that stretch bonds
     /// beyond the critical stretch within the first step, if bonds can break. Static states have no velocities.
-    pub(super) fn judge_breaking(
+    pub(super) fn check_breaking(
         &self,
         system: &System,
         state: &State,

@@ -14,7 +14,7 @@ use pericles_deck::{
 
 use super::assembler::Assembler;
 use super::discretisation::{Discretisation, Sets};
-use super::refusal::{at, at_path};
+use super::rejection::{at, at_path};
 use super::resources::Resources;
 
 impl Assembler<'_> {
@@ -140,7 +140,7 @@ impl Assembler<'_> {
             let points = self.members(sets, &motion.set, path.key("set"))?.clone();
             let function = motion.function.smooth_function();
             let function = function.map_err(|fault| at_path(path.key("function"), fault))?;
-            self.refuse_second_motion(k, &points, discretisation)?;
+            self.reject_second_motion(k, &points, discretisation)?;
             let add = || {
                 let along = self.axis_motions(&path, motion, cloud, &points)?;
                 let prescribed = PrescribedMotion::along(
@@ -163,7 +163,7 @@ impl Assembler<'_> {
     }
 
     /// Rejects a second prescribed motion of a point along the same axis.
-    fn refuse_second_motion(
+    fn reject_second_motion(
         &self,
         k: usize,
         points: &[u32],

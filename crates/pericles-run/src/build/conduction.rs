@@ -22,8 +22,8 @@ use super::assembler::Assembler;
 use super::body::BodyParts;
 use super::discretisation::Discretisation;
 use super::loads::volume_of;
-use super::plausible_heat::judge_radiation;
-use super::refusal::{at, at_path};
+use super::plausible_heat::check_radiation;
+use super::rejection::{at, at_path};
 use super::resources::Resources;
 use super::thermal::Given;
 
@@ -116,8 +116,8 @@ impl Assembler<'_> {
                 for_each_point(cloud.len(), &|i| value.value(cloud.point(i), 0.0))
             }
         };
-        let judged = judge_radiation(thermal, cloud, &start);
-        warnings.extend(discretisation.agreed(judged)?);
+        let checked = check_radiation(thermal, cloud, &start);
+        warnings.extend(discretisation.agreed(checked)?);
         let field = DiffusingField::new(problem, options, 0.0, start);
         field.map(Some).map_err(|error| at("thermal", error))
     }
@@ -172,7 +172,7 @@ impl Assembler<'_> {
         self.of_materials(&all, solid, discretisation)
     }
 
-    /// Returns the horizon of each point, if they differ: those of the materials, divided by refinement ratios.
+    /// Returns the horizon of each point, if they differ: the horizons of the materials, divided by refinement ratios.
     fn conducting_horizons(
         &self,
         solid: &Solid,
@@ -265,7 +265,7 @@ impl Assembler<'_> {
         })
     }
 
-    /// Returns the area through which a condition acts, m²: that of the deck, of a face set of the mesh, or of the face
+    /// Returns the area through which a condition acts, m²: given in the deck, of a face set of the mesh, or of the face
     /// of a layer.
     fn heated_area(
         &self,
@@ -282,12 +282,12 @@ impl Assembler<'_> {
         if let Some(area) = known {
             return Ok(area);
         }
-        let refuse = |reason| Err(at_path(path.key("area"), Fault::UnknownArea { reason }));
+        let reject = |reason| Err(at_path(path.key("area"), Fault::UnknownArea { reason }));
         let shape = self.model.body.solid().map(|solid| &solid.shape);
         let has_no_faces =
             matches!(shape, Some(SolidShape::Mesh(_))) || shape.is_some_and(SolidShape::is_listed);
         if has_no_faces && cloud.dimension() > 1 {
-            return refuse("the set is neither a face set of a mesh nor a layer of a lattice");
+            return reject("the set is neither a face set of a mesh nor a layer of a lattice");
         }
         let named = self
             .model
@@ -297,13 +297,13 @@ impl Assembler<'_> {
         let region = named.and_then(|named| named.members.region());
         let along_bar = [cloud.dimension() == 1, false, false];
         let Ok(axis) = area::normal_axis(region, &along_bar) else {
-            return refuse("the set is not a layer at a face of the body");
+            return reject("the set is not a layer at a face of the body");
         };
         let heated = LoadedCells::new(cloud, points);
         if !area::is_layer(region)
-            && let Some(doubt) = heated.doubt(axis)
+            && let Some(caution) = heated.caution(axis)
         {
-            warnings.push(Remark::new(path, Caution::LoadedArea(doubt)));
+            warnings.push(Remark::new(path, Caution::LoadedArea(caution)));
         }
         Ok(heated.seen_along(axis))
     }

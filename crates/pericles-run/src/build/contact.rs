@@ -17,11 +17,11 @@ use pericles_mesh::fill::TriangleSurface;
 use super::assembler::Assembler;
 use super::constants::MaterialConstants;
 use super::discretisation::Discretisation;
-use super::refusal::{at, at_path};
+use super::rejection::{at, at_path};
 use super::resources::Resources;
 use super::rotation::{UNIT, matrix, product, times, upright};
 
-/// The constants of the materials: that of the body and the others in the order of the deck.
+/// The constants of the materials: the body's material and the others in the order of the deck.
 pub(super) type AllConstants<'a> = (Option<&'a MaterialConstants>, &'a [MaterialConstants]);
 
 /// Contact of an assembled model, for the time step and warnings.
@@ -92,7 +92,7 @@ impl Assembler<'_> {
             frequency: system.single_contact_frequency(density),
             speed: self.impact_speed(system, cloud, state),
         };
-        self.judge_impact(solid, &contact, facts, constants, warnings);
+        self.check_impact(solid, &contact, facts, constants, warnings);
         Ok(facts)
     }
 
@@ -231,7 +231,7 @@ impl Assembler<'_> {
     }
 
     /// Warns of impacts so fast that points may pass each other.
-    fn judge_impact(
+    fn check_impact(
         &self,
         solid: &Solid,
         contact: &Contact,
@@ -266,7 +266,7 @@ impl Assembler<'_> {
     }
 
     /// Warns of steps above `longest` (s), which resolve contacts badly, and of steps in which a bond is stretched by more than the critical stretch.
-    pub(super) fn judge_contact_step(
+    pub(super) fn check_contact_step(
         &self,
         (dt, longest): (f64, f64),
         facts: ContactFacts,

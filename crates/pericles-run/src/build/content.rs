@@ -14,7 +14,7 @@ use pericles_dispersion::{
 
 use super::assembler::Assembler;
 use super::assembly::Assembly;
-use super::refusal::{HORIZON, at, at_path};
+use super::rejection::{HORIZON, at, at_path};
 
 /// Waves with a larger error of the phase speed are not resolved.
 const TOLERANCE: f64 = 0.05;
@@ -31,7 +31,7 @@ pub struct PlaneWaves {
     /// The shortest waves whose phase speed on the grid is within the tolerance of that in the nonlocal continuum or,
     /// without a continuum, of the long-wave limit.
     pub grid: Resolved,
-    /// For tuned coefficients: their quality and that of a constant influence function.
+    /// For tuned coefficients: their quality and the quality of a constant influence function.
     pub tuning: Option<[KernelQuality; 2]>,
 }
 
@@ -76,8 +76,8 @@ impl Assembly {
     /// Warns of kernels that are less accurate than intended, and of loads, motions and initial values with waves
     /// that the grid does not resolve. Dispersion of the nonlocal model itself leads to no warning. Bodies without a
     /// grid or with several materials are not checked.
-    pub fn judge_waves(&self, model: &Model) -> Vec<ModelWarning> {
-        Assembler::new(model).judge_waves(self)
+    pub fn check_waves(&self, model: &Model) -> Vec<ModelWarning> {
+        Assembler::new(model).check_waves(self)
     }
 }
 
@@ -170,19 +170,19 @@ impl<'a> Assembler<'a> {
         })
     }
 
-    /// See [`Assembly::judge_waves`].
-    fn judge_waves(self, assembly: &Assembly) -> Vec<ModelWarning> {
+    /// See [`Assembly::check_waves`].
+    fn check_waves(self, assembly: &Assembly) -> Vec<ModelWarning> {
         let body = self.model.body.solid();
         let Some((solid, waves)) = body.zip(self.plane_waves(assembly)) else {
             return Vec::new();
         };
-        let mut warnings = self.judge_kernel(solid, assembly, &waves);
+        let mut warnings = self.check_kernel(solid, assembly, &waves);
         // Initial fields are compared with the waves of a body that is not divided among processes.
         if self.model.time.scheme.is_static() || assembly.system.domain().is_divided() {
             return warnings;
         }
         let carried = waves.grid;
-        let mut judge = |path: &KeyPath, what: &'static str, share: f64| {
+        let mut check = |path: &KeyPath, what: &'static str, share: f64| {
             if share > SHARE {
                 let caution = Caution::ShortWaves {
                     what,
@@ -201,7 +201,7 @@ impl<'a> Assembler<'a> {
             ("initial velocity", &state.v, false),
         ] {
             let share = space_content(&assembly.cloud, field, carried.wavenumber, strain);
-            judge(&"initial".into(), what, share.unwrap_or(0.0));
+            check(&"initial".into(), what, share.unwrap_or(0.0));
         }
         let end = assembly.steps as f64 * assembly.dt;
         let in_time = |g: &dyn Fn(f64) -> f64, start: f64| {
@@ -217,7 +217,7 @@ impl<'a> Assembler<'a> {
                 let acts = (from..=until).contains(&t);
                 f64::from(u8::from(acts)) * function.value(t) * course(field, t)
             };
-            judge(&KeyPath::from("load").index(k), "load", in_time(&g, from));
+            check(&KeyPath::from("load").index(k), "load", in_time(&g, from));
         }
         for (k, motion) in self.model.constraints.iter().enumerate() {
             // A prescribed motion emits waves by its velocity.
@@ -253,7 +253,7 @@ impl<'a> Assembler<'a> {
                 }
                 (false, true) => course(&field, t),
             };
-            judge(
+            check(
                 &KeyPath::from("constraint").index(k),
                 "prescribed motion",
                 in_time(&g, 0.0),
@@ -263,7 +263,7 @@ impl<'a> Assembler<'a> {
     }
 
     /// Warns of unstable waves, and of tuned coefficients that are less accurate than a constant influence function.
-    fn judge_kernel(
+    fn check_kernel(
         &self,
         solid: &Solid,
         assembly: &Assembly,

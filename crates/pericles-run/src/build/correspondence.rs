@@ -16,7 +16,7 @@ use super::body::BodyParts;
 use super::constants::MaterialConstants;
 use super::discretisation::Discretisation;
 use super::materials::PairRule;
-use super::refusal::{at, at_material, at_path};
+use super::rejection::{at, at_material, at_path};
 
 impl Assembler<'_> {
     /// Builds force operator and materials of a body of correspondence materials.
@@ -27,7 +27,7 @@ impl Assembler<'_> {
         discretisation: &Discretisation,
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<BodyParts, BuildError> {
-        self.refuse_correspondence_features(solid)?;
+        self.reject_correspondence_features(solid)?;
         let Discretisation { cloud, sets, .. } = discretisation;
         let material = &solid.material;
         let material_of = |path: KeyPath, own: &Correspondence| {
@@ -57,7 +57,7 @@ impl Assembler<'_> {
                 BondFailure::CriticalStretch(_) => "critical_stretch",
                 BondFailure::Stretch { .. } | BondFailure::BondEnergy { .. } => "fracture_energy",
             };
-            self.judge_stretch(constants.solid.limits.stretch, path.key(key), warnings);
+            self.check_stretch(constants.solid.limits.stretch, path.key(key), warnings);
         }
         let (of_point, density) = self.points_of_materials(material, (cloud, sets), warnings)?;
         let classes = match of_point {
@@ -98,8 +98,8 @@ impl Assembler<'_> {
         let mut all = all.into_iter().map(MaterialConstants::Correspondence);
         let constants = all.next();
         if let Some(constants) = &constants {
-            warnings.extend(self.judge_speed(solid, constants));
-            warnings.extend(self.judge_solid(solid, constants));
+            warnings.extend(self.check_speed(solid, constants));
+            warnings.extend(self.check_solid(solid, constants));
         }
         Ok(BodyParts {
             constants,
@@ -139,7 +139,7 @@ impl Assembler<'_> {
     }
 
     /// Rejects features that correspondence materials do not support, and force kernels that do not support them.
-    fn refuse_correspondence_features(&self, solid: &Solid) -> Result<(), BuildError> {
+    fn reject_correspondence_features(&self, solid: &Solid) -> Result<(), BuildError> {
         let shape = &solid.shape;
         let mut assignments = self.model.assignments.iter();
         let found = [
@@ -161,7 +161,7 @@ impl Assembler<'_> {
             ),
         ];
         for (feature, present, key) in found {
-            if let (true, Some(reason)) = (present, CorrespondenceBody::refusal(feature.into())) {
+            if let (true, Some(reason)) = (present, CorrespondenceBody::rejection(feature.into())) {
                 let (value, allowed) = (feature.words().into(), reason.into());
                 return Err(at_path(key, Fault::OutOfRange { value, allowed }));
             }

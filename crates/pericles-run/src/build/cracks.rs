@@ -8,7 +8,7 @@ use pericles_deck::{BuildError, CrackSurface, Fault, KeyPath, ModelWarning, Rema
 use super::assembler::Assembler;
 use super::discretisation::{Discretisation, Sets};
 use super::part::gathered;
-use super::refusal::at_path;
+use super::rejection::at_path;
 use super::resources::Resources;
 
 impl Assembler<'_> {

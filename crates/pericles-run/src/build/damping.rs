@@ -10,7 +10,7 @@ use pericles_deck::{BoundaryCondition, BuildError, KeyPath};
 
 use super::assembler::Assembler;
 use super::constants::MaterialConstants;
-use super::refusal::at_path;
+use super::rejection::at_path;
 use super::step::Steps;
 
 impl Assembler<'_> {
@@ -106,9 +106,9 @@ impl Assembler<'_> {
         };
         for (k, face, profile) in layers {
             let path = KeyPath::from("boundary").index(k);
-            let refuse = |error: PericlesError| at_path(&path, error.into());
+            let reject = |error: PericlesError| at_path(&path, error.into());
             let layer = DampingLayer::new(system.cloud(), system.density(), face, profile, damped);
-            system.add_boundary(Box::new(layer.map_err(refuse)?));
+            system.add_boundary(Box::new(layer.map_err(reject)?));
         }
         Ok(())
     }

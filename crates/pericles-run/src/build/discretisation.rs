@@ -9,7 +9,7 @@ use pericles_manifold::surface::Surface;
 
 use super::mesh_body::Meshes;
 use super::program::Conditions;
-use super::refusal::at_path;
+use super::rejection::at_path;
 
 /// Named sets of points, each in ascending order.
 pub type Sets = Vec<(String, PointSet)>;
@@ -26,7 +26,7 @@ pub struct Discretisation {
     pub surface: Option<Arc<Surface>>,
     /// The meshes whose elements the points are.
     pub meshes: Arc<Meshes>,
-    /// The sets of these points with their names: "all", those of a mesh, those of the deck.
+    /// The sets of these points with their names: "all", the sets of a mesh, the sets of the deck.
     pub sets: Sets,
     /// The surfaces of the pre-cracks.
     pub cracks: Vec<(Crack, EndRule)>,
@@ -45,7 +45,7 @@ pub(crate) fn is_on_grid(model: &Model, cloud: &PointCloud) -> bool {
 /// The grids of a body with refined parts.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Grids {
-    /// Refinement ratio of each grid: 1 for the whole body, then those of the refined parts.
+    /// Refinement ratio of each grid: 1 for the whole body, then the ratios of the refined parts.
     pub ratios: Vec<u32>,
     /// The grid of each point, by its number in `ratios`.
     pub of_point: Vec<u8>,
@@ -78,25 +78,25 @@ impl Discretisation {
     /// are; those changed by a program may not be.
     pub(super) fn check(&self, body: &Body) -> Result<(), BuildError> {
         let points = self.cloud.len();
-        let refuse =
+        let reject =
             |keys: KeyPath, reason: String| Err(at_path(keys, Fault::BadDiscretisation { reason }));
         let (found, needed) = (self.cloud.dimension(), body.dimension());
         if found != needed {
             let reason = format!("the points have {found} dimensions, the body has {needed}");
-            return refuse("body".into(), reason);
+            return reject("body".into(), reason);
         }
         let grids = &self.grids;
         let known = |&grid: &u8| usize::from(grid) < grids.ratios.len();
         if grids.of_point.len() != points || !grids.of_point.iter().all(known) {
             let reason = format!("the grids do not match the {points} points");
-            return refuse("body.refine".into(), reason);
+            return reject("body.refine".into(), reason);
         }
         if let Some(surface) = self.surface.as_ref().filter(|s| s.len() != points) {
             let reason = format!(
                 "the surface has {} vertices, but there are {points} points",
                 surface.len()
             );
-            return refuse("body".into(), reason);
+            return reject("body".into(), reason);
         }
         for (name, set) in &self.sets {
             let rising = set.windows(2).all(|pair| pair[0] < pair[1]);
@@ -105,7 +105,7 @@ impl Discretisation {
                     "the set `{name}` does not contain points from 0 to {} in ascending order",
                     points.saturating_sub(1)
                 );
-                return refuse(KeyPath::from("sets").key(name), reason);
+                return reject(KeyPath::from("sets").key(name), reason);
             }
         }
         Ok(())

@@ -10,7 +10,7 @@ use super::assembler::Assembler;
 use super::discretisation::{Discretisation, Grids, Sets};
 use super::mesh_body::Meshes;
 use super::program::Conditions;
-use super::refusal::at_path;
+use super::rejection::at_path;
 use super::resources::Resources;
 
 /// Creates the points of a model and selects its sets; of a body divided among several processes, the part of the calling

@@ -9,7 +9,7 @@ use pericles_waves::exact::{BarMode, ExactSolution, LineSolution, StretchedBar, 
 use super::assembler::Assembler;
 use super::constants::MaterialConstants;
 use super::part::gathered;
-use super::refusal::at_path;
+use super::rejection::at_path;
 
 /// The exact solution for comparison.
 pub struct ExactReference {
@@ -55,7 +55,7 @@ impl Assembler<'_> {
                     centre,
                 };
                 self.check_terms(&line, cloud)?;
-                self.judge_period(solid, &line, cloud, exact.window, warnings);
+                self.check_period(solid, &line, cloud, exact.window, warnings);
                 (Box::new(line), centre)
             }
             KnownSolution::LocalPulse(Pulse {
@@ -128,7 +128,7 @@ impl Assembler<'_> {
     }
 
     /// Warns if waves from the neighbouring period arrive during the run.
-    fn judge_period(
+    fn check_period(
         &self,
         solid: &Solid,
         line: &LineSolution,

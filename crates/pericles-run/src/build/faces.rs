@@ -9,7 +9,7 @@ use super::assembler::Assembler;
 use super::discretisation::Discretisation;
 use super::loads::volume_of;
 use super::mesh_body::Meshes;
-use super::refusal::at_path;
+use super::rejection::at_path;
 
 /// The amplitude of a pressure, and the loaded area, m².
 pub(super) type PressureLoad = (LoadDensity, f64);

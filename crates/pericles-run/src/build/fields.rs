@@ -10,7 +10,7 @@ use pericles_deck::{
 };
 
 use super::assembler::Assembler;
-use super::refusal::at_path;
+use super::rejection::at_path;
 
 /// A vector of the deck as a field of the engine.
 #[derive(Debug)]

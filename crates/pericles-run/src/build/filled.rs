@@ -10,7 +10,7 @@ use pericles_mesh::fill::{FillError, Filled, Lattice, Outline, PartialCells, Tri
 use super::assembler::Assembler;
 use super::enclosure::{Enclosure, Holes};
 use super::random::Space;
-use super::refusal::{at, at_path};
+use super::rejection::{at, at_path};
 use super::resources::Resources;
 
 impl Assembler<'_> {
@@ -43,7 +43,7 @@ impl Assembler<'_> {
         let enclosed = enclosed.unwrap_or(cells * spacing.powi(dimension as i32));
         let filled = (&enclosure, &holes, enclosed);
         let graded = self.graded_cells(solid, shape, filled, resources)?;
-        warnings.extend(judge(
+        warnings.extend(check(
             shape,
             (graded.volume, enclosure.enclosed()),
             graded.was_turned,
@@ -60,20 +60,20 @@ impl Assembler<'_> {
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<PointCloud, BuildError> {
         let (dimension, spacing) = (shape.boundary.dimension(), shape.spacing);
-        let refused = |error| self.no_fill(shape, error);
+        let rejected = |error| self.no_fill(shape, error);
         if shape.cells == FilledCells::Partial {
-            let cells = enclosure.fill_partially(spacing).map_err(refused)?;
+            let cells = enclosure.fill_partially(spacing).map_err(rejected)?;
             return partial_points(&cells, holes, shape.section)
                 .cloud(dimension, shape.section)
                 .map_err(|error| at("body.spacing", error));
         }
         let filled = match shape.positions {
             Positions::BlueNoise { .. } => None,
-            _ => Some(enclosure.fill(spacing).map_err(refused)?),
+            _ => Some(enclosure.fill(spacing).map_err(rejected)?),
         };
         if let Some(filled) = &filled {
             let volumes = (filled.volume(), enclosure.enclosed());
-            warnings.extend(judge(shape, volumes, filled.was_turned()));
+            warnings.extend(check(shape, volumes, filled.was_turned()));
         }
         let nodes: Vec<[usize; 3]> = filled.iter().flat_map(Filled::nodes).collect();
         let lattice = filled.as_ref().map(|filled| *filled.lattice());
@@ -104,7 +104,7 @@ impl Assembler<'_> {
         };
         let listed = space.points(shape.positions, || (lattice.unwrap_or(empty), nodes));
         listed
-            .map_err(refused)?
+            .map_err(rejected)?
             .cloud(dimension, shape.section)
             .map_err(|error| at("body.spacing", error))
     }
@@ -116,11 +116,11 @@ impl Assembler<'_> {
         resources: &Resources<'_>,
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<Enclosure, BuildError> {
-        let refused = |error| self.no_fill(shape, error);
+        let rejected = |error| self.no_fill(shape, error);
         match &shape.boundary {
             Boundary::Surface { path, unit, open } => {
                 let mesh = self.read_mesh("body.file", &resources.beside(path), resources)?;
-                let surface = TriangleSurface::of_mesh(&mesh, *unit).map_err(refused)?;
+                let surface = TriangleSurface::of_mesh(&mesh, *unit).map_err(rejected)?;
                 let (surface, reversed) = surface.repaired();
                 warnings.extend(reversed.map(|reversed| {
                     let problem = reversed.to_string();
@@ -132,7 +132,7 @@ impl Assembler<'_> {
                 })
             }
             Boundary::Polygons(polygons) => {
-                let outline = Outline::new(polygons.clone()).map_err(refused)?;
+                let outline = Outline::new(polygons.clone()).map_err(rejected)?;
                 Ok(Enclosure::Outline(outline))
             }
             Boundary::PolygonFile { path, unit } => {
@@ -147,7 +147,7 @@ impl Assembler<'_> {
                     corners.collect()
                 };
                 let polygons = polygons.into_iter().map(in_metres).collect();
-                let outline = Outline::new(polygons).map_err(refused)?;
+                let outline = Outline::new(polygons).map_err(rejected)?;
                 Ok(Enclosure::Outline(outline))
             }
         }
@@ -173,7 +173,7 @@ impl Assembler<'_> {
 }
 
 /// Warns of surfaces with inward normals, and of cells whose total volume differs from the enclosed one.
-fn judge(
+fn check(
     shape: &FilledShape,
     (volume, enclosed): (f64, Option<f64>),
     was_turned: bool,

@@ -6,7 +6,7 @@ use pericles_mesh::fill::{Filled, Lattice};
 
 use super::assembler::Assembler;
 use super::enclosure::{Enclosure, Holes};
-use super::refusal::{at, at_path, refined_key};
+use super::rejection::{at, at_path, refined_key};
 use super::resources::Resources;
 
 /// The points of a body with refined parts.
@@ -81,7 +81,7 @@ impl Assembler<'_> {
         resources: &Resources<'_>,
     ) -> Result<GradedCells, BuildError> {
         let (enclosure, holes, enclosed) = filled;
-        let refused = |error| self.no_fill(shape, error);
+        let rejected = |error| self.no_fill(shape, error);
         let dimension = shape.boundary.dimension();
         let division = Division {
             dimension,
@@ -90,7 +90,7 @@ impl Assembler<'_> {
             finer: &shape.finer,
         };
         let spacing = std::array::from_fn(|c| if c < dimension { shape.spacing } else { 1.0 });
-        let large = Lattice::around(enclosure.bounds(), spacing).map_err(refused)?;
+        let large = Lattice::around(enclosure.bounds(), spacing).map_err(rejected)?;
         let parts = parts(&division, &large, holes);
         let full = enclosed / (large.len() as f64 * large.cell_volume());
         let divided = parts.iter().flatten().map(|part| {
@@ -101,12 +101,12 @@ impl Assembler<'_> {
         let large_cells = large.len() as f64;
         let points = full.min(1.0) * (large_cells + points);
         self.check_filled(solid, points, large_cells + cells, resources)?;
-        let whole = enclosure.fill_nodes(large).map_err(refused)?;
+        let whole = enclosure.fill_nodes(large).map_err(rejected)?;
         let mut small: Vec<Option<Filled>> = Vec::new();
         for part in &parts {
             let lattice = part.as_ref().map(|part| part.lattice(&large, dimension));
             let nodes = lattice.map(|lattice| enclosure.fill_nodes(lattice));
-            small.push(nodes.transpose().map_err(refused)?);
+            small.push(nodes.transpose().map_err(rejected)?);
         }
         let mut volume = 0.0;
         let cloud = division.points(

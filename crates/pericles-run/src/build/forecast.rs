@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::assembler::Assembler;
 use super::assembly::Assembly;
 use super::points::has_equal_cells;
-use super::refusal::{at, at_path};
+use super::rejection::{at, at_path};
 use crate::division::owners;
 
 /// Mean and largest value over the processes.
@@ -71,7 +71,7 @@ const WHOLE: [f64; 2] = [8.0, 32.0];
 const MULTIGRID: [f64; 3] = [400.0, 1000.0, 2500.0];
 
 impl Forecast {
-    /// Returns the time of a step, s: that of the largest part and of its exchanges, which are not overlapped.
+    /// Returns the time of a step, s: the time of the largest part and of its exchanges, which are not overlapped.
     ///
     /// `alone` is the time of a step of the whole body on one process with the same number of threads, and `evaluations` the
     /// number of force evaluations in it.
@@ -136,7 +136,7 @@ impl Assembly {
             }
             _ => 0.0,
         };
-        // Nor is that of implicit and steady heat conduction; every process counts that of its own points already.
+        // The same holds for implicit and steady heat conduction; every process already counts the memory of its own points.
         let conductors = match processes {
             1 => 0.0,
             _ => assembler.bytes_of_heat_multigrid(cloud.dimension()),

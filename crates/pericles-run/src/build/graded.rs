@@ -8,7 +8,7 @@ use pericles_waves::{AssembledForce, ForceForm};
 use super::assembler::Assembler;
 use super::discretisation::Grids;
 use super::materials::Between;
-use super::refusal::{at, at_material, at_path};
+use super::rejection::{at, at_material, at_path};
 
 impl Assembler<'_> {
     pub(super) fn graded_bonds(

@@ -11,7 +11,7 @@ use pericles_deck::{
 use super::area::{self, LoadedCells};
 use super::assembler::Assembler;
 use super::discretisation::Discretisation;
-use super::refusal::{at, at_path};
+use super::rejection::{at, at_path};
 use super::step::Steps;
 
 /// The resultant of a load.
@@ -95,37 +95,37 @@ impl Assembler<'_> {
         path: &KeyPath,
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<f64, BuildError> {
-        let refuse = |reason| at_path(path, Fault::UnknownArea { reason });
+        let reject = |reason| at_path(path, Fault::UnknownArea { reason });
         let shape = self.model.body.solid().map(|solid| &solid.shape);
         match shape {
             Some(SolidShape::Points(_)) if cloud.dimension() > 1 => {
-                return Err(refuse("listed points have no faces"));
+                return Err(reject("listed points have no faces"));
             }
             Some(SolidShape::Mesh(_)) => {
-                return Err(refuse(
+                return Err(reject(
                     "the set is neither a face set of the mesh nor near one",
                 ));
             }
             Some(shape) if shape.is_listed() && cloud.dimension() > 1 => {
-                return Err(refuse("points without a lattice have no faces"));
+                return Err(reject("points without a lattice have no faces"));
             }
             _ => {}
         }
         let named = self.model.sets.iter().find(|named| named.name == load.set);
         let region = named.and_then(|named| named.members.region());
         let acts = std::array::from_fn(|c| traction[c].number() != Some(0.0));
-        let axis = area::normal_axis(region, &acts).map_err(refuse)?;
+        let axis = area::normal_axis(region, &acts).map_err(reject)?;
         let loaded = LoadedCells::new(cloud, points);
         if !area::is_layer(region)
-            && let Some(doubt) = loaded.doubt(axis)
+            && let Some(caution) = loaded.caution(axis)
         {
-            warnings.push(Remark::new(path, Caution::LoadedArea(doubt)));
+            warnings.push(Remark::new(path, Caution::LoadedArea(caution)));
         }
         Ok(loaded.seen_along(axis))
     }
 
     /// Rejects loads and prescribed motions that are NaN or infinite at a step of the run.
-    pub(super) fn refuse_lost_values(
+    pub(super) fn reject_lost_values(
         &self,
         system: &System,
         steps: &Steps,

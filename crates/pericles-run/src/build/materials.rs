@@ -13,12 +13,12 @@ use pericles_waves::ForceForm;
 
 use super::assembler::Assembler;
 use super::discretisation::{Discretisation, Sets};
-use super::refusal::{at, at_path};
+use super::rejection::{at, at_path};
 
 /// The materials of a body.
 pub(super) struct Composition {
     pub(super) classes: Option<MaterialPairs>,
-    /// All materials, that of the body first.
+    /// All materials, the body's material first.
     pub(super) materials: Vec<BondMaterial>,
     /// Interfaces with their own constants.
     pub(super) interfaces: Vec<Between>,
@@ -49,9 +49,9 @@ impl<'m> Assembler<'m> {
     ) -> Result<Composition, BuildError> {
         let Discretisation { cloud, sets, .. } = discretisation;
         let path = KeyPath::from("material");
-        let judged = judged_key(&bonds.fracture, &path);
-        self.judge_stretch(constants.critical_stretch, judged, warnings);
-        self.judge_stiffness(solid, constants, &path, warnings);
+        let checked = checked_key(&bonds.fracture, &path);
+        self.check_stretch(constants.critical_stretch, checked, warnings);
+        self.check_stiffness(solid, constants, &path, warnings);
         let mut all = vec![constants.clone()];
         let mut materials = vec![bonds.clone()];
         for other in &self.model.materials {
@@ -63,9 +63,9 @@ impl<'m> Assembler<'m> {
             let own_constants = self
                 .constants_of(solid, own, cloud)
                 .map_err(|error| at_path(&path, error.into()))?;
-            let judged = judged_key(&own.fracture, &path);
-            self.judge_stretch(own_constants.critical_stretch, judged, warnings);
-            self.judge_stiffness(solid, &own_constants, &path, warnings);
+            let checked = checked_key(&own.fracture, &path);
+            self.check_stretch(own_constants.critical_stretch, checked, warnings);
+            self.check_stiffness(solid, &own_constants, &path, warnings);
             all.push(own_constants);
         }
         let (of_point, density) =
@@ -88,7 +88,7 @@ impl<'m> Assembler<'m> {
                     set.map_err(|error| at_path(&path, error.into()))?;
                     let stretch = classes.pair_critical_stretch(*pair);
                     if interface.fracture.is_some() {
-                        self.judge_stretch(stretch, path, warnings);
+                        self.check_stretch(stretch, path, warnings);
                     }
                     interfaces.push(between);
                 }
@@ -206,7 +206,7 @@ impl<'m> Assembler<'m> {
             }
             last_of[number] = Some(path);
         }
-        self.refuse_without_material(material, &of_point, cloud)?;
+        self.reject_without_material(material, &of_point, cloud)?;
         let of_point: Vec<u8> = of_point
             .into_iter()
             .map(Option::unwrap_or_default)
@@ -237,7 +237,7 @@ impl<'m> Assembler<'m> {
             return Ok((None, PointScalar::Uniform(material.density())));
         }
         if let Some(solid) = self.model.body.solid() {
-            self.judge_layers(solid, cloud, Some(&of_point), warnings);
+            self.check_layers(solid, cloud, Some(&of_point), warnings);
         }
         let densities: Vec<f64> = of_point
             .iter()
@@ -250,7 +250,7 @@ impl<'m> Assembler<'m> {
     }
 
     /// Rejects points without an assignment, unless they have the material of the body.
-    fn refuse_without_material(
+    fn reject_without_material(
         &self,
         material: &Material,
         of_point: &[Option<u8>],
@@ -294,7 +294,7 @@ impl<'m> Assembler<'m> {
         Ok(stiffness)
     }
 
-    /// Creates the error for a material of another kind than that of the body.
+    /// Creates the error for a material of another kind than the material of the body.
     pub(super) fn other_kind(&self, path: &KeyPath, material: &str) -> BuildError {
         let (value, allowed) = (
             material.to_owned(),
@@ -332,7 +332,7 @@ impl<'m> Assembler<'m> {
     }
 
     /// Warns of large critical stretches: bonds of real materials break well below a stretch of 20 %.
-    pub(super) fn judge_stretch(
+    pub(super) fn check_stretch(
         self,
         stretch: f64,
         path: KeyPath,
@@ -369,7 +369,7 @@ fn gauss_stiffness(material: &BondMaterial, right: &BondConstants, cloud: &Point
 }
 
 /// Returns the key that determines the critical stretch of a material.
-fn judged_key(fracture: &Fracture, path: &KeyPath) -> KeyPath {
+fn checked_key(fracture: &Fracture, path: &KeyPath) -> KeyPath {
     match fracture {
         Fracture::Unbreakable => path.clone(),
         Fracture::CriticalStretch(_) => path.key("critical_stretch"),

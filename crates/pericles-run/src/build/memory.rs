@@ -20,6 +20,9 @@
 //!
 //! The constants are measured peaks of blocks, plates, bars, surfaces and absorbing boundaries. The estimate is
 //! between 0.75 and 2.5 times the actual peak.
+//!
+//! A body that does not fit is rejected by its numbers of cells, neighbours and steps. The program determines the
+//! available memory; the engine and decks do not query the machine.
 
 use pericles::material::BondFailure;
 use pericles::space::{GradedGrid, PointCloud, Shape};
@@ -31,7 +34,7 @@ use pericles_waves::ForceForm;
 
 use super::assembler::Assembler;
 use super::assembly::Assembly;
-use super::refusal::{HORIZON, at_path};
+use super::rejection::{HORIZON, at_path};
 use super::resources::Resources;
 
 const NUMBER: f64 = 8.0;
@@ -101,7 +104,7 @@ impl Assembler<'_> {
                 Err(_) => return Ok(()),
             },
         };
-        self.refuse_if_more(
+        self.reject_if_more(
             "body.spacing",
             points_per_cell * cells,
             cells * each,
@@ -120,7 +123,7 @@ impl Assembler<'_> {
         let spacing = solid.shape.spacing().or(Some(cloud.spacing()));
         let neighbours = self.neighbours(solid, dimension, spacing).min(points);
         let needed = points * self.bytes_of_point(solid, dimension, neighbours);
-        self.refuse_if_more(HORIZON, points, needed, resources)
+        self.reject_if_more(HORIZON, points, needed, resources)
     }
 
     /// Checks the memory of points in a closed surface or an outline, from the numbers of points and cells.
@@ -135,7 +138,7 @@ impl Assembler<'_> {
         let neighbours = self.neighbours(solid, dimension, solid.shape.spacing());
         let neighbours = neighbours.min(points);
         let needed = points * self.bytes_of_point(solid, dimension, neighbours) + CELL * cells;
-        self.refuse_if_more("body.spacing", points, needed, resources)
+        self.reject_if_more("body.spacing", points, needed, resources)
     }
 
     /// Checks the memory of the vertices of a surface.
@@ -145,7 +148,7 @@ impl Assembler<'_> {
         resources: &Resources<'_>,
     ) -> Result<(), BuildError> {
         let needed = vertices * (self.bytes_of_state(3) + VERTEX);
-        self.refuse_if_more("body.shape", vertices, needed, resources)
+        self.reject_if_more("body.shape", vertices, needed, resources)
     }
 
     /// Checks the memory of the bonds of a surface; `area` is its total area, m².
@@ -159,7 +162,7 @@ impl Assembler<'_> {
         let points = points as f64;
         let neighbours = (std::f64::consts::PI * horizon * horizon / area * points).min(points);
         let needed = points * (self.bytes_of_state(3) + VERTEX + GEODESIC * neighbours);
-        self.refuse_if_more("material.horizon", points, needed, resources)
+        self.reject_if_more("material.horizon", points, needed, resources)
     }
 
     /// Checks the memory of the histories of absorbing boundaries with `sites` sites in total over the steps of the
@@ -191,10 +194,10 @@ impl Assembler<'_> {
         sites: f64,
         resources: &Resources<'_>,
     ) -> Result<(), BuildError> {
-        self.refuse_if_more(path, sites, EXTERIOR * NUMBER * sites, resources)
+        self.reject_if_more(path, sites, EXTERIOR * NUMBER * sites, resources)
     }
 
-    fn refuse_if_more(
+    fn reject_if_more(
         &self,
         path: impl Into<Keys>,
         points: f64,
@@ -383,7 +386,7 @@ impl Assembler<'_> {
             && solid.material.surface_correction == Default::default()
     }
 
-    /// Returns the horizons of all materials, that of the body first.
+    /// Returns the horizons of all materials, the body's material first.
     fn horizons(self, solid: &Solid) -> impl Iterator<Item = f64> {
         let others = self.model.materials.iter();
         let others = others.map(|other| other.model.horizon());

@@ -1,4 +1,8 @@
 //! Points of a mesh.
+//!
+//! Data from files are not part of the model: the spacing of a mesh is known when the file is read. Keys that count
+//! in spacings are therefore rejected for meshes, and names of mesh sets are checked after reading, with their
+//! location in the deck.
 
 use std::path::Path;
 
@@ -8,7 +12,7 @@ use pericles_mesh::{MeshPoints, PointOptions, Problem, RawMesh};
 
 use super::assembler::Assembler;
 use super::mesh_body::{MeshBody, Placement};
-use super::refusal::{at, at_path};
+use super::rejection::{at, at_path};
 use super::resources::Resources;
 
 impl Assembler<'_> {
@@ -64,7 +68,7 @@ impl Assembler<'_> {
             let problem = problem.to_string();
             warnings.push(Remark::new("body.file", Caution::Mesh { problem }));
         }
-        warnings.extend(self.judge_listed(&listed, &cloud));
+        warnings.extend(self.check_listed_points(&listed, &cloud));
         Ok((cloud, body))
     }
 

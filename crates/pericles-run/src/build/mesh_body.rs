@@ -173,7 +173,7 @@ impl MeshCells {
 }
 
 impl MeshBody {
-    /// Returns the name of a set of the mesh in decks: with that of the piece in front, unless it is the first one.
+    /// Returns the name of a set of the mesh in decks: with the name of the piece in front, unless it is the first one.
     pub fn name_in_decks(&self, name: &str) -> String {
         match &*self.placement.piece {
             "" => name.to_owned(),

@@ -40,7 +40,7 @@ mod plausible_heat;
 mod points;
 mod program;
 mod random;
-mod refusal;
+mod rejection;
 mod resources;
 mod rotation;
 mod scheme;

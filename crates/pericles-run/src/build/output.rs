@@ -6,13 +6,13 @@ use pericles_mesh::results::{MOST_OUTPUTS, name_in_exodus};
 
 use super::assembler::Assembler;
 use super::discretisation::Sets;
-use super::refusal::at_path;
+use super::rejection::at_path;
 
 const FIELDS: &str = "output.fields";
 
 impl Assembler<'_> {
     /// Warns of names of sets, materials and fields that an Exodus file shortens.
-    pub(super) fn judge_names(&self, sets: &Sets) -> Option<ModelWarning> {
+    pub(super) fn check_names(&self, sets: &Sets) -> Option<ModelWarning> {
         let output = &self.model.output;
         if output.fields == Schedule::Never || !output.formats.contains(&FieldFormat::Exodus) {
             return None;

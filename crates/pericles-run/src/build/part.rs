@@ -1,5 +1,9 @@
 //! The part of a body that a process computes: it has own points only, and sets of own points. What concerns the whole body, such as
 //! its bounds or the number of points of a set, is determined together with the other processes.
+//!
+//! Bounds, volumes and numbers of points of sets are maxima and exact sums over all processes; the cells of loaded
+//! sets, from which areas follow, are sent to all. Values at points, which only some processes may reject, are
+//! followed by an agreement.
 
 use std::sync::Arc;
 
@@ -14,7 +18,7 @@ use pericles_waves::ForceForm;
 use super::assembler::Assembler;
 use super::discretisation::Discretisation;
 use super::points::BodyPoints;
-use super::refusal::{at, at_path};
+use super::rejection::{at, at_path};
 use super::resources::Resources;
 use crate::division::cuts_of;
 

@@ -7,7 +7,7 @@ use pericles_deck::{BuildError, Fault, KeyPath, ModelWarning, Piece, Solid, piec
 use super::assembler::Assembler;
 use super::mesh_body::{MeshBody, Meshes, Placement};
 use super::points::BodyPoints;
-use super::refusal::{at, at_path};
+use super::rejection::{at, at_path};
 use super::resources::Resources;
 use super::rotation::matrix;
 
@@ -64,7 +64,7 @@ impl Assembler<'_> {
             },
             None => self.listed_pieces(solid, pieces, placed, resources)?,
         };
-        refuse_overlap(&joined.cloud.cloud, pieces)?;
+        reject_overlap(&joined.cloud.cloud, pieces)?;
         Ok(joined)
     }
 
@@ -261,7 +261,7 @@ fn nodes_of(placed: &[Placed]) -> Option<Nodes> {
 }
 
 /// Rejects pieces that overlap: points of different pieces closer than half of their mean cell size.
-fn refuse_overlap(cloud: &PointCloud, pieces: &[Piece]) -> Result<(), BuildError> {
+fn reject_overlap(cloud: &PointCloud, pieces: &[Piece]) -> Result<(), BuildError> {
     let sizes = (0..cloud.len()).map(|i| cloud.cell_size(i));
     let reach = CLOSEST * sizes.fold(0.0, f64::max);
     let (start, near) = pairs_within(cloud, reach);

@@ -12,7 +12,7 @@ use super::constants::MaterialConstants;
 
 impl Assembler<'_> {
     /// Warns of densities and moduli that no solid has. Decks in dimensionless units (ρ = 1, E = 1) are not checked.
-    pub(super) fn judge_solid(
+    pub(super) fn check_solid(
         &self,
         solid: &Solid,
         constants: &MaterialConstants,
@@ -36,7 +36,7 @@ impl Assembler<'_> {
     }
 
     /// Warns of keys that have an effect only if bonds break.
-    pub(super) fn judge_idle_keys(&self, system: &System) -> Vec<ModelWarning> {
+    pub(super) fn check_idle_keys(&self, system: &System) -> Vec<ModelWarning> {
         if system.operator().can_break() {
             return Vec::new();
         }
@@ -64,7 +64,7 @@ impl Assembler<'_> {
     }
 
     /// Warns of heat from dissipated energy in a body that dissipates none.
-    pub(super) fn judge_dissipation(&self, system: &System) -> Option<ModelWarning> {
+    pub(super) fn check_dissipation(&self, system: &System) -> Option<ModelWarning> {
         let conduction = self.model.thermal.as_ref()?.conduction.as_ref()?;
         let force = system.operator();
         let moves = self.model.time.scheme != Scheme::Thermal;
@@ -74,7 +74,7 @@ impl Assembler<'_> {
     }
 
     /// Warns of a run without loads, constraints and initial motion.
-    pub(super) fn judge_rest(&self, domain: &Domain, state: &State) -> Option<ModelWarning> {
+    pub(super) fn check_rest(&self, domain: &Domain, state: &State) -> Option<ModelWarning> {
         let at_rest = domain.all(state.u.iter().chain(&state.v).all(|x| *x == 0.0));
         let loaded = self.model.loads.iter().any(|load| {
             let mut components = load.amplitude.components().iter();

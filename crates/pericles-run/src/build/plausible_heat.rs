@@ -7,7 +7,7 @@ use pericles_deck::{
 };
 
 use super::assembler::Assembler;
-use super::refusal::at_path;
+use super::rejection::at_path;
 
 /// Temperatures that are likely to be in degrees Celsius if there is radiation, K: below are temperatures of outer space,
 /// above those of liquid nitrogen.
@@ -15,7 +15,7 @@ const DOUBTFUL: std::ops::Range<f64> = 5.0..75.0;
 
 /// Rejects negative temperatures of a body with radiation, whose law holds for absolute temperatures, and warns of those
 /// that are likely to be in degrees Celsius. `start` are the initial temperatures.
-pub(super) fn judge_radiation(
+pub(super) fn check_radiation(
     thermal: &Thermal,
     cloud: &PointCloud,
     start: &[f64],
@@ -69,7 +69,7 @@ pub(super) fn judge_radiation(
                  temperatures in °C",
                 quantity(value, "K")
             );
-            warnings.push(Remark::new(path, Caution::DoubtfulHeat { problem }));
+            warnings.push(Remark::new(path, Caution::ImplausibleHeat { problem }));
         }
     }
     Ok(warnings)
@@ -77,8 +77,8 @@ pub(super) fn judge_radiation(
 
 impl Assembler<'_> {
     /// Warns of coefficients of thermal expansion that no solid has.
-    pub(super) fn judge_expansion(&self) -> Vec<ModelWarning> {
-        /// Largest coefficient of solids with a margin, 1/K: that of rubber is 2e-4.
+    pub(super) fn check_expansion(&self) -> Vec<ModelWarning> {
+        /// Largest coefficient of solids with a margin, 1/K: rubber has 2e-4.
         const LARGEST: f64 = 0.01;
         let Some(thermal) = &self.model.thermal else {
             return Vec::new();
@@ -99,7 +99,7 @@ impl Assembler<'_> {
                 "the coefficient of thermal expansion is {value} 1/K, larger than that of any solid (steel: 12e-6 1/K); \
                  check its unit"
             );
-            Remark::new(key, Caution::DoubtfulHeat { problem })
+            Remark::new(key, Caution::ImplausibleHeat { problem })
         };
         large.map(caution).collect()
     }

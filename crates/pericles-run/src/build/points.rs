@@ -14,7 +14,7 @@ use pericles_deck::{
 use super::assembler::Assembler;
 use super::mesh_body::Meshes;
 use super::random::{Space, nodes_of};
-use super::refusal::{at, at_path, refined_key};
+use super::rejection::{at, at_path, refined_key};
 use super::resources::Resources;
 
 /// The points of a body, and the meshes whose elements they are.
@@ -90,7 +90,7 @@ impl Assembler<'_> {
         let is_used = solid.material.volume_correction() != VolumeCorrection::None;
         if !is_used || (1.0 / OFF..=OFF).contains(&(found / given)) {
             self.check_listed(solid, &cloud, resources)?;
-            warnings.extend(self.judge_listed(&listed, &cloud));
+            warnings.extend(self.check_listed_points(&listed, &cloud));
             return Ok(cloud);
         }
         let section = ["area", "thickness"].get(file.dimension - 1).copied();
@@ -103,7 +103,7 @@ impl Assembler<'_> {
     }
 
     /// Warns of unused coordinates, and of points that are much closer to each other than the others.
-    pub(super) fn judge_listed(
+    pub(super) fn check_listed_points(
         &self,
         listed: &ListedPoints,
         cloud: &PointCloud,
@@ -136,7 +136,7 @@ impl Assembler<'_> {
     }
 
     /// Warns of holes that remove no points.
-    fn judge_holes(&self, lattice: &Lattice, graded: &GradedGrid) -> Vec<ModelWarning> {
+    fn check_holes(&self, lattice: &Lattice, graded: &GradedGrid) -> Vec<ModelWarning> {
         let grid = &graded.grid;
         let idle = match (&grid.shape, &lattice.rectangular) {
             (Shape::Box { origin, size }, Some(spacing)) => {
@@ -167,7 +167,7 @@ impl Assembler<'_> {
         };
         let gauss = lattice.quadrature == Quadrature::Gauss;
         self.check_grid(solid, &graded, if gauss { 2.0 } else { 1.0 }, resources)?;
-        warnings.extend(self.judge_holes(lattice, &graded));
+        warnings.extend(self.check_holes(lattice, &graded));
         let grid = &graded.grid;
         let points = match (&grid.shape, lattice.quadrature) {
             _ if has_equal_cells(lattice) => self.lattice_points(lattice, resources),

@@ -1,13 +1,17 @@
 //! Initial state, loads and prescribed motions given by a program.
+//!
+//! Arrays and functions of a program are conditions on points and sets of the discretisation, next to those of the
+//! deck; a deck may refer to sets that the program adds. `run.json` names the additions, and only the program can
+//! resume such a run.
 
 use pericles::System;
 use pericles::boundary::{Load, PrescribedMotion};
 use pericles::time::State;
 use pericles_deck::{BuildError, Fault};
 
-use super::refusal::{at, at_path};
+use super::rejection::{at, at_path};
 
-/// Initial state, loads and prescribed motions that a program adds to those of a model. The initial state replaces that
+/// Initial state, loads and prescribed motions that a program adds to those of a model. The initial state replaces the initial state
 /// of the model; loads add to those of the model; a motion of a point that the model constrains along the same axis is
 /// rejected.
 #[derive(Debug, Clone, Default)]
@@ -36,16 +40,16 @@ impl Conditions {
         ];
         for (given, field, what) in fields {
             let Some(given) = given else { continue };
-            let refuse = |reason| Err(at_path("initial", Fault::BadDiscretisation { reason }));
+            let reject = |reason| Err(at_path("initial", Fault::BadDiscretisation { reason }));
             let (found, needed) = (given.len(), field.len());
             if found != needed {
                 let reason =
                     format!("the initial {what} has {found} values, the body needs {needed}");
-                return refuse(reason);
+                return reject(reason);
             }
             if !given.iter().all(|value| value.is_finite()) {
                 let reason = format!("the initial {what} has values that are NaN or infinite");
-                return refuse(reason);
+                return reject(reason);
             }
             field.copy_from_slice(given);
         }

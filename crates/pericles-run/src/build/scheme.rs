@@ -15,7 +15,7 @@ use pericles_waves::Trigonometric;
 
 use super::assembler::Assembler;
 use super::discretisation::Sets;
-use super::refusal::{at, at_path};
+use super::rejection::{at, at_path};
 use super::step::Steps;
 
 impl Assembler<'_> {
@@ -176,7 +176,7 @@ impl Assembler<'_> {
     }
 
     /// Adds warnings about a multirate scheme.
-    pub(super) fn judge_two_steps(
+    pub(super) fn check_two_steps(
         &self,
         integrator: &dyn Integrator,
         steps: &Steps,

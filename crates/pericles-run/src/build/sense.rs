@@ -11,17 +11,17 @@ use pericles_deck::{Caution, KeyPath, ModelWarning, Remark, Solid};
 
 use super::assembler::Assembler;
 use super::constants::MaterialConstants;
-use super::refusal::HORIZON;
+use super::rejection::HORIZON;
 
 impl Assembler<'_> {
     /// Warns of loads on constrained points, and of disconnected bodies.
-    pub(super) fn judge_conditions(
+    pub(super) fn check_conditions(
         &self,
         system: &System,
         cloud: &Arc<PointCloud>,
         warnings: &mut Vec<ModelWarning>,
     ) {
-        self.judge_held_loads(system, warnings);
+        self.check_held_loads(system, warnings);
         let Some(solid) = self.model.body.solid() else {
             return;
         };
@@ -30,12 +30,12 @@ impl Assembler<'_> {
         }
         // Constraints of static bodies are checked with their loads.
         if !self.model.time.scheme.is_static() {
-            self.judge_pieces(solid, cloud, warnings);
+            self.check_pieces(solid, cloud, warnings);
         }
     }
 
     /// Warns of wave speeds above those of any solid.
-    pub(super) fn judge_speed(
+    pub(super) fn check_speed(
         &self,
         solid: &Solid,
         constants: &MaterialConstants,
@@ -51,7 +51,7 @@ impl Assembler<'_> {
 
     /// Warns of large stiffness errors of the body. Listed points are not checked, because they have no regular
     /// interior.
-    pub(super) fn judge_stiffness(
+    pub(super) fn check_stiffness(
         &self,
         solid: &Solid,
         constants: &BondConstants,
@@ -79,7 +79,7 @@ impl Assembler<'_> {
     }
 
     /// Warns of classes of breakable bonds without stiffness: they count as damage but carry no force.
-    pub(super) fn judge_classes(
+    pub(super) fn check_classes(
         &self,
         material: &BondMaterial,
         constants: &BondConstants,
@@ -116,7 +116,7 @@ impl Assembler<'_> {
         }
     }
 
-    fn judge_held_loads(&self, system: &System, warnings: &mut Vec<ModelWarning>) {
+    fn check_held_loads(&self, system: &System, warnings: &mut Vec<ModelWarning>) {
         // The constrained axes of each point, one bit per axis.
         let mut held = vec![0u8; system.points()];
         for motion in system.motions() {
@@ -147,7 +147,7 @@ impl Assembler<'_> {
 
     /// Warns of bodies that are disconnected at the start. Only bodies with pre-cracks, holes or listed points are
     /// checked, up to a maximum size.
-    fn judge_pieces(
+    fn check_pieces(
         &self,
         solid: &Solid,
         cloud: &Arc<PointCloud>,

@@ -17,7 +17,7 @@ use super::body::BodyParts;
 use super::constants::MaterialConstants;
 use super::discretisation::Discretisation;
 use super::materials::PairRule;
-use super::refusal::{at, at_material, at_path};
+use super::rejection::{at, at_material, at_path};
 
 /// Returns the constants of a material with its failure criterion.
 fn with_criterion(
@@ -41,11 +41,11 @@ impl Assembler<'_> {
         discretisation: &Discretisation,
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<BodyParts, BuildError> {
-        self.refuse_features(solid)?;
+        self.reject_features(solid)?;
         let Discretisation { cloud, sets, .. } = discretisation;
         let material = &solid.material;
         let constants = with_criterion(state_based, cloud, solid.state).map_err(at_material)?;
-        self.judge_limits(
+        self.check_limits(
             &constants,
             &state_based.solid.failure,
             &"material".into(),
@@ -63,7 +63,7 @@ impl Assembler<'_> {
             laws.push(own.inelastic.clone());
             let constants = with_criterion(own, cloud, solid.state);
             let constants = constants.map_err(|error| at_path(&path, error.into()))?;
-            self.judge_limits(&constants, &own.solid.failure, &path, warnings);
+            self.check_limits(&constants, &own.solid.failure, &path, warnings);
             all.push(constants);
         }
         let (of_point, density) = self.points_of_materials(material, (cloud, sets), warnings)?;
@@ -122,14 +122,14 @@ impl Assembler<'_> {
         let mut all = all.into_iter().map(MaterialConstants::StateBased);
         let constants = all.next();
         if let Some(constants) = &constants {
-            warnings.extend(self.judge_speed(solid, constants));
-            warnings.extend(self.judge_solid(solid, constants));
+            warnings.extend(self.check_speed(solid, constants));
+            warnings.extend(self.check_solid(solid, constants));
         }
         if let (Some(MaterialConstants::StateBased(constants)), None) = (&constants, &classes) {
             let forces = (&*bonds.operator, &constants.elastic);
-            warnings.extend(self.judge_thin(solid, cloud, forces));
+            warnings.extend(self.check_thin(solid, cloud, forces));
         }
-        warnings.extend(self.judge_isotropy(constants.as_ref()));
+        warnings.extend(self.check_isotropy(constants.as_ref()));
         Ok(BodyParts {
             constants,
             others: all.collect(),
@@ -168,7 +168,7 @@ impl Assembler<'_> {
     }
 
     /// Rejects features that state-based materials do not support, and force kernels that do not support them.
-    fn refuse_features(&self, solid: &Solid) -> Result<(), BuildError> {
+    fn reject_features(&self, solid: &Solid) -> Result<(), BuildError> {
         let shape = &solid.shape;
         let found = [
             (
@@ -187,7 +187,7 @@ impl Assembler<'_> {
             ),
         ];
         for (feature, present, key) in found {
-            if let (true, Some(reason)) = (present, LinearSolidBody::refusal(feature.into())) {
+            if let (true, Some(reason)) = (present, LinearSolidBody::rejection(feature.into())) {
                 let (value, allowed) = (feature.words().into(), reason.into());
                 return Err(at_path(key, Fault::OutOfRange { value, allowed }));
             }
@@ -197,7 +197,7 @@ impl Assembler<'_> {
     }
 
     /// Warns of large critical stretches: bonds of real materials break well below a stretch of 20 %.
-    fn judge_limits(
+    fn check_limits(
         &self,
         constants: &LinearSolidConstants,
         failure: &BondFailure,
@@ -209,11 +209,11 @@ impl Assembler<'_> {
             BondFailure::CriticalStretch(_) => "critical_stretch",
             BondFailure::Stretch { .. } | BondFailure::BondEnergy { .. } => "fracture_energy",
         };
-        self.judge_stretch(constants.limits.stretch, path.key(key), warnings);
+        self.check_stretch(constants.limits.stretch, path.key(key), warnings);
     }
 
     /// Warns of an anisotropic shear stiffness of the lattice.
-    fn judge_isotropy(&self, constants: Option<&MaterialConstants>) -> Option<ModelWarning> {
+    fn check_isotropy(&self, constants: Option<&MaterialConstants>) -> Option<ModelWarning> {
         /// The conical function with three spacings is within 4 %.
         const NOTICED: f64 = 0.06;
         let shear = constants?.state_based()?.lattice_shear?;

@@ -7,7 +7,7 @@ use pericles::units::{precise, quantity, significant};
 use pericles_deck::{BuildError, Caution, Fault, ModelWarning, Remark, Scheme, TimeStep};
 
 use super::assembler::Assembler;
-use super::refusal::{at, at_path};
+use super::rejection::{at, at_path};
 
 /// Relative tolerance for an integer number of steps.
 const WHOLE: f64 = 1e-9;
@@ -54,15 +54,15 @@ impl Assembler<'_> {
                     TimeStep::Auto { safety } => safety,
                     _ => 1.0,
                 };
-                let refuse = |error| at("time.dt", error);
-                let frequency = frequency.map_err(refuse)?;
+                let reject = |error| at("time.dt", error);
+                let frequency = frequency.map_err(reject)?;
                 // An unconditionally stable scheme has no automatic step: accuracy determines it.
                 let limit = limit
                     .ok_or(PericlesError::SchemeNotUsable {
                         scheme: integrator.name(),
                         reason: "it is unconditionally stable and has no automatic step; give dt",
                     })
-                    .map_err(refuse)?;
+                    .map_err(reject)?;
                 let breaking = system.operator().capabilities().breaking;
                 let stiffening = breaking.map_or(1.0, |breaking| breaking.stiffening());
                 let stable = frequency.stable_step(limit, 1.0) / stiffening;
@@ -84,8 +84,8 @@ impl Assembler<'_> {
                 if let (Some(limit), Ok(frequency)) = (limit, &frequency) {
                     let stable = frequency.stable_step(limit, 1.0);
                     // The error refers to the value in the deck.
-                    let judged = if dt <= stable { dt } else { given };
-                    self.judge(judged, limit, frequency, integrator.name(), warnings)?;
+                    let checked = if dt <= stable { dt } else { given };
+                    self.check(checked, limit, frequency, integrator.name(), warnings)?;
                     let damped = damped + self.rayleigh_rates().at(limit / stable);
                     self.check_damped(dt, stable, damped)?;
                 }
@@ -135,7 +135,7 @@ impl Assembler<'_> {
     }
 
     /// Rejects a given step that is certainly unstable; warns of one that may be.
-    fn judge(
+    fn check(
         &self,
         dt: f64,
         limit: f64,

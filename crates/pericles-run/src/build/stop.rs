@@ -5,7 +5,7 @@ use pericles_deck::{BuildError, Fault, KeyPath, StopCondition as StopRule};
 
 use super::assembler::Assembler;
 use super::discretisation::Sets;
-use super::refusal::at_path;
+use super::rejection::at_path;
 
 impl Assembler<'_> {
     /// Returns the stop conditions; those that can never be satisfied are rejected.

@@ -15,7 +15,7 @@ use pericles_manifold::surface::{Surface, SurfaceChecks, SurfaceError};
 
 use super::assembler::Assembler;
 use super::discretisation::Sets;
-use super::refusal::{at, at_path};
+use super::rejection::{at, at_path};
 use super::resources::{FileError, Resources};
 
 impl Assembler<'_> {
@@ -54,14 +54,14 @@ impl Assembler<'_> {
         resources: &Resources<'_>,
     ) -> Result<Surface, BuildError> {
         let file = resources.beside(path);
-        let refused = |error: FileError| {
+        let rejected = |error: FileError| {
             let file = file.display().to_string();
             let fault = error.fault(|reason| Fault::BadSurfaceFile { file, reason });
             at_path("body.file", fault)
         };
         let (surface, _) = (resources.read_surface)(&file, resources.memory)
             .and_then(|surface| Ok(surface.checked(checks).map_err(|error| error.to_string())?))
-            .map_err(refused)?;
+            .map_err(rejected)?;
         Ok(surface.renumbered())
     }
 
@@ -98,7 +98,7 @@ impl Assembler<'_> {
     }
 
     /// Rejects loads that require a volume.
-    pub(super) fn refuse_body_forces(&self) -> Result<(), BuildError> {
+    pub(super) fn reject_body_forces(&self) -> Result<(), BuildError> {
         for (k, load) in self.model.loads.iter().enumerate() {
             let key = match load.amplitude {
                 LoadAmplitude::BodyForce(_) => "body_force",

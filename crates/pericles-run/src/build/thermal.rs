@@ -17,7 +17,7 @@ use super::assembler::Assembler;
 use super::body::BodyParts;
 use super::constants::MaterialConstants;
 use super::discretisation::Discretisation;
-use super::refusal::{at, at_material, at_path};
+use super::rejection::{at, at_material, at_path};
 use super::resources::Resources;
 
 /// A temperature given by the deck: T₀ + g(t) (T − T₀).
@@ -142,7 +142,7 @@ impl Assembler<'_> {
         self.of_materials(&all, solid, discretisation)
     }
 
-    /// Returns the names of all materials, that of the body first.
+    /// Returns the names of all materials, the body's material first.
     pub(super) fn material_names<'s>(&'s self, solid: &'s Solid) -> Vec<&'s str> {
         let others = self.model.materials.iter().map(|other| other.name.as_str());
         std::iter::once(solid.material.name())
@@ -150,7 +150,7 @@ impl Assembler<'_> {
             .collect()
     }
 
-    /// Returns a constant of every point from those of all materials.
+    /// Returns a constant of every point from the constants of all materials.
     pub(super) fn of_materials(
         &self,
         all: &[f64],

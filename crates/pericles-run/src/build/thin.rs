@@ -12,7 +12,7 @@ use super::assembler::Assembler;
 impl Assembler<'_> {
     /// Warns of a thin state-based body whose stiffness in tension along its longest side differs from the material's,
     /// because most of its points have incomplete families. All processes must call it together.
-    pub(super) fn judge_thin(
+    pub(super) fn check_thin(
         &self,
         solid: &Solid,
         cloud: &PointCloud,
@@ -39,7 +39,7 @@ impl Assembler<'_> {
     }
 
     /// Warns of layers of another material that bonds bridge.
-    pub(super) fn judge_layers(
+    pub(super) fn check_layers(
         &self,
         solid: &Solid,
         cloud: &PointCloud,

@@ -2,7 +2,7 @@
 //!
 //! Two limits of the grid are of interest (Bobaru et al., Int. J. Numer. Meth. Engng 77 (2009) 852–877): δ-convergence, where the horizon
 //! δ = m dx tends to zero at fixed m and the nonlocal model approaches the local one, and m-convergence, where the spacing
-//! tends to zero at fixed horizon and the sums approach the nonlocal integrals. A third one is that of the time step on a
+//! tends to zero at fixed horizon and the sums approach the nonlocal integrals. A third one is the limit of the time step on a
 //! fixed grid. The runs form a sweep.
 
 mod family;

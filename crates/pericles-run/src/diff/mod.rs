@@ -96,7 +96,7 @@ impl Unlike {
         }
     }
 
-    /// Reports states or rows without a counterpart; `times` are those of the two results.
+    /// Reports states or rows without a counterpart; `times` are the times of the two results.
     fn note_alone(&mut self, place: &str, what: &str, matches: &Matches, times: [&[f64]; 2]) {
         let results = [("first", "second"), ("second", "first")];
         for ((alone, times), (has, lacks)) in matches.alone.iter().zip(times).zip(results) {
@@ -222,7 +222,7 @@ fn compare_state(
     Ok(())
 }
 
-/// Whether points are the same to rounding: those of a file on cells are centroids.
+/// Whether points are the same to rounding: points of a file on cells are centroids.
 fn are_near(a: &[f64], b: &[f64]) -> bool {
     /// Rounding of a mean of eight corners, with a margin.
     const ROUNDING: f64 = 1e-12;

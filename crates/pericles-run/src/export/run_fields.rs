@@ -126,7 +126,7 @@ impl RunFields {
     }
 }
 
-/// Returns whether the components of a field are those of a vector.
+/// Returns whether the components of a field form a vector.
 fn is_vector(spec: &FieldSpec) -> bool {
     let mut fields = Field::ALL.iter();
     fields.any(|field| field.is_vector() && field.name() == spec.name)

@@ -61,7 +61,7 @@ fn group_blocks<'a>(
     ResultBody::new(title, cloud, sets, number, name)
 }
 
-/// Returns the material number of each point, from 1, and the names of the materials, that of the body first.
+/// Returns the material number of each point, from 1, and the names of the materials, the body's material first.
 fn material_blocks<'m>(
     model: &'m Model,
     own: &'m str,

@@ -68,7 +68,7 @@ impl SweepResults {
         axes.map(|axis| (axis.key.as_str(), axis.values.as_slice()))
     }
 
-    /// Returns the name of each run, which is that of its folder, and its results if there are any.
+    /// Returns the name of each run, also the name of its folder, and its results if there are any.
     pub fn runs(&self) -> impl Iterator<Item = (&str, Option<Results>)> {
         self.members.iter().map(|member| {
             let results = Results::open(&self.folder.join(&member.name));

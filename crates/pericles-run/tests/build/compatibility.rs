@@ -31,8 +31,8 @@ fn force_kernels_satisfy_the_needs_in_the_table() {
         for scheme in &SCHEMES {
             let mut needs = scheme.requirements.iter();
             let met = needs.all(|one| one.need.is_met_by(&assembly.system));
-            let refused = scheme.refusal_of_form(form).is_some();
-            assert_ne!(met, refused, "{} with {}", form.words, scheme.words);
+            let rejected = scheme.rejection_of_form(form).is_some();
+            assert_ne!(met, rejected, "{} with {}", form.words, scheme.words);
         }
     }
 }
@@ -47,10 +47,10 @@ fn decks_are_rejected_according_to_the_table() {
                 _ => scheme.time.into(),
             };
             let deck = parse(&(operator.deck(&time) + PART));
-            let refused = row(scheme.time).refusal_of_form(form(operator)).is_some();
+            let rejected = row(scheme.time).rejection_of_form(form(operator)).is_some();
             assert_eq!(
                 deck.build().is_err(),
-                refused,
+                rejected,
                 "{} with {}",
                 operator.word(),
                 scheme.time
@@ -176,11 +176,11 @@ fn conditions_are_rejected_according_to_the_table() {
     for time in schemes.chain(static_ones) {
         for condition in Condition::ALL {
             let built = parse(&bar_with(condition, time)).build();
-            let refused = row(time).refusal_of_condition(condition).is_some();
+            let rejected = row(time).rejection_of_condition(condition).is_some();
             let condition = condition.words();
             match built {
-                Ok(_) => assert!(!refused, "{time}: {condition}: not refused"),
-                Err(error) => assert!(refused, "{time}: {condition}: {error}"),
+                Ok(_) => assert!(!rejected, "{time}: {condition}: not rejected"),
+                Err(error) => assert!(rejected, "{time}: {condition}: {error}"),
             }
         }
     }
@@ -193,11 +193,11 @@ fn features_are_rejected_according_to_the_table() {
         for feature in Feature::ALL {
             let text = deck_with(feature, form);
             let built = Deck::parse(&text, "deck.toml", &[]).and_then(|deck| deck.build());
-            let refused = form.refusal_of_feature(feature).is_some();
+            let rejected = form.rejection_of_feature(feature).is_some();
             let (form, feature) = (form.words, feature.words());
             match built {
-                Ok(_) => assert!(!refused, "{form}: {feature} is not refused"),
-                Err(error) => assert!(refused, "{form}: {feature}: {error}"),
+                Ok(_) => assert!(!rejected, "{form}: {feature} is not rejected"),
+                Err(error) => assert!(rejected, "{form}: {feature}: {error}"),
             }
         }
     }
@@ -219,21 +219,21 @@ fn the_tables_of_the_book_are_up_to_date() {
 
 #[test]
 fn the_number_of_incompatible_cells_does_not_grow() {
-    let refused = |scheme: &Scheme| {
+    let rejected = |scheme: &Scheme| {
         let forms = FORMS
             .iter()
-            .filter(|form| scheme.refusal_of_form(form).is_some());
+            .filter(|form| scheme.rejection_of_form(form).is_some());
         let conditions = Condition::ALL.into_iter();
         forms.count()
             + conditions
-                .filter(|one| scheme.refusal_of_condition(*one).is_some())
+                .filter(|one| scheme.rejection_of_condition(*one).is_some())
                 .count()
     };
-    let cells: usize = SCHEMES.iter().map(refused).sum();
+    let cells: usize = SCHEMES.iter().map(rejected).sum();
     let features = |form: &Form| {
         let features = Feature::ALL.into_iter();
         features
-            .filter(|feature| form.refusal_of_feature(*feature).is_some())
+            .filter(|feature| form.rejection_of_feature(*feature).is_some())
             .count()
     };
     let bodies: usize = FORMS.iter().map(features).sum();

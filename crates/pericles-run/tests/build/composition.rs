@@ -326,17 +326,17 @@ fn schemes_that_tolerate_rounding_work_with_single_precision() {
         momentum: 1e-4,
     });
     compare(FloatGrid, &rounded);
-    refusal(
+    rejection(
         &FloatGrid.deck("scheme = \"dormand-prince\", tolerance = 1e-6, dt = 0.4"),
         "at least 1e-5",
     );
-    refused(FloatGrid, &TWO_STEPS, "parts of the body");
-    refused(
+    rejected(FloatGrid, &TWO_STEPS, "parts of the body");
+    rejected(
         FloatGrid,
         &ONE_STEP[4..10],
         "needs forces in double precision",
     );
-    refusal(
+    rejection(
         &FloatGrid.deck("scheme = \"adaptive-dynamic-relaxation\""),
         "needs forces in double precision",
     );
@@ -352,28 +352,28 @@ fn every_scheme_works_with_a_surface() {
 fn every_scheme_except_respa_works_with_a_state_based_body() {
     compare(StateBased, &ONE_STEP);
     compare(StateBased, &TWO_STEPS[..2]);
-    refused(StateBased, &TWO_STEPS[2..], "splits the force by bonds");
+    rejected(StateBased, &TWO_STEPS[2..], "splits the force by bonds");
 }
 
 #[test]
 fn every_single_rate_scheme_works_with_a_convolution() {
     compare(Convolution, &ONE_STEP);
-    refused(Convolution, &TWO_STEPS, "parts of the body");
+    rejected(Convolution, &TWO_STEPS, "parts of the body");
 }
 
 #[test]
 fn every_single_rate_scheme_works_with_plane_waves() {
     compare(Spectral, &ONE_STEP);
-    refused(Spectral, &TWO_STEPS, "parts of the body");
+    rejected(Spectral, &TWO_STEPS, "parts of the body");
 }
 
-fn refused(operator: Operator, schemes: &[Scheme], reason: &str) {
+fn rejected(operator: Operator, schemes: &[Scheme], reason: &str) {
     for scheme in schemes {
-        refusal(&(operator.deck(scheme.time) + PART), reason);
+        rejection(&(operator.deck(scheme.time) + PART), reason);
     }
 }
 
-fn refusal(text: &str, reason: &str) {
+fn rejection(text: &str, reason: &str) {
     match built(text) {
         Err(error) => assert!(error.to_string().contains(reason), "{error}"),
         Ok(_) => panic!("not rejected: {reason}\n{text}"),
@@ -469,12 +469,12 @@ fn breaking_with_incompatible_kernels_is_rejected_with_a_reason() {
         text.replace("OPERATOR", operator.word())
     };
     let verlet = "scheme = \"velocity-verlet\", dt = 0.2";
-    refusal(&torn(Convolution, verlet), "the same bonds at every point");
+    rejection(&torn(Convolution, verlet), "the same bonds at every point");
     let notch = "crack = [{ segment = [[0, 10], [12, 10]] }]\n";
     let whole = |operator| torn(operator, verlet).replace(notch, "");
-    refusal(&whole(Convolution), "the same bonds at every point");
+    rejection(&whole(Convolution), "the same bonds at every point");
     let periodic = |text: String| text.replace("\"stress\"", "\"stress\", periodic = true");
-    refusal(&periodic(whole(Spectral)), "the same bonds at every point");
+    rejection(&periodic(whole(Spectral)), "the same bonds at every point");
 }
 
 /// Influence functions, by their words in decks.
@@ -521,7 +521,7 @@ fn influence_functions_with_negative_values_do_not_allow_breaking() {
     let text = TORN.replace("LAW", "linear").replace("OPERATOR", "list");
     let text = text.replace("SCHEME", "scheme = \"velocity-verlet\", dt = 0.2");
     let signed = "horizon_ratio = 3, influence = { function = \"lattice-classes\", table = [[[1, 0], 1], [[1, 1], 1], [[2, 0], -0.1], [[2, 1], 1], [[2, 2], 1], [[3, 0], 1]] }, volume_correction = \"none\"";
-    refusal(&text.replace("horizon_ratio = 3", signed), "negative");
+    rejection(&text.replace("horizon_ratio = 3", signed), "negative");
 }
 
 /// An infinite bar.
@@ -560,6 +560,6 @@ fn absorbing_boundaries_with_incompatible_schemes_are_rejected() {
         "scheme = \"trigonometric\"",
     ] {
         let text = ENDLESS.replace("OPERATOR", "list").replace("SCHEME", time);
-        refusal(&text, "velocity-verlet");
+        rejection(&text, "velocity-verlet");
     }
 }

@@ -2,7 +2,7 @@
 
 use pericles::time::State;
 
-use super::{PLATE, build, refusal};
+use super::{PLATE, build, rejection};
 
 #[test]
 fn conditions_of_a_deck_are_built() {
@@ -129,7 +129,7 @@ fn invalid_expressions_of_motions_are_rejected() {
         ("x*sin(t)", "1/(t*x)", "is NaN or infinite"),
     ];
     for (right, wrong, says) in cases {
-        let error = refusal(&EXPRESSIONS.replace(right, wrong)).to_string();
+        let error = rejection(&EXPRESSIONS.replace(right, wrong)).to_string();
         assert!(error.contains(says) && error.contains(wrong), "{error}");
     }
     let both = EXPRESSIONS.replace(
@@ -137,7 +137,7 @@ fn invalid_expressions_of_motions_are_rejected() {
         "function = { kind = \"ramp\", duration = 1 }",
     );
     assert!(
-        refusal(&both)
+        rejection(&both)
             .to_string()
             .contains("takes no time function")
     );
@@ -169,7 +169,7 @@ dt = "0.1 us"
 "#;
 
 #[test]
-fn areas_and_resultants_of_loads_are_reported_with_doubtful_ones() {
+fn areas_and_resultants_of_loads_are_reported_with_warnings() {
     let loaded = |set: &str, traction: &str| {
         let text = FACES
             .replace("set = \"face\"", &format!("set = \"{set}\""))
@@ -233,7 +233,7 @@ fn a_load_that_becomes_infinite_is_reported_with_its_time() {
             "the prescribed motion on `both`",
         ),
     ] {
-        let message = refusal(&FACES.replace(replace, by)).to_string();
+        let message = rejection(&FACES.replace(replace, by)).to_string();
         assert!(message.contains(what), "{message}");
         assert!(
             message.contains("no finite value at t = 2.00 µs"),

@@ -6,7 +6,7 @@ use pericles_waves::ForceForm;
 
 use crate::common::Build;
 use crate::common::Built;
-use crate::{build, parse, refusal};
+use crate::{build, parse, rejection};
 
 /// A bar with 100 cells, E = ρ = A = L = 1, that meets a wall at x = 0 with the speed 0.001.
 const BAR: &str = r#"
@@ -197,12 +197,12 @@ fn bodies_of_contact_are_checked() {
         ("surface", "2-manifolds"),
     ];
     let periodic = BAR.replace("area = 1", "area = 1\nperiodic = true");
-    let message = refusal(&periodic).to_string();
+    let message = rejection(&periodic).to_string();
     assert!(message.contains(cases[0].1), "{message}");
     let twice = format!(
         "{BAR}[[impactor]]\nname = \"wall\"\nshape = \"ball\"\nradius = 1\ncentre = -9\ndensity = 1\n"
     );
-    let message = refusal(&twice).to_string();
+    let message = rejection(&twice).to_string();
     assert!(message.contains("no other impactor"), "{message}");
 }
 

@@ -2,7 +2,7 @@
 
 use pericles::Control;
 
-use super::{build, parse, refusal};
+use super::{build, parse, rejection};
 
 /// A bar or plate whose ends have the displacements of a uniform strain, in static equilibrium. The free points and
 /// their neighbours have complete families along x, so that the strain is uniform.
@@ -72,7 +72,7 @@ fn materials_have_criteria_of_their_own() {
 }
 
 #[test]
-fn constants_describe_the_criterion_and_the_stencil_is_refused() {
+fn constants_describe_the_criterion_and_the_stencil_is_rejected() {
     let material = "model = \"state-based\", poisson_ratio = 0.3, failure = \"expression\", criterion = \"stress_1 / 1e6\"";
     let text = pulled(PLATE, material, 1e-3, ", 0");
     let assembly = build(&text);
@@ -80,7 +80,7 @@ fn constants_describe_the_criterion_and_the_stencil_is_refused() {
     let words = constants.criterion().unwrap().words();
     assert_eq!(words, "where stress_1 / 1e6 exceeds 1");
     let on_grid = text.replace("model =", "bonds = \"grid\", model =");
-    let reason = refusal(&on_grid).to_string();
+    let reason = rejection(&on_grid).to_string();
     assert!(reason.contains("stress and strain"), "{reason}");
     let model = serde_json::to_string(&parse(&text).model).unwrap();
     let again: pericles_deck::Model = serde_json::from_str(&model).unwrap();

@@ -293,9 +293,9 @@ fn heat_from_dissipation_in_bodies_that_dissipate_nothing_leads_to_a_warning() {
 }
 
 #[test]
-fn a_model_with_a_share_outside_of_its_range_is_refused() {
+fn a_model_with_a_share_outside_of_its_range_is_rejected() {
     let mut model = parse(&deck(MODELS[0], "", "end = 1, dt = 0.1")).model;
-    let refusal = |model: &Model| {
+    let rejection = |model: &Model| {
         let error = discretise(model, &Resources::default()).err().unwrap();
         error.to_string()
     };
@@ -304,7 +304,7 @@ fn a_model_with_a_share_outside_of_its_range_is_refused() {
         change(thermal.conduction.as_mut().unwrap());
     };
     conduction(&mut model, &|conduction| conduction.dissipation = -0.1);
-    let error = refusal(&model);
+    let error = rejection(&model);
     assert!(
         error.contains("thermal.dissipation") && error.contains("0 to 1"),
         "{error}"
@@ -313,7 +313,7 @@ fn a_model_with_a_share_outside_of_its_range_is_refused() {
         conduction.dissipation = 0.5;
         conduction.scheme = ConductionScheme::Steady;
     });
-    let error = refusal(&model);
+    let error = rejection(&model);
     assert!(
         error.contains("thermal.dissipation") && error.contains("no heat"),
         "{error}"

@@ -2,7 +2,7 @@
 
 use pericles_deck::Deck;
 
-use super::{build, refusal};
+use super::{build, rejection};
 
 /// An infinite bar.
 const BAR: &str = r#"
@@ -149,7 +149,7 @@ fn invalid_absorbing_boundaries_are_rejected() {
     ];
     for (replace, by, (line, column), says) in cases {
         assert_eq!(BAR.matches(replace).count(), 1, "{replace}");
-        let error = refusal(&BAR.replace(replace, by));
+        let error = rejection(&BAR.replace(replace, by));
         let message = error.to_string();
         assert!(
             message.contains(&format!("deck.toml:{line}:{column}:")),
@@ -179,9 +179,9 @@ fn initial_fields_may_extend_beyond_a_boundary() {
     let error = pairs.fold(0.0, |a: f64, (u, v)| a.max((u - v).abs()));
     assert!(error < 1e-12 * 1e-6 * 10.0, "{error:e}");
     // Without or with too small an exterior extent, the field is rejected.
-    let message = refusal(&bell).to_string();
+    let message = rejection(&bell).to_string();
     assert!(message.contains("exterior_extent"), "{message}");
-    let message = refusal(&bell.replace("side = \"+x\"", &data.replace("70", "20"))).to_string();
+    let message = rejection(&bell.replace("side = \"+x\"", &data.replace("70", "20"))).to_string();
     assert!(message.contains("does not decay within"), "{message}");
 }
 
@@ -208,10 +208,10 @@ fn a_small_initial_field_at_a_boundary_leads_to_a_warning() {
         warned.contains("of its maximum, but zero is assumed beyond it"),
         "{warned}"
     );
-    let refused = refusal(&with_width("0.0136")).to_string();
+    let rejected = rejection(&with_width("0.0136")).to_string();
     assert!(
-        refused.contains("allowed: 1e-6 of the largest value"),
-        "{refused}"
+        rejected.contains("allowed: 1e-6 of the largest value"),
+        "{rejected}"
     );
 }
 
@@ -232,7 +232,7 @@ fn exterior_fields_are_compared_with_the_field_of_the_body() {
 #[test]
 fn the_memory_of_the_exterior_is_checked_before_allocation() {
     let text = BAR.replace("side = \"+x\"", "side = \"+x\"\nexterior_extent = 1e15");
-    let message = refusal(&text).to_string();
+    let message = rejection(&text).to_string();
     assert!(message.contains("of memory"), "{message}");
 }
 
@@ -281,7 +281,7 @@ fn damping_layers_absorb() {
         energies.balance().abs() < 1e-12 * energies.initial,
         "{energies:?}"
     );
-    let message = refusal(&text.replace("40 mm", "100 mm")).to_string();
+    let message = rejection(&text.replace("40 mm", "100 mm")).to_string();
     assert!(message.contains("less than the body"), "{message}");
     // Also with other schemes that damp velocities, at ω dt of about 0.3. Runge–Kutta schemes dissipate a fraction (ω
     // dt)⁶/72 of the energy of the shortest waves per step.
@@ -341,7 +341,7 @@ fn automatic_steps_account_for_damping_also_in_corners() {
     );
     // A given step that is stable only without damping is rejected.
     let between = format!("dt = {:e}", 1.02 * stable);
-    let message = refusal(&plate(&corner, &between)).to_string();
+    let message = rejection(&plate(&corner, &between)).to_string();
     assert!(message.contains("Use a smaller dt"), "{message}");
 }
 

@@ -125,7 +125,7 @@ impl Case {
         let Ok(model) = deck.build_with(resources) else {
             return;
         };
-        let _ = deck.judge_waves(&model);
+        let _ = deck.check_waves(&model);
         // A billion iterations or substeps take long, as requested by such a deck.
         let adaptive = matches!(deck.model.time.scheme, Scheme::DormandPrince { .. });
         if adaptive || model.integrator.inner_iterations().is_some() {

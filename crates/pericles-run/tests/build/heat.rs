@@ -4,7 +4,7 @@ use pericles::observe::Field;
 use pericles::{Control, Simulation};
 use pericles_heat::{DiffusingField, SharedField};
 
-use super::{build, refusal};
+use super::{build, rejection};
 
 /// A bar that conducts only; THERMAL is a placeholder.
 const BAR: &str = r#"
@@ -138,7 +138,7 @@ fn output_of_heat_flux_needs_heat_conduction() {
         .replace("SCHEME", "static")
         .replace(", conductivity = 1, specific_heat = 1, scheme = \"steady\", condition = [{ set = \"left\", convection = { coefficient = 1, ambient = 303 }, AREA }]", "");
     let deck = format!("{deck}\n[output]\nfields = {{ names = [\"Heat_Flux\"] }}\n");
-    let text = refusal(&deck).to_string();
+    let text = rejection(&deck).to_string();
     assert!(
         text.contains("Heat_Flux") && text.contains("conductivity"),
         "{text}"
@@ -151,7 +151,7 @@ fn a_flux_through_a_set_without_a_face_needs_an_area() {
         .replace("MODEL", "model = \"linear\"")
         .replace("SCHEME", "static")
         .replace(", AREA", "");
-    let text = refusal(&deck).to_string();
+    let text = rejection(&deck).to_string();
     assert!(text.contains("area"), "{text}");
 }
 
@@ -161,7 +161,7 @@ fn the_thermal_scheme_needs_heat_conduction() {
         "names = [\"Temperature\", \"Heat_Flux\"]",
         "names = [\"Displacement\"]",
     );
-    let text = refusal(&deck).to_string();
+    let text = rejection(&deck).to_string();
     assert!(text.contains("conductivity"), "{text}");
 }
 

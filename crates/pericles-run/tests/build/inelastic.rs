@@ -4,7 +4,7 @@ use pericles::observe::Field;
 use pericles::{Control, Simulation};
 use pericles_deck::Deck;
 
-use super::{build, refusal};
+use super::{build, rejection};
 
 /// A plate stretched to a constant displacement; OTHER is a placeholder.
 const HELD: &str = r#"
@@ -123,7 +123,7 @@ fn unsupported_features_of_inelastic_materials_are_rejected() {
             "only materials with a `yield_stress`",
         ),
     ] {
-        let message = refusal(&SHEARED.replace(from, to)).to_string();
+        let message = rejection(&SHEARED.replace(from, to)).to_string();
         assert!(message.contains(words), "{message}");
     }
     let bar = r#"

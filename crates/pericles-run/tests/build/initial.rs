@@ -7,7 +7,7 @@ use pericles_deck::Deck;
 use pericles_run::{FileError, Resources};
 
 use super::common::{Build, Built};
-use super::refusal;
+use super::rejection;
 
 const SPHERE: &str = r#"
 [body]
@@ -117,7 +117,7 @@ fn an_invalid_state_file_is_reported_at_its_key() {
             ..Resources::default()
         });
         match built {
-            Ok(_) => panic!("refused"),
+            Ok(_) => panic!("rejected"),
             Err(error) => error,
         }
     };
@@ -163,14 +163,14 @@ end = "10 us"
         ..Resources::default()
     });
     let says = match built {
-        Ok(_) => panic!("refused"),
+        Ok(_) => panic!("rejected"),
         Err(error) => error.to_string(),
     };
     assert!(
         says.starts_with("bar.toml:12:8:") && says.contains("exterior_extent"),
         "{says}"
     );
-    assert!(refusal(text).to_string().contains("no reader for"));
+    assert!(rejection(text).to_string().contains("no reader for"));
 }
 
 /// A plate with initial displacements and velocities from a file.
@@ -183,7 +183,7 @@ time = { end = 1 }
 
 /// The file contains no broken bonds: an open crack would heal.
 #[test]
-fn displacements_that_break_intact_bonds_at_once_are_refused() {
+fn displacements_that_break_intact_bonds_at_once_are_rejected() {
     let open = |x: f64| if x > 10.0 { 0.5 } else { 0.0 };
     let stretched = |x: f64| 1e-3 * x;
     for material in [

@@ -58,7 +58,7 @@ fn build(text: &str) -> Built {
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn refusal(text: &str) -> DeckError {
+fn rejection(text: &str) -> DeckError {
     match parse(text).build() {
         Ok(_) => panic!("an error is expected:\n{text}"),
         Err(error) => error,

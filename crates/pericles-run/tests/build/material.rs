@@ -30,7 +30,7 @@ fn model(body: &str, material: &str) -> Built {
 }
 
 /// Returns the single problem of a deck as one line.
-fn refusal(body: &str, material: &str) -> String {
+fn rejection(body: &str, material: &str) -> String {
     let error = Deck::parse(&text(body, material), "deck.toml", &[]).unwrap_err();
     let lines: Vec<String> = error.problems().iter().map(|p| p.line()).collect();
     assert_eq!(lines.len(), 1, "{lines:?}");
@@ -57,7 +57,7 @@ fn coefficients_per_class_use_the_lattice_modulus() {
         "lattice"
     );
     for word in ["continuum", "unmodified"] {
-        let message = refusal(BAR, &format!("modulus = \"{word}\"\n{CLASSES}"));
+        let message = rejection(BAR, &format!("modulus = \"{word}\"\n{CLASSES}"));
         assert!(
             message.contains(&format!("deck.toml:8:11: `{word}` is out of range")),
             "{message}"
@@ -73,12 +73,12 @@ fn coefficients_per_class_use_the_lattice_modulus() {
 fn spectral_kernels_reject_lattice_options() {
     let spectral = "model = \"linear\"\nhorizon_ratio = 3\nbonds = \"spectral\"";
     let ring = format!("{BAR}\nperiodic = true");
-    let message = refusal(&ring, &format!("modulus = \"lattice\"\n{spectral}"));
+    let message = rejection(&ring, &format!("modulus = \"lattice\"\n{spectral}"));
     assert!(
         message.contains("bonds = \"spectral\" uses integrals"),
         "{message}"
     );
-    let message = refusal(&ring, &format!("volume_correction = \"none\"\n{spectral}"));
+    let message = rejection(&ring, &format!("volume_correction = \"none\"\n{spectral}"));
     assert!(
         message.contains("`volume_correction` is not allowed"),
         "{message}"
@@ -89,7 +89,7 @@ fn spectral_kernels_reject_lattice_options() {
     );
     let gauss = format!("{BAR}\nquadrature = \"gauss\"");
     let linear = "model = \"linear\"\nhorizon_ratio = 3";
-    let message = refusal(&gauss, &format!("modulus = \"lattice\"\n{linear}"));
+    let message = rejection(&gauss, &format!("modulus = \"lattice\"\n{linear}"));
     assert!(
         message.contains("Gauss nodes are not a lattice"),
         "{message}"
@@ -108,14 +108,14 @@ fn spectral_kernels_reject_lattice_options() {
 
 #[test]
 fn poissons_ratio_of_bars_is_rejected() {
-    let message = refusal(BAR, "horizon_ratio = 3\npoisson_ratio = 0.3");
+    let message = rejection(BAR, "horizon_ratio = 3\npoisson_ratio = 0.3");
     assert!(
         message.contains("`poisson_ratio` is not allowed in [material]"),
         "{message}"
     );
     assert!(message.contains("remove the key"), "{message}");
     let other = "horizon_ratio = 3\n[materials.a]\ndensity = 1\nyoungs_modulus = 1\nnu = 0.3";
-    let message = refusal(BAR, other);
+    let message = rejection(BAR, other);
     assert!(
         message.contains("`nu` is not allowed in [materials.a]"),
         "{message}"
@@ -132,7 +132,7 @@ fn a_pair_of_materials_given_twice_is_rejected() {
         )
     };
     for second in ["[\"a\", \"b\"]", "[\"b\", \"a\"]"] {
-        let message = refusal(BAR, &interface(second));
+        let message = rejection(BAR, &interface(second));
         assert!(message.contains("each pair of materials once"), "{message}");
     }
 }
@@ -147,7 +147,7 @@ fn listed_points_have_the_critical_stretch_of_the_continuum() {
     assert_eq!(energy(deck(LISTED, breaks)), FractureCalibration::Continuum);
     assert_eq!(energy(deck(PLATE, breaks)), FractureCalibration::Lattice);
     let given = format!("{breaks}\nfracture_calibration = \"lattice\"");
-    let message = refusal(LISTED, &given);
+    let message = rejection(LISTED, &given);
     assert!(
         message.contains("listed points have no lattice planes"),
         "{message}"
@@ -166,7 +166,7 @@ fn large_stiffness_errors_lead_to_warnings() {
     assert!(found[0].contains("deck.toml:8:11"), "{found:?}");
     assert!(found[0].contains("% of the given one"), "{found:?}");
     assert!(found[0].contains("modulus = \"lattice\""), "{found:?}");
-    // The constant function that acts on displacements is no longer 500 times too soft.
+    // The constant function that acts on displacements: the micromodulus 3 E/δ³ of the integral.
     let constant = "modulus = \"unmodified\"\nhorizon_ratio = 3\n\
                     influence = { function = \"constant\", acts_on = \"displacement\" }";
     let bar = model(BAR, constant);

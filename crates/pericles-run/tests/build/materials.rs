@@ -5,7 +5,7 @@ use pericles_deck::{Deck, Model};
 use pericles_waves::ForceForm;
 
 use super::composition::run_every_way;
-use super::{build, parse, refusal};
+use super::{build, parse, rejection};
 
 fn model(text: &str) -> Model {
     parse(text).model
@@ -146,7 +146,7 @@ fn laminate(model: &str) -> String {
 }
 
 /// Layers in series have the same stress and strains σ/E; elongations add up. Within a horizon of an interface the
-/// strain is that of neither material; therefore the bound of the sum is 0.5 %.
+/// strain belongs to neither material; therefore the bound of the sum is 0.5 %.
 #[test]
 fn a_laminate_has_the_stiffness_of_its_layers_in_series() {
     for model in ["linear", "state-based"] {
@@ -186,7 +186,7 @@ fn the_stiffness_of_a_laminate_does_not_depend_on_the_horizons() {
         assert!(error.abs() < 1e-6, "E = {young}: {error:e}");
     }
     let transform = text.replacen("[material]\n", "[material]\nbonds = \"convolution\"\n", 1);
-    let message = refusal(&transform).to_string();
+    let message = rejection(&transform).to_string();
     assert!(
         message.contains("the same bonds at every point"),
         "{message}"
@@ -221,7 +221,7 @@ fn later_assignments_replace_earlier_ones() {
         "[sets]",
         "[[assign]]\nset = \"centre\"\nmaterial = \"soft\"\n[sets]",
     );
-    let message = refusal(&back).to_string();
+    let message = rejection(&back).to_string();
     assert!(
         message.contains("no point has the material `middle`"),
         "{message}"
@@ -255,7 +255,7 @@ fn decks_may_have_only_named_materials() {
     assert_eq!(own, named);
     // Without [material] the first table has the common keys.
     let first = text.replace("[material]\nname = \"soft\"\n", "[materials.soft]\n");
-    let message = refusal(&first).to_string();
+    let message = rejection(&first).to_string();
     let words = "40 of 120 points have no material, such as the one at (0.5) m";
     assert!(message.contains(words), "{message}");
     let assigned = first.replacen(

@@ -28,7 +28,7 @@ fn built(text: &str, [old, new]: [&str; 2], memory: u64) -> Result<(), DeckError
     deck.build_with(resources).map(|_| ())
 }
 
-fn refusal(text: &str, change: [&str; 2], memory: u64, at: &str, says: &str) {
+fn rejection(text: &str, change: [&str; 2], memory: u64, at: &str, says: &str) {
     match built(text, change, memory) {
         Err(error) => {
             assert!(error.is_too_large(), "{error}");
@@ -58,8 +58,8 @@ dt = 0.01
 fn a_body_is_rejected_by_its_number_of_cells() {
     assert!(built(BLOCK, ["0.1", "0.1"], 10_000_000).is_ok());
     let fine = ["spacing = 0.1", "spacing = 0.001"];
-    refusal(BLOCK, fine, 8_000_000_000, "a.toml:4:11: ", "1.0e9 points");
-    refusal(
+    rejection(BLOCK, fine, 8_000_000_000, "a.toml:4:11: ", "1.0e9 points");
+    rejection(
         BLOCK,
         fine,
         8_000_000_000,
@@ -68,7 +68,7 @@ fn a_body_is_rejected_by_its_number_of_cells() {
     );
     // A sphere in the same box has about half as many cells, a thin tube even fewer.
     let whole = 4_000_000;
-    refusal(
+    rejection(
         BLOCK,
         ["spacing = 0.1", "spacing = 0.05"],
         whole,
@@ -85,7 +85,7 @@ fn a_body_is_rejected_by_its_number_of_cells() {
         "spacing = 0.1",
         "spacing = 0.1\nrefine = [{ all = true, ratio = 16 }]",
     ];
-    refusal(
+    rejection(
         &BLOCK.replace("bonds = \"list\"\n", ""),
         finer,
         100_000_000,
@@ -115,7 +115,7 @@ dt = 0.01
 "#;
     assert!(built(text, ["horizon = 3", "horizon = 3"], 20_000_000).is_ok());
     let wide = ["horizon = 3", "horizon = 9000"];
-    refusal(text, wide, 1_000_000_000, "a.toml:9:11: ", "GB of memory");
+    rejection(text, wide, 1_000_000_000, "a.toml:9:11: ", "GB of memory");
 }
 
 #[test]
@@ -136,7 +136,7 @@ dt = 0.01
     assert!(built(text, ["level = 2", "level = 2"], 3_000_000).is_ok());
     // The surface is not created to find its vertex spacing, which would take seconds and exceed the memory limit.
     let began = std::time::Instant::now();
-    refusal(
+    rejection(
         text,
         ["level = 2", "level = 10"],
         1_000_000_000,
@@ -144,7 +144,7 @@ dt = 0.01
         "10 485 762 points",
     );
     assert!(began.elapsed().as_secs_f64() < 1.0);
-    refusal(
+    rejection(
         text,
         ["level = 2", "level = 5"],
         60_000_000,
@@ -174,10 +174,10 @@ dt = 0.1
 "#;
     assert!(built(text, ["end = 100", "end = 100"], 1_000_000).is_ok());
     let long = ["end = 100", "end = 1e9"];
-    refusal(text, long, 8_000_000_000, "a.toml:10", "1.0e10 steps");
+    rejection(text, long, 8_000_000_000, "a.toml:10", "1.0e10 steps");
     // The memory of exponential histories does not grow with the steps.
     let same = ["end = 100", "end = 100"];
-    refusal(text, same, 100_000, "a.toml:10", "1 000 steps");
+    rejection(text, same, 100_000, "a.toml:10", "1 000 steps");
     let forgetful = text.replace("\"blocked\"", "\"exponentials\"\ntolerance = 1e-4");
     assert!(built(&forgetful, same, 100_000).is_ok());
 }
@@ -248,7 +248,7 @@ fn heat_conduction_counts() {
     let limit = 4_000_000;
     let same = ["spacing = 0.1", "spacing = 0.1"];
     assert!(built(BLOCK, same, limit).is_ok());
-    refusal(
+    rejection(
         &conducting("trapezoidal"),
         same,
         limit,

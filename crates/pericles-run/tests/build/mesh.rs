@@ -127,7 +127,7 @@ pub(super) fn built(text: &str, mesh: &RawMesh) -> Built {
     built_of(text, |_| Ok(mesh.clone())).unwrap_or_else(|error| panic!("{error}"))
 }
 
-pub(super) fn refused(text: &str, mesh: &RawMesh) -> String {
+pub(super) fn rejected(text: &str, mesh: &RawMesh) -> String {
     match built_of(text, |_| Ok(mesh.clone())) {
         Ok(_) => panic!("an error is expected:\n{text}"),
         Err(error) => error.to_string(),
@@ -274,7 +274,7 @@ fn invalid_meshes_are_reported_at_their_key() {
         MESH.replacen(from, to, 1)
     };
     let says = |text: &str, mesh: &RawMesh, parts: &[&str]| {
-        let error = refused(text, mesh);
+        let error = rejected(text, mesh);
         for part in parts {
             assert!(error.contains(part), "{part}:\n{error}");
         }
@@ -440,7 +440,7 @@ fn unusual_meshes_lead_to_warnings() {
         .replace("0.007", "0.000007");
     let tiny = warnings(&metres, &mesh);
     assert!(tiny.contains("check the unit of the file"), "{tiny}");
-    // 8 m, in kilometres: fine in metres, doubtful beyond 100 m.
+    // 8 m, in kilometres: accepted in metres, a warning beyond 100 m.
     let huge = MESH
         .replace("unit = \"mm\"", "unit = \"km\"")
         .replace("\"3 mm\"", "\"3 km\"")
@@ -509,7 +509,7 @@ fn open_surfaces_are_rejected_with_advice() {
     for (kind, corners) in cube().cells.iter().skip(2) {
         open.cells.push(kind, corners);
     }
-    let error = refused(SOLID, &open);
+    let error = rejected(SOLID, &open);
     for part in [
         "deck.toml:4:8",
         "cube.stl: the surface is open",

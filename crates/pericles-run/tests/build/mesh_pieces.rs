@@ -3,7 +3,7 @@
 use pericles_deck::Deck;
 use pericles_mesh::{CellKind, Cells, FaceSet, NamedList, RawMesh};
 
-use super::mesh::{block, built, cube, refused};
+use super::mesh::{block, built, cube, rejected};
 
 /// A block on a lattice, and beside it a mesh of 8 × 3 × 2 mm rotated about z by a quarter turn.
 const TWO: &str = r#"
@@ -125,7 +125,7 @@ end = "1 us"
 }
 
 #[test]
-fn a_pressure_on_faces_inside_the_body_is_refused() {
+fn a_pressure_on_faces_inside_the_body_is_rejected() {
     let mut mesh = block([8, 3, 2], false);
     // The quadrilaterals between the halves: x = 4 mm, two of six; node numbers of `block`.
     let node = |j: u32, k: u32| (k * 4 + j) * 9 + 4;
@@ -139,7 +139,7 @@ fn a_pressure_on_faces_inside_the_body_is_refused() {
         faces,
     });
     let text = TWO.replace("bar/right", "bar/middle");
-    let answer = refused(&text, &mesh);
+    let answer = rejected(&text, &mesh);
     assert!(
         answer.contains("2 face(s) of the set `bar/middle` lie between two elements of the body"),
         "{answer}"

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use pericles::operator::PointSubset;
 
 use crate::common::Built;
-use crate::{build, refusal};
+use crate::{build, rejection};
 
 /// Two plates with a gap of `gap` along x between them; the models and further keys follow.
 fn pair(gap: f64, model: &str) -> String {
@@ -136,9 +136,9 @@ fn a_piece_is_a_set_with_material_and_velocity() {
 }
 
 #[test]
-fn overlapping_pieces_are_refused_with_their_names() {
+fn overlapping_pieces_are_rejected_with_their_names() {
     for gap in [-1.0, -0.6] {
-        let message = refusal(&pair(gap, "linear")).to_string();
+        let message = rejection(&pair(gap, "linear")).to_string();
         for words in ["`left`", "`right`", "overlap", "half of a cell"] {
             assert!(message.contains(words), "{message}");
         }
@@ -162,7 +162,7 @@ fn rotated_pieces_keep_their_shape() {
         .flat_map(|i| (0..5).map(move |j| [11.5 + f64::from(i), 0.5 - f64::from(j)]))
         .collect();
     expected.sort_by(|a, b| a.partial_cmp(b).unwrap());
-    // Positions are sorted alike to within rounding.
+    // The order of positions is the same to within rounding.
     for (a, b) in found.iter().zip(&expected) {
         let near = expected
             .iter()

@@ -3,7 +3,7 @@
 use pericles_waves::ForceForm;
 
 use super::common::Build;
-use super::{PLATE, STATIC, build, parse, refusal};
+use super::{PLATE, STATIC, build, parse, rejection};
 
 #[test]
 fn points_bonds_and_sets_of_a_plate_are_exact() {
@@ -158,7 +158,7 @@ fn errors_of_the_engine_have_locations() {
         ),
     ] {
         assert_eq!(PLATE.matches(replace).count(), 1, "{replace}");
-        let error = refusal(&PLATE.replace(replace, by));
+        let error = rejection(&PLATE.replace(replace, by));
         let message = error.to_string();
         let [problem] = error.problems() else {
             panic!("{message}")

@@ -50,7 +50,7 @@ fn warnings(text: &str) -> Vec<String> {
         .collect()
 }
 
-fn refusal(text: &str) -> String {
+fn rejection(text: &str) -> String {
     let deck = Deck::parse(text, "deck.toml", &[]).unwrap_or_else(|error| panic!("{error}"));
     deck.build().map(|_| ()).unwrap_err().to_string()
 }
@@ -157,7 +157,7 @@ fn a_thin_fine_set_is_reported_by_name() {
         "end = 1",
         "end = 1\nscheme = \"multirate-rk4\"\nratio = 4\nfine = \"tip\"",
     );
-    let message = refusal(&deck);
+    let message = rejection(&deck);
     assert!(
         message.contains("the fine set `tip` is 60.0 mm thick along x; it must be at least as thick as its longest bond, 89.4 mm"),
         "{message}"
@@ -201,7 +201,7 @@ end = 1
 dt = 0.1
 scheme = "trigonometric"
 "#;
-    let message = refusal(deck);
+    let message = rejection(deck);
     assert!(
         message.contains(
             "trigonometric is not available for this body: its forces have no linear part at rest"
@@ -222,10 +222,10 @@ fn far_bodies_and_invalid_sides_are_rejected_with_allowed_values() {
             "[material]",
             &format!("{quadrature}[material]\nmodel = \"linear\""),
         );
-        let message = refusal(&deck);
+        let message = rejection(&deck);
         assert!(message.starts_with("deck.toml:6:10: the body reaches 9.22e18 m from the origin, where double precision resolves"), "{message}");
     }
-    let message = refusal(&PLATE.replace("spacing = 0.02", "spacing = 0.018"));
+    let message = rejection(&PLATE.replace("spacing = 0.02", "spacing = 0.018"));
     assert!(message.contains("the nearest sides that fit: 990 mm and 1.008 m; spacings that divide all sides: 17.85714 mm and 18.51852 mm"), "{message}");
 }
 
@@ -238,7 +238,7 @@ fn absorbing_boundaries_of_periodic_bars_are_rejected() {
             "[time]",
             "[[boundary]]\nkind = \"absorbing\"\nside = \"-x\"\n[time]",
         );
-    let message = refusal(&deck);
+    let message = rejection(&deck);
     assert_eq!(
         message,
         "deck.toml:17:1: absorbing boundary: a periodic bar has no ends; remove `periodic` or the absorbing boundary"

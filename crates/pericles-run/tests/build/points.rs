@@ -4,7 +4,7 @@ use pericles_deck::{Deck, DeckError};
 use pericles_waves::ForceForm;
 
 use super::common::{Build, Built};
-use super::{build, parse, plate_with_time, refusal, ring};
+use super::{build, parse, plate_with_time, rejection, ring};
 
 #[test]
 fn every_dimension_and_pair_law_is_built() {
@@ -74,7 +74,7 @@ fn refined_parts_have_their_own_spacing_and_constants() {
             "\"volume\"",
         ),
     ] {
-        let error = refusal(&text);
+        let error = rejection(&text);
         assert!(error.to_string().contains(words), "{error}");
         let excerpt = error.problems()[0].location().excerpt();
         assert!(excerpt.starts_with(marked), "{excerpt}");
@@ -164,7 +164,7 @@ end = "1 ms"
         .map_err(|error| FileError::Wrong(error.to_string()))
     };
     let message = |result: Result<Built, DeckError>| match result {
-        Ok(_) => panic!("refused"),
+        Ok(_) => panic!("rejected"),
         Err(error) => error.to_string(),
     };
     let error = message(built(open));
@@ -337,9 +337,9 @@ fn listed_points_of_a_grid_equal_the_grid() {
         }
     }
     // Volumes in mm³, an empty set, a traction without area.
-    let refused =
+    let rejected =
         |text: &str, volume: f64| built(text, volume).map(|_| ()).unwrap_err().to_string();
-    let error = refused(LISTED, 2.0);
+    let error = rejected(LISTED, 2.0);
     assert!(
         error.contains("plate.toml:6:11: the volumes of the listed points"),
         "{error}"
@@ -348,12 +348,12 @@ fn listed_points_of_a_grid_equal_the_grid() {
         error.contains("volumes in m³; `thickness` is part"),
         "{error}"
     );
-    let error = refused(&LISTED.replace("block = 2", "block = 3"), cell);
+    let error = rejected(&LISTED.replace("block = 2", "block = 3"), cell);
     assert!(
         error.contains("the set `right` selects no point"),
         "{error}"
     );
-    let error = refused(&LISTED.replace("area = \"12 mm2\"", ""), cell);
+    let error = rejected(&LISTED.replace("area = \"12 mm2\"", ""), cell);
     assert!(error.contains("listed points have no faces"), "{error}");
-    assert!(refusal(LISTED).to_string().contains("no reader for"));
+    assert!(rejection(LISTED).to_string().contains("no reader for"));
 }

@@ -1,6 +1,6 @@
 //! Radiation needs absolute temperatures.
 
-use super::{build, refusal};
+use super::{build, rejection};
 
 fn deck(start: &str, ambient: &str, more: &str) -> String {
     format!(
@@ -36,7 +36,7 @@ dt = "1 s"
 }
 
 #[test]
-fn negative_temperatures_are_refused_and_those_of_rooms_in_celsius_lead_to_a_warning() {
+fn negative_temperatures_are_rejected_and_those_of_rooms_in_celsius_lead_to_a_warning() {
     let left =
         |value: &str| format!("[[thermal.condition]]\nset = \"left\"\ntemperature = {value}\n");
     for (start, ambient, more, key) in [
@@ -50,7 +50,7 @@ fn negative_temperatures_are_refused_and_those_of_rooms_in_celsius_lead_to_a_war
         ),
         ("300", "300", left("-1"), "deck.toml:25"),
     ] {
-        let answer = refusal(&deck(start, ambient, &more)).to_string();
+        let answer = rejection(&deck(start, ambient, &more)).to_string();
         assert!(
             answer.contains(key) && answer.contains("absolute temperatures"),
             "{answer}"

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use pericles_deck::Deck;
 
-use super::mesh::{SOLID, built, compare_forces, cube, refused};
+use super::mesh::{SOLID, built, compare_forces, cube, rejected};
 
 const SURFACE: &str = "shape = \"solid\"\nfile = \"cube.stl\"\nunit = \"mm\"";
 
@@ -89,7 +89,7 @@ fn refined_cells_approximate_a_curved_outline_better() {
 #[test]
 fn invalid_refined_parts_are_reported_at_their_key() {
     let away = "refine = [{ ball = { centre = [\"90 mm\", 0, 0], radius = \"1 mm\" }, ratio = 2 }]";
-    let error = refused(&deck(&format!("{SURFACE}\n{away}")), &cube());
+    let error = rejected(&deck(&format!("{SURFACE}\n{away}")), &cube());
     assert!(
         error.contains("body.refine") || error.contains("deck.toml:6:"),
         "{error}"

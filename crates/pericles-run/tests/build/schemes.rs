@@ -1,6 +1,6 @@
 //! Time integration schemes and their steps.
 
-use super::{PLATE, build, plate_with_time, refusal};
+use super::{PLATE, build, plate_with_time, rejection};
 
 #[test]
 fn automatic_steps_are_stable_and_end_on_time() {
@@ -21,7 +21,7 @@ fn automatic_steps_are_stable_and_end_on_time() {
 fn a_body_without_stiffness_requires_a_given_step() {
     let lone = "[body]\nshape='bar'\nlength=2\nspacing=1\n[[crack]]\nsection=1\n\
                 [material]\ndensity=1\nE=1\nm=1\n[time]\nend=1\n";
-    let error = refusal(lone);
+    let error = rejection(lone);
     assert!(error.to_string().contains("give dt"), "{error}");
     let model = build(&format!("{lone}dt=0.1\n"));
     assert_eq!(model.steps, 10);
@@ -101,7 +101,7 @@ fn steps_between_the_bounds_lead_to_a_warning_and_steps_above_are_rejected() {
     assert!(warnings(stable * (1.0 - 1e-12)).is_empty());
     let between = warnings((stable * unstable).sqrt());
     assert!(between[0].line().contains("may be unstable"), "{between:?}");
-    let error = refusal(&deck(unstable * (1.0 + 1e-6))).to_string();
+    let error = rejection(&deck(unstable * (1.0 + 1e-6))).to_string();
     assert!(error.contains("is unstable"), "{error}");
 }
 
@@ -125,14 +125,14 @@ fn incompatible_schemes_are_rejected() {
             "multirate-rk4 needs dt",
         ),
     ] {
-        let error = refusal(&plate_with_time(time));
+        let error = rejection(&plate_with_time(time));
         let message = error.to_string();
         assert!(message.contains(words), "{message}");
         assert_eq!(error.problems()[0].location().line(), line, "{message}");
     }
     let unbreakable = plate_with_time("scheme = \"respa\"\nratio = 4\nadaptive = {}")
         .replace("fracture_energy = \"135 J/m2\"\n", "");
-    let error = refusal(&unbreakable);
+    let error = rejection(&unbreakable);
     assert!(
         error.to_string().contains("its bonds do not break"),
         "{error}"

@@ -1,7 +1,7 @@
 //! Warnings about implausible decks.
 
 use super::common::Build;
-use super::{PLATE, STATIC, build, parse, plate_with_time, refusal, ring};
+use super::{PLATE, STATIC, build, parse, plate_with_time, rejection, ring};
 
 #[test]
 fn implausible_decks_lead_to_warnings() {
@@ -92,7 +92,7 @@ end = 5.0
     );
     let deck = parse(&text);
     let model = deck.build().unwrap();
-    let warnings = deck.judge_waves(&model);
+    let warnings = deck.check_waves(&model);
     warnings.iter().map(|w| w.line()).collect::<Vec<_>>()
 }
 
@@ -167,7 +167,7 @@ horizon_ratio = 3
 {rest}"#
         );
         let deck = parse(&text);
-        let warnings = deck.judge_waves(&deck.build().unwrap());
+        let warnings = deck.check_waves(&deck.build().unwrap());
         warnings.iter().map(|w| w.line()).collect::<Vec<_>>()
     };
     // Rotated by 0.3 rad, stress-free.
@@ -280,19 +280,19 @@ fn unphysical_decks_lead_to_warnings() {
         "[[crack]]\nsection = \"15 mm\"\n[time]",
         "5 of 20 points, such as the one at (0.015",
     );
-    let refused = |replace: &str, by: &str, says: &[&str]| {
-        let message = refusal(&STATIC.replace(replace, by)).to_string();
+    let rejected = |replace: &str, by: &str, says: &[&str]| {
+        let message = rejection(&STATIC.replace(replace, by)).to_string();
         assert!(
             says.iter().all(|words| message.contains(words)),
             "{message}"
         );
     };
-    refused(
+    rejected(
         "horizon_ratio = 3",
         "horizon = \"1e6 m\"",
         &["deck.toml:11:11", "Check the unit of the horizon"],
     );
-    refused(
+    rejected(
         "[sets]",
         "[materials.more]\ndensity = 1\nyoungs_modulus = 1\n[[assign]]\nset = \"middle\"\nmaterial = \"more\"\n[sets]",
         &[

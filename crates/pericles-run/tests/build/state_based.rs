@@ -10,7 +10,7 @@ use pericles_run::{Facts, MaterialConstants};
 
 use super::common::Build;
 use super::composition::run_every_way;
-use super::{build, parse, refusal};
+use super::{build, parse, rejection};
 
 /// A plate with a given displacement; STATE, NU and OTHER are placeholders.
 const STRAINED: &str = r#"
@@ -106,7 +106,7 @@ time = { scheme = "adaptive-dynamic-relaxation", tolerance = 1e-10 }
 ///
 /// The interior has no lattice error; errors come from the free surfaces of a plate of 20 rows. With the energy
 /// correction the error of Young's modulus is at most 2 % (1.6 % at ν = 0.2, 0.9 % at 0.4 on a plate of 40 × 20
-/// cells), and that of the contraction several per cent: the bounds are twice these values.
+/// cells), and the error of the contraction several per cent: the bounds are twice these values.
 #[test]
 fn a_plate_in_tension_has_the_given_poissons_ratio() {
     for nu in [0.2f64, 0.45] {
@@ -260,8 +260,8 @@ fn state_based_models_round_trip_through_json() {
 #[test]
 fn unsupported_features_of_state_based_materials_are_rejected_with_a_reason() {
     let text = strained("stress", 0.3, "");
-    let refuse = |text: &str, reason: &str| {
-        let error = refusal(text).to_string();
+    let reject = |text: &str, reason: &str| {
+        let error = rejection(text).to_string();
         assert!(error.contains(reason), "{error}");
     };
     let influence = "{ function = \"isotropic\" }";
@@ -281,19 +281,19 @@ fn unsupported_features_of_state_based_materials_are_rejected_with_a_reason() {
         ),
     ] {
         let bonds = format!("{influence}, bonds = \"{form}\"{other}");
-        refuse(&text.replace(influence, &bonds), reason);
+        reject(&text.replace(influence, &bonds), reason);
     }
     let refined = text.replace(
         "spacing = 1,",
         "spacing = 1, refine = [{ ratio = 2, layer = { side = \"-x\", cells = 4 } }],",
     );
-    refuse(&refined, "need cells of one size");
+    reject(&refined, "need cells of one size");
     let bond_based = text.replace("strains = \"small\", ", "");
     let bond_based = bond_based
         .replace("state-based", "linear")
         .replace("isotropic", "conical")
         .replace("poisson_ratio = 0.3, ", "");
-    refuse(
+    reject(
         &bond_based,
         "only state-based and correspondence materials (model = \"state-based\" or \"correspondence\") have a dilatation",
     );
@@ -303,13 +303,13 @@ fn unsupported_features_of_state_based_materials_are_rejected_with_a_reason() {
         0.3,
         ", critical_stretch = 0.1, volume_correction = \"none\"",
     );
-    refuse(
+    reject(
         &signed.replace("horizon_ratio = 3", "horizon_ratio = 6"),
         "negative near the horizon",
     );
 }
 
-/// The default influence function is conical; other defaults are those of bond-based materials.
+/// The default influence function is conical; other defaults are the same as for bond-based materials.
 #[test]
 fn the_default_influence_function_is_conical() {
     let text = strained("stress", 0.3, "");

@@ -39,7 +39,7 @@ fn the_stiffness_error_of_gauss_nodes_is_that_of_the_elastic_energy() {
             "influence = { function = \"conical\" }",
             "volume_correction = \"none\"",
         ] {
-            // Two lengths: the difference of their energies is that of the interior.
+            // Two lengths: the difference of their energies is the energy of the interior.
             let [short, long] = [40, 60].map(|cells| build(&bar(cells, horizon, influence)));
             let interior = energy(&long, 7.0) - energy(&short, 7.0);
             let error = long.constants().stiffness_error;

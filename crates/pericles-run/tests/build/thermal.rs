@@ -3,7 +3,7 @@
 use pericles::Control;
 use pericles::observe::Field;
 
-use super::{build, parse, refusal};
+use super::{build, parse, rejection};
 
 /// A free plate in plane strain; MODEL is a placeholder.
 const PLATE: &str = r#"
@@ -140,15 +140,15 @@ fn temperatures_of_points_come_from_a_file_and_follow_a_time_function() {
 #[test]
 fn thermal_expansion_is_rejected_where_it_is_not_supported() {
     let heated = PLATE.replace("MODEL", "bonds = \"grid-f32\"");
-    assert!(refusal(&heated).to_string().contains("thermal expansion"));
+    assert!(rejection(&heated).to_string().contains("thermal expansion"));
     let spectral = PLATE.replace("MODEL", "model = \"linear\", bonds = \"convolution\"");
-    refusal(&spectral);
+    rejection(&spectral);
     let corrected = PLATE.replace(
         "MODEL",
         "model = \"state-based\", poisson_ratio = 0.3, surface_correction = \"energy\"",
     );
     assert!(
-        refusal(&corrected)
+        rejection(&corrected)
             .to_string()
             .contains("does not include thermal strain")
     );
@@ -156,12 +156,12 @@ fn thermal_expansion_is_rejected_where_it_is_not_supported() {
         "thermal = { expansion = 1e-5, temperature = 303, reference = 293 }\n",
         "",
     );
-    assert!(refusal(&cold).to_string().contains("Temperature"));
+    assert!(rejection(&cold).to_string().contains("Temperature"));
     let undefined = PLATE.replace("MODEL", "").replace(
         "temperature = 303",
         "temperature = { expression = \"sqrt(-1 - x)\" }",
     );
-    assert!(refusal(&undefined).to_string().contains("sqrt"));
+    assert!(rejection(&undefined).to_string().contains("sqrt"));
 }
 
 /// Equal random seeds give equal cracks, different seeds different ones.

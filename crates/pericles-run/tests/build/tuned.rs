@@ -50,7 +50,7 @@ fn tuned_kernels_are_compared_with_a_constant_one() {
         let deck = deck(lines).unwrap();
         let model = deck.build().unwrap();
         let waves = model.plane_waves(&deck.model).unwrap();
-        let warned = deck.judge_waves(&model);
+        let warned = deck.check_waves(&model);
         (waves, warned.iter().map(|w| w.line()).collect::<Vec<_>>())
     };
     let (good, warned) = quality(r#"influence = { function = "tuned" }"#);
@@ -69,7 +69,7 @@ fn tuned_kernels_are_compared_with_a_constant_one() {
         )
         .replace("horizon_ratio = 3", "horizon_ratio = 5");
     let deck = Deck::parse(&text, "deck.toml", &[]).unwrap();
-    let warned = deck.judge_waves(&deck.build().unwrap());
+    let warned = deck.check_waves(&deck.build().unwrap());
     let [warning] = &warned[..] else {
         panic!("{warned:?}")
     };
@@ -86,15 +86,15 @@ fn tuned_kernels_are_compared_with_a_constant_one() {
 #[test]
 fn unstable_coefficients_require_allow_unstable() {
     let lines = r#"influence = { function = "tuned", method = "subdomain-collocation", decay = "none", lower_bound = "none" }"#;
-    let refused = deck(lines).unwrap_err();
+    let rejected = deck(lines).unwrap_err();
     assert!(
-        refused.starts_with("deck.toml:12:13: the tuned coefficients make the lattice unstable"),
-        "{refused}"
+        rejected.starts_with("deck.toml:12:13: the tuned coefficients make the lattice unstable"),
+        "{rejected}"
     );
-    assert!(refused.contains("allow_unstable = true"), "{refused}");
+    assert!(rejected.contains("allow_unstable = true"), "{rejected}");
     let text = PLATE.replace("INFLUENCE", lines) + "allow_unstable = true\n";
     let deck = Deck::parse(&text, "deck.toml", &[]).unwrap();
-    let warned = deck.judge_waves(&deck.build().unwrap());
+    let warned = deck.check_waves(&deck.build().unwrap());
     let lines: Vec<String> = warned.iter().map(|w| w.line()).collect();
     assert!(
         lines.iter().any(|line| line.contains("some waves grow")),
@@ -124,9 +124,9 @@ fn kernels_that_would_be_unstable_are_bounded() {
     let [tuned_kernel, constant] = model.plane_waves(&deck.model).unwrap().tuning.unwrap();
     assert!(tuned_kernel.spacings < 0.7 * constant.spacings);
     assert!(tuned_kernel.worst < 0.5 * constant.worst);
-    assert!(deck.judge_waves(&model).is_empty());
-    let refused = tuned(r#"influence = { function = "tuned", lower_bound = "none" }"#);
-    let message = refused.unwrap_err().to_string();
+    assert!(deck.check_waves(&model).is_empty());
+    let rejected = tuned(r#"influence = { function = "tuned", lower_bound = "none" }"#);
+    let message = rejected.unwrap_err().to_string();
     assert!(message.contains("unstable"), "{message}");
     // For a plate no bound is needed.
     let plate = self::deck(r#"influence = { function = "tuned" }"#).unwrap();
@@ -172,8 +172,9 @@ fn weights_of_bars_are_rejected() {
         .replace("plane = \"strain\"\n", "");
     for key in ["pressure_weight", "shear_weight"] {
         let lines = format!("influence = {{ function = \"tuned\", {key} = 2 }}");
-        let refused = Deck::parse(&bar.replace("INFLUENCE", &lines), "deck.toml", &[]).unwrap_err();
-        let message = refused.to_string();
+        let rejected =
+            Deck::parse(&bar.replace("INFLUENCE", &lines), "deck.toml", &[]).unwrap_err();
+        let message = rejected.to_string();
         assert!(
             message.contains(&format!("`{key}` is not allowed in [material.influence]")),
             "{message}"
@@ -206,8 +207,8 @@ fn coefficients_are_tuned_for_the_grid_of_the_deck() {
 
     // Breaking bonds require positive coefficients.
     let breaks = "fracture_energy = 135\nfracture_calibration = \"continuum\"";
-    let refused = deck(&format!("influence = {{ function = \"tuned\" }}\n{breaks}")).unwrap();
-    let message = refused.build().err().unwrap().to_string();
+    let rejected = deck(&format!("influence = {{ function = \"tuned\" }}\n{breaks}")).unwrap();
+    let message = rejected.build().err().unwrap().to_string();
     assert!(message.contains("negative"), "{message}");
     let positive = deck(&format!(
         "influence = {{ function = \"tuned\", lower_bound = 0.5 }}\n{breaks}"

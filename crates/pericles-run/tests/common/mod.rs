@@ -47,7 +47,7 @@ pub trait Build {
     fn build_with(&self, resources: Resources<'_>) -> Result<Built, DeckError>;
 
     /// Returns the warnings about its waves.
-    fn judge_waves(&self, assembly: &Assembly) -> Vec<Warning>;
+    fn check_waves(&self, assembly: &Assembly) -> Vec<Warning>;
 }
 
 impl Build for Deck {
@@ -60,8 +60,8 @@ impl Build for Deck {
         })
     }
 
-    fn judge_waves(&self, assembly: &Assembly) -> Vec<Warning> {
-        let warnings = assembly.judge_waves(&self.model).into_iter();
+    fn check_waves(&self, assembly: &Assembly) -> Vec<Warning> {
+        let warnings = assembly.check_waves(&self.model).into_iter();
         warnings.map(|warning| self.located(warning)).collect()
     }
 }

@@ -113,7 +113,7 @@ pub fn check_resumed(deck: &str, stop: u64, sizes: &[(usize, usize)]) {
         for ending in Threads::run(after, |comm| resume(&folder, comm)) {
             assert_eq!(ending.unwrap(), Ending::Finished);
         }
-        // Only the last checkpoints of both are those of the same steps.
+        // Only the last checkpoints of both belong to the same steps.
         for folder in [&folder, &alone] {
             let mut checkpoints: Vec<_> = fs::read_dir(folder.join("checkpoints"))
                 .unwrap()

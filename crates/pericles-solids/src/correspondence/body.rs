@@ -18,7 +18,7 @@ use super::material::CorrespondenceConstants;
 pub struct CorrespondenceBody<'a> {
     /// The points.
     pub cloud: &'a Arc<PointCloud>,
-    /// Constants of the material, whose horizon and influence function are those of the body.
+    /// Constants of the material, which has the horizon and influence function of the body.
     pub constants: &'a CorrespondenceConstants,
     /// Materials of points and bonds, if there are several.
     pub classes: Option<&'a CorrespondenceClasses>,
@@ -61,8 +61,8 @@ const ON_GRID: &[Limit] = &[Limit::CORRESPONDENCE];
 
 impl<'a> CorrespondenceBody<'a> {
     /// Returns the reason why correspondence materials do not support these features; `None` if they do.
-    pub fn refusal(features: Features) -> Option<&'static str> {
-        Limit::refusal(LIMITS, features)
+    pub fn rejection(features: Features) -> Option<&'static str> {
+        Limit::rejection(LIMITS, features)
     }
 
     /// Returns the features that a form of such bodies does not support; the fastest form is the list.
@@ -117,7 +117,7 @@ impl<'a> CorrespondenceBody<'a> {
     /// Creates the two-pass force; returns it with the bonds removed by each pre-crack.
     ///
     /// # Errors
-    /// Those of [`CorrespondenceBody::operator`].
+    /// The errors of [`CorrespondenceBody::operator`].
     ///
     /// # Panics
     /// If the dimension of the body is not D.

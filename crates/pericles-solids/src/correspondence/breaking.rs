@@ -191,10 +191,10 @@ impl<const D: usize> CorrespondenceForce<D> {
                 [volume * (more - energy), volume * (stronger - power)]
             };
             let end = loss(rows);
-            let judged = crossing.judge(step, end, || loss(&earlier));
-            self.dissipated.add(judged.dissipated);
-            self.of_points.add(i, judged.dissipated);
-            self.coarse.extend(judged.records(i, &lost));
+            let energy = crossing.dissipated(step, end, || loss(&earlier));
+            self.dissipated.add(energy.dissipated);
+            self.of_points.add(i, energy.dissipated);
+            self.coarse.extend(energy.records(i, &lost));
             let count = |bits: &[u8]| -> u64 {
                 let ones = bits.iter().map(|byte| u64::from(byte.count_ones()));
                 ones.sum()

@@ -8,7 +8,7 @@ use super::control::Stabilisation;
 use super::material::CorrespondenceConstants;
 use super::solid::Solid;
 
-/// Material of every point, and critical stretch of bonds for every pair of materials: that of the weaker
+/// Material of every point, and critical stretch of bonds for every pair of materials: the value of the weaker
 /// one, unless [`CorrespondenceClasses::set_limits`] sets another one.
 ///
 /// The force state of a point has the constants of its own material. All materials share horizon, influence

@@ -142,7 +142,7 @@ impl<const D: usize> CorrespondenceForce<D> {
         assert_eq!(
             cloud.dimension(),
             D,
-            "the dimension of the force is that of the cloud"
+            "the dimension of the force equals the dimension of the cloud"
         );
         let constants = classes.constants(0);
         let bonds = Bonds::new(list, &constants.solid.influence, constants.solid.horizon);

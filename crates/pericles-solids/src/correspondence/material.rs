@@ -58,7 +58,7 @@ impl CorrespondenceMaterial {
     /// Returns the constants for bonds of `cloud`.
     ///
     /// # Errors
-    /// Those of [`LinearSolid::constants`]; a failure criterion other than the closing stretch; plastic
+    /// The errors of [`LinearSolid::constants`]; a failure criterion other than the closing stretch; plastic
     /// constants out of range.
     pub fn constants(
         &self,
@@ -96,7 +96,7 @@ impl CorrespondenceMaterial {
     /// interface. Each side contributes half of the fracture energy.
     ///
     /// # Errors
-    /// Those of [`CorrespondenceMaterial::constants`].
+    /// The errors of [`CorrespondenceMaterial::constants`].
     pub fn limits_towards(
         &self,
         other: &Self,

@@ -192,7 +192,7 @@ impl Solid {
         in_space(f, across)
     }
 
-    /// Returns the transverse stretch of linear elasticity; with plasticity, that of the last step.
+    /// Returns the transverse stretch of linear elasticity; with plasticity, the stretch of the last step.
     fn first_guess<const D: usize>(&self, f: &Matrix<D>, history: &History) -> f64 {
         if self.plasticity.is_some() {
             return history.across;

@@ -22,7 +22,7 @@ impl<const D: usize> StressView for CorrespondenceForce<D> {
     }
 }
 
-/// The values of points are those of the pass over points, with the temperature of the last force evaluation.
+/// The values of points come from the pass over points, with the temperature of the last force evaluation.
 impl<const D: usize> BondView for CorrespondenceForce<D> {
     fn values_at(&self, u: Field<'_>) -> BondValues {
         let mut values = vec![0.0; self.value_count() * self.cloud.len()];

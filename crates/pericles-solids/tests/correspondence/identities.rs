@@ -29,7 +29,7 @@ fn ratio(state: StressState) -> f64 {
     }
 }
 
-/// The stress of a uniform deformation is that of the classical law at every point, so that no force acts on
+/// The stress of a uniform deformation equals the stress of the classical law at every point, so that no force acts on
 /// points with complete families.
 #[test]
 fn uniform_deformations_pass_the_patch_test() {

@@ -150,7 +150,7 @@ fn yielding(stabilisation: Stabilisation) -> CorrespondenceMaterial {
     }
 }
 
-/// The stored and dissipated energies of a body under uniform deformation are those of the closed form of a bar.
+/// The stored and dissipated energies of a body under uniform deformation equal the closed form of a bar.
 #[test]
 fn plastic_work_of_a_body_matches_the_closed_form() {
     let cloud = lattice(&[6.0]);

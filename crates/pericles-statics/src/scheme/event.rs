@@ -1,4 +1,7 @@
 //! Steps from one breaking bond to the next.
+//!
+//! The state of a linear body is the load factor times one solution; for nonlinear forces the factor is searched with
+//! fixed bonds. Only the load factor is kept between steps, so that a resumed run is bitwise identical.
 
 use pericles::boundary::{Exchange, ProportionalLoading};
 use pericles::operator::PointSubset;

@@ -1,4 +1,9 @@
 //! Integrator whose steps are static load steps.
+//!
+//! A load step is a step of the time loop, so that observers and checkpoints are the same as in dynamic runs. The
+//! work is that of the mean forces between equilibria; the energy that a body loses after bonds break is measured and
+//! reported as the correction of the scheme. Path-dependent forces are notified of every accepted state: a step then
+//! ends at each static state, even where no bond can break.
 
 mod event;
 

@@ -131,14 +131,14 @@ fn resumed_event_by_event_run_is_bitwise_identical() {
 
 #[test]
 fn systems_without_support_for_event_by_event_analysis_are_errors() {
-    let refused = |system: &System| {
+    let rejected = |system: &System| {
         let options = StaticOptions {
             breaking: EVENTS,
             ..StaticOptions::default()
         };
         StaticScheme::new(options, system).unwrap_err().to_string()
     };
-    let still = refused(&plate(0.0, PairLaw::Linear));
+    let still = rejected(&plate(0.0, PairLaw::Linear));
     assert!(
         still.contains("no load and no prescribed displacement"),
         "{still}"

@@ -89,7 +89,7 @@ impl Case {
         }
     }
 
-    /// The force of the points of a process; constants are those of the whole body.
+    /// The force of the points of a process; constants belong to the whole body.
     fn system(&self, whole: &PointCloud, cloud: &Arc<PointCloud>) -> System {
         let in_plane = whole.dimension() == 2;
         let state = if in_plane {

@@ -126,14 +126,14 @@ fn energy_balance_of_a_bar_under_constant_load_closes_in_one_step() {
 
 #[test]
 fn errors_of_unconstrained_bodies_contain_the_free_motions() {
-    let refused = |system: &System| match StaticScheme::new(StaticOptions::default(), system) {
+    let rejected = |system: &System| match StaticScheme::new(StaticOptions::default(), system) {
         Err(PericlesError::Extension(error)) => match *error.downcast::<StaticsError>().unwrap() {
             StaticsError::Unconstrained { motions, .. } => motions,
             other => panic!("{other}"),
         },
         other => panic!("{other:?}"),
     };
-    assert_eq!(refused(&bar(false)), ["translation along x"]);
+    assert_eq!(rejected(&bar(false)), ["translation along x"]);
     let solid = Solid {
         cloud: plate_with_hole(20),
         poisson_ratio: 0.25,
@@ -147,12 +147,12 @@ fn errors_of_unconstrained_bodies_contain_the_free_motions() {
         "translation along y",
         "rotation about z",
     ];
-    assert_eq!(refused(&free), all);
+    assert_eq!(rejected(&free), all);
     let mut pinned = solid.system();
     pinned
         .add_motion(PrescribedMotion::fixed(vec![7], 2))
         .unwrap();
-    assert_eq!(refused(&pinned), ["rotation about z"]);
+    assert_eq!(rejected(&pinned), ["rotation about z"]);
 }
 
 #[test]

@@ -60,9 +60,9 @@ fn holds(series: &[Vec<f64>], stencil: &LatticeStencil, dt: f64) -> bool {
         let sum: f64 = (0..reach - k)
             .map(|m| product(&series[m], &series[m + k]))
             .sum();
-        let miss = weights[reach - 1] * (series[k - 1][last] - sum)
+        let error = weights[reach - 1] * (series[k - 1][last] - sum)
             - weights[k - 1] * series[reach - 1][last];
         // Tolerance for round-off of kernels of size dt² a and below.
-        miss.abs() <= 1e-9 * largest * dt * dt * largest
+        error.abs() <= 1e-9 * largest * dt * dt * largest
     })
 }

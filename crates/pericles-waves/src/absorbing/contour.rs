@@ -1,4 +1,8 @@
 //! Kernels of a fully discrete exterior by Cauchy's integral formula.
+//!
+//! The equations of the factor are solved with their sum, (Σ b)² = σ, in place of the first one: the exterior then
+//! has no stiffness to the ground. A rounding error of 1e-16 of Σ a acts as springs to the ground, and its effect
+//! grows with the square of time.
 
 use std::f64::consts::TAU;
 

@@ -100,7 +100,7 @@ impl Factor {
     fn near(&mut self, j: usize) {
         let first = j - j % BLOCK;
         let end = (first + BLOCK).min(self.length);
-        // The partners are those of the first block; within it, those already known.
+        // The partners belong to the first block; within it, the known ones are used.
         let count = if first == 0 { j.min(end - j) } else { end - j };
         for k in 0..self.reach {
             for m in 0..self.reach - k {

@@ -78,7 +78,7 @@ impl GhostKernels {
         })
     }
 
-    /// Displacements of the recorded sites at one time from those of the body's outer points 1 … K and of the
+    /// Displacements of the recorded sites at one time from the displacements of the body's outer points 1 … K and of the
     /// ghosts 0 … −(K − 1).
     pub fn gather(&self, own: &[f64], ghosts: &[f64], inputs: &mut [f64]) {
         match self.form {
@@ -93,7 +93,7 @@ impl GhostKernels {
         }
     }
 
-    /// Adds to the ghosts their dependence on displacements of the same step, those of the body's outer points and
+    /// Adds to the ghosts their dependence on displacements of the same step, at the body's outer points and
     /// of previous ghosts.
     pub fn settle(&self, own: &[f64], ghosts: &mut [f64]) {
         let site = |place: usize, ghosts: &[f64]| match self.form {

@@ -51,14 +51,14 @@ pub struct OuterLayer {
 }
 
 /// Relative difference (to the largest weight) below which bond weights are considered equal.
-const ALIKE: f64 = 1e-11;
+const TOLERANCE: f64 = 1e-11;
 /// Fraction of its largest value that the initial field may have where the known field ends. It is taken as zero
 /// beyond, which causes an error of about this size.
 pub(super) const NEGLIGIBLE: f64 = 1e-6;
 
 impl OuterLayer {
     /// Creates the outer layer of a body from its initial state and the ascending list of points whose bonds never
-    /// break. The lattice beyond is derived from the body's own bonds: those of the outermost point.
+    /// break. The lattice beyond is derived from the bonds of the outermost point.
     ///
     /// # Errors
     /// Every property that the exterior cannot continue ([`AbsorbingError`]).
@@ -96,7 +96,7 @@ impl OuterLayer {
         let row = bonds.of(outermost);
         let strongest = max_norm(&row);
         // A weight that vanishes at the horizon, as for the conical function, may appear as round-off.
-        let is_bond = |k: &usize| row[side.point(n, *k)].abs() > ALIKE * strongest;
+        let is_bond = |k: &usize| row[side.point(n, *k)].abs() > TOLERANCE * strongest;
         let reach = (1..n).rev().find(is_bond);
         let reach = reach.unwrap_or(0);
         if n < 2 * reach {
@@ -113,7 +113,7 @@ impl OuterLayer {
         for (p, &i) in points.iter().enumerate() {
             let found = mass(i);
             let expected = mass(outermost);
-            if (found - expected).abs() > ALIKE * expected {
+            if (found - expected).abs() > TOLERANCE * expected {
                 return Err(AbsorbingError::LayerMass {
                     side: side.name(),
                     point: number(i),
@@ -125,7 +125,7 @@ impl OuterLayer {
             // Bonds within the layer; bonds to the body behind it are not restricted.
             for (q, &j) in points.iter().enumerate().filter(|&(q, _)| q != p) {
                 let expected = weights[p.abs_diff(q) - 1];
-                if (row[j] - expected).abs() > ALIKE * scale {
+                if (row[j] - expected).abs() > TOLERANCE * scale {
                     return Err(AbsorbingError::LayerBond {
                         side: side.name(),
                         from: number(i),
@@ -190,8 +190,8 @@ impl OuterLayer {
         let mut force = bonds.rest.clone();
         operator.add_force(0.0, &u, PointSubset::All, &mut force);
         let scale = max_norm(&tangent);
-        let miss = |&i: &usize| (force[i] - tangent[i]).abs() > 1e-9 * scale;
-        match self.points.iter().find(|i| miss(i)) {
+        let differs = |&i: &usize| (force[i] - tangent[i]).abs() > 1e-9 * scale;
+        match self.points.iter().find(|i| differs(i)) {
             None => Ok(()),
             Some(&point) => Err(AbsorbingError::NotLinear {
                 side: self.side.name(),

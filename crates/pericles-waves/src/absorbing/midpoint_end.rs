@@ -21,7 +21,7 @@ use pericles::boundary::{Boundary, Exchange, ImplicitBoundary, Stage};
 /// K × K corner added to the matrix of the step ([`ImplicitBoundary`]).
 ///
 /// The work of the boundary over a step is its force at the middle times the change of displacement; with it the
-/// energy balance closes as accurately as that of the rule.
+/// energy balance closes as accurately as the balance of the rule.
 pub struct MidpointEnd {
     layer: OuterLayer,
     history: Box<dyn History>,

@@ -222,7 +222,7 @@ mod tests {
     #[test]
     fn short_micromodulus_converges_to_the_local_string() {
         // The difference is of second order in l.
-        let miss = |length: f64| {
+        let error = |length: f64| {
             let line = LineSolution { length, ..UNIT };
             let string = TravellingPulse {
                 speed: 1.0,
@@ -234,7 +234,7 @@ mod tests {
             string.displacement_into(2.0, &[1.7], &mut u);
             at(&line, 1.7, 2.0) - u[0]
         };
-        let order = (miss(0.1) / miss(0.05)).log2();
+        let order = (error(0.1) / error(0.05)).log2();
         assert!((order - 2.0).abs() < 0.02, "{order}");
     }
 

@@ -31,14 +31,14 @@ pub trait ExactSolution: Send + Sync {
 
 /// Error of a computed displacement.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Miss {
+pub struct SolutionError {
     /// Largest error over all points.
     pub largest: f64,
     /// Root mean square error divided by the root mean square of the exact solution; undivided where that is zero.
     pub relative: f64,
 }
 
-impl Miss {
+impl SolutionError {
     /// Compares a computed with an exact field.
     pub fn between(computed: &[f64], exact: &[f64]) -> Self {
         let square = |values: &mut dyn Iterator<Item = f64>| values.map(|x| x * x).sum::<f64>();
@@ -51,11 +51,11 @@ impl Miss {
                 largest.max(d.abs())
             }
         });
-        let (miss, size) = (
+        let (error, size) = (
             square(&mut differences()),
             square(&mut exact.iter().copied()),
         );
-        let relative = if size > 0.0 { miss / size } else { miss };
+        let relative = if size > 0.0 { error / size } else { error };
         Self {
             largest,
             relative: relative.sqrt(),

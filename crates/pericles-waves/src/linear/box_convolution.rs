@@ -44,7 +44,7 @@ pub(super) struct BoxConvolution<const D: usize> {
     lattice: Lattice,
     /// First point of each row of the lattice, and the number of points.
     row_start: Vec<u32>,
-    /// Nodes along the middle and the last axis; the padded lengths are those of the transforms.
+    /// Nodes along the middle and the last axis; the padded lengths are the lengths of the transforms.
     middle_nodes: usize,
     last_nodes: usize,
     along_x: LineTransform,

@@ -1,6 +1,6 @@
 //! Cost of one evaluation of a linear body by convolution and by the bond list.
 
-use super::refuse;
+use super::reject;
 use super::tensor_kernel::axes;
 use pericles::family::VolumeCorrection;
 use pericles::space::PointCloud;
@@ -16,7 +16,7 @@ const FAR_FIELD_NUMBER: f64 = 16e-9;
 const NEAR_NUMBERS: f64 = 2e6;
 
 /// Estimated cost of one evaluation of the linear force of a lattice body. It depends on sizes only, so that equal
-/// runs make the same choice; the seconds are those of one core of the machine on which the constants were
+/// runs make the same choice; the seconds belong to one core of the machine on which the constants were
 /// measured, and only their ratio matters.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CostComparison {
@@ -39,7 +39,7 @@ impl CostComparison {
     /// Points that are not on a lattice, for which only the bond list is available; a horizon that is not positive.
     pub fn new(cloud: &PointCloud, horizon: f64, correction: VolumeCorrection) -> Result<Self> {
         let Some(lattice) = cloud.lattice() else {
-            return refuse("it needs points on a regular grid; use the bond list for this body");
+            return reject("it needs points on a regular grid; use the bond list for this body");
         };
         let horizon = positive("the horizon", horizon)?;
         // Lengths in units of the spacing along x.

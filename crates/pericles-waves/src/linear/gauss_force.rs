@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::energy::{elastic_energy, origin};
 use super::toeplitz::{Ends, Toeplitz};
 use super::wanted::for_each_wanted;
-use super::{features_of, refuse, require};
+use super::{features_of, reject, require};
 use crate::form::ForceForm;
 use pericles::family::VolumeCorrection;
 use pericles::material::{BondConstants, BondMaterial};
@@ -77,7 +77,7 @@ impl GaussForce {
         stiffness: impl Fn(f64) -> f64,
     ) -> Result<Self> {
         let Some(cell) = cell_of(&cloud) else {
-            return refuse(
+            return reject(
                 "the points are not the two Gauss nodes of equal cells of a bar; use the bond list",
             );
         };

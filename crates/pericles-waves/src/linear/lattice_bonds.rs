@@ -1,6 +1,6 @@
 //! Bonds of a lattice body by offset.
 
-use super::refuse;
+use super::reject;
 use pericles::family::VolumeCorrection;
 use pericles::operator::{LatticeSpring, LatticeSprings};
 use pericles::space::{Lattice, PointCloud};
@@ -38,11 +38,11 @@ impl<S: Fn([f64; 3]) -> f64> LatticeBonds<S> {
         stiffness_of_bond: S,
     ) -> Result<(Self, &Lattice)> {
         let Some(lattice) = cloud.lattice() else {
-            return refuse("it needs points on a regular grid; use the bond list for this body");
+            return reject("it needs points on a regular grid; use the bond list for this body");
         };
         let volume = cloud.volumes()[0];
         if cloud.volumes().iter().any(|&v| v != volume) {
-            return refuse("it needs points of equal volume; use the bond list for this body");
+            return reject("it needs points of equal volume; use the bond list for this body");
         }
         let spacing = cloud.spacing();
         let reach = correction.reach(horizon, spacing);
@@ -115,7 +115,7 @@ impl<S: Fn([f64; 3]) -> f64> LatticeBonds<S> {
                 for x in range(0) {
                     if let Some(bond) = self.at([x, y, z]) {
                         if !bond.stiffness.is_finite() {
-                            return refuse(
+                            return reject(
                                 "the stiffness of every bond must be finite; check the influence function",
                             );
                         }

@@ -91,7 +91,7 @@ fn features_of(material: &BondMaterial, constants: &BondConstants, dimension: us
 
 /// Returns an error for features that a form does not represent.
 fn require(form: ForceForm, features: Features) -> Result<()> {
-    form.refusal(features).map_or(Ok(()), refuse)
+    form.rejection(features).map_or(Ok(()), reject)
 }
 
 /// Operator that cannot be applied as a convolution.
@@ -109,7 +109,7 @@ impl From<NoConvolution> for PericlesError {
 }
 
 /// Returns the error with a reason.
-fn refuse<T>(reason: impl Into<String>) -> Result<T> {
+fn reject<T>(reason: impl Into<String>) -> Result<T> {
     let reason = reason.into();
     Err(NoConvolution { reason }.into())
 }

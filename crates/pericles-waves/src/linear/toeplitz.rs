@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::banded::{TILE, banded_tiles};
 use super::cost::{self, Pieces, Route};
 use super::fourier::{CircularKernel, LineScratch};
-use super::refuse;
+use super::reject;
 use pericles::operator::pool::Pool;
 use pericles::operator::{InstructionSet, LinearOperator};
 use pericles::{PericlesError, Result};
@@ -118,7 +118,7 @@ impl Toeplitz {
         ends: Ends,
     ) -> Result<Self> {
         if ends == Ends::Free {
-            return refuse(
+            return reject(
                 "free ends are not available for products, which have no bonds; use zero or periodic ends, or \
                 differences",
             );
@@ -138,7 +138,7 @@ impl Toeplitz {
             return Err(PericlesError::EmptyBody);
         }
         if below.len() != above.len() {
-            return refuse(format!(
+            return reject(format!(
                 "the numbers of coefficients below and above the diagonal must be equal, but are {} and {}",
                 below.len(),
                 above.len()
@@ -146,7 +146,7 @@ impl Toeplitz {
         }
         let all = || below.iter().chain(above);
         if let Some(bad) = all().chain([&middle]).find(|t| !t.is_finite()) {
-            return refuse(format!(
+            return reject(format!(
                 "coefficients must be finite numbers, but one is {bad}"
             ));
         }

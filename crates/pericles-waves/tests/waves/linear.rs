@@ -650,35 +650,35 @@ fn strips_may_be_periodic_along_one_axis() {
 fn bodies_without_a_convolution_are_errors() {
     let cloud = body(&[12, 12], false);
     let linear = material(Influence::default(), VolumeCorrection::None, 3.0);
-    let refused = |cloud: &Arc<PointCloud>, material: &BondMaterial, cracks: &[Crack]| {
+    let rejected = |cloud: &Arc<PointCloud>, material: &BondMaterial, cracks: &[Crack]| {
         let constants = material.constants(cloud, StressState::PlaneStress).unwrap();
         let operator =
             ConvolutionForce::<2>::new(cloud.clone(), material, &constants, cracks, [false; 2]);
         operator.is_err_and(|error| error.extension::<NoConvolution>().is_some())
     };
-    assert!(!refused(&cloud, &linear, &[]));
+    assert!(!rejected(&cloud, &linear, &[]));
     let stretch = BondMaterial {
         law: PairLaw::BondStretch,
         ..linear.clone()
     };
-    assert!(!BondStretch::LINEAR && refused(&cloud, &stretch, &[]));
+    assert!(!BondStretch::LINEAR && rejected(&cloud, &stretch, &[]));
     let breaking = BondMaterial {
         fracture: Fracture::CriticalStretch(0.01),
         ..linear.clone()
     };
-    assert!(refused(&cloud, &breaking, &[]));
+    assert!(rejected(&cloud, &breaking, &[]));
     let crack = Crack::Segment {
         from: [0.3, -0.04],
         to: [0.36, -0.04],
     };
-    assert!(refused(&cloud, &linear, &[crack]));
+    assert!(rejected(&cloud, &linear, &[crack]));
     let loose = PointCloud::new(
         2,
         cloud.positions().to_vec(),
         cloud.volumes().to_vec(),
         0.02,
     );
-    assert!(refused(&Arc::new(loose.unwrap()), &linear, &[]));
+    assert!(rejected(&Arc::new(loose.unwrap()), &linear, &[]));
     let short = ConvolutionForce::<2>::with_stiffness(
         cloud.clone(),
         0.5 * DX,

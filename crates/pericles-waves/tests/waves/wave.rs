@@ -16,7 +16,7 @@ use pericles::space::{Grid, PointCloud, Shape, gauss_bar};
 use pericles::time::{Implicit, ImplicitRule, Integrator, LinearSolver, State, VelocityVerlet};
 use pericles::{Interrupt, PointScalar, Simulation, System};
 use pericles_waves::ForceForm;
-use pericles_waves::exact::{ExactSolution, LineSolution, Miss};
+use pericles_waves::exact::{ExactSolution, LineSolution, SolutionError};
 use pericles_waves::linear::{ConvolutionForce, GaussForce, SpectralForce};
 use pericles_waves::{FunctionMethod, LoadRule, Trigonometric, TrigonometricOptions};
 
@@ -179,8 +179,8 @@ fn all_matrix_function_engines_agree() {
         }
         for ends in [&ends, &periodic] {
             for (method, end) in &ends[1..] {
-                let miss = distance(&end.u, &ends[0].1.u).max(distance(&end.v, &ends[0].1.v));
-                assert!(miss < 1e-12, "{method:?} τ = {tau}: {miss:e}");
+                let error = distance(&end.u, &ends[0].1.u).max(distance(&end.v, &ends[0].1.v));
+                assert!(error < 1e-12, "{method:?} τ = {tau}: {error:e}");
             }
         }
     }
@@ -197,8 +197,8 @@ fn one_trigonometric_step_equals_many_small_steps() {
             let mut scheme = trigonometric(FunctionMethod::Fastest, &body);
             let large = steps(&mut body, &mut *scheme, state.clone(), 4.0, 1);
             let small = steps(&mut body, &mut *scheme, state.clone(), 0.05, 80);
-            let miss = distance(&large.u, &small.u);
-            assert!(miss < 3e-14, "{form:?} {miss:e}");
+            let error = distance(&large.u, &small.u);
+            assert!(error < 3e-14, "{form:?} {error:e}");
             let constants = stretch(m).constants(&cloud, state_of(&cloud)).unwrap();
             let other = match sides.len() {
                 2 => distance_by_convolution::<2>(&cloud, &stretch(m), &constants, &state, &large),
@@ -277,8 +277,8 @@ fn plane_wave_has_the_numerical_frequency_of_the_scheme() {
         let end = steps(&mut body, &mut *scheme, state, dt, 20);
         let exact = (numerical * 20.0 * dt).cos();
         for i in 0..cloud.len() {
-            let miss = end.u[i] - exact * (k * cloud.point(i)[0]).cos();
-            assert!(miss.abs() < 1e-13, "{}: {miss:e}", scheme.name());
+            let error = end.u[i] - exact * (k * cloud.point(i)[0]).cos();
+            assert!(error.abs() < 1e-13, "{}: {error:e}", scheme.name());
         }
     }
 }
@@ -300,9 +300,9 @@ fn spectral_solution_equals_the_exact_line_to_round_off() {
         let inside = field.iter().zip(x).filter(|(_, x)| x.abs() <= PI);
         inside.map(|(u, _)| *u).collect()
     };
-    let miss = Miss::between(&window(&end.u), &window(&exact));
+    let error = SolutionError::between(&window(&end.u), &window(&exact));
     let largest = window(&exact).iter().fold(0.0f64, |m, u| m.max(u.abs()));
-    assert!(miss.largest / largest < 5e-14, "{miss:?}");
+    assert!(error.largest / largest < 5e-14, "{error:?}");
 }
 
 #[test]
@@ -346,7 +346,7 @@ fn gauss_force_equals_the_bond_list() {
 #[test]
 fn grid_converges_to_the_spectral_operator() {
     // The grid with partial volumes is of second order; the spectral operator does not change with the grid.
-    fn miss<const D: usize>(spacing: f64) -> f64 {
+    fn error<const D: usize>(spacing: f64) -> f64 {
         let cloud = cells(0.0, &vec![2.0; D], spacing);
         let influence = Influence {
             function: InfluenceFunction::Conical,
@@ -370,17 +370,17 @@ fn grid_converges_to_the_spectral_operator() {
         let scale = a.iter().fold(0.0f64, |m, x| m.max(x.abs()));
         distance(&a, &b) / scale
     }
-    let errors = [miss::<1>(0.1), miss::<1>(0.05), miss::<1>(0.025)];
+    let errors = [error::<1>(0.1), error::<1>(0.05), error::<1>(0.025)];
     assert!(
         errors[2] < 2e-3 && errors[0] > 3.0 * errors[2],
         "{errors:?}"
     );
-    let errors = [miss::<2>(0.1), miss::<2>(0.05)];
+    let errors = [error::<2>(0.1), error::<2>(0.05)];
     assert!(
         errors[1] < 5e-3 && errors[0] > 2.0 * errors[1],
         "{errors:?}"
     );
-    let errors = [miss::<3>(0.2), miss::<3>(0.1)];
+    let errors = [error::<3>(0.2), error::<3>(0.1)];
     assert!(
         errors[1] < 2e-2 && errors[0] > 2.0 * errors[1],
         "{errors:?}"
@@ -463,8 +463,8 @@ fn loads_and_supports_have_the_expected_order() {
         (Some(LoadRule::Midpoint), 2.0, 0.02, 40),
         (None, 2.0, 0.02, 160),
     ] {
-        let miss = |count| distance(&run(rule, count).u, &reference.u);
-        let found = (miss(first) / miss(2 * first)).log2();
+        let error = |count| distance(&run(rule, count).u, &reference.u);
+        let found = (error(first) / error(2 * first)).log2();
         assert!((found - order).abs() < tolerance, "{rule:?}: {found}");
     }
 }
@@ -600,8 +600,8 @@ fn nonlinear_gauss_bar_converges_for_both_schemes() {
         let fine = run(law, exact, 640);
         let linear = run(PairLaw::Linear, exact, 1);
         for (make, count) in [(exact, 40), (midpoint, 80)] {
-            let miss = |count| distance(&run(law, make, count).u, &fine.u);
-            let order = (miss(count) / miss(2 * count)).log2();
+            let error = |count| distance(&run(law, make, count).u, &fine.u);
+            let order = (error(count) / error(2 * count)).log2();
             assert!((order - 2.0).abs() < 0.1, "{law:?} {order}");
         }
         let nonlinearity = distance(&linear.u, &fine.u);
@@ -814,10 +814,10 @@ fn stress_without_individual_bonds_is_an_error() {
     let bar = driven_bar(ForceForm::Convolution);
     let state = State::at_rest(bar.points());
     let snapshot = Snapshot::new(&bar, &state, StartEnergy::default(), 0.0);
-    let refused = snapshot.check(Field::Stress).unwrap_err().to_string();
+    let rejected = snapshot.check(Field::Stress).unwrap_err().to_string();
     assert!(
-        refused.starts_with("Stress is a sum over single bonds"),
-        "{refused}"
+        rejected.starts_with("Stress is a sum over single bonds"),
+        "{rejected}"
     );
     snapshot.check(Field::Velocity).unwrap();
 }

@@ -15,9 +15,9 @@ pub enum Layout {
     Set(Vec<u32>),
     /// A row of numbers per own point, one row after another; their lengths.
     Rows(Vec<u32>),
-    /// Counts of bonds or points of this process, `u64`: those of the body are their sums.
+    /// Counts of bonds or points of this process, `u64`: the counts of the body are their sums.
     Count,
-    /// A [`BinnedSum`](crate::sum::BinnedSum) of terms of this process: that of the body is their sum.
+    /// A [`BinnedSum`](crate::sum::BinnedSum) of terms of this process: the sum of the body is their sum.
     Sum,
 }
 
@@ -40,7 +40,7 @@ pub trait Storage<S: ?Sized> {
     /// Restores the state.
     ///
     /// # Errors
-    /// Those of [`Checkpointed::restore`](crate::Checkpointed::restore).
+    /// The errors of [`Checkpointed::restore`](crate::Checkpointed::restore).
     fn restore(&self, state: &mut S, archive: &Archive) -> Result<()>;
 }
 

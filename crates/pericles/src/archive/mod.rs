@@ -83,7 +83,7 @@ pub trait SavedUnder {
     /// Restores the state.
     ///
     /// # Errors
-    /// Those of [`Checkpointed::restore`].
+    /// The errors of [`Checkpointed::restore`].
     fn restore_under(&mut self, name: &str, archive: &Archive) -> Result<()>;
 }
 

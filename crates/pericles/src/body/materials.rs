@@ -48,7 +48,7 @@ impl Body {
             if !same {
                 return Err(PericlesError::BadSet {
                     what: "a further material of the body",
-                    reason: "its pair law, horizon, influence function and volume correction must be those of the first material",
+                    reason: "its pair law, horizon, influence function and volume correction must equal those of the first material",
                 });
             }
             constants.push(material.constants(&self.cloud, state)?);

@@ -99,7 +99,7 @@ impl Body {
     }
 
     /// Assigns another material to a set of points. It has its own density, modulus and fracture parameters; pair
-    /// law, horizon, influence function and volume correction must be those of the first material. Where sets
+    /// law, horizon, influence function and volume correction must equal those of the first material. Where sets
     /// overlap, the last one applies.
     pub fn material(mut self, points: PointSet, material: BondMaterial) -> Self {
         self.others.push((points, material));

@@ -81,7 +81,7 @@ pub struct DampingLayer {
     total: usize,
     dimension: usize,
     dt: f64,
-    /// Accelerations due to the damping, by component and point of the layer, and those of the previous step.
+    /// Accelerations due to the damping, by component and point of the layer, and the accelerations of the previous step.
     pull: Vec<f64>,
     pull_before: Vec<f64>,
     /// Displacements of the layer at the start of the step, for schemes whose equation includes the damping.

@@ -176,7 +176,7 @@ impl Load {
 
     /// Returns whether the force at time t is finite: on all points for a constant amplitude, on the first, middle
     /// and last point for a field of position and time. Values computed for all points at once are not evaluated:
-    /// only the run knows the times at which they are given.
+    /// the times at which they are given belong to the run.
     pub fn is_finite_at(&self, t: f64, dimension: usize) -> bool {
         let factor = self.factor(t);
         if factor == 0.0 || self.points.is_empty() {

@@ -100,7 +100,7 @@ pub trait Boundary: Checkpointed + Send + Sync {
     }
 
     /// Called when the accelerations of a stage are known on the points of `on`; may change them. Velocities are
-    /// those of the stage.
+    /// the values of the stage.
     fn after_stage(&mut self, stage: &Stage<'_>, acceleration: &mut [f64]);
 
     /// [`Boundary::accept`] with access to the stiffness of the body.

@@ -123,7 +123,7 @@ impl PrescribedMotion {
     /// A constraint with the same amplitudes (m or m/s) for all points, for a body with initial displacement `u`.
     ///
     /// # Errors
-    /// Those of [`PrescribedMotion::along`].
+    /// The errors of [`PrescribedMotion::along`].
     pub fn new(
         name: String,
         points: PointSet,

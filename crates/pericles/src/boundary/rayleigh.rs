@@ -10,7 +10,7 @@ use crate::step_kind::StepKind;
 /// Rayleigh damping (Rayleigh 1877): ρ u_tt = f − α ρ u_t − β K u_t with the stiffness K of the forces at the
 /// current displacements. A vibration of angular frequency ω has the damping ratio ½ (α/ω + β ω).
 ///
-/// The damped velocity is that of [`DampingLayer`](super::DampingLayer): at the middle of the previous step for
+/// The damped velocity is defined as in [`DampingLayer`](super::DampingLayer): at the middle of the previous step for
 /// velocity Verlet, at the stage for schemes with stages. K contains the unbroken bonds only. Prescribed motions
 /// are not damped. Stiffness-proportional damping requires velocity Verlet; mass-proportional damping alone also
 /// supports schemes with stages.
@@ -20,7 +20,7 @@ pub struct RayleighDamping {
     /// Masses by entry, kg.
     masses: Vec<f64>,
     domain: Domain,
-    /// Accelerations due to the damping, and those of the previous step.
+    /// Accelerations due to the damping, and the accelerations of the previous step.
     pull: Vec<f64>,
     pull_before: Vec<f64>,
 }

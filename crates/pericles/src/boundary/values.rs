@@ -21,7 +21,7 @@ pub trait PointValues: fmt::Debug + Send + Sync {
     /// displacements (order 0, m), velocities (order 1, m/s) and accelerations (order 2, m/s²).
     fn at(&self, order: usize, t: f64, read: &mut dyn FnMut(&[f64]));
 
-    /// Returns whether an evaluation may fail, such as that of a user's function. The time loop then copies state and
+    /// Returns whether an evaluation may fail, such as the evaluation of a user's function. The time loop then copies state and
     /// system before every step, so that a step with a failed evaluation is undone.
     fn can_fail(&self) -> bool {
         false

@@ -3,6 +3,11 @@
 //! The arrays of the whole body are in the order of the point numbers in the body, so that they do not depend on the
 //! division. [`DividedArchive`] and [`Archive::part_of`] transfer them in ranges of bounded size, so that no process needs the
 //! memory of a whole array.
+//!
+//! An array is transferred in rounds of a bounded number of blocks per process: in each round a process receives the
+//! entries of its blocks from their owners and compresses them, and only the compressed sizes are exchanged to find
+//! the places of the blocks in the file. Blocks of any size therefore need no padding, and the memory of a round does
+//! not depend on the size of the body.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -84,7 +89,7 @@ impl<'a> DividedArchive<'a> {
         domain.agreed(archive.check_layouts(domain))?;
         archive.add_up(domain)?;
         let lengths = lengths(&archive, domain);
-        // The arrays that are not divided are those of the first process.
+        // The arrays that are not divided come from the first process.
         let outline = |(name, values): (&String, &Values)| {
             let own = ArrayOutline::of(name, values);
             let len = lengths.iter().find(|(divided, _)| divided == &name);
@@ -204,7 +209,7 @@ impl ArraySource for OnFirst<'_> {
 }
 
 impl Archive {
-    /// Returns the archive of the whole body on the first process, from those of all processes; `None` on the others.
+    /// Returns the archive of the whole body on the first process, from the archives of all processes; `None` on the others.
     /// All processes must call it together. The archive of a body that is not divided is returned unchanged.
     ///
     /// # Errors
@@ -223,7 +228,7 @@ impl Archive {
     }
 
     /// Returns the part of the archive `whole` of the whole body that this process restores. The first process passes
-    /// `whole`. Names and layouts are those of `template`, which each process has saved from its part of the body. All
+    /// `whole`. Names and layouts are taken from `template`, which each process has saved from its part of the body. All
     /// processes must call it together. The archive of a body that is not divided is returned unchanged.
     ///
     /// # Errors
@@ -281,7 +286,7 @@ impl Archive {
         Ok(own)
     }
 
-    /// Checks that the arrays of the whole body, of which divided ones have these lengths, are among those of an outline.
+    /// Checks that the arrays of the whole body, of which divided ones have these lengths, are among the arrays of an outline.
     fn check_outline(&self, outline: &[ArrayOutline], lengths: &[(&String, usize)]) -> Result<()> {
         for (name, like) in &self.arrays {
             let Some(layout) = self.layouts.get(name) else {
@@ -302,7 +307,7 @@ impl Archive {
         Ok(())
     }
 
-    /// Replaces counts and sums by those of the whole body, which are equal on all processes.
+    /// Replaces counts and sums by the values of the whole body, which are equal on all processes.
     fn add_up(&mut self, domain: &Domain) -> Result<()> {
         let mut counts = Vec::new();
         for name in self.named(&Layout::Count) {

@@ -132,7 +132,7 @@ fn key(number: u32, coordinate: f64) -> u128 {
 /// processes must call it together.
 ///
 /// # Panics
-/// If numbers, weights and coordinates are not those of the same points, or there are no parts.
+/// If numbers, weights and coordinates do not belong to the same points, or there are no parts.
 pub fn bisect(comm: &dyn Comm, points: &Points<'_>, parts: usize, cuts: Cuts) -> Bisection {
     let n = points.numbers.len();
     assert!(

@@ -139,7 +139,7 @@ pub fn divide(
 /// processes must call it together.
 ///
 /// # Errors
-/// Those of [`divide`].
+/// The errors of [`divide`].
 pub fn part_by_bisection(
     body: &dyn PointSource,
     reach: f64,
@@ -185,7 +185,7 @@ pub fn part_of(
 /// Returns points, ghosts and messages of each of `processes` processes for bonds of length up to `reach` (m).
 ///
 /// # Errors
-/// Those of [`part_of`].
+/// The errors of [`part_of`].
 pub fn shares(
     whole: &Arc<PointCloud>,
     owners: &[u32],

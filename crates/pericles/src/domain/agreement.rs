@@ -1,4 +1,8 @@
-//! Decisions that all processes take alike.
+//! Collective decisions: every process gets the same result.
+//!
+//! Every condition that leads to a message or ends a run is a maximum or an exact sum over all processes: signals,
+//! time limits and checkpoints at the ends of steps, errors of observers, causes of instability. An error of another
+//! process is [`PericlesError::OnAnotherProcess`], which is not printed.
 
 use super::{Comm, Domain};
 use crate::error::PericlesError;

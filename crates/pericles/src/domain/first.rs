@@ -2,7 +2,7 @@
 
 use super::Comm;
 
-/// Sends a message to the first process, which receives those of all processes in the order of ranks; `None` on the others.
+/// Sends a message to the first process, which receives the messages of all processes in the order of ranks; `None` on the others.
 /// All processes must call it together.
 pub fn collect(comm: &dyn Comm, message: Vec<f64>) -> Option<Vec<Vec<f64>>> {
     if comm.rank() > 0 {

@@ -263,7 +263,7 @@ impl Domain {
         new
     }
 
-    /// Returns the messages to own points: those of `letters`, which own points send, and those from other
+    /// Returns the messages to own points: `letters`, which own points send, and the messages from other
     /// processes, in the order of the numbers of receiving and then of sending points, which does not depend on the division. All
     /// processes must call it together.
     ///
@@ -280,7 +280,7 @@ impl Domain {
             to_them
                 .flat_map(|one| {
                     let from = peer.sent.iter().position(|&k| k as usize == one.from);
-                    let from = from.expect("the owners of both ends of a bond know the bond");
+                    let from = from.expect("the owners of both ends of a bond have the bond");
                     let place = [one.to - first, from].map(|k| k as f64);
                     place.into_iter().chain(one.numbers)
                 })
@@ -315,7 +315,7 @@ impl Domain {
         received
     }
 
-    /// Sends a message to the first process, which receives those of all processes in the order of ranks; `None` on the
+    /// Sends a message to the first process, which receives the messages of all processes in the order of ranks; `None` on the
     /// others. All processes must call it together.
     pub fn collect(&self, message: Vec<f64>) -> Option<Vec<Vec<f64>>> {
         collect(&*self.comm, message)

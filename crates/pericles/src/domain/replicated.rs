@@ -1,19 +1,23 @@
 //! Vectors of the whole body on every process.
+//!
+//! The preconditioner of static states and the network of implicit heat conduction are replicated: a divided
+//! multigrid would need aggregates and coarse factors that do not depend on the division. Forces, products and sums
+//! remain divided.
 
 use std::borrow::Cow;
 
 use super::{Domain, exchange_all};
 
 impl Domain {
-    /// Sends a message to all processes and returns those of all of them in the order of ranks. All processes must call it
+    /// Sends a message to all processes and returns the messages of all of them in the order of ranks. All processes must call it
     /// together.
     pub fn collect_everywhere(&self, message: Vec<f64>) -> Vec<Vec<f64>> {
         exchange_all(&*self.comm, vec![message; self.comm.size()])
     }
 }
 
-/// Makes vectors of the whole body, which every process has, from those of own points: for parts of a method that
-/// all processes compute alike, such as the coarse levels of a preconditioner. Their memory does not decrease with the number
+/// Makes vectors of the whole body, which every process has, from vectors of own points: for parts of a method that
+/// all processes compute identically, such as the coarse levels of a preconditioner. Their memory does not decrease with the number
 /// of processes.
 #[derive(Debug, Clone)]
 pub struct Replicated {
@@ -75,7 +79,7 @@ impl Replicated {
         Cow::Owned(whole)
     }
 
-    /// Fills the values of own points in `owned` with those of a vector of the whole body, which `fill` computes. A process
+    /// Fills the values of own points in `owned` with the values of a vector of the whole body, which `fill` computes. A process
     /// without points calls `fill` too: the number of components does not follow from the length of `owned`.
     pub fn fill_own(&self, components: usize, owned: &mut [f64], fill: impl FnOnce(&mut [f64])) {
         if !self.is_divided() {

@@ -479,7 +479,7 @@ mod tests {
     }
 
     #[test]
-    fn a_horizon_below_the_spacing_is_refused() {
+    fn a_horizon_below_the_spacing_is_rejected() {
         let error = BondList::new(&plate(4.0), 0.9, VolumeCorrection::None).unwrap_err();
         assert!(matches!(error, PericlesError::HorizonTooSmall { .. }));
     }

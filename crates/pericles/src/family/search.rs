@@ -9,7 +9,7 @@ use crate::space::{PointCloud, Sites};
 ///
 /// Points are sorted by counting into cubes of side `reach`; each point searches the 3^D cubes around its own. On a
 /// lattice, lengths are computed from integer offsets, so that points at exactly the same distance are treated
-/// alike. Cost O(N · family); memory O(N) in addition to the result.
+/// identically. Cost O(N · family); memory O(N) in addition to the result.
 pub fn pairs_within(cloud: &PointCloud, reach: f64) -> (Vec<usize>, Vec<u32>) {
     pairs_where(cloud, reach, &|_, _, distance| distance <= reach)
 }

@@ -23,28 +23,28 @@ impl ClassTable {
     /// An empty table; a class given twice; an offset along an axis beyond the dimension; values that are not
     /// finite.
     pub fn new(dimension: usize, spacing: f64, entries: &[(ClassOffset, f64)]) -> Result<Self> {
-        let refuse = |reason: String| Err(PericlesError::BadInfluence { reason });
+        let reject = |reason: String| Err(PericlesError::BadInfluence { reason });
         positive("the spacing of a table per class", spacing)?;
         let mut entries: Vec<_> = entries.iter().map(|(o, a)| (class_of(*o), *a)).collect();
         entries.sort_by_key(|(offset, _)| class_order(*offset));
         if entries.is_empty() {
-            return refuse("a table per class needs at least one class".into());
+            return reject("a table per class needs at least one class".into());
         }
         for (offset, value) in &entries {
             if *offset == [0; 3] || offset[dimension.min(3)..].iter().any(|c| *c != 0) {
-                return refuse(format!(
+                return reject(format!(
                     "({}, {}, {}) is not a bond of a lattice of dimension {dimension}; allowed: offsets with 1 to {dimension} nonzero components",
                     offset[0], offset[1], offset[2]
                 ));
             }
             if !value.is_finite() {
-                return refuse(format!(
+                return reject(format!(
                     "the value {value} of a class is not finite; allowed: finite numbers"
                 ));
             }
         }
         if let Some(twice) = entries.windows(2).find(|pair| pair[0].0 == pair[1].0) {
-            return refuse(format!(
+            return reject(format!(
                 "the class ({}, {}, {}) is given twice; leave out one of the values",
                 twice[0].0[0], twice[0].0[1], twice[0].0[2]
             ));
@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn invalid_tables_are_refused() {
+    fn invalid_tables_are_rejected() {
         for entries in [
             &[][..],
             &[([0, 0, 0], 1.0)],

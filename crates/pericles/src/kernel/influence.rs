@@ -118,14 +118,14 @@ impl Influence {
     /// Lengths that are not positive; a table whose r does not increase; an exponent for which the modulus integral
     /// ∫ α r^dimension dr diverges.
     pub fn check(&self, dimension: usize, horizon: f64) -> Result<()> {
-        let refuse = |reason: String| Err(PericlesError::BadInfluence { reason });
+        let reject = |reason: String| Err(PericlesError::BadInfluence { reason });
         match &self.function {
             InfluenceFunction::Gaussian { length, cutoff } => {
                 positive("the length of the Gaussian", *length)?;
                 if let Some(end) = cutoff {
                     positive("the cut-off of the Gaussian", *end)?;
                     if *end > horizon * (1.0 + 1e-9) {
-                        return refuse(format!(
+                        return reject(format!(
                             "the cut-off {} is beyond the horizon {}; allowed: at most the horizon",
                             precise(*end, "m"),
                             precise(horizon, "m")
@@ -139,7 +139,7 @@ impl Influence {
                     .iter()
                     .all(|(r, g)| r.is_finite() && *r >= 0.0 && g.is_finite());
                 if table.is_empty() || !ascending || !finite {
-                    return refuse(
+                    return reject(
                         "a table needs at least one pair (r, value); allowed: finite numbers, r ≥ 0 and increasing"
                             .into(),
                     );
@@ -151,7 +151,7 @@ impl Influence {
             } => {
                 positive("the wavenumber of the cosines", *wavenumber)?;
                 if coefficients.is_empty() || coefficients.iter().any(|a| !a.is_finite()) {
-                    return refuse(
+                    return reject(
                         "cosines need at least the coefficient a₀; allowed: finite numbers".into(),
                     );
                 }
@@ -165,14 +165,14 @@ impl Influence {
         let (exponent, _) = self.leading_power();
         let power = exponent + dimension as f64;
         if !power.is_finite() || power <= -1.0 {
-            return refuse(format!(
+            return reject(format!(
                 "the exponent {} makes the modulus infinite in dimension {dimension}; allowed: more than {}",
                 exponent - self.shift(),
                 -1.0 - dimension as f64 - self.shift()
             ));
         }
         if self.moment(dimension as f64, horizon) <= 0.0 {
-            return refuse("the modulus integral ∫ α r^dimension dr must be positive".into());
+            return reject("the modulus integral ∫ α r^dimension dr must be positive".into());
         }
         Ok(())
     }
@@ -321,7 +321,7 @@ mod tests {
     }
 
     #[test]
-    fn invalid_functions_are_refused() {
+    fn invalid_functions_are_rejected() {
         let power = |exponent| on_stretch(InfluenceFunction::Power { exponent });
         assert!(power(-2.0).check(1, 1.0).is_err());
         assert!(power(-1.9).check(1, 1.0).is_ok());

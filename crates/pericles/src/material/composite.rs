@@ -1,4 +1,7 @@
 //! Bodies of several materials: bond constants by the materials of both end points.
+//!
+//! A body of several materials stores one byte per point, and a constant and a critical stretch per pair of
+//! materials. Law and influence function belong to the body, so that both ends evaluate the same bond.
 
 use super::BondConstants;
 use super::scatter::Factors;

@@ -62,7 +62,7 @@ fn crack_factor(state: StressState, section: f64) -> f64 {
 
 impl BondMaterial {
     /// Returns the constants for bonds of `cloud`. Cells that are equal boxes form a lattice; for other
-    /// points, lattice sums are those of a cubic lattice with the mean spacing.
+    /// points, lattice sums refer to a cubic lattice with the mean spacing.
     ///
     /// # Errors
     /// Constants that are not positive, an invalid influence function, a stress state whose dimension differs
@@ -98,7 +98,7 @@ impl BondMaterial {
     /// section (m² in 1D, m in 2D, 1 in 3D).
     ///
     /// # Errors
-    /// Those of [`BondMaterial::constants`]; a number of sides other than the dimension; sides that are not positive.
+    /// The errors of [`BondMaterial::constants`]; a number of sides other than the dimension; sides that are not positive.
     pub fn constants_on(
         &self,
         sides: &[f64],
@@ -175,20 +175,20 @@ impl BondMaterial {
         self.check_reach(cells)?;
         self.influence.check(cells.sides().len(), self.horizon)?;
         let signed = self.influence.is_signed(self.horizon);
-        let refuse = |reason: &str| {
+        let reject = |reason: &str| {
             Err(PericlesError::BadInfluence {
                 reason: reason.into(),
             })
         };
         if signed && self.fracture != Fracture::Unbreakable {
-            return refuse(
+            return reject(
                 "a function with negative values cannot be used with bonds that break, because a bond with negative stiffness \
                  gains energy as it stretches; remove the fracture energy and the critical stretch, or use a positive function",
             );
         }
         match self.lattice_sums(cells) {
             sums if sums.moment > 0.0 => Ok(sums),
-            _ if signed => refuse(
+            _ if signed => reject(
                 "its modulus, the sum of α |ξ| over the bonds of the lattice, must be positive",
             ),
             _ => Err(PericlesError::HorizonTooSmall {

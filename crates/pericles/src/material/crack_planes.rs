@@ -1,4 +1,7 @@
 //! Energies of cracks along planes of the lattice.
+//!
+//! The critical stretch follows from the bonds that cross planes of the lattice, with the weights and volumes of the
+//! body. The integral over the horizon would have an error of −18 to +4 % for a horizon of three spacings.
 
 use std::fmt::{self, Display};
 

@@ -1,7 +1,7 @@
 //! Failure criteria of bonds in terms of stress and strain.
 //!
 //! The *failure index* of a bond is a dimensionless number that is above one where the bond breaks. It is a function
-//! of stress and strain, the means of both end points, so that both ends of a bond decide alike.
+//! of stress and strain, the means of both end points, so that both ends of a bond reach the same decision.
 
 use std::fmt;
 use std::sync::Arc;
@@ -27,7 +27,7 @@ pub struct BondState {
 
 impl BondState {
     /// Returns the state of the bond between two points from the tensors of all points, 2 D² values: the D × D
-    /// components of the stress, then those of the strain. The vectors are ξ (the stress-free bond) and η.
+    /// components of the stress, then the components of the strain. The vectors are ξ (the stress-free bond) and η.
     pub fn between<const D: usize>(
         tensor: impl Fn(usize, usize) -> f64,
         [i, j]: [usize; 2],

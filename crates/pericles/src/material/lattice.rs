@@ -168,15 +168,15 @@ impl BondMaterial {
         let Some(table) = self.class_table() else {
             return Ok(());
         };
-        let refuse = |reason: String| Err(PericlesError::BadInfluence { reason });
+        let reject = |reason: String| Err(PericlesError::BadInfluence { reason });
         let spacing = cloud.spacing();
         if !(cloud.lattice()).is_some_and(|lattice| lattice.is_cubic(cloud.dimension())) {
-            return refuse(
+            return reject(
                 "a table per lattice class requires points on a regular grid of cubic cells".into(),
             );
         }
         if (table.spacing() / spacing - 1.0).abs() > 1e-9 {
-            return refuse(format!(
+            return reject(format!(
                 "the table per lattice class belongs to a spacing of {} m, but the spacing of the grid is {spacing} m",
                 table.spacing()
             ));
@@ -190,7 +190,7 @@ impl BondMaterial {
         });
         let name = |class: ClassOffset| format!("({}, {}, {})", class[0], class[1], class[2]);
         if let Some(missing) = within.iter().find(|class| table.lookup(**class).is_none()) {
-            return refuse(format!(
+            return reject(format!(
                 "the table has no value for the class {}, which lies within reach; it requires all {} classes (with the extended \
                  volume correction the reach exceeds the horizon by half a spacing)",
                 name(*missing),
@@ -202,7 +202,7 @@ impl BondMaterial {
             .iter()
             .find(|(class, _)| !within.contains(class))
         {
-            Some((class, _)) => refuse(format!(
+            Some((class, _)) => reject(format!(
                 "the table has a value for the class {}, which lies beyond the reach of bonds; remove it",
                 name(*class)
             )),

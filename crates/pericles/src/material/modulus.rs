@@ -53,7 +53,7 @@ impl StressState {
         }
     }
 
-    /// Returns an error if a given Poisson's ratio is not that of the bond-based material.
+    /// Returns an error if a given Poisson's ratio is not the ratio of the bond-based material.
     pub fn check_poisson_ratio(self, given: f64) -> Result<()> {
         match self.poisson_ratio() {
             // The tolerance accepts 0.33 and 0.333 for one third.

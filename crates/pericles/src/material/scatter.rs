@@ -55,7 +55,7 @@ impl StrengthScatter {
     /// Returns the factors of the critical stretch of all own points.
     ///
     /// # Errors
-    /// Those of [`StrengthScatter::check`].
+    /// The errors of [`StrengthScatter::check`].
     pub fn factors(&self, cloud: &PointCloud) -> Result<Vec<f64>> {
         self.check()?;
         let factor = |i: usize| self.factor(cloud.user_number(i) as u64);

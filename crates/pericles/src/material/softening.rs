@@ -1,4 +1,7 @@
 //! Softening of bonds beyond the elastic limit.
+//!
+//! The area below every curve equals that of the brittle bond, ½ s₀², so that calibration, interfaces and scatter do
+//! not depend on the law.
 
 use crate::error::{PericlesError, Result};
 
@@ -93,7 +96,7 @@ impl Softening {
     /// [`PericlesError::OutOfRange`].
     pub fn check(&self) -> Result<()> {
         let inside = |value: f64| value > 0.0 && value < 1.0;
-        let refuse = |quantity, value, allowed| {
+        let reject = |quantity, value, allowed| {
             Err(PericlesError::OutOfRange {
                 quantity,
                 value,
@@ -101,7 +104,7 @@ impl Softening {
             })
         };
         if !(self.onset > 0.0 && self.onset.is_finite()) {
-            return refuse(
+            return reject(
                 "the stretch at which softening starts",
                 self.onset,
                 "above 0",
@@ -113,10 +116,10 @@ impl Softening {
         } = self.law
         {
             if !inside(knee_force) {
-                return refuse("the force at the knee", knee_force, "above 0 and below 1");
+                return reject("the force at the knee", knee_force, "above 0 and below 1");
             }
             if !inside(knee_position) {
-                return refuse(
+                return reject(
                     "the position of the knee",
                     knee_position,
                     "above 0 and below 1",
@@ -129,7 +132,7 @@ impl Softening {
     /// Returns the curve of bonds with the critical stretch s₀.
     ///
     /// # Errors
-    /// Those of [`Softening::check`]; [`PericlesError::OutOfRange`] for unbreakable bonds and for an elastic
+    /// The errors of [`Softening::check`]; [`PericlesError::OutOfRange`] for unbreakable bonds and for an elastic
     /// limit that is not below the critical stretch, because then the elastic energy alone exceeds the
     /// fracture energy.
     pub fn curve(&self, critical_stretch: f64) -> Result<SofteningCurve> {
@@ -356,23 +359,23 @@ mod tests {
 
     #[test]
     fn softening_parameters_out_of_range_are_errors() {
-        let refused = |law, onset, limit: f64, word: &str| {
+        let rejected = |law, onset, limit: f64, word: &str| {
             let error = Softening { law, onset }.curve(limit).unwrap_err();
             assert!(error.to_string().contains(word), "{error}");
         };
-        refused(
+        rejected(
             SofteningLaw::Linear,
             0.02,
             LIMIT,
             "below the critical stretch",
         );
-        refused(SofteningLaw::Linear, 0.0, LIMIT, "above 0");
-        refused(SofteningLaw::Linear, 1e-3, f64::INFINITY, "fracture energy");
+        rejected(SofteningLaw::Linear, 0.0, LIMIT, "above 0");
+        rejected(SofteningLaw::Linear, 1e-3, f64::INFINITY, "fracture energy");
         let knee = |knee_force, knee_position| SofteningLaw::Trilinear {
             knee_force,
             knee_position,
         };
-        refused(knee(1.0, 0.5), 1e-3, LIMIT, "knee");
-        refused(knee(0.5, 0.0), 1e-3, LIMIT, "knee");
+        rejected(knee(1.0, 0.5), 1e-3, LIMIT, "knee");
+        rejected(knee(0.5, 0.0), 1e-3, LIMIT, "knee");
     }
 }

@@ -126,8 +126,8 @@ impl FragmentCount {
     }
 }
 
-/// Returns the lowest key of the points of the piece of each own point. Keys are those of own points, each different from
-/// those of all other points of the body.
+/// Returns the lowest key of the points of the piece of each own point. Keys belong to own points, each different from
+/// the keys of all other points of the body.
 fn lowest(operator: &dyn Force, domain: &Domain, key: &dyn Fn(usize) -> u32) -> Vec<u32> {
     let n = operator.points();
     // Pieces of own points and ghosts, as far as bonds of this process connect them.

@@ -2,6 +2,11 @@
 //!
 //! The time loop passes a [`Snapshot`] to every [`Observer`] whose [`Schedule`] contains the step. Fields that need
 //! an evaluation are computed on first use, once per snapshot.
+//!
+//! All processes evaluate observers, because values of the whole body need communication; tables and files are
+//! written by the first process, where [`Snapshot::is_written`] is true. It has one field of the whole body at a
+//! time, and its files equal the files of a run on a single process, byte for byte. It collects points and sets of the
+//! whole body only for output that needs them: fields, pictures, profiles, crack tips, impactors.
 
 mod crack;
 mod energies;
@@ -23,7 +28,7 @@ pub use snapshot::Snapshot;
 
 use crate::archive::Checkpointed;
 
-/// The error of an observer, of any type: the engine knows no files.
+/// Error of an observer; boxed, because the engine has no file access.
 pub type ObserveError = Box<dyn std::error::Error + Send + Sync>;
 
 /// Reads the states of a run. Its saved state lets it continue after a resume without gap or repetition.

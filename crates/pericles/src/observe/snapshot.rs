@@ -168,7 +168,7 @@ impl<'a> Snapshot<'a> {
         self.system.fields().next().is_some()
     }
 
-    /// Returns a field, vectors component-major; NaN if [`Snapshot::check`] refuses it.
+    /// Returns a field, vectors component-major; NaN if [`Snapshot::check`] rejects it.
     pub fn field(&self, field: Field) -> &[f64] {
         let (t, u) = (self.state.t, &self.state.u);
         match field {
@@ -217,12 +217,10 @@ impl<'a> Snapshot<'a> {
                 }
                 dilatation
             }),
-            Field::EquivalentStress | Field::VonMisesStress => {
-                self.equivalent_stress.get_or_init(|| {
-                    let dimension = self.system.cloud().dimension();
-                    equivalent_stress(dimension, self.field(Field::Stress))
-                })
-            }
+            Field::EquivalentStress => self.equivalent_stress.get_or_init(|| {
+                let dimension = self.system.cloud().dimension();
+                equivalent_stress(dimension, self.field(Field::Stress))
+            }),
             Field::PlasticStrain => self.plastic_strain.get_or_init(|| {
                 let mut strain = vec![f64::NAN; self.system.points()];
                 if let Some(view) = self.system.operator().capabilities().plastic {
@@ -281,7 +279,7 @@ impl<'a> Snapshot<'a> {
         }
     }
 
-    /// Returns the stress of the material, or that of the forces of bonds.
+    /// Returns the stress of the material, or the stress of the forces of bonds.
     fn stress(&self) -> Vec<f64> {
         match self.system.operator().capabilities().stress {
             Some(view) => components(self.system.cloud(), &view.stresses(&self.state.u)),

@@ -55,7 +55,7 @@ pub(super) fn principal_stresses(dimension: usize, stress: &[f64]) -> Vec<f64> {
         }
         diagonalise(&mut matrix);
         let mut values = [matrix[0][0], matrix[1][1], matrix[2][2]];
-        // Axes that the body does not have keep their zero, which is no principal stress.
+        // Axes that the body does not have keep their zero, which does not count as a principal stress.
         values[..dimension].sort_unstable_by(|a, b| b.total_cmp(a));
         for (c, value) in values[..dimension].iter().enumerate() {
             principal[c * n + i] = *value;

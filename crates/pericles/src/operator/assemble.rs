@@ -142,8 +142,8 @@ impl BondBody<'_> {
 
 /// Returns the faster of grid and list for a body with these features.
 pub(super) fn fastest_form(cloud: &PointCloud, features: Features) -> BondForm {
-    let refused = Limit::refusal(BondForm::Grid.limits(), features).is_some();
-    match !refused && fills_lattice(cloud) {
+    let rejected = Limit::rejection(BondForm::Grid.limits(), features).is_some();
+    match !rejected && fills_lattice(cloud) {
         true => BondForm::Grid,
         false => BondForm::List,
     }

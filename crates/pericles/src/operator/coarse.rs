@@ -39,7 +39,7 @@ pub struct Released {
 
 /// Dissipated energy of breaking bonds, J.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Judged {
+pub struct Dissipated {
     /// The energy that is recorded as dissipated.
     pub dissipated: f64,
     /// Energy at the limits minus the recorded energy if that is outside the accepted range, else zero.
@@ -51,10 +51,10 @@ pub struct Judged {
 impl Released {
     /// Returns the dissipated energy. If it is outside the accepted range, the rule at the start of the step, which
     /// `at_start` evaluates, is used. Breaking bonds do not release a negative energy.
-    pub fn judge(self, at_start: impl FnOnce() -> Option<f64>) -> Judged {
+    pub fn dissipated(self, at_start: impl FnOnce() -> Option<f64>) -> Dissipated {
         let limit = self.at_limit.max(0.0);
         let resolved = limit * RESOLVED.start()..=limit * RESOLVED.end();
-        let judged = |dissipated: f64| Judged {
+        let with = |dissipated: f64| Dissipated {
             dissipated,
             gains: self.at_limit < 0.0,
             missing: match resolved.contains(&dissipated) {
@@ -63,9 +63,9 @@ impl Released {
             },
         };
         if resolved.contains(&self.at_end) {
-            return judged(self.at_end);
+            return with(self.at_end);
         }
-        judged(at_start().unwrap_or(self.at_end))
+        with(at_start().unwrap_or(self.at_end))
     }
 }
 
@@ -112,18 +112,18 @@ impl Crossing {
 
     /// Returns the energy that a point dissipates whose energy decreases by `end[0]` (J) when its bonds break at the end of the
     /// step, with the rate `end[1]` (W) for the mean velocity; `start` returns both at the start of the step.
-    pub fn judge(
+    pub fn dissipated(
         &self,
         step: &StepEnd<'_>,
         end: [f64; 2],
         start: impl FnOnce() -> [f64; 2],
-    ) -> Judged {
+    ) -> Dissipated {
         let at_end = step.dissipated_energy(end[0], end[1]);
         let [weight, part, square] = self.sums;
         if !step.has_halves() {
             let scale = if weight > 0.0 { square / weight } else { 1.0 };
             let at_limit = scale * end[0];
-            return Released { at_end, at_limit }.judge(|| None);
+            return Released { at_end, at_limit }.dissipated(|| None);
         }
         let start = start();
         // The parabola through both energies with the rate at the end.
@@ -138,7 +138,7 @@ impl Crossing {
             let energy = step.dissipated_from_start(start[0], start[1]);
             self.turned.then_some(energy)
         };
-        Released { at_end, at_limit }.judge(at_start)
+        Released { at_end, at_limit }.dissipated(at_start)
     }
 }
 
@@ -153,7 +153,7 @@ pub struct LostBond<const D: usize> {
     pub share: f64,
 }
 
-impl Judged {
+impl Dissipated {
     /// Returns the records of the bonds that point i loses: its missing energy, divided by their shares.
     pub fn records<const D: usize>(
         self,
@@ -174,7 +174,7 @@ impl Judged {
     }
 }
 
-/// Adds up the parts of both ends of bonds that broke in steps too large for them: `parts` are those of own points. Returns
+/// Adds up the parts of both ends of bonds that broke in steps too large for them: `parts` belong to own points. Returns
 /// each bond once, in the order of their ends. All processes must call it together.
 pub fn both_ends(domain: &Domain, parts: Vec<CoarseBreak>) -> Vec<CoarseBreak> {
     let (gains, coarse) = parts.into_iter().partition(|part| part.gains);
@@ -183,12 +183,16 @@ pub fn both_ends(domain: &Domain, parts: Vec<CoarseBreak>) -> Vec<CoarseBreak> {
     bonds
 }
 
-fn of_kind(domain: &Domain, mut parts: Vec<CoarseBreak>, gains: bool) -> Vec<CoarseBreak> {
-    if domain.all(parts.is_empty()) {
-        return parts;
-    }
+/// Returns records of own points, which all have the same `gains`, followed by those from other processes: a sweep over a part
+/// of the body records a bond at one end only, which sends it to the owner of the other end. All processes must call it
+/// together.
+pub fn with_received(
+    domain: &Domain,
+    mut bonds: Vec<CoarseBreak>,
+    gains: bool,
+) -> Vec<CoarseBreak> {
     let mut letters = Vec::new();
-    for bond in &parts {
+    for bond in &bonds {
         // Ghosts are counted after the own points.
         let [own, other] = bond.points.map(|point| point as usize);
         if other >= domain.owned_points() {
@@ -200,13 +204,21 @@ fn of_kind(domain: &Domain, mut parts: Vec<CoarseBreak>, gains: bool) -> Vec<Coa
             });
         }
     }
-    parts.extend(domain.deliver(letters).into_iter().map(|letter| {
+    bonds.extend(domain.deliver(letters).into_iter().map(|letter| {
         let [x, y, z, missing] = letter.numbers;
         CoarseBreak {
             gains,
             ..CoarseBreak::between([letter.to, letter.from], &[-x, -y, -z], missing)
         }
     }));
+    bonds
+}
+
+fn of_kind(domain: &Domain, mut parts: Vec<CoarseBreak>, gains: bool) -> Vec<CoarseBreak> {
+    if domain.all(parts.is_empty()) {
+        return parts;
+    }
+    parts = with_received(domain, parts, gains);
     let numbers = |bond: &CoarseBreak| {
         let mut numbers = bond.points.map(|point| domain.number(point as usize));
         numbers.sort_unstable();
@@ -232,7 +244,7 @@ impl CoarseBreak {
     /// range. There is no record if the energy at the critical stretch is unknown. `before` returns force and energy of the
     /// bond, in units of [`BreakingBond::weight`], for a displacement that is smaller by its argument, if the bond has turned
     /// around since ([`turns_around`]).
-    pub fn judge<const D: usize>(
+    pub fn dissipated<const D: usize>(
         step: &StepEnd<'_>,
         bond: &BreakingBond<D>,
         before: impl FnOnce([f64; D]) -> Option<([f64; D], f64)>,
@@ -241,18 +253,18 @@ impl CoarseBreak {
         let Some(critical) = bond.critical.map(|critical| bond.weight * critical) else {
             return (dissipated, None);
         };
-        let judged = Released {
+        let energy = Released {
             at_end: dissipated,
             at_limit: critical,
         }
-        .judge(|| {
+        .dissipated(|| {
             let (force, energy) = before(bond.velocity.map(|v| step.dt * v))?;
             let rate: f64 = (0..D).map(|c| force[c] * bond.velocity[c]).sum();
             Some(bond.weight * step.dissipated_from_start(energy, rate))
         });
         let record =
-            (judged.missing != 0.0).then(|| Self::between(bond.ends, &bond.force, judged.missing));
-        (judged.dissipated, record)
+            (energy.missing != 0.0).then(|| Self::between(bond.ends, &bond.force, energy.missing));
+        (energy.dissipated, record)
     }
 
     /// Returns the record of a bond with the direction of the force on the first of the ends.

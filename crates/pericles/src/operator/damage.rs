@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::coarse::{CoarseBreak, Judged, LostBond, both_ends, each_once};
+use super::coarse::{CoarseBreak, Dissipated, LostBond, both_ends, each_once};
 use super::dissipation::PointDissipation;
 use crate::archive::{Archive, Counter, Layout, SavedUnder, Storage, Values};
 use crate::domain::Domain;
@@ -39,7 +39,7 @@ pub(super) struct BreakEvent {
 /// Broken bonds and dissipated energy of a block.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Tally {
-    /// Bonds broken in steps too large for them, once per end that detected the failure. They are not saved,
+    /// Bonds whose failure the time step did not resolve, once per end that detected the failure. They are not saved,
     /// because each step corrects its own.
     pub coarse: Vec<CoarseBreak>,
     /// Σ over broken directed bonds of V/2 times the dissipated energy, J.
@@ -68,20 +68,20 @@ impl Tally {
     }
 
     /// Records the energy that point i dissipates by losing bonds.
-    pub fn lose<const D: usize>(&mut self, i: usize, judged: Judged, lost: &[LostBond<D>]) {
-        self.dissipate(i, judged.dissipated);
-        self.coarse.extend(judged.records(i, lost));
+    pub fn lose<const D: usize>(&mut self, i: usize, energy: Dissipated, lost: &[LostBond<D>]) {
+        self.dissipate(i, energy.dissipated);
+        self.coarse.extend(energy.records(i, lost));
     }
 
     /// Records half of the energy that a bond dissipates at the end of a step, for its first end, and returns
-    /// that half, J. `before` is that of [`CoarseBreak::judge`].
+    /// that half, J. `before` is the argument of [`CoarseBreak::dissipated`].
     pub fn book<const D: usize>(
         &mut self,
         step: &StepEnd<'_>,
         bond: &BreakingBond<D>,
         before: impl FnOnce([f64; D]) -> Option<([f64; D], f64)>,
     ) -> f64 {
-        let (dissipated, coarse) = CoarseBreak::judge(step, bond, before);
+        let (dissipated, coarse) = CoarseBreak::dissipated(step, bond, before);
         let half = 0.5 * dissipated;
         self.dissipate(bond.ends[0], half);
         self.broken.add(1);
@@ -238,7 +238,7 @@ pub(super) fn save_tallies(name: &str, blocks: &[BlockDamage], archive: &mut Arc
     own_dissipation(blocks).save_under(&format!("{name}/dissipated"), archive);
 }
 
-/// Restores the number of broken bonds and the dissipated energy; the first block gets those of all blocks.
+/// Restores the number of broken bonds and the dissipated energy; the first block gets the sum of all blocks.
 pub(super) fn restore_tallies(
     name: &str,
     blocks: &mut [BlockDamage],

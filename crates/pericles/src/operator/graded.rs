@@ -1,4 +1,7 @@
 //! Bond-based bodies with cells of several sizes or materials of different horizons.
+//!
+//! A uniform strain is not in equilibrium within one horizon of the interface between two grids, as at a free
+//! surface; momentum is conserved to round-off.
 
 use std::sync::Arc;
 
@@ -22,7 +25,7 @@ use crate::space::{PointCloud, Sites, check_length};
 /// horizons.
 #[derive(Debug, Clone, Copy)]
 pub struct Materials<'a> {
-    /// All materials; the first is that of the body.
+    /// All materials; the first is the material of the body.
     pub all: &'a [BondMaterial],
     /// Index of the material of each point.
     pub of_point: &'a [u8],
@@ -207,7 +210,7 @@ impl GradedBody<'_> {
                 });
             }
             let material = &all[usize::from(pair[0])];
-            // Critical stretches between two kinds of points follow from those of each kind.
+            // Critical stretches between two kinds of points follow from the values of each kind.
             for (number, kind) in kinds.iter().enumerate() {
                 let pair = pair.map(|material| number as u8 * materials + material);
                 classes.set_interface(pair, interface, material, |across| {

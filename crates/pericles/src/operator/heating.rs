@@ -1,4 +1,7 @@
 //! Work of changing temperatures within a step.
+//!
+//! Heating is the change of the energy with time at fixed displacements, averaged over both ends of a step: one rule
+//! for all forces whose energy depends on time through the temperature only.
 
 use crate::step_end::{Path, StepEnd};
 use crate::thermal::ThermalExpansion;
@@ -26,7 +29,7 @@ pub(super) fn heating_of(
     let gain = |u: &[f64]| energy(step.t, u) - energy(cold, u);
     let mean = 0.5 * (gain(&before) + gain(step.u));
     match first {
-        // The energy of the state before is that of the heated body.
+        // The energy of the state before is computed for the heated body.
         true => mean + energy(cold, &before) - energy(step.t - step.dt, &before),
         false => mean,
     }

@@ -222,7 +222,7 @@ impl Limit {
 
     /// Returns the reason of the first limit that these features exceed; `None` if the kernel supports the
     /// body.
-    pub fn refusal(limits: &[Self], features: Features) -> Option<&'static str> {
+    pub fn rejection(limits: &[Self], features: Features) -> Option<&'static str> {
         let exceeded = limits.iter().find(|limit| features.has(limit.feature));
         exceeded.map(|limit| limit.reason)
     }
@@ -232,7 +232,7 @@ impl Limit {
     /// # Errors
     /// [`PericlesError::FormNotUsable`] with the name of the kernel and the reason.
     pub fn check(limits: &[Self], form: &'static str, features: Features) -> Result<()> {
-        match Self::refusal(limits, features) {
+        match Self::rejection(limits, features) {
             None => Ok(()),
             Some(reason) => Err(PericlesError::FormNotUsable { form, reason }),
         }

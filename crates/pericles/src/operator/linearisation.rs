@@ -39,10 +39,10 @@ impl<'a> Linearisation<'a> {
         self.operator
             .add_force(0.0, u, PointSubset::All, &mut force);
         let change = |k: usize| force[k] - self.force[k];
-        let miss = sum(u.len(), |k| (change(k) - linear[k]).powi(2));
+        let error = sum(u.len(), |k| (change(k) - linear[k]).powi(2));
         let size = sum(u.len(), |k| change(k).powi(2));
         if size > 0.0 {
-            (miss / size).sqrt()
+            (error / size).sqrt()
         } else {
             0.0
         }

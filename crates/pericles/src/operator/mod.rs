@@ -16,6 +16,15 @@
 //!
 //! [`BondBody::operator`] and [`LinearSolidBody::operator`] select the kernel. Times are for one core of an
 //! AMD EPYC 9004.
+//!
+//! **Dispatch.** Pair law and dimension are generic parameters of the loops; operators, boundaries, integrators and
+//! observers are trait objects with one virtual call per evaluation. Only operators have the dimension as a
+//! compile-time constant, because only their loops benefit from it: points, regions and integrators use flat slices,
+//! so that [`State`](crate::time::State), [`System`](crate::System) and observers are not generic.
+//!
+//! **Both ends of a bond compute its force**, from ξ, η and −ξ, −η. For equal volumes the results are bitwise equal
+//! except for the sign, and momentum is conserved to round-off. Forces are not scattered to neighbours, so that loops
+//! need no locks and a part of a body can be evaluated alone. Every correction of a bond is the mean of its two ends.
 
 mod assemble;
 mod breakable;
@@ -52,7 +61,8 @@ pub use breakable::Breakable;
 pub use by_law::{ByLaw, by_law};
 pub use capabilities::{Capabilities, Linearity};
 pub use coarse::{
-    CoarseBreak, Crossing, Judged, LostBond, Released, both_ends, each_once, turns_around,
+    CoarseBreak, Crossing, Dissipated, LostBond, Released, both_ends, each_once, turns_around,
+    with_received,
 };
 pub use composite::CompositeBody;
 pub use damage::{Breaking, DamageMeasure};

@@ -49,7 +49,7 @@ impl<L: PairForce> PairForce for PlainLaw<L> {
 impl<L: PairForce> VectorLaw for PlainLaw<L> {}
 
 impl CompositeBody<'_> {
-    /// Returns the operator with a user-defined pair law instead of that of the material, with any kernel
+    /// Returns the operator with a user-defined pair law instead of the law of the material, with any kernel
     /// that supports the body.
     ///
     /// # Errors

@@ -64,7 +64,7 @@ pub trait TwoPass: Checkpointed + Send + Sync {
     fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize));
 
     /// Ends a step at the displacement `u`: applies the failure criterion to the bonds of the points `on`, at
-    /// both ends alike, and sets the values of the points `needed` from the remaining bonds. `needed` are the
+    /// both ends with the same result, and sets the values of the points `needed` from the remaining bonds. `needed` are the
     /// points `on` and all points bonded to them.
     fn end_values_into(
         &mut self,
@@ -170,7 +170,7 @@ impl<F: TwoPass> TwoPassForce<F> {
         &self.force
     }
 
-    /// Returns the values at `u` of the points `on` and of all points bonded to them: those of own points and
+    /// Returns the values at `u` of the points `on` and of all points bonded to them: values of own points and
     /// of ghosts.
     fn values(&self, t: f64, u: Field<'_>, on: &PointSubset<'_>) -> (Lent<'_, Vec<f64>>, Vec<f64>) {
         let mut own = self.work.take();

@@ -17,7 +17,7 @@ pub struct BondAt {
     /// Force density of the bond on this end, N/m³, including the partial volume and the volume of the other
     /// end.
     pub force: [f64; 3],
-    /// Whether the law is that of small strains, with forces along ξ: the deformed body is not distinguished from the
+    /// Whether the law is linearised for small strains, with forces along ξ: the deformed body is not distinguished from the
     /// reference body.
     pub small_strain: bool,
 }
@@ -67,7 +67,7 @@ pub struct BondValues {
     pub of_points: Vec<f64>,
     /// These values of ghosts.
     pub of_ghosts: Vec<f64>,
-    /// Those of the forces of which a force consists.
+    /// The views of the forces of which a force consists.
     pub parts: Vec<BondValues>,
 }
 

@@ -39,7 +39,7 @@ pub trait LocalForce {
 
 /// A force that is a sum over bonds, in which the contribution of some neighbours can be computed alone.
 ///
-/// Both ends of a bond are treated alike, so that zones do not change the force between the parts of a body.
+/// Both ends of a bond are treated equally, so that zones do not change the force between the parts of a body.
 pub trait SplitForce {
     /// Adds [`Force::add_force`](super::Force::add_force) of the bonds whose other end is marked in
     /// `partners` (one mark per point).

@@ -1,4 +1,6 @@
 //! The time loop.
+//!
+//! The time is step · dt, never a sum of steps. Work arrays are allocated in constructors, not in steps.
 
 mod builder;
 mod failure;
@@ -46,7 +48,7 @@ struct Scheduled {
 }
 
 /// Checks that a scheme can integrate a system with all its constraints and boundaries for a number of steps: the
-/// [requirements](crate::Requirement) of the scheme on the system, and those of the boundaries on the scheme.
+/// [requirements](crate::Requirement) of the scheme on the system, and the requirements of the boundaries on the scheme.
 ///
 /// # Errors
 /// [`PericlesError::SchemeNotUsable`], [`PericlesError::BoundaryScheme`] and [`PericlesError::BoundarySteps`].
@@ -235,7 +237,7 @@ impl Simulation {
     /// Runs to the end.
     ///
     /// # Errors
-    /// Those of [`Simulation::run`].
+    /// The errors of [`Simulation::run`].
     pub fn run_to_end(&mut self) -> Result<Outcome, SimulationError> {
         self.run(|_| Control::Continue)
     }
@@ -262,7 +264,7 @@ impl Simulation {
     /// load or prescribed motion [fails](crate::boundary::PointValues::has_failed).
     ///
     /// # Errors
-    /// Those of [`Simulation::run`].
+    /// The errors of [`Simulation::run`].
     pub fn run_interruptible(
         &mut self,
         interrupt: Interrupt<'_>,

@@ -54,7 +54,7 @@ impl PointCloud {
         Self::with_spacing(dimension, positions, volumes, section, None)
     }
 
-    /// As [`PointCloud::new`], with a given spacing, or that of the mean cell if `None`.
+    /// As [`PointCloud::new`], with a given spacing, or the spacing of the mean cell if `None`.
     fn with_spacing(
         dimension: usize,
         positions: Vec<f64>,
@@ -225,7 +225,7 @@ impl PointCloud {
         Self { periodic, ..self }
     }
 
-    /// A cloud of cells of several sizes; the spacing is that of the largest cells.
+    /// A cloud of cells of several sizes; the spacing belongs to the largest cells.
     pub(super) fn graded(
         dimension: usize,
         positions: Vec<f64>,
@@ -353,7 +353,7 @@ impl PointCloud {
         self.section
     }
 
-    /// Distance of neighbouring points, m: that of the lattice, or else the size of the mean cell.
+    /// Distance of neighbouring points, m: the spacing of the lattice, or else the size of the mean cell.
     pub fn spacing(&self) -> f64 {
         self.spacing
     }

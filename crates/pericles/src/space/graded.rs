@@ -1,4 +1,6 @@
 //! Graded grids: grids with smaller cells in some regions.
+//!
+//! The division of cells does not depend on the body: refined grids and refined filled shapes use the same code.
 
 use super::grid::Cells;
 use super::{Grid, Point, PointCloud, Region};
@@ -171,7 +173,7 @@ impl GradedGrid {
     /// a full box is counted cell by cell, with all small cells of divided cells.
     ///
     /// # Errors
-    /// Those of the grid.
+    /// The errors of the grid.
     pub fn count(&self, most: f64) -> Result<f64> {
         let cells = self.grid.cells()?;
         let dimension = self.grid.dimension() as i32;
@@ -205,7 +207,7 @@ impl GradedGrid {
     /// Returns the indices of the holes that contain no cell centre of the shape and thus remove nothing.
     ///
     /// # Errors
-    /// Those of the grid.
+    /// The errors of the grid.
     pub fn idle_holes(&self) -> Result<Vec<usize>> {
         let mut idle: Vec<usize> = (0..self.grid.holes.len()).collect();
         if idle.is_empty() {
@@ -245,7 +247,7 @@ impl GradedGrid {
     /// same order. The centre of each small cell decides whether it belongs to the body.
     ///
     /// # Errors
-    /// Those of [`Grid::points`]; a region with a ratio below two or without cells; too many regions.
+    /// The errors of [`Grid::points`]; a region with a ratio below two or without cells; too many regions.
     pub fn points(&self) -> Result<GradedCloud> {
         let cells = self.grid.cells()?;
         let division = Division {
@@ -359,7 +361,7 @@ mod tests {
             max: [0.4, 0.3, f64::INFINITY],
         };
         let graded = block(vec![Finer { region, ratio: 3 }]);
-        // The upper bound is that of a body divided everywhere.
+        // The upper bound is reached by a body divided everywhere.
         assert_eq!(graded.count(1e9).unwrap(), 48.0 * 27.0);
         assert_eq!(graded.count(300.0).unwrap(), 48.0 - 8.0 + 8.0 * 27.0);
         assert_eq!(graded.count(100.0).unwrap(), 48.0 * 27.0);
@@ -375,7 +377,7 @@ mod tests {
     }
 
     #[test]
-    fn regions_that_divide_no_cell_are_refused() {
+    fn regions_that_divide_no_cell_are_rejected() {
         let part = |min: f64, ratio| Finer {
             region: Region::Box {
                 min: [min; 3],

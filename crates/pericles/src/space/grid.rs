@@ -163,7 +163,7 @@ impl Grid {
     /// Bounding box of the body: lower and upper corner, m.
     ///
     /// # Errors
-    /// Those of [`Grid::points`], except for a body without points.
+    /// The errors of [`Grid::points`], except for a body without points.
     pub fn bounds(&self) -> Result<[Point; 2]> {
         Ok(self.cells()?.bounds)
     }
@@ -171,7 +171,7 @@ impl Grid {
     /// Returns a test whether a position (m) belongs to the body: inside the shape and outside its holes.
     ///
     /// # Errors
-    /// Those of [`Grid::points`], except for a body without points.
+    /// The errors of [`Grid::points`], except for a body without points.
     pub fn inside(&self) -> Result<impl Fn(Point) -> bool + Sync + '_> {
         let cells = self.cells()?;
         Ok(move |place: Point| {
@@ -192,7 +192,7 @@ impl Grid {
     /// Returns the body whose points are the centres of the cells.
     ///
     /// # Errors
-    /// Those of [`Grid::points`].
+    /// The errors of [`Grid::points`].
     pub fn body(&self) -> Result<LatticeBody<'_>> {
         let cells = self.cells()?;
         let origin = cells.origin;
@@ -446,7 +446,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hole_that_covers_the_body_is_refused() {
+    fn a_hole_that_covers_the_body_is_rejected() {
         let grid = Grid {
             shape: Shape::Box {
                 origin: [0.0; 3],

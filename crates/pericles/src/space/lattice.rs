@@ -1,4 +1,7 @@
 //! Regular lattices.
+//!
+//! Grid points have integer coordinates, and bond vectors are integer differences times the spacing. Equal bonds are
+//! therefore bitwise equal, and a symmetric body breaks symmetrically.
 
 use super::Point;
 

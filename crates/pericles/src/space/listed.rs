@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn coincident_points_are_refused() {
+    fn coincident_points_are_rejected() {
         let listed = ListedPoints {
             positions: vec![[1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [1.0, -0.0, 0.0]],
             blocks: vec![1; 3],

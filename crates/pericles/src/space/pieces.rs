@@ -1,4 +1,7 @@
 //! Pieces of a body: parts that no bond joins.
+//!
+//! Pieces are a property of the points. Neighbour lists and stencils do not join them, so that force kernels need no
+//! rule for them.
 
 use super::{PointCloud, check_length};
 use crate::error::Result;

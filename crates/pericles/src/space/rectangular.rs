@@ -24,7 +24,7 @@ pub fn rectangular_cells(
 /// Returns the body whose points are the centres of the cells of [`rectangular_cells`].
 ///
 /// # Errors
-/// Those of [`rectangular_cells`].
+/// The errors of [`rectangular_cells`].
 pub fn rectangular_body<'a>(
     origin: Point,
     size: &[f64],
@@ -52,7 +52,7 @@ pub fn rectangular_body<'a>(
 /// Returns the indices of the holes that contain no cell centre and thus remove nothing.
 ///
 /// # Errors
-/// Those of [`rectangular_cells`].
+/// The errors of [`rectangular_cells`].
 pub fn idle_holes(
     origin: Point,
     size: &[f64],

@@ -1,4 +1,12 @@
 //! Sites: the positions to which bonds lead.
+//!
+//! Periodic faces and divided bodies use the same mechanism, in neighbour lists and in stencils: loops read rows of
+//! values packed by site. Where all points are computed, bond failure needs no communication, because both ends of a
+//! bond reach the same decision; where only a part is computed, the other end is informed by messages. Direct solvers
+//! require whole bodies with free faces.
+//!
+//! The positions of sites can be released and restored ([`Sites::release_places`]): stencil kernels need them during
+//! set-up, and later for output and tangents only.
 
 use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
@@ -10,7 +18,7 @@ use crate::error::{PericlesError, Result};
 /// The sites to which the bonds of a body lead: own points, *ghosts* owned by other processes, and *images* of both
 /// beyond periodic faces.
 ///
-/// A site has the displacement of its point; its position is that of the point, moved by whole periods for images.
+/// A site has the displacement of its point; its position is the position of the point, moved by whole periods for images.
 /// Sites are numbered in the order of the point numbers in the whole body, first those without a shift and then
 /// shift by shift, so that the neighbours of a point have the same order for every division among processes. For a
 /// single process that owns all points of a body without periodic faces, site i is point i.

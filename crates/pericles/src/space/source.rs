@@ -1,4 +1,10 @@
 //! Bodies whose points can be created in parts.
+//!
+//! A process creates its own points only. To divide a body, every process passes over all nodes of the lattice three
+//! times: for an equal share of the points, from which all processes find the cuts; for the points between the cuts
+//! and those around them; and for the ghosts among these. This is fast, needs no memory for the whole body, and no
+//! points are sent between processes. Points from files, meshes and filled shapes, several pieces and refined grids
+//! are created whole on every process, divided in the same way, and released.
 
 use std::sync::Arc;
 

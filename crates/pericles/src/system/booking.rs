@@ -54,7 +54,7 @@ impl System {
         self.ledger.book(work, [0.0; 3]);
     }
 
-    /// Stores the reactions of constraints to the internal forces alone at displacement u: those of a body before
+    /// Stores the reactions of constraints to the internal forces alone at displacement u: the reactions of a body before
     /// loads and heating. `work` is a work array for accelerations.
     pub fn note_unloaded(&mut self, t: f64, u: &[f64], work: &mut [f64]) {
         self.zero(&PointSubset::All, work);

@@ -12,7 +12,7 @@ impl System {
     /// Adds an interaction.
     ///
     /// # Errors
-    /// Those of [`Interaction::check`].
+    /// The errors of [`Interaction::check`].
     pub fn add_interaction(&mut self, interaction: Box<dyn Interaction>) -> Result<()> {
         interaction.check(self.operator())?;
         self.interactions.push(interaction);
@@ -157,7 +157,7 @@ impl System {
         all.fold(0.0, f64::max)
     }
 
-    /// Returns the largest stable time step (s) with several contacts per point, where `stable` is that of the bonds
+    /// Returns the largest stable time step (s) with several contacts per point, where `stable` is the step of the bonds
     /// alone under a scheme that is stable for ω dt ≤ `limit`.
     pub fn stable_contact_step(&self, stable: f64, limit: f64) -> f64 {
         if self.interactions.is_empty() {

@@ -207,7 +207,7 @@ impl System {
         self.cloud.dimension()
     }
 
-    /// Computes the acceleration at a stage: internal force and loads over density, plus that of boundaries, for
+    /// Computes the acceleration at a stage: internal force and loads over density, plus the acceleration of boundaries, for
     /// which `v` is the velocity of the stage (needed only if [`System::has_boundaries`]); prescribed where motion
     /// is prescribed. Entries of points outside `on` are unchanged.
     pub fn acceleration(
@@ -315,7 +315,7 @@ impl System {
         self.divide_by_density(on, out);
     }
 
-    /// Completes f/ρ on the points of `on` with prescribed accelerations and those of boundaries.
+    /// Completes f/ρ on the points of `on` with prescribed accelerations and the accelerations of boundaries.
     pub fn finish(&mut self, t: f64, u: &[f64], v: &[f64], on: &PointSubset<'_>, out: &mut [f64]) {
         for motion in &self.motions {
             motion.accelerate(t, on, self.cloud.len(), out);

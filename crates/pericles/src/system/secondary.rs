@@ -8,7 +8,7 @@ impl System {
     /// Adds a secondary field.
     ///
     /// # Errors
-    /// Those of [`SecondaryField::start`].
+    /// The errors of [`SecondaryField::start`].
     pub fn add_field(&mut self, mut field: Box<dyn SecondaryField>) -> Result<()> {
         field.start(self.operator())?;
         self.fields.push(field);
@@ -37,7 +37,7 @@ impl System {
     /// Moves the accepted state of the secondary fields to the end of a step; the time loop calls it after every step.
     ///
     /// # Errors
-    /// Those of [`SecondaryField::end_step`].
+    /// The errors of [`SecondaryField::end_step`].
     pub fn end_fields(&mut self, t: f64) -> Result<()> {
         let mut dissipated = Vec::new();
         if self.reads_dissipation() {

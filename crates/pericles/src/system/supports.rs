@@ -5,7 +5,7 @@ use crate::boundary::{Exchange, PrescribedMotion};
 use crate::parallel::PointSubset;
 
 impl System {
-    /// Applies prescribed displacements at time t, and those of boundaries, before a force evaluation.
+    /// Applies prescribed displacements at time t, and the displacements of boundaries, before a force evaluation.
     pub fn constrain(&mut self, t: f64, u: &mut [f64], v: &mut [f64]) {
         self.place_on(t, &PointSubset::All, u);
         for boundary in &mut self.boundaries {

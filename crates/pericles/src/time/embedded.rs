@@ -248,7 +248,7 @@ impl Integrator for AdaptiveRungeKutta {
             system.constrain(t, u_next, v_next);
             system.constrain_velocity(t, v_next);
             state.complete(system, &mut self.next, t, try_h);
-            // A sub-step shortened by the end of the step is no estimate for the next.
+            // A sub-step shortened by the end of the step gives no estimate for the next.
             h = if last {
                 h.max(try_h * factor)
             } else {

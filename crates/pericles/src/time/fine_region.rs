@@ -43,7 +43,7 @@ impl Default for Follow {
 }
 
 pub(super) fn check(follow: &Follow) -> Result<()> {
-    let refuse = |parameter, value, allowed| {
+    let reject = |parameter, value, allowed| {
         Err(PericlesError::SchemeParameter {
             parameter,
             value,
@@ -51,28 +51,28 @@ pub(super) fn check(follow: &Follow) -> Result<()> {
         })
     };
     if !(follow.threshold > 0.0 && follow.threshold < 1.0) {
-        return refuse(
+        return reject(
             "the stretch threshold of the fine region",
             follow.threshold,
             "a fraction of the critical stretch, above 0 and below 1 (usual: 0.85)",
         );
     }
     if follow.every < 1 {
-        return refuse(
+        return reject(
             "the number of steps between checks of the fine region",
             f64::from(follow.every),
             "at least 1",
         );
     }
     if follow.layers < 1 {
-        return refuse(
+        return reject(
             "the number of families around seed points",
             f64::from(follow.layers),
             "at least 1 (usual: 2)",
         );
     }
     if follow.keep_checks > 200 {
-        return refuse(
+        return reject(
             "the number of further checks for which a point remains a seed",
             f64::from(follow.keep_checks),
             "at most 200",

@@ -103,7 +103,7 @@ impl State {
         self.close(system, t);
     }
 
-    /// Completes a step of motion when displacement, velocity and acceleration are those of its end, time t:
+    /// Completes a step of motion when displacement, velocity and acceleration belong to its end, time t:
     /// corrects the velocities for bonds that broke in a step too coarse for them.
     pub fn close(&mut self, system: &mut System, t: f64) {
         system.settle_breaking(t, &mut self.v);
@@ -127,7 +127,7 @@ pub trait Integrator: Checkpointed + Send {
     fn name(&self) -> &'static str;
 
     /// Length of the vectors for which the scheme was made, dimension times points; `None` if it supports any body.
-    /// A simulation of another body refuses it.
+    /// A simulation of another body rejects it.
     fn vector_length(&self) -> Option<usize> {
         None
     }
@@ -192,7 +192,7 @@ pub trait Integrator: Checkpointed + Send {
         false
     }
 
-    /// Returns what a user should know about how the scheme found its states, if anything.
+    /// Returns remarks for users on how the scheme found its states, if any.
     fn remark(&self) -> Option<String> {
         None
     }

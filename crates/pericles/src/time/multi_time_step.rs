@@ -54,7 +54,7 @@ struct Work {
     stage: Vec<f64>,
     /// Velocity of a stage, if boundaries need it.
     velocity: Vec<f64>,
-    /// Accelerations of stages 2 … s; entries of coarse points belong to the coarse step, those of fine points to the
+    /// Accelerations of stages 2 … s; entries of coarse points belong to the coarse step, entries of fine points to the
     /// sub-step.
     a: Vec<Vec<f64>>,
     /// First accelerations of the second and later sub-steps, and of the next step.
@@ -68,7 +68,7 @@ impl MultiTimeStep {
     pub const REQUIREMENTS: &'static [Requirement] = &[
         Requirement {
             need: Need::NoMemory,
-            reason: "a boundary with memory knows one time step only; use velocity-verlet",
+            reason: "boundaries with memory support a single time step only; use velocity-verlet",
         },
         PARTS_OF_THE_BODY,
         Requirement {

@@ -32,7 +32,7 @@ pub(super) struct Refinement {
     stale: bool,
     steps: Counter,
     starting_steps: Counter,
-    /// Sum of the number of fine points over the steps. As all counts it is that of the whole body, not of the points
+    /// Sum of the number of fine points over the steps. Like all counts it refers to the whole body, not to the points
     /// of a process.
     fine_total: Counter,
     fine_most: u64,
@@ -185,8 +185,8 @@ impl Refinement {
         }
     }
 
-    /// Returns the frequency that the coarse step must resolve: the larger of that of the coarse points alone and
-    /// that of the body over M.
+    /// Returns the frequency that the coarse step must resolve: the larger of the frequency of the coarse points alone and
+    /// the frequency of the body over M.
     pub(super) fn limiting_frequency(
         &self,
         system: &System,

@@ -44,7 +44,7 @@ impl Respa {
     pub const REQUIREMENTS: &'static [Requirement] = &[
         Requirement {
             need: Need::NoMemory,
-            reason: "it applies parts of the force at different times, but a boundary with memory knows one time step only; use velocity-verlet",
+            reason: "it applies parts of the force at different times, but boundaries with memory support a single time step only; use velocity-verlet",
         },
         PARTS_OF_THE_BODY,
         Requirement {

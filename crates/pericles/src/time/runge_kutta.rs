@@ -62,7 +62,7 @@ impl StepForm {
     }
 }
 
-/// Accelerations of the stages; the first one is that of the state.
+/// Accelerations of the stages; the first one belongs to the state.
 #[derive(Clone, Copy)]
 pub(super) struct Stages<'a> {
     pub(super) first: &'a [f64],

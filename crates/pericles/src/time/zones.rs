@@ -1,4 +1,13 @@
 //! The zones of a body under a multirate scheme.
+//!
+//! Zones are divided with their points. Marks spread along bonds, one bond per round; after each round the marks of
+//! ghosts return to their owners. A force is evaluated on its own part of a zone, also if this part is empty; whether
+//! an evaluation takes place depends on whether the zone is empty in the whole body, so that all processes exchange
+//! the same messages.
+//!
+//! A multirate scheme needs evaluations on a subset of points only and, for r-RESPA, the part of a force that marked
+//! neighbours exert. For a force in two passes a zone extends by two families. The cost of a part is the cost of its
+//! points and of the rows that contain them.
 
 use super::zone::Zone;
 use crate::domain::Domain;
@@ -43,7 +52,7 @@ impl Count {
 
 impl Zones {
     /// Determines the zones from marked fine points. Only the bonds of fine points and, for forces that reach beyond
-    /// one bond, those of the border are visited. All processes must call it together.
+    /// one bond, the bonds of the border are visited. All processes must call it together.
     pub(super) fn new(force: &dyn LocalForce, domain: &Domain, is_fine: Vec<bool>) -> Self {
         let n = is_fine.len();
         let known = domain.marks_with_ghosts(&is_fine);

@@ -27,7 +27,7 @@ fn system() -> System {
     Body::new(cloud(10), material()).build().unwrap()
 }
 
-fn refused<T>(result: Result<T, PericlesError>, says: &str) {
+fn rejected<T>(result: Result<T, PericlesError>, says: &str) {
     let message = result.err().expect(says).to_string();
     assert!(message.contains(says), "{message} does not contain {says}");
 }
@@ -47,11 +47,11 @@ fn forces_of_another_body_are_errors() {
             measure,
         )
     };
-    refused(
+    rejected(
         new(&ten, &[]),
         "the families of the neighbour list: 9 entries",
     );
-    refused(
+    rejected(
         new(&nine, &[9]),
         "point 9 does not exist; the points of the body are 0 to 8",
     );
@@ -66,7 +66,7 @@ fn forces_of_another_body_are_errors() {
         never,
         DamageMeasure::default(),
     );
-    refused(plane, "needs a body of dimension 2");
+    rejected(plane, "needs a body of dimension 2");
     let grid = GridForce::<BondStretch, 1>::new(
         ten.clone(),
         &material(),
@@ -75,30 +75,30 @@ fn forces_of_another_body_are_errors() {
         &[10],
         DamageMeasure::default(),
     );
-    refused(grid, "point 10 does not exist");
+    rejected(grid, "point 10 does not exist");
     let force = Box::new(new(&nine, &[]).unwrap());
     let foreign = System::new(ten.clone(), force, PointScalar::Uniform(1.0));
-    refused(foreign, "the force acts on 9 points");
+    rejected(foreign, "the force acts on 9 points");
     let force = Box::new(new(&nine, &[]).unwrap());
     let densities = PointScalar::PerPoint(vec![1.0; 8]);
-    refused(
+    rejected(
         System::new(nine, force, densities),
         "8 entries are given, 9 are needed",
     );
-    refused(
+    rejected(
         BondList::new(&ten, f64::NAN, VolumeCorrection::None),
         "the horizon",
     );
-    refused(
+    rejected(
         BondList::with_horizons(&ten, vec![3.0; 9], VolumeCorrection::None),
         "the horizons of the points: 9 entries",
     );
-    refused(
+    rejected(
         material().constants_on(&[1.0, 1.0], 1.0, StressState::Uniaxial),
         "the sides of the cells: 2 entries",
     );
     let classes = MaterialPairs::new(vec![0; 10], &[constants], InterfaceRule::Harmonic);
-    refused(
+    rejected(
         classes.unwrap().set_critical_stretch([0, 1], 0.1),
         "the material number of an interface",
     );
@@ -107,26 +107,26 @@ fn forces_of_another_body_are_errors() {
 #[test]
 fn errors_of_bodies_name_the_wrong_argument() {
     let body = || Body::new(cloud(10), material());
-    refused(body().no_fail(vec![10]).build(), "point 10 does not exist");
-    refused(
+    rejected(body().no_fail(vec![10]).build(), "point 10 does not exist");
+    rejected(
         body().material(vec![11], material()).build(),
         "point 11 does not exist",
     );
     let wide = BondMaterial::new(ElasticModulus::Young(1.0), 1.0, 4.0);
-    refused(
+    rejected(
         body().material(vec![1], wide).build(),
-        "must be those of the first material",
+        "must equal those of the first material",
     );
-    refused(
+    rejected(
         body().stress_state(StressState::Spatial).build(),
         "dimension",
     );
     let plate = Grid::plate([10.0, 10.0], 1.0, 1.0).points().unwrap();
-    refused(
+    rejected(
         Body::new(plate, material()).build(),
         "give PlaneStress or PlaneStrain",
     );
-    refused(Region::layer("top", 1.0), "`top` is not a face");
+    rejected(Region::layer("top", 1.0), "`top` is not a face");
     // An axis beyond the dimension of space has no layer.
     let face = Face {
         axis: 3,
@@ -148,7 +148,7 @@ fn errors_of_bodies_name_the_wrong_argument() {
         section: 1.0,
         holes: vec![],
     };
-    refused(beam.points(), "the axis of the cylinder is 3");
+    rejected(beam.points(), "the axis of the cylinder is 3");
 }
 
 #[test]
@@ -158,31 +158,31 @@ fn loads_and_motions_that_do_not_match_the_body_are_errors() {
         system().add_load(Load::new(points, density, constant()))
     };
     let unit = LoadDensity::Uniform([1.0, 0.0, 0.0]);
-    refused(
+    rejected(
         load(vec![10], unit.clone()),
         "the points of a load: point 10",
     );
-    refused(load(vec![2, 1], unit.clone()), "must be in ascending order");
-    refused(load(vec![1, 1], unit), "each at most once");
+    rejected(load(vec![2, 1], unit.clone()), "must be in ascending order");
+    rejected(load(vec![1, 1], unit), "each at most once");
     let amplitudes = LoadDensity::PerPoint(vec![1.0]);
-    refused(
+    rejected(
         load(vec![1, 2], amplitudes),
         "the amplitudes of a load: 1 entries",
     );
     let traction = |points, area| Load::traction(&cloud(10), points, [1.0; 3], area, constant());
-    refused(traction(vec![], 1.0), "no points are given");
-    refused(traction(vec![1], 0.0), "the area of a traction");
+    rejected(traction(vec![], 1.0), "no points are given");
+    rejected(traction(vec![1], 0.0), "the area of a traction");
 
     let fixed = |points| system().add_motion(PrescribedMotion::fixed(points, 1));
-    refused(
+    rejected(
         fixed(vec![12]),
         "the points of a prescribed motion: point 12",
     );
     let across = PrescribedMotion::displacement(vec![1], [None, Some(0.0), None], constant());
-    refused(system().add_motion(across), "a motion along this axis");
+    rejected(system().add_motion(across), "a motion along this axis");
     let mut changed = PrescribedMotion::fixed(vec![1], 1);
     changed.points.push(2);
-    refused(system().add_motion(changed), "after it was made");
+    rejected(system().add_motion(changed), "after it was made");
     let along = |u: &[f64], axis: AxisMotion| {
         let along = [Some(axis), None, None];
         let points = vec![1, 2];
@@ -196,12 +196,12 @@ fn loads_and_motions_that_do_not_match_the_body_are_errors() {
             10,
         )
     };
-    refused(
+    rejected(
         along(&[0.0; 9], AxisMotion::Uniform(1.0)),
         "9 entries are given, 10 are needed",
     );
     let short = along(&[0.0; 10], AxisMotion::PerPoint(vec![1.0])).unwrap();
-    refused(
+    rejected(
         system().add_motion(short),
         "1 entries are given, 2 are needed",
     );
@@ -213,51 +213,51 @@ fn states_and_steps_that_do_not_match_the_system_are_errors() {
         let state = State::at_rest(entries);
         Simulation::new(system(), Box::new(VelocityVerlet), state, dt, 5)
     };
-    refused(new(9, 0.1), "the displacement of the state: 9 entries");
-    refused(new(10, f64::NAN), "the time step");
+    rejected(new(9, 0.1), "the displacement of the state: 9 entries");
+    rejected(new(10, f64::NAN), "the time step");
     let mut state = State::at_rest(10);
     state.v.pop();
     let run = Simulation::new(system(), Box::new(VelocityVerlet), state.clone(), 0.1, 5);
-    refused(run, "the velocity of the state: 9 entries");
+    rejected(run, "the velocity of the state: 9 entries");
     let other = Body::new(cloud(9), material()).build().unwrap();
     let scheme = RungeKutta::new(&Tableau::rk4(), &other);
     let run = Simulation::new(system(), Box::new(scheme), State::at_rest(10), 0.1, 5);
-    refused(run, "made for another system: 9 entries");
+    rejected(run, "made for another system: 9 entries");
     let tableau = |nodes: &[f64], stages: Vec<Vec<f64>>, weights: &[f64]| {
         Tableau::new("own", 2, nodes.to_vec(), stages, weights.to_vec())
     };
-    refused(
+    rejected(
         tableau(&[], vec![], &[]),
         "the weights of a Runge–Kutta method: 0 entries",
     );
     let rows = || vec![vec![], vec![0.5]];
-    refused(
+    rejected(
         tableau(&[0.0, 0.5], rows(), &[1.0]),
         "1 entries are given, 2 are needed",
     );
-    refused(
+    rejected(
         tableau(&[0.0, 1.0], rows(), &[0.0, 1.0]),
         "minus the sum of its row",
     );
-    refused(
+    rejected(
         tableau(&[0.0, 0.5], rows(), &[0.5, 1.0]),
         "the sum of the weights",
     );
     assert!(tableau(&[0.0, 0.5], rows(), &[0.0, 1.0]).is_ok());
     let build = || Simulation::builder(system());
-    refused(build().state(state), "the velocity of the state");
-    refused(build().velocity_of(&vec![10], [1.0; 3]), "point 10");
-    refused(build().build(), "give end (s) or steps");
-    refused(build().end(-1.0).build(), "the end of the simulation");
-    refused(
+    rejected(build().state(state), "the velocity of the state");
+    rejected(build().velocity_of(&vec![10], [1.0; 3]), "point 10");
+    rejected(build().build(), "give end (s) or steps");
+    rejected(build().end(-1.0).build(), "the end of the simulation");
+    rejected(
         build().safety(0.0).steps(1).build(),
         "the fraction of the stable step",
     );
-    refused(
+    rejected(
         highest_frequency(&system(), &[0.0; 9]),
         "the displacement: 9 entries",
     );
-    refused(
+    rejected(
         highest_frequency_on(&system(), &[0.0; 10], &[10]),
         "the free points: point 10",
     );
@@ -266,7 +266,7 @@ fn states_and_steps_that_do_not_match_the_system_are_errors() {
         share: 0.5,
         motions: vec![0],
     };
-    refused(
+    rejected(
         run.stop_when(StopWhen::new("left".into(), reaction)),
         "stop condition is 0",
     );
@@ -274,7 +274,7 @@ fn states_and_steps_that_do_not_match_the_system_are_errors() {
         crack: Crack::Section { x: 5.0 },
         points: vec![10],
     };
-    refused(
+    rejected(
         CrackTracker::new(&cloud(10), vec![tracked], 0.3).map(|_| ()),
         "point 10",
     );
@@ -282,8 +282,8 @@ fn states_and_steps_that_do_not_match_the_system_are_errors() {
         name: "end".into(),
         points,
     };
-    refused(probe(vec![]).read(&run.snapshot()), "no points are given");
-    refused(
+    rejected(probe(vec![]).read(&run.snapshot()), "no points are given");
+    rejected(
         probe(vec![10]).read(&run.snapshot()),
         "the points of a probe: point 10",
     );

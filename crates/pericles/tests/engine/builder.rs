@@ -189,8 +189,8 @@ fn the_default_step_is_stable_and_reaches_the_end_exactly() {
     assert_eq!(run.unwrap().steps(), 100);
     // A step far above the stable one is an error unless unstable steps are allowed.
     let long = || Simulation::builder(system()).dt(2.0 * stable).steps(3);
-    let refusal = long().build().err().unwrap();
-    assert!(matches!(refusal, PericlesError::UnstableStep { .. }));
+    let rejection = long().build().err().unwrap();
+    assert!(matches!(rejection, PericlesError::UnstableStep { .. }));
     assert!(long().allow_unstable().build().is_ok());
     // The limit depends on the scheme.
     let fourth = Simulation::builder(system())

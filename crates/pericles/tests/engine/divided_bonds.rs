@@ -373,7 +373,7 @@ fn the_highest_frequency_does_not_depend_on_the_division() {
     }
 }
 
-/// Above [`SMALL`](pericles::time::frequency::SMALL) unknowns the bound is that of the plane waves of the stiffest and lightest
+/// Above [`SMALL`](pericles::time::frequency::SMALL) unknowns the bound follows from the plane waves of the stiffest and lightest
 /// lattice: some processes may have softer and heavier points only, and fewer unknowns.
 #[test]
 fn the_highest_frequency_of_a_large_body_does_not_depend_on_the_division() {

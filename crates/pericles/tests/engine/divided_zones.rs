@@ -1,4 +1,4 @@
-//! Multirate schemes on divided bodies: states, checkpoints and counts are those of a single process.
+//! Multirate schemes on divided bodies: states, checkpoints and counts equal those of a single process.
 
 use std::sync::Arc;
 
@@ -150,16 +150,16 @@ fn limits_and_errors_of_divided_zones_are_those_of_the_whole_body() {
         };
         let system = System::new(cloud.clone(), LIST(&cloud), PointScalar::Uniform(1.0)).unwrap();
         let within = |from: f64, to: f64| points(&cloud, |x, _, _| x > from && x < to);
-        let refused = |regions: Vec<Vec<u32>>| -> PericlesError {
+        let rejected = |regions: Vec<Vec<u32>>| -> PericlesError {
             match Respa::new(2, Fine::Fixed(regions), &system) {
                 Ok(_) => panic!("invalid regions were accepted"),
                 Err(error) => error,
             }
         };
         let errors = [
-            refused(vec![within(0.0, 7.0), vec![]]),
-            refused(vec![within(0.0, 7.0), within(6.0, 12.0)]),
-            refused(vec![within(9.0, 10.0)]),
+            rejected(vec![within(0.0, 7.0), vec![]]),
+            rejected(vec![within(0.0, 7.0), within(6.0, 12.0)]),
+            rejected(vec![within(9.0, 10.0)]),
         ];
         let errors = errors.iter().map(ToString::to_string).collect();
         (vec![frequency(LIST), frequency(SOLID_GRID)], errors)

@@ -90,7 +90,7 @@ fn parts_created_alone_equal_parts_of_the_whole_body() {
             assert_eq!(a.owned_points(), b.owned_points());
             assert_eq!(points, b.owned_points() + b.ghost_points());
             assert!((0..points).all(|k| a.number(k) == b.number(k)));
-            // What concerns the whole body is that of the whole body.
+            // Data of the whole body.
             assert_eq!(alone.body_bounds(), whole.bounds());
             let place = [1.4, 2.6, 0.7];
             let nearest = whole.nearest(place);
@@ -157,7 +157,7 @@ fn shares_of_ghosts_equal_those_of_an_independent_program() {
 fn shares_of_ghosts_of_large_bodies_equal_those_of_an_independent_program() {
     check_shares(&[
         (&[96.0; 3], 8, 0.193, 0.18, [7.0, 7.0]),
-        // The mean share at a boundary is that of parts of 24³ points, of which half have one neighbour along an axis and half two.
+        // The mean share at a boundary belongs to parts of 24³ points, of which half have one neighbour along an axis and half two.
         (
             &[96.0; 3],
             64,

@@ -417,7 +417,7 @@ fn constraints_move_exactly_and_report_their_reaction() {
         .iter()
         .map(|motion| motion.reaction(&cloud)[0])
         .collect();
-    // The free length is that of the bar minus the two layers, within a cell.
+    // The free length is the length of the bar minus the two layers, within a cell.
     let expected = YOUNG * 1e-4 * ramp.value(state.t) / (0.5 - 0.03);
     assert!(
         (reactions[1] / expected - 1.0).abs() < 0.05,

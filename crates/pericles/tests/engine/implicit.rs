@@ -214,7 +214,7 @@ pub fn torn() -> System {
 }
 
 /// Interrupts a run at some polls of its inner iterations, repeatedly. Each interrupted run must be as after the
-/// last complete step, and the final state must be that of an uninterrupted run.
+/// last complete step, and the final state must equal the state of an uninterrupted run.
 fn interrupted_is_undone(make: &dyn Fn() -> Simulation, every: u64) {
     let mut whole = make();
     whole.run(|_| Control::Continue).unwrap();

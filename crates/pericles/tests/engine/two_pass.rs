@@ -372,18 +372,18 @@ fn unsupported_combinations_with_two_passes_are_errors() {
     let left: Vec<u32> = (0..cloud.len() as u32)
         .filter(|&i| cloud.point(i as usize)[0] < 6.0)
         .collect();
-    let refused = Respa::new(2, Fine::Fixed(vec![left]), &system)
+    let rejected = Respa::new(2, Fine::Fixed(vec![left]), &system)
         .err()
         .unwrap();
     assert!(
-        refused.to_string().contains("splits the force by bonds"),
-        "{refused}"
+        rejected.to_string().contains("splits the force by bonds"),
+        "{rejected}"
     );
     let other = boxed([0.0; 3], &[3.0, 3.0], 1.0, 1.0);
     let mut system = free(&cloud);
-    let refused = system.add_force(force(&other)).unwrap_err();
+    let rejected = system.add_force(force(&other)).unwrap_err();
     assert!(matches!(
-        refused,
+        rejected,
         PericlesError::ForceOfAnotherBody { points: 9, .. }
     ));
 }

@@ -120,17 +120,17 @@ fn lattices_without_an_isotropic_function_are_errors() {
     let constants = |material: LinearSolid| material.constants_on(&cubes(2), 1.0, state);
     // c = 0.84, then 1.13.
     assert!(constants(make(3.0, VolumeCorrection::None, breakable)).is_ok());
-    let refused = constants(make(3.0, VolumeCorrection::Linear, breakable)).unwrap_err();
+    let rejected = constants(make(3.0, VolumeCorrection::Linear, breakable)).unwrap_err();
     assert!(
-        refused.to_string().contains("negative near the horizon"),
-        "{refused}"
+        rejected.to_string().contains("negative near the horizon"),
+        "{rejected}"
     );
     let unbreakable = make(3.0, VolumeCorrection::Linear, BondFailure::Unbreakable);
     assert!(constants(unbreakable).is_ok());
     let bar = make(3.0, VolumeCorrection::None, breakable);
-    let refused = bar.constants_on(&cubes(1), 1.0, StressState::Uniaxial);
+    let rejected = bar.constants_on(&cubes(1), 1.0, StressState::Uniaxial);
     assert!(
-        refused
+        rejected
             .unwrap_err()
             .to_string()
             .contains("a bar has no shear")
@@ -269,7 +269,7 @@ fn the_mean_over_planes_equals_the_fracture_energy() {
                 (2, StressState::PlaneStrain),
                 (3, StressState::Spatial),
             ] {
-                // The limits refer to a section of 1; those of bonds are per section.
+                // The limits refer to a section of 1; the limits of bonds are per section.
                 for section in [1.0, 0.2] {
                     let function = InfluenceFunction::Conical;
                     let correction = VolumeCorrection::Extended;
@@ -287,7 +287,7 @@ fn the_mean_over_planes_equals_the_fracture_energy() {
 }
 
 /// The conical function vanishes at the horizon of three spacings: bonds of that length never break and are
-/// not counted. The remaining bonds are those of a shorter horizon.
+/// not counted. The remaining bonds belong to a shorter horizon.
 #[test]
 fn bonds_without_force_are_not_counted_for_the_bond_energy() {
     let failure = bond_energy(FractureCalibration::Lattice);
@@ -312,9 +312,9 @@ fn failure_criteria_without_a_critical_stretch_are_errors() {
     let failure = stretch(StretchDefinition::Isotropic, FractureCalibration::Continuum);
     let function = InfluenceFunction::Constant;
     let material = with_failure(function, 3.0, VolumeCorrection::None, -0.9, failure);
-    let refused = material.constants_on(&cubes(3), 1.0, StressState::Spatial);
+    let rejected = material.constants_on(&cubes(3), 1.0, StressState::Spatial);
     assert!(matches!(
-        refused,
+        rejected,
         Err(PericlesError::ElasticConstants { .. })
     ));
     let failure = BondFailure::CriticalStretch(-0.1);
@@ -334,6 +334,6 @@ fn failure_criteria_without_a_critical_stretch_are_errors() {
     );
     let failure = BondFailure::CriticalStretch(0.1);
     let signed = with_failure(function, 3.0, VolumeCorrection::None, 0.3, failure);
-    let refused = signed.constants_on(&cubes(3), 1.0, StressState::Spatial);
-    assert!(matches!(refused, Err(PericlesError::BadInfluence { .. })));
+    let rejected = signed.constants_on(&cubes(3), 1.0, StressState::Spatial);
+    assert!(matches!(rejected, Err(PericlesError::BadInfluence { .. })));
 }

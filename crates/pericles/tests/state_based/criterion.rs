@@ -83,7 +83,7 @@ fn largest(force: &dyn Force, u: &[f64]) -> f64 {
 }
 
 /// With the isotropic influence function a lattice has the elastic constants of the continuum, so that stress and
-/// strain at points with complete families are those of Hooke's law in plane strain.
+/// strain at points with complete families obey Hooke's law in plane strain.
 #[test]
 fn stress_and_strain_of_an_isotropic_lattice_follow_hookes_law() {
     let cloud = boxed([0.0; 3], &[17.0, 16.0], 1.0, 1.0);
@@ -149,7 +149,7 @@ fn stress_and_strain_of_an_isotropic_lattice_follow_hookes_law() {
 }
 
 /// Under a uniform dilatation e the mean stress is D κ e at every point, free surfaces included, because the weighted
-/// volume of a point is that of its own bonds.
+/// volume of a point is computed from its own bonds.
 #[test]
 fn mean_stress_of_a_dilatation_is_exact_at_free_surfaces() {
     for (sides, state, nu) in [
@@ -231,7 +231,7 @@ fn stress_of_a_viscous_solid_relaxes() {
 
 /// The stencil kernel computes no stress, and a function with negative weights cannot be used with bonds that break.
 #[test]
-fn unsupported_bodies_are_refused() {
+fn unsupported_bodies_are_rejected() {
     let cloud = boxed([0.0; 3], &[9.0, 9.0], 1.0, 1.0);
     let material = solid(0.3, 3.0 * (1.0 + 1e-6), InfluenceFunction::Constant);
     let criterion = Criterion::new(PrincipalStress::new(1.0).unwrap());

@@ -118,7 +118,7 @@ fn rk4(system: &System) -> Box<dyn Integrator> {
     Box::new(RungeKutta::new(&Tableau::rk4(), system))
 }
 
-/// Velocity Verlet balances the energy of a linear solid exactly, that of one with large displacements to second
+/// Velocity Verlet balances the energy of a linear solid exactly, of one with large displacements to second
 /// order in the step; the bound was chosen after seeing the result (2e-5).
 #[test]
 fn energy_balance_closes_and_momentum_is_conserved_while_bonds_break() {
@@ -243,7 +243,7 @@ fn bonds_that_break_without_the_work_of_half_a_step_dissipate_the_lost_energy() 
         assert!(operator.broken_bonds() > 100, "{limits:?}");
         let error = (operator.dissipated() / lost - 1.0).abs();
         assert!(error < 1e-12, "{limits:?}: {error:e}");
-        // The force is that of the remaining bonds.
+        // The force comes from the remaining bonds.
         let mut again = vec![0.0; u.len()];
         operator.add_force(0.0, &u, PointSubset::All, &mut again);
         assert_eq!(force, again, "{limits:?}");
@@ -270,7 +270,7 @@ fn ending_a_step_on_subsets_breaks_the_same_bonds() {
         let mut part = vec![0.0; u.len()];
         in_parts.end_step(&step, PointSubset::Set(&odd), &mut part);
         assert!(in_parts.broken_bonds() > 50);
-        // The force on these points is that of the remaining bonds.
+        // The force on these points comes from the remaining bonds.
         let mut again = vec![0.0; u.len()];
         in_parts.add_force(0.0, &u, PointSubset::Set(&odd), &mut again);
         assert_eq!(part, again);

@@ -1,5 +1,5 @@
 //! Ghost points at surfaces: forces are the gradient of the energy of the body, and the energy density of a
-//! uniform strain is that of the material at every point.
+//! uniform strain equals the stress of the material at every point.
 
 use std::sync::Arc;
 

@@ -393,12 +393,12 @@ fn the_stencil_is_the_fastest_form_where_it_is_available() {
         };
         let by_energy = LinearSolidBody::new(&case.cloud, &by_energy, case.correction);
         assert_eq!(form(&by_energy), BondForm::List);
-        for (refused, feature) in [
+        for (rejected, feature) in [
             (&corrected, Feature::SurfaceCorrection),
             (&by_energy, Feature::BondEnergy),
         ] {
-            assert!(refused.features().has(feature));
-            assert!(refused.operator(BondForm::Grid).is_err());
+            assert!(rejected.features().has(feature));
+            assert!(rejected.operator(BondForm::Grid).is_err());
         }
         assert!(body.operator(BondForm::FloatGrid).is_err());
     }

@@ -93,7 +93,7 @@ fn plate(nu: f64, spacings: f64, influence: StateInfluence, whole: bool) -> Line
 }
 
 /// Without correction, an independent implementation found the value to 0.002. With surface correction the modulus
-/// is that of the interior of the lattice, exactly for bond-based solids; the bound for others was chosen after
+/// equals the value of the interior of the lattice, exactly for bond-based solids; the bound for others was chosen after
 /// seeing the result.
 #[test]
 fn plates_with_surface_correction_have_the_modulus_of_their_material() {

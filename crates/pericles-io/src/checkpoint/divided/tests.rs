@@ -50,7 +50,7 @@ fn archive(points: usize, domain: &Domain) -> Archive {
     let work = BinnedSum::of(own.len(), |k| value(0, own[k]));
     work.save_under("work", &mut archive);
     archive.put("t", Values::F64(vec![0.1 + 0.2]));
-    // The first process writes tables and knows their lengths.
+    // The first process writes tables, and their lengths belong to it.
     if domain.is_first() {
         archive.put("table", Values::U64(vec![17]));
     }
@@ -101,7 +101,7 @@ fn processes_write_the_bytes_of_a_single_one_and_read_their_parts() {
                 let domain = domain(points, owner, comm);
                 let own = archive(points, &domain);
                 let read = Archive::part_of(&own, &mut opened, &domain).unwrap();
-                // The process that continues counts and sums has those of the body.
+                // The process that continues counts and sums has the values of the body.
                 for name in ["u", "set", "bits", "none", "t"] {
                     assert_eq!(read.arrays()[name], own.arrays()[name], "{name}");
                 }
@@ -296,7 +296,7 @@ fn the_previous_checkpoint_replaces_a_damaged_one_on_all_processes() {
     let latest = |memory: u64| {
         Threads::run(3, |comm| {
             let latest = folder.latest_divided(memory, &*comm);
-            latest.map(|(opened, refused)| (opened.metadata()["step"].clone(), refused.len()))
+            latest.map(|(opened, rejected)| (opened.metadata()["step"].clone(), rejected.len()))
         })
     };
     assert!(matches!(latest(1)[0], Err(IoError::TooLarge { .. })));
@@ -306,7 +306,7 @@ fn the_previous_checkpoint_replaces_a_damaged_one_on_all_processes() {
     }
     damage(20);
     let found = latest(u64::MAX);
-    let none = |found: &Result<_, IoError>| matches!(found, Err(IoError::NoValidCheckpoint { refused, .. }) if refused.len() == 2);
+    let none = |found: &Result<_, IoError>| matches!(found, Err(IoError::NoValidCheckpoint { rejected, .. }) if rejected.len() == 2);
     assert!(none(&found[0]));
     for found in &found[1..] {
         assert!(matches!(found, Err(IoError::OnAnotherProcess { .. })));

@@ -4,7 +4,7 @@ mod breaking;
 mod modes;
 mod observe;
 mod operator;
-mod refused;
+mod rejected;
 mod schemes;
 mod sphere;
 mod zones;

@@ -9,7 +9,7 @@ fn checked(surface: Surface) -> (Surface, pericles_manifold::surface::SurfaceRep
     surface.checked(SurfaceChecks::default()).unwrap()
 }
 
-fn refused(surface: Surface, checks: SurfaceChecks) -> SurfaceError {
+fn rejected(surface: Surface, checks: SurfaceChecks) -> SurfaceError {
     surface.checked(checks).unwrap_err()
 }
 
@@ -174,7 +174,7 @@ fn each_invalid_surface_has_its_own_message() {
     assert!(build(x.clone(), t.clone()).checked(strict).is_ok());
 
     let open = build(x.clone(), t[..3].to_vec());
-    let error = refused(open.clone(), strict);
+    let error = rejected(open.clone(), strict);
     assert_eq!(
         error,
         SurfaceError::Open {
@@ -194,7 +194,7 @@ fn each_invalid_surface_has_its_own_message() {
     assert_eq!(open.checked(allowed).unwrap().1.boundary_edges, 3);
 
     assert!(matches!(
-        refused(two(2), strict),
+        rejected(two(2), strict),
         SurfaceError::NonManifoldEdge {
             edges: 1,
             first: [0, 1],
@@ -202,14 +202,14 @@ fn each_invalid_surface_has_its_own_message() {
         }
     ));
     assert_eq!(
-        refused(two(1), strict),
+        rejected(two(1), strict),
         SurfaceError::BowTie {
             vertices: 1,
             first: 0
         }
     );
     assert_eq!(
-        refused(two(0), strict),
+        rejected(two(0), strict),
         SurfaceError::SeveralComponents {
             components: 2,
             sizes: [4, 4]
@@ -227,7 +227,7 @@ fn each_invalid_surface_has_its_own_message() {
     let mut flipped = t.clone();
     flipped[2].swap(0, 1);
     assert_eq!(
-        refused(build(x.clone(), flipped.clone()), strict),
+        rejected(build(x.clone(), flipped.clone()), strict),
         SurfaceError::Flipped {
             edges: 3,
             first: [0, 1]
@@ -236,7 +236,7 @@ fn each_invalid_surface_has_its_own_message() {
     let mut inside_out = t.clone();
     inside_out.iter_mut().for_each(|t| t.swap(0, 1));
     assert!(
-        matches!(refused(build(x.clone(), inside_out.clone()), strict), SurfaceError::InsideOut { volume } if volume < -2.0)
+        matches!(rejected(build(x.clone(), inside_out.clone()), strict), SurfaceError::InsideOut { volume } if volume < -2.0)
     );
     for (triangles, turned) in [(flipped, 1), (inside_out, 4)] {
         let flip = SurfaceChecks {
@@ -269,7 +269,7 @@ fn each_invalid_surface_has_its_own_message() {
         .collect();
     around.extend([[8, 9, 1], [9, 0, 1]]);
     assert_eq!(
-        refused(
+        rejected(
             build(strip, around),
             SurfaceChecks {
                 open: true,
@@ -284,13 +284,13 @@ fn each_invalid_surface_has_its_own_message() {
     flat[3] = [0.0, 0.0, 0.0];
     flat[0] = [0.5, -0.5, -0.5];
     assert!(matches!(
-        refused(build(flat, t.clone()), strict),
+        rejected(build(flat, t.clone()), strict),
         SurfaceError::Degenerate { first: 2, .. }
     ));
     let mut twice = x.clone();
     twice.push([1.0, 1.0, 1.0 + 1e-13]);
     assert_eq!(
-        refused(build(twice, t.clone()), strict),
+        rejected(build(twice, t.clone()), strict),
         SurfaceError::Duplicate {
             vertices: 1,
             first: [0, 4]
@@ -299,7 +299,7 @@ fn each_invalid_surface_has_its_own_message() {
     let mut lonely = x.clone();
     lonely.push([0.0; 3]);
     assert_eq!(
-        refused(build(lonely, t.clone()), strict),
+        rejected(build(lonely, t.clone()), strict),
         SurfaceError::Unreferenced {
             vertices: 1,
             first: 4

@@ -38,7 +38,7 @@ impl Model {
                 scopes.push((Some(name), prefix(&shown, count), self.copy(instance)?));
             }
         }
-        // Element numbers are those of the file if they are unique.
+        // Element numbers are taken from the file if they are unique.
         let with_elements = scopes.iter().filter(|s| !s.2.elements.kinds.is_empty());
         let own_numbers = with_elements.count() <= 1;
         let mut placed = Vec::new();

@@ -185,21 +185,21 @@ fn a_killed_run_leaves_a_valid_exodus_file_and_resumes_byte_for_byte() {
         }
     }
     // More outputs than the file contains, a file of another run, a truncated file.
-    let refused = |path: &Path, layout: &ExodusLayout<'_>, outputs: usize| {
+    let rejected = |path: &Path, layout: &ExodusLayout<'_>, outputs: usize| {
         ExodusWriter::resume(path, layout, outputs)
             .unwrap_err()
             .to_string()
     };
-    assert!(refused(&whole, &layout, 5).contains("it contains 4 outputs; expected at least 5"));
+    assert!(rejected(&whole, &layout, 5).contains("it contains 4 outputs; expected at least 5"));
     let renamed = ExodusLayout {
         title: "another".into(),
         ..layout.clone()
     };
-    assert!(refused(&whole, &renamed, 1).contains("another run"));
+    assert!(rejected(&whole, &renamed, 1).contains("another run"));
     cut(&whole, lengths[3]);
-    assert!(refused(&whole, &layout, 4).contains("expected at least 4"));
+    assert!(rejected(&whole, &layout, 4).contains("expected at least 4"));
     cut(&whole, 20);
-    assert!(refused(&whole, &layout, 1).contains("another run"));
+    assert!(rejected(&whole, &layout, 1).contains("another run"));
 }
 
 #[test]
@@ -245,23 +245,23 @@ fn inconsistent_layouts_are_rejected() {
     let place = tempfile::tempdir().unwrap();
     let (x, v) = (positions(3), volumes());
     let good = exodus_layout(&x, &v, 3, false);
-    let refused = |change: &dyn Fn(&mut ExodusLayout<'_>)| {
+    let rejected = |change: &dyn Fn(&mut ExodusLayout<'_>)| {
         let mut layout = good.clone();
         change(&mut layout);
-        let path = place.path().join("refused.exo");
+        let path = place.path().join("rejected.exo");
         ExodusWriter::create(path, &layout).unwrap_err().to_string()
     };
-    assert!(refused(&|l| l.blocks[0].points.push(1)).contains("point 1 is in two blocks"));
-    assert!(refused(&|l| l.blocks[2].points.clear()).contains("point 1 is in no block"));
+    assert!(rejected(&|l| l.blocks[0].points.push(1)).contains("point 1 is in two blocks"));
+    assert!(rejected(&|l| l.blocks[2].points.clear()).contains("point 1 is in no block"));
     assert!(
-        refused(&|l| l.blocks[0].points.push(9)).contains("point 9, but there are only 5 points")
+        rejected(&|l| l.blocks[0].points.push(9)).contains("point 9, but there are only 5 points")
     );
     assert!(
-        refused(&|l| l.sets[0].points.push(9)).contains("point 9, but there are only 5 points")
+        rejected(&|l| l.sets[0].points.push(9)).contains("point 9, but there are only 5 points")
     );
-    assert!(refused(&|l| l.dimension = 2).contains("15 coordinates"));
-    assert!(refused(&|l| l.volumes = &[]).contains("no points"));
-    assert!(refused(&|l| l.fields[0].components = 0).contains("no components"));
+    assert!(rejected(&|l| l.dimension = 2).contains("15 coordinates"));
+    assert!(rejected(&|l| l.volumes = &[]).contains("no points"));
+    assert!(rejected(&|l| l.fields[0].components = 0).contains("no components"));
     let mut writer = ExodusWriter::create(place.path().join("a.exo"), &good).unwrap();
     let (damage, displacement) = values(3, 0);
     for (globals, values) in [

@@ -143,40 +143,40 @@ fn a_killed_run_leaves_a_valid_vtkhdf_file_and_resumes_byte_for_byte() {
             );
         }
     }
-    let refused = |layout: &VtkHdfLayout<'_>, outputs: usize| {
+    let rejected = |layout: &VtkHdfLayout<'_>, outputs: usize| {
         let error = VtkHdfWriter::resume(&path, layout, outputs).err().unwrap();
         error.to_string()
     };
     std::fs::write(&path, &states[1]).unwrap();
-    assert!(refused(&layout, 3).contains("it contains 2 outputs; expected at least 3"));
+    assert!(rejected(&layout, 3).contains("it contains 2 outputs; expected at least 3"));
     let mut other = layout.clone();
     other.fields[0].name = "Hamage".into();
-    assert!(refused(&other, 1).contains("another run"));
+    assert!(rejected(&other, 1).contains("another run"));
     other.fields.pop();
-    assert!(refused(&other, 1).contains("another run"));
+    assert!(rejected(&other, 1).contains("another run"));
 }
 
 #[test]
 fn inconsistent_vtkhdf_layouts_are_rejected() {
     let place = tempfile::tempdir().unwrap();
     let (x, v) = (positions(3), volumes());
-    let refused = |change: &dyn Fn(&mut VtkHdfLayout<'_>)| {
+    let rejected = |change: &dyn Fn(&mut VtkHdfLayout<'_>)| {
         let mut layout = vtkhdf_layout(&x, &v, 3, false);
         change(&mut layout);
-        let path = place.path().join("refused.vtkhdf");
+        let path = place.path().join("rejected.vtkhdf");
         VtkHdfWriter::create(path, &layout)
             .err()
             .unwrap()
             .to_string()
     };
-    assert!(refused(&|l| l.outputs = 0).contains("allowed: 1 to 16777216"));
-    assert!(refused(&|l| l.dimension = 4).contains("4 dimensions"));
-    assert!(refused(&|l| l.fields[0].name = "Volume".into()).contains("two fields"));
-    assert!(refused(&|l| l.fields[1].components = 0).contains("no components"));
+    assert!(rejected(&|l| l.outputs = 0).contains("allowed: 1 to 16777216"));
+    assert!(rejected(&|l| l.dimension = 4).contains("4 dimensions"));
+    assert!(rejected(&|l| l.fields[0].name = "Volume".into()).contains("two fields"));
+    assert!(rejected(&|l| l.fields[1].components = 0).contains("no components"));
     assert!(
-        refused(&|l| l.constants[0].0.components = 2).contains("5 points of 2 components need 10")
+        rejected(&|l| l.constants[0].0.components = 2).contains("5 points of 2 components need 10")
     );
-    assert!(refused(&|l| l.outputs = usize::MAX).contains("allowed: 1 to 16777216"));
+    assert!(rejected(&|l| l.outputs = usize::MAX).contains("allowed: 1 to 16777216"));
 }
 
 #[test]

@@ -23,7 +23,7 @@ pub struct StripLattice {
 }
 
 /// Relative difference (to the largest) below which bond matrices are considered equal.
-const ALIKE: f64 = 1e-11;
+const TOLERANCE: f64 = 1e-11;
 
 impl StripLattice {
     /// Derives the lattice from a body: a plate on a square grid, full rows, periodic along y. The bonds are those
@@ -65,7 +65,7 @@ impl StripLattice {
         let strongest = all().map(|&j| size(&matrix(&own, j))).fold(0.0, f64::max);
         let reaches = |column: &Vec<usize>| {
             let bond =
-                |&j: &usize| j != columns[0][0] && size(&matrix(&own, j)) > ALIKE * strongest;
+                |&j: &usize| j != columns[0][0] && size(&matrix(&own, j)) > TOLERANCE * strongest;
             column.iter().any(bond)
         };
         let reach = columns.iter().rposition(reaches).unwrap_or(0);
@@ -104,7 +104,7 @@ impl StripLattice {
                     let found = matrix(&from, j);
                     let apart = |a: usize, b: usize| (found[a][b] - expected[a][b]).abs();
                     let worst = [apart(0, 0), apart(0, 1), apart(1, 0), apart(1, 1)];
-                    if worst.iter().any(|gap| *gap > ALIKE * strongest) {
+                    if worst.iter().any(|gap| *gap > TOLERANCE * strongest) {
                         return not("its outer layer is not homogeneous");
                     }
                 }
@@ -127,7 +127,7 @@ impl StripLattice {
                 ];
                 // A bond across half of the rows belongs to both directions.
                 let is_half = 2 * l == rows;
-                if !is_half && gaps.iter().any(|gap| gap.abs() > ALIKE * strongest) {
+                if !is_half && gaps.iter().any(|gap| gap.abs() > TOLERANCE * strongest) {
                     let reason = "its bonds upwards and downwards differ";
                     return Err(AbsorbingError::NotAStrip { reason });
                 }

@@ -8,7 +8,7 @@ use rustfft::num_complex::Complex;
 
 use super::super::fourier::LineTransform;
 use super::super::wanted::for_each_wanted;
-use super::super::{features_of, refuse, require};
+use super::super::{features_of, reject, require};
 use super::symbol::Symbol;
 use crate::form::ForceForm;
 use pericles::Result;
@@ -28,8 +28,8 @@ use pericles::sum::sum;
 /// aliases; the operator is then the gradient of an energy, −Σ V u (½ f₁ + ⅓ f₂ + ¼ f₃). The highest wavenumber of
 /// an even number of points does not enter the nonlinear terms.
 ///
-/// The integrals exist for influence functions that act on the displacement. Energy densities are those of the sum
-/// above; only their total equals that of the bonds.
+/// The integrals exist for influence functions that act on the displacement. Energy densities belong to the sum
+/// above; only their total equals the energy of the bonds.
 pub struct SpectralCubicForce {
     cloud: Arc<PointCloud>,
     coarse: LineTransform,
@@ -75,12 +75,12 @@ impl SpectralCubicForce {
         constants: &BondConstants,
     ) -> Result<Self> {
         if material.law != PairLaw::GreenStrain || cloud.dimension() != 1 || !cloud.is_periodic() {
-            return refuse(
+            return reject(
                 "nonlinear forces by Fourier series are available for model = \"green-strain\" on a periodic bar only",
             );
         }
         if material.influence.acts_on != ActsOn::Displacement {
-            return refuse(
+            return reject(
                 "an influence function that acts on the stretch is not available with Fourier series of nonlinear \
                 forces; use acts_on = \"displacement\"",
             );
@@ -114,7 +114,7 @@ impl SpectralCubicForce {
             .flatten()
             .any(|x| !x.is_finite())
         {
-            return refuse("the symbol must be finite; check the influence function");
+            return reject("the symbol must be finite; check the influence function");
         }
         let scratch = coarse.scratch().len().max(fine.scratch().len());
         let (coarse_modes, fine_modes) = (coarse.modes(), fine.modes());

@@ -10,7 +10,7 @@ use rustfft::num_complex::Complex;
 use super::super::energy::{add_density, elastic_energy, origin};
 use super::super::tensor_kernel::pairs;
 use super::super::wanted::for_each_wanted;
-use super::super::{features_of, refuse, require};
+use super::super::{features_of, reject, require};
 use super::box_transform::BoxTransform;
 use super::symbol::Symbol;
 use crate::form::{ForceForm, LINEAR_ONLY};
@@ -55,7 +55,7 @@ impl<const D: usize> SpectralForce<D> {
         constants: &BondConstants,
     ) -> Result<Self> {
         if material.law != PairLaw::Linear {
-            return refuse(LINEAR_ONLY);
+            return reject(LINEAR_ONLY);
         }
         require(ForceForm::Spectral, features_of(material, constants, D))?;
         let symbol = Symbol::new(
@@ -93,7 +93,7 @@ impl<const D: usize> SpectralForce<D> {
                 (lattice.shape, lattice.sides())
             }
             _ => {
-                return refuse(
+                return reject(
                     "a Fourier series needs a full box of cells (bar, plate or block without holes)",
                 );
             }
@@ -135,7 +135,7 @@ impl<const D: usize> SpectralForce<D> {
         self.symbol = sizes.iter().map(|size| values[&size.to_bits()]).collect();
         let all = || self.symbol.iter().flatten();
         if all().any(|value| !value.is_finite()) {
-            return refuse("the symbol must be finite; check the influence function");
+            return reject("the symbol must be finite; check the influence function");
         }
         self.largest = all().fold(0.0f64, |largest, value| largest.max(*value));
         Ok(())

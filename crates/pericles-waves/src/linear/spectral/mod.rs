@@ -3,7 +3,7 @@
 //! On a box with periods P_a every plane wave exp(ik·x), k_a = 2π m_a/P_a, oscillates independently: ρ ω² = M(k)
 //! with the **symbol** M(k) = ∫ c α(|ξ|) ξ⊗ξ/|ξ|³ (1 − cos k·ξ) dξ = M_p k̂⊗k̂ + M_s (1 − k̂⊗k̂), an integral over
 //! the horizon instead of a sum over points ([`Symbol`]). Fields that are smooth on the scale of the spacing are
-//! therefore exact to round-off: the error decreases faster than any power of the spacing, whereas that of the grid
+//! therefore exact to round-off: the error decreases faster than any power of the spacing, whereas the error of the grid
 //! is of second order.
 //!
 //! [`SpectralForce`] is a [`Force`](pericles::operator::Force) for every scheme; functions of it cost two

@@ -82,23 +82,23 @@ fn damped_run_resumes_bit_for_bit() {
 #[test]
 fn invalid_damping_layers_are_errors() {
     let system = bar(50, 1.0);
-    let refusal = |face: &str, profile, frequency| {
+    let rejection = |face: &str, profile, frequency| {
         let face = Face::named(face).unwrap();
         let steps = DampedSteps {
             kind: StepKind::EndOfStep,
             dt: DT,
             frequency: Some(frequency),
         };
-        let refused = DampingLayer::new(system.cloud(), system.density(), face, profile, steps);
-        refused
+        let rejected = DampingLayer::new(system.cloud(), system.density(), face, profile, steps);
+        rejected
             .err()
             .map(|error| error.to_string())
             .unwrap_or_default()
     };
-    assert!(refusal("+y", layer(1.0, 0.1), 8.0).contains("has no side +y"));
-    assert!(refusal("+x", layer(0.05, 0.1), 8.0).contains("allowed: from one cell"));
-    assert!(refusal("+x", layer(11.0, 0.1), 8.0).contains("less than the body"));
-    assert!(refusal("+x", layer(0.3, 1e-6), 19.0).contains("ω dt is 1.900"));
+    assert!(rejection("+y", layer(1.0, 0.1), 8.0).contains("has no side +y"));
+    assert!(rejection("+x", layer(0.05, 0.1), 8.0).contains("allowed: from one cell"));
+    assert!(rejection("+x", layer(11.0, 0.1), 8.0).contains("less than the body"));
+    assert!(rejection("+x", layer(0.3, 1e-6), 19.0).contains("ω dt is 1.900"));
 }
 
 type Make = fn(&System) -> Box<dyn Integrator>;
@@ -317,7 +317,7 @@ fn schemes_without_velocities_reject_damping_layers() {
     let remembering = damped(layer(10.0, 0.1));
     let respa = Respa::new(2, Fine::Fixed(vec![(150..250).collect()]), &remembering);
     let respa = respa.err().unwrap().to_string();
-    assert!(respa.contains("knows one time step only"), "{respa}");
+    assert!(respa.contains("support a single time step only"), "{respa}");
     let newton = NewmarkOptions {
         solver: InnerSolver::NewtonKrylov,
         ..NewmarkOptions::default()
@@ -328,6 +328,6 @@ fn schemes_without_velocities_reject_damping_layers() {
     // A layer created for another step is detected at the start of the run.
     let state = pulse(&system, 0.0);
     let mut run = Simulation::new(system, Box::new(VelocityVerlet), state, DT, 10).unwrap();
-    let refused = run.run(|_| Control::Continue).err().unwrap().to_string();
-    assert!(refused.contains("velocity-verlet"), "{refused}");
+    let rejected = run.run(|_| Control::Continue).err().unwrap().to_string();
+    assert!(rejected.contains("velocity-verlet"), "{rejected}");
 }

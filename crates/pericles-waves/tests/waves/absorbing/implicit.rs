@@ -179,9 +179,9 @@ fn mismatched_schemes_and_boundaries_are_errors() {
         method: KernelMethod::SemiDiscrete,
         ..AbsorbingBoundaryPlan::default()
     };
-    let refused = paper.history(&stencil, step, 10, &NoCache).err();
+    let rejected = paper.history(&stencil, step, 10, &NoCache).err();
     let what = "semi-discrete";
-    assert_eq!(refused, Some(AbsorbingError::VerletOnly { what }));
+    assert_eq!(rejected, Some(AbsorbingError::VerletOnly { what }));
     // Boundaries of one scheme in a run of the other.
     let mut system = bar(60, 1.0);
     let rest = State::at_rest(system.points());

@@ -355,7 +355,7 @@ mod tests {
     }
 
     #[test]
-    fn cracks_without_extent_are_refused() {
+    fn cracks_without_extent_are_rejected() {
         let point = Crack::Segment {
             from: [1.0, 1.0],
             to: [1.0, 1.0],

@@ -114,7 +114,7 @@ impl GivenConstants {
     /// Fewer than two constants (for a bar, none); constants that are not positive; inconsistent constants; ν
     /// outside −1 < ν < 1/2.
     pub fn resolve(&self, state: StressState) -> Result<ElasticConstants> {
-        let refuse = |reason: String| Err(PericlesError::ElasticConstants { reason });
+        let reject = |reason: String| Err(PericlesError::ElasticConstants { reason });
         for (name, value) in [
             ("Young's modulus", self.young),
             ("the bulk modulus", self.bulk),
@@ -134,14 +134,14 @@ impl GivenConstants {
                 ElasticConstants::of_moduli(bulk, shear)?
             }
             (Some(young), _, Some(bulk), _) => {
-                return refuse(format!(
+                return reject(format!(
                     "Young's modulus {} must be below nine times the bulk modulus {}; otherwise the shear modulus is not positive",
                     quantity(young, "Pa"),
                     quantity(bulk, "Pa")
                 ));
             }
             (Some(young), _, _, Some(shear)) => {
-                return refuse(format!(
+                return reject(format!(
                     "Young's modulus {} must be below three times the shear modulus {}; otherwise the bulk modulus is not positive",
                     quantity(young, "Pa"),
                     quantity(shear, "Pa")
@@ -160,10 +160,10 @@ impl GivenConstants {
                 ElasticConstants::of_young(young, 0.0)?
             }
             _ if state == StressState::Uniaxial => {
-                return refuse("a bar requires Young's modulus".into());
+                return reject("a bar requires Young's modulus".into());
             }
             _ => {
-                return refuse(
+                return reject(
                     "two of Young's modulus, Poisson's ratio, bulk modulus and shear modulus are required".into(),
                 );
             }

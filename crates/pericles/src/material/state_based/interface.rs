@@ -14,10 +14,10 @@ impl LinearSolid {
     /// constants A and B ([`LinearSolidConstants`](super::LinearSolidConstants)), and each side of the
     /// interface contributes half of it. A crack between two half-spaces therefore takes the energy of a
     /// crack in a solid with the mean A and the mean B, whose limits are returned. Horizon, influence
-    /// function and partial volumes are those of this material.
+    /// function and partial volumes belong to this material.
     ///
     /// # Errors
-    /// Those of [`LinearSolid::constants`].
+    /// The errors of [`LinearSolid::constants`].
     pub fn limits_towards(
         &self,
         other: &Self,

@@ -107,7 +107,7 @@ impl IsotropicInfluence {
     /// # Errors
     /// Bars; cells that are not square or cubic; horizons so short that no such function exists.
     pub fn of_lattice(sides: &[f64], horizon: f64, correction: VolumeCorrection) -> Result<Self> {
-        let refuse = |reason: &str| {
+        let reject = |reason: &str| {
             Err(PericlesError::BadInfluence {
                 reason: reason.into(),
             })
@@ -115,12 +115,12 @@ impl IsotropicInfluence {
         let cells = Cells::new(sides);
         let dimension = sides.len();
         if dimension == 1 {
-            return refuse(
+            return reject(
                 "an isotropic function requires a body in two or three dimensions, because a bar has no shear",
             );
         }
         if !cells.is_cubic() {
-            return refuse(
+            return reject(
                 "an isotropic function requires square or cubic cells; use equal spacings or another function",
             );
         }
@@ -145,7 +145,7 @@ impl IsotropicInfluence {
         if !coefficient.is_finite()
             || sums(cells, horizon, correction, weight).weighted_volume <= 0.0
         {
-            return refuse(
+            return reject(
                 "no linear function makes this lattice isotropic; use a horizon of two spacings or more, or another function",
             );
         }

@@ -117,7 +117,7 @@ impl LinearSolid {
     /// section (m² in 1D, m in 2D, 1 in 3D).
     ///
     /// # Errors
-    /// Those of [`LinearSolid::constants`].
+    /// The errors of [`LinearSolid::constants`].
     ///
     /// # Panics
     /// If the number of sides is not the dimension.
@@ -175,7 +175,7 @@ impl LinearSolid {
 
     /// Returns the influence function, or an error if it is invalid for the lattice.
     fn influence_on(&self, cells: Cells<'_>, on_lattice: bool) -> Result<Influence> {
-        let refuse = |reason: &str| {
+        let reject = |reason: &str| {
             Err(PericlesError::BadInfluence {
                 reason: reason.into(),
             })
@@ -186,7 +186,7 @@ impl LinearSolid {
                 acts_on: ActsOn::Stretch,
             },
             StateInfluence::Isotropic if !on_lattice => {
-                return refuse(
+                return reject(
                     "an isotropic function requires points on a regular lattice; use the conical function",
                 );
             }
@@ -215,7 +215,7 @@ impl LinearSolid {
         }
         let signed = least < 0.0 || !isotropic && influence.is_signed(self.horizon);
         if signed && self.failure != BondFailure::Unbreakable {
-            return refuse(match isotropic {
+            return reject(match isotropic {
                 true => {
                     "the isotropic function of this lattice is negative near the horizon and cannot be used with bonds that \
                      break, because a bond with negative weight gains energy as it stretches; use another ratio of horizon and \
@@ -229,7 +229,7 @@ impl LinearSolid {
         if weighted_volume > 0.0 {
             return Ok(influence);
         }
-        refuse(
+        reject(
             "its weighted volume, the sum of w |ξ|² over the bonds of the lattice, must be positive",
         )
     }

@@ -1,7 +1,7 @@
 //! Construction of forces with ghost layers.
 
 use super::force::GhostForce;
-use super::layer::{GhostLayer, breaking, refused};
+use super::layer::{GhostLayer, breaking, rejected};
 use crate::error::Result;
 use crate::family::BondList;
 use crate::material::{SolidSurface, SurfaceCorrection};
@@ -67,7 +67,7 @@ impl CompositeBody<'_> {
             return Err(breaking());
         }
         if !self.body.stiffness.is_empty() {
-            return Err(refused(
+            return Err(rejected(
                 "ghost points do not support inclusions; assign a material to a set of points instead",
             ));
         }
@@ -119,7 +119,7 @@ impl CompositeBody<'_> {
     }
 }
 
-/// Returns the material index at each place. Ghosts have that of the nearest point, the first of several.
+/// Returns the material index at each place. Ghosts have the index of the nearest point, the first of several.
 fn nearest_materials(layer: &GhostLayer, bonds: &BondList, of_point: &[u8]) -> Vec<u8> {
     let numbers = layer.numbers();
     let of_ghost = |place: usize| {

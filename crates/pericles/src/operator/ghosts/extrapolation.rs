@@ -1,6 +1,6 @@
 //! Extrapolation of displacements to ghost points.
 
-use super::layer::{GhostLayer, refused};
+use super::layer::{GhostLayer, rejected};
 use crate::error::Result;
 use crate::family::BondList;
 use crate::parallel::for_each_point;
@@ -178,7 +178,7 @@ impl Geometry<'_> {
             Some((solution, determinant)) if determinant > SINGULAR * mean.powi(3) => Ok(solution),
             _ => {
                 let [x, y, z] = self.layer.cloud().point(place).map(|x| quantity(x, "m"));
-                Err(refused(format!(
+                Err(rejected(format!(
                     "displacements cannot be extrapolated from the point at ({x}, {y}, {z}), because its neighbours lie on a line or in a plane; use at least two cells along each axis"
                 )))
             }

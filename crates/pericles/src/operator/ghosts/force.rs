@@ -21,11 +21,11 @@ use crate::space::PointCloud;
 /// f_i = F_i + (1/V_i) Σ_g T_gi V_g F_g with the force density F of the body and its ghosts together at the
 /// displacements (u, T u).
 ///
-/// Ghosts store no energy in F, so that F is the gradient of the energy of the body's points and f that of
+/// Ghosts store no energy in F, so that F is the gradient of the energy of the body's points and f the gradient of
 /// E(u). Loads act on the points of the body, near its surface through the extrapolation.
 pub struct GhostForce {
     pub(super) inner: Box<dyn Force>,
-    /// Force for the energy density at the points of the body, if that of `inner` is not exact.
+    /// Force for the energy density at the points of the body, if the density of `inner` is not exact.
     whole: Option<Box<dyn Force>>,
     pub(super) cloud: Arc<PointCloud>,
     pub(super) layer: GhostLayer,

@@ -30,12 +30,12 @@ impl GhostLayer {
     ) -> Result<Self> {
         check_whole(cloud)?;
         let Some(lattice) = cloud.lattice() else {
-            return Err(refused(
+            return Err(rejected(
                 "ghost points occupy free cells of a lattice, but the points of this body do not lie on a regular grid; use a body on a grid or omit surface_correction = \"ghosts\"",
             ));
         };
         if cloud.has_pieces() {
-            return Err(refused(
+            return Err(rejected(
                 "a ghost point in the gap between two pieces would extrapolate the displacements of both, although no bond joins them; use surface_correction = \"energy\" or \"volume\"",
             ));
         }
@@ -186,7 +186,7 @@ fn offsets(lattice: &Lattice, dimension: usize, reach: f64) -> ([i32; 3], Vec<[i
 }
 
 /// Returns the error of a body without a ghost layer.
-pub(super) fn refused(reason: impl Into<String>) -> PericlesError {
+pub(super) fn rejected(reason: impl Into<String>) -> PericlesError {
     PericlesError::NoGhostLayer {
         reason: reason.into(),
     }
@@ -194,7 +194,7 @@ pub(super) fn refused(reason: impl Into<String>) -> PericlesError {
 
 /// Returns the error of bodies with breakable bonds.
 pub(super) fn breaking() -> PericlesError {
-    refused(
+    rejected(
         "ghost points complete the families at unbroken outer surfaces only, but bonds of this body can break; omit the failure criterion, or use surface_correction = \"energy\"",
     )
 }
@@ -202,7 +202,7 @@ pub(super) fn breaking() -> PericlesError {
 fn check_whole(cloud: &PointCloud) -> Result<()> {
     match cloud.domain().is_divided() {
         false => Ok(()),
-        true => Err(refused(
+        true => Err(rejected(
             "the body is divided among processes; ghost layers need a whole body",
         )),
     }

@@ -9,6 +9,10 @@
 //! distributed to the points from which their displacements are extrapolated. Traction-free surfaces are
 //! natural boundary conditions. Momentum and angular momentum are conserved, and uniform strains are in
 //! equilibrium up to the surface.
+//!
+//! A ghost layer belongs to the force of an inner body and stores no energy. The force equals the force of a larger body,
+//! restricted to the body: F + Tᵀ F_g at (u, T u), with the extrapolation T. Lists, stencils, pair laws and materials
+//! of the inner force need no rules for it.
 
 mod bodies;
 mod extrapolation;

@@ -60,7 +60,7 @@ pub(super) struct ChunkBonds<'a> {
 /// whether a bond broke.
 ///
 /// The criterion uses [`crate::material::PairForce::stretch_measure`] in double precision, which is bitwise
-/// identical at both ends and for all instruction sets. (The measure and its threshold scale alike with the
+/// identical at both ends and for all instruction sets. (The measure and its threshold scale in the same way with the
 /// unit of length.)
 #[inline(always)]
 pub(super) fn break_chunk<T: Lanes, L: VectorLaw, N: GridNumber, const D: usize>(

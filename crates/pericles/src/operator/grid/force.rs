@@ -28,7 +28,7 @@ use crate::space::{PointCloud, Sites};
 use crate::step_end::StepEnd;
 use crate::thermal::ThermalExpansion;
 
-/// Force density f(x_i) = Σ_j c α κ V_j s n on a lattice, N/m³: that of
+/// Force density f(x_i) = Σ_j c α κ V_j s n on a lattice, N/m³: the force of
 /// [`BondForce`](crate::operator::BondForce), several times faster.
 ///
 /// All nodes share one stencil. Eight nodes of a row along x are computed together, without roots and
@@ -188,9 +188,9 @@ impl<L: VectorLaw, const D: usize> GridForce<L, D> {
 
     /// Computes forces and bond failure in single precision: half the memory of the work array and about
     /// twice the speed, with an error of 1e-6 to 1e-4 of the largest force (see [`Force::rounding`]).
-    /// Displacements are rounded relative to that of one point, in units of the spacing. States, energies and
+    /// Displacements are rounded relative to the displacement of one point, in units of the spacing. States, energies and
     /// tangents use double precision. Bond failure follows from the rounded displacements, at both ends of a
-    /// bond alike.
+    /// bond identically.
     pub fn in_floats(mut self) -> Self {
         let spacing = self.cloud.spacing();
         let lattice = self.cloud.lattice();

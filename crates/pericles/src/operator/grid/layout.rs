@@ -280,7 +280,7 @@ impl GridLayout {
         ((byte(column) | byte(column + 1) << LANES) >> x.rem_euclid(LANES as i64)) as u8
     }
 
-    /// Returns one byte per place (in chunks) with the marked sites. `marks` are those of all points, ghosts
+    /// Returns one byte per place (in chunks) with the marked sites. `marks` contains all points, ghosts
     /// after own points.
     pub fn marked(&self, marks: impl Fn(usize) -> bool) -> Vec<u8> {
         let mut bytes = vec![0; self.chunk_at.len()];
@@ -305,7 +305,7 @@ impl GridLayout {
         bytes
     }
 
-    /// Returns a value per place: that of its site, or the default without a site.
+    /// Returns a value per place: the value of its site, or the default without a site.
     pub fn at_places<T: Clone + Default>(&self, of_site: impl Fn(usize) -> T) -> Vec<T> {
         let mut numbers = vec![T::default(); self.places()];
         let nodes = self.nodes();

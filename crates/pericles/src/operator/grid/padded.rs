@@ -10,7 +10,7 @@ use crate::domain::Field;
 /// Size of a cache line, bytes; loads across two lines cost twice.
 const LINE: usize = 64;
 
-/// Origin and unit of a vector in floats. The origin is that of a fixed point, so that results do not depend
+/// Origin and unit of a vector in floats. The origin belongs to a fixed point, so that results do not depend
 /// on the requested points.
 pub(in crate::operator) struct Frame<const D: usize> {
     origin: [f64; D],

@@ -19,7 +19,7 @@ use crate::space::PointCloud;
 pub struct LinearSolidBody<'a> {
     /// The points.
     pub cloud: &'a Arc<PointCloud>,
-    /// Constants of the material; its horizon and influence function are those of the body.
+    /// Constants of the material; its horizon and influence function belong to the body.
     pub constants: &'a LinearSolidConstants,
     /// Materials of points and of bonds between them, if there are several.
     pub classes: Option<&'a SolidClasses>,
@@ -69,8 +69,8 @@ const ON_GRID: &[Limit] = &[
 
 impl<'a> LinearSolidBody<'a> {
     /// Returns why a body with these features cannot be state-based; `None` if it can.
-    pub fn refusal(features: Features) -> Option<&'static str> {
-        Limit::refusal(LIMITS, features)
+    pub fn rejection(features: Features) -> Option<&'static str> {
+        Limit::rejection(LIMITS, features)
     }
 
     /// Creates a body of one material without pre-cracks, in which all bonds may break, for finite
@@ -127,8 +127,8 @@ impl<'a> LinearSolidBody<'a> {
 
     /// Returns the faster of stencil and list.
     pub fn fastest_form(&self) -> BondForm {
-        let refused = Limit::refusal(ON_GRID, self.features()).is_some();
-        match !refused && fills_lattice(self.cloud) {
+        let rejected = Limit::rejection(ON_GRID, self.features()).is_some();
+        match !rejected && fills_lattice(self.cloud) {
             true => BondForm::Grid,
             false => BondForm::List,
         }

@@ -10,7 +10,7 @@ use super::kinematics::Kinematics;
 use crate::domain::Field;
 use crate::lanes::{F64x8, LANES, dot};
 use crate::material::{PairForce, SolidClasses};
-use crate::operator::coarse::{Crossing, Judged, LostBond, turns_around};
+use crate::operator::coarse::{Crossing, Dissipated, LostBond, turns_around};
 use crate::operator::damage::{BreakEvent, Tally};
 use crate::operator::records::Records;
 use crate::space::Sites;
@@ -183,7 +183,7 @@ pub(super) fn take_bonds<L: Kinematics, const D: usize>(
     let site = bonds.list.site(i);
     tally.lose(
         i,
-        loss.judge(rule.states, [i, site], rule.volumes[i], rule.step),
+        loss.dissipated(rule.states, [i, site], rule.volumes[i], rule.step),
         &lost,
     );
     let first = bonds.list.start()[i];
@@ -336,16 +336,16 @@ impl Loss {
     }
 
     /// Returns the energy dissipated at the end of a step by a point at a site.
-    pub fn judge(
+    pub fn dissipated(
         &self,
         states: &States,
         ends: [usize; 2],
         volume: f64,
         step: &StepEnd<'_>,
-    ) -> Judged {
+    ) -> Dissipated {
         let end = self.at(0, states, ends, volume);
         let start = || self.at(1, states, ends, volume);
-        self.crossing.judge(step, end, start)
+        self.crossing.dissipated(step, end, start)
     }
 }
 

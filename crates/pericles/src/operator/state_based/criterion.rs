@@ -213,7 +213,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         });
     }
 
-    /// Breaks the bonds of the points `on` whose failure index exceeds one. `states` are those of the points `needed`.
+    /// Breaks the bonds of the points `on` whose failure index exceeds one. `states` belong to the points `needed`.
     /// Returns whether a bond of this process may have broken.
     pub(super) fn break_by_criterion(
         &mut self,

@@ -321,7 +321,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
     }
 
     /// Updates the work of the bonds of the points `on`, breaks bonds whose energy exceeds their limit, and
-    /// sets the dilatations of points that lost bonds. `dilatations` must contain those of all points on
+    /// sets the dilatations of points that lost bonds. `dilatations` must contain the values of all points on
     /// which the bonds depend.
     pub(super) fn break_by_energy(
         &mut self,
@@ -339,7 +339,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
             std::mem::take(&mut self.work),
         );
         let ghosts = self.cloud.domain().ghosts(dilatations);
-        // These rows contain the dilatations before failure; those of points that lose bonds change.
+        // These rows contain the dilatations before failure; the values of points that lose bonds change.
         let u = self.packed_with(u, Field::new(dilatations, &ghosts));
         let moved = step.ghost_velocities(self.cloud.domain());
         let rule = self.rule(step, step.velocities(&moved), on);

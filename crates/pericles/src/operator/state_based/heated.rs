@@ -111,17 +111,17 @@ impl<L: Kinematics, const D: usize> Expandable for LinearSolidForce<L, D> {
     /// # Errors
     /// Surface correction, or failure by bond energy.
     fn expand(&mut self, expansion: ThermalExpansion) -> Result<()> {
-        let refuse = |reason| {
+        let reject = |reason| {
             let form = "list";
             Err(PericlesError::FormNotUsable { form, reason })
         };
         if self.is_corrected() {
-            return refuse(
+            return reject(
                 "the surface correction of state-based materials does not include thermal strain; omit `surface_correction`",
             );
         }
         if self.weakest.energy.is_finite() {
-            return refuse(
+            return reject(
                 "failure by bond energy does not include thermal strain; use failure = \"stretch\"",
             );
         }

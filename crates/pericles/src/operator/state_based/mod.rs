@@ -10,6 +10,11 @@
 //! | `grid` | stencil kernel for lattices |
 //! | `inelastic` | solids with viscous or plastic shear, on lists |
 //! | `body` | input of the operator and choice of the kernel |
+//!
+//! **Bond failure.** Points keep their weighted volume when bonds break: the force remains the gradient of the
+//! energy, and the dilatation vanishes with the bonds. The dissipated energy is the change of the energy of a point,
+//! with the half-step rule of single bonds. Surface correction factors multiply the energy, not only the force, so
+//! that the energy balance holds.
 
 mod body;
 mod bond_work;

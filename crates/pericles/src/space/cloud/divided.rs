@@ -1,4 +1,4 @@
-//! The points of one of several processes, and those of the whole body.
+//! The points of one of several processes, and the points of the whole body.
 
 use std::borrow::Cow;
 
@@ -7,7 +7,7 @@ use crate::domain::{Domain, Replicated};
 use crate::space::{Lattice, Point};
 
 impl PointCloud {
-    /// Makes these points the part of one of several processes; `spacing` is that of the whole body, m.
+    /// Makes these points the part of one of several processes; `spacing` belongs to the whole body, m.
     ///
     /// # Panics
     /// If the domain owns another number of points than the cloud has.
@@ -55,7 +55,7 @@ impl PointCloud {
         }
     }
 
-    /// Returns the ghosts of a domain, that of the cloud or another one with the same own points, as points of a single process.
+    /// Returns the ghosts of a domain (of the cloud, or another one with the same own points) as points of a single process.
     /// All processes must call it together.
     #[must_use]
     pub(in crate::space) fn ghosts_of(&self, domain: &Domain) -> Self {
@@ -101,7 +101,7 @@ impl PointCloud {
         }
     }
 
-    /// Returns own points and the ghosts of a domain, that of the cloud or another one with the same own points, as points of a
+    /// Returns own points and the ghosts of a domain (of the cloud, or another one with the same own points) as points of a
     /// single process. All processes must call it together.
     #[must_use]
     pub fn with_ghosts_of(&self, domain: &Domain) -> Self {

@@ -8,6 +8,10 @@
 //!
 //! The lowest bound is used. Bodies of up to [`SMALL`] unknowns are iterated until bound and estimate agree to 0.1
 //! %, very small ones to 1e-6; larger bodies to 1 %, or 2 % where the lattice gives the bound.
+//!
+//! A stable step requires an upper bound: a Ritz value is a lower bound and would accept unstable steps. The plane
+//! waves of the infinite lattice bound the frequencies of every part of the lattice whose springs are nowhere
+//! stiffer.
 
 mod lanczos;
 mod zone;

@@ -3,7 +3,7 @@
 //! **Bound.** Let K be the stiffness of a body whose bonds are springs (stiffness ≥ 0) between nodes of a lattice,
 //! none stiffer than the lattice spring of the same offset, and let all densities be at least ρ. Extend a field u
 //! of the body by zero to all nodes. The extended field ũ strains every bond of the body as u does, and the bonds
-//! that the body lacks only add energy, so that u·Ku ≤ ũ·K_lattice ũ; its mass is at most that of u. Hence max
+//! that the body lacks only add energy, so that u·Ku ≤ ũ·K_lattice ũ; its mass is at most the mass of u. Hence max
 //! u·Ku/u·Mu ≤ max over k of the largest eigenvalue of M(k)/ρ, M(k) = Σ (c α κ V/|ξ|)(1 − cos k·ξ) n⊗n with n =
 //! ξ/|ξ|, because the energy of the lattice is a mean over its plane waves. Bodies with holes, cracks, broken
 //! bonds, constraints and denser parts are parts of the lattice in this sense. Waves of a periodic body are plane

@@ -95,7 +95,7 @@ impl Implicit {
     /// Makes the scheme with a given solver for linear systems.
     ///
     /// # Errors
-    /// Those of [`Implicit::new`].
+    /// The errors of [`Implicit::new`].
     pub fn with_solver(rule: ImplicitRule, solver: LinearSolver, system: &System) -> Result<Self> {
         require(rule.name(), Self::REQUIREMENTS, system)?;
         let entries = system.dimension() * system.points();

@@ -1,4 +1,8 @@
 //! Linear solvers of implicit steps: a reused Cholesky factor, or conjugate gradients.
+//!
+//! A Cholesky factor is used where it is cheaper than conjugate gradients, by sizes only. It belongs to the first of
+//! many steps whose lengths differ by rounding: each solution is refined against the matrix of its own step, and a
+//! checkpoint stores the step of the factor.
 
 use super::add_and_weigh;
 use crate::error::Result;

@@ -1,4 +1,8 @@
 //! The discrete gradient scheme, which conserves the energy of any elastic body.
+//!
+//! The mean of the force along the step conserves energy for steps of any size; a correction of the midpoint rule
+//! alone has no solution at ten times the explicit limit. The derivative of the mean is symmetric and, for convex
+//! energies, definite, so that conjugate gradients solve the step.
 
 use super::InnerIterations;
 use super::equation::{StepEquation, centre, root_masses};

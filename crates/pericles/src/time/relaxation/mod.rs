@@ -108,7 +108,7 @@ impl Relaxation {
     /// # Errors
     /// Options out of range; a body whose stiffness at rest is zero or unknown.
     pub fn new(options: RelaxationOptions, system: &System) -> Result<Self> {
-        let refuse = |parameter, value, allowed| {
+        let reject = |parameter, value, allowed| {
             Err(PericlesError::SchemeParameter {
                 parameter,
                 value,
@@ -116,12 +116,12 @@ impl Relaxation {
             })
         };
         if !(options.tolerance > 0.0 && options.tolerance < 1.0) {
-            return refuse("the tolerance", options.tolerance, "above 0 and below 1");
+            return reject("the tolerance", options.tolerance, "above 0 and below 1");
         }
         if let Damping::Viscous(damping) = options.damping
             && !(damping > 0.0 && damping < 2.0)
         {
-            return refuse("the damping", damping, "above 0 and below 2");
+            return reject("the damping", damping, "above 0 and below 2");
         }
         let name = name_of(options.damping);
         require(name, Self::REQUIREMENTS, system)?;

@@ -53,7 +53,7 @@ fn respa_keeps_energy_bounded_and_momentum_to_round_off() {
 
 #[test]
 fn energy_and_momentum_balances_close_to_the_order_of_the_scheme() {
-    // The work of a load is computed to fourth order, so that the error of the balance is that of the scheme.
+    // The work of a load is computed to fourth order, so that the error of the balance is the error of the scheme.
     let balance = |steps| {
         let simulation = run(pushed_bar(None), steps, mixed(4, 4));
         let energies = simulation.snapshot().energies();

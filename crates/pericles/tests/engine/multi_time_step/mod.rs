@@ -6,7 +6,7 @@ mod conservation;
 mod cracks;
 mod equality;
 mod orders;
-mod refusals;
+mod rejections;
 mod schemes;
 mod stability;
 mod two_grids;

@@ -18,8 +18,8 @@ use crate::step_end::StepEnd;
 /// of a bond is a function of its largest stretch so far ([`Softening`]).
 ///
 /// The largest stretches are stored at the ends of accepted steps. In between, the force at displacement u is
-/// that of bonds stretched to u since the last accepted step: stages and static solvers include the softening
-/// of the current step, and the tangent is the derivative of this force. The elastic energy is that of the
+/// the force of bonds stretched to u since the last accepted step: stages and static solvers include the softening
+/// of the current step, and the tangent is the derivative of this force. The elastic energy is computed with the
 /// remaining stiffness. Energy dissipated by softening is added to that of breaking bonds. A bond breaks at
 /// the end of its curve.
 ///

@@ -60,7 +60,7 @@ impl<L: VectorLaw, const D: usize> Force for SofteningForce<L, D> {
         self.energy_of(&self.kept(), t, u)
     }
 
-    /// Dissipated energy is counted as that of lost stiffness; the remaining energy changes with the temperature at
+    /// Dissipated energy is counted as the energy of lost stiffness; the remaining energy changes with the temperature at
     /// the stiffness before the step.
     fn heating(&self, step: &StepEnd<'_>) -> f64 {
         let frozen = Softened {

@@ -114,8 +114,8 @@ pub(super) fn take_bonds<L: Kinematics, const D: usize>(
         tally.broken.add(count as u64);
         let place = [arrays.place(bonds.chunk), lane];
         let (loss, lost) = loss_of::<L, D>(arrays, rule, place, i, |k| [intact[k], broken[k]]);
-        let judged = loss.judge(rule.states, [i, i], rule.volumes[i], rule.step);
-        tally.lose(i, judged, &lost);
+        let energy = loss.dissipated(rule.states, [i, i], rule.volumes[i], rule.step);
+        tally.lose(i, energy, &lost);
     }
     for (k, (intact, broken)) in intact.iter_mut().zip(broken).enumerate() {
         *intact &= !broken;

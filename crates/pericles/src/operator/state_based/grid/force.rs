@@ -29,7 +29,7 @@ use crate::parallel::{Cost, components_mut, for_each_chunk, for_each_part};
 use crate::space::PointCloud;
 use crate::step_end::StepEnd;
 
-/// Force density of linear peridynamic solids on a lattice, N/m³: that of
+/// Force density of linear peridynamic solids on a lattice, N/m³: the force of
 /// [`LinearSolidForce`](crate::operator::LinearSolidForce), several times faster.
 ///
 /// All nodes share one stencil, as in [`GridForce`](crate::operator::GridForce): both passes compute eight
@@ -50,7 +50,7 @@ pub struct LinearSolidGrid<L: Kinematics, const D: usize> {
     geometric: Option<Vec<Vec<u8>>>,
     held: Option<Vec<u8>>,
     precut: Vec<(u64, u8)>,
-    /// Factors of points, those of ghosts after own points.
+    /// Factors of points, ghosts after own points.
     pub(super) states: States,
     /// s = B/m in padded rows.
     stiffness: Padded<f64, 1>,
@@ -84,7 +84,7 @@ crate::saved! {
 struct Work<const D: usize> {
     u: Padded<f64, D>,
     pressure: Padded<f64, 1>,
-    /// p of all points, those of ghosts after own points.
+    /// p of all points, ghosts after own points.
     of_points: Vec<f64>,
     wanted: WantedPoints,
 }
@@ -261,7 +261,7 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
         Cost::bonds(self.directed_bonds).on(on, self.cloud.len())
     }
 
-    /// Sets p = A θ/m with the thermal pull of all points, those of ghosts after own points.
+    /// Sets p = A θ/m with the thermal pull of all points, ghosts after own points.
     fn pressures_into(&self, values: Field<'_>, out: &mut [f64]) {
         let n = self.cloud.len();
         let (own, ghosts) = out.split_at_mut(n);

@@ -34,8 +34,8 @@ const ON_LATTICE: &str = "viscous and plastic materials store the history of eac
 
 impl InelasticSolidBody<'_> {
     /// Returns why a body with these features cannot be viscous or plastic; `None` if it can.
-    pub fn refusal(features: Features) -> Option<&'static str> {
-        Limit::refusal(LIMITS, features)
+    pub fn rejection(features: Features) -> Option<&'static str> {
+        Limit::rejection(LIMITS, features)
     }
 
     /// Returns the operator, which uses a list.

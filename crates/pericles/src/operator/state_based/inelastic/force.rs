@@ -26,7 +26,7 @@ use rayon::prelude::*;
 /// The force state of a point is t_ij = (w/m)(A θ r + B (e − e_x)) with the inelastic extension e_x of the
 /// directed bond. Viscous, plastic and elastic materials can be combined. Bonds break at their critical
 /// stretch. Inelastic extensions are updated at the end of each accepted step. In between, the force at time
-/// t and displacement u is that of a step from the last accepted state to t: stages and static solvers
+/// t and displacement u belongs to a step from the last accepted state to t: stages and static solvers
 /// include the viscosity and plasticity of the current step, and the tangent is the derivative of this force.
 ///
 /// Energy dissipated by flow and relaxation is added to that of breaking bonds

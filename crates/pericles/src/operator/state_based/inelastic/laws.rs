@@ -83,7 +83,7 @@ pub(super) struct Trial {
     pub strain: f64,
     /// Norm |t| of the trial state.
     pub norm: f64,
-    /// Equivalent strain of its deviatoric extensions; that of the plastic flow is 1 − γ times this value.
+    /// Equivalent strain of its deviatoric extensions; the equivalent strain of the plastic flow is 1 − γ times this value.
     pub equivalent: f64,
 }
 

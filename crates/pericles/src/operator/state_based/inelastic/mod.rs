@@ -24,6 +24,8 @@
 //! | `kernels`, `tangent` | loops over points and bonds: values, force, energy; derivatives |
 //! | `force`, `passes`, `criterion` | operator; bond failure by stress |
 //! | `body` | input of the operator |
+//!
+//! Bond failure is evaluated before plastic flow, so that the force at the end of a step belongs to the stored state.
 
 mod advance;
 mod body;

@@ -100,7 +100,7 @@ impl<L: Kinematics, const D: usize> TwoPass for InelasticSolidForce<L, D> {
         });
     }
 
-    /// Viscosity and plasticity reduce the stiffness: the bound is that of the elastic solid.
+    /// Viscosity and plasticity reduce the stiffness: the bound of the elastic solid holds.
     fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {
         self.solid.frequency_bound(density)
     }

@@ -213,7 +213,7 @@ for_each_instruction_set! {
 
 for_each_instruction_set! {
     /// Adds the derivative of the force density of the rows in a direction; the fourth entry of the rows of
-    /// the direction is the change of P, and `changes` contains those of S and G.
+    /// the direction is the change of P, and `changes` contains the changes of S and G.
     pub(super) fn tangent_rows [L: Kinematics, const D: usize] <L, D> (
         bonds: &SolidBonds<'_>,
         reliefs: &Reliefs<'_>,

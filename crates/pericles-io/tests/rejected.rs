@@ -1,6 +1,6 @@
 //! Files that all readers must reject: those that declare more content than they have, and findings of
 //! fuzzing. Each is rejected with a message that names it, without allocating the declared memory. New
-//! findings are added to `tests/refused/`, with the file extension of their format.
+//! findings are added to `tests/rejected/`, with the file extension of their format.
 
 use std::fs;
 use std::path::Path;
@@ -11,7 +11,7 @@ use pericles_io::{Container, SURFACE_ENDINGS, parse_fields, parse_points, parse_
 const MEMORY: u64 = 1 << 26;
 
 /// Returns the error of reading a file; `None` if it is accepted.
-fn refusal(path: &Path) -> Option<String> {
+fn rejection(path: &Path) -> Option<String> {
     let content = fs::read(path).unwrap();
     let ending = path.extension().unwrap().to_str().unwrap();
     match ending {
@@ -36,7 +36,7 @@ fn refusal(path: &Path) -> Option<String> {
 
 #[test]
 fn all_files_in_the_folder_are_rejected() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/refused");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/rejected");
     let mut paths: Vec<_> = fs::read_dir(folder)
         .unwrap()
         .map(|entry| entry.unwrap().path())
@@ -44,7 +44,7 @@ fn all_files_in_the_folder_are_rejected() {
     paths.sort();
     assert!(paths.len() >= 20);
     for path in paths {
-        let message = refusal(&path).unwrap_or_else(|| panic!("{} is accepted", path.display()));
+        let message = rejection(&path).unwrap_or_else(|| panic!("{} is accepted", path.display()));
         let name = path.file_name().unwrap().to_str().unwrap();
         assert!(message.contains(name), "{message}");
     }

@@ -10,7 +10,7 @@ use crate::common::points;
 #[test]
 fn invalid_options_are_errors() {
     let (system, _, fine, _) = plate();
-    let refused = |ratio, fine| {
+    let rejected = |ratio, fine| {
         let options = MultiTimeStepOptions {
             fine,
             ..options(ratio, &vec![])
@@ -21,15 +21,15 @@ fn invalid_options_are_errors() {
         }
     };
     assert!(matches!(
-        refused(0, Fine::Fixed(vec![fine.clone()])),
+        rejected(0, Fine::Fixed(vec![fine.clone()])),
         PericlesError::StepRatio { ratio: 0 }
     ));
     assert!(matches!(
-        refused(2, Fine::Fixed(vec![fine.clone(), vec![]])),
+        rejected(2, Fine::Fixed(vec![fine.clone(), vec![]])),
         PericlesError::FineRegionEmpty { region: 1 }
     ));
     assert!(matches!(
-        refused(2, Fine::Fixed(vec![fine.clone(), fine[7..9].to_vec()])),
+        rejected(2, Fine::Fixed(vec![fine.clone(), fine[7..9].to_vec()])),
         PericlesError::FineRegionsOverlap {
             first: 0,
             second: 1,
@@ -38,7 +38,7 @@ fn invalid_options_are_errors() {
     ));
     let strip = points(system.cloud(), |x, _, _| (x - 0.5).abs() < 0.021);
     assert!(matches!(
-        refused(2, Fine::Fixed(vec![strip])),
+        rejected(2, Fine::Fixed(vec![strip])),
         PericlesError::FineRegionThin { axis: 'x', .. }
     ));
     for follow in [
@@ -56,7 +56,7 @@ fn invalid_options_are_errors() {
         },
     ] {
         assert!(matches!(
-            refused(2, Fine::Adaptive(follow)),
+            rejected(2, Fine::Adaptive(follow)),
             PericlesError::SchemeParameter { .. }
         ));
     }
