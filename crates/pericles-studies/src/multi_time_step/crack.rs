@@ -68,7 +68,7 @@ pub(super) fn fine_step(case: &Case<'_>) -> Result<Found, RunError> {
 }
 
 /// Multirate method at the end, compared with the single-rate method `beside` with the fine step everywhere; and its
-/// evaluations per point and step, counted and by the model of its cost.
+/// evaluations per point and step, counted and by the model of its cost, with the initial steps that are fine everywhere.
 pub(super) fn failure(case: &Case<'_>) -> Result<Found, RunError> {
     let ratio = case.count("ratio")? as u32;
     let fine = at(case, Method::of(case, "beside")?, END, ratio, &[])?;
@@ -88,8 +88,10 @@ pub(super) fn failure(case: &Case<'_>) -> Result<Found, RunError> {
     };
     let points = (report.points * two.steps()) as f64;
     let evaluations = two.system().evaluated_points() as f64 / points;
+    let starting = f64::from(report.stages * report.ratio) * report.starting_steps as f64;
+    let model = report.evaluations() * report.steps as f64 + starting;
     Ok(found
         .value("fraction", report.mean_fraction)
         .value("evaluations", evaluations)
-        .value("model", report.evaluations()))
+        .value("model", model / two.steps() as f64))
 }
