@@ -76,11 +76,11 @@ class Modes(Report):
 
 
 class Reproduction(Report):
-    """A reproduced study; ``passed`` says whether all rows are within their tolerances."""
+    """A reproduced study; ``passed`` says whether all judged rows pass."""
 
     @property
     def passed(self) -> bool:
-        """Whether all rows with a tolerance are within it."""
+        """Whether all judged rows pass."""
         return bool(self["pass"])
 
 

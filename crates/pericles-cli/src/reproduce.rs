@@ -72,7 +72,7 @@ pub(crate) fn reproduce(args: &ReproduceArgs) -> Result<Exit, CliError> {
         let judged = rows.iter().filter_map(Row::pass).count();
         let failed = rows.iter().filter(|row| row.pass() == Some(false)).count();
         console::print(format_args!(
-            "{} of {judged} rows with a tolerance pass; {}",
+            "{} of {judged} judged rows pass; {}",
             judged - failed,
             duration(seconds)
         ))?;

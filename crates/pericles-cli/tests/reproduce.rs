@@ -2,7 +2,9 @@
 
 mod common;
 
+use std::collections::BTreeMap;
 use std::fs;
+use std::path::Path;
 
 use common::{fail, succeed, text};
 use serde_json::Value;
@@ -110,4 +112,46 @@ fn all_studies_are_listed() {
             .filter(|line| line.split(' ').next() == Some(id));
         assert_eq!(named.count(), 1, "{list}");
     }
+}
+
+/// Pages written by `book/verification.py` list all studies with their titles and papers, and no others; no comparison
+/// fails, and the book contains the page of every topic.
+#[test]
+fn the_verification_pages_list_all_studies() {
+    let book = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../book/src");
+    let read = |name: &str| fs::read_to_string(book.join(name)).unwrap();
+    let summary = [read("verification.md"), read("SUMMARY.md")];
+    let mut expected: BTreeMap<&str, Vec<String>> = BTreeMap::new();
+    for study in pericles_studies::studies() {
+        let (id, title, paper) = (study.id, study.title, study.paper);
+        let (topic, _) = id.split_once('/').unwrap();
+        let anchor = id.replace('/', "");
+        let row = format!("| [{id}](#{anchor}) | {title} | {paper} |");
+        expected.entry(topic).or_default().push(row);
+    }
+    for (topic, studies) in &expected {
+        let name = format!("verification/{topic}.md");
+        for page in &summary {
+            assert!(page.contains(&format!("({name})")), "{name}:\n{page}");
+        }
+        let page = read(&name);
+        let listed: Vec<&str> = page.lines().filter(|row| row.starts_with("| [")).collect();
+        assert_eq!(listed.len(), studies.len(), "{name}: {listed:#?}");
+        for (row, study) in listed.iter().zip(studies) {
+            let [rows, pass] = *row
+                .strip_prefix(study.as_str())
+                .unwrap_or_else(|| panic!("{name}: {row} is not {study}: run book/verification.py"))
+                .split('|')
+                .map(str::trim)
+                .filter(|cell| !cell.is_empty())
+                .collect::<Vec<_>>()
+            else {
+                panic!("{row}");
+            };
+            assert_eq!(rows, pass, "{row}");
+        }
+    }
+    let pages = fs::read_dir(book.join("verification")).unwrap();
+    // The page of the tests is written by hand.
+    assert_eq!(pages.count(), expected.len() + 1);
 }

@@ -1,8 +1,9 @@
 //! Studies that reproduce published results and compare them with the printed values.
 //!
 //! A [`Study`] is a data file: its rows with the printed and the expected values, and the functions that compute
-//! them with their arguments. A row with an expected value is judged ([`Row`]); a printed value known not to be
-//! reproducible is shown beside the verified one that is judged, with the reason. Studies, their data and their
+//! them with their arguments. Every row but wall times is judged ([`Row`]), by a tolerance or a one-sided bound, and
+//! never by a clock; a printed value known not to be reproducible is shown beside the verified one that is judged,
+//! with the reason. Studies, their data and their
 //! decks are part of the library, so they run from any directory; they write no files except requested figures, and
 //! print nothing. The tests run the same studies.
 //!
@@ -42,7 +43,7 @@ use std::sync::LazyLock;
 use pericles_run::RunError;
 
 pub use context::Context;
-pub use row::Row;
+pub use row::{Row, Rule};
 pub use study::Study;
 pub use table::table;
 

@@ -4,6 +4,38 @@ use std::borrow::Cow;
 
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
+/// Rule by which a row is judged.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Rule {
+    /// At most this difference from the expected value, in the unit of the row.
+    Absolute(f64),
+    /// At most this fraction of the expected value.
+    Relative(f64),
+    /// At most the expected value.
+    AtMost,
+    /// At least the expected value.
+    AtLeast,
+}
+
+impl Rule {
+    /// Tolerance of a two-sided rule.
+    pub fn tolerance(self) -> Option<f64> {
+        match self {
+            Self::Absolute(tolerance) | Self::Relative(tolerance) => Some(tolerance),
+            Self::AtMost | Self::AtLeast => None,
+        }
+    }
+
+    /// Name of the bound of a one-sided rule.
+    fn bound(self) -> Option<&'static str> {
+        match self {
+            Self::Absolute(_) | Self::Relative(_) => None,
+            Self::AtMost => Some("upper bound"),
+            Self::AtLeast => Some("lower bound"),
+        }
+    }
+}
+
 /// Value computed by a study, SI units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
@@ -11,14 +43,12 @@ pub struct Row {
     pub case: String,
     /// Value printed in the paper.
     pub printed: Option<f64>,
-    /// Value to judge by; a row without it is for information.
+    /// Value to judge by; only wall times have none.
     pub expected: Option<f64>,
     /// Computed value; `None` if the measured event did not happen.
     pub computed: Option<f64>,
-    /// Allowed difference: relative to |expected| unless `absolute`.
-    pub tolerance: f64,
-    /// True if the tolerance is in the unit of the row.
-    pub absolute: bool,
+    /// Comparison with the expected value.
+    pub rule: Rule,
     /// Remark for the reader.
     pub note: String,
     /// SI unit for the table; empty for a pure number.
@@ -26,7 +56,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// Creates a row for information.
+    /// Creates a row that is not judged.
     pub fn new(
         case: impl Into<String>,
         unit: impl Into<Cow<'static, str>>,
@@ -37,27 +67,27 @@ impl Row {
             printed: None,
             expected: None,
             computed,
-            tolerance: 0.0,
-            absolute: false,
+            rule: Rule::Absolute(0.0),
             note: String::new(),
             unit: unit.into(),
         }
     }
 
-    /// Judges the row by an absolute difference from the expected value.
-    pub fn within(mut self, expected: f64, tolerance: f64) -> Self {
+    /// Judges the row by an expected value.
+    pub fn judged(mut self, expected: f64, rule: Rule) -> Self {
         self.expected = Some(expected);
-        self.tolerance = tolerance;
-        self.absolute = true;
+        self.rule = rule;
         self
     }
 
+    /// Judges the row by an absolute difference from the expected value.
+    pub fn within(self, expected: f64, tolerance: f64) -> Self {
+        self.judged(expected, Rule::Absolute(tolerance))
+    }
+
     /// Judges the row by a difference relative to the expected value.
-    pub fn within_share(mut self, expected: f64, tolerance: f64) -> Self {
-        self.expected = Some(expected);
-        self.tolerance = tolerance;
-        self.absolute = false;
-        self
+    pub fn within_share(self, expected: f64, tolerance: f64) -> Self {
+        self.judged(expected, Rule::Relative(tolerance))
     }
 
     /// Sets the value printed in the paper.
@@ -72,28 +102,48 @@ impl Row {
         self
     }
 
-    /// Returns true if the row is within its tolerance; `None` if it is not judged. A missing or NaN value fails.
+    /// Returns whether the rule is satisfied; `None` if the row is not judged. A missing, infinite or NaN value
+    /// fails.
     pub fn pass(&self) -> Option<bool> {
         let expected = self.expected?;
-        let scale = if self.absolute { 1.0 } else { expected.abs() };
-        let error = self.computed.map(|computed| (computed - expected).abs());
+        let Some(computed) = self.computed.filter(|computed| computed.is_finite()) else {
+            return Some(false);
+        };
+        let error = (computed - expected).abs();
         // A comparison with NaN is false.
-        Some(error.is_some_and(|error| error <= self.tolerance * scale))
+        Some(match self.rule {
+            Rule::Absolute(tolerance) => error <= tolerance,
+            Rule::Relative(tolerance) => error <= tolerance * expected.abs(),
+            Rule::AtMost => computed <= expected,
+            Rule::AtLeast => computed >= expected,
+        })
+    }
+
+    /// Remark, which names the bound of a one-sided rule.
+    fn remark(&self) -> String {
+        let bound = self.expected.and_then(|_| self.rule.bound());
+        let parts = bound.into_iter().chain([&self.note[..]]);
+        let parts: Vec<&str> = parts.filter(|part| !part.is_empty()).collect();
+        parts.join("; ")
     }
 }
 
+/// A one-sided bound is an expected value without a tolerance, and the remark begins with `upper bound` or `lower
+/// bound`.
 impl Serialize for Row {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let finite = |number: Option<f64>| number.filter(|x| x.is_finite());
+        let tolerance = self.expected.and_then(|_| self.rule.tolerance());
+        let absolute = self.expected.is_some() && !matches!(self.rule, Rule::Relative(_));
         let mut row = serializer.serialize_struct("Row", 8)?;
         row.serialize_field("case", &self.case)?;
         row.serialize_field("printed", &finite(self.printed))?;
         row.serialize_field("expected", &finite(self.expected))?;
         row.serialize_field("computed", &finite(self.computed))?;
-        row.serialize_field("tolerance", &self.expected.map(|_| self.tolerance))?;
-        row.serialize_field("absolute", &self.absolute)?;
+        row.serialize_field("tolerance", &tolerance)?;
+        row.serialize_field("absolute", &absolute)?;
         row.serialize_field("pass", &self.pass())?;
-        row.serialize_field("note", &self.note)?;
+        row.serialize_field("note", &self.remark())?;
         row.end()
     }
 }
@@ -118,12 +168,30 @@ mod tests {
     }
 
     #[test]
+    fn bounds_are_one_sided_and_inclusive() {
+        let row = |computed: f64| Row::new("a", "", Some(computed));
+        let pass = |computed, rule| row(computed).judged(2.0, rule).pass();
+        assert_eq!(pass(-1e9, Rule::AtMost), Some(true));
+        assert_eq!(pass(2.0, Rule::AtMost), Some(true));
+        assert_eq!(pass(2.1, Rule::AtMost), Some(false));
+        assert_eq!(pass(1e9, Rule::AtLeast), Some(true));
+        assert_eq!(pass(2.0, Rule::AtLeast), Some(true));
+        assert_eq!(pass(1.9, Rule::AtLeast), Some(false));
+    }
+
+    #[test]
     fn nan_and_missing_values_fail() {
         for computed in [None, Some(f64::NAN), Some(f64::INFINITY)] {
             let row = Row::new("a", "", computed);
             assert_eq!(row.clone().within(1.0, 1e300).pass(), Some(false));
             assert_eq!(row.clone().within_share(1.0, 0.1).pass(), Some(false));
-            assert_eq!(row.pass(), None, "information is never judged");
+            assert_eq!(row.clone().judged(1.0, Rule::AtMost).pass(), Some(false));
+            assert_eq!(row.clone().judged(1.0, Rule::AtLeast).pass(), Some(false));
+            assert_eq!(
+                row.pass(),
+                None,
+                "a row without an expected value is not judged"
+            );
         }
         let doubtful = Row::new("a", "", Some(1.0));
         assert_eq!(doubtful.clone().within(1.0, f64::NAN).pass(), Some(false));
@@ -138,6 +206,17 @@ mod tests {
             json!({"case": "x", "printed": 1.2, "expected": 1.0, "computed": 2.0, "tolerance": 0.5,
                    "absolute": true, "pass": false, "note": "why"})
         );
+        let bound = Row::new("z", "", Some(2.0)).judged(1.0, Rule::AtLeast);
+        for (row, note) in [
+            (bound.clone(), "lower bound"),
+            (bound.note("why"), "lower bound; why"),
+        ] {
+            assert_eq!(
+                serde_json::to_value(row).unwrap(),
+                json!({"case": "z", "printed": null, "expected": 1.0, "computed": 2.0, "tolerance": null,
+                       "absolute": true, "pass": true, "note": note})
+            );
+        }
         let lost = Row::new("y", "s", Some(f64::NAN));
         assert_eq!(
             serde_json::to_value(lost).unwrap(),

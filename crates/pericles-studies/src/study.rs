@@ -55,10 +55,10 @@ impl Topic {
 }
 
 impl Study {
-    /// Returns unknown functions and figures in the data, and rows without a value or tolerance.
+    /// Returns unknown functions and figures in the data, and rows that are not judged by exactly one rule.
     #[cfg(test)]
-    pub(crate) fn unknown_names(&self) -> Vec<String> {
-        self.data.unknown_names(self.measures)
+    pub(crate) fn faults(&self) -> Vec<String> {
+        self.data.faults(self.measures)
     }
 
     /// Computes the rows and draws the figures.

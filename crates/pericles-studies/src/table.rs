@@ -2,7 +2,7 @@
 
 use pericles_run::units::{percent, quantity, significant};
 
-use crate::row::Row;
+use crate::row::{Row, Rule};
 
 const HEADER: [&str; 6] = [
     "case",
@@ -24,10 +24,12 @@ pub fn table(rows: &[Row]) -> String {
             case += &format!(" [{}]", notes.len());
         }
         let number = |value: Option<f64>| value.map_or("-".into(), |value| shown(value, &row.unit));
-        let tolerance = match (row.expected, row.absolute) {
+        let tolerance = match (row.expected, row.rule) {
             (None, _) => "-".into(),
-            (_, true) => format!("± {}", shown(row.tolerance, &row.unit)),
-            (_, false) => format!("± {}", percent(row.tolerance)),
+            (_, Rule::Absolute(tolerance)) => format!("± {}", shown(tolerance, &row.unit)),
+            (_, Rule::Relative(tolerance)) => format!("± {}", percent(tolerance)),
+            (_, Rule::AtMost) => "at most".into(),
+            (_, Rule::AtLeast) => "at least".into(),
         };
         let verdict = match row.pass() {
             None => "-",
@@ -92,10 +94,11 @@ mod tests {
                 .note("too small by √2"),
             Row::new("arms", "", None).within(2.0, 0.0),
             Row::new("cost", "s", Some(f64::NAN)),
+            Row::new("error", "", Some(0.25)).judged(0.5, Rule::AtMost),
         ];
         let text = table(&rows);
         let lines: Vec<&str> = text.lines().collect();
-        assert_eq!(lines.len(), 7, "{text}");
+        assert_eq!(lines.len(), 8, "{text}");
         let cells = |line: usize| -> Vec<&str> { lines[line].split('|').map(str::trim).collect() };
         assert_eq!(
             cells(2),
@@ -121,8 +124,12 @@ mod tests {
         );
         assert_eq!(cells(4), ["arms", "-", "2.000", "-", "± 0", "FAILS"]);
         assert_eq!(cells(5), ["cost", "-", "-", "NaN s", "-", "-"]);
-        assert_eq!(lines[6], "[1] too small by √2");
-        let bars: Vec<usize> = lines[2..6]
+        assert_eq!(
+            cells(6),
+            ["error", "-", "0.5000", "0.2500", "at most", "holds"]
+        );
+        assert_eq!(lines[7], "[1] too small by √2");
+        let bars: Vec<usize> = lines[2..7]
             .iter()
             .map(|line| line.chars().take_while(|&c| c != '|').count())
             .collect();

@@ -25,6 +25,8 @@ pub(super) const SPACING: f64 = 0.1;
 /// Number of nodes from the middle to an end.
 pub(super) const HALF: usize = 100;
 const REACH: usize = 7;
+/// Displaced node of [`Source::Node`], beside the middle.
+pub(super) const NODE: usize = HALF - 30;
 /// Half the width of the soft part; nodes on its boundary are hard.
 const SOFT: f64 = 4.0;
 const WAVELET: Ricker = Ricker {
@@ -95,6 +97,8 @@ pub(super) fn stencil() -> Result<LatticeStencil, RunError> {
 pub(super) enum Source {
     /// Initial displacement u = exp(−x²).
     Bell,
+    /// Displacement of one of the node [`NODE`].
+    Node,
     /// Ricker wavelet prescribed at x = 0, released when it is over.
     Wavelet,
     /// No excitation.
@@ -186,6 +190,7 @@ impl Bar {
                     *u = (-x * x).exp();
                 }
             }
+            Source::Node => state.u[NODE + self.margin] = 1.0,
             Source::Rest => {}
             Source::Wavelet => {
                 let motion = PrescribedMotion::new(
@@ -239,7 +244,7 @@ impl Bar {
     ) -> Result<(), RunError> {
         let release = match self.source {
             Source::Wavelet => (RELEASE / dt).round() as u64,
-            Source::Bell | Source::Rest => steps,
+            Source::Bell | Source::Node | Source::Rest => steps,
         };
         let mut simulation = self.simulation(kernels, dt, steps)?;
         let mut run = |simulation: &mut Simulation, until: u64| -> Result<(), RunError> {

@@ -1,4 +1,4 @@
-//! Time and memory of absorbing boundaries by number of steps, compared with a larger body.
+//! Errors, memory and wall time of absorbing boundaries by number of steps, compared with a larger body.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -20,13 +20,11 @@ use pericles_waves::absorbing::{
 use super::bar::micromodulus;
 use crate::common::{cells, difference, finish, largest};
 use crate::data::{Case, Found};
-use crate::row::Row;
 
 type Micromodulus = fn(f64) -> f64;
 
 /// Homogeneous bar −10 … 10 with a bell-shaped pulse in the middle, E = ρ = 1.
 struct Bar {
-    name: String,
     reach: usize,
     spacing: f64,
     /// Micromodulus C(ξ).
@@ -54,7 +52,6 @@ impl Bar {
         let micromoduli: [(&str, Micromodulus); 2] =
             [("gaussian", micromodulus), ("constant", constant)];
         Ok(Self {
-            name: case.text("name")?,
             reach: case.count("reach")?,
             spacing: case.number("spacing")?,
             micromodulus: case.one_of("micromodulus", &micromoduli)?,
@@ -153,44 +150,37 @@ struct Measured {
     bytes: usize,
 }
 
-/// Compares the methods that give the same displacements.
+/// Largest errors of the methods that give the displacements of the larger body, their memory, and the wall times with
+/// kernels or fits.
 pub(super) fn compared(place: &Case<'_>) -> Result<Found, RunError> {
     let (case, steps, full) = (Bar::of(place)?, place.count("steps")?, place.context.full);
     let stencil = case.stencil()?;
-    let label = |what: &str| format!("{}, N = {steps}: {what}", case.name);
-    let time = |what: &str, seconds: f64| Row::new(label(what), "s", Some(seconds));
     // Reflections from the ends of the larger body have travelled to them and back.
     let cone = 0.5 * stencil.fastest() * case.dt * steps as f64;
     let (large, seconds_large) = case.run(steps, cone as usize + case.margin, Vec::new())?;
     let extra = (large.len() - case.run(0, 0, Vec::new())?.0.len()) / 2;
     let apart = |u: &[f64]| difference(&large[extra..], u);
-    let (_, interior) = case.run(steps, 0, Vec::new())?;
-    let mut rows = vec![
-        time("body alone", interior),
-        time("larger body", seconds_large).note(format!("{} nodes", large.len())),
-    ];
 
     let began = Instant::now();
     let step = LatticeStep::verlet(case.dt);
     let kernels = GhostKernels::shift(contour_kernels(&stencil, step, steps));
     let seconds_kernels = began.elapsed().as_secs_f64();
     let blocked = case.with_ends(steps, || BlockedHistory::new(kernels.clone()))?;
-    let mega = |bytes: usize| format!("{:.2} MB for both boundaries", 1e-6 * bytes as f64);
-    rows.push(time("kernels", seconds_kernels));
-    rows.push(time("by blocks, kernels cached", blocked.seconds).note(mega(blocked.bytes)));
-    let all = seconds_kernels + blocked.seconds;
-    rows.push(time("by blocks, with kernels", all).note(format!(
-        "{:.2} of the time of the larger body",
-        all / seconds_large
-    )));
-    let error = apart(&blocked.u);
-    rows.push(Row::new(label("by blocks, error"), "", Some(error)).within(0.0, 1e-12));
+    let form = HistoryCost::estimate(&stencil, step, steps).cheapest(false);
+    let mut found = Found::from([
+        ("nodes", large.len() as f64),
+        ("larger-seconds", seconds_large),
+        ("blocks", apart(&blocked.u)),
+        ("blocks-memory", 1e-6 * blocked.bytes as f64),
+        ("blocks-seconds", seconds_kernels + blocked.seconds),
+    ])
+    .text("form", format!("{form:?}"));
     let most = if full { MOST_DIRECT_LONG } else { MOST_DIRECT };
     if steps <= most {
         let direct = case.with_ends(steps, || DirectHistory::new(kernels.clone()))?;
-        rows.push(time("direct sums, kernels cached", direct.seconds).note(mega(direct.bytes)));
-        let error = apart(&direct.u);
-        rows.push(Row::new(label("direct sums, error"), "", Some(error)).within(0.0, 1e-12));
+        found = found
+            .value("sums", apart(&direct.u))
+            .value("sums-memory", 1e-6 * direct.bytes as f64);
     }
 
     let began = Instant::now();
@@ -203,33 +193,29 @@ pub(super) fn compared(place: &Case<'_>) -> Result<Found, RunError> {
     let seconds_fit = began.elapsed().as_secs_f64();
     match fit {
         Ok(fit) => {
-            let terms = fit.terms();
             let made = case.with_ends(steps, || ExponentialHistory::new(fit.clone()))?;
-            rows.push(time("fit of exponentials", seconds_fit).note(format!(
-                "{terms} terms of rank one, residual {:.1e}",
-                fit.residual
-            )));
-            let all = seconds_fit + made.seconds;
-            rows.push(time("by exponentials, with the fit", all).note(format!(
-                "{:.2} of the time of the larger body; {}",
-                all / seconds_large,
-                mega(made.bytes)
-            )));
-            let error = apart(&made.u);
-            let row = Row::new(label("by exponentials, error"), "", Some(error));
-            rows.push(row.within(0.0, case.tolerance));
-        }
-        Err(AbsorbingError::Fit { residual, fits, .. }) => {
-            let note = format!(
-                "no fit within the tolerance after {fits} attempts: best residual {residual:.1e}"
+            let text = format!(
+                "{} terms of rank one, residual {:.1e}, {:.2} MB",
+                fit.terms(),
+                fit.residual,
+                1e-6 * made.bytes as f64
             );
-            rows.push(time("fit of exponentials", seconds_fit).note(note));
+            Ok(found
+                .value("exponentials", apart(&made.u))
+                .value("exponentials-seconds", seconds_fit + made.seconds)
+                .text("fit", text))
         }
-        Err(error) => return Err(PericlesError::from(error).into()),
+        Err(AbsorbingError::Fit { residual, fits, .. }) => Ok(found
+            .value("exponentials", None)
+            .value("exponentials-seconds", None)
+            .text(
+                "fit",
+                format!(
+                    "no fit within the tolerance after {fits} attempts: best residual {residual:.1e}"
+                ),
+            )),
+        Err(error) => Err(PericlesError::from(error).into()),
     }
-    let form = HistoryCost::estimate(&stencil, step, steps).cheapest(false);
-    rows.push(Row::new(label("chosen"), "", None).note(format!("{form:?}")));
-    Ok(rows.into())
 }
 
 /// Runs a million steps close to the stability limit, in which nothing may grow.

@@ -9,6 +9,7 @@ mod bar;
 mod cost;
 mod kernels;
 mod layer;
+mod long_time;
 mod midpoint;
 mod strip;
 mod tables;
@@ -36,6 +37,7 @@ pub(super) const TOPIC: Topic = Topic {
         ("fields", tables::fields),
         ("interfaces", tables::interfaces),
         ("wavelet", tables::wavelet),
+        ("long-time", long_time::long_time),
         ("cost", cost::compared),
         ("million-steps", cost::million_steps),
         ("reflection", layer::reflected),

@@ -12,7 +12,7 @@ use super::case::{Case, Found, Measure, Shared, number};
 use super::format::{Figure, Rows, StudyData, Style, When};
 use super::template;
 use crate::context::Context;
-use crate::row::Row;
+use crate::row::{Row, Rule};
 
 /// Computes the rows of a study and draws its figures.
 ///
@@ -134,14 +134,29 @@ impl Expansion<'_> {
         let number = |cells: &Option<Value>| number_of(place.entry(cells.as_ref()), place, &found);
         let mut made = Row::new(text(label)?, row.unit.clone().unwrap_or_default(), computed);
         made.printed = number(&row.printed)?;
-        made.expected = match &row.expected {
-            Some(Value::String(name)) if name == "printed" => made.printed,
-            expected => number(expected)?,
-        };
-        made.absolute = row.absolute.is_some() && made.expected.is_some();
-        let tolerance = row.absolute.as_ref().or(row.relative.as_ref()).cloned();
-        if made.expected.is_some() {
-            made.tolerance = number(&tolerance)?.unwrap_or_default();
+        let judged = [
+            (&row.below, Some(Rule::AtMost)),
+            (&row.above, Some(Rule::AtLeast)),
+            (&row.expected, None),
+        ];
+        let judged = judged.into_iter().find(|(value, _)| value.is_some());
+        if let Some((value, rule)) = judged {
+            let expected = match value {
+                Some(Value::String(name)) if name == "printed" => made.printed,
+                // A result that is missing or NaN fails the row.
+                Some(Value::String(_)) => Some(number(value)?.unwrap_or(f64::NAN)),
+                value => number(value)?,
+            };
+            let Some(expected) = expected else {
+                return Ok(());
+            };
+            let tolerance = |cells| Ok::<_, RunError>(number(cells)?.unwrap_or_default());
+            let rule = match (rule, &row.absolute) {
+                (Some(rule), _) => rule,
+                (None, absolute @ Some(_)) => Rule::Absolute(tolerance(absolute)?),
+                (None, None) => Rule::Relative(tolerance(&row.relative)?),
+            };
+            made = made.judged(expected, rule);
         }
         if let Some(Value::String(note)) = place.entry(row.note.as_ref()) {
             made.note = text(note)?;
@@ -281,6 +296,10 @@ mod tests {
     }
 
     fn rows_of(text: &str, full: bool) -> Result<Vec<Row>, RunError> {
+        rows_by(text, full, &[("sum", sum)])
+    }
+
+    fn rows_by(text: &str, full: bool, measures: &'static [Measure]) -> Result<Vec<Row>, RunError> {
         let text = format!("paper = \"\"\ntitle = \"\"\n{text}");
         let data = StudyData::read(&text).unwrap();
         let context = Context {
@@ -288,7 +307,7 @@ mod tests {
             figures: None,
             tell: &|_| {},
         };
-        rows(&data, &[("sum", sum)], &context)
+        rows(&data, measures, &context)
     }
 
     const AXES: &str = r#"
@@ -315,21 +334,60 @@ absolute = 30
         assert_eq!(labels[0], "a = 1, b = 4: 14.0");
         assert_eq!(labels[1..3], ["runs", "a = 1, b = 5: 15.0"]);
         assert_eq!(labels[4], "a = 3, b = 4: 34.0");
-        assert_eq!(labels.len(), 8);
-        assert_eq!(rows_of(AXES, true).unwrap().len(), 12);
-        // A list of one entry holds for all places, and NaN means no number.
+        // A list of one entry holds for all places, and there is no row where the expected value is NaN.
+        assert_eq!(labels.len(), 7);
+        assert_eq!(rows_of(AXES, true).unwrap().len(), 11);
         let expected: Vec<Option<f64>> = found.iter().map(|row| row.expected).collect();
         let numbers = [14.0, 14.0, 14.0, 15.0, 34.0, 34.0].map(Some);
         assert_eq!(expected[..6], numbers);
-        assert_eq!(expected[6..], [None, Some(35.0)]);
-        assert_eq!((found[0].tolerance, found[0].absolute), (0.5, false));
-        assert_eq!((found[1].tolerance, found[1].absolute), (30.0, true));
-        assert_eq!((found[6].tolerance, found[6].absolute), (0.0, false));
+        assert_eq!(expected[6..], [Some(35.0)]);
+        assert_eq!(found[0].rule, Rule::Relative(0.5));
+        assert_eq!(found[1].rule, Rule::Absolute(30.0));
         // The measure runs once for each place.
-        assert_eq!(found[7].computed, Some(4.0));
+        assert_eq!(found[6].computed, Some(4.0));
         let notes: Vec<&str> = found.iter().map(|row| &row.note[..]).collect();
         assert_eq!(notes[..4], ["first", "first", "", ""]);
         assert_eq!(notes[4], "3 runs");
+    }
+
+    const BOUNDS: &str = r#"
+[[row]]
+measure = "sum"
+with = { a = 1 }
+axes = [{ b = [2, 4] }]
+label = "{b}"
+expected = 12
+absolute = 1
+[[row.row]]
+[[row.row]]
+below = [13, nan]
+[[row.row]]
+above = "missing"
+[[row.row]]
+below = 13
+[[row.row.row]]
+expected = 12
+absolute = 3
+[[row.row]]
+value = "missing"
+"#;
+
+    #[test]
+    fn bounds_replace_expected_values() {
+        let measure: Measure = ("sum", |case| Ok(sum(case)?.value("missing", None)));
+        let found = rows_by(BOUNDS, false, vec![measure].leak()).unwrap();
+        let rules: Vec<(Option<f64>, Rule)> = found.iter().map(|r| (r.expected, r.rule)).collect();
+        assert_eq!(rules[0], (Some(12.0), Rule::Absolute(1.0)));
+        assert_eq!(rules[1], (Some(13.0), Rule::AtMost));
+        assert_eq!(rules[2].1, Rule::AtLeast);
+        assert_eq!(rules[3], (Some(12.0), Rule::Absolute(3.0)));
+        let pass: Vec<Option<bool>> = found.iter().map(Row::pass).collect();
+        // A bound or a value that was not computed fails.
+        let first = [true, true, false, true, false].map(Some);
+        assert_eq!(pass[..5], first);
+        // There is no row at the second place of the list of upper bounds.
+        let second = [false, false, true, false].map(Some);
+        assert_eq!(pass[5..], second);
     }
 
     #[test]

@@ -47,12 +47,16 @@ pub(super) struct Rows {
     pub(super) unit: Option<String>,
     /// Value printed in the paper.
     pub(super) printed: Option<Value>,
-    /// Value to judge by, or `"printed"`. NaN: none.
+    /// Value to judge by, or `"printed"`. Where it is NaN or beyond the end of a list, there is no row.
     pub(super) expected: Option<Value>,
     /// Allowed difference relative to |expected|.
     pub(super) relative: Option<Value>,
     /// Allowed difference in the unit of the row.
     pub(super) absolute: Option<Value>,
+    /// Upper bound, in place of an expected value with a tolerance.
+    pub(super) below: Option<Value>,
+    /// Lower bound, in place of an expected value with a tolerance.
+    pub(super) above: Option<Value>,
     /// Remark for the reader.
     pub(super) note: Option<Value>,
     /// Curves of the result drawn in the figures with these names; not inherited by inner rows.
@@ -143,18 +147,31 @@ impl Rows {
     pub(super) fn within(&self, around: &Self) -> Self {
         let or = |own: &Option<Value>, other: &Option<Value>| own.clone().or(other.clone());
         let or_text = |own: &Option<String>, other: &Option<String>| own.clone().or(other.clone());
-        // One kind of tolerance replaces the other.
-        let judged = self.relative.is_some() || self.absolute.is_some();
-        let tolerance = if judged { self } else { around };
+        // A bound replaces the other one and an expected value, and one kind of tolerance the other.
+        let bounded = self.below.is_some() || self.above.is_some();
+        let none = Self::default();
+        let bound = if bounded || self.expected.is_some() {
+            self
+        } else {
+            around
+        };
+        let expected = if bounded { &none } else { around };
+        let tolerance = if self.relative.is_some() || self.absolute.is_some() {
+            self
+        } else {
+            expected
+        };
         Self {
             measure: or_text(&self.measure, &around.measure),
             label: or_text(&self.label, &around.label),
             value: or_text(&self.value, &around.value),
             unit: or_text(&self.unit, &around.unit),
             printed: or(&self.printed, &around.printed),
-            expected: or(&self.expected, &around.expected),
+            expected: or(&self.expected, &expected.expected),
             relative: tolerance.relative.clone(),
             absolute: tolerance.absolute.clone(),
+            below: bound.below.clone(),
+            above: bound.above.clone(),
             note: or(&self.note, &around.note),
             ..self.clone()
         }
@@ -163,9 +180,9 @@ impl Rows {
 
 #[cfg(test)]
 impl StudyData {
-    /// Returns names of functions and figures that do not exist, and labels of rows with an expected value but no
-    /// tolerance.
-    pub(crate) fn unknown_names(&self, measures: &[super::Measure]) -> Vec<String> {
+    /// Returns names of functions and figures that do not exist, and labels of rows that are not judged by exactly
+    /// one rule; wall times are not judged.
+    pub(crate) fn faults(&self, measures: &[super::Measure]) -> Vec<String> {
         let mut unknown = Vec::new();
         let mut open: Vec<Rows> = self.row.clone();
         while let Some(rows) = open.pop() {
@@ -177,8 +194,17 @@ impl StudyData {
             let drawn = |name: &&String| self.figure.iter().any(|figure| figure.curves == **name);
             unknown.extend(rows.draw.iter().filter(|name| !drawn(name)).cloned());
             let tolerance = rows.relative.is_some() || rows.absolute.is_some();
-            if is_leaf && rows.expected.is_some() && !tolerance {
-                unknown.extend(rows.label.clone());
+            let rules = [
+                rows.expected.is_some() && tolerance,
+                rows.below.is_some(),
+                rows.above.is_some(),
+            ];
+            let rules = rules.into_iter().filter(|rule| *rule).count();
+            if let (true, Some(label)) = (is_leaf, &rows.label) {
+                let required = usize::from(!label.contains("wall time"));
+                if rules != required || (rows.expected.is_some() && !tolerance) {
+                    unknown.push(label.clone());
+                }
             }
             open.extend(rows.row.iter().map(|inner| inner.within(&rows)));
         }

@@ -11,7 +11,6 @@ use pericles_run::RunError;
 use super::figures::{write_curves, write_tables};
 use super::models::{NamedTables, constraint_residual, method_of, model_of, targets, verdict};
 use crate::data::{Case, Found};
-use crate::row::Row;
 
 /// Long-wave speeds in a direction relative to the continuum: pressure, then shear.
 fn long_waves(lattice: &BondLattice, state: StressState, direction: [f64; 3]) -> Vec<f64> {
@@ -61,8 +60,8 @@ pub(super) fn original(case: &Case<'_>) -> Result<Found, RunError> {
         .value("error over N = 3", error.ratio))
 }
 
-/// Table tuned by a choice of method, combination and bound: rows of its coefficients, its wave properties, and the
-/// residuals of its constraints.
+/// Table tuned by a choice of method, combination and bound: its error, its wave properties, and the residuals of its
+/// constraints.
 pub(super) fn of_choice(case: &Case<'_>) -> Result<Found, RunError> {
     let (model, method) = (model_of(case)?, method_of(case)?);
     let combinations = Combination::ALL.map(|combination| (combination.name(), combination));
@@ -81,15 +80,6 @@ pub(super) fn of_choice(case: &Case<'_>) -> Result<Found, RunError> {
         .flat_map(|direction| long_waves(&lattice, model.state(), direction))
         .map(|ratio| (ratio - 1.0).abs())
         .fold(0.0, f64::max);
-    let coefficients = model
-        .classes()
-        .iter()
-        .zip(&table.alpha)
-        .map(|(class, alpha)| {
-            let [a, b, c] = class.offset;
-            Row::new(format!("N = {n}, {name}: α({a},{b},{c})"), "", Some(*alpha))
-        });
-    let coefficients: Vec<Row> = coefficients.collect();
     if method == Method::LeastSquares {
         let positive = lower_bound.map_or("", |_| "-positive");
         let (file, title) = (
@@ -101,10 +91,9 @@ pub(super) fn of_choice(case: &Case<'_>) -> Result<Found, RunError> {
     let tables = tables(case)?;
     tables.borrow_mut().push((name, table.alpha.clone()));
     let found = &table.assessment;
-    Ok(Found::from(coefficients)
-        .value("error", found.error.ratio)
+    Ok(Found::from(found.error.ratio)
         .value("smallest", found.stability.smallest)
-        .value("ω_max", found.stability.omega_max)
+        .value("highest", found.stability.omega_max)
         .value("constraint", constraint_residual(&table))
         .value("optimality", table.kkt)
         .value("anisotropy", anisotropy)

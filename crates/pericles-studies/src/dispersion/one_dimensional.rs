@@ -49,13 +49,15 @@ pub(super) fn published_bars(case: &Case<'_>) -> Result<Found, RunError> {
             rows.push(omega.within(highest, 1e-4));
         }
         let residual = Some(constraint_residual(&table));
-        rows.push(Row::new(what("constraint residual".into()), "", residual).within(0.0, 1e-12));
-        if n == 10.0 {
-            rows.push(
-                Row::new(what("condition number".into()), "", Some(table.condition))
-                    .note("round-off of the coefficients is about 1e-16 times this number"),
-            );
-        }
+        let condition = format!(
+            "condition number {:.4}: round-off of the coefficients is about 1e-16 times this number",
+            table.condition
+        );
+        rows.push(
+            Row::new(what("constraint residual".into()), "", residual)
+                .within(0.0, 1e-12)
+                .note(if n == 10.0 { condition } else { String::new() }),
+        );
         let file = format!("curve-{n}-{name}");
         write_curves(
             context,

@@ -121,7 +121,7 @@ impl Recorded {
                 worst(|look| look.energies.dissipated),
             )
             .value("dissipated", last.map(|look| look.energies.dissipated))
-            .value("bonds broken", last.map(|look| look.broken_bonds as f64))
+            .value("bonds_broken", last.map(|look| look.broken_bonds as f64))
     }
 }
 

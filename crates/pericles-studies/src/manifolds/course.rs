@@ -1,5 +1,6 @@
 //! Runs of the presets, and quantities recorded at every step.
 
+use std::f64::consts::TAU;
 use std::rc::Rc;
 
 use pericles::observe::Field;
@@ -117,6 +118,31 @@ impl Course {
     }
 }
 
+/// Share of the variance of a signal that the best sinusoid about an offset explains.
+fn sinusoid(t: &[f64], values: &[f64]) -> f64 {
+    const FREQUENCIES: usize = 2000;
+    let span = t[t.len() - 1] - t[0];
+    let middle = mean(values);
+    let square: f64 = values.iter().map(|x| (x - middle).powi(2)).sum();
+    let rest = |omega: f64| {
+        // Normal equations of 1, cos ωt and sin ωt.
+        let mut matrix = nalgebra::Matrix3::zeros();
+        let mut right = nalgebra::Vector3::zeros();
+        for (t, x) in t.iter().zip(values) {
+            let (sine, cosine) = (omega * t).sin_cos();
+            let row = nalgebra::Vector3::new(1.0, cosine, sine);
+            matrix += row * row.transpose();
+            right += row * (x - middle);
+        }
+        let fit = matrix.lu().solve(&right);
+        fit.map_or(square, |fit| square - fit.dot(&right))
+    };
+    // From half a period in the signal to one hundred, in steps of a twentieth of a period.
+    let periods = (10..FREQUENCIES).map(|k| 0.05 * k as f64);
+    let least = periods.map(|count| rest(TAU * count / span));
+    1.0 - least.fold(square, f64::min) / square
+}
+
 fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
@@ -136,8 +162,8 @@ pub(super) fn run(case: &Case<'_>) -> Result<Found, RunError> {
         ("peak", most(&course.stretch, f64::NEG_INFINITY)),
         ("spread", course.energy_spread()),
         ("most iterations", most(&course.iterations, 0.0)),
-        ("mean iterations", mean(&course.iterations)),
-        ("mean of second half", middle),
+        ("mean", mean(&course.iterations)),
+        ("middle", middle),
         ("variation", mean(&square).sqrt() / middle.abs()),
         ("loaded", course.loaded as f64),
     ])
@@ -145,6 +171,9 @@ pub(super) fn run(case: &Case<'_>) -> Result<Found, RunError> {
     .curve("iterations", &course.t[1..], &course.iterations)
     .labelled("energy", Some("kinetic".into()), &course.t, &course.kinetic)
     .labelled("energy", Some("elastic".into()), &course.t, &course.elastic);
+    if case.has("p") {
+        found = found.value("sinusoid", sinusoid(&course.t, &course.stretch));
+    }
     if let Some(t) = case.optional("at") {
         let kinetic = course.at(t, &course.kinetic) / course.kinetic[0];
         found = found
@@ -157,7 +186,7 @@ pub(super) fn run(case: &Case<'_>) -> Result<Found, RunError> {
             .filter(|(t, _)| **t >= from)
             .map(|(_, s)| *s)
             .collect();
-        found = found.value("mean", mean(&late));
+        found = found.value("late", mean(&late));
     }
     if let Some(number) = case.optional("reading") {
         let reading = course.readings.get(number as usize);

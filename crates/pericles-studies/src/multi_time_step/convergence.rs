@@ -30,15 +30,20 @@ fn error_in(case: &Case<'_>, name: &'static str, steps: u64) -> Result<f64, RunE
     })
 }
 
-/// Error of a method, and its ratio to the error of the method `beside`.
+/// Error of a method, and its ratio to the error of the method `beside` with the same number of steps; with `ratio` also
+/// to that with the fine step everywhere.
 pub(super) fn error(case: &Case<'_>) -> Result<Found, RunError> {
     let steps = case.count("steps")? as u64;
     let error = error_in(case, "method", steps)?;
-    let found = Found::from(error);
-    match case.has("beside") {
-        true => Ok(found.value("over", error / error_in(case, "beside", steps)?)),
-        false => Ok(found),
+    let mut found = Found::from(error);
+    if case.has("beside") {
+        found = found.value("over", error / error_in(case, "beside", steps)?);
+        if let Some(ratio) = case.optional("ratio") {
+            let fine = error_in(case, "beside", steps * ratio as u64)?;
+            found = found.value("over fine", error / fine);
+        }
     }
+    Ok(found)
 }
 
 /// Order of a method from half of the `steps` to all of them.
@@ -87,9 +92,11 @@ pub(super) fn errors_of_set(case: &Case<'_>) -> Result<Found, RunError> {
     };
     let respa = error(Method::Respa(ratio), steps)?;
     let verlet = error(Method::Verlet, fine)?;
+    let two = error(Method::Two(4, ratio), steps)?;
     Ok([
         ("r-RESPA", respa),
-        ("RK4", error(Method::Two(4, ratio), steps)?),
+        ("RK4", two),
+        ("RK4 over r-RESPA", two / respa),
         ("Verlet", verlet),
         ("r-RESPA over Verlet", respa / verlet),
     ]

@@ -1,6 +1,6 @@
-//! Cost of multirate schemes: evaluations and wall time compared with the fine step everywhere.
+//! Cost of multirate schemes: evaluations, which are judged, and wall times, compared with the fine step everywhere.
 //!
-//! Schemes run in alternation on the same body; a time is the minimum over the rounds. S = M/(1 + (M − 1) φ) is the
+//! Schemes are timed in alternation on the same body; a time is the minimum over the rounds. S = M/(1 + (M − 1) φ) is the
 //! model of multirate Runge–Kutta compared with the same method with the fine step everywhere. Velocity Verlet with
 //! the fine step everywhere is the more demanding reference: it needs M evaluations where multirate RK4 needs 4
 //! (1 + (M − 1) φ).
@@ -8,12 +8,10 @@
 use std::cell::RefCell;
 use std::f64::consts::{PI, TAU};
 use std::rc::Rc;
-use std::time::Instant;
 
-use pericles::operator::PointSubset;
 use pericles::space::{PointCloud, PointSet};
 use pericles::time::{Integrator, MultiTimeStep, Respa};
-use pericles_run::RunError;
+use pericles_run::{Assembly, RunError};
 
 use super::problem::{Method, Problem, tableau};
 use super::turns::{Bench, Turns};
@@ -70,59 +68,57 @@ fn on_threads<T: Send>(
     threads.install(|| work(bench))
 }
 
-/// Ratio of the counted evaluations of a scheme with step ratio `ratio` to those of the model, which must be one.
-pub(super) fn evaluations(case: &Case<'_>) -> Result<Found, RunError> {
-    const STEPS: u32 = 3;
-    let method = Method::of(case, "method")?;
-    on_threads(case, 1, |bench| {
-        let n = bench.points();
-        let fine = Outline::Ragged.points(bench.system.cloud(), 0.1);
-        let f = fine.len() as u64;
-        let (counted, model) = match method {
-            Method::Respa(ratio) => {
-                let regions = bench.options(ratio, &fine).fine;
-                let mut respa = Respa::new(ratio, regions, &bench.system)?;
-                respa.start(&mut bench.system, &mut bench.state);
-                let counted = bench.evaluations(&mut respa, STEPS)?;
-                let shared = respa.refinement().map_or(0, |report| report.border_points);
-                (
-                    counted,
-                    u64::from(STEPS) * (n - f + u64::from(ratio) * (f + shared)),
-                )
-            }
-            Method::Two(order, ratio) => {
-                let options = bench.options(ratio, &fine);
-                let mut two = MultiTimeStep::new(&tableau(order)?, options, &bench.system)?;
-                let counted = bench.evaluations(&mut two, STEPS)?;
-                (
-                    counted,
-                    u64::from(STEPS * order) * (n - f + u64::from(ratio) * f),
-                )
-            }
-            Method::Uniform(_) | Method::Verlet => return Ok(Found::default()),
-        };
-        Ok((counted as f64 / model as f64).into())
-    })
+/// Number of coarse steps in which evaluations are counted.
+const STEPS: u32 = 3;
+
+/// Point evaluations of a scheme in [`STEPS`] steps, and by the model of its cost: s (N_C + M N_F) per step, for r-RESPA
+/// N_C + M (N_F + N_CB).
+fn counted(
+    bench: &mut Bench,
+    method: Method,
+    fine: &PointSet,
+) -> Result<Option<[f64; 2]>, RunError> {
+    let (n, f) = (bench.points(), fine.len() as u64);
+    let (counted, model) = match method {
+        Method::Respa(ratio) => {
+            let regions = bench.options(ratio, fine).fine;
+            let mut respa = Respa::new(ratio, regions, &bench.system)?;
+            respa.start(&mut bench.system, &mut bench.state);
+            let counted = bench.evaluations(&mut respa, STEPS)?;
+            let shared = respa.refinement().map_or(0, |report| report.border_points);
+            (counted, n - f + u64::from(ratio) * (f + shared))
+        }
+        Method::Two(order, ratio) => {
+            let options = bench.options(ratio, fine);
+            let mut two = MultiTimeStep::new(&tableau(order)?, options, &bench.system)?;
+            let counted = bench.evaluations(&mut two, STEPS)?;
+            (counted, u64::from(order) * (n - f + u64::from(ratio) * f))
+        }
+        Method::Uniform(_) | Method::Verlet => return Ok(None),
+    };
+    Ok(Some([counted as f64, (u64::from(STEPS) * model) as f64]))
 }
 
-/// Cost of the force on a part of the body, to explain a lost speed-up: time per point relative to that of the
-/// whole body.
-pub(super) fn force_on_part(case: &Case<'_>) -> Result<Found, RunError> {
+/// Ratio of the counted evaluations of a scheme to those of the model, which must be one, for a fine region of about
+/// this fraction; and the evaluations of the same scheme with the fine step everywhere over the counted ones, with the
+/// model M/(1 + (M − 1) φ) of Runge–Kutta methods.
+pub(super) fn evaluations(case: &Case<'_>) -> Result<Found, RunError> {
+    let (method, outline) = (Method::of(case, "method")?, Outline::of(case)?);
+    let (fraction, ratio) = (case.number("fraction")?, case.number("ratio")?);
     on_threads(case, 1, |bench| {
-        let fine = Outline::Ragged.points(bench.system.cloud(), 0.1);
-        let mut out = vec![0.0; bench.state.u.len()];
-        let mut seconds = |on: PointSubset<'_>| {
-            let times = (0..9).map(|_| {
-                let began = Instant::now();
-                let (t, u) = (bench.state.t, &bench.state.u);
-                bench.system.free_acceleration(t, u, &on, &mut out);
-                began.elapsed().as_secs_f64()
-            });
-            times.fold(f64::INFINITY, f64::min)
+        let fine = outline.points(bench.system.cloud(), fraction);
+        let share = fine.len() as f64 / bench.points() as f64;
+        let everywhere = f64::from(STEPS * method.stages()) * ratio * bench.points() as f64;
+        let Some([counted, model]) = counted(bench, method, &fine)? else {
+            return Ok(Found::default());
         };
-        let part = seconds(PointSubset::Set(&fine)) / fine.len() as f64;
-        let whole = seconds(PointSubset::All) / bench.points() as f64;
-        Ok((part / whole).into())
+        Ok([
+            ("value", counted / model),
+            ("saved", everywhere / counted),
+            ("model", model_of(ratio, share)),
+            ("share", share),
+        ]
+        .into())
     })
 }
 
@@ -143,22 +139,17 @@ fn model_of(ratio: f64, share: f64) -> f64 {
     ratio / (1.0 + (ratio - 1.0) * share)
 }
 
-/// Speed-up of a multirate scheme.
+/// Ratios of wall times: with the fine step everywhere over those of the multirate scheme.
 pub(super) fn speed_up(case: &Case<'_>) -> Result<Found, RunError> {
     let timed = timed(case, case.number("fraction")?)?;
-    let model = model_of(case.number("ratio")?, timed.0);
-    let found = timed
-        .1
-        .ratios()
-        .value("share", timed.0)
-        .value("model", model);
-    // Exceeding the model is not an error.
-    let reached = (timed.1.speed_up() / model).min(1.0);
-    Ok(found.value("over model", reached))
+    Ok(timed.1.ratios().value("share", timed.0))
 }
 
-/// Speed-ups by the fraction of fine points.
+/// Figure of the ratios of wall times by the fraction of fine points.
 pub(super) fn of_fractions(case: &Case<'_>) -> Result<Found, RunError> {
+    if case.context.figures.is_none() {
+        return Ok(Found::default());
+    }
     let fractions = case.numbers("fractions")?;
     let times = fractions.iter().map(|&fraction| timed(case, fraction));
     let speed_ups = times.map(|timed| Ok(timed?.1.speed_up()));
@@ -174,33 +165,56 @@ pub(super) fn model(case: &Case<'_>) -> Result<Found, RunError> {
     Ok(Found::default().curve("model", &x, &y))
 }
 
-/// Speed-ups with a set of the deck as fine region: the fraction of its points, the times at the deck's own step if
-/// `step` is set, and the size ratio of a body with small cells everywhere.
+/// Body of the case and its set `points`.
+fn body_with_set(case: &Case<'_>) -> Result<(Assembly, Bench, PointSet), RunError> {
+    let problem = Problem::of(case)?;
+    let assembly = problem.assembly(Method::Verlet, &[])?;
+    let set = case.text("points")?;
+    let found = assembly.sets.iter().find(|(name, _)| *name == set);
+    let fine = found.map_or_else(
+        || Vec::new().into_iter().collect(),
+        |(_, fine)| fine.clone(),
+    );
+    Ok((assembly, Bench::new(problem)?, fine))
+}
+
+/// Evaluations with a set of the deck as fine region: of RK4 and of velocity Verlet with the fine step everywhere over
+/// those of multirate RK4, and of velocity Verlet over those of r-RESPA, counted and by the model; the fraction of fine
+/// points, and the size ratio of a body with small cells everywhere.
+pub(super) fn evaluations_of_set(case: &Case<'_>) -> Result<Found, RunError> {
+    let ratio = case.count("ratio")? as u32;
+    let (assembly, mut bench, fine) = body_with_set(case)?;
+    let everywhere = f64::from(STEPS * ratio) * bench.points() as f64;
+    let mut found = Found::default();
+    for (name, method) in [
+        ("RK4", Method::Two(4, ratio)),
+        ("r-RESPA", Method::Respa(ratio)),
+    ] {
+        let Some([counted, model]) = counted(&mut bench, method, &fine)? else {
+            continue;
+        };
+        let everywhere = f64::from(method.stages()) * everywhere;
+        found = found
+            .value(name, everywhere / counted)
+            .value(format!("{name} by model"), everywhere / model);
+    }
+    let (cells, large) = (assembly.cloud.len() as f64, assembly.cloud.spacing());
+    let [low, high] = assembly.cloud.bounds();
+    let small = (high[0] - low[0]) * (high[1] - low[1]) / (large / f64::from(ratio)).powi(2);
+    Ok(found
+        .value("share", fine.len() as f64 / cells)
+        .value("small cells everywhere", small / cells))
+}
+
+/// Ratios of wall times with a set of the deck as fine region, at the deck's own step if `own_step` is set.
 pub(super) fn of_set(case: &Case<'_>) -> Result<Found, RunError> {
-    let (ratio, set) = (case.count("ratio")? as u32, case.text("points")?);
+    let ratio = case.count("ratio")? as u32;
     let [rounds, steps] = [case.count("rounds")? as u32, case.count("steps")? as u32];
-    let (problem, method) = (Problem::of(case)?, Method::of(case, "method")?);
-    let assembly = problem.assembly(method, &[])?;
-    let mut bench = Bench::new(problem)?;
+    let (assembly, mut bench, fine) = body_with_set(case)?;
     if case.flag("own_step") {
         bench.dt = assembly.dt;
     }
-    let fine = assembly.sets.iter().find(|(name, _)| *name == set);
-    let Some((_, fine)) = fine else {
-        return Ok(Found::default());
-    };
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    let turns = one.install(|| Turns::take(&mut bench, ratio, fine, [rounds, steps]))?;
-    let report = assembly.integrator.refinement();
-    let (cells, large) = (assembly.cloud.len() as f64, assembly.cloud.spacing());
-    let [low, high] = assembly.cloud.bounds();
-    let everywhere = (high[0] - low[0]) * (high[1] - low[1]) / (large / f64::from(ratio)).powi(2);
-    let most = case.optional("most").unwrap_or(f64::INFINITY);
-    let found = turns.ratios();
-    Ok(found
-        .value("share", fine.len() as f64 / cells)
-        .value("speed-up at most", turns.speed_up().min(most))
-        .value("r-RESPA at most", (turns.verlet / turns.respa).min(most))
-        .value("r-RESPA by model", report.map(|report| report.speed_up()))
-        .value("small cells everywhere", everywhere / cells))
+    let turns = one.install(|| Turns::take(&mut bench, ratio, &fine, [rounds, steps]))?;
+    Ok(turns.ratios())
 }

@@ -27,8 +27,9 @@ fn at(
     let mut changes = vec![format!("time.end={end:?}")];
     changes.extend_from_slice(choice);
     let steps = (STEPS * end / END).round() as u64 * u64::from(ratio);
-    let run = || Problem::of(case)?.run(method, steps, &changes);
-    case.once(format!("{method:?} {steps} {changes:?}"), run)
+    let problem = Problem::of(case)?;
+    let key = problem.key(method, steps, &changes)?;
+    case.once(key, || problem.run(method, steps, &changes))
 }
 
 /// Until the first bonds break the runs agree: the difference of broken bonds, and the relative error of
@@ -66,10 +67,11 @@ pub(super) fn fine_step(case: &Case<'_>) -> Result<Found, RunError> {
     Ok([("bonds", broken(&run) as f64), ("tip", tip(&run))].into())
 }
 
-/// Multirate method at the end, compared with RK4 with the fine step everywhere.
+/// Multirate method at the end, compared with the single-rate method `beside` with the fine step everywhere; and its
+/// evaluations per point and step, counted and by the model of its cost, with the initial steps that are fine everywhere.
 pub(super) fn failure(case: &Case<'_>) -> Result<Found, RunError> {
     let ratio = case.count("ratio")? as u32;
-    let fine = at(case, Method::Uniform(4), END, ratio, &[])?;
+    let fine = at(case, Method::of(case, "beside")?, END, ratio, &[])?;
     let two = at(
         case,
         Method::of(case, "method")?,
@@ -85,8 +87,11 @@ pub(super) fn failure(case: &Case<'_>) -> Result<Found, RunError> {
         return Ok(found);
     };
     let points = (report.points * two.steps()) as f64;
-    Ok(found.value("fraction", report.mean_fraction).value(
-        "evaluations",
-        two.system().evaluated_points() as f64 / points,
-    ))
+    let evaluations = two.system().evaluated_points() as f64 / points;
+    let starting = f64::from(report.stages * report.ratio) * report.starting_steps as f64;
+    let model = report.evaluations() * report.steps as f64 + starting;
+    Ok(found
+        .value("fraction", report.mean_fraction)
+        .value("evaluations", evaluations)
+        .value("model", model / two.steps() as f64))
 }

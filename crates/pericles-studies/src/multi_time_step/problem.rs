@@ -47,6 +47,14 @@ impl Method {
         case.one_of(name, &all)
     }
 
+    /// Force evaluations per point and step of the single-rate scheme.
+    pub(super) fn stages(self) -> u32 {
+        match self {
+            Self::Uniform(order) | Self::Two(order, _) => order,
+            Self::Verlet | Self::Respa(_) => 1,
+        }
+    }
+
     /// Overrides of a multirate deck.
     fn changes(self) -> Vec<String> {
         match self {
@@ -132,6 +140,20 @@ impl<'a> Problem<'a> {
         Ok(simulation)
     }
 
+    /// Text that identifies a run of the study.
+    pub(super) fn key(
+        &self,
+        method: Method,
+        steps: u64,
+        changes: &[String],
+    ) -> Result<String, RunError> {
+        let [deck, start] = [self.case.text("deck")?, self.case.text("start")?];
+        let set = self.case.texts("set")?;
+        Ok(format!(
+            "{deck} {set:?} {start} {method:?} {steps} {changes:?}"
+        ))
+    }
+
     /// Displacement at the end, computed once per study.
     pub(super) fn end(
         &self,
@@ -139,14 +161,14 @@ impl<'a> Problem<'a> {
         steps: u64,
         changes: &[String],
     ) -> Result<Rc<End>, RunError> {
-        self.case
-            .once(format!("{method:?} {steps} {changes:?}"), || {
-                let run = self.run(method, steps, changes)?;
-                Ok(End {
-                    points: run.system().points(),
-                    u: run.state().u.clone(),
-                })
+        let key = self.key(method, steps, changes)?;
+        self.case.once(key, || {
+            let run = self.run(method, steps, changes)?;
+            Ok(End {
+                points: run.system().points(),
+                u: run.state().u.clone(),
             })
+        })
     }
 }
 

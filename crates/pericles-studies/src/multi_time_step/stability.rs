@@ -70,22 +70,21 @@ pub(super) fn growth(case: &Case<'_>) -> Result<Found, RunError> {
         .into())
 }
 
-/// Growth at ω dt = `omega` with the overrides `choice`, as decades from the rate of the independent code, and
+/// Growth at ω dt = `omega` with the overrides `choice`, also relative to the `rate` of the independent code, and
 /// without them, up to the stability `limit`.
 pub(super) fn rates(case: &Case<'_>) -> Result<Found, RunError> {
     let (omega_dt, rate) = (case.number("omega")?, case.number("rate")?);
     // Slow growth becomes visible late, after the other modes have been damped.
-    let span = if rate < 1e-4 || case.context.full {
-        [100_000, 200_000]
-    } else {
-        [10_000, 20_000]
+    let span = match rate < 1e-4 {
+        true => [100_000, 200_000],
+        false => [10_000, 20_000],
     };
     let found = growth_between(case, &case.texts("choice")?, omega_dt, span)?;
     let stable = omega_dt.min(0.98 * case.number("limit")?);
     let ours = growth_between(case, &[], stable, [1_000, 3_000])?;
     Ok([
-        ("value", found),
-        ("decades", (found / rate).log10()),
+        ("growth", found),
+        ("over rate", found / rate),
         ("ours", ours.max(0.0)),
     ]
     .into())

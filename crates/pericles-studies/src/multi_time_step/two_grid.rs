@@ -53,43 +53,67 @@ impl Places {
     }
 }
 
-/// Uniform strain: the remaining force over E e/δ inside the grids, at their interface and at the body's surface,
-/// and the error of the equilibrium displacement with the boundary prescribed.
+/// Uniform strain: the remaining force inside the grids over E e/δ, where it must vanish.
 pub(super) fn patch_test(case: &Case<'_>) -> Result<Found, RunError> {
-    let assembly = Problem::of(case)?.assembly(Method::Verlet, &[])?;
-    let deck = deck(case, &[])?;
-    let places = Places::of(&assembly, &deck);
-    let (cloud, system) = (&assembly.cloud, &assembly.system);
-    let n = cloud.len();
-    let mut strained = vec![0.0; 2 * n];
-    for i in 0..n {
-        strained[i] = STRAIN * cloud.point(i)[0];
-    }
-    let mut force = vec![0.0; 2 * n];
-    let operator = system.operator();
-    operator.add_force(0.0, &strained, PointSubset::All, &mut force);
-    // Force density over E e/δ, the scale of the force at a free surface.
-    let young = assembly.constants.as_ref().map_or(f64::NAN, |c| c.young());
-    let scale = young * STRAIN / deck.model.body.horizon();
-    let largest = |of: &dyn Fn(usize) -> bool| {
-        (0..n)
-            .filter(|&i| of(i))
-            .map(|i| force[i].hypot(force[n + i]) / scale)
-            .fold(0.0, f64::max)
+    Ok(Patch::of(case, &[])?.inside.into())
+}
+
+/// Ratios of the force at the interface and of the error of the displacement to those with the spacing `half`.
+pub(super) fn patch_test_ratio(case: &Case<'_>) -> Result<Found, RunError> {
+    let of = |name| -> Result<Patch, RunError> {
+        let spacing = case.number(name)?;
+        Patch::of(case, &[format!("body.spacing={spacing:?}")])
     };
+    let (coarse, fine) = (of("spacing")?, of("half")?);
     Ok([
-        (
-            "inside",
-            largest(&|i| !places.interface[i] && !places.surface[i]),
-        ),
-        (
-            "interface",
-            largest(&|i| places.interface[i] && !places.surface[i]),
-        ),
-        ("surface", largest(&|i| places.surface[i])),
-        ("balanced", balanced_error(&assembly, &strained, &places)?),
+        ("interface", coarse.interface / fine.interface),
+        ("balanced", coarse.balanced / fine.balanced),
+        ("force", coarse.interface),
+        ("surface", coarse.surface),
+        ("error", coarse.balanced),
     ]
     .into())
+}
+
+/// Remaining force of a body under uniform strain over E e/δ, and the error of the equilibrium displacement with the
+/// boundary prescribed.
+struct Patch {
+    inside: f64,
+    interface: f64,
+    surface: f64,
+    balanced: f64,
+}
+
+impl Patch {
+    fn of(case: &Case<'_>, changes: &[String]) -> Result<Self, RunError> {
+        let assembly = Problem::of(case)?.assembly(Method::Verlet, changes)?;
+        let deck = deck(case, changes)?;
+        let places = Places::of(&assembly, &deck);
+        let (cloud, system) = (&assembly.cloud, &assembly.system);
+        let n = cloud.len();
+        let mut strained = vec![0.0; 2 * n];
+        for i in 0..n {
+            strained[i] = STRAIN * cloud.point(i)[0];
+        }
+        let mut force = vec![0.0; 2 * n];
+        let operator = system.operator();
+        operator.add_force(0.0, &strained, PointSubset::All, &mut force);
+        // Force density over E e/δ, the scale of the force at a free surface.
+        let young = assembly.constants.as_ref().map_or(f64::NAN, |c| c.young());
+        let scale = young * STRAIN / deck.model.body.horizon();
+        let largest = |of: &dyn Fn(usize) -> bool| {
+            (0..n)
+                .filter(|&i| of(i))
+                .map(|i| force[i].hypot(force[n + i]) / scale)
+                .fold(0.0, f64::max)
+        };
+        Ok(Self {
+            inside: largest(&|i| !places.interface[i] && !places.surface[i]),
+            interface: largest(&|i| places.interface[i] && !places.surface[i]),
+            surface: largest(&|i| places.surface[i]),
+            balanced: balanced_error(&assembly, &strained, &places)?,
+        })
+    }
 }
 
 /// max |u − u_strained| over e L, where K u = 0 with the points near the boundary prescribed at the uniform strain.

@@ -13,6 +13,7 @@ mod bar;
 mod cost;
 mod energy;
 mod line;
+mod load;
 mod nonlinear;
 mod spectral;
 
@@ -45,6 +46,7 @@ pub(super) const TOPIC: Topic = Topic {
         ("scheme", nonlinear::scheme),
         ("series", nonlinear::series),
         ("linearisation", nonlinear::linearisation),
+        ("load-rule", load::load_rule),
         ("cost", cost::cost),
         ("million-points", cost::million_points),
     ],

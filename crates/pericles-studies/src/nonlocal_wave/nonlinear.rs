@@ -150,5 +150,7 @@ pub(super) fn linearisation(_: &Case<'_>) -> Result<Found, RunError> {
     let body = body(PairLaw::GreenStrain)?;
     let rest = vec![0.0; body.points()];
     let tangent = Linearisation::new(body.operator(), rest);
-    Ok(tangent.model_error(&start(body.cloud(), HEIGHT).u).into())
+    let error = |height| tangent.model_error(&start(body.cloud(), height).u);
+    let [whole, half] = [error(HEIGHT), error(0.5 * HEIGHT)];
+    Ok([("value", (whole / half).log2()), ("error", whole)].into())
 }

@@ -2,8 +2,8 @@
 
 use pericles::family::VolumeCorrection;
 use pericles::material::{
-    BondFailure, CrackPlane, FractureCalibration, LinearSolid, LinearSolidConstants, StressState,
-    StretchDefinition,
+    BondFailure, CrackPlane, FractureCalibration, IsotropicInfluence, LinearSolid,
+    LinearSolidConstants, StressState, StretchDefinition,
 };
 use pericles_run::RunError;
 
@@ -11,7 +11,7 @@ use super::separation::energy_spent;
 use super::stencil::{bonds, weighted_volume};
 use super::{influence_of, solid, state_of};
 use crate::data::{Case, Found};
-use crate::row::Row;
+use crate::row::{Row, Rule};
 
 /// Requested fracture energy, J/m².
 const G0: f64 = 1e-3;
@@ -49,7 +49,8 @@ pub(super) fn separation(case: &Case<'_>) -> Result<Found, RunError> {
 }
 
 /// Rows of limits calibrated on the lattice: the mean over the planes is the requested energy, and that of each
-/// plane equals the sum over the layers of points beside it.
+/// plane equals the sum over the layers of points beside it. Isotropic functions that are negative near the horizon
+/// are refused.
 pub(super) fn planes(case: &Case<'_>) -> Result<Found, RunError> {
     let (state, name) = (state_of(case)?, case.text("name")?);
     let failure = failure_of(case, FractureCalibration::Lattice)?;
@@ -65,8 +66,16 @@ pub(super) fn planes(case: &Case<'_>) -> Result<Found, RunError> {
     let sides = vec![1.0; state.dimension()];
     let rows = match material.constants_on(&sides, 1.0, state) {
         Ok(constants) => of_planes(&name, &material, &constants, state),
-        // Weights that are negative near the horizon.
-        Err(refused) => vec![Row::new(name, "", None).note(format!("not available: {refused}"))],
+        Err(refused) => {
+            let horizon = material.horizon;
+            let found = IsotropicInfluence::of_lattice(&sides, horizon, VolumeCorrection::None)?;
+            let label = format!("weight at the horizon of a function that is refused: {name}");
+            vec![
+                Row::new(label, "", Some(1.0 - found.coefficient()))
+                    .judged(0.0, Rule::AtMost)
+                    .note(refused.to_string()),
+            ]
+        }
     };
     Ok(rows.into())
 }
