@@ -1,10 +1,8 @@
 //! The commands on results, `new`, and sweeps.
 
-mod common;
-
 use std::fs;
 
-use common::{fail, run, succeed, text, with_plate};
+use crate::common::{fail, run, succeed, text, with_plate};
 use pericles_deck::Deck;
 use pericles_io::OutputFolder;
 use pericles_run::{Assembled, Cancel, Ending, Event, Means, Run, Source};
@@ -203,7 +201,7 @@ fn a_report_does_not_follow_links() {
 #[test]
 fn control_characters_in_titles_and_names_are_escaped() {
     let place = with_plate();
-    let deck = common::PLATE.replace("Torn plate", "Torn\\u001b[2J plate\\u0007\\u202e");
+    let deck = crate::common::PLATE.replace("Torn plate", "Torn\\u001b[2J plate\\u0007\\u202e");
     fs::write(place.path().join("plate.toml"), deck).unwrap();
     let ran = succeed(place.path(), "run plate.toml --set time.end=1e-6");
     let check = succeed(place.path(), "check plate.toml");
@@ -220,7 +218,7 @@ fn control_characters_in_titles_and_names_are_escaped() {
 #[test]
 fn a_report_is_a_self_contained_page() {
     let place = with_plate();
-    let deck = common::PLATE.replace("Torn plate", "Torn <plate>");
+    let deck = crate::common::PLATE.replace("Torn plate", "Torn <plate>");
     fs::write(place.path().join("plate.toml"), deck).unwrap();
     succeed(place.path(), "run plate.toml --quiet");
     let said = text(&succeed(place.path(), "report plate").stdout);
@@ -272,7 +270,7 @@ fn a_sweep_runs_every_value_and_can_be_resumed() {
     // A run of a sweep is identical to the single run.
     let one = "run plate.toml --quiet --out one --set time.end=\"9us\" --set material.horizon_ratio=3 --set load.0.traction=[2e6,0]";
     succeed(place.path(), one);
-    common::assert_same_results(
+    crate::common::assert_same_results(
         &place.path().join("one"),
         &sweep.join("horizon_ratio=3,traction=_2e6,0_"),
     );

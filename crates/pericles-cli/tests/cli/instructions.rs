@@ -1,11 +1,9 @@
 //! Runs with each instruction set.
 
-mod common;
-
 use std::fs;
 use std::path::Path;
 
-use common::{fail, succeed, with_plate};
+use crate::common::{fail, succeed, with_plate};
 use pericles::operator::InstructionSet;
 use serde_json::Value;
 

@@ -1,13 +1,11 @@
 //! Stopped and resumed runs, and runs with different numbers of threads, give bitwise identical results.
 
-mod common;
-
 use std::fs;
 use std::path::Path;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
-use common::{Background, assert_same_results, fail, report, succeed, text, with_plate};
+use crate::common::{Background, assert_same_results, fail, report, succeed, text, with_plate};
 
 /// A run long enough to be stopped midway: about a second, with some 100 kB of history.
 const LONG: &str = "run plate.toml --threads 1 --set time.end=3e-3 --set output.fields.every=5000 \
@@ -98,7 +96,7 @@ fn ctrl_c_and_sigterm_stop_with_a_checkpoint() {
             .count()
     };
     let before = rows();
-    let child = common::pericles(place.path())
+    let child = crate::common::pericles(place.path())
         .args(["resume", "stopped", "--threads", "1"])
         .spawn()
         .unwrap();
@@ -117,7 +115,7 @@ fn ctrl_c_and_sigterm_stop_with_a_checkpoint() {
 fn a_run_stopped_at_its_time_limit_resumes_to_identical_results() {
     let place = with_plate();
     succeed(place.path(), &format!("{LONG} --out whole"));
-    let late = common::run(place.path(), &format!("{LONG} --out late --wall-time=0.5s"));
+    let late = crate::common::run(place.path(), &format!("{LONG} --out late --wall-time=0.5s"));
     assert_eq!(late.status.code(), Some(7), "{}", text(&late.stderr));
     let out = place.path().join("late");
     assert_eq!(report(&out)["status"], "stopped");
@@ -223,12 +221,12 @@ fn a_load_step_can_be_interrupted() {
     let place = with_plate();
     // By the time limit.
     let begun = Instant::now();
-    let late = common::run(place.path(), &format!("{SLOW} --out late --wall-time=1s"));
+    let late = crate::common::run(place.path(), &format!("{SLOW} --out late --wall-time=1s"));
     assert_eq!(late.status.code(), Some(7), "{}", text(&late.stderr));
     assert!(begun.elapsed() < Duration::from_secs(20));
     // By a signal.
     let out = place.path().join("asked");
-    let child = common::pericles(place.path())
+    let child = crate::common::pericles(place.path())
         .args(format!("{SLOW} --out asked").split_whitespace())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
@@ -265,7 +263,7 @@ fn sighup_and_sigusr1_stop_with_a_checkpoint() {
         history.map_or(0, |rows| rows.lines().count())
     };
     let before = rows();
-    let child = common::pericles(place.path())
+    let child = crate::common::pericles(place.path())
         .args(["resume", "stopped", "--threads", "1"])
         .spawn()
         .unwrap();
@@ -398,14 +396,14 @@ fn stopped_ring(place: &Path, out: &str) {
 fn a_run_is_resumed_from_another_folder() {
     let place = tempfile::tempdir().unwrap();
     stopped_ring(place.path(), "ring");
-    let whole = common::results(&place.path().join("ring"));
+    let whole = crate::common::results(&place.path().join("ring"));
     let elsewhere = tempfile::tempdir().unwrap();
     let folder = place.path().join("ring");
     let said = succeed(elsewhere.path(), &format!("resume {}", folder.display()));
     let said = text(&said.stderr);
     assert!(said.contains("step 60 of 100"), "{said}");
     assert_eq!(report(&folder)["status"], "finished");
-    assert!(common::results(&folder) == whole);
+    assert!(crate::common::results(&folder) == whole);
     let inputs = &report(&folder)["deck"]["inputs"]["files"];
     assert_eq!(inputs[0]["file"], "ring.txt");
     assert_eq!(inputs[1]["file"], "start.txt");

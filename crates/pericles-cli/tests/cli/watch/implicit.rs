@@ -3,7 +3,7 @@
 use std::fs;
 
 use crate::common::succeed;
-use crate::{reactions, warnings};
+use super::{reactions, warnings};
 
 #[test]
 fn implicit_schemes_accept_residuals_of_rounding_errors() {

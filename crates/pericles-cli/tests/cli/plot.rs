@@ -1,10 +1,8 @@
 //! The commands `plot`, `schema` and `converge`.
 
-mod common;
-
 use std::fs;
 
-use common::{fail, succeed, text, with_plate};
+use crate::common::{fail, succeed, text, with_plate};
 
 #[test]
 fn plot_reproduces_the_pictures_of_the_run_bitwise() {

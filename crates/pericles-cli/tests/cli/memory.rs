@@ -1,10 +1,8 @@
 //! The memory limit is checked before allocation, with a sufficiently accurate estimate.
 
-mod common;
-
 use std::fs;
 
-use common::{fail, report, run, succeed, with_plate};
+use crate::common::{fail, report, run, succeed, with_plate};
 
 #[test]
 fn a_run_above_the_memory_limit_is_status_8_and_leaves_no_files() {

@@ -1,10 +1,8 @@
 //! Error messages and exit statuses.
 
-mod common;
-
 use std::fs;
 
-use common::{fail, report, succeed, with_plate};
+use crate::common::{fail, report, succeed, with_plate};
 
 #[test]
 fn usage_errors_are_status_2() {
@@ -28,7 +26,7 @@ fn usage_errors_are_status_2() {
 #[test]
 fn an_invalid_deck_is_status_3_with_locations() {
     let place = with_plate();
-    let deck = common::PLATE
+    let deck = crate::common::PLATE
         .replace("72 GPa", "72 GPA")
         .replace("horizon_ratio", "horizont_ratio");
     fs::write(place.path().join("wrong.toml"), deck).unwrap();

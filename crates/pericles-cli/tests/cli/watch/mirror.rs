@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::common::report;
-use crate::{warned_of, warnings, without_warnings};
+use super::{warned_of, warnings, without_warnings};
 
 /// Returns the mirror symmetries of a run: axis, whether antisymmetric, and the error at the end.
 fn images(place: &Path, deck: &str, more: &str) -> Vec<(String, bool, f64)> {

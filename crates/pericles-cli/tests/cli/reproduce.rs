@@ -1,12 +1,10 @@
 //! `pericles reproduce`: the rows pass, and the output has the form that scripts expect.
 
-mod common;
-
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use common::{fail, succeed, text};
+use crate::common::{fail, succeed, text};
 use serde_json::Value;
 
 /// Asserts that every row with a tolerance passes.

@@ -1,13 +1,13 @@
 //! Runs under faults of the machine: full disks, read-only and removed folders, repeated interrupts. No file is
 //! corrupted, and the message says what to do.
 
-mod common;
-
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use common::{Background, assert_same_results, fail, pericles, report, succeed, text, with_plate};
+use crate::common::{
+    Background, assert_same_results, fail, pericles, report, succeed, text, with_plate,
+};
 
 /// A temporary file system in memory; `None`, with the reason printed, if the user is not allowed to mount one.
 struct SmallDisk<'a>(&'a Path);
@@ -112,7 +112,10 @@ fn a_run_stopped_by_a_read_only_disk_can_be_resumed() {
     };
     // The run stops at its time limit; the disk is read-only when it is resumed.
     let line = "run plate.toml --quiet --out disk/results --wall-time 0.01s";
-    assert_eq!(common::run(place.path(), line).status.code(), Some(7));
+    assert_eq!(
+        crate::common::run(place.path(), line).status.code(),
+        Some(7)
+    );
     disk.remount("ro");
     let (status, message) = fail(place.path(), "resume disk/results");
     assert_eq!(status, 6, "{message}");

@@ -1,10 +1,8 @@
 //! The command `dispersion`.
 
-mod common;
-
 use std::fs;
 
-use common::{PLATE, fail, succeed};
+use crate::common::{PLATE, fail, succeed};
 use serde_json::Value;
 
 #[test]
@@ -169,7 +167,7 @@ end = 1
         place.path(),
         "dispersion plate.toml --wavevector 1.5,0 --wavevector 0.3,0.4 --out tuned",
     );
-    let shown = common::text(&shown.stdout);
+    let shown = crate::common::text(&shown.stdout);
     assert!(shown.contains("ω at k = (1.500, 0, 0) rad/m"), "{shown}");
     assert!(shown.contains("residual functionals"), "{shown}");
     let folder = place.path().join("tuned");
@@ -215,7 +213,7 @@ end = 1
     );
     fs::write(place.path().join("two.toml"), two).unwrap();
     let output = succeed(place.path(), "dispersion two.toml --quiet --out two");
-    let said = common::text(&output.stderr);
+    let said = crate::common::text(&output.stderr);
     assert!(
         said.contains("1 assigned stiffness is not included"),
         "{said}"
@@ -252,7 +250,7 @@ end = 1
         place.path(),
         "dispersion plate.toml --set time.allow_unstable=true",
     );
-    assert!(common::text(&shown.stdout).contains("UNSTABLE"));
+    assert!(crate::common::text(&shown.stdout).contains("UNSTABLE"));
     let (status, message) = fail(
         place.path(),
         "dispersion plate.toml --measure --set time.allow_unstable=true --out none",

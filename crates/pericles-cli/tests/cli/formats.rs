@@ -1,12 +1,10 @@
 //! Generated decks over kinds of bodies, pieces, sets, fields and output formats: a deck that `check` accepts runs, and
 //! its results can be exported.
 
-mod common;
-
 use std::fs;
 use std::path::Path;
 
-use common::{run, succeed, text};
+use crate::common::{run, succeed, text};
 
 /// A mesh of 4 × 2 unit squares, in mm, with the groups "A" and "B" of one half each, the edge "left" and a group with a
 /// long name.

@@ -4,15 +4,13 @@
 //! Long; run with `cargo test --release --workspace --test trust -- --ignored --nocapture`, which prints a table. Short
 //! versions in `resume.rs` always run.
 
-mod common;
-
 use std::collections::hash_map::DefaultHasher;
 use std::fs;
 use std::hash::{Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use common::{assert_same_results, fail, pericles, report, results, succeed};
+use crate::common::{assert_same_results, fail, pericles, report, results, succeed};
 
 /// Returns the decks under `examples/`.
 fn decks() -> Vec<PathBuf> {
@@ -61,14 +59,14 @@ fn cut(place: &Path, deck: &Path) -> String {
         deck.display(),
         seconds()
     );
-    let output = common::run(place, &line);
+    let output = crate::common::run(place, &line);
     match output.status.code() {
         Some(0) => String::new(),
         Some(7) => format!(
             "--set time.end={}",
             report(&place.join("probe"))["progress"]["t"]
         ),
-        _ => panic!("{line}: {}", common::text(&output.stderr)),
+        _ => panic!("{line}: {}", crate::common::text(&output.stderr)),
     }
 }
 
@@ -156,7 +154,7 @@ fn runs_killed_at_random_times_resume_to_identical_results() {
     let kills: u64 = std::env::var("PERICLES_KILLS").map_or(300, |kills| kills.parse().unwrap());
     let place = tempfile::tempdir().unwrap();
     let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
-    fs::write(place.path().join("plate.toml"), common::PLATE).unwrap();
+    fs::write(place.path().join("plate.toml"), crate::common::PLATE).unwrap();
     let often = "--set checkpoint.every=37";
     let cases = [
         format!("plate.toml --set time.end=1e-3 --set output.fields.every=900 {often}"),

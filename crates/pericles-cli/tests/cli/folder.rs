@@ -1,11 +1,9 @@
 //! Output folders: names, replacement, permissions.
 
-mod common;
-
 use std::fs;
 use std::process::Stdio;
 
-use common::{fail, report, run, succeed, text, with_plate};
+use crate::common::{fail, report, run, succeed, text, with_plate};
 
 #[test]
 fn folders_are_named_after_the_deck_and_numbered() {
@@ -73,7 +71,7 @@ fn force_removes_exactly_the_files_written_by_the_run() {
     for file in mine {
         fs::write(folder.join(file), "mine").unwrap();
     }
-    let before = common::results(&folder);
+    let before = crate::common::results(&folder);
     assert!(before.len() > 15, "{before:?}");
     // A run with minimal output: all files of the first one are removed.
     fs::write(
@@ -83,7 +81,7 @@ fn force_removes_exactly_the_files_written_by_the_run() {
     )
     .unwrap();
     succeed(place.path(), "run bar.toml --out results --force --quiet");
-    let left: Vec<String> = common::results(&folder)
+    let left: Vec<String> = crate::common::results(&folder)
         .into_keys()
         .map(|path| path.to_str().unwrap().to_owned())
         .filter(|name| ![".manifest", "history.csv"].contains(&name.as_str()))
@@ -169,7 +167,7 @@ fn a_closed_pipe_is_not_an_error() {
         "reproduce --list",
         "--help",
     ] {
-        let mut child = common::pericles(place.path())
+        let mut child = crate::common::pericles(place.path())
             .args(line.split(' '))
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
@@ -198,7 +196,7 @@ fn run_json_contains_deck_model_and_results() {
     let number = |path: &str| report.pointer(path).and_then(|v| v.as_f64()).unwrap();
     assert_eq!(report["program"]["threads"], 1);
     assert_eq!(report["program"]["version"], env!("CARGO_PKG_VERSION"));
-    assert_eq!(report["deck"]["source"], common::PLATE);
+    assert_eq!(report["deck"]["source"], crate::common::PLATE);
     assert_eq!(report["deck"]["overrides"][0], "material.E=70e9");
     assert_eq!(number("/deck/values/body/spacing"), 1e-3);
     assert_eq!(number("/model/youngs_modulus"), 70e9);

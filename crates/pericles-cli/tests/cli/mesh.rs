@@ -1,11 +1,9 @@
 //! The commands `mesh` and `export`.
 
-mod common;
-
 use std::fs;
 use std::path::Path;
 
-use common::{fail, succeed, text};
+use crate::common::{fail, succeed, text};
 use serde_json::Value;
 
 fn example(name: &str) -> String {
@@ -93,7 +91,7 @@ fn invalid_mesh_files_are_rejected() {
 fn fields_are_exported_to_every_format_without_overwriting() {
     let place = tempfile::tempdir().unwrap();
     let folder = place.path();
-    fs::write(folder.join("plate.toml"), common::PLATE).unwrap();
+    fs::write(folder.join("plate.toml"), crate::common::PLATE).unwrap();
     succeed(folder, "run plate.toml --quiet --out plate");
     for (format, file) in [
         ("exodus", "fields.exo"),

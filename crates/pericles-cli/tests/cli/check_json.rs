@@ -1,10 +1,8 @@
 //! `pericles check --json` contains every printed number in SI units.
 
-mod common;
-
 use std::path::Path;
 
-use common::{PLATE, report, succeed, text};
+use crate::common::{PLATE, report, succeed, text};
 use serde_json::Value;
 
 /// Collects all numbers of a JSON value.

@@ -3,7 +3,7 @@
 use std::fs;
 
 use crate::common::{report, succeed};
-use crate::reactions;
+use super::reactions;
 
 #[test]
 fn the_predicted_surface_effect_of_thin_solids_is_the_measured_one() {

@@ -1,10 +1,8 @@
 //! Resumed runs: warnings, counters and field files equal those of an uninterrupted run.
 
-mod common;
-
 use std::fs;
 
-use common::{report, succeed, with_plate};
+use crate::common::{report, succeed, with_plate};
 use serde_json::Value;
 
 /// A heated plate of which more than half of the bonds break at an early step.

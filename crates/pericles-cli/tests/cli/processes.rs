@@ -2,12 +2,10 @@
 //! tested by `.ci/mpi`.
 #![cfg(not(feature = "mpi"))]
 
-mod common;
-
 use std::path::Path;
 use std::process::Output;
 
-use common::{PLATE, pericles, text};
+use crate::common::{PLATE, pericles, text};
 
 /// Runs the program as a launcher does.
 fn launched(folder: &Path, arguments: &str, variables: &[(&str, &str)]) -> Output {

@@ -1,6 +1,6 @@
 //! Layers that bonds do not cross.
 
-use crate::{reactions, warnings};
+use super::{reactions, warnings};
 
 #[test]
 fn bonds_do_not_cross_a_layer_on_request() {

@@ -1,7 +1,5 @@
 //! Warnings about finished runs: each one for a run with the problem, and none for the corrected run.
 
-#[path = "../common/mod.rs"]
-mod common;
 mod implicit;
 mod layers;
 mod mirror;
@@ -11,7 +9,7 @@ mod thin;
 use std::fs;
 use std::path::Path;
 
-use common::{report, run, succeed, text};
+use crate::common::{report, run, succeed, text};
 
 /// Runs a deck and returns the warnings in `run.json`.
 fn warnings(place: &Path, deck: &str, more: &str) -> Vec<String> {

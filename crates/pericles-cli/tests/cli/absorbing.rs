@@ -1,11 +1,9 @@
 //! Absorbing boundaries: cached kernels, studies, output of `check`.
 
-mod common;
-
 use std::fs;
 use std::path::Path;
 
-use common::{succeed, text};
+use crate::common::{succeed, text};
 use serde_json::Value;
 
 const BAR: &str = r#"

@@ -3,12 +3,10 @@
 //! `expected.toml` beside the decks lists them: for each deck the file, column, row, value and relative tolerance, and
 //! under `set` overrides for decks that would take long.
 
-mod common;
-
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use common::{pericles, report, succeed, text};
+use crate::common::{pericles, report, succeed, text};
 use pericles_io::{CsvData, read_csv};
 
 fn examples() -> PathBuf {
@@ -397,7 +395,7 @@ fn check_reports_the_net_speed_up_of_multirate_schemes() {
         let deck = examples().join("multi-time-step").join(deck);
         let deck = deck.canonicalize().unwrap();
         let output = succeed(place.path(), &format!("check {}", deck.display()));
-        let out = common::text(&output.stdout);
+        let out = crate::common::text(&output.stdout);
         let line = out.lines().find(|line| line.contains("net speed-up"));
         line.unwrap_or_else(|| panic!("{out}")).to_owned()
     };

@@ -2,14 +2,12 @@
 //!
 //! A deck begins with a sentence about its mistake, and with the command line if it is not `pericles check DECK`. The
 //! file `.answer` beside it has the exit status and the output. After a change of messages, regenerate these files
-//! with `PERICLES_REWRITE=1 cargo test --test wrong_decks` and read them.
-
-mod common;
+//! with `PERICLES_REWRITE=1 cargo test --workspace --test cli wrong_decks` and read them.
 
 use std::fs;
 use std::path::Path;
 
-use common::{run, text};
+use crate::common::{run, text};
 
 fn answer(folder: &Path, deck: &Path) -> String {
     let name = deck.file_name().unwrap().to_str().unwrap();

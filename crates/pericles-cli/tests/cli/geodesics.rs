@@ -1,10 +1,8 @@
 //! `pericles geodesics`: shapes and files, table, JSON, invalid input.
 
-mod common;
-
 use std::fs;
 
-use common::{fail, succeed, text};
+use crate::common::{fail, succeed, text};
 use serde_json::Value;
 
 const TETRAHEDRON: &str =

@@ -1,8 +1,6 @@
 //! `pericles check --ranks`: predicted divisions among processes.
 
-mod common;
-
-use common::{fail, succeed, text};
+use crate::common::{fail, succeed, text};
 use serde_json::Value;
 
 /// A body of bonds of up to 3.015 cells.

@@ -1,7 +1,7 @@
 //! Warnings about static states and their energy balance.
 
 use crate::common::{report, succeed, text};
-use crate::{warned_of, warnings, without_warnings};
+use super::{warned_of, warnings, without_warnings};
 
 /// A bar, fixed at one end, under a suddenly applied load.
 const DEAD: &str = r#"

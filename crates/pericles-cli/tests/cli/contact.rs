@@ -1,11 +1,9 @@
 //! Examples of contact: closed forms, conservation, exact restart.
 
-mod common;
-
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use common::{assert_same_results, pericles, report, succeed, text};
+use crate::common::{assert_same_results, pericles, report, succeed, text};
 use pericles_io::{CsvData, read_csv};
 
 /// Runs an example with overrides in a new folder.

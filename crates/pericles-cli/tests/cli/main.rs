@@ -1,0 +1,27 @@
+//! Tests of the program from outside: command lines, messages, files and exit statuses.
+
+mod common;
+
+mod absorbing;
+mod check_json;
+mod contact;
+mod dispersion;
+mod examples;
+mod faults;
+mod folder;
+mod formats;
+mod geodesics;
+mod instructions;
+mod memory;
+mod mesh;
+mod messages;
+mod plot;
+mod processes;
+mod ranks;
+mod reproduce;
+mod results;
+mod resume;
+mod resume_details;
+mod trust;
+mod watch;
+mod wrong_decks;
