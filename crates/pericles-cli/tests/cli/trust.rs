@@ -1,7 +1,7 @@
 //! Reproducibility of all examples: bitwise identical results for any number of threads, after a resume, and after the
 //! process is killed at any time.
 //!
-//! Long; run with `cargo test --release --workspace --test trust -- --ignored --nocapture`, which prints a table. Short
+//! Long; run with `cargo test --release --workspace --test cli trust -- --ignored --nocapture`, which prints a table. Short
 //! versions in `resume.rs` always run.
 
 use std::collections::hash_map::DefaultHasher;
