@@ -79,14 +79,14 @@ pub enum IoError {
     },
 
     /// A file format version that this version of Pericles does not read.
-    #[error("{} has format version {found}; this version of Pericles reads versions up to {newest}; use a newer version", path.display())]
+    #[error("{} has format version {found}; this version of Pericles reads format version {supported}; use the version that wrote it", path.display())]
     UnsupportedVersion {
         /// The file.
         path: PathBuf,
         /// The version of the file.
         found: u32,
-        /// The newest supported version.
-        newest: u32,
+        /// The supported version of the format.
+        supported: u32,
     },
 
     /// The content of a file exceeds the memory limit.

@@ -386,7 +386,7 @@ mod tests {
             error,
             IoError::UnsupportedVersion {
                 found: 9,
-                newest: VERSION,
+                supported: VERSION,
                 ..
             }
         ));

@@ -121,7 +121,7 @@ impl Opening {
             return Err(IoError::UnsupportedVersion {
                 path: path.to_path_buf(),
                 found: version,
-                newest: VERSION,
+                supported: VERSION,
             });
         }
         let room = u64::from(u32_at(&prefix, 12)) | u64::from(u32_at(&prefix, 16)) << 32;
