@@ -47,7 +47,17 @@ fn manifold_studies_are_within_tolerance() {
     ]);
 }
 
-/// Runs every study whose rows do not depend on wall time.
+#[test]
+fn absorbing_boundary_studies_are_within_tolerance() {
+    hold(&[
+        "absorbing-boundaries/table-1",
+        "absorbing-boundaries/damping-layer",
+        "absorbing-boundaries/midpoint",
+        "absorbing-boundaries/strip",
+    ]);
+}
+
+/// Runs every study but `cost`, whose wall times take a minute.
 #[test]
 fn multirate_studies_are_within_tolerance() {
     hold(&[
@@ -57,6 +67,7 @@ fn multirate_studies_are_within_tolerance() {
         "multi-time-step/crack",
         "multi-time-step/stability",
         "multi-time-step/energy",
+        "multi-time-step/inclusion",
         "multi-time-step/two-grid",
     ]);
 }
