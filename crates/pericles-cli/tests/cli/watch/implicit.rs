@@ -2,8 +2,8 @@
 
 use std::fs;
 
-use crate::common::succeed;
 use super::{reactions, warnings};
+use crate::common::succeed;
 
 #[test]
 fn implicit_schemes_accept_residuals_of_rounding_errors() {

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use crate::common::report;
 use super::{warned_of, warnings, without_warnings};
+use crate::common::report;
 
 /// Returns the mirror symmetries of a run: axis, whether antisymmetric, and the error at the end.
 fn images(place: &Path, deck: &str, more: &str) -> Vec<(String, bool, f64)> {

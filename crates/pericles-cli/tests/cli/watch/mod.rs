@@ -3,6 +3,7 @@
 mod implicit;
 mod layers;
 mod mirror;
+mod multirate;
 mod statics;
 mod thin;
 

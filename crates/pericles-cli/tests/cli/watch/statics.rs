@@ -1,7 +1,7 @@
 //! Warnings about static states and their energy balance.
 
-use crate::common::{report, succeed, text};
 use super::{warned_of, warnings, without_warnings};
+use crate::common::{report, succeed, text};
 
 /// A bar, fixed at one end, under a suddenly applied load.
 const DEAD: &str = r#"
@@ -179,4 +179,53 @@ output = { fields = "never" }
     let elastic = deck.replace("yield_stress = 0.02", "yield_stress = 20");
     let place = tempfile::tempdir().unwrap();
     assert!(warnings(place.path(), &elastic, "").is_empty());
+}
+
+/// A disc compressed between its poles; it splits along the loaded diameter.
+const DISC: &str = r#"
+body = { shape = "disc", radius = 25, centre = [0, 0], spacing = 4, plane = "stress" }
+material = { density = 1, youngs_modulus = 1, horizon_ratio = 3, critical_stretch = 1e-3, no_fail = ["top", "bottom"] }
+sets.top = { where = "y > 20" }
+sets.bottom = { where = "y < -20" }
+constraint = [{ set = "top", displacement = ["free", -0.4] }, { set = "bottom", displacement = [0, 0] }]
+time = { scheme = "static", load_steps = 30, stop_when = [{ set = "top", reaction_below = 0.3 }] }
+output = { fields = "never", history = { every = 1 } }
+"#;
+
+#[test]
+fn static_states_of_a_splitting_body_are_found_by_damped_dynamics() {
+    let place = tempfile::tempdir().unwrap();
+    let found = warnings(place.path(), DISC, "");
+    let says = "no static path, because the body splits, softens or buckles";
+    assert!(
+        found.iter().any(|warning| warning.contains(says)),
+        "{found:?}"
+    );
+    let table = std::fs::read_to_string(place.path().join("out/reactions.csv")).unwrap();
+    let force = |row: &str| row.split(',').nth(2).unwrap().parse::<f64>().unwrap().abs();
+    let forces: Vec<f64> = table.lines().skip(1).map(force).collect();
+    let peak = forces.iter().copied().fold(0.0, f64::max);
+    // The halves carry no load.
+    assert!(*forces.last().unwrap() < 1e-3 * peak, "{forces:?}");
+    // All states are in equilibrium, and the energy that is released on the way is in the balance.
+    let table = std::fs::read_to_string(place.path().join("out/history.csv")).unwrap();
+    let mut lines = table
+        .lines()
+        .map(|line| line.split(',').collect::<Vec<_>>());
+    let names = lines.next().unwrap();
+    let column = |name: &str| {
+        names
+            .iter()
+            .position(|found| found.starts_with(name))
+            .unwrap()
+    };
+    let [residual, work, balance] = ["residual", "external_work", "balance"].map(column);
+    for row in lines {
+        let number = |k: usize| row[k].parse::<f64>().unwrap();
+        assert!(number(residual) <= 1e-6, "{row:?}");
+        assert!(
+            number(balance).abs() <= 1e-4 * number(work).abs(),
+            "{row:?}"
+        );
+    }
 }

@@ -2,8 +2,8 @@
 
 use std::fs;
 
-use crate::common::{report, succeed};
 use super::reactions;
+use crate::common::{report, succeed};
 
 #[test]
 fn the_predicted_surface_effect_of_thin_solids_is_the_measured_one() {
