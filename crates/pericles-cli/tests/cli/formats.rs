@@ -170,7 +170,7 @@ fn deck(dimension: usize, body: &str, piece: &str) -> String {
     )
 }
 
-const FIELDS: [&str; 25] = [
+const FIELDS: [&str; 26] = [
     "Displacement",
     "Velocity",
     "Force_Density",
@@ -181,6 +181,7 @@ const FIELDS: [&str; 25] = [
     "Stress",
     "Strain",
     "Equivalent_Stress",
+    "Von_Mises_Stress",
     "Principal_Stress",
     "Dilatation",
     "Plastic_Strain",

@@ -328,7 +328,10 @@ pub(super) fn quantity(field: Field) -> Quantity {
         Field::ForceDensity | Field::ExternalForce | Field::Reaction | Field::ContactForce => {
             Quantity::ForceDensity
         }
-        Field::Stress | Field::EquivalentStress | Field::PrincipalStress => Quantity::Traction,
+        Field::Stress
+        | Field::EquivalentStress
+        | Field::VonMisesStress
+        | Field::PrincipalStress => Quantity::Traction,
         Field::Damage
         | Field::Strain
         | Field::Dilatation

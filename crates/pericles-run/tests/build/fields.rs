@@ -39,7 +39,7 @@ dt = "0.1 us"
 count = 1
 "#;
 
-const NAMES: &str = "output.fields.names=['Displacement', 'Stress', 'Equivalent_Stress', 'Principal_Stress', 'Radius', 'Volume', 'Point_Id', 'Fragment_Id', 'Material_Id', 'Set_right']";
+const NAMES: &str = "output.fields.names=['Displacement', 'Stress', 'Von_Mises_Stress', 'Equivalent_Stress', 'Principal_Stress', 'Radius', 'Volume', 'Point_Id', 'Fragment_Id', 'Material_Id', 'Set_right']";
 
 /// Runs a deck and returns its last state and the bytes of its last file.
 fn last_state(text: &str, overrides: &[&str], folder: &Path) -> (FieldData, String) {
@@ -114,6 +114,7 @@ fn arrays_that_a_deck_asks_for_have_their_values_and_units() {
         assert_eq!(values("Point_Id")[i], i as f64);
         assert!((values("Radius")[i] - 0.5e-3).abs() < 1e-18);
     }
+    assert_eq!(values("Von_Mises_Stress"), values("Equivalent_Stress"));
     let stress = field("Stress");
     assert_eq!(stress.components, 6);
     let part = |i: usize, c: usize| stress.values[6 * i + c];

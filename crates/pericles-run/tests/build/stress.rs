@@ -72,7 +72,7 @@ fn correspondence_bodies_of_uniform_strain_have_the_stress_of_hookes_law_everywh
                     assert!(error < 1e-6, "{body}, {law}, {k}: {found} {expected}");
                 }
             }
-            let von_mises = field(&deck, Field::EquivalentStress);
+            let von_mises = field(&deck, Field::VonMisesStress);
             let spread = von_mises.iter().map(|s| (s / von_mises[0] - 1.0).abs());
             assert!(spread.fold(0.0, f64::max) < 1e-6);
         }
@@ -92,7 +92,7 @@ fn no_point_of_a_perfectly_plastic_correspondence_body_exceeds_the_yield_stress(
     let mut run = build(&deck).simulation();
     run.run(|_| Control::Continue).unwrap();
     let snapshot = run.snapshot();
-    let largest = snapshot.field(Field::EquivalentStress);
+    let largest = snapshot.field(Field::VonMisesStress);
     let largest = largest.iter().fold(0.0, |most: f64, s| most.max(*s));
     // The yield function depends on the Kirchhoff stress.
     assert!((0.0198..0.0201).contains(&largest), "{largest}");

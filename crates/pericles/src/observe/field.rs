@@ -19,7 +19,7 @@ pub enum Field {
     Reaction,
     /// Force density of contact, with dampers and friction, N/m³.
     ContactForce,
-    /// Cauchy stress, Pa. Correspondence materials: from the deformation gradient. Other materials: virial stress of
+    /// Cauchy stress, Pa. Correspondence materials: that of the deformation gradient. Other materials: virial stress of
     /// the bonds of a point, ½ Σ f ⊗ (ξ + η)/J, or ½ Σ f ⊗ ξ for laws of small strains; NaN if the force does not list its
     /// bonds.
     Stress,
@@ -44,8 +44,9 @@ pub enum Field {
     Temperature,
     /// Heat flux, W/m²; NaN for bodies without heat conduction.
     HeatFlux,
-    /// Principal stresses, Pa: eigenvalues of [`Field::Stress`] in descending order, one per dimension of the
-    /// body. NaN if the force does not list its bonds.
+    /// Von Mises stress, Pa: the same numbers as [`Field::EquivalentStress`].
+    VonMisesStress,
+    /// Principal stresses, Pa: eigenvalues of [`Field::Stress`] in descending order, as many as the body has dimensions. As stress.
     PrincipalStress,
     /// Half the size of a point's cell, m: ½ (V / section)^(1/dimension). The same at all times.
     Radius,
@@ -66,7 +67,7 @@ impl Field {
     ];
 
     /// All fields.
-    pub const ALL: [Self; 22] = [
+    pub const ALL: [Self; 23] = [
         Self::Displacement,
         Self::Velocity,
         Self::ForceDensity,
@@ -85,6 +86,7 @@ impl Field {
         Self::YieldFlag,
         Self::Temperature,
         Self::HeatFlux,
+        Self::VonMisesStress,
         Self::PrincipalStress,
         Self::Radius,
         Self::PointId,
@@ -112,6 +114,7 @@ impl Field {
             Self::YieldFlag => "Yield_Flag",
             Self::Temperature => "Temperature",
             Self::HeatFlux => "Heat_Flux",
+            Self::VonMisesStress => "Von_Mises_Stress",
             Self::PrincipalStress => "Principal_Stress",
             Self::Radius => "Radius",
             Self::PointId => "Point_Id",
@@ -127,7 +130,10 @@ impl Field {
             Self::ForceDensity | Self::ExternalForce | Self::Reaction | Self::ContactForce => {
                 "N/m³"
             }
-            Self::Stress | Self::EquivalentStress | Self::PrincipalStress => "Pa",
+            Self::Stress
+            | Self::EquivalentStress
+            | Self::VonMisesStress
+            | Self::PrincipalStress => "Pa",
             Self::Damage
             | Self::Strain
             | Self::Dilatation
@@ -170,7 +176,11 @@ impl Field {
 
     /// Returns whether the field is computed from single bonds.
     pub fn is_of_bonds(self) -> bool {
-        let of_stress = [Self::EquivalentStress, Self::PrincipalStress];
+        let of_stress = [
+            Self::EquivalentStress,
+            Self::VonMisesStress,
+            Self::PrincipalStress,
+        ];
         self.is_tensor() || of_stress.contains(&self)
     }
 

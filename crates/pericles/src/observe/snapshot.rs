@@ -217,10 +217,12 @@ impl<'a> Snapshot<'a> {
                 }
                 dilatation
             }),
-            Field::EquivalentStress => self.equivalent_stress.get_or_init(|| {
-                let dimension = self.system.cloud().dimension();
-                equivalent_stress(dimension, self.field(Field::Stress))
-            }),
+            Field::EquivalentStress | Field::VonMisesStress => {
+                self.equivalent_stress.get_or_init(|| {
+                    let dimension = self.system.cloud().dimension();
+                    equivalent_stress(dimension, self.field(Field::Stress))
+                })
+            }
             Field::PlasticStrain => self.plastic_strain.get_or_init(|| {
                 let mut strain = vec![f64::NAN; self.system.points()];
                 if let Some(view) = self.system.operator().capabilities().plastic {
