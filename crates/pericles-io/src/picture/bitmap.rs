@@ -86,7 +86,7 @@ impl Bitmap {
         let cover = cover.max(0.0);
         for (old, new) in self.rgba[at..at + 3].iter_mut().zip(colour) {
             let mixed = f64::from(*old) * (1.0 - cover) + f64::from(new) * cover;
-            *old = mixed.round() as u8;
+            *old = rounded(mixed);
         }
     }
 
@@ -179,6 +179,13 @@ impl Bitmap {
         writer.write_image_data(&self.rgb()).map_err(encoding)?;
         writer.finish().map_err(encoding)
     }
+}
+
+/// Returns the nearest whole number of a number that is not negative. `f64::round` is a call of a function on processors
+/// for which the program is compiled.
+#[inline]
+pub(super) fn rounded(number: f64) -> u8 {
+    (number + 0.5) as u8
 }
 
 /// Returns a path through points.

@@ -1,6 +1,6 @@
 //! Colour maps: tables of equidistant colours with linear interpolation.
 
-use super::bitmap::Rgb;
+use super::bitmap::{Rgb, rounded};
 
 /// A map from numbers to colours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -91,16 +91,19 @@ impl ColourMap {
         let place = fraction.clamp(0.0, 1.0) * last as f64;
         let below = (place as usize).min(last - 1);
         let weight = place - below as f64;
-        std::array::from_fn(|c| {
+        let part = |c: usize| {
             let (a, b) = (f64::from(table[below][c]), f64::from(table[below + 1][c]));
-            (a + weight * (b - a)).round() as u8
-        })
+            rounded(a + weight * (b - a))
+        };
+        [part(0), part(1), part(2)]
     }
 }
 
 /// Darkens a colour, for faces in shade.
-pub(super) fn shaded(colour: Rgb, light: f64) -> Rgb {
-    colour.map(|value| (f64::from(value) * light).round() as u8)
+#[inline]
+pub(super) fn shaded([r, g, b]: Rgb, light: f64) -> Rgb {
+    let shade = |part: u8| rounded(f64::from(part) * light);
+    [shade(r), shade(g), shade(b)]
 }
 
 #[cfg(test)]

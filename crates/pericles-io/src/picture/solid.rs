@@ -66,8 +66,8 @@ impl View {
     fn light_on(&self, normal: [f64; 3]) -> f64 {
         /// Light on surfaces that the source does not reach.
         const AMBIENT: f64 = 0.6;
-        let lamp: [f64; 3] =
-            std::array::from_fn(|k| self.eye[k] + 0.7 * self.up[k] - 0.5 * self.right[k]);
+        let lamp = |k: usize| self.eye[k] + 0.7 * self.up[k] - 0.5 * self.right[k];
+        let lamp = [lamp(0), lamp(1), lamp(2)];
         let size = (dot(normal, normal) * dot(lamp, lamp)).sqrt();
         if size == 0.0 {
             return 1.0;
@@ -255,8 +255,11 @@ fn draw_facets(raster: &mut Raster, scene: &Scene, placing: &Placing) {
     placed.sort_by(|(a, _), (b, _)| nearest(a).total_cmp(&nearest(b)));
     for (corners, facet) in placed {
         raster.triangle(corners, |shares| {
-            let mix = |values: [f64; 3]| (0..3).map(|k| shares[k] * values[k]).sum::<f64>();
-            let normal = std::array::from_fn(|c| mix(facet.normals.map(|normal| normal[c])));
+            let [s, t, r] = shares;
+            let mix = |[x, y, z]: [f64; 3]| s * x + t * y + r * z;
+            let [a, b, c] = facet.normals;
+            let along = |k: usize| mix([a[k], b[k], c[k]]);
+            let normal = [along(0), along(1), along(2)];
             shaded(
                 scene.bar.colour(mix(facet.values)),
                 placing.view.light_on(normal),
