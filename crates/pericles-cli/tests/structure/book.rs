@@ -52,9 +52,11 @@ fn links(text: &str) -> Vec<String> {
     targets.collect()
 }
 
-/// Returns the anchors of the headings, as mdBook and repository viewers form them.
+/// Returns the anchors of a page: those of the headings, as mdBook and repository viewers form them, and explicit ones.
 fn anchors(text: &str) -> BTreeSet<String> {
     let is_kept = |c: &char| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_');
+    let explicit = text.split("id=\"").skip(1);
+    let explicit = explicit.filter_map(|part| Some(part.split_once('"')?.0.to_owned()));
     let headings = text.lines().filter(|line| line.starts_with('#'));
     headings
         .map(|line| {
@@ -65,6 +67,7 @@ fn anchors(text: &str) -> BTreeSet<String> {
                 .collect::<String>()
                 .replace(' ', "-")
         })
+        .chain(explicit)
         .collect()
 }
 

@@ -24,6 +24,7 @@ pub(super) fn document(schema: &Schema) -> String {
         page.about(name);
         if schema.survey.table(name).is_some() {
             page.keys(name);
+            page.tables_in(name);
         } else {
             let forms = page.forms(name);
             page.text += &format!("\nA value: {forms}.\n");
@@ -54,6 +55,11 @@ impl Page<'_> {
         self.heading(2 + usize::from(depth > 1), &title(place));
         self.about(place);
         self.keys(place);
+        self.tables_in(place);
+    }
+
+    /// Writes the sections of the tables in a table.
+    fn tables_in(&mut self, place: &str) {
         let Some(table) = self.schema.survey.table(place) else {
             return;
         };

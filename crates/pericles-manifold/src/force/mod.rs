@@ -13,7 +13,7 @@
 //!
 //! Cost: a bond loads 12 bytes and the row of its neighbour, about 1.1 ns for p = 2 and 1.2 ns for p = 3 with
 //! AVX-512 (Xeon of family 6, model 207, one thread; reading 12 bytes per bond without computing takes 1.1 ns),
-//! so the loops are memory-bound. `cargo bench -p pericles-manifold --bench surface` measures it against the
+//! so the loops are memory-bound. `cargo bench -p pericles-bench --bench surface` measures it against the
 //! memory bandwidth. Surface forces can be split by zones ([`LocalForce`](pericles::operator::LocalForce),
 //! [`SplitForce`](pericles::operator::SplitForce)), so multirate schemes apply to them.
 //!

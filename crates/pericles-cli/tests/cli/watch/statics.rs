@@ -184,7 +184,7 @@ output = { fields = "never" }
 /// A disc compressed between its poles; it splits along the loaded diameter.
 const DISC: &str = r#"
 body = { shape = "disc", radius = 25, centre = [0, 0], spacing = 4, plane = "stress" }
-material = { density = 1, youngs_modulus = 1, horizon_ratio = 3, critical_stretch = 1e-3, no_fail = ["top", "bottom"] }
+material = { density = 1, youngs_modulus = 1, horizon_ratio = 3, critical_stretch = 5e-4, no_fail = ["top", "bottom"] }
 sets.top = { where = "y > 20" }
 sets.bottom = { where = "y < -20" }
 constraint = [{ set = "top", displacement = ["free", -0.4] }, { set = "bottom", displacement = [0, 0] }]
@@ -201,12 +201,12 @@ fn static_states_of_a_splitting_body_are_found_by_damped_dynamics() {
         found.iter().any(|warning| warning.contains(says)),
         "{found:?}"
     );
-    let table = std::fs::read_to_string(place.path().join("out/reactions.csv")).unwrap();
-    let force = |row: &str| row.split(',').nth(2).unwrap().parse::<f64>().unwrap().abs();
-    let forces: Vec<f64> = table.lines().skip(1).map(force).collect();
-    let peak = forces.iter().copied().fold(0.0, f64::max);
-    // The halves carry no load.
-    assert!(*forces.last().unwrap() < 1e-3 * peak, "{forces:?}");
+    let report = report(&place.path().join("out"));
+    let reason = report["stop_reason"].as_str().unwrap_or_default();
+    assert!(reason.contains("has fallen to"), "{report}");
+    // The disc releases elastic energy while it splits.
+    let released = report["audit"]["scheme_correction"].as_f64();
+    assert!(released.is_none_or(|energy| energy > 0.0), "{released:?}");
     // All states are in equilibrium, and the energy that is released on the way is in the balance.
     let table = std::fs::read_to_string(place.path().join("out/history.csv")).unwrap();
     let mut lines = table

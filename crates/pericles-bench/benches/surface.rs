@@ -1,7 +1,7 @@
 //! Benchmark of the surface force: a sphere with 10 242 vertices and 6.4 million directed bonds, for each power
 //! and instruction set.
 //!
-//! `RAYON_NUM_THREADS=1 cargo bench -p pericles-manifold --bench surface` prints the CPU time per directed bond
+//! `RAYON_NUM_THREADS=1 cargo bench -p pericles-bench --bench surface` prints the CPU time per directed bond
 //! and the rate at which bonds are read, next to the rate at which this machine reads the same number of bytes
 //! without computing. All cases are timed in turn, round after round, so that they see the same machine load.
 
