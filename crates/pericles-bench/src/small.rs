@@ -19,7 +19,7 @@ use crate::Case;
 /// Time step, s: far below the stable one.
 const DT: f64 = 1e-7;
 /// Duration of a round, s.
-const ROUND: f64 = 0.02;
+const ROUND: f64 = 0.1;
 /// Step ratio of the multirate scheme.
 const RATIO: u32 = 8;
 /// Fraction of the width of the plate with the fine step, at least four spacings.
