@@ -215,7 +215,8 @@ fn sphere(level: usize) -> Result<(System, State)> {
 }
 
 /// Times small bodies on thread pools, in alternation over `rounds` rounds after a warm-up round; the median is
-/// reported. The force is timed on the first pool. Calls `report` after each body.
+/// reported. The force is timed on the first pool. Bodies of more than `largest` points are left out. Calls `report` after
+/// each body.
 ///
 /// # Errors
 /// Returns an error of the engine, and that of `report`.
@@ -230,7 +231,8 @@ pub fn small_bodies<E: From<pericles::PericlesError>>(
             let (mut running, evaluations) = body.create(&size)?;
             let points = running.system.points();
             if points > largest {
-                continue;
+                // Sizes ascend.
+                break;
             }
             let mut out = vec![0.0; running.state.u.len()];
             let estimate = pools[0].install(|| running.step(1))?;
