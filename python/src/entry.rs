@@ -17,7 +17,7 @@ static USED: AtomicBool = AtomicBool::new(false);
 /// Whether this process was forked from one that had computed in parallel: its threads were not copied.
 static FORKED: AtomicBool = AtomicBool::new(false);
 
-/// Rejects computations that would wait for ever for threads that do not exist.
+/// Rejects computations in a process that was forked after a parallel computation: its threads were not copied.
 pub fn enter() -> PyResult<()> {
     if FORKED.load(Ordering::Relaxed) {
         return Err(errors::plain(

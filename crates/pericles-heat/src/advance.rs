@@ -54,7 +54,7 @@ const SAFETY: f64 = 0.95;
 pub(crate) struct Span<'a> {
     /// Start and end, s.
     pub times: [f64; 2],
-    /// Constant inflow into each point within the interval besides the inflow by conditions, W for heat; none if empty.
+    /// Inflow into each point in addition to the inflow by conditions, constant within the interval, W for heat; empty if zero.
     pub power: &'a [f64],
 }
 
