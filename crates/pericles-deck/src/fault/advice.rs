@@ -48,7 +48,7 @@ impl Subject for Fault {
                 "move one of them: points of different pieces must be at least half of a cell apart; points one cell apart touch".into()
             }
             Self::PrescribedTwice { .. } => {
-                "choose other points, set this component to \"free\", or remove one of the two tables".into()
+                "choose other points, set this component to \"free\", or give both tables the same value, function and `until`".into()
             }
             Self::ThinFineSet { .. } => {
                 "make the set thicker along this axis, or extend it to the surface of the body".into()

@@ -300,13 +300,13 @@ pub enum Fault {
         /// What is allowed.
         allowed: String,
     },
-    /// Points with two constraints along one axis.
+    /// A point with two constraints along one axis that differ.
     #[error(
-        "the motion of {points} points along {axis} is already prescribed by [[constraint]] number {earlier}"
+        "the motion of point {point} along {axis} is already prescribed by [[constraint]] number {earlier}, with other values"
     )]
     PrescribedTwice {
-        /// The number of points.
-        points: usize,
+        /// The number of the point.
+        point: usize,
         /// The axis.
         axis: char,
         /// The number of the earlier constraint in the deck, from 1.

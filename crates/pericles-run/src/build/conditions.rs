@@ -2,12 +2,12 @@
 
 use std::path::Path as FilePath;
 
-use pericles::System;
 use pericles::boundary::PrescribedMotion;
 use pericles::noise::uniform_in_ball;
 use pericles::observe::Probe as PointProbe;
 use pericles::space::PointCloud;
 use pericles::time::State;
+use pericles::{PericlesError, System};
 use pericles_deck::{
     BuildError, Caution, Fault, KeyPath, ModelWarning, ProbePlace, RandomVelocity, Remark,
 };
@@ -140,7 +140,6 @@ impl Assembler<'_> {
             let points = self.members(sets, &motion.set, path.key("set"))?.clone();
             let function = motion.function.smooth_function();
             let function = function.map_err(|fault| at_path(path.key("function"), fault))?;
-            self.reject_second_motion(k, &points, discretisation)?;
             let add = || {
                 let along = self.axis_motions(&path, motion, cloud, &points)?;
                 let prescribed = PrescribedMotion::along(
@@ -155,38 +154,23 @@ impl Assembler<'_> {
                 let mut prescribed = prescribed.map_err(|error| at(&path, error))?;
                 prescribed.until = motion.until;
                 let added = system.add_motion(prescribed);
-                added.map_err(|error| at(&path, error))
+                added.map_err(|error| match error {
+                    PericlesError::PrescribedTwice {
+                        point,
+                        axis,
+                        earlier,
+                    } => {
+                        let fault = Fault::PrescribedTwice {
+                            point,
+                            axis,
+                            earlier: earlier + 1,
+                        };
+                        at_path(path.clone(), fault)
+                    }
+                    error => at(&path, error),
+                })
             };
             discretisation.agreed(add())?;
-        }
-        Ok(())
-    }
-
-    /// Rejects a second prescribed motion of a point along the same axis.
-    fn reject_second_motion(
-        &self,
-        k: usize,
-        points: &[u32],
-        discretisation: &Discretisation,
-    ) -> Result<(), BuildError> {
-        let Discretisation { cloud, sets, .. } = discretisation;
-        let later = &self.model.constraints[k];
-        for (earlier, other) in self.model.constraints[..k].iter().enumerate() {
-            let path = KeyPath::from("constraint").index(earlier);
-            let others = self.members(sets, &other.set, &path)?;
-            // Sets are sorted.
-            let shared = points.iter().filter(|i| others.binary_search(i).is_ok());
-            let shared = cloud.domain().count(shared.count() as u64) as usize;
-            let both =
-                (0..3).find(|&c| later.amplitude[c].is_some() && other.amplitude[c].is_some());
-            if let (Some(c), true) = (both, shared > 0) {
-                let fault = Fault::PrescribedTwice {
-                    points: shared,
-                    axis: ['x', 'y', 'z'][c],
-                    earlier: earlier + 1,
-                };
-                return Err(at_path(KeyPath::from("constraint").index(k), fault));
-            }
         }
         Ok(())
     }

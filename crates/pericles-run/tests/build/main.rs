@@ -9,6 +9,7 @@ mod breaking_energy;
 mod compatibility;
 mod composition;
 mod conditions;
+mod constraints;
 mod contact;
 mod criterion;
 mod dissipation;

@@ -66,6 +66,9 @@ pub struct PrescribedMotion {
     start: Vec<f64>,
     /// Reaction force density on the constrained points at the last accepted state, per prescribed axis.
     reaction: Vec<f64>,
+    /// Components that another constraint prescribes with the same values, as sorted entries of `reaction`: they
+    /// belong to the other constraint, so that reactions and work count once.
+    shared: Vec<u32>,
 }
 
 impl PrescribedMotion {
@@ -108,6 +111,7 @@ impl PrescribedMotion {
             along,
             function,
             until: None,
+            shared: Vec::new(),
         }
     }
 
@@ -162,6 +166,7 @@ impl PrescribedMotion {
             along,
             function,
             until: None,
+            shared: Vec::new(),
         };
         let last = motion.axes().last();
         if let (MotionKind::Velocity, Some(last)) = (kind, last) {
@@ -222,6 +227,47 @@ impl PrescribedMotion {
         (0..3).filter(|&c| self.along[c].is_some())
     }
 
+    /// Leaves to `other` the components that both prescribe.
+    ///
+    /// # Errors
+    /// The first point (number in the body) and axis along which they prescribe different values.
+    pub(crate) fn share(&mut self, other: &Self) -> std::result::Result<(), (u32, usize)> {
+        let mut shared = Vec::new();
+        for (axis, c) in self.axes().enumerate() {
+            if other.along[c].is_none() {
+                continue;
+            }
+            for (k, &i) in self.points.iter().enumerate() {
+                let Ok(of_other) = other.points.binary_search(&i) else {
+                    continue;
+                };
+                if !self.agrees(other, c, [k, of_other]) {
+                    return Err((i, c));
+                }
+                shared.push((axis * self.points.len() + k) as u32);
+            }
+        }
+        self.shared.append(&mut shared);
+        self.shared.sort_unstable();
+        self.shared.dedup();
+        Ok(())
+    }
+
+    /// Returns whether both constraints prescribe the same motion along an axis of a point, the `own`-th of this
+    /// constraint and the `others`-th of the other.
+    fn agrees(&self, other: &Self, axis: usize, [own, others]: [usize; 2]) -> bool {
+        let amplitude = |motion: &Self, k: usize| match &motion.along[axis] {
+            Some(AxisMotion::Uniform(amplitude)) => Some(*amplitude),
+            Some(AxisMotion::PerPoint(amplitudes)) => Some(amplitudes[k]),
+            _ => None,
+        };
+        let (Some(a), Some(b)) = (amplitude(self, own), amplitude(other, others)) else {
+            return false;
+        };
+        let same_course = a == 0.0 || self.function == other.function;
+        a == b && same_course && self.kind == other.kind && self.until == other.until
+    }
+
     /// The amplitude along an axis, if it is the same for all points.
     pub fn amplitude(&self, axis: usize) -> Option<f64> {
         match self.along[axis] {
@@ -270,8 +316,8 @@ impl PrescribedMotion {
         }
     }
 
-    /// Calls `set(entry of the state's arrays, slot, value)` for every prescribed component of the points of `on`.
-    /// The value is the displacement beyond the initial one, the velocity or the acceleration.
+    /// Calls `set(entry of the state's arrays, slot, value)` for every prescribed component of the points of `on`
+    /// that no other constraint prescribes. The value is the displacement beyond the initial one, the velocity or the acceleration.
     fn for_each(
         &self,
         order: usize,
@@ -280,6 +326,11 @@ impl PrescribedMotion {
         cloud_len: usize,
         mut set: impl FnMut(usize, usize, f64),
     ) {
+        let mut set = |entry: usize, slot: usize, value: f64| {
+            if self.shared.binary_search(&(slot as u32)).is_err() {
+                set(entry, slot, value);
+            }
+        };
         let unit = self.unit(order, t);
         let motions = self.along.iter().enumerate();
         let motions = motions.filter_map(|(c, along)| Some((c, along.as_ref()?)));
@@ -490,6 +541,6 @@ impl PrescribedMotion {
 crate::saved! {
     impl SavedUnder(place) for PrescribedMotion {
         reaction: by(Laid::on(format!("{place}/reaction"), points)),
-        name, points, kind, along, function, until, start: fixed,
+        name, points, kind, along, function, until, start, shared: fixed,
     }
 }

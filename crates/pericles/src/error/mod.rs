@@ -481,13 +481,17 @@ pub enum PericlesError {
         /// What to give.
         allowed: &'static str,
     },
-    /// Two constraints prescribe the same component of the motion of a point.
-    #[error("the motion of point {point} along {axis} is prescribed twice; leave out one motion")]
+    /// Two constraints prescribe different values of one component of the motion of a point.
+    #[error(
+        "two constraints prescribe different motions of point {point} along {axis}; leave out one of them"
+    )]
     PrescribedTwice {
         /// Number of the point.
         point: usize,
         /// The axis, x, y or z.
         axis: char,
+        /// Index of the earlier constraint.
+        earlier: usize,
     },
 }
 

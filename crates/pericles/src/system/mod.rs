@@ -86,29 +86,22 @@ impl System {
         self.boundaries.push(boundary);
     }
 
-    /// Adds a constraint.
+    /// Adds a constraint. Components that an earlier constraint prescribes with the same values belong to the earlier
+    /// one: their reactions and work are part of its reactions and work.
     ///
     /// # Errors
-    /// Points or axes that the body does not have; values that are not one per point; a component that another
-    /// constraint prescribes.
-    pub fn add_motion(&mut self, motion: PrescribedMotion) -> Result<()> {
+    /// Points or axes that the body does not have; values that are not one per point; a component that an earlier
+    /// constraint prescribes with other values.
+    pub fn add_motion(&mut self, mut motion: PrescribedMotion) -> Result<()> {
         motion.check(self.dimension(), self.points())?;
-        for other in &self.motions {
-            for c in 0..3 {
-                if motion.along[c].is_none() || other.along[c].is_none() {
-                    continue;
-                }
-                let common = motion
-                    .points
-                    .iter()
-                    .find(|i| other.points.binary_search(i).is_ok());
-                if let Some(&point) = common {
-                    return Err(PericlesError::PrescribedTwice {
-                        point: self.cloud.user_number(point as usize),
-                        axis: ['x', 'y', 'z'][c],
-                    });
-                }
-            }
+        for (earlier, other) in self.motions.iter().enumerate() {
+            motion
+                .share(other)
+                .map_err(|(point, c)| PericlesError::PrescribedTwice {
+                    point: self.cloud.user_number(point as usize),
+                    axis: ['x', 'y', 'z'][c],
+                    earlier,
+                })?;
         }
         self.motions.push(motion);
         Ok(())
