@@ -33,6 +33,7 @@ fn failure_supplies_no_energy_at_the_default_step() {
         let deck = TORN.replace("MATERIAL", material).replace(", TIME", "");
         let mut run = build(&deck).simulation();
         let mut dissipated = 0.0;
+        // Both bounds were chosen after seeing the results: correspondence gains 1.03 % in one step.
         run.run(|run| {
             let now = run.snapshot().energies();
             assert!(
@@ -55,7 +56,7 @@ fn failure_supplies_no_energy_at_the_default_step() {
     }
 }
 
-/// In smaller steps the dissipated energy converges; at the default step it is right to a third.
+/// In smaller steps the dissipated energy converges; at the default step it is right to a quarter.
 #[test]
 fn dissipated_energy_at_the_default_step_approximates_that_of_small_steps() {
     for material in [0, 1, 3].map(|k| MATERIALS[k]) {
@@ -66,7 +67,7 @@ fn dissipated_energy_at_the_default_step_approximates_that_of_small_steps() {
             run.snapshot().energies().dissipated
         });
         assert!(
-            (coarse / fine - 1.0).abs() < 1.0 / 3.0,
+            (coarse / fine - 1.0).abs() < 0.25,
             "{material}: {coarse} {fine}"
         );
     }
