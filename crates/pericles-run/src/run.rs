@@ -291,6 +291,9 @@ impl Run {
                 Ok(path) => format!("the failed state is in {}", path.display()),
                 Err(error) => format!("the failed state could not be saved ({error})"),
             };
+            if self.simulation.integrator().is_static() {
+                left += "; it is the last state of the field files and pictures";
+            }
             if let Some(step) = self.checkpoints.last_step() {
                 let folder = self.folder.path().display();
                 left += &format!(

@@ -249,6 +249,10 @@ impl Observer for FieldSeries {
         Ok(self.write(snapshot)?)
     }
 
+    fn observe_failed(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), ObserveError> {
+        self.observe(snapshot)
+    }
+
     fn settle(&self) -> std::result::Result<(), ObserveError> {
         Ok(self.background.settle()?)
     }

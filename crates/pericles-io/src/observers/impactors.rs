@@ -236,6 +236,10 @@ impl Observer for ImpactorSurfaces {
             false => Ok(()),
         }
     }
+
+    fn observe_failed(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), ObserveError> {
+        self.observe(snapshot)
+    }
 }
 
 impl Checkpointed for ImpactorSurfaces {

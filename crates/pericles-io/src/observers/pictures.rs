@@ -194,6 +194,10 @@ impl Observer for Pictures {
         Ok(())
     }
 
+    fn observe_failed(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), ObserveError> {
+        self.observe(snapshot)
+    }
+
     fn finish(&mut self) -> std::result::Result<(), ObserveError> {
         if let Some(cloud) = &self.cloud {
             self.redraw(cloud)?;

@@ -235,6 +235,10 @@ impl Observer for ResultFile {
         Ok(self.write(snapshot)?)
     }
 
+    fn observe_failed(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), ObserveError> {
+        self.observe(snapshot)
+    }
+
     fn settle(&self) -> std::result::Result<(), ObserveError> {
         Ok(self.sync()?)
     }

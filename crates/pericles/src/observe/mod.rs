@@ -39,6 +39,15 @@ pub trait Observer: Checkpointed + Send {
     /// Any failure of the observer; the run then stops.
     fn observe(&mut self, snapshot: &Snapshot<'_>) -> Result<(), ObserveError>;
 
+    /// Receives the unbalanced state of a load step without a static state, after which the run stops. Observers of fields
+    /// show it; the numbers of tables would not belong to a static state.
+    ///
+    /// # Errors
+    /// Any failure of the observer; it is not reported, because the failed load step is.
+    fn observe_failed(&mut self, _snapshot: &Snapshot<'_>) -> Result<(), ObserveError> {
+        Ok(())
+    }
+
     /// Waits until all output so far is written; called before a checkpoint, for observers that write in a separate
     /// thread.
     ///

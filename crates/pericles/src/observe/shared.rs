@@ -14,6 +14,11 @@ impl<O: Observer> Observer for Arc<Mutex<O>> {
         observer.observe(snapshot)
     }
 
+    fn observe_failed(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), ObserveError> {
+        let mut observer = self.lock().unwrap_or_else(PoisonError::into_inner);
+        observer.observe_failed(snapshot)
+    }
+
     fn settle(&self) -> std::result::Result<(), ObserveError> {
         self.lock().unwrap_or_else(PoisonError::into_inner).settle()
     }

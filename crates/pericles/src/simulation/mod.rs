@@ -250,7 +250,7 @@ impl Simulation {
     ///
     /// # Errors
     /// Instability, an error of the integrator, an error of an observer. The simulation keeps the state at which it
-    /// occurred.
+    /// occurred. If a load step has no static state, observers see the unbalanced state as the last one.
     pub fn run(
         &mut self,
         control: impl FnMut(&Self) -> Control,
@@ -280,7 +280,12 @@ impl Simulation {
             let broken = self.system.operator().broken_bonds();
             match self.step(t_next, interrupt) {
                 Err(PericlesError::Interrupted) => return Ok(Outcome::Stopped),
-                stepped => stepped.map_err(|source| self.stuck(source, broken))?,
+                Err(source) => {
+                    let error = self.stuck(source, broken);
+                    self.show_failed(t_next);
+                    return Err(error);
+                }
+                Ok(()) => {}
             }
             self.stopped = self.met();
             let last = self.state.step == self.steps || self.stopped.is_some();
@@ -350,6 +355,24 @@ impl Simulation {
         }
         self.observers = observers;
         self.agreed(shown)
+    }
+
+    /// Passes the unbalanced state of a failed load step that ends at `t_next` to all observers with a schedule.
+    fn show_failed(&mut self, t_next: f64) {
+        if !self.integrator.is_static() {
+            return;
+        }
+        let (step, dt) = (self.state.step + 1, self.dt);
+        (self.state.step, self.state.t) = (step, t_next);
+        let mut observers = std::mem::take(&mut self.observers);
+        let snapshot = self.snapshot();
+        let due = |s: &&mut Scheduled| s.schedule.is_due(step, dt, step);
+        for scheduled in observers.iter_mut().filter(due) {
+            // Errors are ignored, because the failed step is reported.
+            let _ = scheduled.observer.observe_failed(&snapshot);
+            let _ = scheduled.observer.settle();
+        }
+        self.observers = observers;
     }
 
     /// Checks that step number and time of the state belong to this run.

@@ -1,7 +1,9 @@
 //! Warnings about static states and their energy balance.
 
 use super::{warned_of, warnings, without_warnings};
-use crate::common::{report, succeed, text};
+use std::fs;
+
+use crate::common::{fail, report, succeed, text};
 
 /// A bar, fixed at one end, under a suddenly applied load.
 const DEAD: &str = r#"
@@ -228,4 +230,49 @@ fn static_states_of_a_splitting_body_are_found_by_damped_dynamics() {
             "{row:?}"
         );
     }
+}
+
+/// A bar that tears in the second load step, under a load: the results end with its unbalanced state.
+#[test]
+fn fields_and_pictures_end_with_the_failed_state() {
+    let deck = r#"
+body = { shape = "bar", length = 40, spacing = 1 }
+material = { density = 1, youngs_modulus = 1, horizon_ratio = 3, critical_stretch = 7e-4 }
+sets.left = { layer = { side = "-x", cells = 3 } }
+sets.right = { layer = { side = "+x", cells = 3 } }
+constraint = [{ set = "left", displacement = [0] }]
+load = [{ set = "right", traction = [1e-3], function = { kind = "ramp", duration = 0.25 } }]
+time = { scheme = "adaptive-dynamic-relaxation", tolerance = 1e-6, load_steps = 10, iterations = 3000 }
+output = { fields = { every = 1 } }
+"#;
+    let place = tempfile::tempdir().unwrap();
+    fs::write(place.path().join("deck.toml"), deck).unwrap();
+    let (status, message) = fail(place.path(), "run deck.toml --out out");
+    assert_eq!(status, 4, "{message}");
+    assert!(
+        message.contains("it is the last state of the field files and pictures"),
+        "{message}"
+    );
+    let folder = place.path().join("out");
+    let rows = fs::read_to_string(folder.join("history.csv")).unwrap();
+    let last = rows.lines().last().unwrap();
+    assert!(last.starts_with("1,"), "the last static state: {last}");
+    let series = fs::read_to_string(folder.join("fields.pvd")).unwrap();
+    assert_eq!(series.matches("<DataSet").count(), 3, "{series}");
+    succeed(place.path(), "plot out --field Damage");
+    assert!(folder.join("plots/Damage-000002.png").is_file());
+    succeed(place.path(), "report out");
+    // The failed state is not part of a resumed run: it fails again, with the same files.
+    let files = |name: &str| fs::read(folder.join("fields").join(name)).unwrap();
+    let before = ["fields_000001.vtu", "fields_000002.vtu"].map(files);
+    let (status, _) = fail(place.path(), "resume out");
+    assert_eq!(status, 4);
+    assert_eq!(
+        before,
+        ["fields_000001.vtu", "fields_000002.vtu"].map(files)
+    );
+    assert_eq!(
+        rows,
+        fs::read_to_string(folder.join("history.csv")).unwrap()
+    );
 }
