@@ -1,10 +1,7 @@
 //! Balance of energy and momentum at the end of a run.
 
-use std::path::Path;
-
 use pericles::Simulation;
 use pericles::observe::Field;
-use pericles_io::{IoError, read_csv};
 use serde::Serialize;
 
 use crate::facts::Facts;
@@ -102,16 +99,14 @@ pub struct Audit {
 }
 
 impl Audit {
-    /// Evaluates the current state, without warnings.
-    ///
-    /// # Errors
-    /// The history cannot be read.
+    /// Evaluates the current state, without warnings. `largest_balance` is the largest magnitude of the energy balance in
+    /// the history, J.
     pub(crate) fn of(
         simulation: &Simulation,
         start: &Start,
-        history: &Path,
+        largest_balance: f64,
         facts: &Facts,
-    ) -> Result<Self, IoError> {
+    ) -> Self {
         let (system, state) = (simulation.system(), simulation.state());
         let snapshot = simulation.snapshot();
         let energies = snapshot.energies();
@@ -130,14 +125,10 @@ impl Audit {
         let (domain, volumes) = (system.domain(), system.cloud().volumes());
         let mass = domain.sum(system.points(), |i| system.density().at(i) * volumes[i]);
         let damage = snapshot.field(Field::Damage).iter().copied();
-        // A run may write no history.
-        let written = domain.is_first() && history.exists();
-        let table = written.then(|| read_csv(history)).transpose()?;
-        let rows = table.as_ref().and_then(|table| table.column("balance"));
         let touching = |energy: f64| system.has_interactions().then_some(energy);
         let largest_work = system.ledger().largest_work;
         let evaluated_points = domain.count(system.evaluated_points());
-        Ok(Self {
+        Self {
             kinetic_energy: energies.kinetic,
             elastic_energy: energies.elastic,
             dissipated_energy: energies.dissipated,
@@ -151,10 +142,7 @@ impl Audit {
             balance,
             balance_over_work: balance / energies.work.abs(),
             balance_over_dissipated: balance / energies.dissipated,
-            largest_balance: rows
-                .unwrap_or_default()
-                .iter()
-                .fold(balance.abs(), |most: f64, b| most.max(b.abs())),
+            largest_balance: largest_balance.max(balance.abs()),
             momentum: moves.then_some(momentum),
             impulse: moves.then_some(impulse),
             momentum_error: error,
@@ -177,6 +165,6 @@ impl Audit {
                 .refinement()
                 .map(|refinement| RefinementAudit::of(&refinement, evaluated_points)),
             warnings: Vec::new(),
-        })
+        }
     }
 }

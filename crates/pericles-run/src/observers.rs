@@ -4,7 +4,7 @@ mod impactors;
 mod result_body;
 
 use std::collections::HashMap;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 use pericles::Simulation;
 use pericles::family::Crack;
@@ -33,15 +33,22 @@ use self::impactors::add_impactors;
 pub(crate) use self::result_body::field_selection;
 pub use self::result_body::result_body;
 
+/// A simulation with the observers of a model.
+pub(crate) struct Observed {
+    pub simulation: Simulation,
+    /// The energy balance over time.
+    pub history: Arc<Mutex<History>>,
+}
+
 /// Creates the simulation of an assembled model with observers that write to a folder.
 ///
 /// # Errors
 /// Subfolders cannot be created.
-pub fn simulation(
+pub(crate) fn observed(
     model: &Model,
     mut assembly: Assembly,
     folder: &OutputFolder,
-) -> Result<Simulation, RunError> {
+) -> Result<Observed, RunError> {
     let output = &model.output;
     let dimension = assembly.cloud.dimension();
     let can_break = assembly.system.operator().can_break();
@@ -76,7 +83,8 @@ pub fn simulation(
 
     let rows = history_rows(model, &simulation, exact);
     let history = History::new(folder.file("history.csv"), rows);
-    simulation.observe(output.history, Box::new(history));
+    let history = Arc::new(Mutex::new(history));
+    simulation.observe(output.history, Box::new(Arc::clone(&history)));
     names.extend(add_impactors(model, folder, &mut simulation)?);
     if let Some(reactions) = reactions {
         names.push("reactions.csv".into());
@@ -113,7 +121,10 @@ pub fn simulation(
     names.extend(add_profiles(model, folder, &cloud, &mut simulation)?);
     names.extend(add_pictures(model, folder, &body, &mut simulation)?);
     folder.claim(&names)?;
-    Ok(simulation)
+    Ok(Observed {
+        simulation,
+        history,
+    })
 }
 
 /// Returns the rows of the history that a model requests; `exact` is the exact solution of its assembly, if it has one.

@@ -2,11 +2,12 @@
 
 use std::cell::{Cell, RefCell};
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
 use pericles::observe::{Observer, Schedule};
 use pericles::{Archive, Checkpointed, Control, Interrupt, Outcome, Simulation, SimulationError};
+use pericles_io::observers::History;
 use pericles_io::{OutputFolder, PvdSeries, VtuFile};
 
 use crate::animations;
@@ -18,7 +19,7 @@ use crate::deadline::Deadline;
 use crate::error::RunError;
 use crate::event::{Event, Tell};
 use crate::facts::Facts;
-use crate::observers;
+use crate::observers::{self, Observed};
 use crate::processes::{agreed, any, on_first};
 use crate::report::{Report, Status};
 use crate::sharing::Sharing;
@@ -29,6 +30,7 @@ use crate::watch::{self, Breakage};
 /// A run with its output folder.
 pub struct Run {
     simulation: Simulation,
+    history: Arc<Mutex<History>>,
     start: Start,
     checkpoints: Checkpoints,
     report: Report,
@@ -60,11 +62,16 @@ impl Run {
         let Assembled { assembly, facts } = assembled;
         let model = source.model();
         let comm = Arc::clone(assembly.system.domain().comm());
-        let simulation = agreed(&*comm, observers::simulation(model, assembly, &folder))?;
+        let observed = observers::observed(model, assembly, &folder);
+        let Observed {
+            simulation,
+            history,
+        } = agreed(&*comm, observed)?;
         Ok(Self {
             checkpoints: Checkpoints::new(&folder, model.checkpoint, source.record()),
             start: Start::of(&simulation),
             simulation,
+            history,
             report: Report::new(source, facts, 0),
             folder,
         })
@@ -104,8 +111,11 @@ impl Run {
         facts.warnings.extend(agreed(comm, gaps)?);
         let warnings = stored.metadata.warnings.clone();
         facts.warnings.extend(warnings.iter().cloned());
-        let simulation = observers::simulation(model, assembly, &folder);
-        let mut simulation = agreed(comm, simulation)?;
+        let observed = observers::observed(model, assembly, &folder);
+        let Observed {
+            mut simulation,
+            history,
+        } = agreed(comm, observed)?;
         // The state is still the initial state.
         let start = Start::of(&simulation);
         stored.restore(&mut simulation)?;
@@ -119,6 +129,7 @@ impl Run {
             checkpoints,
             start,
             simulation,
+            history,
             report: Report::new(&source, facts, step),
             folder,
         }))
@@ -305,10 +316,12 @@ impl Run {
     }
 
     fn close(&mut self, outcome: Outcome, cancel: &Cancel) -> Result<Ending, RunError> {
-        let history = self.folder.file("history.csv");
         let domain = self.simulation.system().domain();
-        let audit = Audit::of(&self.simulation, &self.start, &history, &self.report.model);
-        let mut audit = agreed(&**domain.comm(), audit.map_err(RunError::from))?;
+        let history = self.history.lock().unwrap_or_else(PoisonError::into_inner);
+        let largest_balance = history.largest_balance();
+        drop(history);
+        let model = &self.report.model;
+        let mut audit = Audit::of(&self.simulation, &self.start, largest_balance, model);
         audit.warnings = watch::warnings(&self.simulation, &audit);
         if domain.is_first() {
             let gaps = animations::gaps(&self.folder.file("pictures"));

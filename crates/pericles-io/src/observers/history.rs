@@ -93,6 +93,8 @@ pericles::saved! {
 pub struct History {
     table: ObserverTable,
     rows: HistoryRows,
+    /// Largest magnitude of the balance so far, J.
+    largest_balance: f64,
 }
 
 impl History {
@@ -102,13 +104,21 @@ impl History {
         Self {
             table: ObserverTable::new(path.into(), "observer/history", columns),
             rows,
+            largest_balance: 0.0,
         }
+    }
+
+    /// Returns the largest magnitude of the energy balance in the rows so far, J.
+    pub fn largest_balance(&self) -> f64 {
+        self.largest_balance
     }
 }
 
 impl Observer for History {
     fn observe(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), ObserveError> {
         let row = self.rows.row(snapshot);
+        let balance = snapshot.energies().balance();
+        self.largest_balance = self.largest_balance.max(balance.abs());
         Ok(self.table.append(snapshot, &row)?)
     }
 }
@@ -116,5 +126,6 @@ impl Observer for History {
 pericles::saved! {
     impl Checkpointed for History {
         table, rows: part,
+        largest_balance: array("observer/largest-balance"),
     }
 }
