@@ -12,7 +12,7 @@
 //! not depend on their order. The energy actually removed enters the energy balance, which closes to rounding.
 
 use crate::domain::{Domain, Field};
-use crate::operator::{CoarseBreak, each_once, with_received};
+use crate::neighbourhood::{CoarseBreak, each_once, with_received};
 use crate::system::System;
 
 /// Largest number of passes over the broken bonds of a step. One is enough where few bonds share a point; where all
@@ -118,7 +118,7 @@ impl System {
         if let Some(breaking) = self.operator_mut().breaking_mut() {
             // Added one by one, so that the sum over all processes does not depend on the division.
             for (i, given) in points.into_iter().zip(&given) {
-                breaking.dissipate(i, -given);
+                breaking.bonds_mut().dissipate(i, -given);
             }
         }
         taken

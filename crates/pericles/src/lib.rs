@@ -173,6 +173,7 @@ mod interrupt;
 pub mod kernel;
 pub mod lanes;
 pub mod material;
+pub mod neighbourhood;
 pub mod noise;
 pub mod observe;
 pub mod operator;

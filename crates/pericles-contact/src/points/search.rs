@@ -3,7 +3,8 @@
 use rayon::prelude::*;
 
 use pericles::domain::Domain;
-use pericles::operator::{Breakable, Force};
+use pericles::neighbourhood::BondSet;
+use pericles::operator::Force;
 use pericles::parallel::{BLOCK, for_each_point};
 
 use super::Pieces;
@@ -37,9 +38,9 @@ pub(super) struct Candidates {
 }
 
 /// The internal forces' list of bonds, if contact depends on it.
-fn bonds<'a>(touching: &Touching, forces: &'a dyn Force) -> Option<&'a dyn Breakable> {
+fn bonds<'a>(touching: &Touching, forces: &'a dyn Force) -> Option<&'a dyn BondSet> {
     match touching.law.pairs {
-        ContactPairs::Unbonded => forces.capabilities().breaking,
+        ContactPairs::Unbonded => forces.bond_set(),
         ContactPairs::Pieces | ContactPairs::All => None,
     }
 }

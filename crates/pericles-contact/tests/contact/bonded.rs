@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use pericles::operator::{Breakable, Capabilities, CoarseBreak, Force, PointSubset};
+use pericles::neighbourhood::{BondSet, CoarseBreak};
+use pericles::operator::{Breakable, Capabilities, Force, PointSubset};
 use pericles::space::PointCloud;
 
 /// Bonds that carry no force.
@@ -64,10 +65,26 @@ impl Force for Bonded {
 }
 
 impl Breakable for Bonded {
+    fn bonds(&self) -> &dyn BondSet {
+        self
+    }
+
+    fn bonds_mut(&mut self) -> &mut dyn BondSet {
+        self
+    }
+
     fn can_break(&self) -> bool {
         false
     }
 
+    fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {
+        Vec::new()
+    }
+
+    fn mark_endangered(&self, _u: &[f64], _fraction: f64, _marks: &mut [bool]) {}
+}
+
+impl BondSet for Bonded {
     fn broken_bonds(&self) -> u64 {
         0
     }
@@ -81,10 +98,6 @@ impl Breakable for Bonded {
     fn follow_dissipation(&mut self) {}
 
     fn take_dissipated(&mut self, _out: &mut [f64]) {}
-
-    fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {
-        Vec::new()
-    }
 
     fn damage_into(&self, out: &mut [f64]) {
         out.fill(0.0);
@@ -103,8 +116,6 @@ impl Breakable for Bonded {
     fn for_each_broken_count(&self, visit: &mut dyn FnMut(Range<usize>, u64)) {
         visit(0..self.points, 0);
     }
-
-    fn mark_endangered(&self, _u: &[f64], _fraction: f64, _marks: &mut [bool]) {}
 }
 
 pericles::saved! {

@@ -288,13 +288,13 @@ impl Diffusion {
     /// Reads from the forces of the body which bonds are intact; returns whether bonds changed on any process. All processes must
     /// call it together.
     pub fn read_bonds(&mut self, forces: &dyn Force) -> bool {
-        let Some(breaking) = forces.capabilities().breaking else {
+        let Some(bonds) = forces.bond_set() else {
             return false;
         };
         let mut changed = Vec::new();
         let (mut k, first) = (0, self.read.is_empty());
         let read = &mut self.read;
-        breaking.for_each_broken_count(&mut |range, count| {
+        bonds.for_each_broken_count(&mut |range, count| {
             if k == read.len() {
                 read.push(0);
             }
@@ -309,7 +309,7 @@ impl Diffusion {
         let mut near = Vec::new();
         for i in changed.into_iter().flatten() {
             near.clear();
-            breaking.for_each_intact_of(i, &mut |j| near.push(j));
+            bonds.for_each_intact_of(i, &mut |j| near.push(j));
             near.sort_unstable();
             // A bond to an image of the point itself does not break.
             let is_intact = |j: usize| j == i || near.binary_search(&j).is_ok();

@@ -11,14 +11,14 @@ use super::kernels::{Bonds, energy_rows, force_rows, tangent_rows};
 use super::law::SurfaceLaw;
 use pericles::Result;
 use pericles::lanes::Row;
+use pericles::neighbourhood::{BondSet, PointDissipation, each_once};
 use pericles::operator::pool::{Lent, Pool};
 use pericles::operator::records::pack;
 use pericles::operator::rows::Rows;
 use pericles::operator::{
-    Breakable, Capabilities, Force, InstructionSet, LinearOperator, Linearity, LocalForce,
-    PointSubset, SplitForce,
+    Breakable, Capabilities, CoarseBreak, Force, InstructionSet, LinearOperator, Linearity,
+    LocalForce, PointSubset, SplitForce,
 };
-use pericles::operator::{CoarseBreak, PointDissipation, each_once};
 use pericles::parallel::{BLOCK, components_mut, for_each_block};
 use pericles::space::PointCloud;
 use pericles::{Archive, Checkpointed, StepEnd};
@@ -239,6 +239,39 @@ impl<L: SurfaceLaw> Force for SurfaceForce<L> {
 }
 
 impl<L: SurfaceLaw> Breakable for SurfaceForce<L> {
+    fn bonds(&self) -> &dyn BondSet {
+        self
+    }
+
+    fn bonds_mut(&mut self) -> &mut dyn BondSet {
+        self
+    }
+
+    fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {
+        let breaking = self.breaking.as_mut();
+        breaking.map_or(Vec::new(), |breaking| {
+            each_once(std::mem::take(&mut breaking.coarse))
+        })
+    }
+
+    fn can_break(&self) -> bool {
+        self.breaking.is_some()
+    }
+
+    fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]) {
+        if let Some(breaking) = &self.breaking {
+            breaking.mark_endangered(&self.bonds, u, fraction, marks);
+        }
+    }
+}
+
+impl<L: SurfaceLaw> BondSet for SurfaceForce<L> {
+    fn broken_bonds(&self) -> u64 {
+        self.breaking
+            .as_ref()
+            .map_or(0, |breaking| breaking.broken.len() as u64 / 2)
+    }
+
     fn dissipated(&self) -> f64 {
         self.breaking
             .as_ref()
@@ -262,23 +295,6 @@ impl<L: SurfaceLaw> Breakable for SurfaceForce<L> {
         if let Some(breaking) = &mut self.breaking {
             breaking.of_points.take_into(out);
         }
-    }
-
-    fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {
-        let breaking = self.breaking.as_mut();
-        breaking.map_or(Vec::new(), |breaking| {
-            each_once(std::mem::take(&mut breaking.coarse))
-        })
-    }
-
-    fn broken_bonds(&self) -> u64 {
-        self.breaking
-            .as_ref()
-            .map_or(0, |breaking| breaking.broken.len() as u64 / 2)
-    }
-
-    fn can_break(&self) -> bool {
-        self.breaking.is_some()
     }
 
     /// Fraction of the area within the horizon whose bonds are broken.
@@ -313,10 +329,6 @@ impl<L: SurfaceLaw> Breakable for SurfaceForce<L> {
         }
     }
 
-    fn for_each_broken_count(&self, visit: &mut dyn FnMut(Range<usize>, u64)) {
-        visit(0..self.points(), Breakable::broken_bonds(self));
-    }
-
     fn for_each_intact_of(&self, i: usize, visit: &mut dyn FnMut(usize)) {
         let weights = self.bonds.weights();
         let row = self.bonds.row(i);
@@ -324,10 +336,8 @@ impl<L: SurfaceLaw> Breakable for SurfaceForce<L> {
         intact.for_each(|(_, j)| visit(j));
     }
 
-    fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]) {
-        if let Some(breaking) = &self.breaking {
-            breaking.mark_endangered(&self.bonds, u, fraction, marks);
-        }
+    fn for_each_broken_count(&self, visit: &mut dyn FnMut(Range<usize>, u64)) {
+        visit(0..self.points(), BondSet::broken_bonds(self));
     }
 }
 

@@ -4,7 +4,9 @@ use pericles::domain::Field;
 use pericles::family::BondList;
 use pericles::kernel::Influence;
 use pericles::lanes::{LANES, Row};
+use pericles::neighbourhood::{DamageMeasure, Form, Neighbourhood};
 use pericles::parallel::for_each_point;
+use pericles::saved;
 use pericles::space::Sites;
 use rayon::prelude::*;
 
@@ -26,7 +28,7 @@ pub(super) struct Bond<const D: usize> {
 
 /// A bond list with positions and weights.
 pub(super) struct Bonds {
-    pub list: BondList,
+    pub all: Neighbourhood<BondList>,
     /// Positions in units of `unit`; on a lattice integer coordinates, so that equal bonds have bitwise equal vectors.
     reference: Vec<Row>,
     unit: [f64; 3],
@@ -34,8 +36,15 @@ pub(super) struct Bonds {
     weight: Vec<f64>,
 }
 
+saved! {
+    impl Checkpointed for Bonds {
+        all: part,
+        reference, unit, weight: fixed,
+    }
+}
+
 impl Bonds {
-    pub fn new(list: BondList, influence: &Influence, horizon: f64) -> Self {
+    pub fn new(list: BondList, damage: DamageMeasure, influence: &Influence, horizon: f64) -> Self {
         let places = list.sites().places();
         let row = |site: usize| {
             let [x, y, z] = match places.lattice() {
@@ -59,8 +68,14 @@ impl Bonds {
             weight: of_point.concat(),
             reference,
             unit,
-            list,
+            all: Neighbourhood::new(list, damage),
         }
+    }
+
+    /// Returns the families.
+    #[inline(always)]
+    pub fn list(&self) -> &BondList {
+        self.all.form()
     }
 
     /// Returns ξ between two sites, m.
@@ -78,12 +93,12 @@ impl Bonds {
         intact: &[u8],
         mut visit: impl FnMut(Bond<D>),
     ) {
-        let (groups, here) = (self.list.groups(i), self.list.site(i));
+        let (groups, here) = (self.list().groups(i), self.list().site(i));
         for (&bits, group) in intact.iter().zip(groups) {
             if bits == 0 {
                 continue;
             }
-            let neighbours = self.list.group(group);
+            let neighbours = self.list().group(group);
             for (lane, &site) in neighbours.iter().enumerate() {
                 if bits >> lane & 1 == 1 {
                     let entry = group * LANES + lane;
@@ -100,7 +115,7 @@ impl Bonds {
 
     /// Returns the memory, bytes.
     pub fn bytes(&self) -> usize {
-        self.list.bytes() + size_of_val(&self.weight[..]) + size_of_val(&self.reference[..])
+        Form::bytes(self.list()) + size_of_val(&self.weight[..]) + size_of_val(&self.reference[..])
     }
 }
 

@@ -5,18 +5,15 @@
 //! of the step in which they no longer act ([`StepEnd::dissipated_energy`]).
 
 use std::collections::BTreeMap;
-use std::ops::Range;
 
 use pericles::StepEnd;
 use pericles::domain::{Field, Letter};
 use pericles::lanes::{LANES, Row};
 use pericles::material::{BondStretch, PairForce};
+use pericles::neighbourhood::{BondSet, CoarseBreak, Crossing, LostBond, turns_around};
 use pericles::operator::rows::Rows;
-use pericles::operator::{
-    Breakable, CoarseBreak, Crossing, LostBond, PointSubset, both_ends, turns_around,
-};
+use pericles::operator::{Breakable, PointSubset};
 use pericles::parallel::{BLOCK, for_each_chunk_of};
-use pericles::sum::BinnedSum;
 use rayon::prelude::*;
 
 use super::force::{CorrespondenceForce, PointShape, STIFFENING};
@@ -60,8 +57,9 @@ impl<const D: usize> CorrespondenceForce<D> {
                     shape: self.shapes[i],
                 });
             }
-            for (_, entry) in found.drain(..) {
-                self.intact[entry / LANES] &= !(1 << (entry % LANES));
+            for (i, entry) in found.drain(..) {
+                let group = entry / LANES - self.bonds.list().groups(i).start;
+                self.bonds.all.bits_mut(i)[group] &= !(1 << (entry % LANES));
             }
             for i in touched {
                 let shape = self.shape(i);
@@ -78,7 +76,7 @@ impl<const D: usize> CorrespondenceForce<D> {
     fn over_stretched(&self, rows: &[Row], on: &PointSubset<'_>, heat: &Heat) -> Entries {
         let n = self.cloud.len();
         let threshold = BondStretch::threshold(self.weakest);
-        let sites = self.bonds.list.sites();
+        let sites = self.bonds.list().sites();
         let of_block = |block: usize| {
             let first = block * BLOCK;
             let mut found = Entries::new();
@@ -86,14 +84,14 @@ impl<const D: usize> CorrespondenceForce<D> {
                 return found;
             };
             for i in (0..wanted.count()).map(|k| wanted.at(k)) {
-                let here = self.bonds.list.site(i);
+                let here = self.bonds.list().site(i);
                 self.bonds.for_each::<D>(i, self.bits(i), |bond| {
                     let eta = Self::eta(rows, here, &bond);
                     let (xi, eta) = heat.expanded(sites, [here, bond.site], bond.xi, eta);
                     let (measure, square) = BondStretch::stretch_measure(xi, eta);
                     let limit = self.limits.stretch(here, bond.site);
                     if measure > threshold * square
-                        && self.may_break(bond.entry)
+                        && self.bonds.list().may_break(bond.entry)
                         && measure > BondStretch::threshold(limit) * square
                     {
                         found.push((i, bond.entry));
@@ -109,16 +107,11 @@ impl<const D: usize> CorrespondenceForce<D> {
         blocks.concat()
     }
 
-    pub(super) fn may_break(&self, entry: usize) -> bool {
-        let bits = self.breakable.as_ref();
-        bits.is_none_or(|bits| bits[entry / LANES] >> (entry % LANES) & 1 == 1)
-    }
-
     /// Returns the reverse entries of bonds that are intact and not in `found`.
     fn other_ends(&self, found: &Entries) -> Entries {
-        let sites = self.bonds.list.sites();
+        let sites = self.bonds.list().sites();
         let letters = found.iter().map(|&(i, entry)| {
-            let site = self.bonds.list.neighbour(entry);
+            let site = self.bonds.list().neighbour(entry);
             let [x, y, z] = sites.shift(site).map(|periods| -f64::from(periods));
             Letter {
                 from: i,
@@ -134,8 +127,8 @@ impl<const D: usize> CorrespondenceForce<D> {
             let leads_back = |&(_, site): &(usize, usize)| {
                 sites.point(site) == letter.from && sites.shift(site).map(f64::from) == [x, y, z]
             };
-            let (entry, _) = self.bonds.list.family(letter.to).find(leads_back)?;
-            let wanted = self.is_intact(entry) && !known.contains(&entry);
+            let (entry, _) = self.bonds.list().family(letter.to).find(leads_back)?;
+            let wanted = self.bonds.all.is_intact(letter.to, entry) && !known.contains(&entry);
             wanted.then_some((letter.to, entry))
         };
         letters.iter().filter_map(back).collect()
@@ -145,7 +138,7 @@ impl<const D: usize> CorrespondenceForce<D> {
     fn drop_point(&mut self, i: usize, found: &mut Entries) {
         let before = found.len();
         self.bonds.for_each::<D>(i, self.bits(i), |bond| {
-            if self.may_break(bond.entry) {
+            if self.bonds.list().may_break(bond.entry) {
                 found.push((i, bond.entry));
             }
         });
@@ -169,7 +162,7 @@ impl<const D: usize> CorrespondenceForce<D> {
         if let Some(velocity) = velocity
             && !before.is_empty()
         {
-            let sites = self.bonds.list.sites();
+            let sites = self.bonds.list().sites();
             pericles::operator::records::pack_sites::<D>(velocity, sites, &mut velocities);
         }
         // Displacements at the start of the step.
@@ -178,29 +171,27 @@ impl<const D: usize> CorrespondenceForce<D> {
         };
         let earlier: Vec<Row> = rows.iter().zip(&velocities).map(moved).collect();
         for (i, before) in before {
-            let (groups, shape) = (self.bonds.list.groups(i), self.shapes[i]);
-            let after = self.intact[groups.clone()].to_vec();
+            let shape = self.shapes[i];
+            let after = self.bits(i).to_vec();
             let (velocities, volume) = (&velocities[..], volumes.volumes()[i]);
             let (crossing, lost) = self.lost_bonds(i, &before.intact, [rows, &earlier], heat);
             let mut loss = |rows: &[Row]| -> [f64; 2] {
                 let [energy, power] = self.energy_and_power(i, &shape, [rows, velocities], heat);
-                self.intact[groups.clone()].copy_from_slice(&before.intact);
+                self.bonds.all.bits_mut(i).copy_from_slice(&before.intact);
                 let [more, stronger] =
                     self.energy_and_power(i, &before.shape, [rows, velocities], heat);
-                self.intact[groups.clone()].copy_from_slice(&after);
+                self.bonds.all.bits_mut(i).copy_from_slice(&after);
                 [volume * (more - energy), volume * (stronger - power)]
             };
             let end = loss(rows);
             let energy = crossing.dissipated(step, end, || loss(&earlier));
-            self.dissipated.add(energy.dissipated);
-            self.of_points.add(i, energy.dissipated);
-            self.coarse.extend(energy.records(i, &lost));
             let count = |bits: &[u8]| -> u64 {
                 let ones = bits.iter().map(|byte| u64::from(byte.count_ones()));
                 ones.sum()
             };
-            let broken = count(&before.intact) - count(&after);
-            self.broken = self.broken.saturating_add(broken);
+            let tally = self.bonds.all.tally_mut(i);
+            tally.lose(i, energy, &lost);
+            tally.broken.add(count(&before.intact) - count(&after));
         }
     }
 
@@ -213,8 +204,8 @@ impl<const D: usize> CorrespondenceForce<D> {
         [rows, earlier]: [&[Row]; 2],
         heat: &Heat,
     ) -> (Crossing, Vec<LostBond<D>>) {
-        let here = self.bonds.list.site(i);
-        let (now, sites) = (self.bits(i), self.bonds.list.sites());
+        let here = self.bonds.list().site(i);
+        let (now, sites) = (self.bits(i), self.bonds.list().sites());
         let broken: Vec<u8> = before.iter().zip(now).map(|(a, b)| a & !b).collect();
         let (mut crossing, mut lost) = (Crossing::default(), Vec::new());
         self.bonds.for_each::<D>(i, &broken, |bond| {
@@ -265,7 +256,7 @@ impl<const D: usize> CorrespondenceForce<D> {
             return [energy, 0.0];
         }
         let (state, _) = self.state_of(i, shape, &self.etas(i, rows), heat);
-        let (here, nothing) = (self.bonds.list.site(i), Default::default());
+        let (here, nothing) = (self.bonds.list().site(i), Default::default());
         let mut power = 0.0;
         self.bonds.for_each::<D>(i, self.bits(i), |bond| {
             let (eta, moved) = (
@@ -284,13 +275,13 @@ impl<const D: usize> CorrespondenceForce<D> {
         let (n, heat) = (self.cloud.len(), self.heat_at(t));
         let mut history = std::mem::take(&mut self.history);
         let rows = self.packed(u);
-        let of_blocks: Vec<(BinnedSum, Vec<(usize, f64)>)> = history
+        let of_blocks: Vec<Vec<(usize, f64)>> = history
             .par_chunks_mut(BLOCK * History::KEPT)
             .enumerate()
             .map(|(block, kept)| {
-                let (first, mut sum, mut works) = (block * BLOCK, BinnedSum::default(), Vec::new());
+                let (first, mut works) = (block * BLOCK, Vec::new());
                 let Some(wanted) = Rows::of_block(on, first, BLOCK.min(n - first)) else {
-                    return (sum, works);
+                    return works;
                 };
                 for i in (0..wanted.count()).map(|k| wanted.at(k)) {
                     let kept = &mut kept[(i - first) * History::KEPT..][..History::KEPT];
@@ -300,55 +291,35 @@ impl<const D: usize> CorrespondenceForce<D> {
                     let (next, work) = solid.advanced(&f, &History::of(kept));
                     next.keep(kept);
                     if work != 0.0 {
-                        let work = self.shapes[i].share * work * self.cloud.volumes()[i];
-                        sum.add(work);
-                        works.push((i, work));
+                        works.push((i, self.shapes[i].share * work * self.cloud.volumes()[i]));
                     }
                 }
-                (sum, works)
+                works
             })
             .collect();
         drop(rows);
         self.history = history;
-        for (sum, works) in of_blocks {
-            self.plastic_work = self.plastic_work.merged(sum);
-            for (i, work) in works {
-                self.of_points.add(i, work);
-            }
+        for (i, work) in of_blocks.into_iter().flatten() {
+            self.bonds.all.tally_mut(i).dissipate(i, work);
         }
     }
 }
 
 impl<const D: usize> Breakable for CorrespondenceForce<D> {
+    fn bonds(&self) -> &dyn BondSet {
+        &self.bonds.all
+    }
+
+    fn bonds_mut(&mut self) -> &mut dyn BondSet {
+        &mut self.bonds.all
+    }
+
     fn can_break(&self) -> bool {
         self.weakest.is_finite() || self.limits.has_criteria()
     }
 
-    fn broken_bonds(&self) -> u64 {
-        self.cloud.domain().count(self.broken) / 2
-    }
-
     fn dropped_points(&self) -> u64 {
         CorrespondenceForce::dropped_points(self)
-    }
-
-    /// Returns the energy dissipated by bond failure and by plastic flow.
-    fn dissipated(&self) -> f64 {
-        let all = self.dissipated.merged(self.plastic_work);
-        self.cloud.domain().total(all)
-    }
-
-    fn dissipate(&mut self, i: usize, energy: f64) {
-        self.dissipated.add(energy);
-        self.of_points.add(i, energy);
-    }
-
-    fn follow_dissipation(&mut self) {
-        self.of_points.follow();
-    }
-
-    fn take_dissipated(&mut self, out: &mut [f64]) {
-        self.of_points.take_into(out);
     }
 
     fn stiffening(&self) -> f64 {
@@ -360,63 +331,13 @@ impl<const D: usize> Breakable for CorrespondenceForce<D> {
     }
 
     fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {
-        both_ends(self.cloud.domain(), std::mem::take(&mut self.coarse))
-    }
-
-    fn damage_into(&self, out: &mut [f64]) {
-        for_each_chunk_of(
-            out,
-            self.bonds.list.cost(&PointSubset::All),
-            &|first, out| {
-                for (i, damage) in (first..).zip(out) {
-                    let (mut whole, mut left) = (0.0, 0.0);
-                    let (list, here) = (&self.bonds.list, self.bonds.list.site(i));
-                    for (entry, site) in list.family(i) {
-                        if !(list.is_present(entry) || self.damage.count_precut) {
-                            continue;
-                        }
-                        let weight = match self.damage.count {
-                            true => 1.0,
-                            false => list.volume_factor(here, site) * list.volume(site),
-                        };
-                        whole += weight;
-                        if self.is_intact(entry) {
-                            left += weight;
-                        }
-                    }
-                    *damage = if whole > 0.0 { 1.0 - left / whole } else { 0.0 };
-                }
-            },
-        );
-    }
-
-    fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
-        let sites = self.bonds.list.sites();
-        for i in 0..self.cloud.len() {
-            self.bonds.for_each::<D>(i, self.bits(i), |bond| {
-                let j = sites.point(bond.site);
-                if j > i {
-                    visit(i, j);
-                }
-            });
-        }
-    }
-
-    fn for_each_broken_count(&self, visit: &mut dyn FnMut(Range<usize>, u64)) {
-        visit(0..self.cloud.len(), self.broken);
-    }
-
-    fn for_each_intact_of(&self, i: usize, visit: &mut dyn FnMut(usize)) {
-        let sites = self.bonds.list.sites();
-        let bits = self.bits(i);
-        self.bonds
-            .for_each::<D>(i, bits, |bond| visit(sites.point(bond.site)));
+        self.bonds.all.take_coarse_parts()
     }
 
     fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]) {
         let ghosts = self.cloud.domain().ghosts(u);
         let rows = self.packed(Field::new(u, &ghosts));
-        let (heat, sites) = (self.latest_heat(), self.bonds.list.sites());
+        let (heat, sites) = (self.latest_heat(), self.bonds.list().sites());
         if self.limits.has_criteria() {
             for (i, _) in self.over_stressed(&rows, &PointSubset::All, &heat, fraction) {
                 marks[i] = true;
@@ -424,16 +345,16 @@ impl<const D: usize> Breakable for CorrespondenceForce<D> {
         }
         for_each_chunk_of(
             marks,
-            self.bonds.list.cost(&PointSubset::All),
+            self.bonds.list().cost(&PointSubset::All),
             &|first, marks| {
                 for (i, mark) in (first..).zip(marks).filter(|(_, mark)| !**mark) {
-                    let here = self.bonds.list.site(i);
+                    let here = self.bonds.list().site(i);
                     self.bonds.for_each::<D>(i, self.bits(i), |bond| {
                         let eta = Self::eta(&rows, here, &bond);
                         let (xi, eta) = heat.expanded(sites, [here, bond.site], bond.xi, eta);
                         let (measure, square) = BondStretch::stretch_measure(xi, eta);
                         let limit = fraction * self.limits.stretch(here, bond.site);
-                        *mark |= self.may_break(bond.entry)
+                        *mark |= self.bonds.list().may_break(bond.entry)
                             && measure > BondStretch::threshold(limit) * square;
                     });
                 }

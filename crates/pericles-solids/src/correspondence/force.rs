@@ -4,14 +4,15 @@ use std::sync::Arc;
 
 use pericles::archive::{Laid, Layout};
 use pericles::domain::Field;
-use pericles::lanes::{LANES, Row};
+use pericles::family::BondList;
+use pericles::lanes::Row;
+use pericles::neighbourhood::DamageMeasure;
+use pericles::operator::PointSubset;
 use pericles::operator::pool::{Lent, Pool};
 use pericles::operator::records::pack_sites;
 use pericles::operator::rows::Rows;
-use pericles::operator::{CoarseBreak, DamageMeasure, PointDissipation, PointSubset};
-use pericles::parallel::{BLOCK, components_mut, for_each_block, for_each_chunk_of};
+use pericles::parallel::{BLOCK, for_each_chunk_of};
 use pericles::space::PointCloud;
-use pericles::sum::BinnedSum;
 use pericles::{Result, ThermalExpansion, saved};
 use rayon::prelude::*;
 
@@ -41,26 +42,12 @@ pub struct CorrespondenceForce<const D: usize> {
     pub(super) classes: CorrespondenceClasses,
     pub(super) limits: SiteLimits,
     pub(super) weakest: f64,
-    /// Bits of breakable bonds; `None` if all bonds are breakable.
-    pub(super) breakable: Option<Vec<u8>>,
-    pub(super) damage: DamageMeasure,
     /// c/δ V_δ/Σ w b V of each point, N/m⁷.
     spring: Vec<f64>,
-    /// Intact bonds, one byte per group.
-    pub(super) intact: Vec<u8>,
     /// K⁻¹ and Z of every point.
     pub(super) shapes: Vec<PointShape<D>>,
     /// Plastic history, [`History::KEPT`] numbers per point; empty for materials that do not yield.
     pub(super) history: Vec<f64>,
-    /// Energy dissipated by bond failure, J.
-    pub(super) dissipated: BinnedSum,
-    pub(super) plastic_work: BinnedSum,
-    /// Terms of both by points.
-    pub(super) of_points: PointDissipation,
-    /// Parts of own points of the bonds that broke in the last step, if it was too large for them.
-    pub(super) coarse: Vec<CoarseBreak>,
-    /// Number of broken directed bonds.
-    pub(super) broken: u64,
     /// Number of points whose remaining bonds did not span the space.
     pub(super) dropped: u64,
     /// First point whose volume was not positive at the end of the last step, and its dilatation.
@@ -76,19 +63,14 @@ pub struct CorrespondenceForce<const D: usize> {
 
 saved! {
     impl<const D: usize> Checkpointed for CorrespondenceForce<D> {
-        intact: by(Laid::rows("operator/intact", bonds.list.start(), intact.len())),
+        bonds: part,
         history: by(Laid::per_point("operator/plastic-history", cloud.len(), history.len())),
-        broken: by(Laid::new("operator/broken", Layout::Count)),
         dropped: by(Laid::new("operator/dropped", Layout::Count)),
-        dissipated: under("operator/dissipated"),
-        plastic_work: under("operator/plastic-work"),
-        cloud, bonds, classes, limits, weakest, breakable, damage, spring, softest, expansion: fixed,
+        cloud, classes, limits, weakest, spring, softest, expansion: fixed,
         shapes: rebuilt,
         inverted: set(None),
-        of_points, coarse, displaced, sites, points: scratch,
+        displaced, sites, points: scratch,
     } then |force| {
-        force.of_points.clear();
-        force.coarse.clear();
         force.rebuild_shapes();
         Ok(())
     }
@@ -134,7 +116,7 @@ impl<const D: usize> CorrespondenceForce<D> {
     /// If the dimension of the cloud is not D.
     pub fn new(
         cloud: Arc<PointCloud>,
-        list: pericles::family::BondList,
+        mut list: BondList,
         classes: CorrespondenceClasses,
         no_fail: &[u32],
         damage: DamageMeasure,
@@ -145,27 +127,25 @@ impl<const D: usize> CorrespondenceForce<D> {
             "the dimension of the force equals the dimension of the cloud"
         );
         let constants = classes.constants(0);
-        let bonds = Bonds::new(list, &constants.solid.influence, constants.solid.horizon);
+        list.hold(no_fail);
+        let bonds = Bonds::new(
+            list,
+            damage,
+            &constants.solid.influence,
+            constants.solid.horizon,
+        );
         let n = cloud.len();
-        let (sites, yields) = (bonds.list.sites().len(), classes.yields());
+        let (sites, yields) = (bonds.list().sites().len(), classes.yields());
         let mut history = vec![0.0; if yields { n * History::KEPT } else { 0 }];
         for kept in history.chunks_mut(History::KEPT) {
             History::default().keep(kept);
         }
         let mut force = Self {
-            limits: classes.on_sites(bonds.list.sites()),
+            limits: classes.on_sites(bonds.list().sites()),
             weakest: classes.weakest(),
-            breakable: breakable(&bonds.list, no_fail),
-            damage,
             spring: Vec::new(),
-            intact: bonds.list.present().to_vec(),
             shapes: Vec::new(),
             history,
-            dissipated: BinnedSum::default(),
-            plastic_work: BinnedSum::default(),
-            of_points: PointDissipation::default(),
-            coarse: Vec::new(),
-            broken: 0,
             dropped: 0,
             inverted: None,
             softest: Vec::new(),
@@ -209,22 +189,12 @@ impl<const D: usize> CorrespondenceForce<D> {
     /// Returns the bytes of the intact bonds of a point.
     #[inline(always)]
     pub(super) fn bits(&self, i: usize) -> &[u8] {
-        &self.intact[self.bonds.list.groups(i)]
-    }
-
-    /// Returns whether the bond of an entry is intact.
-    pub fn is_intact(&self, entry: usize) -> bool {
-        self.intact[entry / LANES] >> (entry % LANES) & 1 == 1
+        self.bonds.all.bits(i)
     }
 
     /// Returns the number of points that lost all bonds because the remaining ones did not span the space.
     pub fn dropped_points(&self) -> u64 {
         self.cloud.domain().count(self.dropped)
-    }
-
-    /// Returns the plastic work since the start, J.
-    pub fn plastic_work(&self) -> f64 {
-        self.cloud.domain().total(self.plastic_work)
     }
 
     /// Returns the accumulated plastic strain of a point; zero for materials that do not yield.
@@ -275,7 +245,7 @@ impl<const D: usize> CorrespondenceForce<D> {
     /// Returns rows of displacements by site.
     pub(super) fn packed(&self, u: Field<'_>) -> Lent<'_, Vec<Row>> {
         let mut rows = self.displaced.take();
-        pack_sites::<D>(u, self.bonds.list.sites(), &mut rows);
+        pack_sites::<D>(u, self.bonds.list().sites(), &mut rows);
         rows
     }
 
@@ -283,7 +253,7 @@ impl<const D: usize> CorrespondenceForce<D> {
     pub(super) fn states(&self, values: Field<'_>) -> Lent<'_, Vec<SiteState<D>>> {
         let mut states = self.sites.take();
         let count = self.value_count();
-        read_sites(values, count, self.bonds.list.sites(), &mut states);
+        read_sites(values, count, self.bonds.list().sites(), &mut states);
         states
     }
 
@@ -305,7 +275,7 @@ impl<const D: usize> CorrespondenceForce<D> {
         i: usize,
         rows: &'a [Row],
     ) -> impl Fn(&Bond<D>) -> [f64; D] + 'a {
-        let here = self.bonds.list.site(i);
+        let here = self.bonds.list().site(i);
         move |bond| Self::eta(rows, here, bond)
     }
 
@@ -392,7 +362,7 @@ impl<const D: usize> CorrespondenceForce<D> {
     ) {
         let n = self.cloud.len();
         let mut points = self.points.take();
-        for_each_chunk_of(&mut points, self.bonds.list.cost(on), &|first, chunk| {
+        for_each_chunk_of(&mut points, self.bonds.list().cost(on), &|first, chunk| {
             let Some(rows) = Rows::of_block(on, first, chunk.len()) else {
                 return;
             };
@@ -440,21 +410,17 @@ impl<const D: usize> CorrespondenceForce<D> {
         out: &mut [f64],
         of_bond: &(impl Fn(usize, &Bond<D>, &mut [f64; D]) + Sync),
     ) {
-        let n = self.cloud.len();
-        // A vector of `()` takes no memory.
-        let mut nothing = vec![(); n.div_ceil(BLOCK)];
-        let out = components_mut::<D>(out, n);
-        for_each_block(
-            out,
-            &mut nothing,
-            self.bonds.list.cost(on),
-            &|first, mut out, ()| {
+        let cost = self.bonds.list().cost(on);
+        self.bonds
+            .all
+            .for_each_block::<D>(cost, out, |block, _, out| {
+                let first = block * BLOCK;
                 let Some(rows) = Rows::of_block(on, first, out[0].len()) else {
                     return;
                 };
                 for k in 0..rows.count() {
                     let i = rows.at(k);
-                    let here = self.bonds.list.site(i);
+                    let here = self.bonds.list().site(i);
                     let mut sum = [0.0; D];
                     self.bonds.for_each::<D>(i, self.bits(i), |bond| {
                         of_bond(here, &bond, &mut sum);
@@ -463,29 +429,8 @@ impl<const D: usize> CorrespondenceForce<D> {
                         out[i - first] += sum;
                     }
                 }
-            },
-        );
+            });
     }
-}
-
-/// Returns one bit per entry, set for bonds between points other than `no_fail`; `None` if all bonds are breakable.
-fn breakable(list: &pericles::family::BondList, no_fail: &[u32]) -> Option<Vec<u8>> {
-    let sites = list.sites();
-    if sites.cloud().domain().all(no_fail.is_empty()) {
-        return None;
-    }
-    let mut held = vec![false; list.len()];
-    for &i in no_fail {
-        held[i as usize] = true;
-    }
-    let held = sites.spread_marks(&held);
-    let mut bits = vec![0u8; list.geometric().len()];
-    for i in (0..list.len()).filter(|&i| !held[list.site(i)]) {
-        for (entry, _) in list.family(i).filter(|&(_, site)| !held[site]) {
-            bits[entry / LANES] |= 1 << (entry % LANES);
-        }
-    }
-    Some(bits)
 }
 
 /// Returns the largest principal value of a tensor.

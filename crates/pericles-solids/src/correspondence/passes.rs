@@ -68,7 +68,7 @@ impl<const D: usize> TwoPass for CorrespondenceForce<D> {
         let (rows, heat) = (self.packed(at.u), self.heat_at(t));
         for_each_chunk_of(
             out,
-            self.bonds.list.cost(&PointSubset::All),
+            self.bonds.list().cost(&PointSubset::All),
             &|first, out| {
                 for (i, energy) in (first..).zip(out) {
                     *energy += self.energy_of(i, &self.shapes[i], &rows, &heat);
@@ -89,10 +89,10 @@ impl<const D: usize> TwoPass for CorrespondenceForce<D> {
             (shape.share * stiffest * largest).max(shape.control.largest())
         };
         let springs: Vec<f64> = (0..self.cloud.len()).map(spring).collect();
-        let springs = self.bonds.list.sites().spread(&springs);
+        let springs = self.bonds.list().sites().spread(&springs);
         let mut largest: f64 = 0.0;
         for i in 0..self.cloud.len() {
-            let (here, mut row) = (self.bonds.list.site(i), 0.0);
+            let (here, mut row) = (self.bonds.list().site(i), 0.0);
             self.bonds.for_each::<D>(i, self.bits(i), |bond| {
                 row += bond.weight.abs() * (springs[here] + springs[bond.site]);
             });
@@ -102,7 +102,7 @@ impl<const D: usize> TwoPass for CorrespondenceForce<D> {
     }
 
     fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize)) {
-        let sites = self.bonds.list.sites();
+        let sites = self.bonds.list().sites();
         let mut points: Vec<usize> = Vec::new();
         self.bonds.for_each::<D>(i, self.bits_at_start(i), |bond| {
             points.push(sites.point(bond.site));
@@ -183,14 +183,12 @@ impl<const D: usize> TwoPass for CorrespondenceForce<D> {
     }
 
     fn directed_bonds(&self) -> u64 {
-        self.bonds.list.directed_bonds()
+        self.bonds.list().directed_bonds()
     }
 
     fn bytes(&self) -> usize {
-        let sites = self.bonds.list.sites().len();
+        let sites = self.bonds.list().sites().len();
         self.bonds.bytes()
-            + self.intact.len()
-            + self.breakable.as_ref().map_or(0, Vec::len)
             + size_of_val(&self.shapes[..])
             + size_of_val(&self.history[..])
             + sites * (size_of::<Row>() + size_of::<SiteState<D>>())
@@ -199,6 +197,6 @@ impl<const D: usize> TwoPass for CorrespondenceForce<D> {
 
 impl<const D: usize> CorrespondenceForce<D> {
     fn bits_at_start(&self, i: usize) -> &[u8] {
-        &self.bonds.list.present()[self.bonds.list.groups(i)]
+        &self.bonds.list().present()[self.bonds.list().groups(i)]
     }
 }

@@ -68,7 +68,7 @@ impl<const D: usize> CorrespondenceForce<D> {
         let n = self.cloud.len();
         let own = self.tensors(rows, heat);
         let ghosts = self.cloud.domain().ghosts(&own);
-        let (tensors, sites) = (Field::new(&own, &ghosts), self.bonds.list.sites());
+        let (tensors, sites) = (Field::new(&own, &ghosts), self.bonds.list().sites());
         let tensor = |slot: usize, point: usize| tensors.entry(2 * D * D, slot, point);
         let of_block = |block: usize| {
             let first = block * BLOCK;
@@ -77,7 +77,7 @@ impl<const D: usize> CorrespondenceForce<D> {
                 return found;
             };
             for i in (0..wanted.count()).map(|k| wanted.at(k)) {
-                let here = self.bonds.list.site(i);
+                let here = self.bonds.list().site(i);
                 self.bonds.for_each::<D>(i, self.bits(i), |bond| {
                     let state = || {
                         let eta = Self::eta(rows, here, &bond);
@@ -86,7 +86,7 @@ impl<const D: usize> CorrespondenceForce<D> {
                         BondState::between::<D>(tensor, ends, [xi, eta])
                     };
                     let over = self.limits.failure_index(here, bond.site, state) > limit;
-                    if over && self.may_break(bond.entry) {
+                    if over && self.bonds.list().may_break(bond.entry) {
                         found.push((i, bond.entry));
                     }
                 });

@@ -31,7 +31,7 @@ impl<const D: usize> BondView for CorrespondenceForce<D> {
     }
 
     fn for_each_bond(&self, values: &BondValues, i: usize, visit: &mut dyn FnMut(BondAt)) {
-        let (count, sites) = (self.value_count(), self.bonds.list.sites());
+        let (count, sites) = (self.value_count(), self.bonds.list().sites());
         let (u, points) = (values.displacement(), values.points());
         let own = Values::read::<D>(points, count, i);
         self.bonds.for_each(i, self.bits(i), |bond: Bond<D>| {
@@ -44,7 +44,7 @@ impl<const D: usize> BondView for CorrespondenceForce<D> {
     }
 
     fn for_each_undeformed(&self, i: usize, visit: &mut dyn FnMut(BondAt)) {
-        let sites = self.bonds.list.sites();
+        let sites = self.bonds.list().sites();
         self.bonds.for_each(i, self.bits(i), |bond: Bond<D>| {
             visit(BondAt::undeformed(sites.point(bond.site), bond.xi));
         });

@@ -212,7 +212,7 @@ fn points_with_too_few_bonds_lose_all_bonds() {
     );
     let mut damage = vec![0.0; n];
     pericles::operator::Breakable::damage_into(&force, &mut damage);
-    let broken = pericles::operator::Breakable::broken_bonds(&force);
+    let broken = pericles::operator::Breakable::bonds(&force).broken_bonds();
     assert!(broken > 0);
     // The remaining bonds span the plane, or none remain.
     let left = (0..n).all(|i| damage[i] == 0.0 || damage[i] <= 1.0);

@@ -191,8 +191,8 @@ fn tip(system: &System) -> f64 {
         y > 0.0 && y < dx
     };
     let mut cut = vec![true; (1.0 / dx).round() as usize];
-    if let Some(breaking) = system.operator().capabilities().breaking {
-        breaking.for_each_intact(&mut |i, j| {
+    if let Some(bonds) = system.operator().bond_set() {
+        bonds.for_each_intact(&mut |i, j| {
             let across = beside(i, 1.0) && beside(j, -1.0) || beside(i, -1.0) && beside(j, 1.0);
             if across && column(i) == column(j) {
                 cut[column(i)] = false;

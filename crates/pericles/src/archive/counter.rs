@@ -3,16 +3,16 @@
 /// A counter that is saved in checkpoints. A checkpoint may contain any number, so the counter saturates instead of
 /// overflowing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
-pub(crate) struct Counter(u64);
+pub struct Counter(u64);
 
 impl Counter {
     /// Adds `more` to the count.
-    pub(crate) fn add(&mut self, more: u64) {
+    pub fn add(&mut self, more: u64) {
         self.0 = self.0.saturating_add(more);
     }
 
     /// Returns the count.
-    pub(crate) fn get(self) -> u64 {
+    pub fn get(self) -> u64 {
         self.0
     }
 }

@@ -9,7 +9,7 @@ mod entry;
 mod layout;
 mod registered;
 
-pub(crate) use counter::Counter;
+pub use counter::Counter;
 pub use entry::{Entry, Number};
 pub use layout::{Laid, Layout, Storage};
 

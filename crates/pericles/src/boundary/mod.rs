@@ -6,6 +6,7 @@ mod load;
 mod loading;
 mod motion;
 mod rayleigh;
+mod reaction;
 mod table;
 mod values;
 

@@ -5,10 +5,9 @@ use std::sync::Arc;
 
 use super::{PointValues, TimeFunction};
 use crate::archive::Laid;
-use crate::domain::Domain;
 use crate::error::{PericlesError, Result};
 use crate::operator::PointSubset;
-use crate::space::{PointCloud, PointSet, check_length, check_set};
+use crate::space::{PointSet, check_length, check_set};
 
 const WHAT: &str = "the points of a prescribed motion";
 
@@ -65,7 +64,7 @@ pub struct PrescribedMotion {
     /// Initial displacement of the points, per prescribed axis; zero for prescribed displacements.
     start: Vec<f64>,
     /// Reaction force density on the constrained points at the last accepted state, per prescribed axis.
-    reaction: Vec<f64>,
+    pub(super) reaction: Vec<f64>,
     /// Components that another constraint prescribes with the same values, as sorted entries of `reaction`: they
     /// belong to the other constraint, so that reactions and work count once.
     shared: Vec<u32>,
@@ -318,7 +317,7 @@ impl PrescribedMotion {
 
     /// Calls `set(entry of the state's arrays, slot, value)` for every prescribed component of the points of `on`
     /// that no other constraint prescribes. The value is the displacement beyond the initial one, the velocity or the acceleration.
-    fn for_each(
+    pub(super) fn for_each(
         &self,
         order: usize,
         t: f64,
@@ -438,102 +437,6 @@ impl PrescribedMotion {
             self.for_each(2, t, &PointSubset::All, cloud_len, |entry, _, rate| {
                 acceleration[entry] += rate;
             });
-        }
-    }
-
-    /// Stores the reaction ρ a − f of an accepted state, from the accelerations f/ρ before they are replaced, and
-    /// returns work (J) and impulse (N s) of the constraint since the last accepted state. Its points have moved as
-    /// prescribed, or along the `chord` between two static states.
-    pub(crate) fn account(
-        &mut self,
-        t: f64,
-        dt: f64,
-        cloud_len: usize,
-        acceleration: &[f64],
-        chord: Option<[&[f64]; 2]>,
-        (density, cloud): (&dyn Fn(usize) -> f64, &PointCloud),
-    ) -> (f64, [f64; 3]) {
-        let (volumes, domain) = (cloud.volumes(), cloud.domain());
-        let held = self.holds(t);
-        let nothing = |reaction: &f64| *reaction == 0.0;
-        if !held && domain.all(self.reaction.iter().all(nothing)) {
-            return (0.0, [0.0; 3]);
-        }
-        // In the step after the release the constraint acts for the first half only; its points then continue with
-        // about the last velocity.
-        let mut advance = vec![0.0; self.reaction.len()];
-        if let Some([before, after]) = chord {
-            self.for_each(0, t, &PointSubset::All, cloud_len, |entry, slot, _| {
-                advance[slot] = after[entry] - before[entry];
-            });
-        } else if held {
-            self.for_each(0, t, &PointSubset::All, cloud_len, |_, slot, after| {
-                advance[slot] = after
-            });
-            self.for_each(
-                0,
-                t - dt,
-                &PointSubset::All,
-                cloud_len,
-                |_, slot, before| {
-                    advance[slot] -= before;
-                },
-            );
-        } else {
-            self.for_each(
-                1,
-                t - dt,
-                &PointSubset::All,
-                cloud_len,
-                |_, slot, velocity| {
-                    advance[slot] = velocity * dt;
-                },
-            );
-        }
-        let mut reaction = std::mem::take(&mut self.reaction);
-        let mut push = vec![0.0; reaction.len()];
-        self.for_each(2, t, &PointSubset::All, cloud_len, |entry, slot, rate| {
-            let i = entry % cloud_len;
-            let now = if held {
-                density(i) * (rate - acceleration[entry])
-            } else {
-                0.0
-            };
-            let mean = 0.5 * (reaction[slot] + now) * volumes[i];
-            advance[slot] *= mean;
-            push[slot] = mean * dt;
-            reaction[slot] = now;
-        });
-        self.reaction = reaction;
-        let work = domain.sum(advance.len(), |slot| advance[slot]);
-        (work, self.sums(domain, &push))
-    }
-
-    /// Sums slots over the points, by axis.
-    fn sums(&self, domain: &Domain, slots: &[f64]) -> [f64; 3] {
-        let (n, mut sums) = (self.points.len(), [0.0; 3]);
-        for (axis, c) in self.axes().enumerate() {
-            sums[c] = domain.sum(n, |k| slots[axis * n + k]);
-        }
-        sums
-    }
-
-    /// Reaction force: the force of the constraint on the body at the last accepted state, N.
-    pub fn reaction(&self, cloud: &PointCloud) -> [f64; 3] {
-        let volumes = cloud.volumes();
-        let points = self.points.iter().cycle();
-        let force = |(force, &i): (&f64, &u32)| force * volumes[i as usize];
-        let slots: Vec<f64> = self.reaction.iter().zip(points).map(force).collect();
-        self.sums(cloud.domain(), &slots)
-    }
-
-    /// Adds the reaction force density at the last accepted state (N/m³) to the entries of the constrained points.
-    pub fn add_reaction(&self, cloud_len: usize, out: &mut [f64]) {
-        let slots = self.reaction.chunks(self.points.len().max(1));
-        for (c, reactions) in self.axes().zip(slots) {
-            for (force, &i) in reactions.iter().zip(&self.points) {
-                out[c * cloud_len + i as usize] += force;
-            }
         }
     }
 }

@@ -40,6 +40,8 @@ pub struct BondList {
     geometric: Vec<u8>,
     /// Bonds that remain after pre-cutting, one bit each.
     present: Vec<u8>,
+    /// Bonds that may break, one bit each; `None`: all.
+    breakable: Option<Vec<u8>>,
     horizons: Horizons,
     correction: VolumeCorrection,
 }
@@ -166,6 +168,7 @@ impl BondList {
             base,
             offsets,
             present: geometric.clone(),
+            breakable: None,
             geometric,
             horizons,
             correction,
@@ -336,12 +339,11 @@ impl BondList {
         points.into_iter().filter(|&j| j != i).for_each(visit);
     }
 
-    /// One bit per entry, set if the bond may break: bonds with an end in `no_fail` may not. `None` if all bonds
-    /// may break.
-    pub(crate) fn breakable(&self, no_fail: &[u32]) -> Option<Vec<u8>> {
-        let sites = &self.sites;
+    /// Excludes the bonds of the points `no_fail` from failure.
+    pub fn hold(&mut self, no_fail: &[u32]) {
+        let sites = Arc::clone(&self.sites);
         if sites.cloud().domain().all(no_fail.is_empty()) {
-            return None;
+            return;
         }
         let mut held = vec![false; self.len()];
         for &i in no_fail {
@@ -354,7 +356,18 @@ impl BondList {
                 breakable[entry / LANES] |= 1 << (entry % LANES);
             }
         }
-        Some(breakable)
+        self.breakable = Some(breakable);
+    }
+
+    /// Bonds that may break, one byte per group; `None` if all may.
+    pub fn breakable(&self) -> Option<&[u8]> {
+        self.breakable.as_deref()
+    }
+
+    /// Returns whether the bond of an entry may break.
+    pub fn may_break(&self, entry: usize) -> bool {
+        let bits = self.breakable.as_ref();
+        bits.is_none_or(|bits| bits[entry / LANES] >> (entry % LANES) & 1 == 1)
     }
 
     /// Volume fraction κ of the bond between two sites: the mean of the values of its two ends.

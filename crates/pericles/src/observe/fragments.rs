@@ -132,8 +132,8 @@ fn lowest(operator: &dyn Force, domain: &Domain, key: &dyn Fn(usize) -> u32) -> 
     let n = operator.points();
     // Pieces of own points and ghosts, as far as bonds of this process connect them.
     let mut first: Vec<u32> = (0..(n + domain.ghost_points()) as u32).collect();
-    if let Some(breaking) = operator.capabilities().breaking {
-        breaking.for_each_intact(&mut |i, j| {
+    if let Some(bonds) = operator.bond_set() {
+        bonds.for_each_intact(&mut |i, j| {
             let (i, j) = (root(&mut first, i as u32), root(&mut first, j as u32));
             // The smaller number is the parent, whatever the order of the bonds.
             first[i.max(j) as usize] = i.min(j);

@@ -1,11 +1,25 @@
 //! Forces with bonds that break or were removed by pre-cracks.
 
-use std::ops::Range;
-
 use super::CoarseBreak;
+use crate::neighbourhood::BondSet;
+
+/// Failure criterion of bonds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Breaking<'a> {
+    /// Critical stretch s₀; infinite if bonds never break.
+    pub critical_stretch: f64,
+    /// Points whose bonds never break.
+    pub no_fail: &'a [u32],
+}
 
 /// A force whose bonds can be cut by pre-cracks or break during the run.
 pub trait Breakable {
+    /// Returns the bonds.
+    fn bonds(&self) -> &dyn BondSet;
+
+    /// Returns the bonds for modification.
+    fn bonds_mut(&mut self) -> &mut dyn BondSet;
+
     /// Returns whether any bond can break.
     fn can_break(&self) -> bool;
 
@@ -14,9 +28,6 @@ pub trait Breakable {
     fn accumulates(&self) -> bool {
         false
     }
-
-    /// Returns the number of broken bonds, each counted once.
-    fn broken_bonds(&self) -> u64;
 
     /// Returns the number of points that lost all bonds because the remaining bonds did not determine a
     /// deformation gradient; zero for forces whose bonds break independently of each other.
@@ -29,37 +40,14 @@ pub trait Breakable {
         1.0
     }
 
-    /// Returns the energy dissipated by breaking bonds and by plastic flow, J.
-    fn dissipated(&self) -> f64;
-
-    /// Adds to the energy dissipated by point i a correction for bonds that are already broken, J.
-    fn dissipate(&mut self, i: usize, energy: f64);
-
-    /// Records which points dissipate the energy from now on, for [`Breakable::take_dissipated`].
-    fn follow_dissipation(&mut self);
-
-    /// Adds the energy that each point has dissipated since the last call to `out`, J. The sum over all points is the
-    /// change of [`Breakable::dissipated`] to rounding.
-    fn take_dissipated(&mut self, out: &mut [f64]);
+    /// Sets the damage of each point, 0 … 1: the missing fraction of its family.
+    fn damage_into(&self, out: &mut [f64]) {
+        self.bonds().damage_into(out);
+    }
 
     /// Returns and clears the bonds that broke, since the last call, in steps too large for them; each once,
     /// in an order that depends on the bonds only.
     fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak>;
-
-    /// Sets the damage of each point, 0 … 1: the missing fraction of its family.
-    fn damage_into(&self, out: &mut [f64]);
-
-    /// Calls `visit` with both ends of each intact bond, once or twice per bond. The first end is an own point; ghosts are
-    /// counted after the own points.
-    fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize));
-
-    /// Calls `visit` with the other end of each intact bond of point i, in any order. Points that other processes own
-    /// are counted after the own points, as in [`Domain::number`](crate::domain::Domain::number).
-    fn for_each_intact_of(&self, i: usize, visit: &mut dyn FnMut(usize));
-
-    /// Calls `visit` with ranges of points that together contain all points, and the number of directed bonds that
-    /// broke so far in each: a changed number shows where bonds broke since an earlier call. The ranges do not change.
-    fn for_each_broken_count(&self, visit: &mut dyn FnMut(Range<usize>, u64));
 
     /// Marks the points with an intact breakable bond whose stretch exceeds `fraction` of the critical
     /// stretch. Points that are already marked are skipped.

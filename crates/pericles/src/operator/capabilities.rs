@@ -5,6 +5,7 @@ use super::{
     PlasticView, SplitForce, StressView,
 };
 use crate::error::{PericlesError, Result};
+use crate::neighbourhood::BondSet;
 use crate::thermal::ThermalExpansion;
 
 /// The optional capabilities of a force. Schemes, boundaries and observers that require a missing one return
@@ -93,6 +94,11 @@ impl dyn Force + '_ {
         self.capabilities().split
     }
 
+    /// Returns the bonds of [`Capabilities::breaking`].
+    pub fn bond_set(&self) -> Option<&dyn BondSet> {
+        Some(self.capabilities().breaking?.bonds())
+    }
+
     /// Returns whether any bond can break.
     pub fn can_break(&self) -> bool {
         let breaking = self.capabilities().breaking;
@@ -106,14 +112,12 @@ impl dyn Force + '_ {
 
     /// Returns the number of broken bonds, each counted once.
     pub fn broken_bonds(&self) -> u64 {
-        let breaking = self.capabilities().breaking;
-        breaking.map_or(0, |breaking| breaking.broken_bonds())
+        self.bond_set().map_or(0, BondSet::broken_bonds)
     }
 
     /// Returns the energy dissipated by breaking bonds and by plastic flow, J.
     pub fn dissipated(&self) -> f64 {
-        let breaking = self.capabilities().breaking;
-        breaking.map_or(0.0, |breaking| breaking.dissipated())
+        self.bond_set().map_or(0.0, BondSet::dissipated)
     }
 
     /// Sets the damage of each point, 0 … 1.

@@ -9,6 +9,7 @@ use super::{
 use crate::archive::{Archive, Checkpointed};
 use crate::domain::Field;
 use crate::error::{PericlesError, Result};
+use crate::neighbourhood::BondSet;
 use crate::step_end::StepEnd;
 
 /// The sum of one or more forces between the points of a body.
@@ -217,47 +218,21 @@ impl Force for Forces {
 }
 
 impl Breakable for Forces {
-    fn can_break(&self) -> bool {
-        self.breaking().any(|breaking| breaking.can_break())
+    fn bonds(&self) -> &dyn BondSet {
+        self
     }
 
-    fn broken_bonds(&self) -> u64 {
-        self.breaking()
-            .map(|breaking| breaking.broken_bonds())
-            .sum()
+    fn bonds_mut(&mut self) -> &mut dyn BondSet {
+        self
+    }
+
+    fn can_break(&self) -> bool {
+        self.breaking().any(|breaking| breaking.can_break())
     }
 
     fn dropped_points(&self) -> u64 {
         let dropped = self.breaking().map(|breaking| breaking.dropped_points());
         dropped.sum()
-    }
-
-    fn dissipated(&self) -> f64 {
-        self.breaking().map(|breaking| breaking.dissipated()).sum()
-    }
-
-    fn dissipate(&mut self, i: usize, energy: f64) {
-        let mut breaking = self
-            .list
-            .iter_mut()
-            .filter_map(|force| force.breaking_mut());
-        if let Some(first) = breaking.find(|breaking| breaking.can_break()) {
-            first.dissipate(i, energy);
-        }
-    }
-
-    fn follow_dissipation(&mut self) {
-        let forces = self.list.iter_mut();
-        for breaking in forces.filter_map(|force| force.breaking_mut()) {
-            breaking.follow_dissipation();
-        }
-    }
-
-    fn take_dissipated(&mut self, out: &mut [f64]) {
-        let forces = self.list.iter_mut();
-        for breaking in forces.filter_map(|force| force.breaking_mut()) {
-            breaking.take_dissipated(out);
-        }
     }
 
     fn stiffening(&self) -> f64 {
@@ -270,10 +245,7 @@ impl Breakable for Forces {
     }
 
     fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {
-        let breaking = self
-            .list
-            .iter_mut()
-            .filter_map(|force| force.breaking_mut());
+        let breaking = self.breaking_each();
         breaking
             .flat_map(|breaking| breaking.take_coarse_breaks())
             .collect()
@@ -281,37 +253,89 @@ impl Breakable for Forces {
 
     /// Sets the largest damage over all forces.
     fn damage_into(&self, out: &mut [f64]) {
-        let mut part = vec![0.0; out.len()];
-        out.fill(0.0);
-        for breaking in self.breaking() {
-            breaking.damage_into(&mut part);
-            for (out, damage) in out.iter_mut().zip(&part) {
-                *out = out.max(*damage);
-            }
-        }
-    }
-
-    fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
-        for breaking in self.breaking() {
-            breaking.for_each_intact(visit);
-        }
-    }
-
-    fn for_each_broken_count(&self, visit: &mut dyn FnMut(Range<usize>, u64)) {
-        for breaking in self.breaking() {
-            breaking.for_each_broken_count(visit);
-        }
-    }
-
-    fn for_each_intact_of(&self, i: usize, visit: &mut dyn FnMut(usize)) {
-        for breaking in self.breaking() {
-            breaking.for_each_intact_of(i, visit);
-        }
+        self.largest_damage(out, |breaking, part| breaking.damage_into(part));
     }
 
     fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]) {
         for breaking in self.breaking() {
             breaking.mark_endangered(u, fraction, marks);
+        }
+    }
+}
+
+impl Forces {
+    fn breaking_each(&mut self) -> impl Iterator<Item = &mut dyn Breakable> {
+        let forces = self.list.iter_mut();
+        forces.filter_map(|force| force.breaking_mut())
+    }
+
+    fn largest_damage(&self, out: &mut [f64], of_force: impl Fn(&dyn Breakable, &mut [f64])) {
+        let mut part = vec![0.0; out.len()];
+        out.fill(0.0);
+        for breaking in self.breaking() {
+            of_force(breaking, &mut part);
+            for (out, damage) in out.iter_mut().zip(&part) {
+                *out = out.max(*damage);
+            }
+        }
+    }
+}
+
+/// The bonds of all forces.
+impl BondSet for Forces {
+    fn broken_bonds(&self) -> u64 {
+        let broken = self
+            .breaking()
+            .map(|breaking| breaking.bonds().broken_bonds());
+        broken.sum()
+    }
+
+    fn dissipated(&self) -> f64 {
+        let dissipated = self
+            .breaking()
+            .map(|breaking| breaking.bonds().dissipated());
+        dissipated.sum()
+    }
+
+    fn dissipate(&mut self, i: usize, energy: f64) {
+        let mut breaking = self.breaking_each();
+        if let Some(first) = breaking.find(|breaking| breaking.can_break()) {
+            first.bonds_mut().dissipate(i, energy);
+        }
+    }
+
+    fn follow_dissipation(&mut self) {
+        for breaking in self.breaking_each() {
+            breaking.bonds_mut().follow_dissipation();
+        }
+    }
+
+    fn take_dissipated(&mut self, out: &mut [f64]) {
+        for breaking in self.breaking_each() {
+            breaking.bonds_mut().take_dissipated(out);
+        }
+    }
+
+    /// Sets the largest damage over all forces.
+    fn damage_into(&self, out: &mut [f64]) {
+        self.largest_damage(out, |breaking, part| breaking.bonds().damage_into(part));
+    }
+
+    fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
+        for breaking in self.breaking() {
+            breaking.bonds().for_each_intact(visit);
+        }
+    }
+
+    fn for_each_intact_of(&self, i: usize, visit: &mut dyn FnMut(usize)) {
+        for breaking in self.breaking() {
+            breaking.bonds().for_each_intact_of(i, visit);
+        }
+    }
+
+    fn for_each_broken_count(&self, visit: &mut dyn FnMut(Range<usize>, u64)) {
+        for breaking in self.breaking() {
+            breaking.bonds().for_each_broken_count(visit);
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::limits::{Feature, Features, Limit};
 use crate::error::Result;
+use crate::neighbourhood::NO_LATTICE;
 
 /// Force kernels, by the way bonds are stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -18,8 +19,6 @@ pub enum BondForm {
     /// Neighbour list ([`BondForce`](super::BondForce), [`LinearSolidForce`](super::LinearSolidForce)).
     List,
 }
-
-const NO_LATTICE: &str = "the points do not lie on a regular grid; use bonds = \"list\"";
 
 const OF_GRID: &[Limit] = &[
     Limit::CORRESPONDENCE,

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use super::assemble::fastest_form;
 use super::by_law::{ByLaw, by_law};
-use super::grid::build::LatticeBonds;
+use super::grid::lattice;
 use super::limits::{Feature, Features, Limit};
 use super::{
     AssembledBonds, BondForce, BondForm, Breaking, DamageMeasure, Force, GridForce, VectorLaw,
@@ -19,6 +19,7 @@ use crate::material::{
     BondConstants, BondMaterial, InterfaceRule, MaterialInterface, MaterialPairs, StressState,
     check_materials,
 };
+use crate::neighbourhood::Neighbourhood;
 use crate::space::{PointCloud, Sites, check_length};
 
 /// Several materials of a body with the same law, influence function and partial volumes, but different
@@ -349,16 +350,11 @@ impl GradedBody<'_> {
         let (cloud, correction) = (self.cloud, self.material.volume_correction);
         let largest = horizons.iter().copied().fold(0.0, f64::max);
         let largest = cloud.domain().max(largest);
-        let bonds = LatticeBonds::<D>::new(
-            cloud,
-            (largest, Some(horizons)),
-            correction,
-            &|_| 1.0,
-            self.cracks,
-            self.no_fail,
-        )?;
+        let horizons = (largest, Some(horizons));
+        let bonds = lattice::<D>(cloud, horizons, correction, self.cracks, self.no_fail)?;
+        let bonds = Neighbourhood::new(bonds, self.damage);
         let stretch = classes.smallest_critical_stretch();
-        let grid = GridForce::<L, D>::of(Arc::clone(cloud), bonds, stretch, self.damage);
+        let grid = GridForce::<L, D>::of(bonds, &|_| 1.0, stretch);
         let ends = self.ends(laws, grid.sites());
         let spacing = cloud.spacing();
         let grid = grid.with_factors(&|a, b, xi| {

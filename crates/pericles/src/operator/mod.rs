@@ -30,10 +30,7 @@ mod assemble;
 mod breakable;
 mod by_law;
 mod capabilities;
-mod coarse;
 mod composite;
-mod damage;
-mod dissipation;
 mod fast_law;
 mod forces;
 mod form;
@@ -57,16 +54,10 @@ mod view;
 mod zoned;
 
 pub use assemble::{AssembledBonds, BondBody};
-pub use breakable::Breakable;
+pub use breakable::{Breakable, Breaking};
 pub use by_law::{ByLaw, by_law};
 pub use capabilities::{Capabilities, Linearity};
-pub use coarse::{
-    CoarseBreak, Crossing, Dissipated, LostBond, Released, both_ends, each_once, turns_around,
-    with_received,
-};
 pub use composite::CompositeBody;
-pub use damage::{Breaking, DamageMeasure};
-pub use dissipation::PointDissipation;
 pub use fast_law::{FixedBond, VectorLaw};
 pub use forces::Forces;
 pub use form::BondForm;
@@ -87,6 +78,7 @@ pub use view::{BondAt, BondValues, BondView, DilatationView, PlasticView, Stress
 pub use zoned::{LocalForce, SplitForce};
 
 pub use crate::lanes::InstructionSet;
+pub use crate::neighbourhood::{CoarseBreak, DamageMeasure};
 pub use crate::parallel::PointSubset;
 
 use self::heating::heating_of;

@@ -21,7 +21,7 @@ impl System {
         if self.reads_dissipation()
             && let Some(breaking) = self.operator_mut().breaking_mut()
         {
-            breaking.follow_dissipation();
+            breaking.bonds_mut().follow_dissipation();
         }
     }
 
@@ -43,7 +43,7 @@ impl System {
         if self.reads_dissipation() {
             dissipated.resize(self.points(), 0.0);
             if let Some(breaking) = self.operator_mut().breaking_mut() {
-                breaking.take_dissipated(&mut dissipated);
+                breaking.bonds_mut().take_dissipated(&mut dissipated);
             }
         }
         let body = BodyStep {

@@ -387,11 +387,13 @@ fn only_bonds_of_a_weak_interface_break() {
         let force = run.system().operator();
         let mut across = 0;
         let breakable = force.capabilities().breaking.unwrap();
-        breakable.for_each_intact(&mut |i, j| across += usize::from(side(i) != side(j)));
+        breakable
+            .bonds()
+            .for_each_intact(&mut |i, j| across += usize::from(side(i) != side(j)));
         assert_eq!(across, 0, "{form:?}: every bond of the interface is broken");
         let of_interface = force.broken_bonds();
         let mut inside = 0;
-        breakable.for_each_intact(&mut |_, _| inside += 1);
+        breakable.bonds().for_each_intact(&mut |_, _| inside += 1);
         assert_eq!(
             inside + of_interface,
             force.directed_bonds() / 2,

@@ -9,9 +9,10 @@ use pericles::material::{
     BondMaterial, BondStretch, Calibration, ElasticModulus, Fracture, LinearBond, Modulus, PairLaw,
     StressState,
 };
+use pericles::neighbourhood::BondSet;
 use pericles::operator::{
-    BondBody, BondForce, BondForm, Breakable, DamageMeasure, Force, GridForce, InstructionSet,
-    PointSubset, VectorLaw,
+    BondBody, BondForce, BondForm, DamageMeasure, Force, GridForce, InstructionSet, PointSubset,
+    VectorLaw,
 };
 use pericles::round_trip::check_resume;
 use pericles::space::{Grid, PointCloud, Region, Shape};
@@ -474,9 +475,9 @@ fn breaking_on_subsets_equals_breaking_at_once() {
     let mut by_list = vec![0.0; 3 * n];
     list.end_step(&end, PointSubset::All, &mut by_list);
     assert_close(&expected, &by_list, 1e-12, "force");
-    assert_eq!(at_once.broken_bonds(), list.broken_bonds());
-    assert!((at_once.dissipated() / list.dissipated() - 1.0).abs() < 1e-12);
-    assert!(at_once.broken_bonds() > 100);
+    assert_eq!(at_once.bonds().broken_bonds(), list.bonds().broken_bonds());
+    assert!((at_once.bonds().dissipated() / list.bonds().dissipated() - 1.0).abs() < 1e-12);
+    assert!(at_once.bonds().broken_bonds() > 100);
 
     let (mut in_parts, _) = make();
     let odd: Vec<u32> = (0..n as u32).filter(|i| i % 2 == 1).collect();
@@ -484,8 +485,11 @@ fn breaking_on_subsets_equals_breaking_at_once() {
     in_parts.end_step(&end, PointSubset::Set(&odd), &mut unused);
     in_parts.end_step(&end, PointSubset::Range(0..n), &mut unused);
     assert!(force(&in_parts, &u) == expected);
-    assert_eq!(in_parts.broken_bonds(), at_once.broken_bonds());
-    assert!((in_parts.dissipated() / at_once.dissipated() - 1.0).abs() < 1e-12);
+    assert_eq!(
+        in_parts.bonds().broken_bonds(),
+        at_once.bonds().broken_bonds()
+    );
+    assert!((in_parts.bonds().dissipated() / at_once.bonds().dissipated() - 1.0).abs() < 1e-12);
 
     let (mut history, _) = make();
     let before = history.energy(0.0, &u);
@@ -495,8 +499,11 @@ fn breaking_on_subsets_equals_breaking_at_once() {
         &mut vec![0.0; u.len()],
     );
     let lost = before - history.energy(0.0, &u);
-    assert!((history.dissipated() / lost - 1.0).abs() < 1e-12);
-    assert_eq!(history.broken_bonds(), at_once.broken_bonds());
+    assert!((history.bonds().dissipated() / lost - 1.0).abs() < 1e-12);
+    assert_eq!(
+        history.bonds().broken_bonds(),
+        at_once.bonds().broken_bonds()
+    );
 }
 
 #[test]

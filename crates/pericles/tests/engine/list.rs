@@ -10,6 +10,7 @@ use pericles::material::{
     BondMaterial, BondStretch, CubicSofteningBond, Fracture, GreenBond, LinearBond, PairForce,
     StressState,
 };
+use pericles::neighbourhood::BondSet;
 use pericles::operator::{
     BondForce, Breakable, Breaking, DamageMeasure, Force, InstructionSet, PointSubset, VectorLaw,
 };
@@ -194,7 +195,11 @@ fn the_same_bonds_break_on_every_instruction_set() {
         list.end_step(&end, PointSubset::All, &mut out);
         let mut damage = vec![0.0; n];
         list.damage_into(&mut damage);
-        (damage, list.broken_bonds(), list.dissipated())
+        (
+            damage,
+            list.bonds().broken_bonds(),
+            list.bonds().dissipated(),
+        )
     };
     let (damage, count, dissipated) = broken(InstructionSet::Baseline);
     assert!(count > 100);

@@ -210,6 +210,7 @@ fn both_end_points_break_the_same_bonds_on_all_instruction_sets() {
                 .capabilities()
                 .breaking
                 .unwrap()
+                .bonds()
                 .for_each_intact(&mut |i, j| intact.push((i, j)));
             // Bonds seen as broken by one end only would leave a resultant force.
             let resultant: f64 = out[..cloud.len()].iter().sum();

@@ -62,7 +62,7 @@ fn force_states_return_to_the_yield_surface_and_flow_dissipates() {
                 let u = scaled(&shape, (0.5 * t).sin());
                 step(&mut operator, [t, 1.0], &before, &u);
                 let force = operator.force();
-                let list = force.solid().bonds();
+                let list = force.solid().bonds().form();
                 for i in 0..n {
                     let family = bonds(list, &cloud, &constants.influence, i);
                     let stretch = |j: usize| {
@@ -207,7 +207,7 @@ fn proportional_paths_follow_their_closed_form() {
             let law = Inelasticity::Plastic(yields);
             let (cloud, constants, mut operator, middle) =
                 lattice::<3>(InfluenceFunction::Conical, 2.0, &law);
-            let list = operator.force().solid().bonds();
+            let list = operator.force().solid().bonds().form();
             let family = bonds(list, &cloud, &constants.influence, middle);
             let unit = deviators(list, &family, middle, gradient);
             let norm = load(&constants, &family, &unit);
@@ -286,7 +286,7 @@ fn lattices_yield_at_the_given_stress() {
     let (c2, constants2, force2, i2) = lattice::<2>(InfluenceFunction::Inverse, 6.0, &law);
     for angle in [0.0, 0.2, 0.4, 0.6, std::f64::consts::FRAC_PI_4] {
         let gradient = turned(SHEAR, [f64::cos(angle), f64::sin(angle)]);
-        let list = force3.force().solid().bonds();
+        let list = force3.force().solid().bonds().form();
         let family = bonds(list, &c3, &constants3.influence, i3);
         let (m, unit) = (
             family.iter().map(|bond| bond.0).sum::<f64>(),
@@ -307,7 +307,7 @@ fn lattices_yield_at_the_given_stress() {
             shear,
             [0.985, 1.019],
         );
-        let list = force2.force().solid().bonds();
+        let list = force2.force().solid().bonds().form();
         let family = bonds(list, &c2, &constants2.influence, i2);
         let (m, unit) = (
             family.iter().map(|bond| bond.0).sum::<f64>(),

@@ -59,7 +59,7 @@ fn check<const D: usize>(
         let close = |found: f64, value: f64| {
             assert!((found / value - 1.0).abs() < 1e-10, "{found} {value}");
         };
-        assert_eq!(solid.bonds().directed_bonds(), expected.bonds);
+        assert_eq!(solid.bonds().form().directed_bonds(), expected.bonds);
         close(
             solid.weighted_volume(expected.point),
             expected.weighted_volume,
@@ -197,7 +197,7 @@ fn a_block_equals_lammps() {
     for set in InstructionSet::available() {
         let state = StressState::Spatial;
         let (solid, theta, force, _) = response::<3>(&cloud, &material, state, &u, set);
-        assert_eq!(solid.bonds().directed_bonds(), 24_222);
+        assert_eq!(solid.bonds().form().directed_bonds(), 24_222);
         for (place, expected, dilatation) in places {
             let i = cloud.nearest(place.map(|x: f64| x * dx));
             let largest = expected

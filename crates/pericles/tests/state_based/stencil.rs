@@ -282,7 +282,9 @@ fn the_same_bonds_break_and_dissipate_the_same_energy() {
                     let breaking = form.capabilities().breaking.unwrap();
                     breaking.mark_endangered(&u, 0.8, &mut marks);
                     let mut left = Vec::new();
-                    breaking.for_each_intact(&mut |i, j| left.push([i.min(j), i.max(j)]));
+                    breaking
+                        .bonds()
+                        .for_each_intact(&mut |i, j| left.push([i.min(j), i.max(j)]));
                     left.sort_unstable();
                     left.dedup();
                     (marks, left)

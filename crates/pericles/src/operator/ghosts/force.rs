@@ -8,6 +8,7 @@ use super::layer::{GhostLayer, breaking};
 use crate::archive::{Archive, Checkpointed};
 use crate::error::Result;
 use crate::family::BondList;
+use crate::neighbourhood::BondSet;
 use crate::operator::pool::{Lent, Pool};
 use crate::operator::{
     Breakable, Capabilities, CoarseBreak, DilatationView, Force, InstructionSet, LinearOperator,
@@ -276,10 +277,27 @@ impl DilatationView for GhostForce {
 
 /// Pre-cracks remove bonds, but no bond breaks.
 impl Breakable for GhostForce {
+    fn bonds(&self) -> &dyn BondSet {
+        self
+    }
+
+    fn bonds_mut(&mut self) -> &mut dyn BondSet {
+        self
+    }
+
     fn can_break(&self) -> bool {
         false
     }
 
+    fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {
+        Vec::new()
+    }
+
+    fn mark_endangered(&self, _u: &[f64], _fraction: f64, _marks: &mut [bool]) {}
+}
+
+/// The bonds of the body; bonds to ghosts count in the damage only.
+impl BondSet for GhostForce {
     fn broken_bonds(&self) -> u64 {
         0
     }
@@ -295,10 +313,6 @@ impl Breakable for GhostForce {
 
     fn take_dissipated(&mut self, _out: &mut [f64]) {}
 
-    fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {
-        Vec::new()
-    }
-
     fn damage_into(&self, out: &mut [f64]) {
         let mut all = self.at_places();
         if let Some(breaking) = self.inner.capabilities().breaking {
@@ -309,9 +323,20 @@ impl Breakable for GhostForce {
 
     fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
         if let Some(breaking) = self.inner.capabilities().breaking {
-            breaking.for_each_intact(&mut |a, b| {
+            breaking.bonds().for_each_intact(&mut |a, b| {
                 if let (Some(i), Some(j)) = (self.numbers[a], self.numbers[b]) {
                     visit(i as usize, j as usize);
+                }
+            });
+        }
+    }
+
+    fn for_each_intact_of(&self, i: usize, visit: &mut dyn FnMut(usize)) {
+        if let Some(breaking) = self.inner.capabilities().breaking {
+            let place = self.layer.body()[i] as usize;
+            breaking.bonds().for_each_intact_of(place, &mut |there| {
+                if let Some(j) = self.numbers[there] {
+                    visit(j as usize);
                 }
             });
         }
@@ -320,19 +345,6 @@ impl Breakable for GhostForce {
     fn for_each_broken_count(&self, visit: &mut dyn FnMut(Range<usize>, u64)) {
         visit(0..self.points(), 0);
     }
-
-    fn for_each_intact_of(&self, i: usize, visit: &mut dyn FnMut(usize)) {
-        if let Some(breaking) = self.inner.capabilities().breaking {
-            let place = self.layer.body()[i] as usize;
-            breaking.for_each_intact_of(place, &mut |there| {
-                if let Some(j) = self.numbers[there] {
-                    visit(j as usize);
-                }
-            });
-        }
-    }
-
-    fn mark_endangered(&self, _u: &[f64], _fraction: f64, _marks: &mut [bool]) {}
 }
 
 impl Checkpointed for GhostForce {

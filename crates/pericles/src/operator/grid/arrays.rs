@@ -1,10 +1,10 @@
 //! Arrays of a lattice body read by the loops.
 
 use super::factors::Factors;
-use super::layout::Chunk;
 use super::numbers::{ChunkLanes, GridNumber};
-use super::stencil::Offset;
+use super::offsets::Offset;
 use crate::lanes::LANES;
+use crate::neighbourhood::Chunk;
 use crate::operator::fast_law::FixedBond;
 
 /// Read-only arrays of the loops.

@@ -1,7 +1,7 @@
 //! Blocks of chunks and their requested points.
 
-use super::layout::{Chunk, GridLayout};
 use crate::lanes::LANES;
+use crate::neighbourhood::{Chunk, GridLayout};
 
 /// A block of chunks.
 pub(in crate::operator) struct ChunkBlock<'a> {
@@ -38,6 +38,9 @@ impl<'a> ChunkBlock<'a> {
         }
     }
 }
+
+/// Sites that exert a force, one byte per place (in chunks).
+pub(super) struct Partners(pub(super) Vec<u8>);
 
 /// Adds the values of the requested lanes to their points.
 #[inline(always)]

@@ -1,14 +1,14 @@
 //! Bond failure, evaluated for chunks with large strains in the force sweep.
 
 use super::arrays::Grid;
-use super::layout::Chunk;
 use super::numbers::GridNumber;
 use super::thresholds::PlaceThresholds;
 use crate::domain::Field;
 use crate::lanes::LANES;
 use crate::lanes::Lanes;
-use crate::operator::coarse::turns_around;
-use crate::operator::damage::{BreakEvent, Tally};
+use crate::neighbourhood::Chunk;
+use crate::neighbourhood::turns_around;
+use crate::neighbourhood::{BreakEvent, Tally};
 use crate::operator::fast_law::VectorLaw;
 use crate::step_end::{BreakingBond, StepEnd, relative_velocity};
 

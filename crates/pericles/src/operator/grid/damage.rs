@@ -1,60 +1,29 @@
 //! [`Breakable`] for lattice bodies.
 
-use std::ops::Range;
-
 use super::arrays::Grid;
 use super::block::{ChunkBlock, scatter};
 use super::force::GridForce;
-use super::layout::Chunk;
 use crate::lanes::LANES;
 use crate::lanes::{Lanes, for_each_instruction_set};
+use crate::neighbourhood::{BondSet, Chunk};
 use crate::operator::fast_law::VectorLaw;
-use crate::operator::{Breakable, CoarseBreak, Force, PointSubset, damage};
+use crate::operator::{Breakable, CoarseBreak, Force, PointSubset};
 
 impl<L: VectorLaw, const D: usize> Breakable for GridForce<L, D> {
-    fn dissipated(&self) -> f64 {
-        damage::dissipated(self.cloud.domain(), &self.blocks)
+    fn bonds(&self) -> &dyn BondSet {
+        &self.bonds
     }
 
-    fn dissipate(&mut self, i: usize, energy: f64) {
-        damage::dissipate(&mut self.blocks, i, energy);
-    }
-
-    fn follow_dissipation(&mut self) {
-        damage::follow_dissipation(&mut self.blocks);
-    }
-
-    fn take_dissipated(&mut self, out: &mut [f64]) {
-        damage::take_dissipated(&mut self.blocks, out);
+    fn bonds_mut(&mut self) -> &mut dyn BondSet {
+        &mut self.bonds
     }
 
     fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {
-        damage::take_coarse_breaks(&mut self.blocks)
-    }
-
-    fn broken_bonds(&self) -> u64 {
-        damage::broken_bonds(self.cloud.domain(), &self.blocks)
+        self.bonds.take_coarse_breaks()
     }
 
     fn can_break(&self) -> bool {
         self.critical_stretch.is_finite()
-    }
-
-    fn damage_into(&self, out: &mut [f64]) {
-        self.families().damage_into(out);
-    }
-
-    fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
-        self.families().for_each_intact(visit);
-    }
-
-    fn for_each_broken_count(&self, visit: &mut dyn FnMut(Range<usize>, u64)) {
-        let first = |block| self.layout.first_point(block);
-        damage::broken_counts(&self.blocks, self.cloud.len(), &first, visit);
-    }
-
-    fn for_each_intact_of(&self, i: usize, visit: &mut dyn FnMut(usize)) {
-        self.families().for_each_intact_of(i, visit);
     }
 
     fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]) {
@@ -63,8 +32,7 @@ impl<L: VectorLaw, const D: usize> Breakable for GridForce<L, D> {
         }
         let threshold = L::threshold(fraction * self.critical_stretch);
         let mut found = vec![0.0; self.points()];
-        let families = self.families();
-        let breakable = |chunk: &Chunk, offset: usize| families.breakable(chunk, offset);
+        let breakable = |chunk: &Chunk, offset: usize| self.bonds.form().breakable(chunk, offset);
         let part = |place: usize, shift: isize| match &self.pairs {
             None => [threshold; LANES],
             Some(pairs) => pairs.of_part::<L>(fraction, place, shift),

@@ -4,12 +4,9 @@ use std::collections::HashMap;
 
 use rayon::prelude::*;
 
-use super::layout::GridLayout;
 use super::numbers::GridNumber;
-use super::stencil::Stencil;
 use crate::lanes::LANES;
-use crate::operator::damage::BlockDamage;
-use crate::space::Sites;
+use crate::neighbourhood::{Form, Lattice, Neighbourhood};
 
 /// Stiffness of bonds relative to the stencil, per chunk.
 ///
@@ -39,18 +36,14 @@ struct BlockRows {
 
 impl Factors<f64> {
     /// Creates the factors of the intact bonds of each block.
-    pub fn new<const D: usize>(
-        sites: &Sites,
-        layout: &GridLayout,
-        stencil: &Stencil<D>,
-        blocks: &[BlockDamage],
-        of: &OfBond<'_>,
-    ) -> Self {
+    pub fn new(bonds: &Neighbourhood<Lattice>, of: &OfBond<'_>) -> Self {
+        let (layout, stencil) = (bonds.form().layout(), bonds.form().stencil());
         let length = stencil.len() * LANES;
-        let blocks: Vec<BlockRows> = blocks
+        let blocks: Vec<BlockRows> = bonds
+            .blocks()
             .par_iter()
             .enumerate()
-            .map(|(block, state)| block_rows(sites, layout, stencil, block, &state.intact, of))
+            .map(|(block, state)| block_rows(bonds.form(), block, &state.intact, of))
             .collect();
         let ones = vec![1.0; length];
         let mut known = HashMap::from([(bits(&ones), 0)]);
@@ -72,7 +65,7 @@ impl Factors<f64> {
             }
             rows.extend(block.of_chunk.iter().map(|&row| number[row]));
         }
-        sites.cloud().domain().max_each(&mut largest);
+        bonds.form().cloud().domain().max_each(&mut largest);
         Self {
             rows,
             values,
@@ -131,14 +124,8 @@ impl<N: GridNumber> Factors<N> {
     }
 }
 
-fn block_rows<const D: usize>(
-    sites: &Sites,
-    layout: &GridLayout,
-    stencil: &Stencil<D>,
-    block: usize,
-    intact: &[u8],
-    of: &OfBond<'_>,
-) -> BlockRows {
+fn block_rows(bonds: &Lattice, block: usize, intact: &[u8], of: &OfBond<'_>) -> BlockRows {
+    let (sites, layout, stencil) = (bonds.sites(), bonds.layout(), bonds.stencil());
     let m = stencil.len();
     let mut known = HashMap::new();
     let mut block_rows = BlockRows {
@@ -152,11 +139,10 @@ fn block_rows<const D: usize>(
         for (lane, i) in chunk.points() {
             let here = sites.of_point(i);
             let place = chunk.place as usize * LANES + lane;
-            for (k, offset) in stencil.offsets().iter().enumerate() {
+            for (k, &shift) in stencil.shifts().iter().enumerate() {
                 if intact[k] >> lane & 1 == 1 {
-                    let there = layout.site_at(place.wrapping_add_signed(offset.shift));
-                    let xi = |c: usize| offset.xi.get(c).copied().unwrap_or(0.0);
-                    let factor = of(here, there, std::array::from_fn(xi));
+                    let there = layout.site_at(place.wrapping_add_signed(shift));
+                    let factor = of(here, there, stencil.vectors()[k]);
                     row[k * LANES + lane] = factor;
                     block_rows.largest[k] = factor.max(block_rows.largest[k]);
                 }

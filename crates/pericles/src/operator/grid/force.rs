@@ -3,26 +3,25 @@
 use std::sync::{Arc, Mutex};
 
 use super::arrays::Grid;
-use super::block::ChunkBlock;
+use super::block::{ChunkBlock, Partners};
 use super::breaking::GridBreaking;
-use super::build::LatticeBonds;
 use super::factors::{Factors, OfBond};
-use super::families::Families;
 use super::kernels::{accept_chunks, accept_chunks_in_floats};
-use super::layout::{Chunk, GridLayout, Partners};
+use super::lattice;
 use super::numbers::GridNumber;
+use super::offsets::{in_floats, offsets};
 use super::padded::Padded;
-use super::stencil::Stencil;
 use super::thresholds::PlaceThresholds;
 use super::working::Working;
-use crate::domain::{Field, Letter};
+use crate::domain::Field;
 use crate::error::Result;
 use crate::family::{BondCut, Crack, EndRule};
-use crate::lanes::LANES;
 use crate::material::{BondConstants, BondMaterial, MaterialPairs};
-use crate::operator::damage::{BlockDamage, Tally, bonds_left};
+use crate::neighbourhood::{
+    BlockDamage, Chunk, DamageMeasure, Form, GridLayout, Lattice, Neighbourhood, Stencil, Tally,
+};
 use crate::operator::fast_law::VectorLaw;
-use crate::operator::{DamageMeasure, Force, InstructionSet, PointSubset};
+use crate::operator::{Force, InstructionSet, PointSubset};
 use crate::parallel::{Cost, components_mut, for_each_part};
 use crate::space::{PointCloud, Sites};
 use crate::step_end::StepEnd;
@@ -77,25 +76,11 @@ use crate::thermal::ThermalExpansion;
 /// ```
 pub struct GridForce<L: VectorLaw, const D: usize> {
     pub(super) cloud: Arc<PointCloud>,
-    /// Sites: end points of bonds.
-    pub(super) sites: Sites,
-    pub(super) layout: GridLayout,
-    pub(super) stencil: Stencil<D>,
-    /// Intact bonds: one byte per chunk and offset, offsets fastest.
-    pub(super) blocks: Vec<BlockDamage>,
-    /// Sites whose bonds never break, one byte per place (in chunks).
-    pub(super) held: Option<Vec<u8>>,
-    /// All bonds before pre-cracks, if points have different horizons.
-    pub(super) geometric: Option<Vec<Vec<u8>>>,
-    pub(super) cuts: Vec<BondCut>,
-    /// Bonds cut by pre-cracks: groups in ascending order with bits of their bonds.
-    pub(super) precut: Vec<(u64, u8)>,
-    pub(super) directed_bonds: u64,
+    pub(super) bonds: Neighbourhood<Lattice>,
     pub(super) critical_stretch: f64,
     /// Critical stretches by the materials of the ends of a bond; the common value is then the smallest of
     /// them.
     pub(super) pairs: Option<PlaceThresholds>,
-    pub(super) damage: DamageMeasure,
     /// Thermal expansion, if the material expands.
     pub(super) expansion: Option<ThermalExpansion>,
     pub(super) doubles: Working<f64, D>,
@@ -124,56 +109,33 @@ impl<L: VectorLaw, const D: usize> GridForce<L, D> {
     ) -> Result<Self> {
         let stiffness =
             |xi| constants.micromodulus * material.influence.alpha_of(xi, material.horizon);
-        let bonds = LatticeBonds::new(
-            &cloud,
-            (material.horizon, None),
-            material.volume_correction,
-            &stiffness,
-            cracks,
-            no_fail,
-        )?;
-        Ok(Self::of(cloud, bonds, constants.critical_stretch, damage))
+        let horizons = (material.horizon, None);
+        let correction = material.volume_correction;
+        let bonds = lattice::<D>(&cloud, horizons, correction, cracks, no_fail)?;
+        let bonds = Neighbourhood::new(bonds, damage);
+        Ok(Self::of(bonds, &stiffness, constants.critical_stretch))
     }
 
-    /// Creates the operator from the bonds of a lattice body.
+    /// Creates the operator of bonds with the stiffness c α as a function of ξ, m.
     pub(in crate::operator) fn of(
-        cloud: Arc<PointCloud>,
-        bonds: LatticeBonds<D>,
+        bonds: Neighbourhood<Lattice>,
+        stiffness: &dyn Fn([f64; 3]) -> f64,
         critical_stretch: f64,
-        damage: DamageMeasure,
     ) -> Self {
-        let LatticeBonds {
-            layout,
-            stencil,
-            blocks,
-            geometric,
-            held,
-            cuts,
-            precut,
-            sites,
-        } = bonds;
+        let stencil = bonds.form().stencil();
         Self {
-            directed_bonds: bonds_left(&blocks),
-            held,
             doubles: Working::new(
-                stencil.offsets().to_vec(),
+                offsets(stencil, stiffness),
                 1.0,
                 stencil.farthest_shift(),
                 stencil.radius(),
             ),
             floats: None,
             direction: Mutex::new(None),
-            cloud,
-            sites,
-            layout,
-            stencil,
-            blocks,
-            geometric,
-            cuts,
-            precut,
+            cloud: Arc::clone(bonds.form().cloud()),
+            bonds,
             critical_stretch,
             pairs: None,
-            damage,
             expansion: None,
             instruction_set: InstructionSet::detect(),
             law: std::marker::PhantomData,
@@ -195,11 +157,12 @@ impl<L: VectorLaw, const D: usize> GridForce<L, D> {
         let spacing = self.cloud.spacing();
         let lattice = self.cloud.lattice();
         let sides = lattice.map_or([1.0; 3], |lattice| lattice.spacing.map(|dx| dx / spacing));
+        let stencil = self.stencil();
         self.floats = Some(Working::new(
-            self.stencil.offsets_in_floats(sides),
+            in_floats(stencil, self.doubles.offsets(), sides),
             spacing,
-            self.stencil.farthest_shift(),
-            self.stencil.radius(),
+            stencil.farthest_shift(),
+            stencil.radius(),
         ));
         self.round_factors();
         self
@@ -208,8 +171,7 @@ impl<L: VectorLaw, const D: usize> GridForce<L, D> {
     /// Multiplies the stiffness of bonds by a factor of the sites of both ends, the first of which belongs to
     /// an own point, and of the vector ξ of the bond, m. It must be the same from both ends.
     pub(in crate::operator) fn with_factors(mut self, of: &OfBond<'_>) -> Self {
-        let (sites, layout) = (&self.sites, &self.layout);
-        let factors = Factors::new(sites, layout, &self.stencil, &self.blocks, of);
+        let factors = Factors::new(&self.bonds, of);
         self.doubles = self.doubles.with_factors(Some(factors));
         self.round_factors();
         self
@@ -227,8 +189,8 @@ impl<L: VectorLaw, const D: usize> GridForce<L, D> {
     pub(in crate::operator) fn with_critical_stretches(mut self, classes: &MaterialPairs) -> Self {
         self.critical_stretch = classes.smallest_critical_stretch();
         self.pairs = (!classes.has_one_critical_stretch()).then(|| {
-            let on_sites = classes.on_sites(&self.sites);
-            PlaceThresholds::new::<L, D>(&on_sites, &self.layout, &self.stencil)
+            let on_sites = classes.on_sites(self.sites());
+            PlaceThresholds::new::<L>(&on_sites, self.bonds.form())
         });
         self
     }
@@ -237,23 +199,38 @@ impl<L: VectorLaw, const D: usize> GridForce<L, D> {
     pub(super) fn stiffness_of(&self, chunk: usize, offset: usize, lane: usize) -> f64 {
         let factors = self.doubles.factors();
         let factor = factors.map_or(1.0, |factors| factors.of_bond(chunk, offset, lane));
-        self.stencil.offsets()[offset].stiffness * factor
+        self.doubles.offsets()[offset].stiffness * factor
     }
 
     /// Returns the stiffness of the stiffest bond of an offset, N/m³.
     pub(super) fn largest_stiffness(&self, offset: usize) -> f64 {
         let largest = (self.doubles.factors()).map_or(1.0, |factors| factors.largest(offset));
-        self.stencil.offsets()[offset].stiffness * largest
+        self.doubles.offsets()[offset].stiffness * largest
+    }
+
+    /// Returns the bonds.
+    pub fn bonds(&self) -> &Neighbourhood<Lattice> {
+        &self.bonds
     }
 
     /// Returns the sites: end points of bonds.
     pub fn sites(&self) -> &Sites {
-        &self.sites
+        self.bonds.form().sites()
+    }
+
+    /// Returns points and their places.
+    pub(super) fn layout(&self) -> &GridLayout {
+        self.bonds.form().layout()
+    }
+
+    /// Returns the family of a node.
+    pub(super) fn stencil(&self) -> &Stencil {
+        self.bonds.form().stencil()
     }
 
     /// Returns the bonds removed by each pre-crack.
     pub fn cuts(&self) -> &[BondCut] {
-        &self.cuts
+        self.bonds.form().cuts()
     }
 
     /// Returns a block of chunks with its requested points; `None` if there are none.
@@ -262,12 +239,12 @@ impl<L: VectorLaw, const D: usize> GridForce<L, D> {
         lanes: Option<&'a [u8]>,
         block: usize,
     ) -> Option<ChunkBlock<'a>> {
-        ChunkBlock::of(&self.layout, lanes, block)
+        ChunkBlock::of(self.layout(), lanes, block)
     }
 
     /// Returns the cost of a loop over the bonds of a subset of the points.
     fn cost(&self, on: &PointSubset<'_>) -> Cost {
-        Cost::bonds(self.directed_bonds).on(on, self.points())
+        self.bonds.form().cost(on)
     }
 
     /// Runs a read-only loop over all blocks at displacement u and the thermal stretches of own points and ghosts.
@@ -282,20 +259,13 @@ impl<L: VectorLaw, const D: usize> GridForce<L, D> {
         let ghosts = self.cloud.domain().ghosts(u);
         let heat = stretches.as_ref().map(|stretches| self.field_of(stretches));
         let values = (Field::new(u, &ghosts), heat);
-        working.with(&self.layout, values, on, |grid, lanes| {
-            // A vector of units takes no memory: the state of blocks is only read.
-            let mut nothing = vec![(); self.blocks.len()];
-            for_each_part(
-                components_mut::<C>(out, self.points()),
-                &mut nothing,
-                self.cost(on),
-                &|block| self.layout.first_point(block),
-                &|block, mut out, ()| {
+        working.with(self.layout(), values, on, |grid, lanes| {
+            self.bonds
+                .for_each_block::<C>(self.cost(on), out, |block, intact, out| {
                     if let Some(chunk_block) = self.chunk_block(lanes, block) {
-                        chunks(grid, &chunk_block, &self.blocks[block].intact, &mut out);
+                        chunks(grid, &chunk_block, intact, out);
                     }
-                },
-            );
+                });
         });
     }
 
@@ -309,7 +279,7 @@ impl<L: VectorLaw, const D: usize> GridForce<L, D> {
     ) {
         let whole = matches!(on, PointSubset::All) && partners.is_none();
         let stretches = self.stretches(step.t);
-        let mut blocks = std::mem::take(&mut self.blocks);
+        let mut blocks = self.bonds.take_blocks();
         let set = self.instruction_set;
         let domain = self.cloud.domain();
         let (ghosts, moved) = (domain.ghosts(step.u), step.ghost_velocities(domain));
@@ -318,8 +288,8 @@ impl<L: VectorLaw, const D: usize> GridForce<L, D> {
             critical_stretch: self.critical_stretch,
             pairs: self.pairs.as_ref(),
             volume: self.cloud.volumes().first().copied().unwrap_or(0.0),
-            breakable: &|chunk: &Chunk, offset: usize| self.families().breakable(chunk, offset),
-            point_at: &|place| self.layout.point_at(place),
+            breakable: &|chunk: &Chunk, offset: usize| self.bonds.form().breakable(chunk, offset),
+            point_at: &|place| self.layout().point_at(place),
             step,
             velocity: step.velocities(&moved),
             note_events: !whole,
@@ -327,7 +297,7 @@ impl<L: VectorLaw, const D: usize> GridForce<L, D> {
         let heat = stretches.as_ref().map(|stretches| self.field_of(stretches));
         let u = (Field::new(step.u, &ghosts), heat);
         match &self.floats {
-            Some(working) => working.with(&self.layout, u, on, |grid, lanes| {
+            Some(working) => working.with(self.layout(), u, on, |grid, lanes| {
                 self.decide_blocks(
                     (on, lanes),
                     partners,
@@ -340,7 +310,7 @@ impl<L: VectorLaw, const D: usize> GridForce<L, D> {
                     },
                 );
             }),
-            None => self.doubles.with(&self.layout, u, on, |grid, lanes| {
+            None => self.doubles.with(self.layout(), u, on, |grid, lanes| {
                 self.decide_blocks(
                     (on, lanes),
                     partners,
@@ -352,9 +322,9 @@ impl<L: VectorLaw, const D: usize> GridForce<L, D> {
                 );
             }),
         }
-        self.blocks = blocks;
+        self.bonds.put_blocks(blocks);
         if !whole {
-            self.tell_the_other_ends();
+            self.bonds.break_other_ends();
         }
     }
 
@@ -371,7 +341,7 @@ impl<L: VectorLaw, const D: usize> GridForce<L, D> {
             components_mut::<D>(out, self.cloud.len()),
             blocks,
             self.cost(on),
-            &|block| self.layout.first_point(block),
+            &|block| self.layout().first_point(block),
             &|block, mut out, state| {
                 let Some(chunk_block) = self.chunk_block(lanes, block) else {
                     return;
@@ -391,48 +361,5 @@ impl<L: VectorLaw, const D: usize> GridForce<L, D> {
                 }
             },
         );
-    }
-
-    /// Returns the families.
-    pub(super) fn families(&self) -> Families<'_, D> {
-        Families {
-            cloud: &self.cloud,
-            layout: &self.layout,
-            stencil: &self.stencil,
-            blocks: &self.blocks,
-            geometric: self.geometric.as_deref(),
-            held: self.held.as_deref(),
-            precut: &self.precut,
-            damage: self.damage,
-        }
-    }
-
-    /// Breaks the other end of bonds that broke in a sweep over a subset of points, and records its half of
-    /// the energy.
-    fn tell_the_other_ends(&mut self) {
-        let m = self.stencil.len();
-        let mut letters = Vec::new();
-        for block in &mut self.blocks {
-            for event in block.tally.events.drain(..) {
-                let (group, lane) = (event.entry / LANES, event.entry % LANES);
-                let (chunk, offset) = (group / m, group % m);
-                let place = self.layout.chunks()[chunk].place as usize * LANES + lane;
-                let there = place.wrapping_add_signed(self.stencil.offsets()[offset].shift);
-                let back = self.stencil.opposite(offset) as f64;
-                letters.push(Letter {
-                    from: self.layout.point_at(place),
-                    to: self.layout.point_at(there),
-                    numbers: [event.dissipated, back, 0.0, 0.0],
-                });
-            }
-        }
-        for letter in self.cloud.domain().deliver(letters) {
-            let [dissipated, offset, ..] = letter.numbers;
-            let (chunk, lane) = self.layout.chunk_at(self.layout.place_of(letter.to));
-            let block = self.layout.block_of(chunk);
-            let first = self.layout.chunks_of(block).start;
-            let group = (chunk - first) * m + offset as usize;
-            self.blocks[block].break_other_end(letter.to, group, lane, dissipated);
-        }
     }
 }

@@ -8,10 +8,10 @@
 use super::arrays::Grid;
 use super::block::{ChunkBlock, scatter};
 use super::breaking::{ChunkBonds, GridBreaking, break_chunk};
-use super::layout::Chunk;
 use super::numbers::ChunkLanes;
 use crate::lanes::{Lanes, for_each_instruction_set};
-use crate::operator::damage::Tally;
+use crate::neighbourhood::Chunk;
+use crate::neighbourhood::Tally;
 use crate::operator::fast_law::VectorLaw;
 
 /// Forces of chunks in the fast form, and the range of their strains t.

@@ -10,21 +10,15 @@
 mod arrays;
 pub(in crate::operator) mod block;
 mod breaking;
-pub(in crate::operator) mod build;
 mod damage;
 mod factors;
-pub(in crate::operator) mod families;
 mod force;
 mod heated;
 mod kernels;
-pub(in crate::operator) mod layout;
 mod numbers;
+mod offsets;
 mod operator;
 pub(in crate::operator) mod padded;
-mod rows;
-mod runs;
-pub(in crate::operator) mod stencil;
-pub(in crate::operator) mod stored;
 mod thresholds;
 mod view;
 pub(in crate::operator) mod wanted;
@@ -32,3 +26,31 @@ mod working;
 mod zoned;
 
 pub use force::GridForce;
+
+use std::sync::Arc;
+
+use crate::error::{PericlesError, Result};
+use crate::family::{Crack, EndRule, VolumeCorrection};
+use crate::neighbourhood::Lattice;
+use crate::space::PointCloud;
+
+/// Returns the bonds of a lattice body for a kernel of a dimension; the arguments are those of [`Lattice::new`].
+///
+/// # Errors
+/// A body of another dimension; the errors of [`Lattice::new`].
+pub(super) fn lattice<const D: usize>(
+    cloud: &Arc<PointCloud>,
+    horizons: (f64, Option<&[f64]>),
+    correction: VolumeCorrection,
+    cracks: &[(Crack, EndRule)],
+    no_fail: &[u32],
+) -> Result<Lattice> {
+    if cloud.lattice().is_some() && cloud.dimension() != D {
+        return Err(PericlesError::WrongDimension {
+            what: "this stencil kernel",
+            needed: ["1", "2", "3"][D - 1],
+            dimension: cloud.dimension(),
+        });
+    }
+    Lattice::new(cloud, horizons, correction, cracks, no_fail)
+}

@@ -5,9 +5,10 @@ use std::sync::PoisonError;
 use super::force::GridForce;
 use super::kernels::{energy_chunks, force_chunks, force_chunks_in_floats, tangent_chunks};
 use super::padded::Frame;
-use super::stored::StencilStorage;
 use super::thresholds::PlaceThresholds;
 use crate::domain::Field;
+use crate::lanes::LANES;
+use crate::neighbourhood::Form;
 use crate::operator::fast_law::VectorLaw;
 use crate::operator::{
     Breakable, Capabilities, Force, InstructionSet, LatticeSpring, LatticeSprings, LinearOperator,
@@ -58,16 +59,15 @@ impl<L: VectorLaw, const D: usize> Force for GridForce<L, D> {
 
     /// ω² ≤ max_i (2/ρ_i) Σ_j k_ij/|ξ| by Gershgorin discs of D×D blocks.
     fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {
-        let lengths = self.stencil.lengths();
+        let (lengths, m) = (self.stencil().lengths(), self.stencil().len());
         let mut rows = vec![0.0; self.points()];
-        let families = self.families();
-        families.for_each_block(&mut rows, |first, number, intact, rows| {
-            families.for_each_counted(number, intact, |(lane, point), offset, intact| {
-                if intact {
-                    let stiffness = self.stiffness_of(number, offset, lane).abs();
-                    rows[point - first] += stiffness / lengths[offset];
-                }
-            });
+        self.bonds.for_each_counted(&mut rows, |first, bond, rows| {
+            if bond.intact {
+                let (group, lane) = (bond.entry / LANES, bond.entry % LANES);
+                let (chunk, offset) = (group / m, group % m);
+                let stiffness = self.stiffness_of(chunk, offset, lane).abs();
+                rows[bond.point - first] += stiffness / lengths[offset];
+            }
         });
         let square = |(i, row): (usize, &f64)| 2.0 * row / density(i);
         let own = rows.iter().enumerate().map(square).fold(0.0, f64::max);
@@ -89,10 +89,10 @@ impl<L: VectorLaw, const D: usize> Force for GridForce<L, D> {
                 .unwrap_or_else(PoisonError::into_inner)
         };
         let idle = spare().take();
-        let mut padded = idle.unwrap_or_else(|| self.doubles.room(&self.layout));
+        let mut padded = idle.unwrap_or_else(|| self.doubles.room(self.layout()));
         let ghosts = self.cloud.domain().ghosts(direction);
         let direction = Field::new(direction, &ghosts);
-        padded.fill(&self.layout, direction, &Frame::of(direction, 1.0));
+        padded.fill(self.layout(), direction, &Frame::of(direction, 1.0));
         let direction = self.doubles.grid(&padded);
         out.fill(0.0);
         self.sweep::<f64, D>(
@@ -108,22 +108,18 @@ impl<L: VectorLaw, const D: usize> Force for GridForce<L, D> {
     }
 
     fn directed_bonds(&self) -> u64 {
-        self.directed_bonds
+        self.bonds.form().directed_bonds()
     }
 
     fn bytes(&self) -> usize {
-        let masks: usize = self.blocks.iter().map(|block| block.intact.len()).sum();
-        let masks = masks * (1 + usize::from(self.geometric.is_some()));
         let working = match &self.floats {
-            Some(floats) => floats.bytes(&self.layout),
-            None => self.doubles.bytes(&self.layout),
+            Some(floats) => floats.bytes(self.layout()),
+            None => self.doubles.bytes(self.layout()),
         };
-        masks
+        self.bonds.bytes_of_bits()
+            + self.bonds.form().bytes()
             + working
-            + self.layout.bytes()
-            + self.held.as_ref().map_or(0, Vec::len)
             + self.pairs.as_ref().map_or(0, PlaceThresholds::bytes)
-            + size_of_val(&self.precut[..])
     }
 
     fn instruction_set(&self) -> InstructionSet {
@@ -137,14 +133,14 @@ impl<L: VectorLaw, const D: usize> Force for GridForce<L, D> {
     }
 
     fn lattice_springs(&self) -> Option<LatticeSprings> {
-        let (cells, lengths) = (self.stencil.cells(), self.stencil.lengths());
+        let (cells, lengths) = (self.stencil().cells(), self.stencil().lengths());
         let lattice = self.cloud.lattice();
         if !lattice.is_some_and(|lattice| lattice.is_cubic(D)) {
             return None;
         }
         // Of the whole body; infinite stiffnesses are rejected below.
         let finite = |x: f64| if x.is_nan() { f64::INFINITY } else { x };
-        let mut stiffest: Vec<f64> = (0..self.stencil.len())
+        let mut stiffest: Vec<f64> = (0..self.stencil().len())
             .map(|k| finite(self.largest_stiffness(k)))
             .collect();
         self.cloud.domain().max_each(&mut stiffest);
@@ -152,7 +148,7 @@ impl<L: VectorLaw, const D: usize> Force for GridForce<L, D> {
             offset: cells[k],
             stiffness: stiffest[k] / lengths[k],
         };
-        LatticeSprings::new(D, (0..self.stencil.len()).map(spring))
+        LatticeSprings::new(D, (0..self.stencil().len()).map(spring))
     }
 
     fn rounding(&self, u: &[f64]) -> Option<f64> {
@@ -221,17 +217,15 @@ impl<L: VectorLaw, const D: usize> LinearOperator for GridForce<L, D> {
     }
 
     fn half_bandwidth(&self) -> Option<usize> {
-        let is_band = D == 1 && self.layout.is_of_points();
-        is_band.then(|| self.stencil.farthest(0))
+        let is_band = D == 1 && self.layout().is_of_points();
+        is_band.then(|| self.stencil().farthest(0))
     }
 }
 
 crate::saved! {
     impl<L: VectorLaw, const D: usize> Checkpointed for GridForce<L, D> {
-        blocks: by(StencilStorage { name: "operator/grid", layout, offsets: stencil.len() }),
-        cloud, sites, layout, stencil, held, geometric, cuts, precut, directed_bonds, critical_stretch, pairs, damage: fixed,
-        expansion: fixed,
-        instruction_set, law: fixed,
+        bonds: part,
+        cloud, critical_stretch, pairs, expansion, instruction_set, law: fixed,
         doubles, floats, direction: scratch,
-    } then |force| force.families().check_bonds()
+    }
 }

@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-use super::layout::GridLayout;
 use super::numbers::GridNumber;
 use super::wanted::WantedPoints;
 use crate::domain::Field;
+use crate::neighbourhood::GridLayout;
 
 /// Size of a cache line, bytes; loads across two lines cost twice.
 const LINE: usize = 64;

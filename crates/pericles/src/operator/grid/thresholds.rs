@@ -1,9 +1,8 @@
 //! Critical stretches of bonds of a lattice body by the materials of their ends.
 
-use super::layout::GridLayout;
-use super::stencil::Stencil;
 use crate::lanes::LANES;
 use crate::material::{MaterialPairs, PairForce};
+use crate::neighbourhood::Lattice;
 use crate::operator::thresholds::PairThresholds;
 
 /// Thresholds by the materials at the places of the padded rows.
@@ -16,11 +15,8 @@ pub(super) struct PlaceThresholds {
 
 impl PlaceThresholds {
     /// Creates thresholds from the materials of the sites.
-    pub fn new<L: PairForce, const D: usize>(
-        classes: &MaterialPairs,
-        layout: &GridLayout,
-        stencil: &Stencil<D>,
-    ) -> Self {
+    pub fn new<L: PairForce>(classes: &MaterialPairs, bonds: &Lattice) -> Self {
+        let (layout, stencil) = (bonds.layout(), bonds.stencil());
         let of_site = classes.of_point();
         let of_place = layout.at_places(|site| of_site[site]);
         let strengths = match classes.strengths() {
@@ -30,11 +26,11 @@ impl PlaceThresholds {
         let pairs = PairThresholds::of::<L>(classes.at(of_place, strengths));
         let smallest = layout.chunks().iter().map(|chunk| {
             let mut smallest = f64::INFINITY;
-            for (offset, &cell) in stencil.offsets().iter().zip(stencil.cells()) {
+            for (&shift, &cell) in stencil.shifts().iter().zip(stencil.cells()) {
                 let there = layout.neighbours(chunk, cell);
                 for lane in (0..LANES).filter(|lane| there >> lane & 1 == 1) {
                     let here = chunk.place as usize * LANES + lane;
-                    let threshold = pairs.threshold(here, here.wrapping_add_signed(offset.shift));
+                    let threshold = pairs.threshold(here, here.wrapping_add_signed(shift));
                     smallest = smallest.min(threshold);
                 }
             }

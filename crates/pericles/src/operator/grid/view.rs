@@ -7,17 +7,15 @@ use crate::operator::view::{BondAt, BondValues, BondView};
 impl<L: VectorLaw, const D: usize> BondView for GridForce<L, D> {
     fn for_each_bond(&self, values: &BondValues, i: usize, visit: &mut dyn FnMut(BondAt)) {
         let u = values.displacement();
-        let (place, left) = self.families().bonds_of(i);
-        let (chunk, lane) = self.layout.chunk_at(place);
+        let (place, left) = self.bonds.bonds_of(i);
+        let (chunk, lane) = self.layout().chunk_at(place);
         let stretches = self.latest_stretches();
         for k in left {
             let (offset, stiffness) = (
-                &self.stencil.offsets()[k],
+                &self.doubles.offsets()[k],
                 self.stiffness_of(chunk, k, lane),
             );
-            let j = self
-                .layout
-                .point_at(place.wrapping_add_signed(offset.shift));
+            let j = self.bonds.form().point_beyond(place, k);
             let eta = u.difference::<D>([i, j]);
             let thermal = stretches.as_ref().map_or(0.0, |of| 0.5 * (of[i] + of[j]));
             let free = offset.xi.map(|x| (1.0 + thermal) * x);
@@ -29,11 +27,11 @@ impl<L: VectorLaw, const D: usize> BondView for GridForce<L, D> {
     }
 
     fn for_each_undeformed(&self, i: usize, visit: &mut dyn FnMut(BondAt)) {
-        let (place, left) = self.families().bonds_of(i);
+        let (place, left) = self.bonds.bonds_of(i);
         for k in left {
-            let offset = &self.stencil.offsets()[k];
-            let there = place.wrapping_add_signed(offset.shift);
-            visit(BondAt::undeformed(self.layout.point_at(there), offset.xi));
+            let offset = &self.doubles.offsets()[k];
+            let j = self.bonds.form().point_beyond(place, k);
+            visit(BondAt::undeformed(j, offset.xi));
         }
     }
 }

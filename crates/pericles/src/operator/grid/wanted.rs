@@ -1,6 +1,6 @@
 //! Requested points of an evaluation on a lattice body.
 
-use super::layout::GridLayout;
+use crate::neighbourhood::GridLayout;
 use crate::operator::PointSubset;
 use crate::parallel::runs;
 

@@ -4,12 +4,12 @@ use std::sync::{Mutex, PoisonError, TryLockError};
 
 use super::arrays::Grid;
 use super::factors::Factors;
-use super::layout::GridLayout;
 use super::numbers::GridNumber;
+use super::offsets::Offset;
 use super::padded::{Frame, Padded};
-use super::stencil::Offset;
 use super::wanted::WantedPoints;
 use crate::domain::Field;
+use crate::neighbourhood::GridLayout;
 use crate::operator::PointSubset;
 
 /// The stencil and the work arrays in doubles or in floats.
@@ -52,6 +52,11 @@ impl<N: GridNumber, const D: usize> Working<N, D> {
     /// Sets the factors of bonds whose stiffness depends on their ends.
     pub fn with_factors(self, factors: Option<Factors<N>>) -> Self {
         Self { factors, ..self }
+    }
+
+    /// Returns the bonds of the stencil.
+    pub fn offsets(&self) -> &[Offset<N, D>] {
+        &self.offsets
     }
 
     /// Returns the stiffness of bonds relative to the stencil, if it depends on their ends.

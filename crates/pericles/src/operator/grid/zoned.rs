@@ -1,9 +1,9 @@
 //! [`SplitForce`] and [`LocalForce`] for lattice bodies.
 
-use super::block::ChunkBlock;
+use super::block::{ChunkBlock, Partners};
 use super::force::GridForce;
 use super::kernels::force_chunks;
-use super::layout::Partners;
+use crate::neighbourhood::Form;
 use crate::operator::fast_law::VectorLaw;
 use crate::operator::{Breakable, LocalForce, PointSubset, SplitForce};
 use crate::step_end::StepEnd;
@@ -11,7 +11,7 @@ use crate::step_end::StepEnd;
 impl<L: VectorLaw, const D: usize> GridForce<L, D> {
     fn partners(&self, marks: &[bool]) -> Partners {
         let marks = self.cloud.domain().marks_with_ghosts(marks);
-        Partners(self.layout.marked(|point| marks[point]))
+        Partners(self.layout().marked(|point| marks[point]))
     }
 
     /// Returns the intact bonds of the requested chunks of a block that lead to partners; no bonds for other
@@ -25,15 +25,15 @@ impl<L: VectorLaw, const D: usize> GridForce<L, D> {
         let bits = |place: usize| partners.0[place];
         let mut left = vec![0; intact.len()];
         let rows = left
-            .chunks_mut(self.stencil.len())
-            .zip(intact.chunks(self.stencil.len()));
+            .chunks_mut(self.stencil().len())
+            .zip(intact.chunks(self.stencil().len()));
         for (number, (chunk, (left, intact))) in block.chunks.iter().zip(rows).enumerate() {
             if block.wanted(number) == 0 {
                 continue;
             }
-            for (k, &cell) in self.stencil.cells().iter().enumerate() {
+            for (k, &cell) in self.stencil().cells().iter().enumerate() {
                 if intact[k] != 0 {
-                    left[k] = intact[k] & self.layout.neighbour_bits(chunk, cell, bits);
+                    left[k] = intact[k] & self.layout().neighbour_bits(chunk, cell, bits);
                 }
             }
         }
@@ -77,6 +77,6 @@ impl<L: VectorLaw, const D: usize> SplitForce for GridForce<L, D> {
 
 impl<L: VectorLaw, const D: usize> LocalForce for GridForce<L, D> {
     fn bonded(&self, i: usize, visit: &mut dyn FnMut(usize)) {
-        self.families().for_each_neighbour(i, visit);
+        self.bonds.form().for_each_neighbour(i, visit);
     }
 }

@@ -6,22 +6,20 @@ use super::arrays::Bonds;
 use super::breaking::BreakRule;
 use super::heat::Heat;
 use super::kernels::accept_rows;
-use super::other_ends::other_ends;
 use super::packed::{Packed, Reach};
 use super::stiffness::{Formula, Stiffness};
 use crate::domain::Field;
 use crate::error::{PericlesError, Result};
 use crate::family::BondList;
-use crate::lanes::LANES;
 use crate::lanes::Row;
 use crate::material::{BondConstants, BondMaterial, MaterialPairs};
-use crate::operator::damage::{BlockDamage, Breaking, DamageMeasure, ListStorage};
+use crate::neighbourhood::{DamageMeasure, Neighbourhood};
 use crate::operator::fast_law::VectorLaw;
 use crate::operator::pool::Pool;
 use crate::operator::records::Records;
 use crate::operator::rows::Rows;
 use crate::operator::thresholds::PairThresholds;
-use crate::operator::{Force, InstructionSet, PointSubset};
+use crate::operator::{Breaking, Force, InstructionSet, PointSubset};
 use crate::parallel::{BLOCK, components_mut, for_each_block};
 use crate::space::{PointCloud, check_length, check_points};
 use crate::step_end::StepEnd;
@@ -37,18 +35,15 @@ use crate::step_end::StepEnd;
 /// the stiffness is stored; 64 bytes per point.
 pub struct BondForce<L: VectorLaw, const D: usize> {
     pub(super) cloud: Arc<PointCloud>,
-    pub(super) bonds: BondList,
+    pub(super) bonds: Neighbourhood<BondList>,
     /// Coordinates and volumes, see [`Bonds`].
     reference: Vec<Row>,
     unit: [f64; 3],
     stiffness: Stiffness,
-    pub(super) breakable: Option<Vec<u8>>,
     pub(super) critical_stretch: f64,
     /// Critical stretches by the materials of the ends of a bond; the common value is then the smallest of
     /// them.
     pub(super) pairs: Option<PairThresholds>,
-    pub(super) damage: DamageMeasure,
-    pub(super) blocks: Vec<BlockDamage>,
     /// Thermal stretches, if the material expands.
     pub(super) heat: Option<Heat>,
     reach: Reach,
@@ -59,8 +54,8 @@ pub struct BondForce<L: VectorLaw, const D: usize> {
 
 crate::saved! {
     impl<L: VectorLaw, const D: usize> Checkpointed for BondForce<L, D> {
-        blocks: by(ListStorage { name: "operator", start: bonds.start() }),
-        cloud, bonds, reference, unit, stiffness, breakable, critical_stretch, pairs, damage: fixed,
+        bonds: part,
+        cloud, reference, unit, stiffness, critical_stretch, pairs: fixed,
         heat, reach, instruction_set, law: fixed,
         packed: scratch,
     }
@@ -148,7 +143,7 @@ impl<L: VectorLaw, const D: usize> BondForce<L, D> {
 
     fn build(
         cloud: Arc<PointCloud>,
-        bonds: BondList,
+        mut bonds: BondList,
         stiffness: Stiffness,
         breaking: Breaking<'_>,
         damage: DamageMeasure,
@@ -164,13 +159,6 @@ impl<L: VectorLaw, const D: usize> BondForce<L, D> {
         check_length("the families of the neighbour list", bonds.len(), n)?;
         check_points("the points whose bonds never break", breaking.no_fail, n)?;
         let (reference, unit) = reference_rows(bonds.sites().places());
-        let blocks = (0..n.div_ceil(BLOCK))
-            .map(|block| {
-                let (from, to) = (block * BLOCK, ((block + 1) * BLOCK).min(n));
-                let groups = bonds.start()[from]..bonds.start()[to];
-                BlockDamage::new(bonds.present()[groups].to_vec())
-            })
-            .collect();
         let cells = bonds.shared_sites();
         let make = move || {
             let places = cells.places();
@@ -179,16 +167,16 @@ impl<L: VectorLaw, const D: usize> BondForce<L, D> {
         Ok(Self {
             reach: Reach::new(&bonds),
             packed: Pool::new(1, make),
-            breakable: bonds.breakable(breaking.no_fail),
+            bonds: {
+                bonds.hold(breaking.no_fail);
+                Neighbourhood::new(bonds, damage)
+            },
             cloud,
-            bonds,
             reference,
             unit,
             stiffness,
             critical_stretch: breaking.critical_stretch,
             pairs: None,
-            damage,
-            blocks,
             heat: None,
             instruction_set: InstructionSet::detect(),
             law: std::marker::PhantomData,
@@ -208,7 +196,7 @@ impl<L: VectorLaw, const D: usize> BondForce<L, D> {
         Ok(Self {
             critical_stretch: classes.smallest_critical_stretch(),
             pairs: Some(PairThresholds::of::<L>(
-                classes.on_sites(self.bonds.sites()),
+                classes.on_sites(self.bonds.form().sites()),
             )),
             ..self
         })
@@ -221,19 +209,17 @@ impl<L: VectorLaw, const D: usize> BondForce<L, D> {
     }
 
     /// Returns the families.
-    pub fn bonds(&self) -> &BondList {
+    pub fn bonds(&self) -> &Neighbourhood<BondList> {
         &self.bonds
     }
 
-    /// Returns whether the bond of an entry is intact.
-    pub fn is_intact(&self, i: usize, entry: usize) -> bool {
-        let block = i / BLOCK;
-        let group = entry / LANES - self.bonds.start()[block * BLOCK];
-        self.blocks[block].intact[group] >> (entry % LANES) & 1 == 1
-    }
-
     pub(super) fn view(&self) -> Bonds<'_> {
-        Bonds::new(&self.bonds, &self.reference, self.unit, &self.stiffness)
+        Bonds::new(
+            self.bonds.form(),
+            &self.reference,
+            self.unit,
+            &self.stiffness,
+        )
     }
 
     /// Calls `work` with a vector packed for the requested points and their neighbours.
@@ -246,7 +232,7 @@ impl<L: VectorLaw, const D: usize> BondForce<L, D> {
         let ghosts = self.cloud.domain().ghosts(owned);
         let mut packed = self.packed.take();
         let field = Field::new(owned, &ghosts);
-        work(packed.fill::<D>(field, on, self.bonds.sites(), &self.reach));
+        work(packed.fill::<D>(field, on, self.bonds.form().sites(), &self.reach));
     }
 
     /// Runs a read-only loop over all blocks.
@@ -256,19 +242,12 @@ impl<L: VectorLaw, const D: usize> BondForce<L, D> {
         out: &mut [f64],
         rows: impl Fn(&[u8], &Rows<'_>, &mut [&mut [f64]; C]) + Sync,
     ) {
-        let n = self.cloud.len();
-        // A vector of units takes no memory: the state of blocks is only read.
-        let mut nothing = vec![(); self.blocks.len()];
-        for_each_block(
-            components_mut::<C>(out, n),
-            &mut nothing,
-            self.bonds.cost(on),
-            &|first, mut out, ()| {
-                if let Some(wanted) = Rows::of_block(on, first, out[0].len()) {
-                    rows(&self.blocks[first / BLOCK].intact, &wanted, &mut out);
-                }
-            },
-        );
+        let bonds = &self.bonds;
+        bonds.for_each_block::<C>(bonds.form().cost(on), out, |block, intact, out| {
+            if let Some(wanted) = Rows::of_block(on, block * BLOCK, out[0].len()) {
+                rows(intact, &wanted, out);
+            }
+        });
     }
 
     /// Applies the failure criterion to the bonds of the requested points, only those to `partners` if given,
@@ -282,8 +261,8 @@ impl<L: VectorLaw, const D: usize> BondForce<L, D> {
     ) {
         let n = self.cloud.len();
         let whole = matches!(on, PointSubset::All) && partners.is_none();
-        let mut blocks = std::mem::take(&mut self.blocks);
-        let partners = partners.map(|marks| self.bonds.sites().spread_marks(marks));
+        let mut blocks = self.bonds.take_blocks();
+        let partners = partners.map(|marks| self.bonds.form().sites().spread_marks(marks));
         let heat = self.heat_at(step.t);
         let bonds = self.view().leading_to(partners.as_deref());
         let bonds = bonds.heated(heat.as_deref().map(Vec::as_slice));
@@ -292,7 +271,7 @@ impl<L: VectorLaw, const D: usize> BondForce<L, D> {
             threshold: L::threshold(self.critical_stretch),
             critical_stretch: self.critical_stretch,
             pairs: self.pairs.as_ref(),
-            breakable: self.breakable.as_deref(),
+            breakable: self.bonds.form().breakable(),
             volumes: self.cloud.volumes(),
             step,
             velocity: step.velocities(&moved),
@@ -302,7 +281,7 @@ impl<L: VectorLaw, const D: usize> BondForce<L, D> {
             for_each_block(
                 components_mut::<D>(out, n),
                 &mut blocks,
-                self.bonds.cost(on),
+                self.bonds.form().cost(on),
                 &|first, mut out, block| {
                     let len = n.min(first + BLOCK) - first;
                     if let Some(wanted) = Rows::of_block(on, first, len) {
@@ -321,26 +300,16 @@ impl<L: VectorLaw, const D: usize> BondForce<L, D> {
             );
         });
         drop(heat);
-        self.blocks = blocks;
+        self.bonds.put_blocks(blocks);
         if !whole {
-            self.tell_the_other_ends();
-        }
-    }
-
-    /// Breaks the other end of bonds that broke in a sweep over a subset of points, and records its half of
-    /// the energy.
-    fn tell_the_other_ends(&mut self) {
-        for (j, back, dissipated) in other_ends(&self.bonds, &mut self.blocks) {
-            let block = j / BLOCK;
-            let group = back / LANES - self.bonds.start()[block * BLOCK];
-            self.blocks[block].break_other_end(j, group, back % LANES, dissipated);
+            self.bonds.break_other_ends();
         }
     }
 
     /// Returns the stiffness c α κ V of an entry from point i to site b.
     pub(super) fn stiffness_of(&self, entry: usize, i: usize, b: usize) -> f64 {
-        let ends = [self.bonds.site(i), b];
-        let cells = ends.map(|site| self.bonds.sites().places().cell_size(site));
+        let ends = [self.bonds.form().site(i), b];
+        let cells = ends.map(|site| self.bonds.form().sites().places().cell_size(site));
         self.view().stiffness_of::<D>(entry, ends, cells)
     }
 

@@ -9,7 +9,7 @@ use super::arrays::Bonds;
 use super::breaking::{BreakRule, break_row};
 use crate::family::BondList;
 use crate::lanes::{F64x8, Lanes, for_each_instruction_set, vector};
-use crate::operator::damage::Tally;
+use crate::neighbourhood::Tally;
 use crate::operator::fast_law::VectorLaw;
 use crate::operator::records::Records;
 use crate::operator::rows::Rows;

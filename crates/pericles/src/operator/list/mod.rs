@@ -14,7 +14,6 @@ mod heat;
 mod heated;
 mod kernels;
 mod operator;
-pub(super) mod other_ends;
 mod packed;
 mod softening;
 mod springs;

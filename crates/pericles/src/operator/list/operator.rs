@@ -2,6 +2,7 @@
 
 use super::force::BondForce;
 use super::kernels::{energy_rows, force_rows, tangent_rows};
+use crate::neighbourhood::Form;
 use crate::operator::fast_law::VectorLaw;
 use crate::operator::{
     BondAt, BondValues, BondView, Breakable, Capabilities, Force, InstructionSet, LatticeSprings,
@@ -53,10 +54,10 @@ impl<L: VectorLaw, const D: usize> Force for BondForce<L, D> {
         for i in 0..self.points() {
             let row: f64 = self
                 .bonds
-                .family(i)
-                .filter(|&(entry, _)| self.is_intact(i, entry))
+                .intact_of(i)
                 .map(|(entry, b)| {
-                    self.stiffness_of(entry, i, b).abs() / self.bonds.length(self.bonds.site(i), b)
+                    self.stiffness_of(entry, i, b).abs()
+                        / self.bonds.form().length(self.bonds.form().site(i), b)
                 })
                 .sum();
             largest = largest.max(2.0 * row / density(i));
@@ -86,14 +87,11 @@ impl<L: VectorLaw, const D: usize> Force for BondForce<L, D> {
     }
 
     fn directed_bonds(&self) -> u64 {
-        self.bonds.directed_bonds()
+        self.bonds.form().directed_bonds()
     }
 
     fn bytes(&self) -> usize {
-        self.bonds.bytes()
-            + self.bonds.geometric().len()
-            + self.breakable.as_ref().map_or(0, Vec::len)
-            + self.own_bytes()
+        Form::bytes(self.bonds.form()) + self.own_bytes()
     }
 
     fn instruction_set(&self) -> InstructionSet {
@@ -146,13 +144,10 @@ impl<L: VectorLaw, const D: usize> Force for BondForce<L, D> {
 impl<L: VectorLaw, const D: usize> BondView for BondForce<L, D> {
     fn for_each_bond(&self, values: &BondValues, i: usize, visit: &mut dyn FnMut(BondAt)) {
         let u = values.displacement();
-        let (heat, sites) = (self.latest_heat(), self.bonds.sites());
+        let (heat, sites) = (self.latest_heat(), self.bonds.form().sites());
         let bonds = self.view().heated(heat.as_deref().map(Vec::as_slice));
         let here = sites.of_point(i);
-        for (entry, b) in self.bonds.family(i) {
-            if !self.is_intact(i, entry) {
-                continue;
-            }
+        for (entry, b) in self.bonds.intact_of(i) {
             let xi: [f64; D] = bonds.vector(here, b);
             let eta = u.difference::<D>([i, sites.point(b)]);
             let (free, pulled, scale) = bonds.expanded([here, b], xi, eta);
@@ -163,13 +158,11 @@ impl<L: VectorLaw, const D: usize> BondView for BondForce<L, D> {
     }
 
     fn for_each_undeformed(&self, i: usize, visit: &mut dyn FnMut(BondAt)) {
-        let (bonds, sites) = (self.view(), self.bonds.sites());
+        let (bonds, sites) = (self.view(), self.bonds.form().sites());
         let here = sites.of_point(i);
-        for (entry, b) in self.bonds.family(i) {
-            if self.is_intact(i, entry) {
-                let xi: [f64; D] = bonds.vector(here, b);
-                visit(BondAt::undeformed(sites.point(b), xi));
-            }
+        for (_, b) in self.bonds.intact_of(i) {
+            let xi: [f64; D] = bonds.vector(here, b);
+            visit(BondAt::undeformed(sites.point(b), xi));
         }
     }
 }
@@ -181,8 +174,8 @@ impl<L: VectorLaw, const D: usize> LinearOperator for BondForce<L, D> {
     }
 
     fn half_bandwidth(&self) -> Option<usize> {
-        let of_point = |i: usize| self.bonds.family(i).map(move |(_, j)| i.abs_diff(j));
-        let is_band = D == 1 && self.bonds.sites().are_points();
+        let of_point = |i: usize| self.bonds.form().family(i).map(move |(_, j)| i.abs_diff(j));
+        let is_band = D == 1 && self.bonds.form().sites().are_points();
         is_band.then(|| (0..self.points()).flat_map(of_point).max().unwrap_or(0))
     }
 }

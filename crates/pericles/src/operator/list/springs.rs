@@ -13,7 +13,7 @@ impl<L: VectorLaw, const D: usize> BondForce<L, D> {
     /// Returns the stiffest intact bond of each offset; `None` for points that are not a lattice of cubic
     /// cells or have different volumes or horizons.
     pub(super) fn springs_of_offsets(&self) -> Option<LatticeSprings> {
-        let (sites, domain) = (self.bonds.sites(), self.cloud.domain());
+        let (sites, domain) = (self.bonds.form().sites(), self.cloud.domain());
         let lattice = sites.places().lattice().filter(|one| one.is_cubic(D))?;
         let spacing = lattice.spacing[0];
         let largest = self.cloud.volumes().iter().copied().fold(0.0, f64::max);
@@ -21,10 +21,8 @@ impl<L: VectorLaw, const D: usize> BondForce<L, D> {
         if !domain.all(self.cloud.volumes().iter().all(|own| *own == volume)) {
             return None;
         }
-        let reach = self
-            .bonds
-            .correction()
-            .reach(self.bonds.uniform_horizon()?, spacing);
+        let list = self.bonds.form();
+        let reach = list.correction().reach(list.uniform_horizon()?, spacing);
         let cells = (reach / spacing).floor();
         // Bonds do not exceed the body and its images; for larger reaches plane waves are expensive.
         let most = cells.min(lattice.shape.iter().copied().max()? as f64) as usize;
@@ -44,18 +42,15 @@ impl<L: VectorLaw, const D: usize> BondForce<L, D> {
             let mut stiffest = vec![f64::NEG_INFINITY; places];
             for i in points {
                 let here = sites.of_point(i);
-                for (entry, b) in self.bonds.family(i) {
-                    if self.is_intact(i, entry) {
-                        let length = self.bonds.length(here, b);
-                        let stiffness = self.stiffness_of(entry, i, b) / length;
-                        let largest = &mut stiffest[place(offset(here, b))];
-                        // The caller rejects NaN and negative values.
-                        *largest = if stiffness >= 0.0 && !largest.is_nan() {
-                            largest.max(stiffness)
-                        } else {
-                            f64::NAN
-                        };
-                    }
+                for (entry, b) in self.bonds.intact_of(i) {
+                    let stiffness = self.stiffness_of(entry, i, b) / list.length(here, b);
+                    let largest = &mut stiffest[place(offset(here, b))];
+                    // The caller rejects NaN and negative values.
+                    *largest = if stiffness >= 0.0 && !largest.is_nan() {
+                        largest.max(stiffness)
+                    } else {
+                        f64::NAN
+                    };
                 }
             }
             stiffest

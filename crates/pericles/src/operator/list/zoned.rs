@@ -15,7 +15,7 @@ impl<L: VectorLaw, const D: usize> SplitForce for BondForce<L, D> {
         partners: &[bool],
         out: &mut [f64],
     ) {
-        let partners = self.bonds.sites().spread_marks(partners);
+        let partners = self.bonds.form().sites().spread_marks(partners);
         let heat = self.heat_at(t);
         let bonds = self.view().leading_to(Some(&partners));
         let bonds = bonds.heated(heat.as_deref().map(Vec::as_slice));
@@ -43,6 +43,6 @@ impl<L: VectorLaw, const D: usize> SplitForce for BondForce<L, D> {
 
 impl<L: VectorLaw, const D: usize> LocalForce for BondForce<L, D> {
     fn bonded(&self, i: usize, visit: &mut dyn FnMut(usize)) {
-        self.bonds.for_each_neighbour(i, visit);
+        self.bonds.form().for_each_neighbour(i, visit);
     }
 }

@@ -6,7 +6,7 @@ use super::kernels::{extension_of, groups_of};
 use super::kinematics::Kinematics;
 use super::weight::Weight;
 use crate::lanes::{LANES, Lanes, for_each_instruction_set};
-use crate::operator::damage::{BlockDamage, Tally};
+use crate::neighbourhood::{BlockDamage, Tally};
 use crate::operator::records::Records;
 use crate::operator::rows::Rows;
 

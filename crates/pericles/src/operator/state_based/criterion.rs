@@ -42,7 +42,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
     pub(super) fn elastic_states(&self, dilatations: &[f64], pulls: &[f64]) -> ForceStates {
         let states = &self.states;
         let of_point = |(i, theta): (usize, &f64)| {
-            let (site, pull) = (self.bonds.site(i), pulls.get(i).copied());
+            let (site, pull) = (self.bonds.form().site(i), pulls.get(i).copied());
             let pull = states.pressure[site] * theta + pull.unwrap_or(0.0);
             [pull, states.stiffness[site]]
         };
@@ -89,14 +89,11 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         thermal: f64,
         states: &ForceStates,
     ) -> [[[f64; D]; D]; 2] {
-        let (bonds, here) = (self.view(), self.bonds.site(i));
+        let (bonds, here) = (self.view(), self.bonds.form().site(i));
         let [p, s] = states.of_points[i];
         let mut stress = [[0.0; D]; D];
         let (mut shape, mut moment) = ([[0.0; 3]; 3], [[0.0; D]; D]);
-        for (entry, b) in self.bonds.family(i) {
-            if !self.is_intact(i, entry) {
-                continue;
-            }
+        for (entry, b) in self.bonds.intact_of(i) {
             let (xi, eta) = (bonds.vector::<D>(here, b), difference::<D>(u, here, b));
             let weight = bonds.weight_of(entry, [here, b], xi);
             let relief = states.relief.get(entry).copied().unwrap_or(0.0);
@@ -137,7 +134,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         stretches: Option<&[f64]>,
         [i, b]: [usize; 2],
     ) -> f64 {
-        let (a, sites) = (self.bonds.site(i), self.bonds.sites());
+        let (a, sites) = (self.bonds.form().site(i), self.bonds.form().sites());
         self.classes.failure_index(a, b, || {
             let mut xi = self.view().vector::<D>(a, b);
             let mut eta = difference::<D>(u, a, b);
@@ -166,18 +163,14 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         i: usize,
         limit: f64,
     ) -> Option<Vec<u8>> {
-        let groups = self.bonds.groups(i);
+        let groups = self.bonds.form().groups(i);
         let mut broken: Option<Vec<u8>> = None;
-        for (entry, b) in self.bonds.family(i) {
-            let group = entry / LANES;
-            let may_break = (self.breakable.as_ref())
-                .is_none_or(|bits| bits[group] >> (entry % LANES) & 1 == 1);
-            if may_break
-                && self.is_intact(i, entry)
+        for (entry, b) in self.bonds.intact_of(i) {
+            if self.bonds.form().may_break(entry)
                 && self.index_of(tensors, u, stretches, [i, b]) > limit
             {
                 let broken = broken.get_or_insert_with(|| vec![0; groups.len()]);
-                broken[group - groups.start] |= 1 << (entry % LANES);
+                broken[entry / LANES - groups.start] |= 1 << (entry % LANES);
             }
         }
         broken
@@ -245,7 +238,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
             return false;
         }
         let counts = self.broken_by_blocks();
-        let mut blocks = std::mem::take(&mut self.blocks);
+        let mut blocks = self.bonds.take_blocks();
         let rule = BreakRule {
             stored,
             stretches,
@@ -253,15 +246,13 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         };
         let (bonds, u) = (self.view(), self.packed(u));
         for (i, broken) in found {
-            let first = self.bonds.start()[i / BLOCK * BLOCK];
-            let groups = self.bonds.groups(i);
             let block = &mut blocks[i / BLOCK];
-            let intact = &mut block.intact[groups.start - first..groups.end - first];
+            let intact = &mut block.intact[self.bonds.form().groups_in_block(i)];
             take_bonds::<L, D>(&bonds, &rule, &u, i, intact, &broken, &mut block.tally);
         }
         self.clear_other_ends(&rule, &u, &mut blocks);
         drop(u);
-        self.blocks = blocks;
+        self.bonds.put_blocks(blocks);
         self.renew_volumes(counts);
         true
     }

@@ -13,16 +13,15 @@ use crate::archive::Laid;
 use crate::domain::Field;
 use crate::family::BondList;
 use crate::kernel::Influence;
-use crate::lanes::{LANES, Row, dot};
+use crate::lanes::{Row, dot};
 use crate::material::{BondLimits, PairForce, SolidClasses, SolidSurface, SurfaceFactors};
-use crate::operator::damage::{BlockDamage, DamageMeasure, ListStorage};
-use crate::operator::list::other_ends::other_ends;
+use crate::neighbourhood::{BlockDamage, DamageMeasure, Neighbourhood};
 use crate::operator::list::stiffness::Stiffness;
 use crate::operator::pool::{Lent, Pool};
 use crate::operator::records::Records;
 use crate::operator::rows::Rows;
 use crate::operator::{InstructionSet, PointSubset};
-use crate::parallel::{BLOCK, components_mut, for_each_block, for_each_point};
+use crate::parallel::{BLOCK, for_each_block, for_each_point};
 use crate::space::PointCloud;
 use crate::step_end::StepEnd;
 
@@ -39,7 +38,7 @@ use crate::step_end::StepEnd;
 /// [`BondForce`](crate::operator::BondForce)); 24 bytes per bond for failure by bond energy.
 pub struct LinearSolidForce<L: Kinematics, const D: usize> {
     pub(super) cloud: Arc<PointCloud>,
-    pub(super) bonds: BondList,
+    pub(super) bonds: Neighbourhood<BondList>,
     pub(super) layout: Layout,
     pub(super) weight: Weight,
     /// Factors of the stiffness of bonds near surfaces, with surface correction.
@@ -48,9 +47,6 @@ pub struct LinearSolidForce<L: Kinematics, const D: usize> {
     pub(super) classes: SolidClasses,
     /// Limits of the weakest pair of materials.
     pub(super) weakest: BondLimits,
-    pub(super) breakable: Option<Vec<u8>>,
-    pub(super) damage: DamageMeasure,
-    pub(super) blocks: Vec<BlockDamage>,
     /// Influence function, for failure by bond energy.
     pub(super) influence: Option<Weight>,
     /// Values stored for failure by bond energy, [`KEPT`] per group.
@@ -64,9 +60,9 @@ pub struct LinearSolidForce<L: Kinematics, const D: usize> {
 
 crate::saved! {
     impl<L: Kinematics, const D: usize> Checkpointed for LinearSolidForce<L, D> {
-        blocks: by(ListStorage { name: "operator", start: bonds.start() }),
-        work: by(Laid::rows("operator/bond-work", bonds.start(), work.len())),
-        cloud, bonds, layout, weight, factor, states, classes, weakest, breakable, damage, influence: fixed,
+        bonds: part,
+        work: by(Laid::rows("operator/bond-work", bonds.form().start(), work.len())),
+        cloud, layout, weight, factor, states, classes, weakest, influence: fixed,
         instruction_set, kinematics: fixed,
         heat: rebuilt,
         packed: scratch,
@@ -84,14 +80,13 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
     /// If the dimension of the cloud is not D.
     pub fn new(
         cloud: Arc<PointCloud>,
-        bonds: BondList,
+        mut bonds: BondList,
         influence: &Influence,
         classes: SolidClasses,
         no_fail: &[u32],
         damage: DamageMeasure,
     ) -> Self {
         assert_eq!(cloud.dimension(), D, "a force of the cloud's dimension");
-        let n = cloud.len();
         let weight = Weight::of_volumes(&cloud, &bonds, influence);
         let volumes = weighted_volumes::<D>(&cloud, &bonds, &weight);
         let sites = bonds.shared_sites();
@@ -99,13 +94,6 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         let states = States::new::<D>(&volumes, &classes, &spread);
         let classes = classes.on_sites(&sites);
         let layout = Layout::new(&sites, &states.stiffness);
-        let blocks = (0..n.div_ceil(BLOCK))
-            .map(|block| {
-                let (from, to) = (block * BLOCK, ((block + 1) * BLOCK).min(n));
-                let groups = bonds.start()[from]..bonds.start()[to];
-                BlockDamage::new(bonds.present()[groups].to_vec())
-            })
-            .collect();
         let weakest = classes.weakest();
         let by_energy = weakest.energy.is_finite();
         Self {
@@ -116,17 +104,17 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
             },
             heat: None,
             packed: Pool::new(1, move || vec![Row::default(); sites.len()]),
-            breakable: bonds.breakable(no_fail),
+            bonds: {
+                bonds.hold(no_fail);
+                Neighbourhood::new(bonds, damage)
+            },
             cloud,
-            bonds,
             layout,
             weight,
             factor: None,
             states,
             classes,
             weakest,
-            damage,
-            blocks,
             instruction_set: InstructionSet::detect(),
             kinematics: std::marker::PhantomData,
         }
@@ -134,11 +122,11 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
 
     /// Adds surface correction. Each bond stores a number, or a byte if there are few distinct values.
     pub fn with_surface(self, surface: SolidSurface, influence: &Influence) -> Self {
-        let factors = match surface.factors(&self.bonds, influence, &self.classes) {
+        let factors = match surface.factors(self.bonds.form(), influence, &self.classes) {
             SurfaceFactors::None => None,
-            factors => Some(Stiffness::of_pairs(&self.bonds, &|i, b| {
-                let a = self.bonds.site(i);
-                factors.of_bond(a, b, self.bonds.vector(a, b))
+            factors => Some(Stiffness::of_pairs(self.bonds.form(), &|i, b| {
+                let a = self.bonds.form().site(i);
+                factors.of_bond(a, b, self.bonds.form().vector(a, b))
             })),
         };
         Self {
@@ -153,7 +141,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
     }
 
     /// Returns the families.
-    pub fn bonds(&self) -> &BondList {
+    pub fn bonds(&self) -> &Neighbourhood<BondList> {
         &self.bonds
     }
 
@@ -163,16 +151,9 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         D as f64 / self.states.dilatation[i]
     }
 
-    /// Returns whether the bond of an entry is intact.
-    pub fn is_intact(&self, i: usize, entry: usize) -> bool {
-        let block = i / BLOCK;
-        let group = entry / LANES - self.bonds.start()[block * BLOCK];
-        self.blocks[block].intact[group] >> (entry % LANES) & 1 == 1
-    }
-
     pub(super) fn view(&self) -> SolidBonds<'_> {
         SolidBonds {
-            list: &self.bonds,
+            list: self.bonds.form(),
             layout: &self.layout,
             weight: &self.weight,
             factor: self.factor.as_ref(),
@@ -182,14 +163,14 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
     /// Returns rows of displacements.
     pub(super) fn packed(&self, u: Field<'_>) -> Lent<'_, Vec<Row>> {
         let mut rows = self.packed.take();
-        pack::<D>(u, self.bonds.sites(), |_| 0.0, &mut rows);
+        pack::<D>(u, self.bonds.form().sites(), |_| 0.0, &mut rows);
         rows
     }
 
     /// Returns rows of a vector and of p for the given values of the pass over points: dilatations, and
     /// thermal pulls of a heated body.
     pub(super) fn packed_with(&self, u: Field<'_>, values: Field<'_>) -> Lent<'_, Vec<Row>> {
-        let (sites, pressure) = (self.bonds.sites(), &self.states.pressure);
+        let (sites, pressure) = (self.bonds.form().sites(), &self.states.pressure);
         match self.heat {
             None => self.packed_beside(u, |site| {
                 pressure[site] * values.at::<1>(0, sites.point(site))
@@ -208,7 +189,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         number: impl Fn(usize) -> f64 + Sync,
     ) -> Lent<'_, Vec<Row>> {
         let mut rows = self.packed.take();
-        pack::<D>(u, self.bonds.sites(), number, &mut rows);
+        pack::<D>(u, self.bonds.form().sites(), number, &mut rows);
         rows
     }
 
@@ -219,19 +200,12 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         out: &mut [f64],
         rows: impl Fn(&[u8], &Rows<'_>, &mut [&mut [f64]; C]) + Sync,
     ) {
-        let n = self.cloud.len();
-        // A vector of units takes no memory: the state of blocks is only read.
-        let mut nothing = vec![(); self.blocks.len()];
-        for_each_block(
-            components_mut::<C>(out, n),
-            &mut nothing,
-            self.bonds.cost(on),
-            &|first, mut out, ()| {
-                if let Some(wanted) = Rows::of_block(on, first, out[0].len()) {
-                    rows(&self.blocks[first / BLOCK].intact, &wanted, &mut out);
-                }
-            },
-        );
+        let bonds = &self.bonds;
+        bonds.for_each_block::<C>(bonds.form().cost(on), out, |block, intact, out| {
+            if let Some(wanted) = Rows::of_block(on, block * BLOCK, out[0].len()) {
+                rows(intact, &wanted, out);
+            }
+        });
     }
 
     /// Sets the dilatations of the points `on`.
@@ -256,7 +230,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
             threshold: L::Measure::threshold(self.weakest.stretch),
             energy: self.weakest.energy,
             classes: &self.classes,
-            breakable: self.breakable.as_deref(),
+            breakable: self.bonds.form().breakable(),
             states: &self.states,
             volumes: self.cloud.volumes(),
             step,
@@ -280,7 +254,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         let n = self.cloud.len();
         let broken = self.broken_by_blocks();
         let stretches = self.stretches(step.t);
-        let mut blocks = std::mem::take(&mut self.blocks);
+        let mut blocks = self.bonds.take_blocks();
         let bonds = self.view();
         let moved = step.ghost_velocities(self.cloud.domain());
         let mut rule = BreakRule {
@@ -297,7 +271,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         for_each_block(
             [dilatations],
             &mut blocks,
-            self.bonds.cost(on),
+            self.bonds.form().cost(on),
             &|first, mut out, block| {
                 let len = n.min(first + BLOCK) - first;
                 if let Some(wanted) = Rows::of_block(on, first, len) {
@@ -316,7 +290,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         );
         self.clear_other_ends(&rule, &u, &mut blocks);
         drop(u);
-        self.blocks = blocks;
+        self.bonds.put_blocks(blocks);
         self.renew_volumes(broken);
     }
 
@@ -334,10 +308,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
             return;
         };
         let n = self.cloud.len();
-        let (mut blocks, mut work) = (
-            std::mem::take(&mut self.blocks),
-            std::mem::take(&mut self.work),
-        );
+        let (mut blocks, mut work) = (self.bonds.take_blocks(), std::mem::take(&mut self.work));
         let ghosts = self.cloud.domain().ghosts(dilatations);
         // These rows contain the dilatations before failure; the values of points that lose bonds change.
         let u = self.packed_with(u, Field::new(dilatations, &ghosts));
@@ -350,7 +321,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         for_each_block(
             [dilatations],
             &mut with_work(&mut blocks, &mut work),
-            self.bonds.cost(on),
+            self.bonds.form().cost(on),
             &|first, mut out, (block, kept)| {
                 let len = n.min(first + BLOCK) - first;
                 if let Some(wanted) = Rows::of_block(on, first, len) {
@@ -369,7 +340,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         );
         self.clear_other_ends(&rule, &u, &mut blocks);
         drop(u);
-        self.blocks = blocks;
+        self.bonds.put_blocks(blocks);
         self.work = work;
     }
 
@@ -389,14 +360,14 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
             note_events: false,
             ..*rule
         };
-        for (j, back, _) in other_ends(&self.bonds, blocks) {
-            let BlockDamage { intact, tally } = &mut blocks[j / BLOCK];
-            let first = self.bonds.start()[j / BLOCK * BLOCK];
-            let groups = self.bonds.groups(j);
-            let intact = &mut intact[groups.start - first..groups.end - first];
+        for end in self.bonds.other_ends(blocks) {
+            let (j, place) = (end.point, end.place);
+            let BlockDamage { intact, tally } = &mut blocks[place.block];
+            let groups = self.bonds.form().groups_in_block(j);
+            let group = place.group - groups.start;
+            let intact = &mut intact[groups];
             let mut broken = vec![0; intact.len()];
-            let group = back / LANES - groups.start;
-            broken[group] = intact[group] & 1 << (back % LANES);
+            broken[group] = intact[group] & 1 << place.lane;
             take_bonds::<L, D>(&bonds, &rule, u, j, intact, &broken, tally);
         }
     }

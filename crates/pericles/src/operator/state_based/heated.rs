@@ -27,14 +27,14 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
     pub(super) fn thermal_pull(&self, i: usize, stretch: f64) -> f64 {
         let heat = self.heat.as_ref();
         heat.map_or(0.0, |heat| {
-            heat.pull(&self.states, [i, self.bonds.site(i)], stretch)
+            heat.pull(&self.states, [i, self.bonds.form().site(i)], stretch)
         })
     }
 
     /// Adds the thermal pulls of the points `on` to one value per point.
     pub(super) fn add_thermal_pulls(&self, t: f64, on: &PointSubset<'_>, pulls: &mut [f64]) {
         if let Some(heat) = &self.heat {
-            heat.add_pulls(t, &self.states, |i| self.bonds.site(i), on, pulls);
+            heat.add_pulls(t, &self.states, |i| self.bonds.form().site(i), on, pulls);
         }
     }
 
@@ -54,7 +54,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         stretch: Option<f64>,
         [theta, squares, inelastic]: [f64; 3],
     ) -> f64 {
-        let place = [i, self.bonds.site(i)];
+        let place = [i, self.bonds.form().site(i)];
         match (&self.heat, stretch) {
             (Some(heat), Some(stretch)) => {
                 heat.energy_density(&self.states, place, stretch, [theta, squares, inelastic])
@@ -66,8 +66,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
     /// Returns the number of broken directed bonds per block, for heated bodies only.
     pub(super) fn broken_by_blocks(&self) -> Option<Vec<u64>> {
         self.heat.as_ref()?;
-        let blocks = self.blocks.iter();
-        Some(blocks.map(|block| block.tally.broken.get()).collect())
+        Some(self.bonds.broken_by_blocks())
     }
 
     /// Updates M' in all blocks in which the number of broken bonds differs from `before`; in all blocks if
@@ -76,9 +75,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         let Some(mut heat) = self.heat.take() else {
             return;
         };
-        let now: Vec<u64> = (self.blocks.iter())
-            .map(|block| block.tally.broken.get())
-            .collect();
+        let now = self.bonds.broken_by_blocks();
         let changed = |i: usize| {
             let block = i / BLOCK;
             let known = before
@@ -97,13 +94,12 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
 
     /// Returns Σ ω r² over the intact bonds of a point.
     fn volume_left(&self, i: usize) -> f64 {
-        let (bonds, here) = (self.view(), self.bonds.site(i));
-        let intact = (self.bonds.family(i)).filter(|&(entry, _)| self.is_intact(i, entry));
+        let (bonds, here) = (self.view(), self.bonds.form().site(i));
         let of_bond = |(entry, b): (usize, usize)| {
             let xi = bonds.vector::<D>(here, b);
             bonds.weight_of(entry, [here, b], xi) * dot(xi, xi)
         };
-        intact.map(of_bond).sum()
+        self.bonds.intact_of(i).map(of_bond).sum()
     }
 }
 

@@ -10,7 +10,7 @@ use super::breaking::{BreakRule, break_row};
 use super::kinematics::Kinematics;
 use crate::family::BondList;
 use crate::lanes::{F64x8, Lanes, for_each_instruction_set};
-use crate::operator::damage::Tally;
+use crate::neighbourhood::Tally;
 use crate::operator::records::Records;
 use crate::operator::rows::Rows;
 

@@ -1,7 +1,5 @@
 //! [`TwoPass`] and [`Breakable`] for linear peridynamic solids.
 
-use std::ops::Range;
-
 use super::bond_work::{KEPT, Worked};
 use super::bonds::difference;
 use super::breaking::heated_limit;
@@ -11,11 +9,12 @@ use super::kinematics::Kinematics;
 use crate::domain::Field;
 use crate::lanes::{F64x8, LANES, Row};
 use crate::material::PairForce;
+use crate::neighbourhood::{BondSet, Form};
 use crate::operator::pool::Lent;
 use crate::operator::{
-    AtPoints, BondView, Breakable, CoarseBreak, InstructionSet, PointSubset, TwoPass, damage,
+    AtPoints, BondView, Breakable, CoarseBreak, InstructionSet, PointSubset, TwoPass,
 };
-use crate::parallel::{BLOCK, for_each_chunk, for_each_chunk_of};
+use crate::parallel::{for_each_chunk, for_each_chunk_of};
 use crate::step_end::StepEnd;
 use crate::thermal::{Expandable, ThermalExpansion};
 
@@ -83,9 +82,10 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidForce<L, D> {
         let bonds = self.view();
         let mut largest: f64 = 0.0;
         for i in 0..self.cloud.len() {
-            let (family, here) = (self.bonds.family(i), self.bonds.site(i));
-            let row: f64 = family
-                .filter(|&(entry, _)| self.is_intact(i, entry))
+            let here = self.bonds.form().site(i);
+            let row: f64 = self
+                .bonds
+                .intact_of(i)
                 .map(|(entry, b)| {
                     let weight = bonds.weight_of(entry, [here, b], bonds.vector::<D>(here, b));
                     let factor = bonds.factor_of(entry);
@@ -104,7 +104,7 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidForce<L, D> {
     }
 
     fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize)) {
-        self.bonds.for_each_neighbour(i, visit);
+        self.bonds.form().for_each_neighbour(i, visit);
     }
 
     /// The critical stretch is evaluated in the pass over points, the bond energy afterwards, because it
@@ -168,14 +168,11 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidForce<L, D> {
     }
 
     fn directed_bonds(&self) -> u64 {
-        self.bonds.directed_bonds()
+        self.bonds.form().directed_bonds()
     }
 
     fn bytes(&self) -> usize {
-        self.bonds.bytes()
-            + self.bonds.geometric().len()
-            + self.breakable.as_ref().map_or(0, Vec::len)
-            + self.own_bytes()
+        Form::bytes(self.bonds.form()) + self.own_bytes()
     }
 
     fn instruction_set(&self) -> InstructionSet {
@@ -190,83 +187,20 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidForce<L, D> {
 }
 
 impl<L: Kinematics, const D: usize> Breakable for LinearSolidForce<L, D> {
-    fn dissipated(&self) -> f64 {
-        damage::dissipated(self.cloud.domain(), &self.blocks)
+    fn bonds(&self) -> &dyn BondSet {
+        &self.bonds
     }
 
-    fn dissipate(&mut self, i: usize, energy: f64) {
-        damage::dissipate(&mut self.blocks, i, energy);
-    }
-
-    fn follow_dissipation(&mut self) {
-        damage::follow_dissipation(&mut self.blocks);
-    }
-
-    fn take_dissipated(&mut self, out: &mut [f64]) {
-        damage::take_dissipated(&mut self.blocks, out);
+    fn bonds_mut(&mut self) -> &mut dyn BondSet {
+        &mut self.bonds
     }
 
     fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {
-        damage::take_coarse_parts(self.cloud.domain(), &mut self.blocks)
-    }
-
-    fn broken_bonds(&self) -> u64 {
-        damage::broken_bonds(self.cloud.domain(), &self.blocks)
+        self.bonds.take_coarse_parts()
     }
 
     fn can_break(&self) -> bool {
         self.classes.can_break()
-    }
-
-    fn damage_into(&self, out: &mut [f64]) {
-        for_each_chunk_of(out, self.bonds.cost(&PointSubset::All), &|first, out| {
-            for (i, damage) in (first..).zip(out) {
-                let (mut whole, mut left) = (0.0, 0.0);
-                let here = self.bonds.site(i);
-                for (entry, b) in self.bonds.family(i) {
-                    if !(self.bonds.is_present(entry) || self.damage.count_precut) {
-                        continue;
-                    }
-                    let weight = if self.damage.count {
-                        1.0
-                    } else {
-                        self.bonds.volume_factor(here, b) * self.bonds.volume(b)
-                    };
-                    whole += weight;
-                    if self.is_intact(i, entry) {
-                        left += weight;
-                    }
-                }
-                *damage = if whole > 0.0 { 1.0 - left / whole } else { 0.0 };
-            }
-        });
-    }
-
-    fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
-        for i in 0..self.cloud.len() {
-            let family = self.bonds.family(i);
-            for (_, b) in family.filter(|&(entry, _)| self.is_intact(i, entry)) {
-                let j = self.bonds.sites().point(b);
-                if j > i {
-                    visit(i, j);
-                }
-            }
-        }
-    }
-
-    fn for_each_broken_count(&self, visit: &mut dyn FnMut(Range<usize>, u64)) {
-        damage::broken_counts(
-            &self.blocks,
-            self.cloud.len(),
-            &|block| block * BLOCK,
-            visit,
-        );
-    }
-
-    fn for_each_intact_of(&self, i: usize, visit: &mut dyn FnMut(usize)) {
-        let (family, sites) = (self.bonds.family(i), self.bonds.sites());
-        let intact = family.filter(|&(entry, _)| self.is_intact(i, entry));
-        intact.for_each(|(_, b)| visit(sites.point(b)));
     }
 
     fn accumulates(&self) -> bool {
@@ -293,7 +227,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         let mut dilatations = vec![0.0; self.cloud.len()];
         self.dilatations_into(u, &PointSubset::All, &mut dilatations);
         let ghosts = self.cloud.domain().ghosts(&dilatations);
-        let (theta, sites) = (Field::new(&dilatations, &ghosts), self.bonds.sites());
+        let (theta, sites) = (Field::new(&dilatations, &ghosts), self.bonds.form().sites());
         let pressure = &self.states.pressure;
         self.packed_beside(u, |site| {
             pressure[site] * theta.at::<1>(0, sites.point(site))
@@ -308,15 +242,10 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
             .influence
             .as_ref()
             .map(|influence| Worked { bonds, influence });
-        let may_break = |entry: usize| {
-            self.breakable
-                .as_ref()
-                .is_none_or(|bits| bits[entry / LANES] >> (entry % LANES) & 1 == 1)
-        };
         let u = self.rows_of_limits(u);
-        let (stretches, sites) = (self.latest_stretches(), self.bonds.sites());
+        let (stretches, sites) = (self.latest_stretches(), self.bonds.form().sites());
         let over = |i: usize, entry: usize, b: usize| {
-            let a = self.bonds.site(i);
+            let a = self.bonds.form().site(i);
             let (xi, limits) = (bonds.vector::<D>(a, b), self.classes.limits(a, b));
             let thermal = stretches.as_ref().map_or(0.0, |stretches| {
                 0.5 * [a, b]
@@ -338,17 +267,15 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
             });
             worked || measure > L::Measure::threshold(limit) * square
         };
-        for_each_chunk_of(
-            marks,
-            self.bonds.cost(&PointSubset::All),
-            &|first, marks| {
-                for (i, mark) in (first..).zip(marks) {
-                    *mark = *mark
-                        || self.bonds.family(i).any(|(entry, j)| {
-                            self.is_intact(i, entry) && may_break(entry) && over(i, entry, j)
-                        });
-                }
-            },
-        );
+        let list = self.bonds.form();
+        for_each_chunk_of(marks, list.cost(&PointSubset::All), &|first, marks| {
+            for (i, mark) in (first..).zip(marks) {
+                *mark = *mark
+                    || self
+                        .bonds
+                        .intact_of(i)
+                        .any(|(entry, j)| list.may_break(entry) && over(i, entry, j));
+            }
+        });
     }
 }

@@ -11,15 +11,19 @@ use crate::parallel::for_each_point;
 impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
     /// Returns ξ and η of the bond from point i to a site.
     fn vectors(&self, u: Field<'_>, i: usize, site: usize) -> [[f64; D]; 2] {
-        let eta = u.difference::<D>([i, self.bonds.sites().point(site)]);
-        [self.view().vector::<D>(self.bonds.site(i), site), eta]
+        let eta = u.difference::<D>([i, self.bonds.form().sites().point(site)]);
+        [
+            self.view().vector::<D>(self.bonds.form().site(i), site),
+            eta,
+        ]
     }
 
     /// Returns p = A θ/m of a point with its thermal pull at the time of the last force evaluation.
     fn pressure_of(&self, u: Field<'_>, i: usize) -> f64 {
-        let (family, here) = (self.bonds.family(i), self.bonds.site(i));
-        let intact = family.filter(|&(entry, _)| self.is_intact(i, entry));
-        let extension: f64 = intact
+        let here = self.bonds.form().site(i);
+        let extension: f64 = self
+            .bonds
+            .intact_of(i)
             .map(|(entry, b)| {
                 let [xi, eta] = self.vectors(u, i, b);
                 let weight = self.view().weight_of(entry, [here, b], xi);
@@ -71,11 +75,10 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         relief: &dyn Fn(usize, usize) -> f64,
         visit: &mut dyn FnMut(BondAt),
     ) {
-        let (bonds, here) = (self.view(), self.bonds.site(i));
+        let (bonds, here) = (self.view(), self.bonds.form().site(i));
         let (u, pressures) = (values.displacement(), values.points());
-        let family = self.bonds.family(i);
-        for (entry, b) in family.filter(|&(entry, _)| self.is_intact(i, entry)) {
-            let j = self.bonds.sites().point(b);
+        for (entry, b) in self.bonds.intact_of(i) {
+            let j = self.bonds.form().sites().point(b);
             let [xi, eta] = self.vectors(u, i, b);
             let p = pressures.at::<1>(0, i) + pressures.at::<1>(0, j) - relief(i, entry);
             let stiffness = self.states.stiffness[here] + self.states.stiffness[b];
@@ -99,11 +102,10 @@ impl<L: Kinematics, const D: usize> BondView for LinearSolidForce<L, D> {
     }
 
     fn for_each_undeformed(&self, i: usize, visit: &mut dyn FnMut(BondAt)) {
-        let (bonds, here) = (self.view(), self.bonds.site(i));
-        let family = self.bonds.family(i);
-        for (_, b) in family.filter(|&(entry, _)| self.is_intact(i, entry)) {
+        let (bonds, here) = (self.view(), self.bonds.form().site(i));
+        for (_, b) in self.bonds.intact_of(i) {
             let xi = bonds.vector::<D>(here, b);
-            visit(BondAt::undeformed(self.bonds.sites().point(b), xi));
+            visit(BondAt::undeformed(self.bonds.form().sites().point(b), xi));
         }
     }
 }

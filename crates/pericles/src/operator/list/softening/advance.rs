@@ -4,7 +4,7 @@ use super::kernels::{Softened, groups_of, point_force};
 use crate::domain::Field;
 use crate::lanes::{LANES, Lanes, dot, for_each_instruction_set};
 use crate::material::SofteningCurve;
-use crate::operator::damage::{BlockDamage, Tally};
+use crate::neighbourhood::{BlockDamage, Tally};
 use crate::operator::fast_law::VectorLaw;
 use crate::operator::list::arrays::Bonds;
 use crate::operator::records::Records;

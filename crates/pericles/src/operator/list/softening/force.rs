@@ -34,7 +34,7 @@ pub struct SofteningForce<L: VectorLaw, const D: usize> {
 crate::saved! {
     impl<L: VectorLaw, const D: usize> Checkpointed for SofteningForce<L, D> {
         list: part,
-        largest: by(Laid::rows("softening/largest", list.bonds.start(), largest.len())),
+        largest: by(Laid::rows("softening/largest", list.bonds.form().start(), largest.len())),
         curves: fixed,
     }
 }
@@ -62,9 +62,9 @@ impl<L: VectorLaw, const D: usize> SofteningForce<L, D> {
         if !L::OF_STRETCH {
             return Err(no_softening());
         }
-        let classes = classes.map(|classes| classes.on_sites(list.bonds.sites()));
+        let classes = classes.map(|classes| classes.on_sites(list.bonds.form().sites()));
         let curves = Curves::new(softening, list.critical_stretch, classes)?;
-        let entries = list.bonds.present().len() * LANES;
+        let entries = list.bonds.form().present().len() * LANES;
         Ok(Self {
             list,
             curves,
@@ -84,7 +84,7 @@ impl<L: VectorLaw, const D: usize> SofteningForce<L, D> {
             curves: &self.curves,
             largest: &self.largest,
             first: 0,
-            breakable: self.list.breakable.as_deref(),
+            breakable: self.list.bonds.form().breakable(),
             is_frozen: false,
         }
     }
@@ -93,7 +93,9 @@ impl<L: VectorLaw, const D: usize> SofteningForce<L, D> {
     pub(super) fn retained(&self, i: usize, entry: usize, site: usize) -> f64 {
         let largest = self.largest[entry];
         match largest > 0.0 {
-            true => self.curves.retained(self.list.bonds.site(i), site, largest),
+            true => self
+                .curves
+                .retained(self.list.bonds.form().site(i), site, largest),
             false => 1.0,
         }
     }
@@ -101,7 +103,7 @@ impl<L: VectorLaw, const D: usize> SofteningForce<L, D> {
     /// Updates the largest stretches at the end of a step and adds the force.
     pub(super) fn advance(&mut self, step: &StepEnd<'_>, on: &PointSubset<'_>, out: &mut [f64]) {
         let n = self.list.cloud.len();
-        let mut blocks = std::mem::take(&mut self.list.blocks);
+        let mut blocks = self.list.bonds.take_blocks();
         let mut largest = std::mem::take(&mut self.largest);
         let Self { list, curves, .. } = &*self;
         let heat = list.heat_at(step.t);
@@ -112,7 +114,7 @@ impl<L: VectorLaw, const D: usize> SofteningForce<L, D> {
                 curves,
                 largest: &[],
                 first: 0,
-                breakable: list.breakable.as_deref(),
+                breakable: list.bonds.form().breakable(),
                 is_frozen: false,
             },
             volumes: list.cloud.volumes(),
@@ -133,7 +135,7 @@ impl<L: VectorLaw, const D: usize> SofteningForce<L, D> {
             for_each_block(
                 components_mut::<D>(out, n),
                 &mut parts,
-                list.bonds.cost(on),
+                list.bonds.form().cost(on),
                 &|first, mut out, part| {
                     let len = n.min(first + BLOCK) - first;
                     if let Some(wanted) = Rows::of_block(on, first, len) {
@@ -144,7 +146,7 @@ impl<L: VectorLaw, const D: usize> SofteningForce<L, D> {
             );
         });
         drop(heat);
-        self.list.blocks = blocks;
+        self.list.bonds.put_blocks(blocks);
         self.largest = largest;
     }
 }

@@ -141,13 +141,10 @@ impl<L: VectorLaw, const D: usize> BondView for SofteningForce<L, D> {
     fn for_each_bond(&self, values: &BondValues, i: usize, visit: &mut dyn FnMut(BondAt)) {
         let u = values.displacement();
         let list = &self.list;
-        let (heat, sites) = (list.latest_heat(), list.bonds.sites());
+        let (heat, sites) = (list.latest_heat(), list.bonds.form().sites());
         let bonds = list.view().heated(heat.as_deref().map(Vec::as_slice));
         let here = sites.of_point(i);
-        for (entry, b) in list.bonds.family(i) {
-            if !list.is_intact(i, entry) {
-                continue;
-            }
+        for (entry, b) in list.bonds.intact_of(i) {
             let xi: [f64; D] = bonds.vector(here, b);
             let eta = u.difference::<D>([i, sites.point(b)]);
             let (free, pulled, scale) = bonds.expanded([here, b], xi, eta);

@@ -1,8 +1,8 @@
 //! Arrays of a solid on a lattice read by the loops.
 
 use crate::lanes::{LANES, Lanes};
-use crate::operator::grid::layout::Chunk;
-use crate::operator::grid::stencil::Stencil;
+use crate::neighbourhood::Chunk;
+use crate::neighbourhood::Stencil;
 
 /// A bond of the stencil of a solid.
 #[derive(Debug, Clone, Copy)]
@@ -19,7 +19,7 @@ pub(super) struct SolidOffset<const D: usize> {
     pub weighted_square: f64,
 }
 
-/// Padded rows (see [`GridLayout`](crate::operator::grid::layout::GridLayout)) read by the loops.
+/// Padded rows (see [`GridLayout`](crate::neighbourhood::GridLayout)) read by the loops.
 #[derive(Clone, Copy)]
 pub(super) struct Arrays<'a, const D: usize> {
     pub offsets: &'a [SolidOffset<D>],
@@ -40,17 +40,23 @@ pub(super) struct Bonds<T, const D: usize> {
     pub inverse_square: T,
 }
 
-/// Returns the offsets of a stencil with the stiffness ω.
-pub(super) fn solid_offsets<const D: usize>(stencil: &Stencil<D>) -> Vec<SolidOffset<D>> {
-    let offsets = stencil.offsets().iter().zip(stencil.lengths());
-    let solid = offsets.map(|(offset, length)| SolidOffset {
-        shift: offset.shift,
-        xi: offset.xi,
-        inverse_square: offset.inverse_square,
-        weight: offset.stiffness,
-        weighted_square: offset.stiffness * (length * length),
-    });
-    solid.collect()
+/// Returns the offsets of a stencil with the influence function w as a function of ξ, m.
+pub(super) fn solid_offsets<const D: usize>(
+    stencil: &Stencil,
+    influence: &dyn Fn([f64; 3]) -> f64,
+) -> Vec<SolidOffset<D>> {
+    let offset = |k: usize| {
+        let (xi, length) = (stencil.vectors()[k], stencil.lengths()[k]);
+        let weight = influence(xi) * stencil.volumes()[k];
+        SolidOffset {
+            shift: stencil.shifts()[k],
+            xi: std::array::from_fn(|c| xi[c]),
+            inverse_square: 1.0 / (length * length),
+            weight,
+            weighted_square: weight * (length * length),
+        }
+    };
+    (0..stencil.len()).map(offset).collect()
 }
 
 impl<'a, const D: usize> Arrays<'a, D> {

@@ -4,23 +4,19 @@ use super::arrays::Arrays;
 use crate::domain::Field;
 use crate::lanes::LANES;
 use crate::material::{PairForce, SolidClasses};
-use crate::operator::coarse::LostBond;
-use crate::operator::damage::{BreakEvent, Tally};
-use crate::operator::grid::families::Families;
-use crate::operator::grid::layout::Chunk;
+use crate::neighbourhood::{BreakEvent, Chunk, Lattice, LostBond, Tally};
 use crate::operator::state_based::breaking::{LosingBond, Loss, States, heated_limit};
 use crate::operator::state_based::kinematics::Kinematics;
 use crate::step_end::StepEnd;
 
 /// Failure criterion read by the loops.
 #[derive(Clone, Copy)]
-pub(super) struct StencilRule<'a, const D: usize> {
+pub(super) struct StencilRule<'a> {
     /// A bond exceeds the critical stretch of the weakest pair of materials if measure > threshold |ξ|².
     pub threshold: f64,
     /// Limits of bonds as a function of both sites.
     pub classes: &'a SolidClasses,
-    /// Breakable bonds and their end points.
-    pub families: Families<'a, D>,
+    pub bonds: &'a Lattice,
     pub states: &'a States,
     pub volumes: &'a [f64],
     /// The step that ends.
@@ -33,10 +29,10 @@ pub(super) struct StencilRule<'a, const D: usize> {
     pub stretches: Option<&'a [f64]>,
 }
 
-impl<const D: usize> StencilRule<'_, D> {
+impl StencilRule<'_> {
     /// Returns the critical stretch of a bond between two places, including thermal stretch.
     fn limit(&self, ends: [usize; 2]) -> f64 {
-        let layout = self.families.layout;
+        let layout = self.bonds.layout();
         let [a, b] = ends.map(|place| layout.site_at(place));
         let limit = self.classes.limits(a, b).stretch;
         self.stretches.map_or(limit, |stretches| {
@@ -65,7 +61,7 @@ pub(super) struct ChunkBonds<'a> {
 #[inline(never)]
 pub(super) fn break_chunk<L: Kinematics, const D: usize>(
     arrays: &Arrays<'_, D>,
-    rule: &StencilRule<'_, D>,
+    rule: &StencilRule<'_>,
     bonds: ChunkBonds<'_>,
     intact: &mut [u8],
     tally: &mut Tally,
@@ -86,7 +82,7 @@ pub(super) fn break_chunk<L: Kinematics, const D: usize>(
             }
         }
         if over != 0 {
-            broken[k] = over & rule.families.breakable(bonds.chunk, k);
+            broken[k] = over & rule.bonds.breakable(bonds.chunk, k);
             any |= broken[k] != 0;
         }
     }
@@ -99,7 +95,7 @@ pub(super) fn break_chunk<L: Kinematics, const D: usize>(
 /// Clears the bits of broken bonds and records the energy that their points dissipate.
 pub(super) fn take_bonds<L: Kinematics, const D: usize>(
     arrays: &Arrays<'_, D>,
-    rule: &StencilRule<'_, D>,
+    rule: &StencilRule<'_>,
     bonds: ChunkBonds<'_>,
     intact: &mut [u8],
     broken: &[u8],
@@ -136,7 +132,7 @@ pub(super) fn take_bonds<L: Kinematics, const D: usize>(
 /// breaking bonds of an offset.
 fn loss_of<L: Kinematics, const D: usize>(
     arrays: &Arrays<'_, D>,
-    rule: &StencilRule<'_, D>,
+    rule: &StencilRule<'_>,
     [place, lane]: [usize; 2],
     i: usize,
     bits: impl Fn(usize) -> [u8; 2],
@@ -149,7 +145,7 @@ fn loss_of<L: Kinematics, const D: usize>(
             continue;
         }
         let ends = [here, here.wrapping_add_signed(offset.shift)];
-        let j = rule.families.layout.point_at(ends[1] - arrays.margin);
+        let j = rule.bonds.layout().point_at(ends[1] - arrays.margin);
         let velocity = |field: Field<'_>| field.difference([i, j]);
         let bond = LosingBond {
             neighbour: j,

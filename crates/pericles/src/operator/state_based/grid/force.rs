@@ -5,27 +5,25 @@ use std::sync::Arc;
 use super::arrays::{Arrays, SolidOffset, solid_offsets};
 use super::breaking::{ChunkBonds, StencilRule, take_bonds};
 use super::kernels::{accept_chunks, dilatation_chunks};
-use crate::domain::{Field, Letter};
+use crate::domain::Field;
 use crate::error::Result;
 use crate::family::{BondCut, Crack, EndRule, VolumeCorrection};
 use crate::kernel::Influence;
 use crate::lanes::LANES;
 use crate::material::{BondLimits, PairForce, SolidClasses};
-use crate::operator::damage::{BlockDamage, DamageMeasure, bonds_left};
+use crate::neighbourhood::{
+    BlockDamage, BondPlace, DamageMeasure, Form, GridLayout, Lattice, Neighbourhood,
+};
 use crate::operator::grid::block::ChunkBlock;
-use crate::operator::grid::build::LatticeBonds;
-use crate::operator::grid::families::Families;
-use crate::operator::grid::layout::GridLayout;
+use crate::operator::grid::lattice;
 use crate::operator::grid::padded::{Frame, Padded};
-use crate::operator::grid::stencil::Stencil;
-use crate::operator::grid::stored::StencilStorage;
 use crate::operator::grid::wanted::WantedPoints;
 use crate::operator::pool::Pool;
 use crate::operator::state_based::breaking::States;
 use crate::operator::state_based::heat::Heat;
 use crate::operator::state_based::kinematics::Kinematics;
 use crate::operator::{InstructionSet, PointSubset};
-use crate::parallel::{Cost, components_mut, for_each_chunk, for_each_part};
+use crate::parallel::{for_each_chunk, for_each_part};
 use crate::space::PointCloud;
 use crate::step_end::StepEnd;
 
@@ -41,15 +39,8 @@ use crate::step_end::StepEnd;
 /// rows are padded to a multiple of eight nodes.
 pub struct LinearSolidGrid<L: Kinematics, const D: usize> {
     pub(super) cloud: Arc<PointCloud>,
-    pub(super) layout: Arc<GridLayout>,
-    pub(super) stencil: Stencil<D>,
+    pub(super) bonds: Neighbourhood<Lattice>,
     pub(super) offsets: Vec<SolidOffset<D>>,
-    /// Intact bonds: one byte per chunk and offset, offsets fastest.
-    pub(super) blocks: Vec<BlockDamage>,
-    /// All bonds before pre-cracks, as in `blocks`, of a body of several pieces.
-    geometric: Option<Vec<Vec<u8>>>,
-    held: Option<Vec<u8>>,
-    precut: Vec<(u64, u8)>,
     /// Factors of points, ghosts after own points.
     pub(super) states: States,
     /// s = B/m in padded rows.
@@ -58,10 +49,8 @@ pub struct LinearSolidGrid<L: Kinematics, const D: usize> {
     pub(super) classes: SolidClasses,
     /// Limits of the weakest pair of materials.
     pub(super) weakest: BondLimits,
-    damage: DamageMeasure,
     /// Thermal strain, if the material expands.
     pub(super) heat: Option<Heat>,
-    pub(super) directed_bonds: u64,
     work: Pool<Work<D>>,
     pub(super) instruction_set: InstructionSet,
     kinematics: std::marker::PhantomData<L>,
@@ -69,14 +58,13 @@ pub struct LinearSolidGrid<L: Kinematics, const D: usize> {
 
 crate::saved! {
     impl<L: Kinematics, const D: usize> Checkpointed for LinearSolidGrid<L, D> {
-        blocks: by(StencilStorage { name: "operator/grid", layout, offsets: stencil.len() }),
-        cloud, layout, stencil, offsets, geometric, held, precut, states, stiffness, classes, weakest: fixed,
-        damage, directed_bonds, instruction_set, kinematics: fixed,
+        bonds: part,
+        cloud, offsets, states, stiffness, classes, weakest, instruction_set, kinematics: fixed,
         heat: rebuilt,
         work: scratch,
     } then |force| {
         force.renew_volumes(None);
-        force.families().check_bonds()
+        Ok(())
     }
 }
 
@@ -116,45 +104,27 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
         damage: DamageMeasure,
     ) -> Result<(Self, Vec<BondCut>)> {
         let weight = |xi| influence.alpha_of(xi, horizon);
-        let LatticeBonds {
-            sites,
-            layout,
-            stencil,
-            blocks,
-            held,
-            cuts,
-            precut,
-            geometric,
-        } = LatticeBonds::<D>::new(cloud, (horizon, None), correction, &weight, cracks, no_fail)?;
-        let offsets = solid_offsets(&stencil);
-        let families = Families {
-            cloud,
-            layout: &layout,
-            stencil: &stencil,
-            blocks: &blocks,
-            geometric: geometric.as_deref(),
-            held: None,
-            precut: &precut,
-            damage,
-        };
+        let lattice = lattice::<D>(cloud, (horizon, None), correction, cracks, no_fail)?;
+        let cuts = lattice.cuts().to_vec();
+        let bonds = Neighbourhood::new(lattice, damage);
+        let (layout, stencil) = (bonds.form().layout(), bonds.form().stencil());
+        let offsets = solid_offsets(stencil, &weight);
         let mut volumes = vec![0.0; cloud.len()];
-        families.for_each_block(&mut volumes, |first, number, intact, volumes| {
-            families.for_each_counted(number, intact, |(_, point), offset, intact| {
-                if intact {
-                    volumes[point - first] += offsets[offset].weighted_square;
-                }
-            });
+        bonds.for_each_counted(&mut volumes, |first, bond, volumes| {
+            if bond.intact {
+                let offset = &offsets[bond.entry / LANES % offsets.len()];
+                volumes[bond.point - first] += offset.weighted_square;
+            }
         });
         let domain = cloud.domain();
         let spread = |of_points: &[f64]| domain.with_ghosts(of_points).into_owned();
         let states = States::new::<D>(&volumes, classes, &spread);
         let farthest = stencil.farthest_shift();
-        let mut stiffness = Padded::new(&layout, farthest);
+        let mut stiffness = Padded::new(layout, farthest);
         let (own, ghosts) = states.stiffness.split_at(cloud.len());
         let own = Field::new(own, ghosts);
-        stiffness.fill(&layout, own, &Frame::of(own, 1.0));
-        let layout = Arc::new(layout);
-        let (shared, points) = (layout.clone(), cloud.len() + domain.ghost_points());
+        stiffness.fill(layout, own, &Frame::of(own, 1.0));
+        let (shared, points) = (Arc::clone(layout), cloud.len() + domain.ghost_points());
         let work = Pool::new(0, move || Work {
             u: Padded::new(&shared, farthest),
             pressure: Padded::new(&shared, farthest),
@@ -163,21 +133,14 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
         });
         let force = Self {
             cloud: cloud.clone(),
-            directed_bonds: bonds_left(&blocks),
-            classes: classes.on_sites(&sites),
+            classes: classes.on_sites(bonds.form().sites()),
             weakest: classes.weakest(),
             instruction_set: InstructionSet::detect(),
             kinematics: std::marker::PhantomData,
-            layout,
-            stencil,
+            bonds,
             offsets,
-            blocks,
-            geometric,
-            held,
-            precut,
             states,
             stiffness,
-            damage,
             heat: None,
             work,
         };
@@ -190,18 +153,14 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
         D as f64 / self.states.dilatation[i]
     }
 
-    /// Returns the families.
-    pub(super) fn families(&self) -> Families<'_, D> {
-        Families {
-            cloud: &self.cloud,
-            layout: &self.layout,
-            stencil: &self.stencil,
-            blocks: &self.blocks,
-            geometric: self.geometric.as_deref(),
-            held: self.held.as_deref(),
-            precut: &self.precut,
-            damage: self.damage,
-        }
+    /// Returns the bonds.
+    pub fn bonds(&self) -> &Neighbourhood<Lattice> {
+        &self.bonds
+    }
+
+    /// Returns points and their places.
+    pub(super) fn layout(&self) -> &GridLayout {
+        self.bonds.form().layout()
     }
 
     /// Copies a vector and p for the given values of the pass over points (dilatations, and thermal pulls of a heated
@@ -221,10 +180,10 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
             of_points,
             wanted,
         } = &mut *lent;
-        let layout = &*self.layout;
+        let layout = self.layout();
         let all = matches!(on, PointSubset::All);
         if !all {
-            wanted.set(layout, on, self.stencil.radius());
+            wanted.set(layout, on, self.bonds.form().stencil().radius());
         }
         let around = (!all && !whole && layout.is_of_points()).then_some(&*wanted);
         let frame = Frame::of(u, 1.0);
@@ -254,11 +213,6 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
             margin: rows.margin(),
         };
         work(&arrays, (!all).then(|| wanted.lanes()))
-    }
-
-    /// Returns the cost of a loop over the bonds of a subset of the points.
-    fn cost(&self, on: &PointSubset<'_>) -> Cost {
-        Cost::bonds(self.directed_bonds).on(on, self.cloud.len())
     }
 
     /// Sets p = A θ/m with the thermal pull of all points, ghosts after own points.
@@ -296,19 +250,13 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
         out: &mut [f64],
         chunks: impl Fn(&ChunkBlock<'_>, &[u8], &mut [&mut [f64]; C]) + Sync,
     ) {
-        // A vector of units takes no memory: the state of blocks is only read.
-        let mut nothing = vec![(); self.blocks.len()];
-        for_each_part(
-            components_mut::<C>(out, self.cloud.len()),
-            &mut nothing,
-            self.cost(&PointSubset::All),
-            &|block| self.layout.first_point(block),
-            &|block, mut out, ()| {
-                if let Some(chunk_block) = ChunkBlock::of(&self.layout, lanes, block) {
-                    chunks(&chunk_block, &self.blocks[block].intact, &mut out);
-                }
-            },
-        );
+        let bonds = &self.bonds;
+        let cost = bonds.form().cost(&PointSubset::All);
+        bonds.for_each_block::<C>(cost, out, |block, intact, out| {
+            if let Some(chunk_block) = ChunkBlock::of(self.layout(), lanes, block) {
+                chunks(&chunk_block, intact, out);
+            }
+        });
     }
 
     /// Sets the dilatations of the points `on`.
@@ -333,14 +281,14 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
     ) {
         let broken = self.broken_by_blocks();
         let stretches = self.stretches(step.t);
-        let mut blocks = std::mem::take(&mut self.blocks);
+        let mut blocks = self.bonds.take_blocks();
         let (set, whole) = (self.instruction_set, !matches!(on, PointSubset::All));
         let moved = step.ghost_velocities(self.cloud.domain());
         let rule = StencilRule {
             threshold: L::Measure::threshold(self.coldest_limit(stretches.as_deref())),
             stretches: stretches.as_ref().map(|stretches| &stretches[..]),
             classes: &self.classes,
-            families: self.families(),
+            bonds: self.bonds.form(),
             states: &self.states,
             volumes: self.cloud.volumes(),
             step,
@@ -351,10 +299,10 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
             for_each_part(
                 [dilatations],
                 &mut blocks,
-                self.cost(on),
-                &|block| self.layout.first_point(block),
+                self.bonds.form().cost(on),
+                &|block| self.layout().first_point(block),
                 &|block, mut out, state: &mut BlockDamage| {
-                    if let Some(block) = ChunkBlock::of(&self.layout, lanes, block) {
+                    if let Some(block) = ChunkBlock::of(self.layout(), lanes, block) {
                         let BlockDamage { intact, tally } = state;
                         accept_chunks::<L, D>(set, arrays, &rule, &block, intact, &mut out, tally);
                     }
@@ -364,7 +312,7 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
                 self.clear_other_ends(&rule, arrays, &mut blocks);
             }
         });
-        self.blocks = blocks;
+        self.bonds.put_blocks(blocks);
         self.renew_volumes(broken);
     }
 
@@ -372,39 +320,23 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
     /// dissipated there.
     fn clear_other_ends(
         &self,
-        rule: &StencilRule<'_, D>,
+        rule: &StencilRule<'_>,
         arrays: &Arrays<'_, D>,
         blocks: &mut [BlockDamage],
     ) {
-        let (m, layout) = (self.stencil.len(), &*self.layout);
-        let mut letters = Vec::new();
-        for block in &mut *blocks {
-            for event in block.tally.events.drain(..) {
-                let (group, lane) = (event.entry / LANES, event.entry % LANES);
-                let (chunk, offset) = (group / m, group % m);
-                let place = layout.chunks()[chunk].place as usize * LANES + lane;
-                let there = place.wrapping_add_signed(self.offsets[offset].shift);
-                let back = self.stencil.opposite(offset) as f64;
-                letters.push(Letter {
-                    from: layout.point_at(place),
-                    to: layout.point_at(there),
-                    numbers: [back, 0.0, 0.0, 0.0],
-                });
-            }
-        }
+        let (m, layout) = (self.offsets.len(), self.layout());
         let rule = StencilRule {
             note_events: false,
             ..*rule
         };
-        for letter in self.cloud.domain().deliver(letters) {
-            let offset = letter.numbers[0] as usize;
-            let (number, lane) = layout.chunk_at(layout.place_of(letter.to));
-            let block = layout.block_of(number);
-            let first = (number - layout.chunks_of(block).start) * m;
+        for end in self.bonds.other_ends(blocks) {
+            let BondPlace { block, group, lane } = end.place;
             let BlockDamage { intact, tally } = &mut blocks[block];
-            let intact = &mut intact[first..first + m];
+            let (chunk, offset) = (group / m, group % m);
+            let intact = &mut intact[chunk * m..(chunk + 1) * m];
             let mut broken = vec![0; m];
             broken[offset] = intact[offset] & 1 << lane;
+            let number = layout.chunks_of(block).start + chunk;
             let bonds = ChunkBonds {
                 chunk: &layout.chunks()[number],
                 lanes: 1 << lane,
@@ -416,18 +348,15 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
 
     /// Returns the memory use, bytes.
     pub(super) fn own_bytes(&self) -> usize {
-        let masks: usize = self.blocks.iter().map(|block| block.intact.len()).sum();
-        let farthest = self.stencil.farthest_shift();
-        let rows = Padded::<f64, D>::bytes_for(&self.layout, farthest)
-            + 2 * Padded::<f64, 1>::bytes_for(&self.layout, farthest);
+        let (layout, farthest) = (self.layout(), self.bonds.form().stencil().farthest_shift());
+        let rows = Padded::<f64, D>::bytes_for(layout, farthest)
+            + 2 * Padded::<f64, 1>::bytes_for(layout, farthest);
         let points = size_of::<f64>() * (self.cloud.len() + self.cloud.domain().ghost_points());
-        masks
+        self.bonds.bytes_of_bits()
+            + self.bonds.form().bytes()
             + rows
             + points
-            + WantedPoints::bytes_for(&self.layout)
+            + WantedPoints::bytes_for(layout)
             + self.states.bytes()
-            + self.layout.bytes()
-            + self.held.as_ref().map_or(0, Vec::len)
-            + size_of_val(&self.precut[..])
     }
 }

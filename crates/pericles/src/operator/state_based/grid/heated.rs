@@ -38,8 +38,7 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
     /// Returns the number of broken directed bonds per block, for heated bodies only.
     pub(super) fn broken_by_blocks(&self) -> Option<Vec<u64>> {
         self.heat.as_ref()?;
-        let blocks = self.blocks.iter();
-        Some(blocks.map(|block| block.tally.broken.get()).collect())
+        Some(self.bonds.broken_by_blocks())
     }
 
     /// Updates Σ ω r² over the intact bonds in all blocks in which the number of broken bonds differs from `before`; in
@@ -48,12 +47,11 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
         let Some(mut heat) = self.heat.take() else {
             return;
         };
-        let blocks = self.blocks.iter();
-        let now: Vec<u64> = blocks.map(|block| block.tally.broken.get()).collect();
+        let now = self.bonds.broken_by_blocks();
         if before.as_ref() != Some(&now) {
             heat.volume.resize(self.cloud.len(), 0.0);
-            let (families, layout) = (self.families(), &*self.layout);
-            families.for_each_block(&mut heat.volume, |first, number, intact, volumes| {
+            let (bonds, layout) = (&self.bonds, self.layout());
+            bonds.for_each_chunk(&mut heat.volume, |first, number, intact, volumes| {
                 let block = layout.block_of(number);
                 if before
                     .as_ref()

@@ -10,9 +10,9 @@
 use super::arrays::Arrays;
 use super::breaking::{ChunkBonds, StencilRule, break_chunk};
 use crate::lanes::{LANES, Lanes, for_each_instruction_set};
-use crate::operator::damage::Tally;
+use crate::neighbourhood::Chunk;
+use crate::neighbourhood::Tally;
 use crate::operator::grid::block::{ChunkBlock, scatter};
-use crate::operator::grid::layout::Chunk;
 use crate::operator::state_based::kinematics::Kinematics;
 
 /// Σ ω r e of eight points, and the range of their strains t.
@@ -136,7 +136,7 @@ const WATCH: f64 = 1.0 - 1e-9;
 #[inline(always)]
 fn accept_chunks_body<T: Lanes, L: Kinematics, const D: usize>(
     arrays: &Arrays<'_, D>,
-    rule: &StencilRule<'_, D>,
+    rule: &StencilRule<'_>,
     block: &ChunkBlock<'_>,
     intact: &mut [u8],
     out: &mut [&mut [f64]; 1],
@@ -294,7 +294,7 @@ for_each_instruction_set! {
     /// Breaks over-stretched bonds of the requested points and sets the dilatations from the intact bonds.
     pub(super) fn accept_chunks [L: Kinematics, const D: usize] <L, D> (
         arrays: &Arrays<'_, D>,
-        rule: &StencilRule<'_, D>,
+        rule: &StencilRule<'_>,
         block: &ChunkBlock<'_>,
         intact: &mut [u8],
         out: &mut [&mut [f64]; 1],

@@ -1,6 +1,5 @@
 //! [`TwoPass`] and [`Breakable`] for linear peridynamic solids on a lattice.
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use super::force::{LinearSolidGrid, Wanted};
@@ -9,10 +8,11 @@ use super::tangent::{dilatation_change_chunks, tangent_chunks};
 use crate::domain::Field;
 use crate::lanes::LANES;
 use crate::material::PairForce;
+use crate::neighbourhood::{BondSet, Form};
 use crate::operator::state_based::breaking::heated_limit;
 use crate::operator::state_based::kinematics::Kinematics;
 use crate::operator::{
-    AtPoints, BondView, Breakable, CoarseBreak, InstructionSet, PointSubset, TwoPass, damage,
+    AtPoints, BondView, Breakable, CoarseBreak, InstructionSet, PointSubset, TwoPass,
 };
 use crate::parallel::for_each_chunk;
 use crate::step_end::StepEnd;
@@ -100,22 +100,22 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidGrid<L, D> {
 
     /// The bound of [`LinearSolidForce`](crate::operator::LinearSolidForce).
     fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {
-        let (families, m) = (self.families(), self.stencil.len());
+        let m = self.offsets.len();
         let mut rows = vec![0.0; self.cloud.len()];
-        families.for_each_block(&mut rows, |first, number, intact, rows| {
-            let chunk = &self.layout.chunks()[number];
-            for (lane, i) in chunk.points() {
-                let place = chunk.place as usize * LANES + lane;
-                for k in (0..m).filter(|&k| intact[k] >> lane & 1 == 1) {
-                    let offset = &self.offsets[k];
-                    let j = self
-                        .layout
-                        .point_at(place.wrapping_add_signed(offset.shift));
-                    let springs = self.states.spring::<D>(i, 1.0) + self.states.spring::<D>(j, 1.0);
-                    rows[i - first] += offset.weight.abs() * springs;
+        self.bonds
+            .for_each_chunk(&mut rows, |first, number, intact, rows| {
+                let chunk = &self.layout().chunks()[number];
+                for (lane, i) in chunk.points() {
+                    let place = chunk.place as usize * LANES + lane;
+                    for k in (0..m).filter(|&k| intact[k] >> lane & 1 == 1) {
+                        let offset = &self.offsets[k];
+                        let j = self.bonds.form().point_beyond(place, k);
+                        let springs =
+                            self.states.spring::<D>(i, 1.0) + self.states.spring::<D>(j, 1.0);
+                        rows[i - first] += offset.weight.abs() * springs;
+                    }
                 }
-            }
-        });
+            });
         let square = |(i, row): (usize, &f64)| 2.0 * row / density(i);
         let own = rows.iter().enumerate().map(square).fold(0.0, f64::max);
         self.cloud.domain().max(own).sqrt()
@@ -127,7 +127,7 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidGrid<L, D> {
     }
 
     fn neighbours(&self, i: usize, visit: &mut dyn FnMut(usize)) {
-        self.families().for_each_neighbour(i, visit);
+        self.bonds.form().for_each_neighbour(i, visit);
     }
 
     /// The critical stretch is evaluated in the pass over points.
@@ -176,7 +176,7 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidGrid<L, D> {
     }
 
     fn directed_bonds(&self) -> u64 {
-        self.directed_bonds
+        self.bonds.form().directed_bonds()
     }
 
     fn bytes(&self) -> usize {
@@ -195,63 +195,34 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidGrid<L, D> {
 }
 
 impl<L: Kinematics, const D: usize> Breakable for LinearSolidGrid<L, D> {
-    fn dissipated(&self) -> f64 {
-        damage::dissipated(self.cloud.domain(), &self.blocks)
+    fn bonds(&self) -> &dyn BondSet {
+        &self.bonds
     }
 
-    fn dissipate(&mut self, i: usize, energy: f64) {
-        damage::dissipate(&mut self.blocks, i, energy);
-    }
-
-    fn follow_dissipation(&mut self) {
-        damage::follow_dissipation(&mut self.blocks);
-    }
-
-    fn take_dissipated(&mut self, out: &mut [f64]) {
-        damage::take_dissipated(&mut self.blocks, out);
+    fn bonds_mut(&mut self) -> &mut dyn BondSet {
+        &mut self.bonds
     }
 
     fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {
-        damage::take_coarse_parts(self.cloud.domain(), &mut self.blocks)
-    }
-
-    fn broken_bonds(&self) -> u64 {
-        damage::broken_bonds(self.cloud.domain(), &self.blocks)
+        self.bonds.take_coarse_parts()
     }
 
     fn can_break(&self) -> bool {
         self.weakest.stretch.is_finite()
     }
 
-    fn damage_into(&self, out: &mut [f64]) {
-        self.families().damage_into(out);
-    }
-
-    fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
-        self.families().for_each_intact(visit);
-    }
-
-    fn for_each_broken_count(&self, visit: &mut dyn FnMut(Range<usize>, u64)) {
-        let first = |block| self.layout.first_point(block);
-        damage::broken_counts(&self.blocks, self.cloud.len(), &first, visit);
-    }
-
-    fn for_each_intact_of(&self, i: usize, visit: &mut dyn FnMut(usize)) {
-        self.families().for_each_intact_of(i, visit);
-    }
-
     fn mark_endangered(&self, u: &[f64], fraction: f64, marks: &mut [bool]) {
         if !self.can_break() {
             return;
         }
-        let (families, m) = (self.families(), self.stencil.len());
+        let (bonds, layout) = (self.bonds.form(), self.layout());
         let ghosts = self.cloud.domain().ghosts(u);
         let u = Field::new(u, &ghosts);
         let stretches = self.thermal().map(ThermalExpansion::latest);
         let over = |place: usize, i: usize, k: usize| {
             let there = place.wrapping_add_signed(self.offsets[k].shift);
-            let [a, b] = [place, there].map(|place| self.layout.site_at(place));
-            let j = self.layout.point_at(there);
+            let [a, b] = [place, there].map(|place| layout.site_at(place));
+            let j = layout.point_at(there);
             let thermal = |stretches: &Arc<Vec<f64>>| 0.5 * (stretches[i] + stretches[j]);
             let thermal = stretches.as_ref().map_or(0.0, thermal);
             let limit = fraction * self.classes.limits(a, b).stretch;
@@ -264,21 +235,22 @@ impl<L: Kinematics, const D: usize> Breakable for LinearSolidGrid<L, D> {
             .iter()
             .map(|&mark| f64::from(u8::from(mark)))
             .collect();
-        families.for_each_block(&mut found, |first, number, intact, found| {
-            let chunk = &self.layout.chunks()[number];
-            if chunk.points().all(|(_, i)| found[i - first] > 0.0) {
-                return;
-            }
-            for k in 0..m {
-                let bits = intact[k] & families.breakable(chunk, k);
-                for (lane, i) in chunk.points() {
-                    let place = chunk.place as usize * LANES + lane;
-                    if bits >> lane & 1 == 1 && found[i - first] == 0.0 && over(place, i, k) {
-                        found[i - first] = 1.0;
+        self.bonds
+            .for_each_chunk(&mut found, |first, number, intact, found| {
+                let chunk = &layout.chunks()[number];
+                if chunk.points().all(|(_, i)| found[i - first] > 0.0) {
+                    return;
+                }
+                for k in 0..self.offsets.len() {
+                    let bits = intact[k] & bonds.breakable(chunk, k);
+                    for (lane, i) in chunk.points() {
+                        let place = chunk.place as usize * LANES + lane;
+                        if bits >> lane & 1 == 1 && found[i - first] == 0.0 && over(place, i, k) {
+                            found[i - first] = 1.0;
+                        }
                     }
                 }
-            }
-        });
+            });
         for (mark, found) in marks.iter_mut().zip(found) {
             *mark = found > 0.0;
         }

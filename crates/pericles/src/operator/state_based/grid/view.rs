@@ -10,12 +10,11 @@ use crate::parallel::for_each_point;
 impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
     /// Returns p = A θ/m of a point with its thermal pull at the time of the last force evaluation.
     fn pressure_of(&self, u: Field<'_>, i: usize) -> f64 {
-        let (place, left) = self.families().bonds_of(i);
+        let (place, left) = self.bonds.bonds_of(i);
         let extension: f64 = left
             .map(|k| {
                 let offset = &self.offsets[k];
-                let there = place.wrapping_add_signed(offset.shift);
-                let eta = u.difference::<D>([i, self.layout.point_at(there)]);
+                let eta = u.difference::<D>([i, self.bonds.form().point_beyond(place, k)]);
                 weighted_extension::<L, D>(offset.weight, offset.xi, eta)
             })
             .sum();
@@ -35,12 +34,10 @@ impl<L: Kinematics, const D: usize> BondView for LinearSolidGrid<L, D> {
 
     fn for_each_bond(&self, values: &BondValues, i: usize, visit: &mut dyn FnMut(BondAt)) {
         let (u, pressures) = (values.displacement(), values.points());
-        let (place, left) = self.families().bonds_of(i);
+        let (place, left) = self.bonds.bonds_of(i);
         for k in left {
             let offset = &self.offsets[k];
-            let j = self
-                .layout
-                .point_at(place.wrapping_add_signed(offset.shift));
+            let j = self.bonds.form().point_beyond(place, k);
             let eta = u.difference::<D>([i, j]);
             let p = pressures.at::<1>(0, i) + pressures.at::<1>(0, j);
             let s = self.states.stiffness[i] + self.states.stiffness[j];
@@ -50,11 +47,10 @@ impl<L: Kinematics, const D: usize> BondView for LinearSolidGrid<L, D> {
     }
 
     fn for_each_undeformed(&self, i: usize, visit: &mut dyn FnMut(BondAt)) {
-        let (place, left) = self.families().bonds_of(i);
+        let (place, left) = self.bonds.bonds_of(i);
         for k in left {
-            let offset = &self.offsets[k];
-            let there = place.wrapping_add_signed(offset.shift);
-            visit(BondAt::undeformed(self.layout.point_at(there), offset.xi));
+            let j = self.bonds.form().point_beyond(place, k);
+            visit(BondAt::undeformed(j, self.offsets[k].xi));
         }
     }
 }

@@ -18,13 +18,13 @@ impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
             None => self.history.inelastic.clone(),
         };
         for i in 0..n {
-            let site = self.solid.bonds.site(i);
+            let site = self.solid.bonds.form().site(i);
             let factor = match &self.laws.of_material[self.solid.classes.of_point(site)] {
                 Inelasticity::Elastic => 0.0,
                 Inelasticity::Plastic(_) => values[2 * n + i],
                 Inelasticity::Viscous(_) => self.solid.states.stiffness[site],
             };
-            for (entry, _) in self.solid.bonds.family(i) {
+            for (entry, _) in self.solid.bonds.form().family(i) {
                 relief[entry] *= factor;
             }
         }
@@ -48,7 +48,7 @@ impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
         self.solid
             .add_thermal_pulls(step.t, needed, &mut values[n..2 * n]);
         let states = self.force_states(step.t, values);
-        let before = self.broken();
+        let before = self.solid.bonds.broken_by_blocks();
         let broke = self.breaking_solid(|solid, stored| {
             solid.break_by_criterion(step, u, [on, needed], &states, Some(stored))
         });

@@ -82,15 +82,15 @@ impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
         };
         let influence = laws
             .yields()
-            .then(|| Weight::of_influence(&solid.cloud, &solid.bonds, influence));
+            .then(|| Weight::of_influence(&solid.cloud, solid.bonds.form(), influence));
         if let Some(influence) = &influence {
             laws.strength = strengths(&solid, &laws, influence);
         }
         let n = solid.cloud.len();
         let volumes = (0..n).map(|i| solid.weighted_volume(i));
         let volumes = volumes.map(|m| if m.is_finite() { m } else { 0.0 });
-        let history = History::new(&solid.bonds, laws.terms, volumes.collect())?;
-        let (sites, entries) = (solid.bonds.sites().len(), history.inelastic.len());
+        let history = History::new(solid.bonds.form(), laws.terms, volumes.collect())?;
+        let (sites, entries) = (solid.bonds.form().sites().len(), history.inelastic.len());
         Ok(Self {
             solid,
             laws,
@@ -148,7 +148,7 @@ impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
         let mut reliefs = self.reliefs.take();
         let Self { solid, laws, .. } = self;
         self.history
-            .reliefs_into(t, &solid.bonds, laws, &solid.classes, &mut reliefs);
+            .reliefs_into(t, solid.bonds.form(), laws, &solid.classes, &mut reliefs);
         Some(reliefs)
     }
 
@@ -171,7 +171,7 @@ impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
     /// Returns rows of S and G, or of their changes, from the values of points.
     pub(super) fn state_rows(&self, values: Field<'_>, changes: bool) -> Lent<'_, Vec<Row>> {
         let mut rows = self.states.take();
-        let sites = self.solid.bonds.sites();
+        let sites = self.solid.bonds.form().sites();
         let row = |site: usize| {
             let stiffness = values.at::<3>(2, sites.point(site));
             let law = &self.laws.of_material[self.solid.classes.of_point(site)];
@@ -195,7 +195,7 @@ impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
 
     /// Returns rows of a vector and of P, or of its change.
     pub(super) fn packed_with(&self, u: Field<'_>, values: Field<'_>) -> Lent<'_, Vec<Row>> {
-        let sites = self.solid.bonds.sites();
+        let sites = self.solid.bonds.form().sites();
         self.solid
             .packed_beside(u, |site| values.at::<3>(1, sites.point(site)))
     }
@@ -218,16 +218,16 @@ impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
 
     /// Updates the inelastic stretches of the points `on` to the end of a step.
     pub(super) fn advance(&mut self, step: &StepEnd<'_>, u: Field<'_>, on: &PointSubset<'_>) {
-        let mut blocks = std::mem::take(&mut self.solid.blocks);
+        let mut blocks = self.solid.bonds.take_blocks();
         let mut history = std::mem::take(&mut self.history);
         let (bonds, set) = (self.solid.view(), self.solid.instruction_set);
         let (n, rule) = (self.solid.cloud.len(), self.rule(step));
         let u = self.solid.packed(u);
-        let (points, mut parts) = history.split(self.solid.bonds.start(), &mut blocks);
+        let (points, mut parts) = history.split(self.solid.bonds.form().start(), &mut blocks);
         for_each_block(
             points,
             &mut parts,
-            self.solid.bonds.cost(on),
+            self.solid.bonds.form().cost(on),
             &|first, mut out, part| {
                 let len = n.min(first + BLOCK) - first;
                 if let Some(wanted) = Rows::of_block(on, first, len) {
@@ -236,23 +236,23 @@ impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
             },
         );
         drop(u);
-        self.solid.blocks = blocks;
+        self.solid.bonds.put_blocks(blocks);
         self.history = history;
     }
 
     /// Updates the sums over bonds in all blocks in which the number of broken bonds differs from `before`.
     pub(super) fn renew_sums(&mut self, step: &StepEnd<'_>, u: Field<'_>, before: &[u64]) {
-        let mut blocks = std::mem::take(&mut self.solid.blocks);
+        let mut blocks = self.solid.bonds.take_blocks();
         let mut history = std::mem::take(&mut self.history);
         let (bonds, set) = (self.solid.view(), self.solid.instruction_set);
         let (n, rule) = (self.solid.cloud.len(), self.rule(step));
         let u = self.solid.packed(u);
-        let start = self.solid.bonds.start();
+        let start = self.solid.bonds.form().start();
         let ([_, volumes, ..], mut parts) = history.split(start, &mut blocks);
         for_each_block(
             [volumes],
             &mut parts,
-            self.solid.bonds.cost(&PointSubset::All),
+            self.solid.bonds.form().cost(&PointSubset::All),
             &|first, mut out, part| {
                 let len = n.min(first + BLOCK) - first;
                 if let Some(rows) = Rows::of_block(&PointSubset::All, first, len)
@@ -263,14 +263,8 @@ impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
             },
         );
         drop(u);
-        self.solid.blocks = blocks;
+        self.solid.bonds.put_blocks(blocks);
         self.history = history;
-    }
-
-    /// Returns the number of broken directed bonds per block.
-    pub(super) fn broken(&self) -> Vec<u64> {
-        let blocks = self.solid.blocks.iter();
-        blocks.map(|block| block.tally.broken.get()).collect()
     }
 
     /// Returns the data of the end of a step read by the loops, without the arrays that they modify.
@@ -298,14 +292,14 @@ impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
         if !self.solid.weakest.stretch.is_finite() {
             return self.solid.dilatations_into(u, needed, dilatations);
         }
-        let before = self.broken();
+        let before = self.solid.bonds.broken_by_blocks();
         self.breaking_solid(|solid, stored| {
             solid.break_by_stretch(step, u, on, dilatations, Some(stored));
         });
         if !matches!(on, PointSubset::All) {
             self.solid.dilatations_into(u, needed, dilatations);
         }
-        if self.broken() != before {
+        if self.solid.bonds.broken_by_blocks() != before {
             self.renew_sums(step, u, &before);
         }
     }
@@ -322,7 +316,7 @@ impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
             ..
         } = self;
         let material: Vec<u8> = (0..solid.cloud.len())
-            .map(|i| solid.classes.of_point(solid.bonds.site(i)) as u8)
+            .map(|i| solid.classes.of_point(solid.bonds.form().site(i)) as u8)
             .collect();
         let stored = |i: usize, entry: usize| {
             history.stored(&laws.of_material[usize::from(material[i])], entry)
@@ -334,7 +328,7 @@ impl<L: Kinematics, const D: usize> InelasticSolidForce<L, D> {
     pub(super) fn own_bytes(&self) -> usize {
         let influence = self.influence.as_ref().map_or(0, Weight::bytes);
         let strength = size_of_val(&self.laws.strength[..]);
-        let states = size_of::<Row>() * self.solid.bonds.sites().len();
+        let states = size_of::<Row>() * self.solid.bonds.form().sites().len();
         self.history.bytes() + influence + strength + states
     }
 }
@@ -345,7 +339,7 @@ fn strengths<L: Kinematics, const D: usize>(
     laws: &Laws,
     influence: &Weight,
 ) -> Vec<f64> {
-    let (bonds, list) = (solid.view(), &solid.bonds);
+    let (bonds, list) = (solid.view(), solid.bonds.form());
     for_each_point(solid.cloud.len(), &|i| {
         let a = list.site(i);
         let law = &laws.of_material[solid.classes.of_point(a)];

@@ -8,7 +8,7 @@ use crate::error::{PericlesError, Result};
 use crate::family::BondList;
 use crate::lanes::{F64x8, LANES};
 use crate::material::{Inelasticity, SolidClasses};
-use crate::operator::damage::BlockDamage;
+use crate::neighbourhood::BlockDamage;
 use crate::parallel::{BLOCK, for_each_point};
 
 /// Inelastic stretches of bonds, and sums over the bonds of points.

@@ -1,13 +1,12 @@
 //! [`TwoPass`], [`Breakable`] and [`BondView`] for inelastic solids.
 
-use std::ops::Range;
-
 use super::super::kernels::dilatation_change_rows;
 use super::super::kinematics::Kinematics;
 use super::force::InelasticSolidForce;
 use super::kernels::{force_rows, square_rows};
 use super::tangent::{Along, change_rows, tangent_rows};
 use crate::domain::Field;
+use crate::neighbourhood::BondSet;
 use crate::operator::{
     AtPoints, BondAt, BondValues, BondView, Breakable, CoarseBreak, InstructionSet, PlasticView,
     PointSubset, TwoPass,
@@ -92,7 +91,8 @@ impl<L: Kinematics, const D: usize> TwoPass for InelasticSolidForce<L, D> {
         for_each_chunk(out, &|first, out| {
             for (i, energy) in (first..).zip(out) {
                 let stretch = stretches.as_ref().map(|stretches| stretches[i]);
-                let law = &self.laws.of_material[solid.classes.of_point(solid.bonds.site(i))];
+                let law =
+                    &self.laws.of_material[solid.classes.of_point(solid.bonds.form().site(i))];
                 let inelastic = self.history.inelastic_sum(law, i);
                 let sums = [at.values.owned[i], squares[i], inelastic];
                 *energy += solid.energy_at(i, stretch, sums);
@@ -182,48 +182,20 @@ impl<L: Kinematics, const D: usize> TwoPass for InelasticSolidForce<L, D> {
 
 /// As for the elastic solid; energy dissipated by inelastic stretches is added to that of breaking bonds.
 impl<L: Kinematics, const D: usize> Breakable for InelasticSolidForce<L, D> {
-    fn dissipated(&self) -> f64 {
-        self.solid.dissipated()
+    fn bonds(&self) -> &dyn BondSet {
+        &self.solid.bonds
     }
 
-    fn dissipate(&mut self, i: usize, energy: f64) {
-        self.solid.dissipate(i, energy);
-    }
-
-    fn follow_dissipation(&mut self) {
-        self.solid.follow_dissipation();
-    }
-
-    fn take_dissipated(&mut self, out: &mut [f64]) {
-        self.solid.take_dissipated(out);
-    }
-
-    fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {
-        self.solid.take_coarse_breaks()
-    }
-
-    fn broken_bonds(&self) -> u64 {
-        self.solid.broken_bonds()
+    fn bonds_mut(&mut self) -> &mut dyn BondSet {
+        &mut self.solid.bonds
     }
 
     fn can_break(&self) -> bool {
         self.solid.can_break()
     }
 
-    fn damage_into(&self, out: &mut [f64]) {
-        self.solid.damage_into(out);
-    }
-
-    fn for_each_intact(&self, visit: &mut dyn FnMut(usize, usize)) {
-        self.solid.for_each_intact(visit);
-    }
-
-    fn for_each_broken_count(&self, visit: &mut dyn FnMut(Range<usize>, u64)) {
-        self.solid.for_each_broken_count(visit);
-    }
-
-    fn for_each_intact_of(&self, i: usize, visit: &mut dyn FnMut(usize)) {
-        self.solid.for_each_intact_of(i, visit);
+    fn take_coarse_breaks(&mut self) -> Vec<CoarseBreak> {
+        self.solid.take_coarse_breaks()
     }
 
     /// Force states are those for the history at the end of the last step.
@@ -257,7 +229,7 @@ impl<L: Kinematics, const D: usize> BondView for InelasticSolidForce<L, D> {
     }
 
     fn for_each_bond(&self, values: &BondValues, i: usize, visit: &mut dyn FnMut(BondAt)) {
-        let (bonds, stiffness) = (&self.solid.bonds, &self.solid.states.stiffness);
+        let (bonds, stiffness) = (self.solid.bonds.form(), &self.solid.states.stiffness);
         let relief = |i: usize, entry: usize| {
             let back = self.history.opposite[entry] as usize;
             let [forth, back] = [entry, back].map(|entry| self.history.inelastic[entry]);

@@ -19,7 +19,7 @@ use crate::space::{Lattice, Sites};
 
 /// Eight nodes of a row, at least one of which is an own point.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::operator) struct Chunk {
+pub struct Chunk {
     /// Place of the first node in the padded rows, in chunks.
     pub place: u32,
     /// First own point of the chunk.
@@ -47,7 +47,7 @@ pub(super) struct Block {
 
 /// Points and their padded places.
 #[derive(Debug, Clone)]
-pub(in crate::operator) struct GridLayout {
+pub struct GridLayout {
     shape: [usize; 3],
     /// Number of places of a padded row.
     stride: usize,
@@ -484,6 +484,3 @@ fn bounding_box(lattice: &Lattice) -> ([i32; 3], [usize; 3]) {
     let side = |c: usize| (high[c] - low[c] + 1) as usize;
     (low, std::array::from_fn(side))
 }
-
-/// Sites that exert a force, one byte per place (in chunks).
-pub(super) struct Partners(pub(super) Vec<u8>);

@@ -51,7 +51,7 @@ pub(super) fn for_each_piece<N: Send>(
 
 /// A subset of the nodes of a box in ascending order, x fastest.
 #[derive(Debug, Clone)]
-pub(in crate::operator) struct NodeRows {
+pub struct NodeRows {
     /// Number of nodes of a row of the box.
     length: usize,
     /// First node of each row, followed by the number of nodes.

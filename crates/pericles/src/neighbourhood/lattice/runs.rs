@@ -18,7 +18,7 @@ struct Run {
 /// Points of the nodes of rows. Values of own points and ghosts, which are stored apart and in the order of points, are copied to
 /// rows run by run.
 #[derive(Debug, Clone)]
-pub(super) struct PointRuns {
+pub struct PointRuns {
     runs: Vec<Run>,
     /// First run of each row, followed by the number of runs.
     start: Vec<u32>,

@@ -4,113 +4,93 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
+use super::Lattice;
 use super::layout::GridLayout;
-use super::stencil::{BondRule, Stencil};
+use super::stencil::Stencil;
 use crate::error::{PericlesError, Result};
 use crate::family::{BondCut, Crack, EndRule, VolumeCorrection};
 use crate::lanes::LANES;
-use crate::operator::damage::{BlockDamage, bonds_left};
-use crate::operator::{BondForm, Feature, Features};
 use crate::space::{PointCloud, Sites, check_points};
 
-/// Initial bonds of a lattice body.
-pub(in crate::operator) struct LatticeBonds<const D: usize> {
-    pub sites: Sites,
-    pub layout: GridLayout,
-    pub stencil: Stencil<D>,
-    /// Intact bonds: one byte per chunk and offset, offsets fastest.
-    pub blocks: Vec<BlockDamage>,
-    /// All bonds before pre-cracks, as in `blocks`, if points have different horizons or pieces.
-    pub geometric: Option<Vec<Vec<u8>>>,
-    /// Sites whose bonds never break, one byte per place (in chunks).
-    pub held: Option<Vec<u8>>,
-    /// Bonds removed by each pre-crack.
-    pub cuts: Vec<BondCut>,
-    /// Bonds cut by pre-cracks: groups in ascending order with bits of their bonds.
-    pub precut: Vec<(u64, u8)>,
-}
+/// The reason why other points have no stencil.
+pub(crate) const NO_LATTICE: &str = "the points do not lie on a regular grid; use bonds = \"list\"";
 
-impl<const D: usize> LatticeBonds<D> {
-    /// Creates the bonds within a horizon without those cut by cracks. The stencil stores `stiffness` times
-    /// κ V of the neighbour for each vector ξ. If `horizons` gives a horizon for each point, none larger than
-    /// the first argument, a bond exists within the larger horizon of its ends. Points of different pieces have
-    /// no bonds.
+impl Lattice {
+    /// Creates the bonds within a horizon without those cut by cracks; bonds of the points `no_fail` never break. If
+    /// `horizons` gives a horizon for each point, none larger than the first argument, a bond exists within the larger
+    /// horizon of its ends. Points of different pieces have no bonds.
     ///
     /// # Errors
-    /// A cloud without a lattice or of another dimension, a horizon without neighbours, an invalid crack,
-    /// points `no_fail` that do not exist in the cloud.
+    /// A cloud without a lattice, a horizon without neighbours, an invalid crack, points `no_fail` that do not exist in the
+    /// cloud.
     pub fn new(
         cloud: &Arc<PointCloud>,
         (horizon, horizons): (f64, Option<&[f64]>),
         correction: VolumeCorrection,
-        stiffness: &dyn Fn([f64; 3]) -> f64,
         cracks: &[(Crack, EndRule)],
         no_fail: &[u32],
     ) -> Result<Self> {
-        let no_lattice = cloud.lattice().is_none();
-        BondForm::Grid.check(Features::default().with(Feature::NoLattice, no_lattice))?;
-        let lattice = match cloud.lattice() {
-            Some(lattice) if cloud.dimension() == D => lattice,
-            _ => {
-                return Err(PericlesError::WrongDimension {
-                    what: "this stencil kernel",
-                    needed: ["1", "2", "3"][D - 1],
-                    dimension: cloud.dimension(),
-                });
-            }
+        let Some(lattice) = cloud.lattice() else {
+            let form = "grid";
+            let reason = NO_LATTICE;
+            return Err(PericlesError::FormNotUsable { form, reason });
         };
         check_points("the points whose bonds never break", no_fail, cloud.len())?;
         let spacing = cloud.spacing();
         // A process may have no points.
         let volume = cloud.volumes().first().copied().unwrap_or(0.0);
         let volume = cloud.domain().max(volume);
-        let rule = BondRule {
-            reach: correction.reach(horizon, spacing),
-            volume: &|r| correction.factor(r, horizon, spacing) * volume,
-            stiffness,
-        };
-        let mut sites = Sites::new(cloud, rule.reach)?;
+        let longest = correction.reach(horizon, spacing);
+        let mut sites = Sites::new(cloud, longest)?;
         let lattice = sites.places().lattice().unwrap_or(lattice);
         let layout = GridLayout::new(&sites, lattice);
-        let stencil = Stencil::<D>::new(lattice, layout.strides(), &rule);
-        let mut blocks = geometric_blocks(&layout, &stencil);
+        let stencil = Stencil::new(lattice, layout.strides(), longest, &|r| {
+            correction.factor(r, horizon, spacing) * volume
+        });
+        let mut bits = geometric_bits(&layout, &stencil);
         let of_site = horizons.map(|horizons| sites.spread(horizons));
         let geometric = (of_site.is_some() || cloud.has_pieces()).then(|| {
             let places = sites.places();
             let reach = |a: usize, b: usize| match &of_site {
                 _ if places.piece(a) != places.piece(b) => 0.0,
                 Some(of_site) => correction.reach(of_site[a].max(of_site[b]), spacing),
-                None => rule.reach,
+                None => longest,
             };
-            keep_within(&sites, &layout, &stencil, &reach, &mut blocks);
-            blocks.iter().map(|block| block.intact.clone()).collect()
+            keep_within(&sites, &layout, &stencil, &reach, &mut bits);
+            bits.clone()
         });
         drop(of_site);
-        if cloud.domain().all(bonds_left(&blocks) == 0) {
+        if cloud.domain().all(count(&bits) == 0) {
             return Err(PericlesError::HorizonTooSmall { horizon, spacing });
         }
         let cuts = cracks
             .iter()
-            .map(|crack| cut(&sites, &layout, &stencil, crack, &mut blocks))
+            .map(|crack| cut(&sites, &layout, &stencil, crack, &mut bits))
             .collect::<Result<Vec<_>>>()?;
         let precut = if cuts.iter().any(|cut| !cut.points.is_empty()) {
-            precut_bonds(&layout, &stencil, &blocks, geometric.as_deref())
+            precut_bonds(&layout, &stencil, &bits, geometric.as_deref())
         } else {
             Vec::new()
         };
-        // The kernel needs positions for output and tangents only.
+        // Forces need positions for output and tangents only.
         sites.release_places();
         Ok(Self {
+            directed_bonds: count(&bits),
             held: held_sites(cloud, &layout, no_fail),
             sites,
-            layout,
+            layout: Arc::new(layout),
             stencil,
-            blocks,
             geometric,
             cuts,
             precut,
         })
     }
+}
+
+/// Returns the number of set bits.
+fn count(bits: &[Vec<u8>]) -> u64 {
+    let bytes = bits.iter().flatten();
+    bytes.map(|byte| u64::from(byte.count_ones())).sum()
 }
 
 /// Returns the sites whose bonds never break, one byte per place (in chunks); `None` if there are no such
@@ -129,7 +109,7 @@ fn held_sites(cloud: &PointCloud, layout: &GridLayout, no_fail: &[u32]) -> Optio
 }
 
 /// Returns all bonds of the geometric families.
-fn geometric_blocks<const D: usize>(layout: &GridLayout, stencil: &Stencil<D>) -> Vec<BlockDamage> {
+fn geometric_bits(layout: &GridLayout, stencil: &Stencil) -> Vec<Vec<u8>> {
     (0..layout.blocks())
         .into_par_iter()
         .map(|block| {
@@ -139,71 +119,69 @@ fn geometric_blocks<const D: usize>(layout: &GridLayout, stencil: &Stencil<D>) -
                 let bits = |&cell: &[i32; 3]| layout.neighbours(chunk, cell);
                 intact.extend(stencil.cells().iter().map(bits));
             }
-            BlockDamage::new(intact)
+            intact
         })
         .collect()
 }
 
 /// Removes bonds longer than the reach of their two sites.
-fn keep_within<const D: usize>(
+fn keep_within(
     sites: &Sites,
     layout: &GridLayout,
-    stencil: &Stencil<D>,
+    stencil: &Stencil,
     reach: &(dyn Fn(usize, usize) -> f64 + Sync),
-    blocks: &mut [BlockDamage],
+    bits: &mut [Vec<u8>],
 ) {
     let m = stencil.len();
-    blocks
-        .par_iter_mut()
-        .enumerate()
-        .for_each(|(block, state)| {
-            let chunks = &layout.chunks()[layout.chunks_of(block)];
-            for (chunk, intact) in chunks.iter().zip(state.intact.chunks_mut(m)) {
-                for (lane, i) in chunk.points() {
-                    let here = sites.of_point(i);
-                    let place = chunk.place as usize * LANES + lane;
-                    for (k, offset) in stencil.offsets().iter().enumerate() {
-                        if intact[k] >> lane & 1 == 1 {
-                            let there = layout.site_at(place.wrapping_add_signed(offset.shift));
-                            if stencil.lengths()[k] > reach(here, there) {
-                                intact[k] &= !(1 << lane);
-                            }
+    bits.par_iter_mut().enumerate().for_each(|(block, bits)| {
+        let chunks = &layout.chunks()[layout.chunks_of(block)];
+        for (chunk, intact) in chunks.iter().zip(bits.chunks_mut(m)) {
+            for (lane, i) in chunk.points() {
+                let here = sites.of_point(i);
+                let place = chunk.place as usize * LANES + lane;
+                for (k, &shift) in stencil.shifts().iter().enumerate() {
+                    if intact[k] >> lane & 1 == 1 {
+                        let there = layout.site_at(place.wrapping_add_signed(shift));
+                        if stencil.lengths()[k] > reach(here, there) {
+                            intact[k] &= !(1 << lane);
                         }
                     }
                 }
             }
-        });
+        }
+    });
 }
 
 /// Removes the bonds that intersect a crack.
 ///
 /// # Errors
 /// A crack without extent or of another dimension than the cloud.
-fn cut<const D: usize>(
+fn cut(
     sites: &Sites,
     layout: &GridLayout,
-    stencil: &Stencil<D>,
+    stencil: &Stencil,
     (crack, rule): &(Crack, EndRule),
-    blocks: &mut [BlockDamage],
+    bits: &mut [Vec<u8>],
 ) -> Result<BondCut> {
-    if crack.dimension() != D {
+    let dimension = sites.cloud().dimension();
+    if crack.dimension() != dimension {
         return Err(PericlesError::WrongDimension {
             what: "this crack",
             needed: ["1", "2", "3"][crack.dimension() - 1],
-            dimension: D,
+            dimension,
         });
     }
     let spacing = sites.cloud().spacing();
     let cutter = crack.cutter(*rule, 1e-9 * spacing)?;
     let longest = stencil.lengths().iter().copied().fold(0.0, f64::max);
     let near = longest + 1e-6 * spacing;
-    let removed: Vec<Vec<(u32, u64)>> = blocks
+    let removed: Vec<Vec<(u32, u64)>> = bits
         .par_iter_mut()
         .enumerate()
-        .map(|(block, state)| {
+        .map(|(block, bits)| {
             let mut removed = Vec::new();
             let chunks = &layout.chunks()[layout.chunks_of(block)];
-            for (chunk, intact) in chunks.iter().zip(state.intact.chunks_mut(stencil.len())) {
+            for (chunk, intact) in chunks.iter().zip(bits.chunks_mut(stencil.len())) {
                 for (lane, i) in chunk.points() {
                     let here = sites.of_point(i);
                     let place = chunk.place as usize * LANES + lane;
@@ -213,11 +191,11 @@ fn cut<const D: usize>(
                         continue;
                     }
                     let mut count = 0;
-                    for (mask, offset) in intact.iter_mut().zip(stencil.offsets()) {
+                    for (mask, &shift) in intact.iter_mut().zip(stencil.shifts()) {
                         if *mask >> lane & 1 == 0 {
                             continue;
                         }
-                        let there = layout.site_at(place.wrapping_add_signed(offset.shift));
+                        let there = layout.site_at(place.wrapping_add_signed(shift));
                         if cutter.cuts_bond(sites, here, there) {
                             *mask &= !(1 << lane);
                             count += 1;
@@ -242,17 +220,17 @@ fn cut<const D: usize>(
 
 /// Returns the groups (chunk · offsets + offset) with bonds cut by cracks in ascending order, with these
 /// bonds.
-fn precut_bonds<const D: usize>(
+fn precut_bonds(
     layout: &GridLayout,
-    stencil: &Stencil<D>,
-    blocks: &[BlockDamage],
+    stencil: &Stencil,
+    bits: &[Vec<u8>],
     geometric: Option<&[Vec<u8>]>,
 ) -> Vec<(u64, u8)> {
     let m = stencil.len();
-    let lost: Vec<Vec<(u64, u8)>> = blocks
+    let lost: Vec<Vec<(u64, u8)>> = bits
         .par_iter()
         .enumerate()
-        .map(|(block, state)| {
+        .map(|(block, bits)| {
             let mut lost = Vec::new();
             for (k, number) in layout.chunks_of(block).enumerate() {
                 let chunk = &layout.chunks()[number];
@@ -261,9 +239,9 @@ fn precut_bonds<const D: usize>(
                         None => layout.neighbours(chunk, cell),
                         Some(geometric) => geometric[block][k * m + offset],
                     };
-                    let bits = family & !state.intact[k * m + offset];
-                    if bits != 0 {
-                        lost.push(((number * m + offset) as u64, bits));
+                    let cut = family & !bits[k * m + offset];
+                    if cut != 0 {
+                        lost.push(((number * m + offset) as u64, cut));
                     }
                 }
             }
