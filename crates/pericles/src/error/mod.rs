@@ -2,9 +2,11 @@
 
 mod check;
 mod extension;
+mod strength;
 mod text;
 
 pub use check::positive;
+pub use strength::UnreachableStrength;
 
 use crate::step_kind::{StepKind, schemes_of};
 use crate::units::{precise, quantity, significant};
@@ -481,6 +483,9 @@ pub enum PericlesError {
         /// What to give.
         allowed: &'static str,
     },
+    /// A tensile strength that softening cannot give.
+    #[error(transparent)]
+    Strength(#[from] UnreachableStrength),
     /// Two constraints prescribe the same component of the motion of a point.
     #[error("the motion of point {point} along {axis} is prescribed twice; leave out one motion")]
     PrescribedTwice {
