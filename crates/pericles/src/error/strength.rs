@@ -9,10 +9,8 @@ use crate::units::{precise, significant};
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error(
     "the tensile strength {} is above {}, the strength of the brittle material, whose bonds break at the critical stretch {} \
-     without softening. Allowed: a horizon of at most {} with this strength and fracture energy, instead of {}; or a strength of \
-     at most {} with this horizon. Use a smaller horizon and spacing, a larger fracture energy or a smaller strength",
-    precise(self.strength, "Pa"), limit(self.brittle, "Pa"), significant(self.critical_stretch, 4),
-    limit(self.largest_horizon, "m"), precise(self.horizon, "m"), limit(self.brittle, "Pa")
+     without softening. {}",
+    precise(self.strength, "Pa"), limit(self.brittle, "Pa"), significant(self.critical_stretch, 4), self.advice()
 )]
 pub struct UnreachableStrength {
     /// The strength given, Pa.
@@ -21,10 +19,32 @@ pub struct UnreachableStrength {
     pub brittle: f64,
     /// Critical stretch s₀.
     pub critical_stretch: f64,
+    /// Whether s₀ follows from a fracture energy; otherwise it is given and does not depend on the horizon.
+    pub by_energy: bool,
     /// Horizon, m.
     pub horizon: f64,
-    /// Largest horizon at which softening gives the strength, m.
+    /// Largest horizon at which softening gives the strength with the same fracture energy, m.
     pub largest_horizon: f64,
+}
+
+impl UnreachableStrength {
+    fn advice(&self) -> String {
+        let strength = limit(self.brittle, "Pa");
+        let largest = limit(self.largest_horizon, "m");
+        if self.by_energy {
+            return format!(
+                "Allowed: a horizon of at most {largest} with this strength and fracture energy, instead of {}; or a strength of at \
+                 most {strength} with this horizon. Use a smaller horizon and spacing, a larger fracture energy or a smaller strength",
+                precise(self.horizon, "m")
+            );
+        }
+        let stretch = self.critical_stretch * self.strength / self.brittle;
+        format!(
+            "Allowed: a critical stretch above {}, or a strength of at most {strength}; with `fracture_energy` instead of \
+             `critical_stretch` and the corresponding energy, a horizon of at most {largest}",
+            significant(stretch, 4)
+        )
+    }
 }
 
 /// Formats an upper limit with four digits, rounded down, so that the printed value is allowed.

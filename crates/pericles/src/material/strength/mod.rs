@@ -25,7 +25,7 @@ mod root;
 
 use super::lattice::Cells;
 use super::{
-    BondConstants, BondMaterial, Calibration, CrackPlane, FractureCalibration, Softening,
+    BondConstants, BondMaterial, Calibration, CrackPlane, Fracture, FractureCalibration, Softening,
     SofteningCurve, SofteningLaw, StressState,
 };
 use crate::error::{PericlesError, Result, UnreachableStrength, positive};
@@ -50,6 +50,8 @@ pub struct HomogeneousBonds {
     young: f64,
     horizon: f64,
     critical_stretch: f64,
+    /// Whether the critical stretch follows from a fracture energy.
+    by_energy: bool,
     fracture_energy: f64,
     lattice: Option<LatticeBonds>,
     /// Modulus of the bonds by integrals over E.
@@ -122,6 +124,7 @@ impl HomogeneousBonds {
             young: constants.young,
             horizon: material.horizon,
             critical_stretch: constants.critical_stretch,
+            by_energy: matches!(material.fracture, Fracture::Energy { .. }),
             fracture_energy: constants.fracture_energy,
             lattice,
             ratio,
@@ -150,6 +153,7 @@ impl HomogeneousBonds {
                 strength,
                 brittle,
                 critical_stretch: self.critical_stretch,
+                by_energy: self.by_energy,
                 horizon: self.horizon,
                 largest_horizon: self.horizon * (brittle / strength).powi(2),
             }));
