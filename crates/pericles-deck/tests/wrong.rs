@@ -225,7 +225,7 @@ const WRONG: &[Wrong] = &[
     wrong("fracture_energy = \"135 J/m2\"\n", "fracture_energy = \"135 J/m2\"\ntensile_strength = \"5 MPa\"\nsoftening = { law = \"linear\", onset_stretch = 1e-4 }\n", (14, 1), "tensile_strength", &["not allowed", "`onset_stretch`", "one of the two"]),
     wrong("fracture_energy = \"135 J/m2\"\n", "tensile_strength = \"5 MPa\"\nsoftening = { law = \"linear\" }\n", (13, 1), "tensile_strength", &["not allowed", "never break"]),
     wrong("fracture_energy = \"135 J/m2\"\n", "fracture_energy = \"135 J/m2\"\ntensile_strength = 0\nsoftening = { law = \"linear\" }\n", (14, 20), "0", &["positive"]),
-    wrong("fracture_energy = \"135 J/m2\"\n", "fracture_energy = \"135 J/m2\"\ntensile_strength = \"5 J/m2\"\nsoftening = { law = \"linear\" }\n", (14, 20), "\"5 J/m2\"", &["unit"]),
+    wrong("fracture_energy = \"135 J/m2\"\n", "fracture_energy = \"135 J/m2\"\ntensile_strength = \"5 J/m2\"\nsoftening = { law = \"linear\" }\n", (14, 20), "\"5 J/m2\"", &["not a force per area"]),
     wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\ntensile_strength = 1\n", (14, 1), "tensile_strength", &["not allowed", "softening"]),
     wrong("youngs_modulus = \"72 GPa\"\n", "model = \"state-based\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nsoftening = { law = \"linear\", onset_stretch = 1e-4 }\n", (14, 1), "softening", &["not allowed", "proportional to the stretch"]),
     wrong("fracture_energy = \"135 J/m2\"\n", "fracture_energy = \"135 J/m2\"\nscatter = { shape = 0.1 }\n", (14, 21), "0.1", &["out of range", "0.5 to 1000"]),
