@@ -46,6 +46,8 @@ pub struct SofteningFacts {
     pub horizon_over_irwin_length: f64,
     /// Largest horizon at which softening gives this strength with this modulus and fracture energy, m.
     pub largest_horizon: f64,
+    /// Largest horizon over the Irwin length.
+    pub largest_horizon_over_irwin_length: f64,
 }
 
 impl SofteningFacts {
@@ -103,6 +105,7 @@ impl SofteningFacts {
             irwin_length: strengths.irwin_length,
             horizon_over_irwin_length: material.horizon / strengths.irwin_length,
             largest_horizon: strengths.largest_horizon,
+            largest_horizon_over_irwin_length: strengths.largest_horizon / strengths.irwin_length,
         })
     }
 
@@ -144,7 +147,7 @@ impl SofteningFacts {
             "{}; the horizon is {} of it, and at most {} with this strength",
             quantity(self.irwin_length, "m"),
             significant(self.horizon_over_irwin_length, 4),
-            significant(self.largest_horizon / self.irwin_length, 4)
+            significant(self.largest_horizon_over_irwin_length, 4)
         );
         let lengths = format!("{lengths} ({})", quantity(self.largest_horizon, "m"));
         let mut lines = vec![("softening", curve), ("strength", tensile)];
