@@ -531,7 +531,7 @@ fn strengths_out_of_range_and_unbreakable_bonds_are_errors() {
     let calibration = FractureCalibration::Lattice;
     let mut material = material(CONCRETE, calibration);
     let rejected = |material: &BondMaterial, strength: f64, word: &str| {
-        let (bonds, _) = bonds(material, StressState::PlaneStress, 3.0);
+        let (bonds, _) = self::bonds(material, StressState::PlaneStress, 3.0);
         let given = TensileStrength {
             strength,
             calibration,
@@ -541,6 +541,20 @@ fn strengths_out_of_range_and_unbreakable_bonds_are_errors() {
     };
     rejected(&material, 0.0, "positive");
     rejected(&material, f64::NAN, "positive");
+    // Four neighbours have no stiffness against tension along the diagonals.
+    let (bonds, _) = bonds(&material, StressState::PlaneStress, 1.0);
+    let given = TensileStrength {
+        strength: 1e6,
+        calibration,
+    };
+    let error = bonds.softening(SofteningLaw::Linear, given).unwrap_err();
+    assert!(error.to_string().contains("two spacings"), "{error}");
+    let softening = Softening {
+        law: SofteningLaw::Linear,
+        onset: 1e-5,
+    };
+    // Reports of such lattices do not panic.
+    bonds.strengths(&softening, calibration).unwrap();
     material.fracture = Fracture::Unbreakable;
     rejected(&material, 1e6, "fracture energy");
 }

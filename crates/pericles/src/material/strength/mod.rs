@@ -147,7 +147,10 @@ impl HomogeneousBonds {
         };
         Softening { law, onset }.curve(self.critical_stretch)?;
         let loaded = self.tension(given.calibration);
-        let brittle = self.young * self.critical_stretch * loaded.at_onset();
+        let brittle = positive(
+            "the strength of the lattice without softening, which needs a horizon of at least two spacings,",
+            self.young * self.critical_stretch * loaded.at_onset(),
+        )?;
         if strength >= brittle {
             return Err(PericlesError::Strength(UnreachableStrength {
                 strength,

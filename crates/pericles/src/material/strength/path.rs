@@ -42,7 +42,7 @@ impl Loaded {
 
     /// Returns the elastic stress over E at the load at which the first bond reaches the stretch 1.
     pub fn at_onset(&self) -> f64 {
-        self.stress(&self.first())
+        self.stress(&self.first(), |stretch| stretch)
     }
 
     /// Returns the largest stress over E along the path, σ : D/(D : D), for a curve whose onset is the stretch 1.
@@ -57,13 +57,14 @@ impl Loaded {
         let first = self.first();
         let growth = (1.05 * curve.end()).powf(1.0 / f64::from(STEPS));
         let (mut samples, mut best) = (vec![first.clone()], 0);
-        let mut largest = self.stress_of(&first, curve);
+        let stress_of = |at: &[f64]| self.stress(at, |stretch| curve.force(stretch));
+        let mut largest = stress_of(&first);
         for step in 1..=STEPS {
             let load = first[0] * growth.powi(step);
             let Some(next) = self.follow(&samples[samples.len() - 1], load, curve) else {
                 break;
             };
-            let stress = self.stress_of(&next, curve);
+            let stress = stress_of(&next);
             samples.push(next);
             if stress > largest {
                 (largest, best) = (stress, samples.len() - 1);
@@ -79,9 +80,7 @@ impl Loaded {
             |load| {
                 let found = self.follow(&from, load, curve);
                 // Neighbouring places of the search lie closer than the samples.
-                let stress = found
-                    .as_ref()
-                    .map_or(0.0, |place| self.stress_of(place, curve));
+                let stress = found.as_ref().map_or(0.0, |place| stress_of(place));
                 if let Some(found) = found {
                     from = found;
                 }
@@ -113,18 +112,11 @@ impl Loaded {
         unit.iter().map(|x| x / largest).collect()
     }
 
-    /// Elastic stress along the driven tensor.
-    fn stress(&self, at: &[f64]) -> f64 {
+    /// Stress over E along the driven tensor, σ : D/(D : D), of bonds with the response g(s).
+    fn stress(&self, at: &[f64], response: impl Fn(f64) -> f64) -> f64 {
         let terms = self
             .stretches(at)
-            .map(|(weight, parts, s)| weight * parts[0] * s);
-        terms.sum::<f64>() / self.square
-    }
-
-    fn stress_of(&self, at: &[f64], curve: &SofteningCurve) -> f64 {
-        let terms = self
-            .stretches(at)
-            .map(|(weight, parts, s)| weight * parts[0] * curve.force(s));
+            .map(|(weight, parts, stretch)| weight * parts[0] * response(stretch));
         terms.sum::<f64>() / self.square
     }
 
@@ -209,8 +201,8 @@ fn solved(matrix: Vec<f64>, right: &[f64], damping: f64) -> Vec<f64> {
             continue;
         }
         let pivot = rows[a].clone();
-        for (b, row) in rows.iter_mut().enumerate().filter(|(b, _)| *b != a) {
-            debug_assert_ne!(a, b);
+        let others = rows.iter_mut().enumerate().filter(|(b, _)| *b != a);
+        for (_, row) in others {
             let factor = row[a] / pivot[a];
             row.iter_mut()
                 .zip(&pivot)
