@@ -53,6 +53,7 @@ pub(crate) const OWN_CONSTANTS: &[&str] = &[
     "poisson_ratio",
     "fracture_energy",
     "critical_stretch",
+    "tensile_strength",
     "strength",
     "criterion",
     "viscosity",

@@ -7,6 +7,7 @@ use serde::Serialize;
 use crate::build::{Assembly, LoadReport, MaterialConstants};
 use crate::heat::HeatFacts;
 use crate::refinement::RefinementFacts;
+use crate::strength::SofteningFacts;
 use crate::units::{bytes, count, quantity, significant};
 
 /// Properties of a run before its first step; SI units.
@@ -54,6 +55,9 @@ pub struct Facts {
     /// Energies of cracks along lattice planes, if bonds break and the points form a lattice.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub crack_planes: Vec<PlaneFacts>,
+    /// Softening and strengths of the materials whose bonds soften, the body's material first.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub softening: Vec<SofteningFacts>,
     /// Relative error of the bulk stiffness in the interior of the grid; zero for state-based materials, `None` for
     /// surfaces.
     pub stiffness_error: Option<f64>,
@@ -261,6 +265,7 @@ impl Facts {
                 .and_then(MaterialConstants::fracture_calibration)
                 .map(|given| given.name()),
             crack_planes: constants.map(plane_facts).unwrap_or_default(),
+            softening: SofteningFacts::of(model, assembly),
             stiffness_error: constants.map(|constants| match constants {
                 MaterialConstants::Bonds(constants) => constants.stiffness_error,
                 // The bulk stiffness is exact for any points.

@@ -78,6 +78,7 @@ mod sets_picture;
 mod sharing;
 mod source;
 mod static_balance;
+mod strength;
 pub mod sweep;
 pub mod units;
 mod vibration;
@@ -87,9 +88,9 @@ pub use assembled::{Assembled, Caching, Means, readers};
 pub use audit::Audit;
 pub use build::{
     Assembly, BANDWIDTH, Conditions, Discretisation, ExactReference, FileError, Forecast, Grids,
-    Interior, KernelQuality, LATENCY, LoadReport, MaterialConstants, MeshBody, MeshReader, Meshes,
-    OutlineReader, PlaneWaves, PointsReader, Polygons, Resources, Sets, Spread, SurfaceReader,
-    TableReader, assemble, build, discretise,
+    Interior, KernelQuality, LATENCY, LoadReport, MaterialConstants, MaterialSoftening, MeshBody,
+    MeshReader, Meshes, OutlineReader, PlaneWaves, PointsReader, Polygons, Resources, Sets, Spread,
+    SurfaceReader, TableReader, assemble, build, discretise,
 };
 pub use cancel::Cancel;
 pub use deadline::Deadline;
@@ -110,4 +111,5 @@ pub use sets_picture::draw_sets;
 pub use sharing::Sharing;
 pub use source::{ModelData, Source, SourceRecord};
 pub use static_balance::StaticBalance;
+pub use strength::SofteningFacts;
 pub use vibration::Vibration;

@@ -198,7 +198,7 @@ pub use accounts::Ledger;
 pub use archive::{Archive, Checkpointed, Values};
 pub use body::Body;
 pub use compatibility::{Need, Requirement, require};
-pub use error::{PericlesError, Result, positive};
+pub use error::{PericlesError, Result, UnreachableStrength, positive};
 pub use guard::InstabilityCause;
 pub use interaction::{Configuration, Interaction, InteractionStep};
 pub use interrupt::{Interrupt, IterationProgress};

@@ -39,6 +39,10 @@ pub(super) fn material(
     if !facts.crack_planes.is_empty() {
         lines.push(Line::new("crack planes", crack_planes(facts)));
     }
+    for material in &facts.softening {
+        let found = material.lines(facts.dimension).into_iter();
+        lines.extend(found.map(|(name, text)| Line::new(name, text)));
+    }
     for (other, own) in others.0.iter().zip(others.1) {
         lines.push(other_material(other, own));
     }

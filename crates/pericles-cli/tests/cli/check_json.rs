@@ -68,11 +68,18 @@ fn is_held(printed: f64, last: f64, numbers: &[f64]) -> bool {
     })
 }
 
-/// Removes Miller indices such as `(10)` from a line: they are names.
-fn without_planes(line: &str, json: &Value) -> String {
+/// Removes Miller indices such as `(10)` and directions such as `45°` from a line: they are names.
+fn without_names(line: &str, json: &Value) -> String {
     let planes = json["crack_planes"].as_array().into_iter().flatten();
     let names = planes.filter_map(|plane| plane["plane"].as_str());
-    names.fold(line.to_owned(), |line, name| line.replace(name, ""))
+    let line = names.fold(line.to_owned(), |line, name| line.replace(name, ""));
+    let materials = json["softening"].as_array().into_iter().flatten();
+    let directions = materials.filter_map(|material| material["strength"].as_object());
+    let names = directions.flat_map(|strengths| strengths.keys());
+    names.fold(line, |line, name| {
+        let line = line.replace(&format!("along ({name})"), "");
+        line.replace(&format!("along {name}°"), "")
+    })
 }
 
 fn assert_json_holds_what_is_printed(folder: &Path, deck: &str) -> Value {
@@ -90,7 +97,7 @@ fn assert_json_holds_what_is_printed(folder: &Path, deck: &str) -> Value {
         {
             continue;
         }
-        for (value, last) in printed(&without_planes(line, &json)) {
+        for (value, last) in printed(&without_names(line, &json)) {
             assert!(
                 is_held(value, last, &held),
                 "{value} of `{line}` is not in {json:#}"
@@ -143,6 +150,16 @@ fn the_json_of_check_contains_every_printed_number() {
         let number = json.pointer(key).and_then(Value::as_f64);
         assert!(number.is_some_and(|number| number > 0.0), "{key}: {json:#}");
     }
+    let softening = concat!(
+        "model = \"linear\"\nsoftening = { law = \"linear\" }\n",
+        "tensile_strength = \"40 MPa\"\ncritical_stretch"
+    );
+    let softens = PLATE.replace("critical_stretch", softening);
+    assert_ne!(softens, PLATE);
+    std::fs::write(folder.join("softens.toml"), softens).unwrap();
+    let json = assert_json_holds_what_is_printed(folder, "softens.toml");
+    let strength = json["softening"][0]["tensile_strength"].as_f64().unwrap();
+    assert!((strength / 40e6 - 1.0).abs() < 1e-8, "{json:#}");
     for example in [
         "wave/two-materials",
         "multi-time-step/notched-plate",

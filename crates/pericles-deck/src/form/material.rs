@@ -5,7 +5,7 @@ use pericles::kernel::{Influence, InfluenceFunction};
 use pericles::material::{
     BondFailure, BondMaterial, Calibration, ElasticModulus, Fracture, FractureCalibration,
     GivenConstants, Inelasticity, InterfaceRule, InterfaceStiffness, LinearSolid, Modulus, PairLaw,
-    StateInfluence, StretchDefinition, ViscousTerm, Yield,
+    StateInfluence, StretchDefinition, TensileStrength, ViscousTerm, Yield,
 };
 use pericles::operator::DamageMeasure;
 use pericles_solids::correspondence::Plasticity;
@@ -60,6 +60,14 @@ enum FractureForm {
         #[serde(with = "crate::form")]
         calibration: FractureCalibration,
     },
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "TensileStrength", deny_unknown_fields)]
+struct TensileStrengthForm {
+    strength: f64,
+    #[serde(with = "crate::form")]
+    calibration: FractureCalibration,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -178,6 +186,7 @@ described!(
     Modulus: ModulusForm,
     ElasticModulus: ElasticModulusForm,
     Fracture: FractureForm,
+    TensileStrength: TensileStrengthForm,
     LinearSolid: LinearSolidForm,
     GivenConstants: GivenConstantsForm,
     StateInfluence: StateInfluenceForm,

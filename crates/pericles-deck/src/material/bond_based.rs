@@ -4,7 +4,7 @@ use pericles::material::{Approximation, BondMaterial, CubicLaw, PairLaw};
 
 use super::keys::{damage, density, form, horizon, no_fail, setting, volume_correction};
 use super::scatter::scatter;
-use super::softening::{forbid_softening, softening};
+use super::softening::{forbid_softening, forbid_tensile_strength, softening, tensile_strength};
 use super::types::{Material, MaterialModel};
 use crate::body::BodyRead;
 use crate::constants::{
@@ -65,6 +65,15 @@ pub(super) fn read(
             Some(None)
         }
     };
+    let tensile_strength = match law {
+        None | Some(PairLaw::Linear | PairLaw::BondStretch) => {
+            tensile_strength(&table, softening, fracture_calibration)
+        }
+        Some(_) => {
+            forbid_tensile_strength(&table);
+            Some(None)
+        }
+    };
     let damage = damage(&table);
     let form = form(&table);
     let rules = ConstantRules {
@@ -92,6 +101,7 @@ pub(super) fn read(
         no_fail: no_fail?,
         scatter: scatter?,
         softening: softening?,
+        tensile_strength: tensile_strength?,
         surface_correction: surface_correction?,
         damage: damage?,
         form: form?,

@@ -6,7 +6,7 @@ use pericles::material::{LinearSolid, StateInfluence, SurfaceCorrection};
 use super::inelastic;
 use super::keys::{damage, density, form, horizon, no_fail, setting, volume_correction};
 use super::scatter::scatter;
-use super::softening::forbid_softening;
+use super::softening::{forbid_softening, forbid_tensile_strength};
 use super::types::Material;
 use crate::body::BodyRead;
 use crate::constants::fracture_calibration;
@@ -56,6 +56,7 @@ pub(super) fn read(
     let no_fail = no_fail(&table, sets);
     let scatter = scatter(&table);
     forbid_softening(&table);
+    forbid_tensile_strength(&table);
     let damage = damage(&table);
     let form = form(&table);
     table.finish();

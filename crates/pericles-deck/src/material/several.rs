@@ -81,10 +81,15 @@ pub(crate) fn read(root: &Table<'_>, body: &BodyRead, sets: &SetNames) -> Materi
                 });
             }
             names.push(name.into());
-            let model = other(&item, own.as_ref(), body, sets)?;
+            let Material {
+                model,
+                tensile_strength,
+                ..
+            } = other(&item, own.as_ref(), body, sets)?;
             Some(NamedMaterial {
                 name: name.into(),
                 model,
+                tensile_strength,
             })
         })
         .collect();
@@ -112,8 +117,8 @@ fn other(
     own: Option<&Material>,
     body: &BodyRead,
     sets: &SetNames,
-) -> Option<MaterialModel> {
-    let read = one(item, body, sets, false)?;
+) -> Option<Material> {
+    let mut read = one(item, body, sets, false)?;
     let own = own?;
     if let Some(key) = difference_of_tables(own, &read) {
         let table = item.table()?;
@@ -132,14 +137,14 @@ fn other(
         }
         return None;
     }
-    let mut model = read.model;
+    let model = &mut read.model;
     if same_length(own.horizon(), model.horizon()) {
         // Makes both horizons bitwise equal.
-        match &mut model {
+        match model {
             MaterialModel::Bonds(bonds) => bonds.horizon = own.horizon(),
             MaterialModel::StateBased(state) => state.solid.horizon = own.horizon(),
             MaterialModel::Correspondence(state) => state.solid.horizon = own.horizon(),
         }
     }
-    Some(model)
+    Some(read)
 }

@@ -1,10 +1,11 @@
-//! `softening`: bonds that soften before they break.
+//! `softening` and `tensile_strength`: bonds that soften before they break.
 
-use pericles::material::{Softening, SofteningLaw};
+use pericles::material::{FractureCalibration, SofteningLaw, TensileStrength};
 use serde::{Deserialize, Serialize};
 
 use crate::quantity::Quantity;
 use crate::reader::Table;
+use crate::vocabulary::STRENGTHS;
 
 /// Softening of bonds beyond an elastic limit.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -12,8 +13,9 @@ use crate::reader::Table;
 pub struct BondSoftening {
     /// The curve.
     pub law: SofteningWord,
-    /// The stretch at which softening starts.
-    pub onset_stretch: f64,
+    /// The stretch at which softening starts; `None` if it follows from the tensile strength of each material.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub onset_stretch: Option<f64>,
     /// Trilinear: the force at the knee over the largest force.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub knee_force: Option<f64>,
@@ -38,19 +40,15 @@ pub enum SofteningWord {
 const KNEE: [f64; 2] = [1.0 / 3.0, 2.0 / 9.0];
 
 impl BondSoftening {
-    /// Converts to the engine's type.
-    pub fn softening(&self) -> Softening {
-        let law = match self.law {
+    /// Converts the curve to the engine's type.
+    pub fn law(&self) -> SofteningLaw {
+        match self.law {
             SofteningWord::Linear => SofteningLaw::Linear,
             SofteningWord::Exponential => SofteningLaw::Exponential,
             SofteningWord::Trilinear => SofteningLaw::Trilinear {
                 knee_force: self.knee_force.unwrap_or(KNEE[0]),
                 knee_position: self.knee_position.unwrap_or(KNEE[1]),
             },
-        };
-        Softening {
-            law,
-            onset: self.onset_stretch,
         }
     }
 }
@@ -60,6 +58,49 @@ pub(super) fn forbid_softening(table: &Table<'_>) {
     table.forbid(
         "softening",
         "it requires model = \"bond-stretch\" or \"linear\", whose pair force is proportional to the stretch, so that the area under the curve is the energy of the bond",
+    );
+}
+
+/// Reads the tensile strength of a material, from which the onset of its softening follows. It requires a softening law
+/// without an onset; `calibration` is that of the fracture energy.
+pub(super) fn tensile_strength(
+    table: &Table<'_>,
+    softening: Option<Option<BondSoftening>>,
+    calibration: Option<FractureCalibration>,
+) -> Option<Option<TensileStrength>> {
+    const KEY: &str = "tensile_strength";
+    let breaks = STRENGTHS.iter().any(|key| table.has(key));
+    let forbidden = match softening? {
+        None => Some(
+            "it requires `softening = { law = … }`: the tensile strength gives the stretch at which softening starts",
+        ),
+        Some(given) if given.onset_stretch.is_some() => Some(
+            "`softening` has an `onset_stretch`, which determines the strength; give one of the two keys",
+        ),
+        Some(_) if !breaks => {
+            Some("bonds without `fracture_energy` or `critical_stretch` never break")
+        }
+        Some(_) => None,
+    };
+    if let Some(reason) = forbidden {
+        table.forbid(KEY, reason);
+        return Some(None);
+    }
+    let Some(item) = table.optional(KEY) else {
+        table.requires_one_of(&[KEY, "softening.onset_stretch"]);
+        return None;
+    };
+    Some(Some(TensileStrength {
+        strength: item.positive(Quantity::Traction)?,
+        calibration: calibration?,
+    }))
+}
+
+/// Rejects the key in the table of a material whose bonds cannot soften.
+pub(super) fn forbid_tensile_strength(table: &Table<'_>) {
+    table.forbid(
+        "tensile_strength",
+        "it requires model = \"bond-stretch\" or \"linear\" with `softening`; failure = \"principal-stress\" has the key `strength`",
     );
 }
 
@@ -78,10 +119,10 @@ fn read(table: Table<'_>) -> Option<BondSoftening> {
             ],
         )
     });
-    let onset = table.required("onset_stretch").and_then(|item| {
+    let onset = table.maybe("onset_stretch", |item| {
         item.within(
             Quantity::Number,
-            "a positive stretch below the critical stretch, such as tensile strength over Young's modulus",
+            "a positive stretch below the critical stretch",
             |stretch| stretch > 0.0,
         )
     });

@@ -1,7 +1,7 @@
 //! Data types of materials.
 
 use pericles::family::VolumeCorrection;
-use pericles::material::{BondMaterial, CubicLaw, PairLaw, SurfaceCorrection};
+use pericles::material::{BondMaterial, CubicLaw, PairLaw, SurfaceCorrection, TensileStrength};
 use pericles::operator::DamageMeasure;
 use pericles_dispersion::tuning::TunedTable;
 use pericles_waves::ForceForm;
@@ -39,6 +39,9 @@ pub struct Material {
     /// How bonds soften before they break, if they do.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub softening: Option<BondSoftening>,
+    /// Tensile strength from which the onset of softening follows, if it is given.
+    #[serde(default, with = "crate::form")]
+    pub tensile_strength: Option<TensileStrength>,
     /// Damage measure, if it is given.
     #[serde(default, with = "crate::form")]
     pub damage: Option<DamageMeasure>,
@@ -92,6 +95,7 @@ impl From<MaterialModel> for Material {
             surface_correction: SurfaceCorrection::default(),
             scatter: None,
             softening: None,
+            tensile_strength: None,
             damage: None,
             form: ForceForm::default(),
         }
@@ -106,6 +110,9 @@ pub struct NamedMaterial {
     pub name: String,
     /// Law, constants, horizon and failure; shared properties must equal those of the body's material.
     pub model: MaterialModel,
+    /// Tensile strength from which the onset of softening follows, if it is given.
+    #[serde(default, with = "crate::form")]
+    pub tensile_strength: Option<TensileStrength>,
 }
 
 impl MaterialModel {

@@ -64,6 +64,7 @@ pub fn assemble(
         bonds,
         cracks: tracked,
         density,
+        softening,
     } = parts;
     assembler.reject_fields(&bonds)?;
     assembler.check_cells(&discretisation)?;
@@ -153,6 +154,7 @@ pub fn assemble(
         sets,
         constants,
         other_materials: others,
+        softening,
         form: bonds.form,
         precut_bonds: bonds.cuts.iter().map(|cut| cut.bonds).sum(),
         cracks: tracked,

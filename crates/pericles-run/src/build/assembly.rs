@@ -17,6 +17,7 @@ use super::discretisation::Sets;
 use super::exact::ExactReference;
 use super::loads::LoadReport;
 use super::mesh_body::Meshes;
+use super::softening::MaterialSoftening;
 use super::step::damped_step;
 
 /// An assembled model, ready to run.
@@ -33,6 +34,8 @@ pub struct Assembly {
     pub constants: Option<MaterialConstants>,
     /// The constants of the other materials, in the order of [`Model::materials`](pericles_deck::Model::materials).
     pub other_materials: Vec<MaterialConstants>,
+    /// Softening of all materials, the body's material first; `None` for bonds that do not soften, empty for other models.
+    pub softening: Vec<Option<MaterialSoftening>>,
     /// The force kernel.
     pub form: ForceForm,
     /// Number of bonds cut by pre-cracks.

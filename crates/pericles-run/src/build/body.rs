@@ -20,6 +20,7 @@ use super::graded::have_several_horizons;
 use super::materials::{Between, Composition};
 use super::rejection::{at_material, at_path};
 use super::resources::Resources;
+use super::softening::MaterialSoftening;
 use crate::composition::has_need;
 
 /// Force operator and material of a body.
@@ -29,6 +30,8 @@ pub(super) struct BodyParts {
     pub(super) bonds: AssembledForce,
     pub(super) cracks: Vec<TrackedCrack>,
     pub(super) density: PointScalar,
+    /// Softening of all materials, the body's material first; empty without bond-based materials.
+    pub(super) softening: Vec<Option<MaterialSoftening>>,
 }
 
 impl Assembler<'_> {
@@ -78,6 +81,7 @@ impl Assembler<'_> {
             interfaces,
             density,
             others,
+            softening,
         } = self.materials(solid, (material, &constants), discretisation, warnings)?;
         let body = BondBody {
             cloud,
@@ -92,7 +96,7 @@ impl Assembler<'_> {
             body,
             classes: classes.as_ref(),
             correction: solid.material.surface_correction,
-            softening: solid.material.softening.map(|own| own.softening()),
+            softening: self.softening_of_body(solid, &softening)?,
         };
         let all = (&materials[..], &interfaces[..]);
         let (bonds, cracks) =
@@ -111,6 +115,7 @@ impl Assembler<'_> {
             density,
             constants: Some(known),
             others: others.into_iter().map(MaterialConstants::Bonds).collect(),
+            softening,
         })
     }
 
@@ -141,6 +146,7 @@ impl Assembler<'_> {
             density: PointScalar::Uniform(body.material.density),
             constants: None,
             others: Vec::new(),
+            softening: Vec::new(),
         })
     }
 

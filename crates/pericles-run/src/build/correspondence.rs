@@ -107,6 +107,7 @@ impl Assembler<'_> {
             bonds: bonds.into(),
             cracks,
             density,
+            softening: Vec::new(),
         })
     }
 

@@ -14,6 +14,7 @@ use pericles_waves::ForceForm;
 use super::assembler::Assembler;
 use super::discretisation::{Discretisation, Sets};
 use super::rejection::{at, at_path};
+use super::softening::MaterialSoftening;
 
 /// The materials of a body.
 pub(super) struct Composition {
@@ -25,6 +26,8 @@ pub(super) struct Composition {
     pub(super) density: PointScalar,
     /// Constants of the other materials, in the order of the deck.
     pub(super) others: Vec<BondConstants>,
+    /// Softening of all materials, the body's material first; `None` for bonds that do not soften.
+    pub(super) softening: Vec<Option<MaterialSoftening>>,
 }
 
 /// The numbers of two materials with the given constants of bonds between them.
@@ -52,6 +55,9 @@ impl<'m> Assembler<'m> {
         let checked = checked_key(&bonds.fracture, &path);
         self.check_stretch(constants.critical_stretch, checked, warnings);
         self.check_stiffness(solid, constants, &path, warnings);
+        let given = solid.material.tensile_strength;
+        let mut softening =
+            vec![self.softening_of(solid, (bonds, constants), given, cloud, &path)?];
         let mut all = vec![constants.clone()];
         let mut materials = vec![bonds.clone()];
         for other in &self.model.materials {
@@ -66,6 +72,8 @@ impl<'m> Assembler<'m> {
             let checked = checked_key(&own.fracture, &path);
             self.check_stretch(own_constants.critical_stretch, checked, warnings);
             self.check_stiffness(solid, &own_constants, &path, warnings);
+            let pair = (own, &own_constants);
+            softening.push(self.softening_of(solid, pair, other.tensile_strength, cloud, &path)?);
             all.push(own_constants);
         }
         let (of_point, density) =
@@ -78,7 +86,8 @@ impl<'m> Assembler<'m> {
             None => None,
             Some(of_point) => {
                 let classes = MaterialPairs::new(of_point, &all, InterfaceRule::default());
-                let mut classes = classes.map_err(|error| at("materials", error))?;
+                let classes = classes.map_err(|error| at("materials", error))?;
+                let mut classes = self.with_onsets(classes, &softening)?;
                 for (between, path) in self.interfaces(&solid.material)? {
                     let (pair, interface) = &between;
                     let material = &materials[usize::from(pair[0])];
@@ -88,6 +97,7 @@ impl<'m> Assembler<'m> {
                     set.map_err(|error| at_path(&path, error.into()))?;
                     let stretch = classes.pair_critical_stretch(*pair);
                     if interface.fracture.is_some() {
+                        self.check_onset_between(between.0, &softening, stretch, &path)?;
                         self.check_stretch(stretch, path, warnings);
                     }
                     interfaces.push(between);
@@ -107,6 +117,7 @@ impl<'m> Assembler<'m> {
             interfaces,
             density,
             others: all,
+            softening,
         })
     }
 

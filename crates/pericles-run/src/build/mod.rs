@@ -45,6 +45,7 @@ mod resources;
 mod rotation;
 mod scheme;
 mod sense;
+mod softening;
 mod state_based;
 mod statics;
 mod step;
@@ -70,3 +71,4 @@ pub use resources::{
     FileError, MeshReader, OutlineReader, PointsReader, Polygons, Resources, SurfaceReader,
     TableReader,
 };
+pub use softening::MaterialSoftening;

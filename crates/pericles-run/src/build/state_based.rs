@@ -136,6 +136,7 @@ impl Assembler<'_> {
             bonds: bonds.into(),
             cracks,
             density,
+            softening: Vec::new(),
         })
     }
 

@@ -40,6 +40,7 @@ mod static_breaking;
 mod static_ramp;
 mod static_resume;
 mod stiffness;
+mod strength;
 mod stress;
 mod thermal;
 mod tuned;

@@ -151,7 +151,9 @@ impl Body {
         self
     }
 
-    /// Bonds that soften before they break, which are then a list.
+    /// Bonds that soften before they break, which are then a list. All materials have the same onset;
+    /// [`HomogeneousBonds::softening`](crate::material::HomogeneousBonds::softening) determines it from a tensile
+    /// strength.
     pub fn softening(mut self, softening: Softening) -> Self {
         self.softening = Some(softening);
         self

@@ -2,9 +2,11 @@
 
 mod check;
 mod extension;
+mod strength;
 mod text;
 
 pub use check::positive;
+pub use strength::UnreachableStrength;
 
 use crate::step_kind::{StepKind, schemes_of};
 use crate::units::{precise, quantity, significant};
@@ -32,8 +34,7 @@ pub enum PericlesError {
     },
     /// The rounding of coordinates is not small compared with the spacing.
     #[error(
-        "the body reaches {} from the origin, where double precision resolves only {}: too coarse for a spacing of {}. Allowed with this spacing: \
-         coordinates up to {}. Check the unit of the lengths",
+        "the body reaches {} from the origin, where double precision resolves only {}: too coarse for a spacing of {}. Allowed with this spacing: coordinates up to {}. Check the unit of the lengths",
         quantity(*farthest, "m"), quantity(*resolution, "m"), quantity(*spacing, "m"), quantity(*allowed, "m")
     )]
     Unresolved {
@@ -105,8 +106,7 @@ pub enum PericlesError {
     },
     /// The horizon holds too many neighbours.
     #[error(
-        "the horizon {} is {:.0} spacings of {}, which gives each point up to {neighbours:.0e} neighbours; allowed: at most {most:.0e} (usual: 3 spacings). \
-         Check the unit of the horizon",
+        "the horizon {} is {:.0} spacings of {}, which gives each point up to {neighbours:.0e} neighbours; allowed: at most {most:.0e} (usual: 3 spacings). Check the unit of the horizon",
         precise(*horizon, "m"), horizon / spacing, precise(*spacing, "m")
     )]
     HorizonTooLarge {
@@ -189,8 +189,7 @@ pub enum PericlesError {
     },
     /// The Poisson's ratio differs from the fixed one of bond-based peridynamics.
     #[error(
-        "Poisson's ratio {given} is not supported: bond-based peridynamics in {state} has one elastic constant and Poisson's ratio {fixed}; \
-         leave the ratio out or set it to {fixed}"
+        "Poisson's ratio {given} is not supported: bond-based peridynamics in {state} has one elastic constant and Poisson's ratio {fixed}; leave the ratio out or set it to {fixed}"
     )]
     PoissonRatio {
         /// The ratio given.
@@ -481,10 +480,11 @@ pub enum PericlesError {
         /// What to give.
         allowed: &'static str,
     },
+    /// A tensile strength that softening cannot give.
+    #[error(transparent)]
+    Strength(#[from] UnreachableStrength),
     /// Two constraints prescribe different values of one component of the motion of a point.
-    #[error(
-        "two constraints prescribe different motions of point {point} along {axis}; leave out one of them"
-    )]
+    #[error("two constraints prescribe different motions of point {point} along {axis}; omit one")]
     PrescribedTwice {
         /// Number of the point.
         point: usize,

@@ -36,13 +36,16 @@ impl InterfaceRule {
 /// Material of every point, and a symmetric table of bond constants for every pair of materials.
 ///
 /// A bond between materials a and b has the constant c_ab of the [`InterfaceRule`] and the smaller of both
-/// critical stretches, unless [`MaterialPairs::set_critical_stretch`] sets another one.
+/// critical stretches, unless [`MaterialPairs::set_critical_stretch`] sets another one. If bonds soften, they do so from
+/// the smaller of both onsets ([`MaterialPairs::with_onsets`]).
 #[derive(Debug, Clone, PartialEq)]
 pub struct MaterialPairs {
     of_point: Vec<u8>,
     count: usize,
     micromodulus: Vec<f64>,
     critical_stretch: Vec<f64>,
+    /// Stretch at which softening starts, per pair; empty if all bonds have the onset of the body.
+    onset: Vec<f64>,
     /// Factor of the critical stretch of each point.
     strength: Factors,
 }
@@ -70,7 +73,22 @@ impl MaterialPairs {
             count,
             micromodulus: table(&|a, b| rule.mix([a.micromodulus, b.micromodulus])),
             critical_stretch: table(&|a, b| a.critical_stretch.min(b.critical_stretch)),
+            onset: Vec::new(),
             strength: Factors::default(),
+        })
+    }
+
+    /// Sets the stretch at which the bonds of each material soften, infinite for bonds that stay elastic. A bond between
+    /// two materials has the smaller onset.
+    ///
+    /// # Errors
+    /// A number of onsets other than the number of materials.
+    pub fn with_onsets(self, onsets: &[f64]) -> Result<Self> {
+        check_length("the onsets of the materials", onsets.len(), self.count)?;
+        let pairs = onsets.iter().flat_map(|a| onsets.iter().map(|b| a.min(*b)));
+        Ok(Self {
+            onset: pairs.collect(),
+            ..self
         })
     }
 
@@ -214,6 +232,12 @@ impl MaterialPairs {
     /// Returns the smallest factor of all points.
     pub(crate) fn smallest_strength(&self) -> f64 {
         self.strength.smallest()
+    }
+
+    /// Returns the onset of softening of a pair of materials, given by its table entry; `None` if all bonds have the
+    /// onset of the body.
+    pub(crate) fn onset(&self, class: usize) -> Option<f64> {
+        self.onset.get(class).copied()
     }
 
     /// Returns the critical stretches by pair of materials.

@@ -14,7 +14,13 @@ use super::modulus::StressState;
 impl Calibration {
     /// Returns the moment by which E is divided, for influence functions other than class tables; `lattice`
     /// is the lattice sum.
-    fn moment(self, dimension: usize, horizon: f64, influence: &Influence, lattice: f64) -> f64 {
+    pub(super) fn moment(
+        self,
+        dimension: usize,
+        horizon: f64,
+        influence: &Influence,
+        lattice: f64,
+    ) -> f64 {
         match self {
             Self::Continuum => influence.moment(dimension as f64, horizon),
             Self::Lattice => lattice,

@@ -33,14 +33,16 @@ impl CrackPlane {
     /// Returns the mean energy of the families of planes, J/m²: (10), (11) in 2D, (100), (110), (111) in 3D
     /// with equal weights. On cells of unequal sides, different planes of a family share its weight.
     pub fn mean(planes: &[Self]) -> f64 {
+        Self::mean_of(planes, |k| planes[k].energy)
+    }
+
+    /// Returns the mean of a value of each plane, given by its number, with the weights of [`CrackPlane::mean`].
+    pub(super) fn mean_of(planes: &[Self], value: impl Fn(usize) -> f64) -> f64 {
         let order = |plane: &Self| plane.indices.iter().filter(|index| **index > 0).count();
         let families: Vec<f64> = (1..=3)
             .filter_map(|number| {
-                let family: Vec<f64> = planes
-                    .iter()
-                    .filter(|plane| order(plane) == number)
-                    .map(|plane| plane.energy)
-                    .collect();
+                let of_family = (0..planes.len()).filter(|&k| order(&planes[k]) == number);
+                let family: Vec<f64> = of_family.map(&value).collect();
                 let sum: f64 = family.iter().sum();
                 (!family.is_empty()).then(|| sum / family.len() as f64)
             })
@@ -64,6 +66,14 @@ impl CrackPlane {
             .map(|(index, side)| (f64::from(*index) / side).powi(2))
             .sum();
         square.sqrt()
+    }
+
+    /// Returns a vector along the normal, 1/m, on a lattice whose cells have these sides (m).
+    pub(super) fn normal(&self, sides: &[f64]) -> [f64; 3] {
+        std::array::from_fn(|c| match self.indices.get(c) {
+            Some(index) => f64::from(*index) / sides[c],
+            None => 0.0,
+        })
     }
 
     /// Sets the energy, J/m².

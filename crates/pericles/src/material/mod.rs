@@ -32,6 +32,7 @@ mod polynomial;
 mod scatter;
 mod softening;
 mod state_based;
+mod strength;
 mod surface_correction;
 mod waves;
 
@@ -57,5 +58,6 @@ pub use state_based::{
     LatticeShear, LinearSolid, LinearSolidConstants, MOST_TERMS, SolidClasses, SolidSurface,
     StateInfluence, Strains, StretchDefinition, ViscousTerm, Yield,
 };
+pub use strength::{HomogeneousBonds, Strengths, TensileStrength};
 pub use surface_correction::{SurfaceCorrection, SurfaceFactors};
 pub use waves::{ElasticWaves, TransverseWaves};

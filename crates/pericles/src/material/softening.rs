@@ -41,7 +41,8 @@ pub enum SofteningLaw {
 pub struct Softening {
     /// Shape of the curve.
     pub law: SofteningLaw,
-    /// Elastic limit s_e, the stretch at which softening starts.
+    /// Elastic limit s_e, the stretch at which softening starts;
+    /// [`HomogeneousBonds::softening`](super::HomogeneousBonds::softening) determines it from a tensile strength.
     pub onset: f64,
 }
 

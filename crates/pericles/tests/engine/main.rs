@@ -24,6 +24,7 @@ mod round_trip;
 mod single_precision;
 mod state_based;
 mod statics;
+mod strength;
 mod surface_correction;
 mod two_pass;
 mod values;

@@ -16,7 +16,7 @@ pub(super) struct Curves {
 
 impl Curves {
     /// Creates the curves of a softening law for bonds of one critical stretch, or for the given classes of
-    /// sites.
+    /// sites, which may have onsets of their own.
     ///
     /// # Errors
     /// Errors of [`Softening::curve`].
@@ -25,12 +25,20 @@ impl Curves {
         critical_stretch: f64,
         classes: Option<MaterialPairs>,
     ) -> Result<Self> {
-        let curve_of = |&stretch: &f64| match stretch.is_finite() {
-            true => softening.curve(stretch).map(Some),
-            false => Ok(None),
+        let curve_of = |onset: Option<f64>, stretch: f64| {
+            let own = Softening {
+                onset: onset.unwrap_or(softening.onset),
+                ..*softening
+            };
+            match stretch.is_finite() {
+                true => own.curve(stretch).map(Some),
+                false => Ok(None),
+            }
         };
         let table: Vec<Option<SofteningCurve>> = match &classes {
-            Some(classes) => classes.critical_stretches().iter().map(curve_of).collect(),
+            Some(classes) => (classes.critical_stretches().iter().enumerate())
+                .map(|(class, &stretch)| curve_of(classes.onset(class), stretch))
+                .collect(),
             None => softening
                 .curve(critical_stretch)
                 .map(|curve| vec![Some(curve)]),
