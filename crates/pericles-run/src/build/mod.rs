@@ -32,6 +32,7 @@ mod materials;
 mod memory;
 mod mesh;
 mod mesh_body;
+mod open;
 mod output;
 mod part;
 mod pieces;

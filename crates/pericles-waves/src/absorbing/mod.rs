@@ -65,6 +65,7 @@ mod kernels;
 mod layer;
 mod loewner;
 mod midpoint_end;
+pub mod open;
 mod plan;
 mod roots;
 mod schur;
