@@ -65,6 +65,7 @@ pub use exact::ExactReference;
 pub use forecast::{BANDWIDTH, Forecast, LATENCY, Spread};
 pub use loads::LoadReport;
 pub use mesh_body::{MeshBody, Meshes};
+pub use open::OpenReport;
 pub(crate) use part::gathered;
 pub use program::Conditions;
 pub use resources::{

@@ -162,13 +162,12 @@ impl Assembler<'_> {
         let reject = |error| at(&path, PericlesError::from(error));
         let made = OpenBoundary::new(system, &sides, OpenOptions::default(), steps.dt, start);
         let boundary = made.map_err(reject)?;
-        let points = sides.points(system.cloud(), 0).len() as u64;
         let report = OpenReport {
             sides,
             weights: boundary.weights().clone(),
             options: *boundary.options(),
             bytes: 8 * boundary.numbers(),
-            points: system.domain().count(points),
+            points: sides.layer_points(system.cloud()) as u64,
         };
         system.add_boundary(Box::new(boundary));
         Ok(Some(report))

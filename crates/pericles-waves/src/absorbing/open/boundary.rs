@@ -10,12 +10,12 @@ use pericles::time::State;
 use pericles::{StepEnd, StepKind, System};
 use rayon::prelude::*;
 
+use super::body::{OwnNodes, probe, shape_of, speed_of};
 use super::error::OpenError;
 use super::exchange::ZoneExchange;
 use super::filter::Filter;
-use super::force::LayerForce;
-use super::layer::Layer;
-use super::plate::{Line, Step, Zone};
+use super::placed::{PlacedLayer, layers_of, stretched};
+use super::plate::{Line, Zone};
 use super::sides::{OpenOptions, OpenSides};
 use super::weights::LatticeWeights;
 
@@ -46,28 +46,8 @@ pub struct OpenBoundary {
     domain: Domain,
 }
 
-/// Own points in the zone.
-struct OwnNodes {
-    points: Vec<u32>,
-    /// Masses, kg.
-    masses: Vec<f64>,
-    /// Whether the boundary replaces the acceleration of the point.
-    is_replaced: Vec<bool>,
-}
-
-/// A layer with its place.
-struct PlacedLayer {
-    axis: usize,
-    end: usize,
-    layer: Layer,
-    force: LayerForce,
-    /// Number of its first stretched shift among the fields along x.
-    first_field: usize,
-}
-
 impl OpenBoundary {
-    /// Opens sides of a plate for steps of length `dt` (s) from an initial state. The rate σ₀ is limited to what the step allows
-    /// ([`OpenOptions::limited_to`]). All processes must call it together.
+    /// Opens sides of a plate for steps of length `dt` (s) from an initial state. All processes must call it together.
     ///
     /// # Errors
     /// Every property of the body that the layers do not support ([`OpenError`]).
@@ -87,7 +67,6 @@ impl OpenBoundary {
         let reach = weights.reach();
         sides.check(shape, reach)?;
         let speed = speed_of(&weights, cloud.spacing())?;
-        let options = options.limited_to(dt * speed);
         let zone = Zone::new(lines, 2 * reach - 1);
         let exchange = ZoneExchange::new(&zone, cloud);
         if exchange.points() < zone.len() {
@@ -96,12 +75,14 @@ impl OpenBoundary {
                 nodes: zone.len(),
             });
         }
-        let filter = Filter::new(&zone, |node| {
+        let passes = OpenOptions::passes(dt * speed);
+        let interval = dt * speed / passes as f64;
+        let filter = Filter::new(&zone, passes, |node| {
             let rates = sides.open_sides().map(|(Face { axis, upper }, cells)| {
                 let depth = lines[axis].depth(usize::from(upper), node[axis]);
                 depth.map_or(0.0, |depth| options.filter_at(depth, cells))
             });
-            1.0 - (-dt * speed * rates.sum::<f64>()).exp()
+            1.0 - (-interval * rates.sum::<f64>()).exp()
         });
         let own = OwnNodes::new(system, &exchange, &zone, reach - 1);
         let mut boundary = Self {
@@ -145,9 +126,7 @@ impl OpenBoundary {
     /// Numbers of memory that every process stores.
     pub fn numbers(&self) -> usize {
         let layers = self.layers.iter().map(|one| &one.layer);
-        layers
-            .map(|layer| layer.memory.len() + layer.rate.len())
-            .sum()
+        layers.map(|layer| layer.memory.len()).sum()
     }
 
     /// Computes the accelerations in the layers for displacements of own points (m), and advances the memory by `dt`, s.
@@ -237,9 +216,6 @@ impl OpenBoundary {
         let mut expected = u.clone();
         system.vibration_into(&vec![0.0; 2 * n], &u, &mut expected);
         self.advance(0.0, &u);
-        for placed in &mut self.layers {
-            placed.layer.rate.fill(0.0);
-        }
         let reach = self.weights.reach() as isize;
         let inside = |i: usize| {
             let node = [node_of(i) % columns, node_of(i) / columns];
@@ -339,185 +315,6 @@ impl OpenBoundary {
     }
 }
 
-impl OwnNodes {
-    fn new(system: &System, exchange: &ZoneExchange, zone: &Zone, margin: usize) -> Self {
-        let cloud = system.cloud();
-        let columns = zone.lines[0].nodes;
-        let replaced = |i: usize| {
-            let node = cloud
-                .lattice()
-                .map_or(0, |lattice| lattice.node[i] as usize);
-            let node = [node % columns, node / columns];
-            (0..2).any(|axis| zone.lines[axis].is_near(node[axis], margin))
-        };
-        let points: Vec<u32> = exchange.own.iter().map(|own| own.0).collect();
-        let mass = |&i: &u32| system.density().at(i as usize) * cloud.volumes()[i as usize];
-        Self {
-            masses: points.iter().map(mass).collect(),
-            is_replaced: points.iter().map(|&i| replaced(i as usize)).collect(),
-            points,
-        }
-    }
-
-    /// Returns the values of a field on the body by component and own point of the zone.
-    fn values(&self, field: &[f64]) -> Vec<f64> {
-        let n = field.len() / 2;
-        let component = |c: usize| self.points.iter().map(move |&i| field[c * n + i as usize]);
-        component(0).chain(component(1)).collect()
-    }
-}
-
-/// Value of a stretched shift of the layers normal to x, by the number of its field.
-fn stretched(layers: &[PlacedLayer], field: usize, component: usize, row: usize) -> f64 {
-    let mut layers = layers.iter().rev();
-    let placed = layers.find(|placed| placed.first_field <= field);
-    placed.map_or(
-        0.0,
-        |PlacedLayer {
-             layer, first_field, ..
-         }| {
-            match field - first_field {
-                number if number < layer.extended() => layer.stretched(number, component, row),
-                _ => 0.0,
-            }
-        },
-    )
-}
-
-/// Number of nodes along x and y.
-fn shape_of(cloud: &PointCloud) -> Result<[usize; 2], OpenError> {
-    let reject = |found: String| Err(OpenError::NotALattice { found });
-    if cloud.dimension() != 2 {
-        return reject(format!("the body has dimension {}", cloud.dimension()));
-    }
-    let Some(lattice) = cloud.lattice() else {
-        return reject("the points of the body are not on one lattice".into());
-    };
-    if !lattice.is_cubic(2) {
-        let [x, y, _] = lattice.spacing.map(|dx| pericles::units::quantity(dx, "m"));
-        return reject(format!("the spacing is {x} along x and {y} along y"));
-    }
-    Ok([lattice.shape[0], lattice.shape[1]])
-}
-
-/// Position of points relative to a node at the interface of a layer, in cells.
-fn probe(cloud: &PointCloud, lines: &[Line; 2]) -> impl Fn(usize) -> [isize; 2] {
-    let mut centre = lines.map(|line| line.nodes / 2);
-    let open = (0..2).flat_map(|axis| (0..2).map(move |end| (axis, end)));
-    let mut open = open.filter(|&(axis, end)| lines[axis].cells(end).is_some());
-    if let Some((axis, end)) = open.next() {
-        centre[axis] = lines[axis].index(end, 0);
-    }
-    let columns = lines[0].nodes;
-    let nodes = cloud
-        .lattice()
-        .map_or(Vec::new(), |lattice| lattice.node.clone());
-    move |point| {
-        let node = [
-            nodes[point] as usize % columns,
-            nodes[point] as usize / columns,
-        ];
-        [0, 1].map(|axis| node[axis] as isize - centre[axis] as isize)
-    }
-}
-
-/// Speed of long longitudinal waves, cells/s.
-fn speed_of(weights: &LatticeWeights, spacing: f64) -> Result<f64, OpenError> {
-    let speeds = [0, 1].map(|axis| weights.longitudinal_speed(axis));
-    let [x, y] = speeds;
-    if (x - y).abs() > 1e-3 * x || !(x > 0.0) {
-        let speeds = speeds.map(|speed| speed * spacing);
-        return Err(OpenError::Anisotropic { speeds });
-    }
-    Ok(x)
-}
-
-/// Makes the layers of the open sides at rest.
-fn layers_of(
-    sides: &OpenSides,
-    lines: &[Line; 2],
-    weights: &LatticeWeights,
-    (options, speed): (OpenOptions, f64),
-) -> Vec<PlacedLayer> {
-    let reach = weights.reach();
-    let rates = |cells: usize| -> Vec<f64> {
-        options
-            .profile(cells)
-            .iter()
-            .map(|sigma| sigma * speed)
-            .collect()
-    };
-    let mut layers: Vec<PlacedLayer> = Vec::new();
-    let mut fields = 0;
-    for (Face { axis, upper }, cells) in sides.open_sides() {
-        let end = usize::from(upper);
-        let lanes = if axis == 0 {
-            lines[1].nodes
-        } else {
-            lines[0].nodes + fields
-        };
-        let layer = Layer::new(reach, &rates(cells), options.decay * speed, (2, lanes));
-        let force = if axis == 0 {
-            let far = |y: &usize| !lines[1].is_near(*y, reach - 1);
-            let rows: Vec<usize> = (0..lines[1].nodes).filter(far).collect();
-            let targets = match (rows.first(), rows.last()) {
-                (Some(first), Some(last)) => *first..last + 1,
-                _ => 0..0,
-            };
-            let lane = |y: usize, shift: isize| match lines[1].step(y, shift) {
-                Step::Node(y) => Some(y),
-                Step::Beyond | Step::Nothing => None,
-            };
-            LayerForce::new(&layer, (axis, end), weights, targets, lane)
-        } else {
-            let lane = |x: usize, shift: isize| field_of(&layers, &lines[0], reach, x, shift);
-            LayerForce::new(&layer, (axis, end), weights, 0..lines[0].nodes, lane)
-        };
-        let first_field = fields;
-        if axis == 0 {
-            fields += layer.extended();
-        }
-        layers.push(PlacedLayer {
-            axis,
-            end,
-            layer,
-            force,
-            first_field,
-        });
-    }
-    layers
-}
-
-/// The field that node x sees at a shift along x: a column of nodes, or a stretched shift of a layer normal to x.
-fn field_of(
-    layers: &[PlacedLayer],
-    line: &Line,
-    reach: usize,
-    x: usize,
-    shift: isize,
-) -> Option<usize> {
-    for PlacedLayer {
-        axis,
-        end,
-        layer,
-        first_field,
-        ..
-    } in layers
-    {
-        let depth = line
-            .depth(*end, x)
-            .filter(|depth| *axis == 0 && *depth > -(reach as isize));
-        let outwards = if *end == 0 { -shift } else { shift };
-        if let Some(number) = depth.and_then(|depth| layer.number(depth, outwards)) {
-            return Some(line.nodes + first_field + number);
-        }
-    }
-    match line.step(x, shift) {
-        Step::Node(x) => Some(x),
-        Step::Beyond | Step::Nothing => None,
-    }
-}
-
 impl Boundary for OpenBoundary {
     fn accept(&mut self, step: &StepEnd<'_>) -> Exchange {
         std::mem::swap(&mut self.pull, &mut self.pull_before);
@@ -573,13 +370,6 @@ impl Boundary for OpenBoundary {
 
     fn step_kinds(&self) -> &'static [StepKind] {
         &[StepKind::EndOfStep]
-    }
-}
-
-pericles::saved! {
-    impl SavedUnder(name) for PlacedLayer {
-        layer: under("{name}"),
-        axis, end, force, first_field: fixed,
     }
 }
 

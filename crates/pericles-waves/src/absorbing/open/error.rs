@@ -1,5 +1,6 @@
 //! Reasons why a plate cannot have an open boundary.
 
+use pericles::space::Face;
 use pericles::units::{quantity, significant};
 
 impl From<OpenError> for pericles::PericlesError {
@@ -28,7 +29,7 @@ pub enum OpenError {
     )]
     Periodic {
         /// The side.
-        side: String,
+        side: Face,
     },
     /// Both sides across an open side are free.
     #[error(
@@ -38,7 +39,7 @@ pub enum OpenError {
     )]
     Guided {
         /// The open side.
-        side: String,
+        side: Face,
         /// The axis across it.
         across: char,
     },
@@ -49,7 +50,7 @@ pub enum OpenError {
     )]
     Cells {
         /// The side.
-        side: String,
+        side: Face,
         /// Number of cells.
         cells: usize,
         /// The least number: 8, or the reach of the bonds.

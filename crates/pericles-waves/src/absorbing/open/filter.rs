@@ -14,6 +14,8 @@ pub(super) struct Filter {
     share: Vec<f64>,
     /// β D v, then zero for nodes outside the zone.
     differences: Vec<f64>,
+    /// Number of passes of a step.
+    passes: usize,
 }
 
 struct AxisFilter {
@@ -22,9 +24,9 @@ struct AxisFilter {
 }
 
 impl Filter {
-    /// Makes the filter of a zone; `share` is β of a node. At free ends v continues as its mirror image, which keeps D symmetric
+    /// Makes the filter of a zone; `share` is β of a node in each of the `passes` of a step. At free ends v continues as its mirror image, which keeps D symmetric
     /// with eigenvalues from 0 to 1.
-    pub(super) fn new(zone: &Zone, share: impl Fn([usize; 2]) -> f64) -> Self {
+    pub(super) fn new(zone: &Zone, passes: usize, share: impl Fn([usize; 2]) -> f64) -> Self {
         let outside = zone.len() as u32;
         let neighbour = |axis: usize, node: [usize; 2], shift: isize| {
             let line = &zone.lines[axis];
@@ -47,6 +49,7 @@ impl Filter {
             axes: [axis(0), axis(1)],
             share: zone.nodes().map(share).collect(),
             differences: vec![0.0; zone.len() + 1],
+            passes,
         }
     }
 
@@ -55,7 +58,8 @@ impl Filter {
         const LEAST: usize = 2048;
         let nodes = self.differences.len() - 1;
         let share = &self.share;
-        for AxisFilter { neighbours } in &self.axes {
+        let axes = (0..self.passes).flat_map(|_| &self.axes);
+        for AxisFilter { neighbours } in axes {
             let row = |field: &[f64], k: usize, centre: f64| {
                 let [a, b, c, d] = neighbours[k].map(|number| field[number as usize]);
                 WEIGHTS[0] * centre + WEIGHTS[1] * (b + c) + WEIGHTS[2] * (a + d)

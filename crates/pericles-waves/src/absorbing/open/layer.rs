@@ -22,10 +22,8 @@ pub(super) struct Layer {
     width: usize,
     /// U by block and slot, m.
     shifts: Vec<f64>,
-    /// ψ by block, cell and shift j + 1/2, m.
+    /// h = ψ + dt/2 dψ/dt by block, cell and shift j + 1/2, m.
     pub(super) memory: Vec<f64>,
-    /// Right-hand side of the equation of ψ at the last step, m/s.
-    pub(super) rate: Vec<f64>,
 }
 
 /// Sets the unstretched displacements of a node: depth, component, first lane and the values of a block.
@@ -49,7 +47,6 @@ impl Layer {
             width,
             shifts: Vec::new(),
             memory: vec![0.0; components * width * cells * 2 * reach],
-            rate: vec![0.0; components * width * cells * 2 * reach],
         };
         layer.shifts = vec![0.0; components * width * layer.slots()];
         layer
@@ -114,82 +111,77 @@ impl Layer {
     }
 
     /// Computes the continued shifts from the displacements and the memory, and advances the memory by a step of length
-    /// `dt` (s): ψ += dt (3/2 r − 1/2 r_before).
+    /// `dt` (s) of the trapezoidal rule.
     pub(super) fn advance(&mut self, dt: f64, fill: &Fill<'_>) {
         let (slots, cells) = (self.slots() * LANES, 2 * self.reach * self.cells * LANES);
         let mut shifts = std::mem::take(&mut self.shifts);
         let mut memory = std::mem::take(&mut self.memory);
-        let mut rate = std::mem::take(&mut self.rate);
         let this = &*self;
         shifts
             .par_chunks_mut(slots)
             .zip(memory.par_chunks_mut(cells))
-            .zip(rate.par_chunks_mut(cells))
             .enumerate()
-            .for_each(|(block, ((shifts, memory), rate))| {
+            .for_each(|(block, (shifts, memory))| {
                 let first = block * LANES;
                 let (component, lane) = (first / this.width, first % this.width);
-                let (plain, _) = shifts.as_chunks_mut::<LANES>();
+                let (slots, _) = shifts.as_chunks_mut::<LANES>();
                 let depths = 1 - 2 * this.reach as isize..;
-                for (n, lanes) in depths.zip(&mut plain[..this.plain()]) {
+                for (n, lanes) in depths.zip(&mut slots[..this.plain()]) {
                     fill(n, component, lane, lanes);
                 }
-                this.extend(plain, memory.as_chunks().0);
-                this.remember(dt, plain, memory.as_chunks_mut().0, rate.as_chunks_mut().0);
+                this.extend(dt, slots, memory.as_chunks_mut().0);
             });
-        (self.shifts, self.memory, self.rate) = (shifts, memory, rate);
+        (self.shifts, self.memory) = (shifts, memory);
     }
 
-    /// Place of ψ_{n+1/2}^{j+1/2}.
+    /// Place of h_{n+1/2}^{j+1/2}.
     fn cell(&self, n: usize, j: isize) -> usize {
         n * 2 * self.reach + (j + self.reach as isize) as usize
     }
 
-    /// Computes U from u and ψ along the lines n + j = const, on which U_{n+1}^j = U_n^{j+1} + ψ_{n+1/2}^{j+1/2}.
-    fn extend(&self, shifts: &mut [[f64; LANES]], memory: &[[f64; LANES]]) {
+    /// Computes U outwards along the lines n + j = const. The trapezoidal rule ψ = h + dt/2 r of the memory
+    /// h = ψ + dt/2 r of the last step gives, with k = σ dt/4 and a = α dt/2,
+    ///
+    /// ```text
+    /// ψ_{n+1/2}^{j+1/2} = (h + k (U_{n+1}^{j+1} − U_n^j))/(1 + a + k) = U_{n+1}^j − U_n^{j+1}
+    /// ```
+    ///
+    /// in which U_n^{j+1} is known last for j ≥ 0 and U_{n+1}^j for j < 0. The memory of the next step is 2 ψ − h.
+    fn extend(&self, dt: f64, shifts: &mut [[f64; LANES]], memory: &mut [[f64; LANES]]) {
         let reach = self.reach as isize;
+        let factors = |n: usize| {
+            let k = 0.5 * dt * self.half[n];
+            [k, 1.0 / (1.0 + 0.5 * dt * self.alpha + k)]
+        };
         for n in (0..self.cells).rev() {
-            for j in 1..=reach {
-                let source = shifts[self.slot(n as isize + 1, j - 1)];
-                let memory = &memory[self.cell(n, j - 1)];
-                let target = &mut shifts[self.slot(n as isize, j)];
+            let near = n as isize;
+            for j in 0..reach {
+                let [above, below] = [self.slot(near + 1, j + 1), self.slot(near, j)];
+                let [above, below] = [shifts[above], shifts[below]];
+                let source = shifts[self.slot(near + 1, j)];
+                let memory = &mut memory[self.cell(n, j)];
+                let target = &mut shifts[self.slot(near, j + 1)];
+                let [k, scale] = factors(n);
                 for lane in 0..LANES {
-                    target[lane] = source[lane] - memory[lane];
+                    let psi = scale * (memory[lane] + k * (above[lane] - below[lane]));
+                    target[lane] = source[lane] - psi;
+                    memory[lane] = 2.0 * psi - memory[lane];
                 }
             }
         }
         for n in 0..self.cells {
+            let near = n as isize;
             for j in (-reach..0).rev() {
-                let source = shifts[self.slot(n as isize, j + 1)];
-                let memory = &memory[self.cell(n, j)];
-                let target = &mut shifts[self.slot(n as isize + 1, j)];
+                let [above, below] = [self.slot(near + 1, j + 1), self.slot(near, j)];
+                let [above, below] = [shifts[above], shifts[below]];
+                let source = shifts[self.slot(near, j + 1)];
+                let memory = &mut memory[self.cell(n, j)];
+                let target = &mut shifts[self.slot(near + 1, j)];
+                let [k, scale] = factors(n);
                 for lane in 0..LANES {
-                    target[lane] = source[lane] + memory[lane];
-                }
-            }
-        }
-    }
-
-    fn remember(
-        &self,
-        dt: f64,
-        shifts: &[[f64; LANES]],
-        memory: &mut [[f64; LANES]],
-        rate: &mut [[f64; LANES]],
-    ) {
-        let reach = self.reach as isize;
-        for (n, half) in self.half.iter().enumerate() {
-            let at = |n: usize, j: isize| &shifts[self.slot(n as isize, j)];
-            for j in -reach..reach {
-                let [a, b] = [at(n + 1, j + 1), at(n, j + 1)];
-                let [c, d] = [at(n + 1, j), at(n, j)];
-                let cell = self.cell(n, j);
-                let (memory, rate) = (&mut memory[cell], &mut rate[cell]);
-                for lane in 0..LANES {
-                    let difference = (a[lane] + b[lane]) - (c[lane] + d[lane]);
-                    let next = half * difference - self.alpha * memory[lane];
-                    memory[lane] += dt * (1.5 * next - 0.5 * rate[lane]);
-                    rate[lane] = next;
+                    let psi = scale * (memory[lane] + k * (above[lane] - below[lane]));
+                    target[lane] = source[lane] + psi;
+                    memory[lane] = 2.0 * psi - memory[lane];
                 }
             }
         }
@@ -199,7 +191,6 @@ impl Layer {
 pericles::saved! {
     impl SavedUnder(name) for Layer {
         memory: array("{name}/memory"),
-        rate: array("{name}/rate"),
         cells, reach, half, alpha, width: fixed,
         shifts: scratch,
     }

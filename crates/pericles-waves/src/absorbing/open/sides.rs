@@ -36,15 +36,12 @@ impl Default for OpenOptions {
 }
 
 impl OpenOptions {
-    /// Largest σ dt at which the memory is advanced stably.
-    pub const LARGEST_STEP: f64 = 1.5;
+    /// Longest time between two passes of the filter, in units of Δx/c_P. Fewer passes in long steps would filter less.
+    const FILTER_INTERVAL: f64 = 0.35;
 
-    /// Returns the options with σ₀ limited to the steps of length `dt`, in units of Δx/c_P.
-    pub fn limited_to(self, dt: f64) -> Self {
-        Self {
-            stretching: self.stretching.min(Self::LARGEST_STEP / dt),
-            ..self
-        }
+    /// Number of passes of the filter in a step of length dt, in units of Δx/c_P.
+    pub(super) fn passes(dt: f64) -> usize {
+        (dt / Self::FILTER_INTERVAL).ceil().max(1.0) as usize
     }
 
     /// σ of the cells of a layer, relative to c_P/Δx.
@@ -99,6 +96,18 @@ impl OpenSides {
             .collect()
     }
 
+    /// Number of points of the whole body in the layers: those whose motion is stretched and filtered.
+    pub fn layer_points(&self, cloud: &PointCloud) -> usize {
+        let shape = cloud
+            .lattice()
+            .map_or([0; 2], |lattice| [lattice.shape[0], lattice.shape[1]]);
+        let layers = self
+            .cells
+            .map(|cells| cells.iter().flatten().sum::<usize>());
+        let inner = (0..2).map(|axis| shape[axis].saturating_sub(layers[axis]));
+        shape[0] * shape[1] - inner.product::<usize>()
+    }
+
     pub(super) fn lines(&self, shape: [usize; 2]) -> [Line; 2] {
         [0, 1].map(|axis| Line {
             nodes: shape[axis],
@@ -114,7 +123,7 @@ impl OpenSides {
     pub(super) fn check(&self, shape: [usize; 2], reach: usize) -> Result<(), OpenError> {
         let least = Self::LEAST.max(reach);
         for (face, cells) in self.open_sides() {
-            let side = side_name(face);
+            let side = face;
             let across = 1 - face.axis;
             if self.cells[across] == [None; 2] && !self.periodic[across] {
                 let across = ['x', 'y'][across];
@@ -147,10 +156,4 @@ impl OpenSides {
         }
         Ok(())
     }
-}
-
-/// Name of a side, such as `+x`.
-pub(super) fn side_name(face: Face) -> String {
-    let sign = if face.upper { '+' } else { '-' };
-    format!("{sign}{}", ['x', 'y', 'z'][face.axis])
 }

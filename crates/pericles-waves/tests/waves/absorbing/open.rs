@@ -158,6 +158,7 @@ fn plate_with_four_open_sides_is_part_of_an_infinite_plate() {
         let error = (0..2)
             .map(|c| (found[c] - expected[c]).abs())
             .fold(0.0, f64::max);
+        println!("{steps}: {error:e}");
         assert!(error < 6e-5, "{steps}: {found:?}, {error:e}");
         let energies = run.snapshot().energies();
         assert!(
@@ -349,6 +350,12 @@ fn noise(plate: &Plate, sides: &OpenSides, dt: f64, steps: &[u64]) -> Vec<[f64; 
         state
     };
     let last = steps.last().unwrap() + 1;
+    assert!(
+        plate
+            .nodes
+            .iter()
+            .all(|nodes| *nodes > 24 + 2 * plate.reach + 4)
+    );
     let mut run = simulation(plate, sides, dt, last, start);
     let mut largest = Vec::new();
     run.run(|run| {
@@ -362,12 +369,24 @@ fn noise(plate: &Plate, sides: &OpenSides, dt: f64, steps: &[u64]) -> Vec<[f64; 
     largest
 }
 
+/// A step, as a fraction of the largest stable one of the plate without layers.
+fn step(plate: &Plate, fraction: f64) -> f64 {
+    let system = plate.system();
+    let rest = vec![0.0; 2 * system.points()];
+    let highest = pericles::time::highest_frequency(&system, &rest).unwrap();
+    fraction * highest.stable_step(2.0, 1.0)
+}
+
 #[test]
 fn noise_in_a_small_box_decays() {
-    let plate = Plate::new([34, 34], 3);
-    let largest = noise(&plate, &plate.sides(&ALL, 12), 0.5, &[1000, 3000]);
-    assert!(largest[1][0] < 0.5 * largest[0][0], "{largest:?}");
-    assert!(largest[1][1] < 0.5 * largest[0][1], "{largest:?}");
+    let plate = Plate::new([36, 36], 3);
+    // In steps of 0.5 Δx/c_P, and close to the limit of stability.
+    for (dt, steps) in [(0.5, [600, 1800]), (step(&plate, 0.95), [200, 800])] {
+        let largest = noise(&plate, &plate.sides(&ALL, 12), dt, &steps);
+        for k in 0..2 {
+            assert!(largest[1][k] < 0.5 * largest[0][k], "{dt}: {largest:?}");
+        }
+    }
 }
 
 #[test]
@@ -376,11 +395,13 @@ fn noise_in_small_boxes_decays_in_long_runs() {
     let steps = [20_000, 100_000];
     for reach in [3, 2, 4] {
         for conical in [false, true] {
-            for (dt, nodes) in [(0.5, [37, 42]), (0.1, [34, 34])] {
-                let plate = Plate {
-                    conical,
-                    ..Plate::new(nodes, reach)
-                };
+            let plate = |nodes| Plate {
+                conical,
+                ..Plate::new(nodes, reach)
+            };
+            let limit = step(&plate([39, 44]), 0.95);
+            for (dt, nodes) in [(limit, [39, 44]), (0.5, [39, 44]), (0.1, [38, 38])] {
+                let plate = plate(nodes);
                 let largest = noise(&plate, &plate.sides(&ALL, 12), dt, &steps);
                 let case = format!("m = {reach}, conical {conical}, dt = {dt}: {largest:?}");
                 println!("{case}");
@@ -465,4 +486,49 @@ fn unsupported_bodies_are_errors() {
     let bar = crate::absorbing::bar::bar(50, 1.0);
     let start = State::at_rest(bar.points());
     assert!(rejection(&bar, &all, &start).contains("dimension 1"));
+}
+
+/// Angles of incidence in degrees, and whether the wave is the transverse one.
+const INCIDENCES: [(f64, bool); 8] = [
+    (0.0, false),
+    (45.0, false),
+    (60.0, false),
+    (70.0, false),
+    (80.0, false),
+    (30.0, true),
+    (60.0, true),
+    (80.0, true),
+];
+
+#[test]
+fn reflection_of_twelve_cells_agrees_with_another_computation() {
+    // Wavelengths in cells, and one digit of the reflection of an independent computation with α = 0.
+    let rows = [
+        (48.0, [1e-5, 1e-4, 8e-5, 2e-4, 2e-2, 4e-4, 3e-5, 2e-3]),
+        (24.0, [6e-6, 5e-5, 4e-5, 7e-5, 1e-2, 2e-4, 3e-5, 1e-3]),
+        (12.0, [4e-6, 2e-5, 2e-5, 5e-5, 9e-3, 9e-5, 2e-5, 1e-3]),
+        (8.0, [1e-5, 3e-5, 8e-5, 9e-4, 2e-2, 5e-5, 8e-5, 1e-2]),
+        (6.0, [5e-5, 9e-6, 3e-4, 6e-3, 1e-1, 5e-5, 4e-4, 7e-2]),
+        (5.0, [1e-1, 5e-2, 2e-2, 3e-2, 3e-1, 9e-5, 1e-3, 2e-1]),
+    ];
+    let weights = weights(3);
+    let options = OpenOptions {
+        decay: 0.0,
+        ..OpenOptions::default()
+    };
+    for (wavelength, expected) in rows {
+        for ((degrees, is_shear), expected) in INCIDENCES.into_iter().zip(expected) {
+            let wave = IncidentWave {
+                wavelength,
+                angle: f64::to_radians(degrees),
+                is_shear,
+            };
+            let found = wave.reflection(&weights, &options, 12).unwrap();
+            let ratio: f64 = found / expected;
+            assert!(
+                (0.5..=2.0).contains(&ratio),
+                "{wave:?}: {found:e}, {expected:e}"
+            );
+        }
+    }
 }
