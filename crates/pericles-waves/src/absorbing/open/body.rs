@@ -91,7 +91,8 @@ pub(super) fn probe(cloud: &PointCloud, lines: &[Line; 2]) -> impl Fn(usize) -> 
 pub(super) fn speed_of(weights: &LatticeWeights, spacing: f64) -> Result<f64, OpenError> {
     let speeds = [0, 1].map(|axis| weights.longitudinal_speed(axis));
     let [x, y] = speeds;
-    if (x - y).abs() > 1e-3 * x || !(x > 0.0) {
+    let is_isotropic = x > 0.0 && (x - y).abs() <= 1e-3 * x;
+    if !is_isotropic {
         let speeds = speeds.map(|speed| speed * spacing);
         return Err(OpenError::Anisotropic { speeds });
     }
