@@ -55,32 +55,45 @@ impl Filter {
 
     /// Filters one component; the entry after the last node is zero.
     pub(super) fn apply(&mut self, v: &mut [f64]) {
-        const LEAST: usize = 2048;
         let nodes = self.differences.len() - 1;
-        let share = &self.share;
-        let axes = (0..self.passes).flat_map(|_| &self.axes);
-        for AxisFilter { neighbours } in axes {
-            let row = |field: &[f64], k: usize, centre: f64| {
-                let [a, b, c, d] = neighbours[k].map(|number| field[number as usize]);
-                WEIGHTS[0] * centre + WEIGHTS[1] * (b + c) + WEIGHTS[2] * (a + d)
-            };
-            let field = &*v;
-            let differences = &mut self.differences[..nodes];
-            differences
-                .par_iter_mut()
-                .with_min_len(LEAST)
-                .enumerate()
-                .for_each(|(k, out)| {
-                    *out = share[k] * row(field, k, field[k]);
+        for _ in 0..self.passes {
+            for AxisFilter { neighbours } in &self.axes {
+                let field = &*v;
+                let out = self.differences[..nodes].par_chunks_mut(CHUNK);
+                let chunks = out
+                    .zip(neighbours.par_chunks(CHUNK))
+                    .zip(self.share.par_chunks(CHUNK));
+                chunks
+                    .enumerate()
+                    .for_each(|(chunk, ((out, neighbours), share))| {
+                        let centre = &field[chunk * CHUNK..];
+                        for (k, out) in out.iter_mut().enumerate() {
+                            *out = share[k] * difference(field, &neighbours[k], centre[k]);
+                        }
+                    });
+                let differences = &self.differences;
+                let chunks = v[..nodes]
+                    .par_chunks_mut(CHUNK)
+                    .zip(neighbours.par_chunks(CHUNK));
+                chunks.enumerate().for_each(|(chunk, (out, neighbours))| {
+                    let centre = &differences[chunk * CHUNK..];
+                    for (k, out) in out.iter_mut().enumerate() {
+                        *out -= difference(differences, &neighbours[k], centre[k]);
+                    }
                 });
-            let field = &self.differences;
-            let v = &mut v[..nodes];
-            v.par_iter_mut()
-                .with_min_len(LEAST)
-                .enumerate()
-                .for_each(|(k, out)| {
-                    *out -= row(field, k, field[k]);
-                });
+            }
         }
     }
+}
+
+/// Nodes of a task.
+const CHUNK: usize = 4096;
+
+/// Returns D of a field at a node with a value and the numbers of its neighbours.
+#[inline(always)]
+fn difference(field: &[f64], neighbours: &[u32; 4], centre: f64) -> f64 {
+    let [a, b, c, d] = *neighbours;
+    let near = field[b as usize] + field[c as usize];
+    let far = field[a as usize] + field[d as usize];
+    WEIGHTS[0] * centre + WEIGHTS[1] * near + WEIGHTS[2] * far
 }

@@ -34,7 +34,7 @@
 //!
 //! **Limits.** Waves shorter than about 6 Δx are reflected. Of the two sides across an open side one must be open too, or the
 //! body periodic: waves guided between two free sides grow in the layer (3e-3 per step in a plate of 34 × 34 points with
-//! K = 3). Noise in small boxes decays for 10⁵ steps in tests; the option is experimental. All processes of a divided body compute
+//! K = 3). Stability is tested with noise in small boxes only; the option is experimental. All processes of a divided body compute
 //! the layers identically.
 
 mod body;

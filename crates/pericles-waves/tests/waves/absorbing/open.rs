@@ -158,7 +158,6 @@ fn plate_with_four_open_sides_is_part_of_an_infinite_plate() {
         let error = (0..2)
             .map(|c| (found[c] - expected[c]).abs())
             .fold(0.0, f64::max);
-        println!("{steps}: {error:e}");
         assert!(error < 6e-5, "{steps}: {found:?}, {error:e}");
         let energies = run.snapshot().energies();
         assert!(
