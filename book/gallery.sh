@@ -42,5 +42,6 @@ picture wave/two-materials Displacement_x-000003.png two-materials.png
 picture wave/spectral Displacement_x-000007.png spectral.png
 picture wave/plate Velocity_x-000002.png wave-plate.png
 picture absorbing/infinite-bar Displacement_x-000001.png infinite-bar.png
+picture absorbing/open-plate Velocity_x-000002.png open-plate.png
 picture surface/sphere Displacement-000004.png sphere.png
 picture surface/torus Strain_Energy_Density-000012.png torus.png

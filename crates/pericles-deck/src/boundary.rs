@@ -6,7 +6,8 @@ use pericles_waves::absorbing::{AbsorbingBoundaryPlan, KernelMethod, Side};
 use serde::{Deserialize, Serialize};
 
 use crate::quantity::Quantity;
-use crate::reader::Table;
+use crate::reader::{Item, Table};
+use crate::set::Depth;
 use crate::words::Worded;
 
 /// An absorbing boundary.
@@ -37,24 +38,40 @@ pub enum BoundaryCondition {
         /// Exponent of the damping profile.
         power: f64,
     },
+    /// Discrete perfectly matched layers at sides of a plate.
+    Open {
+        /// The sides of the plate.
+        #[serde(with = "crate::form")]
+        sides: Vec<Face>,
+        /// Thickness of the layers.
+        thickness: Depth,
+    },
+}
+
+impl BoundaryCondition {
+    /// Number of cells of an open boundary without a given thickness.
+    pub const CELLS: u32 = 12;
 }
 
 #[derive(Clone, Copy)]
 enum Kind {
     Absorbing,
     DampingLayer,
+    Open,
 }
 
 pub(crate) fn read(table: Table<'_>) -> Option<BoundaryCondition> {
     let kinds = [
         ("absorbing", Kind::Absorbing),
         ("damping-layer", Kind::DampingLayer),
+        ("open", Kind::Open),
     ];
     let kind = table
         .required("kind")
         .and_then(|item| item.choice("kind of boundary", &kinds));
     match kind {
         Some(Kind::DampingLayer) => damping_layer(table),
+        Some(Kind::Open) => open(table),
         // The keys of an unknown kind are read as for the first kind.
         _ => absorbing(table).filter(|_| kind.is_some()),
     }
@@ -155,4 +172,47 @@ fn damping_layer(table: Table<'_>) -> Option<BoundaryCondition> {
         reflection: reflection?,
         power: power?,
     })
+}
+
+fn open(table: Table<'_>) -> Option<BoundaryCondition> {
+    let sides = table.required("side").and_then(|item| open_sides(&item));
+    let thickness = table.at_most_one(&["cells", "thickness"]);
+    let thickness = thickness.and_then(|found| match found {
+        None => {
+            table.record("cells", BoundaryCondition::CELLS);
+            Some(Depth::Cells(f64::from(BoundaryCondition::CELLS)))
+        }
+        Some(("thickness", item)) => item.positive(Quantity::Length).map(Depth::Length),
+        Some((_, item)) => item.count().map(|cells| Depth::Cells(cells as f64)),
+    });
+    table.finish();
+    Some(BoundaryCondition::Open {
+        sides: sides?,
+        thickness: thickness?,
+    })
+}
+
+/// Reads a side, a list of sides, or all sides of a plate.
+fn open_sides(item: &Item<'_>) -> Option<Vec<Face>> {
+    const SIDES: [&str; 4] = ["-x", "+x", "-y", "+y"];
+    let named = SIDES
+        .iter()
+        .filter_map(|side| Some((*side, Face::named(side)?)));
+    let words: Vec<(&'static str, Face)> = named.collect();
+    let face = |item: &Item<'_>| item.choice("side", &words);
+    if item.is_list() {
+        let items = item.list("a list of sides")?;
+        let faces = items.iter().map(face).collect::<Option<Vec<Face>>>()?;
+        let is_twice = |(k, face): (usize, &Face)| faces[..k].contains(face);
+        if faces.is_empty() || faces.iter().enumerate().any(is_twice) {
+            item.out_of_range("one or more of \"-x\", \"+x\", \"-y\" and \"+y\", each once");
+            return None;
+        }
+        return Some(faces);
+    }
+    let one = words.iter().map(|&(word, face)| (word, Some(face)));
+    let words_and_all: Vec<_> = one.chain([("all", None)]).collect();
+    let all = || words.iter().map(|(_, face)| *face).collect();
+    let found = item.choice("side", &words_and_all)?;
+    Some(found.map_or_else(all, |face| vec![face]))
 }

@@ -274,6 +274,11 @@ const WRONG: &[Wrong] = &[
     wrong("[time]", "[[boundary]]\nkind = \"damping-layer\"\nside = \"+x\"\n[time]", (33, 1), "[[boundary]]", &["[boundary.0] requires `thickness`"]),
     wrong("[time]", "[[boundary]]\nkind = \"damping-layer\"\nside = \"+x\"\nthickness = \"1 mm\"\nreflection = 2\n[time]", (37, 14), "2", &["above 1e-12 and below 1"]),
     wrong("[time]", "[[boundary]]\nkind = \"damping-layer\"\nside = \"+x\"\nthickness = \"1 mm\"\npower = -1\n[time]", (37, 9), "-1", &["from 0 to 10"]),
+    wrong("[time]", "[[boundary]]\nkind = \"open\"\n[time]", (33, 1), "[[boundary]]", &["[boundary.0] requires `side`"]),
+    wrong("[time]", "[[boundary]]\nkind = \"open\"\nside = \"+z\"\n[time]", (35, 8), "\"+z\"", &["unknown side `+z`", "\"+y\"", "\"all\""]),
+    wrong("[time]", "[[boundary]]\nkind = \"open\"\nside = [\"+x\", \"+x\"]\n[time]", (35, 8), "[\"+x\", \"+x\"]", &["each once"]),
+    wrong("[time]", "[[boundary]]\nkind = \"open\"\nside = \"+x\"\ncells = 12\nthickness = \"1 mm\"\n[time]", (37, 13), "\"1 mm\"", &["`cells`", "`thickness`"]),
+    wrong("[time]", "[[boundary]]\nkind = \"open\"\nside = \"+x\"\nreflection = 0.1\n[time]", (36, 1), "reflection", &["`reflection`"]),
     // Refinement.
     wrong("[material]", "[[body.refine]]\nball = { centre = [0, 0], radius = 1 }\n[material]", (9, 1), "[[body.refine]]", &["[body.refine.0] requires `ratio`"]),
     wrong("[material]", "[[body.refine]]\nratio = 2\n[material]", (9, 1), "[[body.refine]]", &["[body.refine.0] requires one of", "`ball`"]),

@@ -195,12 +195,10 @@ impl Scheme {
     /// Returns why the scheme is not compatible with a condition, or `None` if it is.
     pub fn rejection_of_condition(&self, condition: Condition) -> Option<&'static str> {
         let unmet = self.rejection(|need| !condition.breaks(need));
-        let kinds = condition.kinds();
-        let kind_fits = kinds.is_empty() || kinds.contains(&self.kind);
-        match unmet {
-            None if !kind_fits => Some(OTHER_KERNELS),
-            unmet => unmet,
-        }
+        unmet.or(match condition.kinds() {
+            Some((kinds, reason)) if !kinds.contains(&self.kind) => Some(reason),
+            _ => None,
+        })
     }
 
     fn rejection(&self, meets: impl Fn(Need) -> bool) -> Option<&'static str> {
@@ -247,6 +245,8 @@ pub enum Condition {
     AbsorbingEnds,
     /// Damping layers.
     DampingLayers,
+    /// Open boundaries of plates.
+    OpenSides,
     /// Elastic contact between points, and with impactors of prescribed motion.
     Contact,
     /// Contact with damping or friction.
@@ -257,12 +257,13 @@ pub enum Condition {
 
 impl Condition {
     /// All conditions.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Supports,
         Self::ReleasedPoints,
         Self::Breaking,
         Self::AbsorbingEnds,
         Self::DampingLayers,
+        Self::OpenSides,
         Self::Contact,
         Self::DampedContact,
         Self::FreeImpactors,
@@ -276,6 +277,7 @@ impl Condition {
             Self::Breaking => "breaking bonds",
             Self::AbsorbingEnds => "absorbing boundaries",
             Self::DampingLayers => "damping layers",
+            Self::OpenSides => "open boundaries",
             Self::Contact => "contact",
             Self::DampedContact => "contact with damping or friction",
             Self::FreeImpactors => "free impactors",
@@ -286,7 +288,9 @@ impl Condition {
     fn breaks(self, need: Need) -> bool {
         match self {
             Self::Supports | Self::ReleasedPoints | Self::Breaking => false,
-            Self::AbsorbingEnds => matches!(need, Need::NoBoundaries | Need::NoMemory),
+            Self::AbsorbingEnds | Self::OpenSides => {
+                matches!(need, Need::NoBoundaries | Need::NoMemory)
+            }
             Self::DampingLayers => need == Need::NoBoundaries,
             Self::Contact => need == Need::NoInteractions,
             Self::DampedContact => {
@@ -296,17 +300,22 @@ impl Condition {
         }
     }
 
-    /// Returns the supported kinds of steps; empty if all.
-    fn kinds(self) -> &'static [StepKind] {
+    /// Returns the supported kinds of steps with the reason; `None` if all are supported.
+    fn kinds(self) -> Option<(&'static [StepKind], &'static str)> {
         match self {
-            Self::AbsorbingEnds => LatticeScheme::KINDS,
-            _ => &[],
+            Self::AbsorbingEnds => Some((LatticeScheme::KINDS, OTHER_KERNELS)),
+            Self::OpenSides => Some((&[StepKind::EndOfStep], VERLET_LAYERS)),
+            _ => None,
         }
     }
 }
 
 /// Why absorbing boundaries require certain schemes.
 const OTHER_KERNELS: &str = "the kernels of absorbing boundaries are available for velocity-verlet, implicit-midpoint, trapezoidal and discrete-gradient only";
+
+/// Why open boundaries require velocity Verlet.
+const VERLET_LAYERS: &str =
+    "the layers of open boundaries advance and filter velocities once per step of velocity-verlet";
 
 /// Returns Markdown tables of schemes with force kernels and conditions, and of features with force kernels, with the
 /// reasons of incompatibilities.

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use crate::build::{Assembly, LoadReport, MaterialConstants};
 use crate::heat::HeatFacts;
+use crate::open_facts::OpenFacts;
 use crate::refinement::RefinementFacts;
 use crate::strength::SofteningFacts;
 use crate::units::{bytes, count, quantity, significant};
@@ -108,6 +109,9 @@ pub struct Facts {
     /// The absorbing boundaries.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub ends: Vec<EndFacts>,
+    /// The open boundary.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub open: Option<OpenFacts>,
     /// Vector instruction set of the force loops.
     pub instruction_set: &'static str,
     /// Warnings about the run.
@@ -303,6 +307,8 @@ impl Facts {
             heat: assembly.temperature.as_ref().map(HeatFacts::of),
             impactors: model.impactors.iter().map(|one| one.name.clone()).collect(),
             ends: assembly.ends.iter().map(EndFacts::of).collect(),
+            open: (assembly.open.as_ref())
+                .map(|open| OpenFacts::of(open, points, assembly.cloud.spacing())),
             instruction_set: operator.instruction_set().name(),
             warnings,
         }

@@ -68,6 +68,7 @@ mod inputs;
 pub mod machine;
 mod mirror;
 mod observers;
+mod open_facts;
 mod processes;
 pub mod refinement;
 mod report;
@@ -89,8 +90,8 @@ pub use audit::Audit;
 pub use build::{
     Assembly, BANDWIDTH, Conditions, Discretisation, ExactReference, FileError, Forecast, Grids,
     Interior, KernelQuality, LATENCY, LoadReport, MaterialConstants, MaterialSoftening, MeshBody,
-    MeshReader, Meshes, OutlineReader, PlaneWaves, PointsReader, Polygons, Resources, Sets, Spread,
-    SurfaceReader, TableReader, assemble, build, discretise,
+    MeshReader, Meshes, OpenReport, OutlineReader, PlaneWaves, PointsReader, Polygons, Resources,
+    Sets, Spread, SurfaceReader, TableReader, assemble, build, discretise,
 };
 pub use cancel::Cancel;
 pub use deadline::Deadline;
@@ -103,6 +104,7 @@ pub use heat::{HeatBalance, HeatFacts, Inflow};
 pub use inputs::Inputs;
 pub use mirror::MirrorError;
 pub use observers::{history_rows, overlay, picture_of, result_body};
+pub use open_facts::{OpenFacts, ReflectionFacts};
 pub use processes::shared_folder;
 pub use report::{Report, Span, Status};
 pub use results::{FieldFile, Results, file_name};

@@ -92,6 +92,42 @@ fn a_run_is_resumed_on_another_number_of_processes() {
     check_resumed(PLATE, 47, &[(3, 1), (3, 2), (1, 4), (5, 8)]);
 }
 
+/// A breaking plate that is part of an infinite one, with a free side.
+const OPEN_SIDES: &str = r#"
+[body]
+shape = "plate"
+size = ["44 mm", "40 mm"]
+spacing = "1 mm"
+plane = "stress"
+[material]
+youngs_modulus = "72 GPa"
+density = 2440
+horizon_ratio = 3
+critical_stretch = 0.002
+[[crack]]
+segment = [["20 mm", "28 mm"], ["24 mm", "28 mm"]]
+[[initial]]
+displacement = [0, { expression = "4e-5 * exp(-((x-0.022)^2 + (y-0.028)^2)/(3e-3)^2)" }]
+[[boundary]]
+kind = "open"
+side = ["-x", "+x", "-y"]
+cells = 10
+[time]
+end = "20 us"
+dt = "0.1 us"
+[output]
+history = { every = 10 }
+fields = { count = 4, names = ["Displacement", "Velocity", "Damage"] }
+[checkpoint]
+every = 90
+"#;
+
+#[test]
+fn an_open_plate_divided_among_processes_has_the_files_of_one_process() {
+    check(OPEN_SIDES, &[1, 2, 3]);
+    check_resumed(OPEN_SIDES, 97, &[(3, 1), (1, 2)]);
+}
+
 /// Steps of the example decks.
 const STEPS: u64 = 8;
 

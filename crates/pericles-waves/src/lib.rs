@@ -6,7 +6,8 @@
 //! * [`function`] – cos, sinc and other functions of a linear operator, applied to vectors.
 //! * [`Trigonometric`] – the integrator that solves the linear part exactly.
 //! * [`exact`] – exact solutions in one dimension, used to measure errors.
-//! * [`absorbing`] – exact absorbing boundaries of bars and of plates that are periodic across.
+//! * [`absorbing`] – exact absorbing boundaries of bars and of plates that are periodic across, and open boundaries of
+//!   plates on square lattices.
 //!
 //! The crate uses only the public interface of the engine, [`pericles`].
 

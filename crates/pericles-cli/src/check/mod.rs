@@ -86,6 +86,11 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
     for end in &facts.ends {
         lines.push(Line::new("absorbing boundary", end.line()));
     }
+    if let Some(open) = &facts.open {
+        lines.push(Line::new("open boundary", open.line()));
+        let waves = open.reflection.iter();
+        lines.extend(waves.map(|waves| Line::new("reflection", waves.line())));
+    }
     let divided = ranks::forecasts(&source, &assembly, &args.ranks)?;
     let mut cost = None;
     if model.time.scheme.is_static() {

@@ -6,6 +6,7 @@ use crate::conditions::LoadAmplitude;
 use crate::exact::{Exact, KnownSolution, Pulse};
 use crate::key_path::KeyPath;
 use crate::model::Model;
+use crate::set::Depth;
 use crate::thermal::{Conduction, ConductionScheme, STORES_NO_HEAT, Thermal, ThermalAmplitude};
 
 /// What a fraction may be.
@@ -183,6 +184,10 @@ impl Check {
                     let allowed = "allowed: a number from 0 to 10";
                     self.within(right, key.key("power"), power, allowed);
                 }
+                BoundaryCondition::Open { thickness, .. } => match thickness {
+                    Depth::Length(length) => self.positive(key.key("thickness"), *length),
+                    Depth::Cells(cells) => self.positive(key.key("cells"), *cells),
+                },
             }
         }
     }

@@ -384,6 +384,8 @@ pub(super) const SPECIMENS: &[Specimen] = &[
     specimen(BAR, &["crack=[{ section = 5 }, { section = 5, ends = 'open' }]", "probe=[{ name = 'a', at = 5 }]"]),
     specimen(BAR, &["constraint=[{ set = 'left', velocity = 1, function = { kind = 'pulse', duration = 1 } }]"]),
     specimen(BAR, &["initial=[{ velocity = { expression = 'x' } }]", "load=[{ set = 'left', traction = 1, function = { kind = 'constant' } }]"]),
+    specimen(PLATE, &["boundary=[{ kind = 'open', side = 'all' }]"]),
+    specimen(PLATE, &["boundary=[{ kind = 'open', side = '+x', cells = 16 }, { kind = 'open', side = ['-x', '-y'], thickness = 12 }]"]),
     specimen(BAR, &["boundary=[{ kind = 'absorbing', side = '-x' }, { kind = 'absorbing', side = '+x', history = 'auto', tolerance = 1e-9, verify = true, method = 'discrete', exterior_extent = 1 }]"]),
     specimen(BAR, &["exact={ solution = 'local-pulse', width = 1, amplitude = 1, centre = 0, window = 1, start = true }"]),
     specimen(BAR, &["exact={ solution = 'local-pulse', width = 1, amplitude = 1 }"]),

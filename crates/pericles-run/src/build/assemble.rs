@@ -107,6 +107,7 @@ pub fn assemble(
     let probes = assembler.point_probes(place, &mut warnings)?;
     let integrator = assembler.integrator(&system, sets)?;
     let ends = assembler.ends(&system, &state, sets, &*integrator, resources)?;
+    assembler.check_open(cloud, &*integrator)?;
     let exterior = exterior_frequency(&ends);
     let layers = assembler.damping_layers(&density, constants.as_ref())?;
     let damping = strongest(&layers, cloud);
@@ -131,6 +132,7 @@ pub fn assemble(
     assembler.check_breaking(&system, &state, constants.as_ref(), &steps, &mut warnings);
     let ends = assembler.add_ends(&mut system, ends, &state, &steps, resources, &mut warnings)?;
     assembler.add_damping_layers(&mut system, layers, integrator.step_kind(), &steps)?;
+    let open = assembler.add_open(&mut system, &state, &steps)?;
     assembler.add_rayleigh_damping(&mut system, &*integrator)?;
     check_compatibility(&system, &*integrator, steps.count)
         .map_err(|error| at("time.scheme", error))?;
@@ -168,6 +170,7 @@ pub fn assemble(
         contact_frequency: (contact.frequency > 0.0).then_some(contact.frequency),
         probes,
         ends,
+        open,
         exact,
         stops,
         loads,

@@ -17,6 +17,7 @@ use super::discretisation::Sets;
 use super::exact::ExactReference;
 use super::loads::LoadReport;
 use super::mesh_body::Meshes;
+use super::open::OpenReport;
 use super::softening::MaterialSoftening;
 use super::step::damped_step;
 
@@ -63,6 +64,8 @@ pub struct Assembly {
     pub probes: Vec<PointProbe>,
     /// The absorbing boundaries.
     pub ends: Vec<(Side, EndReport)>,
+    /// The open boundary.
+    pub open: Option<OpenReport>,
     /// An exact solution for comparison.
     pub exact: Option<ExactReference>,
     /// Resultants of the loads, in the order of the deck.

@@ -73,7 +73,7 @@ impl Assembler<'_> {
         warnings.extend(self.check_speed(solid, &known));
         warnings.extend(self.check_classes(material, &constants));
         warnings.extend(self.check_solid(solid, &known));
-        let no_fail = self.union_of(sets, &solid.material.no_fail)?;
+        let no_fail = self.unbreakable(solid, sets, cloud)?;
         let stiffness = self.stiffness_of(cloud, sets)?;
         let Composition {
             classes,

@@ -32,6 +32,7 @@ mod materials;
 mod memory;
 mod mesh;
 mod mesh_body;
+mod open;
 mod output;
 mod part;
 mod pieces;
@@ -65,6 +66,7 @@ pub use exact::ExactReference;
 pub use forecast::{BANDWIDTH, Forecast, LATENCY, Spread};
 pub use loads::LoadReport;
 pub use mesh_body::{MeshBody, Meshes};
+pub use open::OpenReport;
 pub(crate) use part::gathered;
 pub use program::Conditions;
 pub use resources::{

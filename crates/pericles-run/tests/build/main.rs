@@ -25,6 +25,7 @@ mod memory;
 mod mesh;
 mod mesh_pieces;
 mod model;
+mod open;
 mod pieces;
 mod plate;
 mod plausible;

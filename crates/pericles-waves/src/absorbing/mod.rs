@@ -41,6 +41,8 @@
 //! **Strips.** Plates that are periodic across have absorbing boundaries by Fourier modes, each with 2K × 2K
 //! kernels computed by time marching: [`strip`].
 //!
+//! **Plates.** Sides and corners of plates on square lattices have matched layers, which are approximate: [`open`].
+//!
 //! **Schemes.** Velocity Verlet ([`AbsorbingEnd`]); the implicit midpoint and trapezoidal rules ([`MidpointEnd`])
 //! with σ(w) = (4/dt²)((1 − w)/(1 + w))², whose kernels have an instantaneous part F\[0\] ≠ 0 that becomes a corner
 //! of the step's matrix. The trigonometric scheme is not supported: it multiplies by cos(dt W), which is not
@@ -65,6 +67,7 @@ mod kernels;
 mod layer;
 mod loewner;
 mod midpoint_end;
+pub mod open;
 mod plan;
 mod roots;
 mod schur;

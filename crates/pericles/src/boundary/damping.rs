@@ -129,7 +129,7 @@ impl DampingLayer {
             pull: vec![0.0; entries],
             pull_before: vec![0.0; entries],
             place: vec![0.0; remembered],
-            name: format!("damping/{}", face_name(face)),
+            name: format!("damping/{face}"),
             domain: cloud.domain().clone(),
             points,
         })
@@ -174,11 +174,6 @@ impl DampingLayer {
     }
 }
 
-fn face_name(face: Face) -> String {
-    let sign = if face.upper { '+' } else { '-' };
-    format!("{sign}{}", ['x', 'y', 'z'][face.axis])
-}
-
 fn check(
     cloud: &PointCloud,
     face: Face,
@@ -189,7 +184,7 @@ fn check(
         frequency,
     }: DampedSteps,
 ) -> std::result::Result<(), String> {
-    let (name, dimension) = (face_name(face), cloud.dimension());
+    let (name, dimension) = (face, cloud.dimension());
     if face.axis >= dimension {
         return Err(format!("a {dimension}D body has no side {name}"));
     }

@@ -121,6 +121,13 @@ pub trait Boundary: Checkpointed + Send + Sync {
         self.after_stage(stage, acceleration);
     }
 
+    /// Returns work and impulse on the body over the step that ended which depend on the accelerations at its end, in addition
+    /// to those of [`Boundary::accept`]. Called once for every accepted state, after [`Boundary::after_stage`].
+    fn account(&mut self, step: &StepEnd<'_>) -> Exchange {
+        let _ = step;
+        Exchange::default()
+    }
+
     /// Returns whether the boundary depends on more than the current state. Schemes with trial steps or steps of
     /// varying length do not support such a boundary.
     fn has_memory(&self) -> bool {

@@ -1,5 +1,7 @@
 //! Regions of space that define holes, sets and layers.
 
+use std::fmt;
+
 use super::Point;
 use crate::error::{PericlesError, Result};
 
@@ -10,6 +12,13 @@ pub struct Face {
     pub axis: usize,
     /// True for the face at the upper end of the axis.
     pub upper: bool,
+}
+
+impl fmt::Display for Face {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let sign = if self.upper { '+' } else { '-' };
+        write!(f, "{sign}{}", ['x', 'y', 'z'][self.axis])
+    }
 }
 
 impl Face {

@@ -226,6 +226,7 @@ impl System {
         self.book_step(step, out);
         self.accept_boundaries(step);
         self.finish(step.t, step.u, v, &PointSubset::All, out);
+        self.account_boundaries(step);
     }
 
     /// Ends a step for all forces: breaks bonds and evaluates f/ρ. Returns work and impulse of interactions.
@@ -335,6 +336,15 @@ impl System {
         }
     }
 
+    /// Adds work and impulse of boundaries that depend on the accelerations at the end of a step to the energy balance.
+    fn account_boundaries(&mut self, step: &StepEnd<'_>) {
+        let mut boundaries = std::mem::take(&mut self.boundaries);
+        for boundary in &mut boundaries {
+            self.book_exchange(boundary.account(step));
+        }
+        self.boundaries = boundaries;
+    }
+
     /// Calls `act` for every boundary, with access to the stiffness at time t.
     fn with_boundaries(&mut self, t: f64, mut act: impl FnMut(&mut dyn Boundary, Stiffness<'_>)) {
         if self.boundaries.is_empty() {
@@ -371,6 +381,7 @@ impl System {
         self.book_step(&start, out);
         self.accept_boundaries(&start);
         self.finish(t, u, v, &PointSubset::All, out);
+        self.account_boundaries(&start);
     }
 
     /// Computes internal force and loads at displacement u, N/m³.

@@ -6,4 +6,5 @@ mod ends;
 mod exterior;
 mod implicit;
 mod kernels;
+mod open;
 mod strip;
