@@ -151,4 +151,24 @@ impl Simulation {
             broken: system.operator().broken_bonds().saturating_sub(broken),
         }
     }
+
+    /// Passes the unbalanced state of a failed load step that ends at `t_next` to all observers with a schedule.
+    pub(super) fn show_failed(&mut self, t_next: f64) {
+        if !self.integrator.is_static() {
+            return;
+        }
+        let (step, t, dt) = (self.state.step, self.state.t, self.dt);
+        (self.state.step, self.state.t) = (step + 1, t_next);
+        let mut observers = std::mem::take(&mut self.observers);
+        let snapshot = self.snapshot();
+        let due = |s: &&mut super::Scheduled| s.schedule.is_due(step + 1, dt, step + 1);
+        for scheduled in observers.iter_mut().filter(due) {
+            // Errors are ignored, because the failed step is reported.
+            let _ = scheduled.observer.observe_failed(&snapshot);
+            let _ = scheduled.observer.settle();
+        }
+        self.observers = observers;
+        // The last complete step.
+        (self.state.step, self.state.t) = (step, t);
+    }
 }

@@ -357,24 +357,6 @@ impl Simulation {
         self.agreed(shown)
     }
 
-    /// Passes the unbalanced state of a failed load step that ends at `t_next` to all observers with a schedule.
-    fn show_failed(&mut self, t_next: f64) {
-        if !self.integrator.is_static() {
-            return;
-        }
-        let (step, dt) = (self.state.step + 1, self.dt);
-        (self.state.step, self.state.t) = (step, t_next);
-        let mut observers = std::mem::take(&mut self.observers);
-        let snapshot = self.snapshot();
-        let due = |s: &&mut Scheduled| s.schedule.is_due(step, dt, step);
-        for scheduled in observers.iter_mut().filter(due) {
-            // Errors are ignored, because the failed step is reported.
-            let _ = scheduled.observer.observe_failed(&snapshot);
-            let _ = scheduled.observer.settle();
-        }
-        self.observers = observers;
-    }
-
     /// Checks that step number and time of the state belong to this run.
     fn check_time(&self) -> Result<(), PericlesError> {
         /// Tolerance as a fraction of a step: a step derived from a computed frequency depends on the instruction
