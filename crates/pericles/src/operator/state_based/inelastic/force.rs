@@ -30,7 +30,7 @@ use rayon::prelude::*;
 /// include the viscosity and plasticity of the current step, and the tangent is the derivative of this force.
 ///
 /// Energy dissipated by flow and relaxation is added to that of breaking bonds
-/// ([`Breakable::dissipated`](crate::operator::Breakable::dissipated)). With hardening, all plastic work
+/// ([`BondSet::dissipated`](crate::neighbourhood::BondSet::dissipated)). With hardening, all plastic work
 /// counts as dissipated.
 ///
 /// For influence functions other than the constant one, the plastic flow of a point is radial but not normal
