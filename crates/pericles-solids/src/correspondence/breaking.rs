@@ -10,7 +10,9 @@ use pericles::StepEnd;
 use pericles::domain::{Field, Letter};
 use pericles::lanes::{LANES, Row};
 use pericles::material::{BondStretch, PairForce};
-use pericles::neighbourhood::{BondSet, CoarseBreak, Crossing, LostBond, turns_around};
+use pericles::neighbourhood::{
+    BondSet, BreakEvent, CoarseBreak, Crossing, Form, LostBond, turns_around,
+};
 use pericles::operator::rows::Rows;
 use pericles::operator::{Breakable, PointSubset};
 use pericles::parallel::{BLOCK, for_each_chunk_of};
@@ -109,25 +111,19 @@ impl<const D: usize> CorrespondenceForce<D> {
 
     /// Returns the reverse entries of bonds that are intact and not in `found`.
     fn other_ends(&self, found: &Entries) -> Entries {
-        let sites = self.bonds.list().sites();
+        let list = self.bonds.list();
         let letters = found.iter().map(|&(i, entry)| {
-            let site = self.bonds.list().neighbour(entry);
-            let [x, y, z] = sites.shift(site).map(|periods| -f64::from(periods));
-            Letter {
-                from: i,
-                to: sites.point(site),
-                numbers: [0.0, x, y, z],
-            }
+            list.letter(&BreakEvent {
+                point: i as u32,
+                entry,
+                dissipated: 0.0,
+            })
         });
         let known: std::collections::BTreeSet<usize> =
             found.iter().map(|&(_, entry)| entry).collect();
         let letters = self.cloud.domain().deliver(letters.collect());
         let back = |letter: &Letter| {
-            let [_, x, y, z] = letter.numbers;
-            let leads_back = |&(_, site): &(usize, usize)| {
-                sites.point(site) == letter.from && sites.shift(site).map(f64::from) == [x, y, z]
-            };
-            let (entry, _) = self.bonds.list().family(letter.to).find(leads_back)?;
+            let entry = list.entry_at(list.place_of(letter)?);
             let wanted = self.bonds.all.is_intact(letter.to, entry) && !known.contains(&entry);
             wanted.then_some((letter.to, entry))
         };

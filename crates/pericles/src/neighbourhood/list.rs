@@ -10,7 +10,7 @@ use crate::domain::Letter;
 use crate::error::Result;
 use crate::family::BondList;
 use crate::lanes::LANES;
-use crate::parallel::{BLOCK, Cost, PointSubset};
+use crate::parallel::{BLOCK, Cost, PointSubset, for_each_chunk_of};
 use crate::space::PointCloud;
 
 const INTACT: &str = "operator/intact";
@@ -136,6 +136,11 @@ impl BondList {
         }
     }
 
+    /// Returns the entry at a place.
+    pub fn entry_at(&self, place: BondPlace) -> usize {
+        (self.start()[place.block * BLOCK] + place.group) * LANES + place.lane
+    }
+
     /// Returns the bytes of a point among those of its block.
     pub fn groups_in_block(&self, i: usize) -> std::ops::Range<usize> {
         let first = self.start()[i / BLOCK * BLOCK];
@@ -155,6 +160,20 @@ impl Neighbourhood<BondList> {
     pub fn intact_of(&self, i: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
         let family = self.form().family(i);
         family.filter(move |&(entry, _)| self.is_intact(i, entry))
+    }
+
+    /// Marks the points with an intact breakable bond for which `over(point, entry, site of the other end)` holds. Points
+    /// that are already marked are skipped.
+    pub fn mark(&self, marks: &mut [bool], over: impl Fn(usize, usize, usize) -> bool + Sync) {
+        let list = self.form();
+        for_each_chunk_of(marks, list.cost(&PointSubset::All), &|first, marks| {
+            for (i, mark) in (first..).zip(marks) {
+                *mark = *mark
+                    || self
+                        .intact_of(i)
+                        .any(|(entry, site)| list.may_break(entry) && over(i, entry, site));
+            }
+        });
     }
 
     /// Returns the bits of the intact bonds of a point.

@@ -113,14 +113,15 @@ impl<F: Form> Neighbourhood<F> {
         self.blocks.iter().map(broken).collect()
     }
 
-    /// Calls `visit(first point of the block, bond, out of the block)` for all bonds that count in the damage.
-    pub fn for_each_counted(
+    /// Calls `visit(first point of the block, bond, parts of the components of `out`)` for all bonds that count in the
+    /// damage.
+    pub fn for_each_counted<const C: usize>(
         &self,
         out: &mut [f64],
-        visit: impl Fn(usize, CountedBond, &mut [f64]) + Sync,
+        visit: impl Fn(usize, CountedBond, &mut [&mut [f64]; C]) + Sync,
     ) {
         let cost = self.form.cost(&PointSubset::All);
-        self.for_each_block::<1>(cost, out, |block, intact, [out]| {
+        self.for_each_block::<C>(cost, out, |block, intact, out| {
             let first = self.form.first_point(block);
             self.form
                 .for_each_counted(block, intact, self.measure, |bond| visit(first, bond, out));
@@ -130,19 +131,18 @@ impl<F: Form> Neighbourhood<F> {
     /// Sets the damage of each point, 0 … 1: the missing fraction of its family, in which an intact bond counts with the
     /// fraction `retained(point, entry)` of its stiffness.
     pub fn damage_with(&self, out: &mut [f64], retained: impl Fn(usize, usize) -> f64 + Sync) {
-        let mut whole = vec![0.0; out.len()];
-        self.for_each_counted(&mut whole, |first, bond, whole| {
+        let n = out.len();
+        let mut sums = vec![0.0; 2 * n];
+        self.for_each_counted::<2>(&mut sums, |first, bond, [whole, left]| {
             whole[bond.point - first] += bond.weight;
-        });
-        out.fill(0.0);
-        self.for_each_counted(out, |first, bond, left| {
             if bond.intact {
                 left[bond.point - first] += bond.weight * retained(bond.point, bond.entry);
             }
         });
-        for (damage, whole) in out.iter_mut().zip(whole) {
-            *damage = match whole > 0.0 {
-                true => 1.0 - *damage / whole,
+        let (whole, left) = sums.split_at(n);
+        for (damage, (whole, left)) in out.iter_mut().zip(whole.iter().zip(left)) {
+            *damage = match *whole > 0.0 {
+                true => 1.0 - left / whole,
                 false => 0.0,
             };
         }

@@ -61,14 +61,15 @@ impl<L: VectorLaw, const D: usize> Force for GridForce<L, D> {
     fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {
         let (lengths, m) = (self.stencil().lengths(), self.stencil().len());
         let mut rows = vec![0.0; self.points()];
-        self.bonds.for_each_counted(&mut rows, |first, bond, rows| {
-            if bond.intact {
-                let (group, lane) = (bond.entry / LANES, bond.entry % LANES);
-                let (chunk, offset) = (group / m, group % m);
-                let stiffness = self.stiffness_of(chunk, offset, lane).abs();
-                rows[bond.point - first] += stiffness / lengths[offset];
-            }
-        });
+        self.bonds
+            .for_each_counted::<1>(&mut rows, |first, bond, [rows]| {
+                if bond.intact {
+                    let (group, lane) = (bond.entry / LANES, bond.entry % LANES);
+                    let (chunk, offset) = (group / m, group % m);
+                    let stiffness = self.stiffness_of(chunk, offset, lane).abs();
+                    rows[bond.point - first] += stiffness / lengths[offset];
+                }
+            });
         let square = |(i, row): (usize, &f64)| 2.0 * row / density(i);
         let own = rows.iter().enumerate().map(square).fold(0.0, f64::max);
         self.cloud.domain().max(own).sqrt()

@@ -5,7 +5,6 @@ use crate::domain::Field;
 use crate::neighbourhood::BondSet;
 use crate::operator::fast_law::VectorLaw;
 use crate::operator::{Breakable, CoarseBreak};
-use crate::parallel::{PointSubset, for_each_chunk_of};
 
 impl<L: VectorLaw, const D: usize> Breakable for BondForce<L, D> {
     fn bonds(&self) -> &dyn BondSet {
@@ -46,14 +45,7 @@ impl<L: VectorLaw, const D: usize> Breakable for BondForce<L, D> {
             measure > threshold(a, b) * square
         };
         let list = self.bonds.form();
-        for_each_chunk_of(marks, list.cost(&PointSubset::All), &|first, marks| {
-            for (i, mark) in (first..).zip(marks) {
-                *mark = *mark
-                    || self
-                        .bonds
-                        .intact_of(i)
-                        .any(|(entry, b)| list.may_break(entry) && over(list.site(i), b));
-            }
-        });
+        self.bonds
+            .mark(marks, |i, _, site| over(list.site(i), site));
     }
 }

@@ -14,7 +14,7 @@ use crate::operator::pool::Lent;
 use crate::operator::{
     AtPoints, BondView, Breakable, CoarseBreak, InstructionSet, PointSubset, TwoPass,
 };
-use crate::parallel::{for_each_chunk, for_each_chunk_of};
+use crate::parallel::for_each_chunk;
 use crate::step_end::StepEnd;
 use crate::thermal::{Expandable, ThermalExpansion};
 
@@ -267,15 +267,6 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
             });
             worked || measure > L::Measure::threshold(limit) * square
         };
-        let list = self.bonds.form();
-        for_each_chunk_of(marks, list.cost(&PointSubset::All), &|first, marks| {
-            for (i, mark) in (first..).zip(marks) {
-                *mark = *mark
-                    || self
-                        .bonds
-                        .intact_of(i)
-                        .any(|(entry, j)| list.may_break(entry) && over(i, entry, j));
-            }
-        });
+        self.bonds.mark(marks, over);
     }
 }

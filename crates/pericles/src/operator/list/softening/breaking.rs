@@ -5,7 +5,6 @@ use crate::domain::Field;
 use crate::neighbourhood::BondSet;
 use crate::operator::fast_law::VectorLaw;
 use crate::operator::{Breakable, CoarseBreak};
-use crate::parallel::{PointSubset, for_each_chunk_of};
 
 impl<L: VectorLaw, const D: usize> Breakable for SofteningForce<L, D> {
     fn bonds(&self) -> &dyn BondSet {
@@ -48,15 +47,8 @@ impl<L: VectorLaw, const D: usize> Breakable for SofteningForce<L, D> {
             let (measure, square) = L::stretch_measure(xi, eta);
             L::stretch(measure / square) > fraction * factor * curve.end()
         };
-        let (cost, families) = (list.bonds.form().cost(&PointSubset::All), list.bonds.form());
-        for_each_chunk_of(marks, cost, &|first, marks| {
-            for (i, mark) in (first..).zip(marks) {
-                *mark = *mark
-                    || list
-                        .bonds
-                        .intact_of(i)
-                        .any(|(entry, b)| families.may_break(entry) && over(families.site(i), b));
-            }
-        });
+        let families = list.bonds.form();
+        list.bonds
+            .mark(marks, |i, _, site| over(families.site(i), site));
     }
 }

@@ -110,7 +110,7 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
         let (layout, stencil) = (bonds.form().layout(), bonds.form().stencil());
         let offsets = solid_offsets(stencil, &weight);
         let mut volumes = vec![0.0; cloud.len()];
-        bonds.for_each_counted(&mut volumes, |first, bond, volumes| {
+        bonds.for_each_counted::<1>(&mut volumes, |first, bond, [volumes]| {
             if bond.intact {
                 let offset = &offsets[bond.entry / LANES % offsets.len()];
                 volumes[bond.point - first] += offset.weighted_square;
