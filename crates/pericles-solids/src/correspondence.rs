@@ -6,34 +6,22 @@
 //! Piola–Kirchhoff stress P(F); a penalty controls deformations that F does not represent
 //! ([`Stabilisation`]). For a uniform deformation the stress is classical at every point, surfaces included.
 //!
-//! [`CorrespondenceMaterial`] → [`CorrespondenceConstants`] → [`CorrespondenceBody`] → [`CorrespondenceForce`].
+//! [`CorrespondenceMaterial`] → [`CorrespondenceConstants`] → [`CorrespondenceBody`] →
+//! [`SolidForce`](crate::solid::SolidForce).
 
 mod body;
-mod bonds;
-mod breaking;
-mod classes;
+mod classical;
 mod control;
-mod error;
-mod force;
-mod heat;
-mod heated;
+mod force_state;
 mod law;
 mod material;
-mod passes;
 mod plasticity;
-mod shape;
-mod solid;
-mod stress;
-mod tensor;
-mod view;
 
 pub use body::CorrespondenceBody;
-pub use classes::CorrespondenceClasses;
+pub use classical::{ClassicalSolid, Expanded, PointState};
 pub use control::{Control, Stabilisation};
-pub use error::SingularShape;
-pub use force::CorrespondenceForce;
 pub use law::{ElasticLaw, Moduli};
 pub use material::{CorrespondenceConstants, CorrespondenceMaterial};
 pub use plasticity::{History, Plasticity};
-pub use shape::LARGEST_CONDITION;
-pub use solid::{Expanded, PointState, Solid};
+
+pub use crate::solid::LARGEST_CONDITION;

@@ -1,8 +1,15 @@
-//! Peridynamic solids at large strain.
+//! Peridynamic solids whose force states depend on all bonds of a point.
 //!
+//! * [`solid`] – the trait [`Solid`](solid::Solid) of a material, and the force operator of a body of such materials.
 //! * [`correspondence`] – correspondence materials: stress from a nonlocal deformation gradient, with control
 //!   of zero-energy modes.
 //!
 //! The crate uses only public items of the engine, [`pericles`].
 
 pub mod correspondence;
+mod error;
+pub mod solid;
+mod tensor;
+
+pub use error::SingularShape;
+pub use tensor::Matrix;

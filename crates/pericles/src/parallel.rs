@@ -147,7 +147,7 @@ pub fn for_each_block<const D: usize, S: Send>(
 /// Calls `work(part, one slice per component, state of the part)` for every part in parallel, without allocation.
 /// Part k contains the points from `first(k)` to `first(k + 1)`, the last part all remaining points; `first(0)` is
 /// 0.
-pub(crate) fn for_each_part<const D: usize, S: Send>(
+pub fn for_each_part<const D: usize, S: Send>(
     out: [&mut [f64]; D],
     states: &mut [S],
     cost: Cost,

@@ -8,7 +8,7 @@ use pericles_deck::{
     Solid,
 };
 use pericles_solids::correspondence::{
-    CorrespondenceBody, CorrespondenceClasses, CorrespondenceConstants, CorrespondenceMaterial,
+    CorrespondenceBody, CorrespondenceConstants, CorrespondenceMaterial,
 };
 
 use super::assembler::Assembler;
@@ -63,7 +63,7 @@ impl Assembler<'_> {
         let classes = match of_point {
             None => None,
             Some(of_point) => {
-                let classes = CorrespondenceClasses::new(of_point, &all);
+                let classes = CorrespondenceConstants::several(of_point, &all);
                 let mut classes = classes.map_err(|error| at("materials", error))?;
                 for (pair, limits) in self.stretches_between(solid, &materials, cloud)? {
                     classes.set_limits(pair, limits);
@@ -74,7 +74,7 @@ impl Assembler<'_> {
         let classes = match self.strengths(solid, cloud)? {
             None => classes,
             Some(factors) => {
-                let classes = classes.unwrap_or_else(|| CorrespondenceClasses::uniform(&all[0]));
+                let classes = classes.unwrap_or_else(|| all[0].clone().uniform());
                 Some(classes.with_strengths(factors))
             }
         };

@@ -2,16 +2,14 @@
 
 use std::sync::Arc;
 
-use pericles::family::{BondCut, BondList, Crack, EndRule, VolumeCorrection};
-use pericles::operator::{
-    AssembledBonds, BondForm, DamageMeasure, Feature, Features, Limit, TwoPassForce,
-};
+use pericles::Result;
+use pericles::family::{Crack, EndRule, VolumeCorrection};
+use pericles::operator::{AssembledBonds, BondForm, DamageMeasure, Feature, Features, Limit};
 use pericles::space::PointCloud;
-use pericles::{PericlesError, Result};
 
-use super::classes::CorrespondenceClasses;
-use super::force::CorrespondenceForce;
+use super::force_state::ForceState;
 use super::material::CorrespondenceConstants;
+use crate::solid::{Materials, SolidBody};
 
 /// A body of correspondence materials: the input of its force operator.
 #[derive(Debug, Clone)]
@@ -21,7 +19,7 @@ pub struct CorrespondenceBody<'a> {
     /// Constants of the material, which has the horizon and influence function of the body.
     pub constants: &'a CorrespondenceConstants,
     /// Materials of points and bonds, if there are several.
-    pub classes: Option<&'a CorrespondenceClasses>,
+    pub classes: Option<&'a Materials<CorrespondenceConstants>>,
     /// Partial volumes at the horizon.
     pub volume_correction: VolumeCorrection,
     /// Pre-cracks, which are cut before shape tensors are computed.
@@ -98,47 +96,31 @@ impl<'a> CorrespondenceBody<'a> {
     pub fn operator(&self, form: BondForm) -> Result<AssembledBonds> {
         let features = Features::from(Feature::Correspondence);
         Limit::check(Self::limits(form), form.name(), features)?;
-        match self.cloud.dimension() {
-            1 => self.assembled::<1>(),
-            2 => self.assembled::<2>(),
-            _ => self.assembled::<3>(),
+        match self.constants.stabilisation.is_tensor() {
+            true => self.assembled::<true>(),
+            false => self.assembled::<false>(),
         }
     }
 
-    fn assembled<const D: usize>(&self) -> Result<AssembledBonds> {
-        let (force, cuts) = self.list::<D>()?;
-        Ok(AssembledBonds {
-            operator: Box::new(TwoPassForce::new(self.cloud.clone(), force)),
-            cuts,
-            form: BondForm::List,
-        })
-    }
-
-    /// Creates the two-pass force; returns it with the bonds removed by each pre-crack.
-    ///
-    /// # Errors
-    /// The errors of [`CorrespondenceBody::operator`].
-    ///
-    /// # Panics
-    /// If the dimension of the body is not D.
-    pub fn list<const D: usize>(&self) -> Result<(CorrespondenceForce<D>, Vec<BondCut>)> {
-        let classes = match self.classes {
+    fn assembled<const TENSOR: bool>(&self) -> Result<AssembledBonds> {
+        let materials = match self.classes {
             Some(classes) => classes.clone(),
-            None => CorrespondenceClasses::uniform(self.constants),
+            None => self.constants.clone().uniform(),
         };
-        if !classes.covers(self.cloud.len()) {
-            return Err(PericlesError::OutOfRange {
-                quantity: "the number of points of the body",
-                value: self.cloud.len() as f64,
-                allowed: "the number of points with a material",
-            });
+        let body = SolidBody {
+            cloud: self.cloud,
+            materials: materials.map(ForceState::<TENSOR>),
+            horizon: self.constants.solid.horizon,
+            influence: &self.constants.solid.influence,
+            volume_correction: self.volume_correction,
+            cracks: self.cracks,
+            no_fail: self.no_fail,
+            damage: self.damage,
+        };
+        match self.cloud.dimension() {
+            1 => body.operator::<1>(),
+            2 => body.operator::<2>(),
+            _ => body.operator::<3>(),
         }
-        let horizon = self.constants.solid.horizon;
-        let mut bonds = BondList::new(self.cloud, horizon, self.volume_correction)?;
-        let cut = |(crack, rule): &(Crack, EndRule)| bonds.cut(crack, *rule);
-        let cuts = self.cracks.iter().map(cut).collect::<Result<Vec<_>>>()?;
-        let cloud = self.cloud.clone();
-        let force = CorrespondenceForce::new(cloud, bonds, classes, self.no_fail, self.damage)?;
-        Ok((force, cuts))
     }
 }

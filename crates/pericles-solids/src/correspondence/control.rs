@@ -1,7 +1,7 @@
 //! Control of zero-energy modes.
 
-use super::solid::Solid;
-use super::tensor::{Matrix, apply, combination, product, trace};
+use super::classical::ClassicalSolid;
+use crate::tensor::{Matrix, combination, product, trace};
 
 /// Penalty on deformations that the deformation gradient does not represent. With z = Y − F ξ of each bond,
 /// it adds ½ Σ w z·Z z to the energy density and w Z z to the force state.
@@ -37,7 +37,7 @@ impl Stabilisation {
     /// Returns Z for the inverse shape tensor of a point; `spring` is c/δ V_δ/Σ w b V.
     pub(super) fn control<const D: usize>(
         self,
-        solid: &Solid,
+        solid: &ClassicalSolid,
         inverse: &Matrix<D>,
         spring: f64,
     ) -> Control<D> {
@@ -71,15 +71,6 @@ impl<const D: usize> Control<D> {
     /// No control, Z = 0.
     pub const NONE: Self = Self::Scalar(0.0);
 
-    /// Returns Z x.
-    #[inline(always)]
-    pub fn apply(&self, x: &[f64; D]) -> [f64; D] {
-        match self {
-            Self::Scalar(z) => x.map(|x| z * x),
-            Self::Tensor(z) => apply(z, x),
-        }
-    }
-
     /// Returns Z A.
     pub fn times(&self, a: &Matrix<D>) -> Matrix<D> {
         match self {
@@ -106,7 +97,7 @@ impl<const D: usize> Control<D> {
         match self {
             Self::Scalar(z) => *z,
             Self::Tensor(z) => {
-                let (values, _) = super::tensor::principal_axes(z);
+                let (values, _) = crate::tensor::principal_axes(z);
                 values.into_iter().fold(0.0, f64::max)
             }
         }

@@ -1,6 +1,6 @@
 //! Elastic laws at finite strain: energy density, first Piola–Kirchhoff stress and its derivative.
 
-use super::tensor::{
+use crate::tensor::{
     Matrix, combination, contraction, determinant, inverse, product, trace, transpose, unit,
 };
 

@@ -8,11 +8,12 @@ use pericles::material::{
 use pericles::space::PointCloud;
 use pericles::{PericlesError, Result, positive};
 
+use super::classical::ClassicalSolid;
 use super::control::{Stabilisation, spring_of_horizon};
 use super::law::{ElasticLaw, Moduli};
 use super::plasticity::Plasticity;
-use super::solid::Solid;
-use super::tensor::{Matrix, combination, contraction, in_body, product, symmetric};
+use crate::solid::{BondStrength, Materials};
+use crate::tensor::{Matrix, combination, contraction, in_body, product, symmetric};
 
 /// A correspondence material (Silling, Epton, Weckner, Xu & Askari, J. Elasticity 88, 2007): the force state
 /// of a point follows from the stress at its deformation gradient.
@@ -38,7 +39,7 @@ pub struct CorrespondenceConstants {
     /// and B are not used; the lattice shear is `None` because it is exact.
     pub solid: LinearSolidConstants,
     /// Stress–strain law.
-    pub point: Solid,
+    pub point: ClassicalSolid,
     /// Control of zero-energy modes.
     pub stabilisation: Stabilisation,
 }
@@ -76,7 +77,7 @@ impl CorrespondenceMaterial {
         solid.lattice_shear = None;
         solid.criterion = self.criterion.clone();
         let mut constants = CorrespondenceConstants {
-            point: Solid {
+            point: ClassicalSolid {
                 state,
                 law: match self.plasticity {
                     Some(_) => ElasticLaw::Hencky,
@@ -194,6 +195,39 @@ fn no_such_failure(what: &str) -> PericlesError {
 const FINE: [f64; 3] = [200.0, 24.0, 10.0];
 
 impl CorrespondenceConstants {
+    /// Returns the materials of a body of this material.
+    pub fn uniform(self) -> Materials<Self> {
+        let strength = self.strength();
+        Materials::uniform(self, strength)
+    }
+
+    /// Returns the materials of a body of several materials; `of_point` is the number of the material of each point.
+    ///
+    /// # Errors
+    /// A material number out of range; materials with different horizons, influence functions or stabilisations.
+    pub fn several(of_point: Vec<u8>, materials: &[Self]) -> Result<Materials<Self>> {
+        let same = |pair: &[Self]| {
+            let [a, b] = [&pair[0], &pair[1]];
+            a.solid.horizon == b.solid.horizon
+                && a.solid.influence == b.solid.influence
+                && a.stabilisation == b.stabilisation
+        };
+        if !materials.windows(2).all(same) {
+            return Err(PericlesError::BadInfluence {
+                reason: "the correspondence materials of a body must have the same horizon, influence function and stabilisation".into(),
+            });
+        }
+        let with_strength = |own: &Self| (own.clone(), own.strength());
+        Materials::new(of_point, materials.iter().map(with_strength).collect())
+    }
+
+    fn strength(&self) -> BondStrength {
+        BondStrength {
+            stretch: self.solid.limits.stretch,
+            criterion: self.solid.criterion.clone(),
+        }
+    }
+
     /// Returns planes of the lattice of the body, or of a fine lattice, with the crack energy per area at unit stretch.
     fn crack_planes(&self, solid: &LinearSolid, cloud: &PointCloud, fine: bool) -> Vec<CrackPlane> {
         let (dimension, horizon) = (cloud.dimension(), self.solid.horizon);
@@ -219,7 +253,7 @@ impl CorrespondenceConstants {
     fn closing_energy<const D: usize>(&self, layer: &LayerMoments) -> f64 {
         let whole: Matrix<D> = in_body(&layer.whole);
         let crossing: Matrix<D> = in_body(&layer.crossing);
-        let inverse = super::shape::inverse_of(&whole);
+        let inverse = crate::solid::inverse_of(&whole);
         let gradient = product(&crossing, &inverse);
         let strain = symmetric(&gradient);
         let stress = self.point.linear_stress(&strain);

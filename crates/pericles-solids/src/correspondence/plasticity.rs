@@ -7,7 +7,7 @@
 //! for any rotation.
 
 use super::law::Moduli;
-use super::tensor::{
+use crate::tensor::{
     Matrix, combination, determinant, inverse, matrix, principal_axes, product, symmetric,
     transpose,
 };

@@ -192,32 +192,24 @@ fn points_with_too_few_bonds_lose_all_bonds() {
         .constants(&cloud, StressState::PlaneStrain)
         .unwrap();
     let body = CorrespondenceBody::new(&cloud, &constants, VolumeCorrection::None);
-    let (mut force, _) = body.list::<2>().unwrap();
-    assert_eq!(force.dropped_points(), 0);
+    let mut force = body.operator(BondForm::List).unwrap().operator;
+    let dropped = |force: &dyn Force| force.capabilities().breaking.unwrap().dropped_points();
+    assert_eq!(dropped(&*force), 0);
     let n = cloud.len();
     let corner = (0..n).find(|&i| cloud.point(i)[..2] == [0.5, 0.5]).unwrap();
     // Along −x, so that bonds along y stretch last.
     let mut u = vec![0.0; 2 * n];
     u[corner] = -0.3;
-    let mut values = vec![0.0; n * pericles::operator::TwoPass::values_per_point(&force)];
+    let mut forces = vec![0.0; 2 * n];
     let step = StepEnd::sub_step(0.0, 1.0, &u);
-    let field = pericles::domain::Field::new(&u, &[]);
-    pericles::operator::TwoPass::end_values_into(
-        &mut force,
-        &step,
-        field,
-        &PointSubset::All,
-        &PointSubset::All,
-        &mut values,
-    );
+    force.end_step(&step, PointSubset::All, &mut forces);
     let mut damage = vec![0.0; n];
-    pericles::operator::Breakable::damage_into(&force, &mut damage);
-    let broken = pericles::operator::Breakable::bonds(&force).broken_bonds();
-    assert!(broken > 0);
+    force.damage_into(&mut damage);
+    assert!(force.broken_bonds() > 0);
     // The remaining bonds span the plane, or none remain.
     let left = (0..n).all(|i| damage[i] == 0.0 || damage[i] <= 1.0);
-    assert!(left && values.iter().all(|value| value.is_finite()));
-    assert_eq!(damage[corner] == 1.0, force.dropped_points() > 0);
+    assert!(left && forces.iter().all(|value| value.is_finite()));
+    assert_eq!(damage[corner] == 1.0, dropped(&*force) > 0);
 }
 
 /// The end of a bar whose horizon is one spacing has a single bond.

@@ -1,13 +1,13 @@
 //! Elastic laws.
 
 use pericles::material::StressState;
-use pericles_solids::correspondence::{ElasticLaw, History, Moduli, Plasticity, Solid};
+use pericles_solids::correspondence::{ClassicalSolid, ElasticLaw, History, Moduli, Plasticity};
 
 const F: [[f64; 3]; 3] = [[1.1, 0.05, -0.02], [0.03, 0.95, 0.04], [0.01, -0.06, 1.02]];
 const PLANE: [[f64; 2]; 2] = [[1.1, 0.05], [0.03, 0.95]];
 
-fn solid(law: ElasticLaw, state: StressState) -> Solid {
-    Solid {
+fn solid(law: ElasticLaw, state: StressState) -> ClassicalSolid {
+    ClassicalSolid {
         state,
         law,
         moduli: Moduli::new(11.3, 4.7),
@@ -65,7 +65,7 @@ fn energies_and_stresses_match_an_independent_code() {
 }
 
 /// All laws, and a plastic solid that continues to yield.
-fn solids(state: StressState) -> Vec<(Solid, History)> {
+fn solids(state: StressState) -> Vec<(ClassicalSolid, History)> {
     let laws = [
         ElasticLaw::StVenantKirchhoff,
         ElasticLaw::NeoHooke,
@@ -76,7 +76,7 @@ fn solids(state: StressState) -> Vec<(Solid, History)> {
         .into_iter()
         .map(|law| (solid(law, state), History::default()))
         .collect();
-    let yielding = Solid {
+    let yielding = ClassicalSolid {
         plasticity: Some(Plasticity {
             yield_stress: 0.3,
             hardening: 0.7,

@@ -9,7 +9,7 @@ use pericles::space::PointCloud;
 use pericles::time::{State, VelocityVerlet, highest_frequency};
 use pericles::{Control, PointScalar, Simulation, StepEnd, System};
 use pericles_solids::correspondence::{
-    CorrespondenceMaterial, ElasticLaw, History, Moduli, Plasticity, Solid, Stabilisation,
+    ClassicalSolid, CorrespondenceMaterial, ElasticLaw, History, Moduli, Plasticity, Stabilisation,
 };
 
 use crate::bodies::{lattice, material, operator};
@@ -17,8 +17,8 @@ use crate::bodies::{lattice, material, operator};
 const YIELD: f64 = 0.25;
 const HARDENING: f64 = 1.5;
 
-fn solid(state: StressState) -> Solid {
-    Solid {
+fn solid(state: StressState) -> ClassicalSolid {
+    ClassicalSolid {
         state,
         law: ElasticLaw::Hencky,
         // E = 10, ν = 0.3.

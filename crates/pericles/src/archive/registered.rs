@@ -142,10 +142,10 @@ macro_rules! saved {
     };
 
     // Parameters of generic types.
-    (impl<$law:ident: $bound:ident, const $size:ident: usize> $($rest:tt)*) => {
+    (impl<$law:ident: $bound:path, const $size:ident: usize> $($rest:tt)*) => {
         $crate::saved! { @impl [$law: $bound, const $size: usize] $($rest)* }
     };
-    (impl<$law:ident: $bound:ident> $($rest:tt)*) => {
+    (impl<$law:ident: $bound:path> $($rest:tt)*) => {
         $crate::saved! { @impl [$law: $bound] $($rest)* }
     };
     (impl<const $size:ident: usize> $($rest:tt)*) => {

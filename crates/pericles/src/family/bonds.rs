@@ -326,7 +326,7 @@ impl BondList {
 
     /// Calls `visit` once for every point other than i that has a bond with own point i; ghosts are counted after the
     /// own points.
-    pub(crate) fn for_each_neighbour(&self, i: usize, visit: &mut dyn FnMut(usize)) {
+    pub fn for_each_neighbour(&self, i: usize, visit: &mut dyn FnMut(usize)) {
         let family = self.family(i);
         let near = family.filter(|&(entry, _)| self.is_present(entry));
         if self.sites.are_points() {

@@ -252,8 +252,11 @@ impl MaterialPairs {
     }
 }
 
-/// Returns an error for more than 256 materials, and for material numbers that are not below `count`.
-pub(crate) fn check_materials(of_point: &[u8], count: usize) -> Result<()> {
+/// Checks the numbers of the materials of points.
+///
+/// # Errors
+/// More than 256 materials; a number that is not below `count`.
+pub fn check_materials(of_point: &[u8], count: usize) -> Result<()> {
     if count > 256 {
         return Err(PericlesError::OutOfRange {
             quantity: "the number of materials",

@@ -40,8 +40,7 @@ pub use approximation::{
     Approximated, Approximation, CubicBond, CubicFactor, SecondOrder, Trapezoidal,
 };
 pub use bond_material::{BondMaterial, Calibration, Fracture, FractureCalibration, Modulus};
-pub(crate) use composite::check_materials;
-pub use composite::{InterfaceRule, MaterialPairs};
+pub use composite::{InterfaceRule, MaterialPairs, check_materials};
 pub use constants::BondConstants;
 pub use crack_planes::{CrackPlane, LayerMoments};
 pub use criterion::{BondCriterion, BondState, Criterion, PairCriteria, PrincipalStress};
@@ -50,8 +49,7 @@ pub use law::{BondStretch, CubicLaw, LinearBond, PairLaw};
 pub use modulus::{ElasticModulus, StressState};
 pub use pair_force::PairForce;
 pub use polynomial::{CubicSofteningBond, GreenBond};
-pub(crate) use scatter::Factors;
-pub use scatter::{Scattered, StrengthScatter};
+pub use scatter::{Factors, Scattered, StrengthScatter};
 pub use softening::{Softening, SofteningCurve, SofteningLaw};
 pub use state_based::{
     BondFailure, BondLimits, ElasticConstants, GivenConstants, Inelasticity, IsotropicInfluence,

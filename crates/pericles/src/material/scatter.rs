@@ -101,9 +101,10 @@ fn gamma(x: f64) -> f64 {
 
 /// Strength factors of points or sites; empty if strengths do not scatter.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct Factors(Vec<f64>);
+pub struct Factors(Vec<f64>);
 
 impl Factors {
+    /// Creates factors of points; empty if strengths do not scatter.
     pub fn new(factors: Vec<f64>) -> Self {
         Self(factors)
     }
@@ -123,10 +124,12 @@ impl Factors {
         factors.reduce(f64::min).unwrap_or(1.0)
     }
 
+    /// Returns whether strengths do not scatter.
     pub fn is_uniform(&self) -> bool {
         self.0.is_empty()
     }
 
+    /// Returns the factors of all points; empty if strengths do not scatter.
     pub fn as_slice(&self) -> &[f64] {
         &self.0
     }

@@ -73,7 +73,7 @@ pub use state_based::{
     FiniteStrain, InelasticSolidBody, InelasticSolidForce, Kinematics, LinearSolidBody,
     LinearSolidForce, LinearSolidGrid, SmallStrain,
 };
-pub use two_pass::{AtPoints, TwoPass, TwoPassForce};
+pub use two_pass::{AtPoints, Neighbours, TwoPass, TwoPassForce, with_neighbours};
 pub use view::{BondAt, BondValues, BondView, DilatationView, PlasticView, StressView};
 pub use zoned::{LocalForce, SplitForce};
 

@@ -9,7 +9,7 @@ use super::{
     LinearOperator, Linearity, LocalForce, PlasticView, PointSubset, StressView,
 };
 use crate::archive::{Archive, Checkpointed};
-use crate::domain::Field;
+use crate::domain::{Domain, Field};
 use crate::error::Result;
 use crate::space::{PointCloud, PointSet};
 use crate::step_end::StepEnd;
@@ -186,23 +186,32 @@ impl<F: TwoPass> TwoPassForce<F> {
         (own, ghosts)
     }
 
-    /// Returns the own points that are in `on`, or bonded to a point that is in `on` of its process.
     fn with_neighbours(&self, on: &PointSubset<'_>) -> PointSet {
-        let domain = self.cloud.domain();
-        let mut marks = vec![false; self.cloud.len() + domain.ghost_points()];
-        let mut mark = |i: usize| {
-            marks[i] = true;
-            self.force.neighbours(i, &mut |j| marks[j] = true);
-        };
-        match on {
-            PointSubset::All => (0..self.cloud.len()).for_each(&mut mark),
-            PointSubset::Range(range) => range.clone().for_each(&mut mark),
-            PointSubset::Set(points) => points.iter().for_each(|&i| mark(i as usize)),
-        }
-        domain.merge_ghost_marks(&mut marks);
-        let marked = |i: &u32| marks[*i as usize];
-        (0..self.cloud.len() as u32).filter(marked).collect()
+        with_neighbours(self.cloud.domain(), on, &|i, visit| {
+            self.force.neighbours(i, visit);
+        })
     }
+}
+
+/// Calls its second argument for the points that are bonded to an own point; ghosts are counted after the own points.
+pub type Neighbours<'a> = dyn Fn(usize, &mut dyn FnMut(usize)) + 'a;
+
+/// Returns the own points that are in `on`, or bonded to a point that is in `on` of its process. All processes must call
+/// it together.
+pub fn with_neighbours(
+    domain: &Domain,
+    on: &PointSubset<'_>,
+    neighbours: &Neighbours<'_>,
+) -> PointSet {
+    let n = domain.owned_points();
+    let mut marks = vec![false; n + domain.ghost_points()];
+    on.for_each(n, |i| {
+        marks[i] = true;
+        neighbours(i, &mut |j| marks[j] = true);
+    });
+    domain.merge_ghost_marks(&mut marks);
+    let marked = |i: &u32| marks[*i as usize];
+    (0..n as u32).filter(marked).collect()
 }
 
 impl<F: TwoPass> Force for TwoPassForce<F> {

@@ -67,6 +67,8 @@ pub struct BondValues {
     pub of_points: Vec<f64>,
     /// These values of ghosts.
     pub of_ghosts: Vec<f64>,
+    /// Values of bonds by entry, if both ends of a bond read them.
+    pub of_bonds: Vec<f64>,
     /// The views of the forces of which a force consists.
     pub parts: Vec<BondValues>,
 }

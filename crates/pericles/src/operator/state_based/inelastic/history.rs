@@ -4,12 +4,12 @@ use rayon::prelude::*;
 
 use super::laws::{Laws, Relaxation, weighted};
 use crate::archive::Laid;
-use crate::error::{PericlesError, Result};
+use crate::error::Result;
 use crate::family::BondList;
 use crate::lanes::{F64x8, LANES};
 use crate::material::{Inelasticity, SolidClasses};
 use crate::neighbourhood::BlockDamage;
-use crate::parallel::{BLOCK, for_each_point};
+use crate::parallel::BLOCK;
 
 /// Inelastic stretches of bonds, and sums over the bonds of points.
 #[derive(Default)]
@@ -77,7 +77,7 @@ impl History {
             sums: vec![0.0; (1 + terms) * n],
             plastic_strain: vec![0.0; n],
             multiplier: vec![0.0; n],
-            opposite: opposites(bonds)?,
+            opposite: bonds.opposites()?,
             start: bonds.start().to_vec(),
         })
     }
@@ -220,36 +220,4 @@ pub(super) fn split_groups<'a>(
         array = rest;
     }
     parts
-}
-
-/// Returns the reverse entry of each entry of a list.
-fn opposites(bonds: &BondList) -> Result<Vec<u32>> {
-    let entries = bonds.present().len() * LANES;
-    if u32::try_from(entries).is_err() {
-        return Err(PericlesError::OutOfRange {
-            quantity: "the number of directed bonds with history",
-            value: entries as f64,
-            allowed: "at most 4.29e9",
-        });
-    }
-    let sites = bonds.sites();
-    let back = |i: usize, site: usize| {
-        let shift = sites.shift(site).map(|periods| -periods);
-        let mut family = bonds.family(sites.point(site));
-        let found = family.find(|&(_, b)| sites.point(b) == i && sites.shift(b) == shift);
-        found.map(|(entry, _)| entry)
-    };
-    let of_points = for_each_point(bonds.len(), &|i| {
-        let groups = bonds.groups(i);
-        let mut places: Vec<u32> = (groups.start * LANES..groups.end * LANES)
-            .map(|entry| entry as u32)
-            .collect();
-        for (entry, site) in bonds.family(i) {
-            if let Some(found) = back(i, site) {
-                places[entry - groups.start * LANES] = found as u32;
-            }
-        }
-        places
-    });
-    Ok(of_points.concat())
 }

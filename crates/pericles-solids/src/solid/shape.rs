@@ -1,37 +1,37 @@
 //! Shape tensors K = Σ w ξ ⊗ ξ.
 
-use super::tensor::{Matrix, determinant, in_body, in_space, inverse, principal_axes, trace};
+use pericles::lanes::F64x8;
+
+use super::family::Family;
+use crate::tensor::{Matrix, determinant, in_body, in_space, inverse, principal_axes, trace};
 
 /// Largest condition number of a shape tensor; beyond it, the bonds of a point are considered not to span the space.
 pub const LARGEST_CONDITION: f64 = 1e6;
 
-/// Accumulated shape tensor.
+/// The shape tensor of a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Shape<const D: usize> {
+pub(crate) struct ShapeTensor<const D: usize> {
     pub tensor: Matrix<D>,
     /// Number of bonds.
     pub bonds: usize,
 }
 
-impl<const D: usize> Default for Shape<D> {
-    fn default() -> Self {
-        Self {
-            tensor: [[0.0; D]; D],
-            bonds: 0,
-        }
-    }
-}
-
-impl<const D: usize> Shape<D> {
-    /// Adds a bond with the weight ω = w b V.
-    #[inline(always)]
-    pub fn add(&mut self, weight: f64, xi: &[f64; D]) {
-        for a in 0..D {
-            for b in 0..D {
-                self.tensor[a][b] += weight * xi[a] * xi[b];
+impl<const D: usize> ShapeTensor<D> {
+    /// Returns the tensor of the intact bonds of a point.
+    pub fn of(family: &Family<'_, D>) -> Self {
+        let mut sums = [[F64x8([0.0; 8]); D]; D];
+        for batch in 0..family.batches() {
+            let bond = family.bond::<F64x8>(batch);
+            for a in 0..D {
+                for b in 0..D {
+                    sums[a][b] = sums[a][b] + bond.weight * bond.xi[a] * bond.xi[b];
+                }
             }
         }
-        self.bonds += 1;
+        Self {
+            tensor: sums.map(|row| row.map(F64x8::sum)),
+            bonds: family.count(),
+        }
     }
 
     /// Returns the condition number, the ratio of the largest and the smallest principal value.
@@ -58,7 +58,7 @@ impl<const D: usize> Shape<D> {
 }
 
 /// Returns the inverse of a positive definite tensor.
-pub(super) fn inverse_of<const D: usize>(tensor: &Matrix<D>) -> Matrix<D> {
+pub(crate) fn inverse_of<const D: usize>(tensor: &Matrix<D>) -> Matrix<D> {
     // The entries of missing axes are the mean, so that the determinant has the scale of the tensor.
     let full = in_space(tensor, trace(tensor) / D as f64);
     in_body(&inverse(&full, determinant(&full)))

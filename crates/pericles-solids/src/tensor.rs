@@ -22,11 +22,6 @@ pub fn product<const D: usize>(a: &Matrix<D>, b: &Matrix<D>) -> Matrix<D> {
     matrix(|i, j| (0..D).map(|k| a[i][k] * b[k][j]).sum())
 }
 
-/// Returns A x.
-pub fn apply<const D: usize>(a: &Matrix<D>, x: &[f64; D]) -> [f64; D] {
-    std::array::from_fn(|i| (0..D).map(|k| a[i][k] * x[k]).sum())
-}
-
 /// Returns Aᵀ.
 pub fn transpose<const D: usize>(a: &Matrix<D>) -> Matrix<D> {
     matrix(|i, j| a[j][i])

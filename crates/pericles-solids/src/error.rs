@@ -1,10 +1,10 @@
-//! Errors of correspondence bodies.
+//! Errors of state-based bodies.
 
 use pericles::PericlesError;
 use pericles::space::PointCloud;
 use pericles::units::quantity;
 
-/// A point whose bonds do not determine a deformation gradient.
+/// A point whose bonds do not determine a force state.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error(
     "the shape tensor of point {point} at ({}, {}, {}) is singular: its bonds do not span the space (number of bonds \
@@ -26,7 +26,7 @@ pub struct SingularShape {
 }
 
 impl SingularShape {
-    pub(super) fn new(cloud: &PointCloud, i: usize, bonds: usize, condition: f64) -> Self {
+    pub(crate) fn new(cloud: &PointCloud, i: usize, bonds: usize, condition: f64) -> Self {
         Self {
             point: cloud.user_number(i),
             position: cloud.point(i),

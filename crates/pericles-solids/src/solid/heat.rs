@@ -1,5 +1,4 @@
-//! Thermal expansion of correspondence materials: the stress-free state of a point is stretched by the factor
-//! 1 + τ ([`Solid::expanded`](super::Solid::expanded)).
+//! Thermal stretches of points.
 
 use std::sync::Arc;
 
@@ -9,10 +8,10 @@ use pericles::space::Sites;
 pub(super) struct Heat(pub Option<Arc<Vec<f64>>>);
 
 impl Heat {
-    /// Returns 1 + τ of a point.
+    /// Returns τ of a point.
     #[inline(always)]
-    pub fn factor(&self, i: usize) -> f64 {
-        self.0.as_ref().map_or(1.0, |stretches| 1.0 + stretches[i])
+    pub fn stretch(&self, i: usize) -> f64 {
+        self.0.as_ref().map_or(0.0, |stretches| stretches[i])
     }
 
     /// Returns (1 + τ) ξ and η − τ ξ of a bond between two sites with the mean τ of its end points. The

@@ -4,12 +4,12 @@ use pericles::material::StressState;
 
 use super::law::{ElasticLaw, Moduli, stress, stress_change};
 use super::plasticity::{History, Plasticity, returned};
-use super::tensor::{Matrix, combination, determinant, diagonal, in_body, in_space, trace, unit};
+use crate::tensor::{Matrix, combination, determinant, diagonal, in_body, in_space, trace, unit};
 
 /// A solid under a state of stress: F₃₃ = 1 in plane strain; P₃₃ = 0 in plane stress; P₂₂ = P₃₃ = 0 with
 /// F₂₂ = F₃₃ in a bar.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Solid {
+pub struct ClassicalSolid {
     /// The state of stress.
     pub state: StressState,
     /// Elastic law; [`ElasticLaw::Hencky`] for solids with plasticity.
@@ -38,12 +38,12 @@ const ITERATIONS: usize = 60;
 /// P = P(F_e)/λ. In plane strain F₃₃ = 1 and F_e,₃₃ = 1/λ.
 #[derive(Debug, Clone, Copy)]
 pub struct Expanded<'a> {
-    solid: &'a Solid,
+    solid: &'a ClassicalSolid,
     factor: f64,
 }
 
 impl Expanded<'_> {
-    /// Returns energy density and stress; see [`Solid::stress`].
+    /// Returns energy density and stress; see [`ClassicalSolid::stress`].
     pub fn stress<const D: usize>(&self, f: &Matrix<D>, history: &History) -> PointState<D> {
         let full = self.elastic_part(f, history);
         let (energy, stress) = self.solid.stress_in_space(&full, history);
@@ -54,7 +54,7 @@ impl Expanded<'_> {
         }
     }
 
-    /// Returns the derivative of P; see [`Solid::stress_change`].
+    /// Returns the derivative of P; see [`ClassicalSolid::stress_change`].
     pub fn stress_change<const D: usize>(
         &self,
         f: &Matrix<D>,
@@ -67,7 +67,7 @@ impl Expanded<'_> {
         self.over_factor(&change)
     }
 
-    /// Returns the history after a step and the plastic work; see [`Solid::advanced`].
+    /// Returns the history after a step and the plastic work; see [`ClassicalSolid::advanced`].
     pub fn advanced<const D: usize>(&self, f: &Matrix<D>, history: &History) -> (History, f64) {
         let full = self.elastic_part(f, history);
         self.solid.advanced_at(&full, history)
@@ -84,7 +84,7 @@ impl Expanded<'_> {
     }
 }
 
-impl Solid {
+impl ClassicalSolid {
     /// Returns the solid with a stress-free state stretched by a positive factor, for thermal expansion.
     pub fn expanded(&self, factor: f64) -> Expanded<'_> {
         Expanded {

@@ -1,0 +1,134 @@
+//! Stress and strain of points, and bond failure by them.
+//!
+//! A bond breaks when its failure index exceeds one, a function of the mean Cauchy stress and of the mean strain of its
+//! end points ([`BondCriterion`](pericles::material::BondCriterion)). The strain is the symmetric part of the
+//! displacement gradient (Σ ω η ⊗ ξ) K⁻¹ that fits the intact bonds best, less the thermal stretch.
+
+use pericles::domain::Field;
+use pericles::lanes::{F64x8, LANES, Row};
+use pericles::material::BondState;
+use pericles::operator::{Kinematics, PointSubset};
+use pericles::parallel::for_each_point;
+
+use super::breaking::Entries;
+use super::family::{Family, Point, SingleBond};
+use super::heat::Heat;
+use super::loops::end_of;
+use super::shape::ShapeTensor;
+use super::view::in_lanes;
+use super::{Solid, SolidForce, State};
+use crate::tensor::{Matrix, combination, product, symmetric, unit};
+
+/// Returns Σ ω η ⊗ ξ over the intact bonds of a point.
+fn moment<const D: usize>(family: &Family<'_, D>) -> Matrix<D> {
+    let mut sums = [[F64x8([0.0; LANES]); D]; D];
+    for batch in 0..family.batches() {
+        let bond = family.bond::<F64x8>(batch);
+        for a in 0..D {
+            for b in 0..D {
+                sums[a][b] = sums[a][b] + bond.weight * bond.eta[a] * bond.xi[b];
+            }
+        }
+    }
+    sums.map(|row| row.map(F64x8::sum))
+}
+
+/// Returns Σ ω T ⊗ y/|y| |ξ| … of the force state of a point: the stress whose virtual work is that of its bonds.
+pub(super) fn stress_of_force_state<S: Solid<D> + ?Sized, const D: usize>(
+    material: &S,
+    at: &Point<'_, S::Shape, D>,
+) -> Matrix<D> {
+    let mut values = vec![0.0; S::VALUES];
+    let mut of_bonds = vec![
+        0.0;
+        if S::BOND_VALUES {
+            at.family.batches() * LANES
+        } else {
+            0
+        }
+    ];
+    let mut out = State {
+        values: &mut values,
+        of_bonds: &mut of_bonds,
+    };
+    material.state::<F64x8>(at, &mut out);
+    let mut stress = [[F64x8([0.0; LANES]); D]; D];
+    for batch in 0..at.family.batches() {
+        let bond = at.family.bond::<F64x8>(batch);
+        let of_bond = match S::BOND_VALUES {
+            true => std::array::from_fn(|lane| of_bonds[batch * LANES + lane]),
+            false => [0.0; LANES],
+        };
+        let pull = S::pull(&end_of(&values, F64x8(of_bond)), &bond);
+        let along = S::Kinematics::direction(bond.xi, bond.eta);
+        for a in 0..D {
+            for b in 0..D {
+                stress[a][b] = stress[a][b] + bond.weight * pull[a] * along[b];
+            }
+        }
+    }
+    stress.map(|row| row.map(F64x8::sum))
+}
+
+impl<S: Solid<D>, const D: usize> SolidForce<S, D> {
+    /// Returns the Cauchy stress and the strain of all own points.
+    pub(super) fn tensors(&self, t: f64, rows: &[Row], heat: &Heat) -> Vec<[Matrix<D>; 2]> {
+        for_each_point(self.cloud.len(), &|i| {
+            let Some(at) = self.point(i, t, heat, rows) else {
+                return [[[0.0; D]; D]; 2];
+            };
+            let stress = self.material(i).stress(&at);
+            let inverse = ShapeTensor::of(&at.family).inverse();
+            let strain = inverse.map_or([[0.0; D]; D], |inverse| {
+                let gradient = product(&moment(&at.family), &inverse);
+                combination(1.0, &symmetric(&gradient), -at.thermal, &unit::<D>())
+            });
+            [stress, strain]
+        })
+    }
+
+    /// Returns the entries of the points `on` whose failure index exceeds `limit`. All processes must call it together.
+    pub(super) fn over_stressed(
+        &self,
+        t: f64,
+        rows: &[Row],
+        on: &PointSubset<'_>,
+        heat: &Heat,
+        limit: f64,
+    ) -> Entries {
+        let n = self.cloud.len();
+        let mut own = vec![0.0; 2 * D * D * n];
+        for (i, tensors) in self.tensors(t, rows, heat).iter().enumerate() {
+            for (slot, value) in tensors.iter().flatten().flatten().enumerate() {
+                own[slot * n + i] = *value;
+            }
+        }
+        let ghosts = self.cloud.domain().ghosts(&own);
+        let (tensors, sites) = (Field::new(&own, &ghosts), self.bonds.list().sites());
+        let tensor = |slot: usize, point: usize| tensors.entry(2 * D * D, slot, point);
+        self.entries_of(on, |i, found| {
+            let family = self.family(i, rows);
+            let here = family.site();
+            family.for_each(|bond| {
+                let state = || {
+                    let eta = self.motion(bond);
+                    let (xi, eta) = heat.expanded(sites, [here, bond.site], bond.xi, eta);
+                    BondState::between::<D>(tensor, [i, sites.point(bond.site)], [xi, eta])
+                };
+                let over = self.materials.failure_index(here, bond.site, state) > limit;
+                if over && self.bonds.list().may_break(bond.entry) {
+                    found.push((i, bond.entry));
+                }
+            });
+        })
+    }
+
+    /// Returns η of a bond; for linear kinematics its part along the bond.
+    fn motion(&self, bond: &SingleBond<D>) -> [f64; D] {
+        if !S::Kinematics::LINEAR {
+            return bond.eta;
+        }
+        let stretch = in_lanes(bond).stretch::<S::Kinematics>().0[0];
+        bond.xi.map(|x| stretch * x)
+    }
+}
