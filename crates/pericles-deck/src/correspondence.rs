@@ -1,10 +1,11 @@
 //! `model = "correspondence"`: correspondence materials for large strain.
 
 use pericles::Result;
-use pericles::material::{Inelasticity, LinearSolid, Strains, Yield};
+use pericles::material::{LinearSolid, Strains};
 use pericles_solids::correspondence::{
     CorrespondenceMaterial, ElasticLaw, Plasticity, Stabilisation,
 };
+use pericles_solids::inelastic::{Inelasticity, Yield};
 use serde::{Deserialize, Serialize};
 
 use crate::criterion::{self, FailureCriterion};

@@ -1,9 +1,10 @@
 //! `model = "state-based"`: elastic constants and failure of linear peridynamic solids.
 
 use pericles::material::{
-    BondFailure, Fracture, FractureCalibration, GivenConstants, Inelasticity, LinearSolid,
-    StateInfluence, Strains, StressState, StretchDefinition, Yield,
+    BondFailure, Fracture, FractureCalibration, GivenConstants, LinearSolid, StateInfluence,
+    Strains, StressState, StretchDefinition,
 };
+use pericles_solids::inelastic::{Inelasticity, Yield};
 use serde::{Deserialize, Serialize};
 
 use crate::constants;

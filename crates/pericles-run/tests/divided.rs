@@ -204,6 +204,8 @@ fn materials_on_lists_and_stencils_have_the_files_of_one_process() {
         format!("{BONDS}\nsoftening = {{ law = \"linear\", onset_stretch = 0.003 }}"),
         format!("{SOLID}\nbonds = \"list\""),
         format!("{SOLID}\nbonds = \"grid\""),
+        format!("{SOLID}\nviscosity = [{{ share = 0.5, time = 1 }}]"),
+        format!("{SOLID}\nyield_stress = 0.002"),
         correspondence,
     ] {
         println!("{material}");
@@ -344,6 +346,8 @@ fn fragments_have_the_files_of_one_process() {
         format!("{BONDS}\nbonds = \"grid\""),
         format!("{SOLID}\nbonds = \"list\""),
         format!("{SOLID}\nbonds = \"grid\""),
+        format!("{SOLID}\nviscosity = [{{ share = 0.5, time = 1 }}]"),
+        format!("{SOLID}\nyield_stress = 0.002"),
         correspondence,
     ] {
         println!("{material}");

@@ -20,14 +20,13 @@ use std::sync::Arc;
 
 use pericles::kernel::Influence;
 use pericles::lanes::{F64x8, Lanes};
+use pericles::material::{BondStrength, Materials};
 use pericles::observe::Energies;
 use pericles::operator::{FiniteStrain, Force, Kinematics, PointSubset, SmallStrain};
 use pericles::space::{Grid, PointCloud};
 use pericles::time::{State as Motion, VelocityVerlet};
 use pericles::{Control, PointScalar, Simulation, StepEnd, System};
-use pericles_solids::solid::{
-    BondStrength, Family, HistorySize, Materials, NextHistory, Point, Solid, SolidBody, State,
-};
+use pericles_solids::solid::{Family, HistorySize, NextHistory, Point, Solid, SolidBody, State};
 
 /// Bulk modulus K and instantaneous shear modulus G, Pa, and relaxation time τ, s.
 #[derive(Debug, Clone, Copy)]

@@ -1,6 +1,7 @@
 //! Peridynamic solids whose force states depend on all bonds of a point.
 //!
 //! * [`solid`] – the trait [`Solid`](solid::Solid) of a material, and the force operator of a body of such materials.
+//! * [`inelastic`] – linear peridynamic solids with viscous or plastic shear.
 //! * [`correspondence`] – correspondence materials: stress from a nonlocal deformation gradient, with control
 //!   of zero-energy modes.
 //!
@@ -8,6 +9,7 @@
 
 pub mod correspondence;
 mod error;
+pub mod inelastic;
 pub mod solid;
 mod tensor;
 

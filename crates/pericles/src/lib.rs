@@ -82,7 +82,7 @@
 //! | place points: grids with holes, graded grids, lists | [`space`]: [`Grid`](space::Grid), [`GradedGrid`](space::GradedGrid), [`ListedPoints`](space::ListedPoints) |
 //! | select sets of points | [`Region`](space::Region), [`PointCloud::select`](space::PointCloud::select) |
 //! | define a material | [`material`]: [`BondMaterial`](material::BondMaterial); [`kernel`]: influence functions |
-//! | use a state-based material | [`LinearSolid`](material::LinearSolid), [`operator::LinearSolidBody`]; viscous or plastic: [`Inelasticity`](material::Inelasticity), [`operator::InelasticSolidBody`] |
+//! | use a state-based material | [`LinearSolid`](material::LinearSolid), [`operator::LinearSolidBody`]; viscous, plastic, of one's own: crate `pericles-solids` |
 //! | define pre-cracks | [`family::Crack`], [`Body::crack`] |
 //! | apply loads, constraints and damping | [`boundary`]: [`Load`](boundary::Load), [`PrescribedMotion`](boundary::PrescribedMotion), [`DampingLayer`](boundary::DampingLayer) |
 //! | add contact and rigid bodies | [`Interaction`], [`System::add_interaction`]; `pericles-contact` |

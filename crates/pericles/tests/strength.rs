@@ -7,8 +7,7 @@ use pericles::family::{BondList, VolumeCorrection};
 use pericles::kernel::InfluenceFunction;
 use pericles::material::{
     BondFailure, BondLimits, BondMaterial, ElasticModulus, GivenConstants, InterfaceRule,
-    LinearSolid, MaterialPairs, PairLaw, Scattered, SolidClasses, StateInfluence, StrengthScatter,
-    StressState,
+    LinearSolid, MaterialPairs, PairLaw, Scattered, StateInfluence, StrengthScatter, StressState,
 };
 use pericles::operator::{BondBody, BondForm, CompositeBody, Force, LinearSolidBody, PointSubset};
 use pericles::space::{Grid, PointCloud};
@@ -116,7 +115,7 @@ fn bonds_break_at_the_mean_strength_of_their_end_points() {
             stretch: LIMIT,
             ..BondLimits::NONE
         };
-        let classes = SolidClasses::uniform(&constants).with_strengths(factors);
+        let classes = constants.uniform().with_strengths(factors);
         let body = LinearSolidBody {
             classes: Some(&classes),
             ..LinearSolidBody::new(&cloud, &constants, VolumeCorrection::None)

@@ -4,11 +4,12 @@ use pericles::family::VolumeCorrection;
 use pericles::kernel::{Influence, InfluenceFunction};
 use pericles::material::{
     BondFailure, BondMaterial, Calibration, ElasticModulus, Fracture, FractureCalibration,
-    GivenConstants, Inelasticity, InterfaceRule, InterfaceStiffness, LinearSolid, Modulus, PairLaw,
-    StateInfluence, StretchDefinition, TensileStrength, ViscousTerm, Yield,
+    GivenConstants, InterfaceRule, InterfaceStiffness, LinearSolid, Modulus, PairLaw,
+    StateInfluence, StretchDefinition, TensileStrength,
 };
 use pericles::operator::DamageMeasure;
 use pericles_solids::correspondence::Plasticity;
+use pericles_solids::inelastic::{Inelasticity, ViscousTerm, Yield};
 use serde::{Deserialize, Serialize};
 
 use super::described;

@@ -1,6 +1,7 @@
 //! Reads viscosity and plasticity of state-based materials.
 
-use pericles::material::{Inelasticity, StressState, ViscousTerm};
+use pericles::material::StressState;
+use pericles_solids::inelastic::{Inelasticity, ViscousTerm};
 
 use crate::quantity::Quantity;
 use crate::reader::Table;

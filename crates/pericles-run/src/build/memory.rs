@@ -49,8 +49,9 @@ const SOLID: f64 = 160.0;
 /// plastic history.
 const TENSORS: f64 = 900.0;
 const WORKED: f64 = 24.0;
-/// Bytes per bond of viscous and plastic materials, in addition to 8 per viscous term.
-const HISTORY: f64 = 20.0;
+/// Bytes per bond of viscous and plastic materials, in addition to 8 for each stored number: weight, stretch of the last
+/// step, force state, reverse entry.
+const HISTORY: f64 = 28.0;
 const TRANSFORM: f64 = 4.0;
 const VERTEX: f64 = 400.0;
 const GEODESIC: f64 = 84.0;
@@ -358,7 +359,9 @@ impl Assembler<'_> {
         let models = std::iter::once(&solid.material.model).chain(others);
         let of_model = |model: &MaterialModel| match model {
             MaterialModel::StateBased(state) if !state.inelastic.is_elastic() => {
-                HISTORY + NUMBER * state.inelastic.terms().len() as f64
+                // Plastic materials store the plastic stretch and the influence function.
+                let stored = state.inelastic.terms().len();
+                HISTORY + NUMBER * if stored == 0 { 2 } else { stored } as f64
             }
             _ => 0.0,
         };

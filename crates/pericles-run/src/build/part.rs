@@ -12,7 +12,7 @@ use pericles::division::part_by_bisection;
 use pericles::domain::{Comm, agreed};
 use pericles::material::SurfaceCorrection;
 use pericles::space::{GradedCloud, PointCloud, PointSet, PointSource};
-use pericles_deck::{Body, BoundaryCondition, BuildError, Fault, Keys, MaterialModel};
+use pericles_deck::{Body, BoundaryCondition, BuildError, Fault, Keys};
 use pericles_waves::ForceForm;
 
 use super::assembler::Assembler;
@@ -146,17 +146,6 @@ impl Assembler<'_> {
             return Some((
                 "material.bonds".into(),
                 "Fourier transforms need all points; use bonds = \"grid\" or \"list\"",
-            ));
-        }
-        let others = self.model.materials.iter().map(|other| &other.model);
-        let models: Vec<_> = std::iter::once(&solid.material.model)
-            .chain(others)
-            .collect();
-        let is_inelastic = |model: &MaterialModel| matches!(model, MaterialModel::StateBased(state) if !state.inelastic.is_elastic());
-        if models.iter().any(|model| is_inelastic(model)) {
-            return Some((
-                "material".into(),
-                "viscous and plastic materials store the history of both ends of a bond in the same process",
             ));
         }
         if solid.material.surface_correction == SurfaceCorrection::Ghosts {

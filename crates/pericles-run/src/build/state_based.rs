@@ -2,15 +2,16 @@
 
 use pericles::PericlesError;
 use pericles::material::{
-    BondFailure, BondLimits, Inelasticity, LinearSolid, LinearSolidConstants, SolidClasses,
-    SolidSurface, StressState, SurfaceCorrection,
+    BondFailure, BondLimits, LinearSolid, LinearSolidConstants, SolidSurface, StressState,
+    SurfaceCorrection,
 };
-use pericles::operator::{Feature, InelasticSolidBody, LinearSolidBody};
+use pericles::operator::{Feature, LinearSolidBody};
 use pericles::space::PointCloud;
 use pericles_deck::{
     BuildError, Caution, FailureCriterion, Fault, InterfaceFailure, KeyPath, MaterialModel,
     ModelWarning, Remark, Solid, StateBased,
 };
+use pericles_solids::inelastic::{InelasticSolidBody, Inelasticity};
 
 use super::assembler::Assembler;
 use super::body::BodyParts;
@@ -70,7 +71,7 @@ impl Assembler<'_> {
         let classes = match of_point {
             None => None,
             Some(of_point) => {
-                let classes = SolidClasses::new(of_point, &all);
+                let classes = LinearSolidConstants::several(of_point, &all);
                 let mut classes = classes.map_err(|error| at("materials", error))?;
                 for (pair, limits) in self.limits_between(solid, &solids, cloud)? {
                     classes.set_limits(pair, limits);
@@ -81,7 +82,7 @@ impl Assembler<'_> {
         let classes = match self.strengths(solid, cloud)? {
             None => classes,
             Some(factors) => {
-                let classes = classes.unwrap_or_else(|| SolidClasses::uniform(&constants));
+                let classes = classes.unwrap_or_else(|| constants.uniform());
                 Some(classes.with_strengths(factors))
             }
         };
@@ -112,7 +113,7 @@ impl Assembler<'_> {
             true => body.operator(form),
             false => {
                 // Without assignments all points have the first material.
-                laws.truncate(classes.as_ref().map_or(1, SolidClasses::materials));
+                laws.truncate(classes.as_ref().map_or(1, |classes| classes.all().len()));
                 let (elastic, laws) = (body, &laws[..]);
                 InelasticSolidBody { elastic, laws }.operator(form)
             }

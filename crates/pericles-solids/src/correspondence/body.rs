@@ -4,12 +4,13 @@ use std::sync::Arc;
 
 use pericles::Result;
 use pericles::family::{Crack, EndRule, VolumeCorrection};
+use pericles::material::Materials;
 use pericles::operator::{AssembledBonds, BondForm, DamageMeasure, Feature, Features, Limit};
 use pericles::space::PointCloud;
 
 use super::force_state::ForceState;
 use super::material::CorrespondenceConstants;
-use crate::solid::{Materials, SolidBody};
+use crate::solid::SolidBody;
 
 /// A body of correspondence materials: the input of its force operator.
 #[derive(Debug, Clone)]
@@ -109,7 +110,7 @@ impl<'a> CorrespondenceBody<'a> {
         };
         let body = SolidBody {
             cloud: self.cloud,
-            materials: materials.map(ForceState::<TENSOR>),
+            materials: materials.map(|_, own| ForceState::<TENSOR>(own)),
             horizon: self.constants.solid.horizon,
             influence: &self.constants.solid.influence,
             volume_correction: self.volume_correction,

@@ -2,8 +2,8 @@
 
 use pericles::family::VolumeCorrection;
 use pericles::material::{
-    BondFailure, BondLimits, CrackPlane, Criterion, FractureCalibration, LayerMoments, LinearSolid,
-    LinearSolidConstants, StressState, StretchDefinition,
+    BondFailure, BondLimits, BondStrength, CrackPlane, Criterion, FractureCalibration,
+    LayerMoments, LinearSolid, LinearSolidConstants, Materials, StressState, StretchDefinition,
 };
 use pericles::space::PointCloud;
 use pericles::{PericlesError, Result, positive};
@@ -12,7 +12,6 @@ use super::classical::ClassicalSolid;
 use super::control::{Stabilisation, spring_of_horizon};
 use super::law::{ElasticLaw, Moduli};
 use super::plasticity::Plasticity;
-use crate::solid::{BondStrength, Materials};
 use crate::tensor::{Matrix, combination, contraction, in_body, product, symmetric};
 
 /// A correspondence material (Silling, Epton, Weckner, Xu & Askari, J. Elasticity 88, 2007): the force state
@@ -223,7 +222,7 @@ impl CorrespondenceConstants {
 
     fn strength(&self) -> BondStrength {
         BondStrength {
-            stretch: self.solid.limits.stretch,
+            limits: self.solid.limits,
             criterion: self.solid.criterion.clone(),
         }
     }

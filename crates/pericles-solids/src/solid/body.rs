@@ -4,10 +4,9 @@ use std::sync::Arc;
 
 use pericles::family::{Crack, EndRule, VolumeCorrection};
 use pericles::kernel::Influence;
+use pericles::material::Materials;
 use pericles::neighbourhood::DamageMeasure;
 use pericles::space::PointCloud;
-
-use super::limits::Materials;
 
 /// A body of state-based materials: the input of its force operator.
 #[derive(Debug, Clone)]

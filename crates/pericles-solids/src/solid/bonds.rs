@@ -15,17 +15,25 @@ pub(super) struct Bonds {
     unit: [f64; 3],
     /// ω by entry.
     weight: Vec<f64>,
+    /// w by entry; empty if no material reads it.
+    influence: Vec<f64>,
 }
 
 saved! {
     impl Checkpointed for Bonds {
         all: part,
-        reference, unit, weight: fixed,
+        reference, unit, weight, influence: fixed,
     }
 }
 
 impl Bonds {
-    pub fn new(list: BondList, damage: DamageMeasure, influence: &Influence, horizon: f64) -> Self {
+    /// Creates the layout of a list; `reads_influence` states whether a material reads w.
+    pub fn new(
+        list: BondList,
+        damage: DamageMeasure,
+        (influence, horizon): (&Influence, f64),
+        reads_influence: bool,
+    ) -> Self {
         let places = list.sites().places();
         let row = |site: usize| {
             let [x, y, z] = match places.lattice() {
@@ -36,17 +44,24 @@ impl Bonds {
         };
         let reference = (0..places.len()).map(row).collect();
         let unit = places.lattice().map_or([1.0; 3], |lattice| lattice.spacing);
-        let of_point = for_each_point(list.len(), &|i| {
-            let mut row = vec![0.0; list.groups(i).len() * LANES];
-            let (first, a) = (list.groups(i).start * LANES, list.site(i));
-            for (entry, b) in list.family(i) {
-                let alpha = influence.alpha_of(list.vector(a, b), horizon);
-                row[entry - first] = alpha * list.volume_factor(a, b) * list.volume(b);
-            }
-            row
-        });
+        let by_entry = |of_bond: &(dyn Fn(usize, usize) -> f64 + Sync)| -> Vec<f64> {
+            let of_point = for_each_point(list.len(), &|i| {
+                let mut row = vec![0.0; list.groups(i).len() * LANES];
+                let (first, a) = (list.groups(i).start * LANES, list.site(i));
+                for (entry, b) in list.family(i) {
+                    row[entry - first] = of_bond(a, b);
+                }
+                row
+            });
+            of_point.concat()
+        };
+        let alpha = |a: usize, b: usize| influence.alpha_of(list.vector(a, b), horizon);
         Self {
-            weight: of_point.concat(),
+            weight: by_entry(&|a, b| alpha(a, b) * list.volume_factor(a, b) * list.volume(b)),
+            influence: match reads_influence {
+                true => by_entry(&alpha),
+                false => Vec::new(),
+            },
             reference,
             unit,
             all: Neighbourhood::new(list, damage),
@@ -77,6 +92,15 @@ impl Bonds {
         T::load(&self.weight, group * LANES)
     }
 
+    /// Returns w of a group.
+    #[inline(always)]
+    pub fn influence<T: Lanes>(&self, group: usize) -> T {
+        match self.influence.is_empty() {
+            true => T::splat(0.0),
+            false => T::load(&self.influence, group * LANES),
+        }
+    }
+
     /// Returns ω of an entry.
     pub fn weight_of(&self, entry: usize) -> f64 {
         self.weight[entry]
@@ -90,6 +114,7 @@ impl Bonds {
 
     /// Returns the memory, bytes.
     pub fn bytes(&self) -> usize {
-        Form::bytes(self.list()) + size_of_val(&self.weight[..]) + size_of_val(&self.reference[..])
+        let numbers = size_of_val(&self.weight[..]) + size_of_val(&self.influence[..]);
+        Form::bytes(self.list()) + numbers + size_of_val(&self.reference[..])
     }
 }

@@ -45,7 +45,7 @@ impl<S: Solid<D>, const D: usize> SolidForce<S, D> {
         let domain = self.cloud.domain().clone();
         let heat = self.heat_at(step.t);
         let mut found = self.over_stretched(&self.packed(u), on, &heat, 1.0);
-        if self.materials.has_criteria() {
+        if !self.materials.criteria().is_empty() {
             let rows = self.packed(u);
             found.extend(self.over_stressed(step.t, &rows, on, &heat, 1.0));
         }
@@ -158,7 +158,7 @@ impl<S: Solid<D>, const D: usize> SolidForce<S, D> {
         let here = list.site(i);
         let (xi, eta) = heat.expanded(list.sites(), [here, bond.site], bond.xi, bond.eta);
         let (measure, square) = Measure::<S, D>::stretch_measure(xi, eta);
-        let limit = fraction * self.materials.stretch(here, bond.site);
+        let limit = fraction * self.materials.limits(here, bond.site).stretch;
         if measure > threshold::<S, D>(limit) * square && list.may_break(bond.entry) {
             found.push((i, bond.entry));
         }
@@ -273,7 +273,7 @@ impl<S: Solid<D>, const D: usize> SolidForce<S, D> {
             let square: f64 = bond.xi.iter().map(|x| x * x).sum();
             let share = bond.weight * square * end * end;
             let turned = start.is_some_and(|start| turns_around(&bond.xi, &start.eta, &bond.eta));
-            let critical = self.materials.stretch(here, bond.site);
+            let critical = self.materials.limits(here, bond.site).stretch;
             crossing.add(share, [start.map_or(end, stretch), end], critical, turned);
             let along = S::Kinematics::direction(in_lanes(bond).xi, in_lanes(bond).eta);
             lost.push(LostBond {
@@ -285,9 +285,8 @@ impl<S: Solid<D>, const D: usize> SolidForce<S, D> {
         (crossing, lost)
     }
 
-    /// Returns the energy of a point (J/m³), including the energy dissipated by the material within the step so that its
-    /// gradient is the force, and its rate Σ_j b V_j T_ij·(v_j − v_i) (W/m³) from the velocities of sites; without
-    /// velocities the rate is zero.
+    /// Returns [`Solid::potential`] of a point (J/m³) and its rate Σ_j b V_j T_ij·(v_j − v_i) (W/m³) from the velocities of
+    /// sites; without velocities the rate is zero.
     fn energy_and_power(
         &self,
         i: usize,
@@ -309,7 +308,7 @@ impl<S: Solid<D>, const D: usize> SolidForce<S, D> {
             values: &mut values,
             of_bonds: &mut of_bonds,
         };
-        self.material(i).state::<F64x8>(&at, &mut out);
+        self.material(i).potential_state(&at, &mut out);
         let (moving, mut power) = (at.family.at(velocities), F64x8([0.0; LANES]));
         for batch in 0..batches {
             let bond = at.family.bond::<F64x8>(batch);
@@ -403,7 +402,7 @@ impl<S: Solid<D>, const D: usize> Breakable for SolidForce<S, D> {
         let rows = self.packed(Field::new(u, &ghosts));
         let (heat, all) = (self.latest_heat(), PointSubset::All);
         let mut found = self.over_stretched(&rows, &all, &heat, fraction);
-        if self.materials.has_criteria() {
+        if !self.materials.criteria().is_empty() {
             let t = self.latest_time();
             found.extend(self.over_stressed(t, &rows, &all, &heat, fraction));
         }

@@ -35,6 +35,7 @@ impl<S: Solid<D>, const D: usize> SolidForce<S, D> {
     }
 
     /// Computes the values of the points `on` and of their bonds at a displacement, or their derivatives in a direction.
+    /// All processes must call it together.
     pub(super) fn states(
         &self,
         t: f64,
@@ -70,6 +71,7 @@ impl<S: Solid<D>, const D: usize> SolidForce<S, D> {
                 }
             },
         );
+        self.opposite.exchange(list, &mut states.of_bonds);
         states
     }
 

@@ -17,7 +17,7 @@ pub struct Family<'a, const D: usize> {
     u: &'a [Row],
 }
 
-/// Eight bonds of a point. Missing and broken bonds have zero weight, and finite numbers otherwise.
+/// Eight bonds of a point. Missing and broken bonds have zero weight and zero ξ and η.
 #[derive(Debug, Clone, Copy)]
 pub struct Bond<T, const D: usize> {
     /// ξ, m.
@@ -138,13 +138,14 @@ impl<'a, const D: usize> Family<'a, D> {
         unsafe { T::gather(rows, self.others(batch)) }
     }
 
-    /// Returns η of a batch, m.
+    /// Returns η of a batch, m; zero for missing and broken bonds.
     #[inline(always)]
     pub fn eta<T: Lanes>(&self, batch: usize) -> [T; D] {
         let there = self.gather::<T>(batch, self.u);
         let mut eta = [T::splat(0.0); D];
         for c in 0..D {
-            eta[c] = there[c] - T::splat(self.u[self.here][c]);
+            let component = there[c] - T::splat(self.u[self.here][c]);
+            eta[c] = component.masked(self.intact[batch]);
         }
         eta
     }
@@ -154,16 +155,16 @@ impl<'a, const D: usize> Family<'a, D> {
     pub fn bond<T: Lanes>(&self, batch: usize) -> Bond<T, D> {
         let (reference, unit) = (self.bonds.reference(), self.bonds.unit());
         let there = self.gather::<T>(batch, reference);
-        let mut xi = [T::splat(0.0); D];
+        let (mut xi, bits) = ([T::splat(0.0); D], self.intact[batch]);
         for c in 0..D {
-            xi[c] = (there[c] - T::splat(reference[self.here][c])) * T::splat(unit[c]);
+            let component = there[c] - T::splat(reference[self.here][c]);
+            xi[c] = (component * T::splat(unit[c])).masked(bits);
         }
         let mut square = xi[0] * xi[0];
         for c in 1..D {
             square = xi[c].mul_add(xi[c], square);
         }
-        let bits = self.intact[batch];
-        let square = square.masked(bits) + T::splat(1.0).masked(!bits);
+        let square = square + T::splat(1.0).masked(!bits);
         Bond {
             xi,
             eta: self.eta(batch),
@@ -171,6 +172,13 @@ impl<'a, const D: usize> Family<'a, D> {
             square,
             inverse_square: T::splat(1.0) / square,
         }
+    }
+
+    /// Returns the influence function w of a batch; zero if the material does not read it
+    /// ([`Solid::reads_influence`](super::Solid::reads_influence)).
+    #[inline(always)]
+    pub fn influence<T: Lanes>(&self, batch: usize) -> T {
+        self.bonds.influence(self.first + batch)
     }
 
     /// Calls `visit` for each intact bond.

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use pericles::archive::{Laid, Layout};
 use pericles::family::{BondCut, BondList, Crack, EndRule};
-use pericles::lanes::Row;
+use pericles::lanes::{LANES, Row};
+use pericles::material::Materials;
 use pericles::operator::pool::Pool;
 use pericles::operator::{AssembledBonds, BondForm, InstructionSet};
 use pericles::parallel::for_each_point;
@@ -17,7 +18,7 @@ use super::bonds::Bonds;
 use super::family::{Family, Point};
 use super::heat::Heat;
 use super::history::{History, HistorySize};
-use super::limits::Materials;
+use super::opposite::Opposites;
 use super::shape::ShapeTensor;
 use crate::error::SingularShape;
 
@@ -44,8 +45,8 @@ pub struct SolidForce<S: Solid<D>, const D: usize> {
     pub(super) inverted: Option<(usize, f64)>,
     /// Thermal expansion, if the body is heated.
     pub(super) expansion: Option<ThermalExpansion>,
-    /// Reverse entry of each entry, for materials with values of bonds.
-    pub(super) opposite: Vec<u32>,
+    /// Reverse entries, for materials with values of bonds.
+    pub(super) opposite: Opposites,
     pub(super) set: InstructionSet,
     pub(super) displaced: Pool<Vec<Row>>,
     pub(super) states: Pool<States>,
@@ -70,7 +71,7 @@ saved! {
 pub(super) struct States {
     /// [`Solid::VALUES`] consecutive numbers per point.
     pub values: Vec<f64>,
-    /// One number per entry with [`Solid::BOND_VALUES`].
+    /// One number per entry with [`Solid::BOND_VALUES`], followed by those of ghosts.
     pub of_bonds: Vec<f64>,
     pub dilatation: Vec<f64>,
 }
@@ -84,26 +85,29 @@ impl<S: Solid<D>, const D: usize> SolidForce<S, D> {
             D,
             "the dimension of the force equals the dimension of the cloud"
         );
-        if S::BOND_VALUES && cloud.domain().is_divided() {
+        if body.materials.weakest().energy.is_finite() {
             return Err(PericlesError::FormNotUsable {
                 form: "list",
-                reason: "the material has values of bonds that both ends read, but this body is divided among processes",
+                reason: "bonds of these materials break by their stretch, by stress or by strain; a critical bond energy is not supported",
             });
         }
         list.hold(body.no_fail);
-        let bonds = Bonds::new(list, body.damage, body.influence, body.horizon);
+        let mut all = body.materials.all().iter();
+        let reads_influence = all.any(|material| Solid::<D>::reads_influence(material));
+        let influence = (body.influence, body.horizon);
+        let bonds = Bonds::new(list, body.damage, influence, reads_influence);
         let sites = bonds.list().sites();
         let (n, site_count) = (cloud.len(), sites.len());
         let materials = body.materials.on_sites(sites);
         let sizes = materials.all().iter().map(Solid::history);
         let history_size = sizes.fold(HistorySize::default(), HistorySize::max);
         let opposite = match S::BOND_VALUES {
-            true => bonds.list().opposites()?,
-            false => Vec::new(),
+            true => Opposites::new(bonds.list())?,
+            false => Opposites::default(),
         };
-        let entries = opposite.len();
+        let places = opposite.places();
         let mut force = Self {
-            weakest: materials.weakest(),
+            weakest: materials.weakest().stretch,
             materials,
             shapes: Vec::new(),
             undamaged: Vec::new(),
@@ -117,7 +121,7 @@ impl<S: Solid<D>, const D: usize> SolidForce<S, D> {
             displaced: Pool::new(1, move || vec![Row::default(); site_count]),
             states: Pool::new(1, move || States {
                 values: vec![0.0; n * S::VALUES],
-                of_bonds: vec![0.0; entries],
+                of_bonds: vec![0.0; places],
                 dilatation: vec![0.0; n],
             }),
             planes: Pool::new(1, move || {
@@ -128,9 +132,9 @@ impl<S: Solid<D>, const D: usize> SolidForce<S, D> {
         };
         for i in 0..n {
             let width = force.history_size.per_point;
-            let material = force.materials.number(force.bonds.list().site(i));
+            let material = force.materials.constants(force.bonds.list().site(i));
             let numbers = &mut force.history.points[i * width..(i + 1) * width];
-            force.materials.all()[material].start_history(numbers);
+            material.start_history(numbers);
         }
         force.rebuild_shapes();
         force.check_shapes()?;
@@ -157,7 +161,7 @@ impl<S: Solid<D>, const D: usize> SolidForce<S, D> {
 
     /// Returns whether any bond can break.
     pub(super) fn can_lose_bonds(&self) -> bool {
-        self.weakest.is_finite() || self.materials.has_criteria()
+        self.materials.can_break()
     }
 
     /// Returns the bytes of the intact bonds of a point.
@@ -169,7 +173,7 @@ impl<S: Solid<D>, const D: usize> SolidForce<S, D> {
     /// Returns the material of a point.
     #[inline(always)]
     pub(super) fn material(&self, i: usize) -> &S {
-        &self.materials.all()[self.materials.number(self.bonds.list().site(i))]
+        self.materials.constants(self.bonds.list().site(i))
     }
 
     /// Returns the intact bonds of a point.
@@ -234,6 +238,22 @@ impl<S: Solid<D>, const D: usize> SolidForce<S, D> {
         self.cloud.domain().count(self.dropped)
     }
 
+    /// Returns the bonds.
+    pub fn list(&self) -> &BondList {
+        self.bonds.list()
+    }
+
+    /// Returns the shape of a point; `None` if its bonds do not determine a force state.
+    pub fn shape(&self, i: usize) -> Option<&S::Shape> {
+        self.shapes[i].as_ref()
+    }
+
+    /// Returns a stored number of the bond of an entry.
+    pub fn bond_history(&self, entry: usize, number: usize) -> f64 {
+        let group = entry / LANES * self.history_size.per_bond + number;
+        self.history.bonds[group * LANES + entry % LANES]
+    }
+
     /// Returns the stored numbers of a point.
     pub fn history_of(&self, i: usize) -> &[f64] {
         self.history.of_point(i)
@@ -245,8 +265,7 @@ impl<S> SolidBody<'_, S> {
     ///
     /// # Errors
     /// A horizon without neighbours; an invalid crack; materials for another number of points; points whose bonds do not
-    /// determine a force state ([`SingularShape`](crate::SingularShape)); materials with values of bonds in a body that is
-    /// divided among processes.
+    /// determine a force state ([`SingularShape`](crate::SingularShape)); limits of the bond energy.
     ///
     /// # Panics
     /// If the dimension of the body is not D.

@@ -166,7 +166,9 @@ fn force_rows_body<T: Lanes, S: Solid<D>, const D: usize>(
             let mut there = second.ends.there::<T, D>(&family, batch, sites, width);
             if S::BOND_VALUES {
                 let ends = [&mut here, &mut there];
-                second.ends.of_batch(first + batch, &force.opposite, ends);
+                second
+                    .ends
+                    .of_batch(first + batch, force.opposite.of_entry(), ends);
             }
             let pulls = match &second.change {
                 None => [S::pull(&here, &bond), S::pull(&there, &bond)],
@@ -175,7 +177,7 @@ fn force_rows_body<T: Lanes, S: Solid<D>, const D: usize>(
                     let mut change_there = ends.there::<T, D>(&family, batch, sites, width);
                     if S::BOND_VALUES {
                         let changes = [&mut change_here, &mut change_there];
-                        ends.of_batch(first + batch, &force.opposite, changes);
+                        ends.of_batch(first + batch, force.opposite.of_entry(), changes);
                     }
                     let moved = family.at(direction).eta(batch);
                     [

@@ -8,10 +8,10 @@
 //! | module | contents |
 //! |---|---|
 //! | `bonds`, `family` | bonds of a body, and of a point in batches of eight |
-//! | `body`, `limits` | input of the force: materials of points, limits of bonds |
+//! | `body` | input of the force |
 //! | `force`, `loops`, `evaluation`, `operator` | the force operator and its loops |
 //! | `shape` | shape tensors |
-//! | `history` | variables stored per bond and per point |
+//! | `history`, `opposite` | variables stored per bond and per point; reverse entries |
 //! | `breaking`, `criterion` | failure of bonds by stretch, stress and strain |
 //! | `heat`, `view` | thermal stretches; access for output |
 //!
@@ -26,9 +26,9 @@ mod family;
 mod force;
 mod heat;
 mod history;
-mod limits;
 mod loops;
 mod operator;
+mod opposite;
 mod shape;
 mod view;
 
@@ -39,7 +39,6 @@ pub use body::SolidBody;
 pub use family::{Bond, Family, Point};
 pub use force::SolidForce;
 pub use history::{HistorySize, NextHistory};
-pub use limits::{BondStrength, Materials};
 pub use shape::LARGEST_CONDITION;
 pub(crate) use shape::{ShapeTensor, inverse_of};
 
@@ -112,10 +111,16 @@ pub trait Solid<const D: usize>: Send + Sync + 'static {
     /// Returns the elastic energy density W of a point, J/m³.
     fn energy<T: Lanes>(&self, at: &Point<'_, Self::Shape, D>) -> f64;
 
-    /// Returns the work per volume since the end of the last step plus W at that time, J/m³: the function whose gradient
-    /// is the force. It differs from W by the energy dissipated within the step.
+    /// Returns the energy density that a point loses when its bonds break, J/m³, as a function of its displacements: W, or
+    /// W plus the energy dissipated within the step.
     fn potential(&self, at: &Point<'_, Self::Shape, D>) -> f64 {
         self.energy::<F64x8>(at)
+    }
+
+    /// Sets the values whose forces are the gradient of [`Solid::potential`]. They differ from those of [`Solid::state`]
+    /// if the stored numbers change within the step, but the potential is that at their last values.
+    fn potential_state(&self, at: &Point<'_, Self::Shape, D>, out: &mut State<'_>) {
+        self.state::<F64x8>(at, out);
     }
 
     /// Returns k with W ≤ ½ k Σ ω |η|² at small displacements, for a bound of the highest frequency.
@@ -124,6 +129,11 @@ pub trait Solid<const D: usize>: Send + Sync + 'static {
     /// Returns the factor by which the highest frequency of a point may grow when bonds break.
     fn stiffening(&self) -> f64 {
         1.0
+    }
+
+    /// Returns whether the material reads [`Family::influence`], which takes 8 bytes per directed bond.
+    fn reads_influence(&self) -> bool {
+        false
     }
 
     /// Returns how many numbers are stored per point and per directed bond.

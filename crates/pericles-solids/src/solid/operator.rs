@@ -163,14 +163,14 @@ impl<S: Solid<D>, const D: usize> Force for SolidForce<S, D> {
         self.bonds.bytes()
             + size_of_val(&self.shapes[..])
             + size_of_val(&self.undamaged[..])
-            + size_of_val(&self.opposite[..])
+            + size_of_val(self.opposite.of_entry())
             + self.history.bytes()
             + rows
-            + (self.cloud.len() * (S::VALUES + 1) + self.opposite.len()) * size_of::<f64>()
+            + (self.cloud.len() * (S::VALUES + 1) + self.opposite.places()) * size_of::<f64>()
     }
 
     fn values_between_passes(&self) -> usize {
-        S::VALUES
+        S::VALUES + self.opposite.width()
     }
 
     fn instruction_set(&self) -> InstructionSet {

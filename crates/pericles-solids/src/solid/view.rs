@@ -83,7 +83,7 @@ impl<S: Solid<D>, const D: usize> BondView for SolidForce<S, D> {
                 xi: self.bonds.vector([sites.of_point(i), site]),
                 weight: self.bonds.weight_of(entry),
             };
-            let back = self.opposite.get(entry);
+            let back = self.opposite.of_entry().get(entry);
             let forth = back.map(|_| entry as u32);
             let lanes = in_lanes(&bond);
             let here = S::pull(&end(i, forth.as_ref()), &lanes);

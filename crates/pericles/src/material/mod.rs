@@ -52,9 +52,9 @@ pub use polynomial::{CubicSofteningBond, GreenBond};
 pub use scatter::{Factors, Scattered, StrengthScatter};
 pub use softening::{Softening, SofteningCurve, SofteningLaw};
 pub use state_based::{
-    BondFailure, BondLimits, ElasticConstants, GivenConstants, Inelasticity, IsotropicInfluence,
-    LatticeShear, LinearSolid, LinearSolidConstants, MOST_TERMS, SolidClasses, SolidSurface,
-    StateInfluence, Strains, StretchDefinition, ViscousTerm, Yield,
+    BondFailure, BondLimits, BondStrength, ElasticConstants, GivenConstants, IsotropicInfluence,
+    LatticeShear, LinearSolid, LinearSolidConstants, Materials, SolidSurface, StateConstants,
+    StateInfluence, Strains, StretchDefinition,
 };
 pub use strength::{HomogeneousBonds, Strengths, TensileStrength};
 pub use surface_correction::{SurfaceCorrection, SurfaceFactors};

@@ -7,10 +7,10 @@ use super::form::{CountedBond, Form};
 use super::tally::{BlockDamage, BondPlace, BreakEvent, DamageMeasure, Tally};
 use crate::archive::{Archive, Layout, Values};
 use crate::domain::Letter;
-use crate::error::{PericlesError, Result};
+use crate::error::Result;
 use crate::family::BondList;
 use crate::lanes::LANES;
-use crate::parallel::{BLOCK, Cost, PointSubset, for_each_chunk_of, for_each_point};
+use crate::parallel::{BLOCK, Cost, PointSubset, for_each_chunk_of};
 use crate::space::PointCloud;
 
 const INTACT: &str = "operator/intact";
@@ -139,42 +139,6 @@ impl BondList {
     /// Returns the entry at a place.
     pub fn entry_at(&self, place: BondPlace) -> usize {
         (self.start()[place.block * BLOCK] + place.group) * LANES + place.lane
-    }
-
-    /// Returns the reverse entry of each entry; padding is its own reverse entry. The body must not be divided among
-    /// processes, because the entries of ghosts belong to their owners.
-    ///
-    /// # Errors
-    /// More than 4.29e9 directed bonds.
-    pub fn opposites(&self) -> Result<Vec<u32>> {
-        let entries = self.present().len() * LANES;
-        if u32::try_from(entries).is_err() {
-            return Err(PericlesError::OutOfRange {
-                quantity: "the number of directed bonds with history",
-                value: entries as f64,
-                allowed: "at most 4.29e9",
-            });
-        }
-        let sites = self.sites();
-        let back = |i: usize, site: usize| {
-            let shift = sites.shift(site).map(|periods| -periods);
-            let mut family = self.family(sites.point(site));
-            let found = family.find(|&(_, b)| sites.point(b) == i && sites.shift(b) == shift);
-            found.map(|(entry, _)| entry)
-        };
-        let of_points = for_each_point(self.len(), &|i| {
-            let groups = self.groups(i);
-            let mut places: Vec<u32> = (groups.start * LANES..groups.end * LANES)
-                .map(|entry| entry as u32)
-                .collect();
-            for (entry, site) in self.family(i) {
-                if let Some(found) = back(i, site) {
-                    places[entry - groups.start * LANES] = found as u32;
-                }
-            }
-            places
-        });
-        Ok(of_points.concat())
     }
 
     /// Returns the bytes of a point among those of its block.

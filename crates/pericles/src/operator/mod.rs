@@ -11,7 +11,6 @@
 //! | [`GridForce`] | on a lattice | one stencil, one bit each | 0.8 (AVX-512), 1.4 (AVX2), 4 (baseline); half of that in single precision |
 //! | [`SofteningForce`] | any, softening bonds | listed, 11 bytes each | – |
 //! | [`LinearSolidForce`] | state-based, any | listed, 3 bytes each; two passes | 2 to 2.5 times [`BondForce`] |
-//! | [`InelasticSolidForce`] | state-based, viscous or plastic | listed, 23 bytes each and 8 per viscous term | – |
 //! | [`LinearSolidGrid`] | state-based, on a lattice | one stencil, one bit each; two passes | 2 times [`GridForce`] |
 //!
 //! [`BondBody::operator`] and [`LinearSolidBody::operator`] select the kernel. Times are for one core of an
@@ -70,8 +69,7 @@ pub use list::{BondForce, SofteningForce};
 pub use own_law::PlainLaw;
 pub use springs::{LatticeSpring, LatticeSprings};
 pub use state_based::{
-    FiniteStrain, InelasticSolidBody, InelasticSolidForce, Kinematics, LinearSolidBody,
-    LinearSolidForce, LinearSolidGrid, SmallStrain,
+    FiniteStrain, Kinematics, LinearSolidBody, LinearSolidForce, LinearSolidGrid, SmallStrain,
 };
 pub use two_pass::{AtPoints, Neighbours, TwoPass, TwoPassForce, with_neighbours};
 pub use view::{BondAt, BondValues, BondView, DilatationView, PlasticView, StressView};

@@ -11,8 +11,8 @@ use pericles::family::{Crack, EndRule, VolumeCorrection};
 use pericles::kernel::InfluenceFunction;
 use pericles::material::{
     BondFailure, BondMaterial, BondStretch, Fracture, GivenConstants, GreenBond, InterfaceRule,
-    LinearBond, LinearSolid, MaterialPairs, PairLaw, SolidClasses, SolidSurface, StateInfluence,
-    StressState, SurfaceCorrection,
+    LinearBond, LinearSolid, LinearSolidConstants, MaterialPairs, PairLaw, SolidSurface,
+    StateInfluence, StressState, SurfaceCorrection,
 };
 use pericles::operator::{
     BondBody, BondForm, CompositeBody, DamageMeasure, Force, GridForce, LinearSolidBody, VectorLaw,
@@ -164,7 +164,8 @@ pub(super) fn solid(cloud: &Arc<PointCloud>, form: BondForm) -> Box<dyn Force> {
     let constants = |material: LinearSolid| material.constants(cloud, STATE).unwrap();
     let materials = [constants(material(1.0, 0.2)), constants(material(0.6, 0.4))];
     let number = |i: usize| u8::from(cloud.point(i)[0] > 10.0);
-    let classes = SolidClasses::new((0..cloud.len()).map(number).collect(), &materials).unwrap();
+    let classes =
+        LinearSolidConstants::several((0..cloud.len()).map(number).collect(), &materials).unwrap();
     let (held, cracks) = (held(cloud), [(notch(), EndRule::Closed)]);
     let body = LinearSolidBody {
         classes: Some(&classes),

@@ -9,7 +9,7 @@ use pericles::family::{Crack, EndRule, VolumeCorrection};
 use pericles::kernel::InfluenceFunction;
 use pericles::material::{
     BondFailure, BondLimits, Criterion, FractureCalibration, LinearSolid, LinearSolidConstants,
-    PrincipalStress, SolidClasses, Strains, StressState, StretchDefinition,
+    PrincipalStress, Strains, StressState, StretchDefinition,
 };
 use pericles::operator::{BondForm, Force, LinearSolidBody, PointSubset};
 use pericles::round_trip::check_resume;
@@ -70,7 +70,9 @@ fn plate(
     let cloud = boxed([0.0; 3], &[24.0, 20.0], 1.0, 1.0);
     let materials = [0.1, 0.4].map(|nu| constants(&cloud, nu, failure, StressState::PlaneStrain));
     let of_point = |i: usize| u8::from(cloud.point(i)[0] > 12.0);
-    let classes = SolidClasses::new((0..cloud.len()).map(of_point).collect(), &materials).unwrap();
+    let classes =
+        LinearSolidConstants::several((0..cloud.len()).map(of_point).collect(), &materials)
+            .unwrap();
     let notch = Crack::Segment {
         from: [0.0, 10.0],
         to: [6.0, 10.0],

@@ -10,7 +10,7 @@ use pericles::family::{BondList, Crack, EndRule, VolumeCorrection};
 use pericles::kernel::{ActsOn, Influence, InfluenceFunction};
 use pericles::material::{
     BondLimits, BondStretch, Calibration, ElasticModulus, Fracture, LinearSolid,
-    LinearSolidConstants, Modulus, SolidClasses, StateInfluence, Strains, StressState,
+    LinearSolidConstants, Modulus, StateInfluence, Strains, StressState,
 };
 use pericles::operator::{
     AssembledBonds, BondForce, BondForm, DamageMeasure, Force, InstructionSet, LinearSolidBody,
@@ -147,7 +147,7 @@ fn forces_are_energy_gradients_and_tangents_are_symmetric_force_derivatives() {
             constants
         });
         let of_point = (0..cloud.len() as u8).map(|i| i % 2).collect();
-        let classes = SolidClasses::new(of_point, &materials).unwrap();
+        let classes = LinearSolidConstants::several(of_point, &materials).unwrap();
         let crack = Crack::Segment {
             from: [0.0, 4.5],
             to: [3.0, 4.5],

@@ -7,8 +7,8 @@ use crate::common::points;
 use pericles::family::{Crack, EndRule, VolumeCorrection};
 use pericles::kernel::InfluenceFunction;
 use pericles::material::{
-    BondLimits, LinearSolid, LinearSolidConstants, SolidClasses, SolidSurface, StateInfluence,
-    Strains, StressState,
+    BondLimits, LinearSolid, LinearSolidConstants, Materials, SolidSurface, StateConstants,
+    StateInfluence, Strains, StressState,
 };
 use pericles::operator::{BondForm, Feature, Force, InstructionSet, LinearSolidBody, PointSubset};
 use pericles::space::{Grid, PointCloud, Region, Shape};
@@ -122,10 +122,10 @@ fn bodies(limits: BondLimits) -> Vec<Body> {
 }
 
 impl Body {
-    fn classes(&self) -> SolidClasses {
+    fn classes(&self) -> Materials<StateConstants> {
         let number = |i: usize| u8::from(self.cloud.point(i)[0] > 8.0);
         let numbers = (0..self.cloud.len()).map(number).collect();
-        SolidClasses::new(numbers, &self.materials).unwrap()
+        LinearSolidConstants::several(numbers, &self.materials).unwrap()
     }
 
     fn operator(&self, strains: Strains, form: BondForm) -> Box<dyn Force> {

@@ -1,6 +1,6 @@
 //! Surface correction of the deviatoric stiffness of state-based solids.
 
-use super::classes::SolidClasses;
+use super::materials::{Materials, StateConstants};
 use crate::family::BondList;
 use crate::kernel::Influence;
 use crate::material::lattice::{Cells, for_each_offset};
@@ -52,7 +52,7 @@ impl SolidSurface {
         self,
         bonds: &BondList,
         influence: &Influence,
-        classes: &SolidClasses,
+        classes: &Materials<StateConstants>,
     ) -> SurfaceFactors {
         match self {
             // Ghosts are points, not factors.
@@ -79,7 +79,7 @@ struct Body<'a> {
     cloud: &'a PointCloud,
     bonds: &'a BondList,
     influence: &'a Influence,
-    classes: &'a SolidClasses,
+    classes: &'a Materials<StateConstants>,
 }
 
 /// Returns the squared stretch of a bond under uniaxial tension along each axis.

@@ -7,7 +7,7 @@ use super::grid::LinearSolidGrid;
 use super::kinematics::{FiniteStrain, Kinematics, SmallStrain};
 use crate::error::{PericlesError, Result};
 use crate::family::{BondCut, BondList, Crack, EndRule, VolumeCorrection};
-use crate::material::{LinearSolidConstants, SolidClasses, SolidSurface, Strains};
+use crate::material::{LinearSolidConstants, Materials, SolidSurface, StateConstants, Strains};
 use crate::operator::assemble::fills_lattice;
 use crate::operator::{
     AssembledBonds, BondForm, DamageMeasure, Feature, Features, Limit, TwoPass, TwoPassForce,
@@ -22,7 +22,7 @@ pub struct LinearSolidBody<'a> {
     /// Constants of the material; its horizon and influence function belong to the body.
     pub constants: &'a LinearSolidConstants,
     /// Materials of points and of bonds between them, if there are several.
-    pub classes: Option<&'a SolidClasses>,
+    pub classes: Option<&'a Materials<StateConstants>>,
     /// Partial volumes at the horizon.
     pub volume_correction: VolumeCorrection,
     /// Kinematics: bond extensions as functions of displacements.
@@ -178,10 +178,10 @@ impl<'a> LinearSolidBody<'a> {
     }
 
     /// Returns the materials of the points.
-    pub(in crate::operator) fn classes(&self) -> Result<SolidClasses> {
+    pub(in crate::operator) fn classes(&self) -> Result<Materials<StateConstants>> {
         let classes = match self.classes {
             Some(classes) => classes.clone(),
-            None => SolidClasses::uniform(self.constants),
+            None => self.constants.uniform(),
         };
         match classes.covers(self.cloud.len()) {
             true => Ok(classes),

@@ -9,7 +9,7 @@ use super::bonds::{SolidBonds, difference};
 use super::kinematics::Kinematics;
 use crate::domain::Field;
 use crate::lanes::{F64x8, LANES, dot};
-use crate::material::{PairForce, SolidClasses};
+use crate::material::{Materials, PairForce, StateConstants};
 use crate::neighbourhood::{BreakEvent, Tally};
 use crate::neighbourhood::{Crossing, Dissipated, LostBond, turns_around};
 use crate::operator::records::Records;
@@ -33,7 +33,7 @@ impl States {
     /// of own points to all sites.
     pub fn new<const D: usize>(
         volumes: &[f64],
-        classes: &SolidClasses,
+        classes: &Materials<StateConstants>,
         spread: &dyn Fn(&[f64]) -> Vec<f64>,
     ) -> Self {
         let over = |value: f64, volume: f64| if volume > 0.0 { value / volume } else { 0.0 };
@@ -80,7 +80,7 @@ pub(super) struct BreakRule<'a> {
     pub threshold: f64,
     /// Critical bond energy of the weakest pair of materials.
     pub energy: f64,
-    pub classes: &'a SolidClasses,
+    pub classes: &'a Materials<StateConstants>,
     /// Bits of the bonds that may break; `None`: all.
     pub breakable: Option<&'a [u8]>,
     pub states: &'a States,
@@ -91,8 +91,6 @@ pub(super) struct BreakRule<'a> {
     pub velocity: Option<Field<'a>>,
     /// Whether breaking bonds are recorded for the update of their other end.
     pub note_events: bool,
-    /// Stored energy of inelastic stretches, if a material is not elastic.
-    pub stored: Option<Stored<'a>>,
     /// Thermal stretches of own points and ghosts, if the material expands.
     pub stretches: Option<&'a [f64]>,
 }
@@ -102,10 +100,6 @@ pub(super) struct BreakRule<'a> {
 pub(super) fn heated_limit(limit: f64, stretch: f64) -> f64 {
     limit + stretch * (1.0 + limit)
 }
-
-/// For a point and one of its entries: the inelastic stretch x and the constant c of the bond energy ψ² − 2 ψ
-/// x + c.
-pub(super) type Stored<'a> = &'a (dyn Fn(usize, usize) -> [f64; 2] + Sync);
 
 impl BreakRule<'_> {
     /// Returns the critical stretch of a bond between two sites, including thermal stretch.
@@ -227,7 +221,6 @@ fn loss_of<L: Kinematics, const D: usize>(
                 velocity: velocity.unwrap_or([0.0; D]),
                 weight: bonds.weight_of(entry, [here, j], xi),
                 factor: bonds.factor_of(entry),
-                stored: rule.stored.map_or([0.0; 2], |stored| stored(i, entry)),
                 thermal: rule.stretches.map_or(0.0, |stretches| stretches[i]),
                 critical: rule.limit(sites, [here, j]),
             };
@@ -249,8 +242,6 @@ pub(super) struct LosingBond<const D: usize> {
     pub weight: f64,
     /// Factor of its stiffness.
     pub factor: f64,
-    /// x and c of [`Stored`]; zero in elastic solids.
-    pub stored: [f64; 2],
     /// Thermal stretch τ of the point.
     pub thermal: f64,
     /// Critical stretch with thermal stretch; infinite for other criteria.
@@ -270,7 +261,7 @@ pub(super) struct Loss {
 struct Sums {
     /// Σ ω r e and its rate.
     extension: [f64; 2],
-    /// Σ g ω (e² − 2 e e_x + c r²) with inelastic extensions e_x, and half its rate.
+    /// Σ g ω e², and half its rate.
     square: [f64; 2],
 }
 
@@ -357,12 +348,10 @@ impl Sums {
         bond: &LosingBond<D>,
         [stretch, rate]: [f64; 2],
     ) {
-        let [inelastic, kept] = bond.stored;
         self.extension[0] += weight * stretch;
         self.extension[1] += weight * rate;
-        let square = stretch * (stretch - 2.0 * inelastic) + kept;
-        self.square[0] += bond.factor * weight * square;
-        self.square[1] += bond.factor * weight * (stretch - inelastic) * rate;
+        self.square[0] += bond.factor * weight * (stretch * stretch);
+        self.square[1] += bond.factor * weight * stretch * rate;
     }
 }
 

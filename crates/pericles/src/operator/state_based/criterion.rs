@@ -10,7 +10,7 @@
 use rayon::prelude::*;
 
 use super::bonds::difference;
-use super::breaking::{BreakRule, Stored, direction, take_bonds};
+use super::breaking::{BreakRule, direction, take_bonds};
 use super::force::LinearSolidForce;
 use super::kinematics::Kinematics;
 use super::view::force_of_bond;
@@ -23,13 +23,8 @@ use crate::parallel::BLOCK;
 use crate::solve::inverse;
 use crate::step_end::StepEnd;
 
-/// Force states of points: the pull of a bond of point i is P + S ψ − R.
-pub(super) struct ForceStates {
-    /// P and S of all points.
-    pub of_points: Vec<[f64; 2]>,
-    /// R of all entries; empty in elastic solids.
-    pub relief: Vec<f64>,
-}
+/// Force states of points, P and S: the pull of a bond of a point is P + S ψ.
+pub(super) type ForceStates = [[f64; 2]];
 
 impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
     /// Returns whether bonds can break by stress or strain.
@@ -37,19 +32,16 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         !self.classes.criteria().is_empty()
     }
 
-    /// Returns the force states of an elastic solid with these dilatations and thermal pulls, which are empty for a
+    /// Returns the force states for these dilatations and thermal pulls, which are empty for a
     /// body that is not heated.
-    pub(super) fn elastic_states(&self, dilatations: &[f64], pulls: &[f64]) -> ForceStates {
+    pub(super) fn elastic_states(&self, dilatations: &[f64], pulls: &[f64]) -> Vec<[f64; 2]> {
         let states = &self.states;
         let of_point = |(i, theta): (usize, &f64)| {
             let (site, pull) = (self.bonds.form().site(i), pulls.get(i).copied());
             let pull = states.pressure[site] * theta + pull.unwrap_or(0.0);
             [pull, states.stiffness[site]]
         };
-        ForceStates {
-            of_points: dilatations.iter().enumerate().map(of_point).collect(),
-            relief: Vec::new(),
-        }
+        dilatations.iter().enumerate().map(of_point).collect()
     }
 
     /// Returns stress and strain of the points `on`, 2 D² components; see [`BondState::between`].
@@ -90,14 +82,13 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         states: &ForceStates,
     ) -> [[[f64; D]; D]; 2] {
         let (bonds, here) = (self.view(), self.bonds.form().site(i));
-        let [p, s] = states.of_points[i];
+        let [p, s] = states[i];
         let mut stress = [[0.0; D]; D];
         let (mut shape, mut moment) = ([[0.0; 3]; 3], [[0.0; D]; D]);
         for (entry, b) in self.bonds.intact_of(i) {
             let (xi, eta) = (bonds.vector::<D>(here, b), difference::<D>(u, here, b));
             let weight = bonds.weight_of(entry, [here, b], xi);
-            let relief = states.relief.get(entry).copied().unwrap_or(0.0);
-            let pull = [p - relief, s * bonds.factor_of(entry)];
+            let pull = [p, s * bonds.factor_of(entry)];
             let force = force_of_bond::<L, D>(weight, pull, xi, eta);
             let along = direction::<L, D>(xi, eta);
             for a in 0..D {
@@ -177,7 +168,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
     }
 
     /// Returns the elastic force states at a displacement and the time of the last force evaluation.
-    pub(super) fn latest_states(&self, u: Field<'_>) -> ForceStates {
+    pub(super) fn latest_states(&self, u: Field<'_>) -> Vec<[f64; 2]> {
         let mut dilatations = vec![0.0; self.cloud.len()];
         self.dilatations_into(u, &PointSubset::All, &mut dilatations);
         let pulls = self.latest_stretches().map(|stretches| {
@@ -214,7 +205,6 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         u: Field<'_>,
         [on, needed]: [&PointSubset<'_>; 2],
         states: &ForceStates,
-        stored: Option<Stored<'_>>,
     ) -> bool {
         let n = self.cloud.len();
         let heated = self.stretches(step.t);
@@ -240,7 +230,6 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         let counts = self.broken_by_blocks();
         let mut blocks = self.bonds.take_blocks();
         let rule = BreakRule {
-            stored,
             stretches,
             ..self.rule(step, step.velocities(&moved), on)
         };

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::bond_work::{KEPT, Worked, work_rows};
 use super::bonds::{Layout, SolidBonds, pack};
-use super::breaking::{BreakRule, States, Stored, heated_limit, take_bonds};
+use super::breaking::{BreakRule, States, heated_limit, take_bonds};
 use super::heat::Heat;
 use super::kernels::{accept_rows, dilatation_rows};
 use super::kinematics::Kinematics;
@@ -14,7 +14,9 @@ use crate::domain::Field;
 use crate::family::BondList;
 use crate::kernel::Influence;
 use crate::lanes::{Row, dot};
-use crate::material::{BondLimits, PairForce, SolidClasses, SolidSurface, SurfaceFactors};
+use crate::material::{
+    BondLimits, Materials, PairForce, SolidSurface, StateConstants, SurfaceFactors,
+};
 use crate::neighbourhood::{BlockDamage, DamageMeasure, Neighbourhood};
 use crate::operator::list::stiffness::Stiffness;
 use crate::operator::pool::{Lent, Pool};
@@ -44,7 +46,7 @@ pub struct LinearSolidForce<L: Kinematics, const D: usize> {
     /// Factors of the stiffness of bonds near surfaces, with surface correction.
     factor: Option<Stiffness>,
     pub(super) states: States,
-    pub(super) classes: SolidClasses,
+    pub(super) classes: Materials<StateConstants>,
     /// Limits of the weakest pair of materials.
     pub(super) weakest: BondLimits,
     /// Influence function, for failure by bond energy.
@@ -82,7 +84,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         cloud: Arc<PointCloud>,
         mut bonds: BondList,
         influence: &Influence,
-        classes: SolidClasses,
+        classes: Materials<StateConstants>,
         no_fail: &[u32],
         damage: DamageMeasure,
     ) -> Self {
@@ -236,20 +238,18 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
             step,
             velocity,
             note_events: !matches!(on, PointSubset::All),
-            stored: None,
             stretches: None,
         }
     }
 
     /// Breaks bonds of the points `on` that exceed their critical stretch and sets the dilatations of these
-    /// points. `stored` is the energy of inelastic stretches, if a material is not elastic.
+    /// points.
     pub(super) fn break_by_stretch(
         &mut self,
         step: &StepEnd<'_>,
         u: Field<'_>,
         on: &PointSubset<'_>,
         dilatations: &mut [f64],
-        stored: Option<Stored<'_>>,
     ) {
         let n = self.cloud.len();
         let broken = self.broken_by_blocks();
@@ -257,10 +257,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         let mut blocks = self.bonds.take_blocks();
         let bonds = self.view();
         let moved = step.ghost_velocities(self.cloud.domain());
-        let mut rule = BreakRule {
-            stored,
-            ..self.rule(step, step.velocities(&moved), on)
-        };
+        let mut rule = self.rule(step, step.velocities(&moved), on);
         if let Some(stretches) = &stretches {
             let coldest = stretches.iter().copied().fold(f64::INFINITY, f64::min);
             let limit = heated_limit(self.weakest.stretch, coldest);

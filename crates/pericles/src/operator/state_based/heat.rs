@@ -40,21 +40,20 @@ impl Heat {
         });
     }
 
-    /// Returns the energy density of a point with the dilatation θ, the sum Σ g ω e² of total extensions and the sum
-    /// Σ ω r e_x of inelastic extensions, J/m³.
+    /// Returns the energy density of a point with the dilatation θ and the sum Σ g ω e² of total extensions, J/m³.
     pub fn energy_density(
         &self,
         states: &States,
         place: [usize; 2],
         stretch: f64,
-        [theta, squares, inelastic]: [f64; 3],
+        [theta, squares]: [f64; 2],
     ) -> f64 {
         let factor = states.dilatation[place[0]];
         if factor <= 0.0 {
             return states.energy_density(place, theta, squares);
         }
         let volume = self.volume[place[0]];
-        let linear = theta / factor - inelastic;
+        let linear = theta / factor;
         let squares = squares - stretch * (2.0 * linear - stretch * volume);
         states.energy_density(place, theta - factor * volume * stretch, squares)
     }

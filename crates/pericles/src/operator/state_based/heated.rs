@@ -46,18 +46,17 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
         }
     }
 
-    /// Returns the energy density of a point with the dilatation θ, the sum Σ g ω e² of total extensions and
-    /// the sum Σ ω r e_x of inelastic extensions, J/m³.
+    /// Returns the energy density of a point with the dilatation θ and the sum Σ g ω e² of total extensions, J/m³.
     pub(super) fn energy_at(
         &self,
         i: usize,
         stretch: Option<f64>,
-        [theta, squares, inelastic]: [f64; 3],
+        [theta, squares]: [f64; 2],
     ) -> f64 {
         let place = [i, self.bonds.form().site(i)];
         match (&self.heat, stretch) {
             (Some(heat), Some(stretch)) => {
-                heat.energy_density(&self.states, place, stretch, [theta, squares, inelastic])
+                heat.energy_density(&self.states, place, stretch, [theta, squares])
             }
             _ => self.states.energy_density(place, theta, squares),
         }

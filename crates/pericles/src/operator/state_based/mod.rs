@@ -8,7 +8,6 @@
 //! | `breaking`, `criterion` | bond failure and dissipated energy |
 //! | `force`, `passes`, `view` | operator on lists |
 //! | `grid` | stencil kernel for lattices |
-//! | `inelastic` | solids with viscous or plastic shear, on lists |
 //! | `body` | input of the operator and choice of the kernel |
 //!
 //! **Bond failure.** Points keep their weighted volume when bonds break: the force remains the gradient of the
@@ -25,7 +24,6 @@ mod force;
 mod grid;
 mod heat;
 mod heated;
-mod inelastic;
 mod kernels;
 mod kinematics;
 mod passes;
@@ -35,5 +33,4 @@ mod weight;
 pub use body::LinearSolidBody;
 pub use force::LinearSolidForce;
 pub use grid::LinearSolidGrid;
-pub use inelastic::{InelasticSolidBody, InelasticSolidForce};
 pub use kinematics::{FiniteStrain, Kinematics, SmallStrain};

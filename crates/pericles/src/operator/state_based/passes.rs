@@ -71,7 +71,7 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidForce<L, D> {
             for (i, energy) in (first..).zip(out) {
                 let stretch = stretches.as_ref().map(|stretches| stretches[i]);
                 let theta = at.values.owned[i];
-                *energy += self.energy_at(i, stretch, [theta, squares[i], 0.0]);
+                *energy += self.energy_at(i, stretch, [theta, squares[i]]);
             }
         });
     }
@@ -120,7 +120,7 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidForce<L, D> {
         let all = matches!(on, PointSubset::All);
         let (values, pulls) = values.split_at_mut(self.cloud.len());
         if self.weakest.stretch.is_finite() {
-            self.break_by_stretch(step, u, on, values, None);
+            self.break_by_stretch(step, u, on, values);
             if !all {
                 self.dilatations_into(u, needed, values);
             }
@@ -136,7 +136,7 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidForce<L, D> {
         self.thermal_pulls_into(step.t, needed, pulls);
         if self.has_criteria() {
             let states = self.elastic_states(values, pulls);
-            if self.break_by_criterion(step, u, [on, needed], &states, None) {
+            if self.break_by_criterion(step, u, [on, needed], &states) {
                 self.dilatations_into(u, needed, values);
                 self.thermal_pulls_into(step.t, needed, pulls);
             }

@@ -65,31 +65,6 @@ pub(super) fn force_of_bond<L: Kinematics, const D: usize>(
     direction.map(|y| weight * pull * y.0[0])
 }
 
-impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
-    /// Calls `visit` for each intact bond of a point with the values of [`BondView::values_at`]. The pull of a bond is
-    /// reduced by `relief` of its point and entry.
-    pub(super) fn visit_bonds(
-        &self,
-        values: &BondValues,
-        i: usize,
-        relief: &dyn Fn(usize, usize) -> f64,
-        visit: &mut dyn FnMut(BondAt),
-    ) {
-        let (bonds, here) = (self.view(), self.bonds.form().site(i));
-        let (u, pressures) = (values.displacement(), values.points());
-        for (entry, b) in self.bonds.intact_of(i) {
-            let j = self.bonds.form().sites().point(b);
-            let [xi, eta] = self.vectors(u, i, b);
-            let p = pressures.at::<1>(0, i) + pressures.at::<1>(0, j) - relief(i, entry);
-            let stiffness = self.states.stiffness[here] + self.states.stiffness[b];
-            let s = bonds.factor_of(entry) * stiffness;
-            let weight = bonds.weight_of(entry, [here, b], xi);
-            let force = force_of_bond::<L, D>(weight, [p, s], xi, eta);
-            visit(BondAt::new(j, xi, eta, force).of_small_strain(L::LINEAR));
-        }
-    }
-}
-
 /// The values of points are p = A θ/m with thermal pulls.
 impl<L: Kinematics, const D: usize> BondView for LinearSolidForce<L, D> {
     fn values_at(&self, u: Field<'_>) -> BondValues {
@@ -98,7 +73,18 @@ impl<L: Kinematics, const D: usize> BondView for LinearSolidForce<L, D> {
     }
 
     fn for_each_bond(&self, values: &BondValues, i: usize, visit: &mut dyn FnMut(BondAt)) {
-        self.visit_bonds(values, i, &|_, _| 0.0, visit);
+        let (bonds, here) = (self.view(), self.bonds.form().site(i));
+        let (u, pressures) = (values.displacement(), values.points());
+        for (entry, b) in self.bonds.intact_of(i) {
+            let j = self.bonds.form().sites().point(b);
+            let [xi, eta] = self.vectors(u, i, b);
+            let p = pressures.at::<1>(0, i) + pressures.at::<1>(0, j);
+            let stiffness = self.states.stiffness[here] + self.states.stiffness[b];
+            let s = bonds.factor_of(entry) * stiffness;
+            let weight = bonds.weight_of(entry, [here, b], xi);
+            let force = force_of_bond::<L, D>(weight, [p, s], xi, eta);
+            visit(BondAt::new(j, xi, eta, force).of_small_strain(L::LINEAR));
+        }
     }
 
     fn for_each_undeformed(&self, i: usize, visit: &mut dyn FnMut(BondAt)) {

@@ -3,7 +3,7 @@
 use super::arrays::Arrays;
 use crate::domain::Field;
 use crate::lanes::LANES;
-use crate::material::{PairForce, SolidClasses};
+use crate::material::{Materials, PairForce, StateConstants};
 use crate::neighbourhood::{BreakEvent, Chunk, Lattice, LostBond, Tally};
 use crate::operator::state_based::breaking::{LosingBond, Loss, States, heated_limit};
 use crate::operator::state_based::kinematics::Kinematics;
@@ -15,7 +15,7 @@ pub(super) struct StencilRule<'a> {
     /// A bond exceeds the critical stretch of the weakest pair of materials if measure > threshold |ξ|².
     pub threshold: f64,
     /// Limits of bonds as a function of both sites.
-    pub classes: &'a SolidClasses,
+    pub classes: &'a Materials<StateConstants>,
     pub bonds: &'a Lattice,
     pub states: &'a States,
     pub volumes: &'a [f64],
@@ -154,7 +154,6 @@ fn loss_of<L: Kinematics, const D: usize>(
             velocity: rule.velocity.map_or([0.0; D], velocity),
             weight: offset.weight,
             factor: 1.0,
-            stored: [0.0; 2],
             thermal: rule.stretches.map_or(0.0, |stretches| stretches[i]),
             critical: rule.limit(ends.map(|place| place - arrays.margin)),
         };

@@ -10,7 +10,7 @@ use crate::error::Result;
 use crate::family::{BondCut, Crack, EndRule, VolumeCorrection};
 use crate::kernel::Influence;
 use crate::lanes::LANES;
-use crate::material::{BondLimits, PairForce, SolidClasses};
+use crate::material::{BondLimits, Materials, PairForce, StateConstants};
 use crate::neighbourhood::{
     BlockDamage, BondPlace, DamageMeasure, Form, GridLayout, Lattice, Neighbourhood,
 };
@@ -46,7 +46,7 @@ pub struct LinearSolidGrid<L: Kinematics, const D: usize> {
     /// s = B/m in padded rows.
     stiffness: Padded<f64, 1>,
     /// Limits of bonds as a function of both sites.
-    pub(super) classes: SolidClasses,
+    pub(super) classes: Materials<StateConstants>,
     /// Limits of the weakest pair of materials.
     pub(super) weakest: BondLimits,
     /// Thermal strain, if the material expands.
@@ -98,7 +98,7 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
         cloud: &Arc<PointCloud>,
         (influence, horizon): (&Influence, f64),
         correction: VolumeCorrection,
-        classes: &SolidClasses,
+        classes: &Materials<StateConstants>,
         cracks: &[(Crack, EndRule)],
         no_fail: &[u32],
         damage: DamageMeasure,
@@ -133,7 +133,7 @@ impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
         });
         let force = Self {
             cloud: cloud.clone(),
-            classes: classes.on_sites(bonds.form().sites()),
+            classes: classes.clone().on_sites(bonds.form().sites()),
             weakest: classes.weakest(),
             instruction_set: InstructionSet::detect(),
             kinematics: std::marker::PhantomData,

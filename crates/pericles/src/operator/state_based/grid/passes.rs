@@ -90,7 +90,7 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidGrid<L, D> {
                 let (theta, square) = (at.values.owned[i], squares[i]);
                 *energy += match (&self.heat, &stretches) {
                     (Some(heat), Some(stretches)) => {
-                        heat.energy_density(states, [i, i], stretches[i], [theta, square, 0.0])
+                        heat.energy_density(states, [i, i], stretches[i], [theta, square])
                     }
                     _ => states.energy_density([i, i], theta, square),
                 };

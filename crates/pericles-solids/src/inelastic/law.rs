@@ -1,7 +1,7 @@
 //! Viscosity and plasticity of linear peridynamic solids.
 
-use crate::error::{PericlesError, Result, positive};
-use crate::material::StressState;
+use pericles::material::StressState;
+use pericles::{PericlesError, Result, positive};
 
 /// Inelastic law of the deviatoric part of a linear peridynamic solid; its dilatation is elastic.
 ///

@@ -1,17 +1,21 @@
 //! Runs of inelastic bodies: energy balance, momentum, other schemes, resume, threads.
 
+use std::sync::Arc;
+
 use crate::bodies::{jittered, solid};
 use crate::setup::{difference, plastic, viscous};
 use pericles::family::VolumeCorrection;
 use pericles::kernel::InfluenceFunction;
-use pericles::material::{BondLimits, Inelasticity, Strains, StressState};
-use pericles::operator::{BondForm, InelasticSolidBody, LinearSolidBody};
+use pericles::material::{BondLimits, Strains, StressState};
+use pericles::operator::{BondForm, LinearSolidBody};
 use pericles::round_trip::check_resume;
+use pericles::space::PointCloud;
 use pericles::time::{
     Fine, Implicit, ImplicitRule, Integrator, Interpolant, MultiTimeStep, MultiTimeStepOptions,
     Predictor, RungeKutta, State, Tableau, VelocityVerlet,
 };
 use pericles::{Control, PointScalar, Simulation, System};
+use pericles_solids::inelastic::{InelasticSolidBody, Inelasticity};
 
 /// A plate whose parts move towards each other.
 fn plate(
@@ -24,6 +28,20 @@ fn plate(
     dt: f64,
 ) -> Simulation {
     let cloud = jittered(&[14, 10]);
+    plate_on(cloud, law, function, strains, limits, scheme, speed, dt)
+}
+
+#[allow(clippy::too_many_arguments)]
+pub fn plate_on(
+    cloud: Arc<PointCloud>,
+    law: &Inelasticity,
+    function: InfluenceFunction,
+    strains: Strains,
+    limits: BondLimits,
+    scheme: Make,
+    speed: f64,
+    dt: f64,
+) -> Simulation {
     let mut constants = solid(0.4, 2.5, function)
         .constants(&cloud, StressState::PlaneStrain)
         .unwrap();
@@ -49,13 +67,13 @@ fn plate(
     Simulation::new(system, scheme, start, dt, (4.0 / dt).round() as u64).unwrap()
 }
 
-type Make = fn(&System) -> Box<dyn Integrator>;
+pub type Make = fn(&System) -> Box<dyn Integrator>;
 
-fn verlet(_: &System) -> Box<dyn Integrator> {
+pub fn verlet(_: &System) -> Box<dyn Integrator> {
     Box::new(VelocityVerlet)
 }
 
-fn laws() -> [Inelasticity; 3] {
+pub fn laws() -> [Inelasticity; 3] {
     [
         viscous(&[[0.4, 0.3], [0.2, 2.0]]),
         plastic(0.1, 0.0),
@@ -63,7 +81,7 @@ fn laws() -> [Inelasticity; 3] {
     ]
 }
 
-const BREAKING: BondLimits = BondLimits {
+pub const BREAKING: BondLimits = BondLimits {
     stretch: 0.03,
     ..BondLimits::NONE
 };

@@ -5,13 +5,11 @@ use std::sync::Arc;
 use crate::bodies::{jittered, solid};
 use pericles::family::{Crack, EndRule, VolumeCorrection};
 use pericles::kernel::InfluenceFunction;
-use pericles::material::{
-    BondLimits, BondMaterial, ElasticModulus, Inelasticity, PairLaw, Strains, StressState,
-    ViscousTerm, Yield,
-};
-use pericles::operator::{BondBody, BondForm, Force, InelasticSolidBody, LinearSolidBody};
+use pericles::material::{BondLimits, BondMaterial, ElasticModulus, PairLaw, Strains, StressState};
+use pericles::operator::{BondBody, BondForm, Force, LinearSolidBody};
 use pericles::space::PointCloud;
 use pericles::{PointScalar, Temperature, ThermalExpansion};
+use pericles_solids::inelastic::{InelasticSolidBody, Inelasticity, ViscousTerm, Yield};
 
 /// T = 20 + 100 (a + b x/10 + c t) K.
 #[derive(Debug, Clone)]

@@ -1,7 +1,7 @@
 //! Thermal expansion of bond-based and state-based bodies.
 
 #[allow(dead_code)] // other tests use the rest
-#[path = "../state_based/bodies.rs"]
+#[path = "../../../pericles/tests/state_based/bodies.rs"]
 mod bodies;
 mod forces;
 mod grid;

@@ -1,8 +1,10 @@
 //! Tests of linear peridynamic solids with viscous or plastic shear.
 
-#[path = "../state_based/bodies.rs"]
+#[path = "../../../pericles/tests/state_based/bodies.rs"]
 #[allow(dead_code)] // only a part of it is used here
 mod bodies;
+mod criterion;
+mod divided;
 mod forces;
 mod paths;
 mod reference;

@@ -6,10 +6,11 @@ use crate::bodies::{jittered, noise, solid, wave};
 use crate::setup::{ALPHA, Model, expansion, models, operator, plate};
 use pericles::family::VolumeCorrection;
 use pericles::kernel::InfluenceFunction;
-use pericles::material::{Inelasticity, Strains, StressState};
+use pericles::material::{Strains, StressState};
 use pericles::operator::{BondForm, Force, LinearSolidBody, PointSubset};
 use pericles::space::{Grid, PointCloud};
 use pericles::{Path, StepEnd};
+use pericles_solids::inelastic::Inelasticity;
 
 fn force_at(force: &dyn Force, t: f64, u: &[f64]) -> Vec<f64> {
     let mut out = vec![0.0; u.len()];

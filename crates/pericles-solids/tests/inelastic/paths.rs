@@ -6,11 +6,11 @@ use crate::bodies::{jittered, solid, wave};
 use crate::setup::{operator, plastic, scaled, step};
 use pericles::family::VolumeCorrection;
 use pericles::kernel::{Influence, InfluenceFunction};
-use pericles::material::{Inelasticity, LinearSolidConstants, StressState, Yield};
-use pericles::operator::{
-    Force, InelasticSolidBody, InelasticSolidForce, LinearSolidBody, SmallStrain, TwoPassForce,
-};
+use pericles::material::{LinearSolidConstants, StressState};
+use pericles::operator::{Force, LinearSolidBody, SmallStrain};
 use pericles::space::{Grid, PointCloud, Shape};
+use pericles_solids::inelastic::{InelasticSolid, InelasticSolidBody, Inelasticity, Yield};
+use pericles_solids::solid::SolidForce;
 
 /// Bonds of a point from the definitions: ω r², w and the entry.
 fn bonds(
@@ -61,8 +61,8 @@ fn force_states_return_to_the_yield_surface_and_flow_dissipates() {
                 let t = f64::from(k);
                 let u = scaled(&shape, (0.5 * t).sin());
                 step(&mut operator, [t, 1.0], &before, &u);
-                let force = operator.force();
-                let list = force.solid().bonds().form();
+                let force = &operator;
+                let list = force.list();
                 for i in 0..n {
                     let family = bonds(list, &cloud, &constants.influence, i);
                     let stretch = |j: usize| {
@@ -74,21 +74,21 @@ fn force_states_return_to_the_yield_surface_and_flow_dissipates() {
                     };
                     let elastic: Vec<f64> = family
                         .iter()
-                        .map(|&(.., entry, j)| stretch(j) - force.inelastic_stretch(entry))
+                        .map(|&(.., entry, j)| stretch(j) - force.bond_history(entry, 1))
                         .collect();
                     let m: f64 = family.iter().map(|bond| bond.0).sum();
                     let mean = family.iter().zip(&elastic).map(|(bond, e)| bond.0 * e);
                     let mean = mean.sum::<f64>() / m;
                     let deviators: Vec<f64> = elastic.iter().map(|e| e - mean).collect();
-                    let limit =
-                        force.strength(i) * (1.0 + hardening * force.plastic_strain()[i] / 0.2);
+                    let limit = force.shape(i).unwrap().strength
+                        * (1.0 + hardening * force.history_of(i)[0] / 0.2);
                     let part = load(&constants, &family, &deviators) / limit;
                     assert!(part < 1.0 + 1e-12, "{part}");
-                    if force.plastic_strain()[i] > strain[i] {
+                    if force.history_of(i)[0] > strain[i] {
                         assert!(part > 1.0 - 1e-12, "{part}");
                     }
                 }
-                strain = force.plastic_strain().to_vec();
+                strain = (0..strain.len()).map(|i| force.history_of(i)[0]).collect();
                 let now = (&operator as &dyn Force).dissipated();
                 assert!(now >= dissipated);
                 dissipated = now;
@@ -108,16 +108,10 @@ fn pure_dilatation_causes_no_plastic_flow() {
     let n = cloud.len();
     let u: Vec<f64> = (0..3 * n).map(|k| 0.3 * cloud.axis(k / n)[k % n]).collect();
     step(&mut operator, [1.0, 1.0], &scaled(&u, 0.0), &u);
-    assert!(
-        operator
-            .force()
-            .multiplier()
-            .iter()
-            .all(|&flow| flow == 0.0)
-    );
+    assert!((0..cloud.len()).all(|i| operator.history_of(i)[1] == 0.0));
 }
 
-type Lattice<const D: usize> = TwoPassForce<InelasticSolidForce<SmallStrain, D>>;
+type Lattice<const D: usize> = SolidForce<InelasticSolid<SmallStrain>, D>;
 
 /// A lattice of 9 cells along each axis and its middle point, for small strains.
 fn lattice<const D: usize>(
@@ -148,10 +142,9 @@ fn lattice<const D: usize>(
         elastic: LinearSolidBody::new(&cloud, &constants, VolumeCorrection::Linear),
         laws: &laws,
     };
-    let (force, _) = body.list::<SmallStrain, D>().unwrap();
+    let (force, _) = body.force::<SmallStrain, D>().unwrap();
     let middle = cloud.nearest([cells as f64 / 2.0; 3]);
-    let operator = TwoPassForce::new(cloud.clone(), force);
-    (cloud, constants, operator, middle)
+    (cloud, constants, force, middle)
 }
 
 /// u = H x.
@@ -207,7 +200,7 @@ fn proportional_paths_follow_their_closed_form() {
             let law = Inelasticity::Plastic(yields);
             let (cloud, constants, mut operator, middle) =
                 lattice::<3>(InfluenceFunction::Conical, 2.0, &law);
-            let list = operator.force().solid().bonds().form();
+            let list = operator.list();
             let family = bonds(list, &cloud, &constants.influence, middle);
             let unit = deviators(list, &family, middle, gradient);
             let norm = load(&constants, &family, &unit);
@@ -218,7 +211,7 @@ fn proportional_paths_follow_their_closed_form() {
                 .map(|(bond, e)| bond.0 * e * e)
                 .sum();
             let equivalent = (5.0 * square / m).sqrt();
-            let strength = operator.force().strength(middle);
+            let strength = operator.shape(middle).unwrap().strength;
             let slope = strength * hardening * equivalent / yields.stress;
             let (mut plastic, mut strain) = (0.0, 0.0);
             let unit_u = uniform(&cloud, gradient);
@@ -241,14 +234,14 @@ fn proportional_paths_follow_their_closed_form() {
                     plastic += flow * elastic.signum();
                     strain += flow * equivalent;
                 }
-                let force = operator.force();
-                let found = force.plastic_strain()[middle];
+                let force = &operator;
+                let found = force.history_of(middle)[0];
                 assert!(
                     (found - strain).abs() <= 1e-13,
                     "{target}: {found} {strain}"
                 );
                 for ((.., entry, _), e) in family.iter().zip(&unit) {
-                    let stretch = force.inelastic_stretch(*entry);
+                    let stretch = force.bond_history(*entry, 1);
                     assert!((stretch - plastic * e).abs() < 1e-13);
                 }
             }
@@ -286,7 +279,7 @@ fn lattices_yield_at_the_given_stress() {
     let (c2, constants2, force2, i2) = lattice::<2>(InfluenceFunction::Inverse, 6.0, &law);
     for angle in [0.0, 0.2, 0.4, 0.6, std::f64::consts::FRAC_PI_4] {
         let gradient = turned(SHEAR, [f64::cos(angle), f64::sin(angle)]);
-        let list = force3.force().solid().bonds().form();
+        let list = force3.list();
         let family = bonds(list, &c3, &constants3.influence, i3);
         let (m, unit) = (
             family.iter().map(|bond| bond.0).sum::<f64>(),
@@ -298,7 +291,7 @@ fn lattices_yield_at_the_given_stress() {
             .map(|(bond, e)| bond.0 * e * e)
             .sum();
         let norm = load(&constants3, &family, &unit);
-        let strength = force3.force().strength(i3);
+        let strength = force3.shape(i3).unwrap().strength;
         let shear = constants3.elastic.shear();
         check(
             norm,
@@ -307,7 +300,7 @@ fn lattices_yield_at_the_given_stress() {
             shear,
             [0.985, 1.019],
         );
-        let list = force2.force().solid().bonds().form();
+        let list = force2.list();
         let family = bonds(list, &c2, &constants2.influence, i2);
         let (m, unit) = (
             family.iter().map(|bond| bond.0).sum::<f64>(),
@@ -319,7 +312,7 @@ fn lattices_yield_at_the_given_stress() {
             .map(|(bond, e)| bond.0 * e * e)
             .sum();
         let norm = load(&constants2, &family, &unit);
-        let strength = force2.force().strength(i2);
+        let strength = force2.shape(i2).unwrap().strength;
         let shear = constants2.elastic.shear();
         let equivalent = (8.0 / 3.0 * square / m).sqrt();
         check(norm, equivalent, strength, shear, [0.994, 1.006]);

@@ -1,12 +1,16 @@
 //! Bodies of viscous and plastic solids.
 
-use super::super::body::LinearSolidBody;
-use super::super::kinematics::{FiniteStrain, Kinematics, SmallStrain};
-use super::force::InelasticSolidForce;
-use crate::error::{PericlesError, Result};
-use crate::family::BondCut;
-use crate::material::{Inelasticity, Strains, StressState};
-use crate::operator::{AssembledBonds, BondForm, Feature, Features, Limit, TwoPassForce};
+use pericles::family::BondCut;
+use pericles::material::{Strains, StressState};
+use pericles::operator::{
+    AssembledBonds, BondForm, Feature, Features, FiniteStrain, Kinematics, Limit, LinearSolidBody,
+    SmallStrain,
+};
+use pericles::{PericlesError, Result};
+
+use super::force_state::InelasticSolid;
+use super::law::Inelasticity;
+use crate::solid::{SolidBody, SolidForce};
 
 /// A body of linear peridynamic solids, some of which are viscous or plastic.
 #[derive(Debug, Clone)]
@@ -62,24 +66,23 @@ impl InelasticSolidBody<'_> {
                 reason: ON_LATTICE,
             });
         }
-        let (force, cuts) = self.list::<L, D>()?;
-        Ok(AssembledBonds {
-            operator: Box::new(TwoPassForce::new(self.elastic.cloud.clone(), force)),
-            cuts,
-            form: BondForm::List,
-        })
+        self.body::<L>()?.operator::<D>()
     }
 
-    /// Returns the two-pass force and the bonds removed by each pre-crack.
+    /// Returns the force operator and the bonds removed by each pre-crack.
     ///
     /// # Errors
     /// Errors of [`InelasticSolidBody::operator`].
     ///
     /// # Panics
     /// If the dimension of the body is not D.
-    pub fn list<L: Kinematics, const D: usize>(
+    pub fn force<L: Kinematics, const D: usize>(
         &self,
-    ) -> Result<(InelasticSolidForce<L, D>, Vec<BondCut>)> {
+    ) -> Result<(SolidForce<InelasticSolid<L>, D>, Vec<BondCut>)> {
+        self.body::<L>()?.force::<D>()
+    }
+
+    fn body<L: Kinematics>(&self) -> Result<SolidBody<'_, InelasticSolid<L>>> {
         let form = BondForm::List.name();
         Limit::check(LIMITS, form, self.elastic.features())?;
         let state = match self.elastic.cloud.dimension() {
@@ -88,20 +91,37 @@ impl InelasticSolidBody<'_> {
             _ => StressState::Spatial,
         };
         self.laws.iter().try_for_each(|law| law.check(state))?;
-        let materials = self
-            .elastic
-            .classes
-            .map_or(1, |classes| classes.materials());
-        if self.laws.len() != materials {
+        let materials = match self.elastic.classes {
+            Some(classes) => classes.clone(),
+            None => self.elastic.constants.uniform(),
+        };
+        if self.laws.len() != materials.all().len() {
             return Err(PericlesError::OutOfRange {
                 quantity: "the number of inelastic laws",
                 value: self.laws.len() as f64,
                 allowed: "one for each material",
             });
         }
-        let (solid, cuts) = self.elastic.list::<L, D>()?;
-        let influence = &self.elastic.constants.influence;
-        let force = InelasticSolidForce::new(solid, self.laws.to_vec(), influence)?;
-        Ok((force, cuts))
+        let with_law =
+            |number: usize, constants| InelasticSolid::new(constants, self.laws[number].clone());
+        let LinearSolidBody {
+            cloud,
+            constants,
+            volume_correction,
+            cracks,
+            no_fail,
+            damage,
+            ..
+        } = self.elastic;
+        Ok(SolidBody {
+            cloud,
+            materials: materials.map(with_law),
+            horizon: constants.horizon,
+            influence: &constants.influence,
+            volume_correction,
+            cracks,
+            no_fail,
+            damage,
+        })
     }
 }

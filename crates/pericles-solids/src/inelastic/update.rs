@@ -1,7 +1,6 @@
 //! Constitutive updates: viscous relaxation over a step and return to the yield surface.
 
-use crate::lanes::Lanes;
-use crate::material::{Inelasticity, MOST_TERMS, ViscousTerm, Yield};
+use super::law::{MOST_TERMS, ViscousTerm, Yield};
 
 /// Factors of the update of back-stretches for a stretch that changes linearly over a time dt:
 ///
@@ -9,14 +8,10 @@ use crate::material::{Inelasticity, MOST_TERMS, ViscousTerm, Yield};
 /// stretches h and h' at the start and end of the step. This is the exact solution.
 #[derive(Clone, Copy)]
 pub(super) struct Relaxation {
-    /// dt, s.
-    pub dt: f64,
     /// Number of terms.
     pub terms: usize,
     /// λ_k
     pub share: [f64; MOST_TERMS],
-    /// q_k
-    pub keep: [f64; MOST_TERMS],
     /// 1 − q_k
     pub gain: [f64; MOST_TERMS],
     /// β_k
@@ -28,10 +23,8 @@ impl Relaxation {
     pub fn new(terms: &[ViscousTerm], dt: f64) -> Self {
         let zero = [0.0; MOST_TERMS];
         let mut of = Self {
-            dt,
             terms: terms.len(),
             share: zero,
-            keep: zero,
             gain: zero,
             slope: zero,
         };
@@ -39,7 +32,6 @@ impl Relaxation {
             let ratio = dt / term.time;
             of.share[k] = term.share;
             of.gain[k] = -(-ratio).exp_m1();
-            of.keep[k] = 1.0 - of.gain[k];
             of.slope[k] = slope(ratio);
         }
         of
@@ -48,12 +40,6 @@ impl Relaxation {
     /// Returns Σ λ_k β_k, the fraction of a change of stretch within the step that has relaxed at its end.
     pub fn relaxed(&self) -> f64 {
         (0..self.terms).map(|k| self.share[k] * self.slope[k]).sum()
-    }
-
-    /// Returns Σ λ_k (1 − q_k − β_k), the weight of the stretch at the start.
-    pub fn of_start(&self) -> f64 {
-        let weight = |k: usize| self.share[k] * (self.gain[k] - self.slope[k]);
-        (0..self.terms).map(weight).sum()
     }
 }
 
@@ -121,34 +107,6 @@ impl Trial {
         let factor = self.factor(law);
         (growth - factor * (norm + growth)) / (self.norm + self.growth(law))
     }
-}
-
-/// Inelastic laws of all materials of a body, and yield strength of its points.
-pub(super) struct Laws {
-    /// Laws per material.
-    pub of_material: Vec<Inelasticity>,
-    /// Largest number of viscous terms of a material.
-    pub terms: usize,
-    /// √(2 ψ₀) of each point; infinite for points that do not yield.
-    pub strength: Vec<f64>,
-}
-
-impl Laws {
-    /// Returns whether a material is plastic.
-    pub fn yields(&self) -> bool {
-        let mut laws = self.of_material.iter();
-        laws.any(|law| matches!(law, Inelasticity::Plastic(_)))
-    }
-}
-
-/// Returns Σ λ_k ψ_k of the back-stretches of a group.
-#[inline(always)]
-pub(super) fn weighted<T: Lanes>(factors: &[f64; MOST_TERMS], terms: usize, back: &[f64]) -> T {
-    let mut total = T::splat(0.0);
-    for k in 0..terms {
-        total = T::splat(factors[k]).mul_add(T::load(back, k * crate::lanes::LANES), total);
-    }
-    total
 }
 
 #[cfg(test)]

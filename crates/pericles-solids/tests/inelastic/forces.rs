@@ -7,9 +7,10 @@ use pericles::domain::Field;
 use pericles::family::VolumeCorrection;
 use pericles::kernel::InfluenceFunction;
 use pericles::material::{
-    BondLimits, GivenConstants, Inelasticity, LinearSolid, SolidClasses, SolidSurface, StressState,
+    BondLimits, GivenConstants, LinearSolid, LinearSolidConstants, SolidSurface, StressState,
 };
-use pericles::operator::{BondForm, Force, InelasticSolidBody, LinearSolidBody, PointSubset};
+use pericles::operator::{BondForm, Force, LinearSolidBody, PointSubset};
+use pericles_solids::inelastic::{InelasticSolidBody, Inelasticity};
 
 const STATES: [(&[usize], StressState); 3] = [
     (&[5, 5, 5], StressState::Spatial),
@@ -333,7 +334,7 @@ fn different_materials_combine_in_one_body() {
         })
         .into();
     let of_point = (0..n).map(|i| (cloud.point(i)[0] / 4.0) as u8).collect();
-    let classes = SolidClasses::new(of_point, &constants).unwrap();
+    let classes = LinearSolidConstants::several(of_point, &constants).unwrap();
     let laws = [
         viscous(&[[0.4, 0.3], [0.1, 2.0]]),
         Inelasticity::Elastic,

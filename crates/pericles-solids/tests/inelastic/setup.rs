@@ -5,14 +5,15 @@ use std::sync::Arc;
 use pericles::Path;
 use pericles::StepEnd;
 use pericles::family::VolumeCorrection;
-use pericles::material::{Inelasticity, LinearSolidConstants, ViscousTerm, Yield};
-use pericles::operator::{
-    FiniteStrain, Force, InelasticSolidBody, InelasticSolidForce, LinearSolidBody, PointSubset,
-    TwoPassForce,
-};
+use pericles::material::LinearSolidConstants;
+use pericles::operator::{FiniteStrain, Force, LinearSolidBody, PointSubset};
 use pericles::space::PointCloud;
+use pericles_solids::inelastic::{
+    InelasticSolid, InelasticSolidBody, Inelasticity, ViscousTerm, Yield,
+};
+use pericles_solids::solid::SolidForce;
 
-pub type Operator<const D: usize> = TwoPassForce<InelasticSolidForce<FiniteStrain, D>>;
+pub type Operator<const D: usize> = SolidForce<InelasticSolid<FiniteStrain>, D>;
 
 pub fn viscous(terms: &[[f64; 2]]) -> Inelasticity {
     let terms = terms.iter();
@@ -38,8 +39,8 @@ pub fn operator<const D: usize>(
         elastic: LinearSolidBody::new(cloud, constants, VolumeCorrection::None),
         laws: &laws,
     };
-    let (force, _) = body.list::<FiniteStrain, D>().unwrap();
-    TwoPassForce::new(cloud.clone(), force)
+    let (force, _) = body.force::<FiniteStrain, D>().unwrap();
+    force
 }
 
 /// Ends a step from `before` to `u` with forces acting as under velocity Verlet; returns the force density.

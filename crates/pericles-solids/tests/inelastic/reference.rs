@@ -4,8 +4,9 @@
 use crate::bodies::{jittered, solid, wave};
 use crate::setup::{Operator, difference, force_at, operator, plastic, scaled, step, viscous};
 use pericles::kernel::InfluenceFunction;
-use pericles::material::{Inelasticity, StressState};
+use pericles::material::StressState;
 use pericles::operator::{Force, InstructionSet};
+use pericles_solids::inelastic::Inelasticity;
 
 /// The middle point of the cloud.
 const POINT: usize = 13;
@@ -86,10 +87,10 @@ fn plastic_clouds_equal_the_reference() {
         for set in InstructionSet::available() {
             let steps = [[1.0, 0.5], [1.0, 1.0], [1.0, 0.5]];
             let (operator, force) = after(&law, function.clone(), &steps, set);
-            let solid = operator.force();
-            close(0.5 * solid.strength(POINT).powi(2), psi0);
-            close(solid.multiplier()[POINT], multiplier);
-            assert!(solid.multiplier().iter().all(|&flow| flow > 0.0));
+            let solid = &operator;
+            close(0.5 * solid.shape(POINT).unwrap().strength.powi(2), psi0);
+            close(solid.history_of(POINT)[1], multiplier);
+            assert!((0..27).all(|i| solid.history_of(i)[1] > 0.0));
             for (c, value) in expected.iter().enumerate() {
                 close(force[27 * c + POINT], *value);
             }
