@@ -1,12 +1,7 @@
 //! Forces of bodies of correspondence materials.
 
-use pericles::material::{BondFailure, BondLimits};
 use pericles::operator::Feature;
-use pericles::space::PointCloud;
-use pericles_deck::{
-    BuildError, Correspondence, Fault, InterfaceFailure, KeyPath, MaterialModel, ModelWarning,
-    Solid,
-};
+use pericles_deck::{BuildError, Correspondence, KeyPath, MaterialModel, ModelWarning, Solid};
 use pericles_solids::correspondence::{
     CorrespondenceBody, CorrespondenceConstants, CorrespondenceMaterial,
 };
@@ -15,8 +10,8 @@ use super::assembler::Assembler;
 use super::body::BodyParts;
 use super::constants::MaterialConstants;
 use super::discretisation::Discretisation;
-use super::materials::PairRule;
-use super::rejection::{at, at_material, at_path};
+use super::rejection::{at_material, at_path};
+use super::solids::Combination;
 
 impl Assembler<'_> {
     /// Builds force operator and materials of a body of correspondence materials.
@@ -27,7 +22,8 @@ impl Assembler<'_> {
         discretisation: &Discretisation,
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<BodyParts, BuildError> {
-        self.reject_correspondence_features(solid)?;
+        let rejection = CorrespondenceBody::rejection;
+        self.reject_solid_features(solid, Feature::Correspondence, rejection)?;
         let Discretisation { cloud, sets, .. } = discretisation;
         let material = &solid.material;
         let material_of = |path: KeyPath, own: &Correspondence| {
@@ -52,32 +48,18 @@ impl Assembler<'_> {
             .map(constants)
             .collect::<Result<_, BuildError>>()?;
         for ((path, material), constants) in materials.iter().zip(&all) {
-            let key = match material.solid.failure {
-                BondFailure::Unbreakable | BondFailure::ByCriterion => continue,
-                BondFailure::CriticalStretch(_) => "critical_stretch",
-                BondFailure::Stretch { .. } | BondFailure::BondEnergy { .. } => "fracture_energy",
-            };
-            self.check_stretch(constants.solid.limits.stretch, path.key(key), warnings);
+            let stretch = constants.solid.limits.stretch;
+            self.check_limit(stretch, &material.solid.failure, path, warnings);
         }
-        let (of_point, density) = self.points_of_materials(material, (cloud, sets), warnings)?;
-        let classes = match of_point {
-            None => None,
-            Some(of_point) => {
-                let classes = CorrespondenceConstants::several(of_point, &all);
-                let mut classes = classes.map_err(|error| at("materials", error))?;
-                for (pair, limits) in self.stretches_between(solid, &materials, cloud)? {
-                    classes.set_limits(pair, limits);
-                }
-                Some(classes)
-            }
+        let combination = Combination {
+            several: &|of_point| CorrespondenceConstants::several(of_point, &all),
+            uniform: &|| all[0].clone().uniform(),
+            limits: &|pair, failure| {
+                let [a, b] = pair.map(|number| &materials[usize::from(number)].1);
+                a.limits_towards(b, failure, cloud, solid.state)
+            },
         };
-        let classes = match self.strengths(solid, cloud)? {
-            None => classes,
-            Some(factors) => {
-                let classes = classes.unwrap_or_else(|| all[0].clone().uniform());
-                Some(classes.with_strengths(factors))
-            }
-        };
+        let (classes, density) = self.combined(solid, discretisation, &combination, warnings)?;
         let no_fail = self.union_of(sets, &material.no_fail)?;
         let body = CorrespondenceBody {
             cloud,
@@ -109,66 +91,5 @@ impl Assembler<'_> {
             density,
             softening: Vec::new(),
         })
-    }
-
-    /// Returns the limits of bonds between two materials, if the deck gives them.
-    fn stretches_between(
-        &self,
-        solid: &Solid,
-        materials: &[(KeyPath, CorrespondenceMaterial)],
-        cloud: &PointCloud,
-    ) -> Result<Vec<([u8; 2], BondLimits)>, BuildError> {
-        let mut found = Vec::new();
-        for PairRule {
-            pair,
-            interface,
-            path,
-        } in self.pair_rules(&solid.material)
-        {
-            let failure = match interface.failure {
-                None => continue,
-                Some(InterfaceFailure::StateBased(failure)) => failure,
-                Some(InterfaceFailure::Bonds(_)) => {
-                    return Err(self.other_kind(&path, "bond-based"));
-                }
-            };
-            let [a, b] = pair.map(|number| &materials[usize::from(number)].1);
-            let limits = a.limits_towards(b, failure, cloud, solid.state);
-            found.push((pair, limits.map_err(|error| at_path(&path, error.into()))?));
-        }
-        Ok(found)
-    }
-
-    /// Rejects features that correspondence materials do not support, and force kernels that do not support them.
-    fn reject_correspondence_features(&self, solid: &Solid) -> Result<(), BuildError> {
-        let shape = &solid.shape;
-        let mut assignments = self.model.assignments.iter();
-        let found = [
-            (
-                Feature::Inclusions,
-                assignments.any(|one| one.stiffness.is_some()),
-                "assign",
-            ),
-            (
-                Feature::SurfaceCorrection,
-                solid.material.surface_correction != Default::default(),
-                "material.surface_correction",
-            ),
-            (Feature::SeveralSpacings, shape.is_refined(), "body.refine"),
-            (
-                Feature::GaussNodes,
-                shape.has_gauss_nodes(),
-                "body.quadrature",
-            ),
-        ];
-        for (feature, present, key) in found {
-            if let (true, Some(reason)) = (present, CorrespondenceBody::rejection(feature.into())) {
-                let (value, allowed) = (feature.words().into(), reason.into());
-                return Err(at_path(key, Fault::OutOfRange { value, allowed }));
-            }
-        }
-        let form = solid.material.form;
-        form.check(Feature::Correspondence.into())
-            .map_err(at_material)
     }
 }

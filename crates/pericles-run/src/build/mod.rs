@@ -47,6 +47,7 @@ mod rotation;
 mod scheme;
 mod sense;
 mod softening;
+mod solids;
 mod state_based;
 mod statics;
 mod step;
