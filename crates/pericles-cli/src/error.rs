@@ -67,12 +67,16 @@ pub(crate) enum CliError {
         /// The problem.
         problem: String,
     },
-    /// Columns of a chart are in different tables.
-    #[error("no table contains all of the columns {columns}")]
-    #[diagnostic(help("choose columns of one table; `pericles info DIR` lists them"))]
-    NoCommonTable {
-        /// The columns.
+    /// Columns of a chart are in tables without common times.
+    #[error("the columns {columns} cannot be drawn over each other: {reason}")]
+    #[diagnostic(help(
+        "choose columns of one table, or of tables with the same schedule; [[output.quantity]] makes columns with the schedule of the history, such as crack_1_advance"
+    ))]
+    NoCommonTimes {
+        /// The columns and their tables.
         columns: String,
+        /// The reason.
+        reason: String,
     },
     /// A run has no field files.
     #[error("{} contains no field files", folder.display())]
@@ -183,7 +187,7 @@ impl CliError {
             | Self::NotStatic { .. }
             | Self::Surface { .. }
             | Self::Mesh { .. }
-            | Self::NoCommonTable { .. }
+            | Self::NoCommonTimes { .. }
             | Self::NoFields { .. } => Exit::Input,
             Self::UnknownShape { .. } | Self::NoVertex { .. } | Self::Components { .. } => {
                 Exit::Usage

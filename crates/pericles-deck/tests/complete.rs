@@ -247,6 +247,7 @@ fn conditions_time_and_output_are_read() {
             cells: pericles_deck::CellChoice::Auto,
             mesh_cells: false,
             profiles: Vec::new(),
+            quantities: Vec::new(),
             blocks: FieldBlocks::Groups,
             history: Schedule::Every(20),
             extremes: Vec::new(),

@@ -1,8 +1,10 @@
 //! `[output]` and `[checkpoint]`: output files and their schedules.
 
+mod derived;
 mod fields;
 mod profile;
 
+pub use derived::DerivedQuantity;
 pub use fields::{CellChoice, FieldBlocks, FieldFormat, PointNumber};
 pub use profile::Profile;
 
@@ -63,6 +65,9 @@ pub struct Output {
     /// Fields along straight lines at the end of the run.
     #[serde(default, rename = "profile", skip_serializing_if = "Vec::is_empty")]
     pub profiles: Vec<Profile>,
+    /// Quantities derived from columns of the tables.
+    #[serde(default, rename = "quantity", skip_serializing_if = "Vec::is_empty")]
+    pub quantities: Vec<DerivedQuantity>,
 }
 
 impl Default for Output {
@@ -84,6 +89,7 @@ impl Default for Output {
             energy_bound: None,
             pictures: Vec::new(),
             profiles: Vec::new(),
+            quantities: Vec::new(),
         }
     }
 }
@@ -211,6 +217,7 @@ pub(crate) fn read(
         .map(|table| picture(table, dimension))
         .collect();
     let profiles = profile::read(table.tables("profile"), dimension);
+    let quantities = derived::read(table.tables("quantity"));
     table.finish();
     let Fields {
         schedule,
@@ -235,6 +242,7 @@ pub(crate) fn read(
         energy_bound: energy_bound?,
         pictures: pictures.into_iter().collect::<Option<_>>()?,
         profiles: profiles?,
+        quantities: quantities?,
     })
 }
 
