@@ -78,6 +78,26 @@ pub(crate) enum CliError {
         /// The reason.
         reason: String,
     },
+    /// The width of a picture is out of range.
+    #[error("{problem}")]
+    #[diagnostic(help("choose --width and --dpi accordingly"))]
+    PictureWidth {
+        /// The width and what is allowed.
+        problem: String,
+    },
+    /// A size of text or a resolution without a width on paper.
+    #[error("--font-size and --dpi require a width on paper")]
+    #[diagnostic(help("give a length, such as --width 88mm"))]
+    NoPaperWidth,
+    /// The ranges of `--crop` do not have the dimension of the body.
+    #[error("--crop has {given} range(s); the body has {dimension} dimension(s)")]
+    #[diagnostic(help("give one range for each axis, such as 10mm:30mm,0:20mm in two dimensions"))]
+    CropRanges {
+        /// Number of ranges given.
+        given: usize,
+        /// Dimension of the body.
+        dimension: usize,
+    },
     /// A run has no field files.
     #[error("{} contains no field files", folder.display())]
     #[diagnostic(help("the deck requested none; add `fields` to [output] and run it again"))]
@@ -189,9 +209,12 @@ impl CliError {
             | Self::Mesh { .. }
             | Self::NoCommonTimes { .. }
             | Self::NoFields { .. } => Exit::Input,
-            Self::UnknownShape { .. } | Self::NoVertex { .. } | Self::Components { .. } => {
-                Exit::Usage
-            }
+            Self::UnknownShape { .. }
+            | Self::NoVertex { .. }
+            | Self::PictureWidth { .. }
+            | Self::NoPaperWidth
+            | Self::CropRanges { .. }
+            | Self::Components { .. } => Exit::Usage,
             Self::OutExists { .. } | Self::FileExists { .. } => Exit::Output,
             Self::OneProcess { .. }
             | Self::NoMpi { .. }

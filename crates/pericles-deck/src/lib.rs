@@ -163,7 +163,7 @@ pub use material::{
 pub use model::{Body, Model, Solid};
 pub use output::{
     CellChoice, Checkpoint, CrackOutput, DerivedQuantity, FieldBlocks, FieldFormat, FragmentOutput,
-    Output, Picture, PointNumber, Precision, Profile,
+    Output, Picture, PictureColours, PictureFormat, PictureLook, PointNumber, Precision, Profile,
 };
 pub use quantity::{metres, seconds};
 pub use remark::{BuildError, Keys, ModelProblem, ModelWarning, Remark};

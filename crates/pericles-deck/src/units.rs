@@ -61,7 +61,7 @@ const fn plain(symbol: &'static str, exponent: i32, factor: f64, s: i32) -> Unit
     }
 }
 
-const UNITS: [Unit; 15] = [
+const UNITS: [Unit; 16] = [
     unit("m", 0, 0, 1, 0),
     unit("g", -3, 1, 0, 0),
     unit("s", 0, 0, 0, 1),
@@ -77,6 +77,14 @@ const UNITS: [Unit; 15] = [
         factor: 1.0,
         dimension: Dimension::kelvin(1),
         prefixed: true,
+    },
+    // A point of typography, 1/72 inch.
+    Unit {
+        symbol: "pt",
+        exponent: 0,
+        factor: 25.4e-3 / 72.0,
+        dimension: Dimension::new(0, 1, 0),
+        prefixed: false,
     },
     plain("min", 0, 60.0, 1),
     plain("h", 0, 3600.0, 1),

@@ -227,6 +227,7 @@ fn conditions_time_and_output_are_read() {
         view: None,
         animation: false,
         schedule: Schedule::Count(2),
+        look: PictureLook::default(),
     };
     let uplift = Picture {
         field: Field::Displacement,
@@ -236,6 +237,7 @@ fn conditions_time_and_output_are_read() {
         view: None,
         animation: true,
         schedule: Schedule::Interval(1e-6),
+        look: PictureLook::default(),
     };
     assert_eq!(
         deck.model.output,

@@ -10,13 +10,16 @@ use pericles::Simulation;
 use pericles::family::Crack;
 use pericles::observe::{CrackTracker, Schedule};
 use pericles::space::PointCloud;
-use pericles_deck::{CellChoice, CrackSurface, FieldFormat, Model, Picture, Precision};
-use pericles_io::OutputFolder;
+use pericles_deck::{
+    CellChoice, CrackSurface, FieldFormat, Model, Picture, PictureColours, PictureFormat,
+    PictureLook, Precision,
+};
 use pericles_io::observers::{
     CellMesh, Cracks, EnergyBoundColumns, ErrorColumns, FieldSeries, ForceDisplacement,
     FragmentCourse, History, HistoryRows, Overlay, PictureOf, Pictures, ProbeSignals, Profile,
     ReactionSignals, ResultFile, ResultFormat, SignalTable, Signals, SurfaceCourse,
 };
+use pericles_io::{ColourMap, OutputFolder, PictureStyle, Print};
 use pericles_manifold::surface::Surface;
 use pericles_manifold::{EnergyInequality, SurfaceMeasure};
 
@@ -168,6 +171,8 @@ pub fn history_rows(
 /// Returns a picture requested by a model.
 pub fn picture_of(model: &Model, picture: &Picture, surface: Option<&Arc<Surface>>) -> PictureOf {
     PictureOf {
+        style: style_of(&picture.look),
+        crop: picture.look.crop,
         component: picture.component,
         scale: picture.scale,
         range: picture.range,
@@ -176,6 +181,27 @@ pub fn picture_of(model: &Model, picture: &Picture, surface: Option<&Arc<Surface
         surface: surface.cloned(),
         load_end: load_end(model),
         ..PictureOf::new(picture.field)
+    }
+}
+
+/// Returns the size and style of a picture of a deck.
+fn style_of(look: &PictureLook) -> PictureStyle {
+    let sized = match look.width {
+        None => PictureStyle::default(),
+        Some(width) => {
+            let (font_size, dpi) = (look.font_size, look.dpi);
+            PictureStyle::printed(width, Print { font_size, dpi })
+        }
+    };
+    PictureStyle {
+        titled: look.title,
+        transparent: look.transparent,
+        colours: look.colour_map.map(|colours| match colours {
+            PictureColours::Viridis => ColourMap::Viridis,
+            PictureColours::CoolToWarm => ColourMap::Diverging,
+            PictureColours::Grey => ColourMap::Grey,
+        }),
+        ..sized
     }
 }
 
@@ -400,15 +426,19 @@ fn add_pictures(
             1 => what.name(dimension),
             number => format!("{}_{number}", what.name(dimension)),
         };
-        names.push(format!("pictures/{stem}-*.png"));
-        if picture.animation {
+        let ending = picture.look.format.ending();
+        // Animations consist of PNG files.
+        let is_animated = picture.animation && picture.look.format == PictureFormat::Png;
+        names.push(format!("pictures/{stem}-*.{ending}"));
+        if is_animated {
             names.push(format!("pictures/{stem}.apng"));
         }
         if what.has_own_range() {
             names.push(format!("pictures/.{stem}-*.state"));
         }
-        let mut pictures = Pictures::new(&place, stem, what).with_common_range(cloud.clone());
-        if picture.animation {
+        let pictures = Pictures::new(&place, stem, what).with_ending(ending);
+        let mut pictures = pictures.with_common_range(cloud.clone());
+        if is_animated {
             pictures = pictures.animated();
         }
         simulation.observe(picture.schedule, Box::new(pictures));

@@ -39,6 +39,27 @@ fn other_picture_formats_and_terminal_plots_are_available() {
             "{name}"
         );
     }
+    let line = "plot a --field Damage --width 88mm --font-size 7pt --dpi 200 --no-title --background transparent \
+                --colour-map grey --crop 0mm:12mm,0mm:12mm --format pdf --out d";
+    let names = text(&succeed(place.path(), line).stdout);
+    let pdf = fs::read(place.path().join(names.trim_end())).unwrap();
+    assert!(pdf.starts_with(b"%PDF-1.7"));
+    for (line, says) in [
+        ("plot a --font-size 8pt", "require a width on paper"),
+        ("plot a --width 1mm", "the width is 1.0 mm"),
+        (
+            "plot a --width 88",
+            "expected a number of pixels from 200 to 16000",
+        ),
+        (
+            "plot a --field Damage --crop 0mm:1mm",
+            "--crop has 1 range(s); the body has 2",
+        ),
+    ] {
+        let (status, message) = fail(place.path(), line);
+        assert_eq!(status, 2, "{message}");
+        assert!(message.contains(says), "{says}: {message}");
+    }
     let line = "plot a --field Displacement --animation --width 400 --range 0:1e-4 --out c";
     let names = text(&succeed(place.path(), line).stdout);
     assert!(names.contains("Displacement.apng"), "{names}");
@@ -57,6 +78,54 @@ fn other_picture_formats_and_terminal_plots_are_available() {
     let (status, message) = fail(place.path(), "plot a --history energie");
     assert_eq!(status, 2);
     assert!(message.contains("kinetic_energy"), "{message}");
+}
+
+#[test]
+fn pictures_of_a_run_have_the_format_and_size_of_the_deck() {
+    let place = with_plate();
+    let deck = fs::read_to_string(place.path().join("plate.toml")).unwrap();
+    let look = "count = 2\nformat = \"svg\"\nwidth = \"88 mm\"\nfont_size = \"8 pt\"\ndpi = 600\ntitle = false\n";
+    let deck = deck.replacen("count = 2\n", look, 1);
+    fs::write(place.path().join("plate.toml"), &deck).unwrap();
+    let line = "run plate.toml --quiet --set time.end=4e-6 --set output.fields.every=20 --out a";
+    succeed(place.path(), line);
+    let svg = fs::read_to_string(place.path().join("a/pictures/Damage-000002.svg")).unwrap();
+    assert!(
+        svg.contains("width=\"88.01mm\"") && !svg.contains(">Torn plate<"),
+        "{svg}"
+    );
+    // The pictures of a finished run have the same style.
+    succeed(place.path(), "plot a --field Damage --format svg --out b");
+    let again = fs::read_to_string(place.path().join("b/Damage-000002.svg")).unwrap();
+    assert!(again == svg);
+    for (old, new, says) in [
+        ("width = \"88 mm\"\n", "", "it requires `width`"),
+        (
+            "\"88 mm\"",
+            "\"5 mm\"",
+            "8.5 mm to 677 mm at 600 pixels per inch",
+        ),
+        ("\"8 pt\"", "\"80 pt\"", "from \"4 pt\" to \"24 pt\""),
+        (
+            "title = false",
+            "animation = true",
+            "an animation consists of PNG files",
+        ),
+        (
+            "title = false",
+            "crop = { min = [0, 1], max = [1, 1] }",
+            "above the lower corner",
+        ),
+        ("title = false", "colour_map = \"jet\"", "\"cool-to-warm\""),
+    ] {
+        fs::write(place.path().join("wrong.toml"), deck.replacen(old, new, 1)).unwrap();
+        let (status, message) = fail(place.path(), "check wrong.toml");
+        assert_eq!(status, 3, "{message}");
+        assert!(
+            message.contains("wrong.toml:") && message.contains(says),
+            "{says}: {message}"
+        );
+    }
 }
 
 #[test]
