@@ -167,7 +167,7 @@ pub use output::{
 };
 pub use quantity::{metres, seconds};
 pub use remark::{BuildError, Keys, ModelProblem, ModelWarning, Remark};
-pub use schema::{json_schema, reference, specimens};
+pub use schema::{json_schema, reference, specimens, unit_of_key};
 pub use scheme::{FineRegion, FineStep, Interface, Scheme};
 pub use set::{ALL, Depth, Members, NamedSet};
 pub use source::{Location, is_invisible};

@@ -9,6 +9,10 @@ use crate::args::PlotArgs;
 use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
+use crate::time_axis::TimeAxis;
+
+/// The column of times.
+const TIME: &str = "time";
 
 /// A table and the name of its file.
 struct NamedTable {
@@ -22,7 +26,7 @@ struct NamedTable {
 /// # Errors
 /// A column does not exist, two tables have too few equal times, or the chart cannot be written.
 pub(super) fn plot(results: &Results, args: &PlotArgs) -> Result<Exit, CliError> {
-    let x = args.x.as_deref().unwrap_or("time");
+    let x = args.x.as_deref().unwrap_or(TIME);
     let tables: Result<Vec<NamedTable>, CliError> = results
         .tables()
         .iter()
@@ -42,7 +46,8 @@ pub(super) fn plot(results: &Results, args: &PlotArgs) -> Result<Exit, CliError>
     }
     let place = super::place(args)?;
     let name = format!("{}-over-{x}", args.y.join("-"));
-    super::write(chart(x, &args.y, &curves), &name, &place, args)?;
+    let along = (x == TIME).then(|| TimeAxis::of(results));
+    super::write(chart(x, &args.y, &curves, along), &name, &place, args)?;
     Ok(Exit::Done)
 }
 
@@ -137,7 +142,7 @@ fn rows_at_equal_times(one: &NamedTable, other: &NamedTable) -> Result<Vec<[usiz
             ));
         }
     }
-    let (first, second) = (one.column("time"), other.column("time"));
+    let (first, second) = (one.column(TIME), other.column(TIME));
     let mut rows = Vec::new();
     let mut k = 0;
     for (row, time) in first.iter().enumerate() {
@@ -158,7 +163,7 @@ fn rows_at_equal_times(one: &NamedTable, other: &NamedTable) -> Result<Vec<[usiz
 }
 
 /// Returns the chart of columns; curves of several columns are named in the legend.
-fn chart(x: &str, y: &[String], curves: &[PairOfColumns]) -> LineChart {
+fn chart(x: &str, y: &[String], curves: &[PairOfColumns], along: Option<TimeAxis>) -> LineChart {
     let plain = |name: &str| name.replace('_', " ");
     let first = y.first().map_or("", String::as_str);
     let upward = match y.len() {
@@ -176,13 +181,20 @@ fn chart(x: &str, y: &[String], curves: &[PairOfColumns]) -> LineChart {
         };
         unit.to_owned()
     };
-    let chart = LineChart::new(Axis::new(plain(x), unit(0)), Axis::new(upward, unit(1)));
+    let across = match &along {
+        Some(along) => along.axis(),
+        None => Axis::new(plain(x), unit(0)),
+    };
+    let chart = LineChart::new(across, Axis::new(upward, unit(1)));
     y.iter().zip(curves).fold(chart, |chart, (name, curve)| {
         let label = match y.len() {
             1 => String::new(),
             _ => plain(name),
         };
-        chart.curve(Curve::line(label, &curve.x, &curve.y))
+        match &along {
+            Some(along) => chart.curve(Curve::line(label, &along.scaled(&curve.x), &curve.y)),
+            None => chart.curve(Curve::line(label, &curve.x, &curve.y)),
+        }
     })
 }
 

@@ -16,6 +16,7 @@ use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
 use crate::text_chart::TextChart;
+use crate::time_axis::TimeAxis;
 
 pub(crate) use sweep::usual as usual_scalars;
 
@@ -88,10 +89,11 @@ fn write(chart: LineChart, name: &str, place: &Path, args: &PlotArgs) -> Result<
 
 /// Returns the charts of the requested columns, by default of all, with the names of their tables.
 fn charts_of(results: &Results, columns: &[String]) -> Result<Vec<(String, Chart)>, CliError> {
+    let along = TimeAxis::of(results);
     let stem = |table: &Path| file_name(table).trim_end_matches(".csv").to_owned();
     let (mut charts, mut known) = (Vec::new(), Vec::new());
     for table in results.tables() {
-        let found = charts::of_table(&table, |column| {
+        let found = charts::of_table(&table, along, |column| {
             known.push(column.to_owned());
             columns.is_empty() || columns.iter().any(|wanted| wanted == column)
         })?;

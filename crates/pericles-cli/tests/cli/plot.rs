@@ -284,7 +284,15 @@ fn sweeps_have_charts_contents_and_reports() {
     let line = "plot plate-sweep --x density --y audit.external_work --format svg --out b";
     let svg = text(&succeed(place.path(), line).stdout);
     let svg = fs::read_to_string(place.path().join(svg.trim_end())).unwrap();
-    assert!(svg.contains("material.density") && svg.contains("horizon_ratio = 3"));
+    for words in [
+        "material.density [",
+        "kg/m3]",
+        ">external work [",
+        "J]",
+        "horizon_ratio = 3",
+    ] {
+        assert!(svg.contains(words), "{words}: {svg}");
+    }
     succeed(place.path(), "report plate-sweep");
     let page = fs::read_to_string(place.path().join("plate-sweep/report.html")).unwrap();
     for words in [
@@ -300,6 +308,38 @@ fn sweeps_have_charts_contents_and_reports() {
     );
     assert_eq!(status, 2, "{message}");
     assert!(message.contains("material.density"), "{message}");
+}
+
+#[test]
+fn charts_of_static_runs_are_over_the_load() {
+    let place = with_plate();
+    let bar = "[body]\nshape = 'bar'\nlength = 1\nspacing = 0.05\n[material]\ndensity = 1\nyoungs_modulus = 1\nhorizon_ratio = 3\nfracture_energy = 1\n\
+               [sets.left]\nlayer = { side = '-x', cells = 3 }\n[sets.right]\nlayer = { side = '+x', cells = 3 }\n\
+               [[constraint]]\nset = 'left'\ndisplacement = [0]\n[[constraint]]\nset = 'right'\ndisplacement = [1e-3]\n\
+               [time]\nscheme = 'static'\nload_steps = 4\nend = 3\n[output]\nhistory = { every = 1 }\n";
+    fs::write(place.path().join("bar.toml"), bar).unwrap();
+    for (changes, name, last) in [
+        ("--out a", "load factor", "load factor 1"),
+        (
+            "--set time.breaking=event --out b",
+            "load step",
+            "load step 4",
+        ),
+    ] {
+        succeed(place.path(), &format!("run bar.toml --quiet {changes}"));
+        let folder = changes.rsplit(' ').next().unwrap();
+        let line = format!("plot {folder} --y right_x --format svg --out plots");
+        let svg = text(&succeed(place.path(), &line).stdout);
+        let svg = fs::read_to_string(place.path().join(svg.trim_end())).unwrap();
+        assert!(
+            svg.contains(&format!(">{name}<")) && !svg.contains("time ["),
+            "{svg}"
+        );
+        let shown = text(&succeed(place.path(), &format!("plot {folder} --terminal")).stdout);
+        assert!(shown.contains(last), "{shown}");
+        let said = text(&succeed(place.path(), &format!("info {folder}")).stdout);
+        assert!(said.contains(&format!("step 4 of 4, {last}")), "{said}");
+    }
 }
 
 #[test]
