@@ -139,7 +139,7 @@ class Deck(MutableMapping[str, Any]):
         return copy.deepcopy(self)
 
     def with_(self, changes: Mapping[str, Any]) -> Deck:
-        """Return a copy with other values of keys, such as ``{"body.spacing": "0.5 mm"}``."""
+        """Return a copy with other values of keys, such as ``{"body.spacing": "0.5 mm"}``; ``"unset"`` removes a key."""
         deck = self.copy()
         overrides = _overrides(changes)
         if deck._tables is None:
@@ -247,18 +247,23 @@ def _apply(tables: Any, override: str) -> None:
         value = _toml.loads(f"x = {text}")["x"]
     except Exception:
         value = text.strip()
+    unset = text.strip() == "unset"
     try:
         for step, following in zip(path[:-1], path[1:]):
             if isinstance(tables, list):
                 tables = tables[int(step)]
+            elif unset:
+                tables = tables[step]
             else:
                 tables = tables.setdefault(step, [] if following.isdigit() else {})
         last = path[-1]
-        if isinstance(tables, list) and int(last) == len(tables):
+        if unset:
+            del tables[int(last) if isinstance(tables, list) else last]
+        elif isinstance(tables, list) and int(last) == len(tables):
             tables.append(value)
         else:
             tables[int(last) if isinstance(tables, list) else last] = value
-    except (AttributeError, IndexError, TypeError, ValueError):
+    except (AttributeError, IndexError, KeyError, TypeError, ValueError):
         raise PericlesError(f"the deck has no place for the key `{key.strip()}`") from None
 
 

@@ -106,7 +106,7 @@ impl Observer for HistoryKeeper {
         let course = &mut *locked(&self.0);
         let step = snapshot.state().step as f64;
         let before = course.values[0].partition_point(|&earlier| earlier < step);
-        for (column, cell) in course.values.iter_mut().zip(course.rows.row(snapshot)) {
+        for (column, cell) in course.values.iter_mut().zip(course.rows.row(snapshot)?) {
             column.truncate(before);
             column.push(match cell {
                 Cell::Real(value) => value,

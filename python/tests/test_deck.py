@@ -135,6 +135,9 @@ def test_numpy_values_and_copies(bar):
     assert pc.Deck.from_toml(finer.to_toml()).values()["load"] == finer.values()["load"] != []
     with pytest.raises(pc.PericlesError, match="load.7.set"):
         deck.with_({"load.7.set": "all"})
+    assert "initial" not in finer.with_({"initial": "unset", "load.0": "unset"})
+    with pytest.raises(pc.PericlesError, match="time.ratio"):
+        deck.with_({"time.ratio": "unset"})
     assert pc.modes(finer, count=1).points.shape == (100, 1)
     assert pickle.loads(pickle.dumps(deck)) == deck
     with pytest.raises(pc.PericlesError, match="is a function"):

@@ -4,6 +4,8 @@ use std::path::Path;
 
 use pericles_io::{Axis, Curve, IoError, LineChart, read_csv};
 
+use crate::time_axis::TimeAxis;
+
 /// Most curves per chart: more are not distinguishable.
 const MOST_CURVES: usize = 8;
 /// Most points per curve: more than the width of a chart in pixels are not visible.
@@ -15,7 +17,9 @@ pub(crate) struct Chart {
     pub(crate) name: String,
     /// The unit of the curves.
     pub(crate) unit: String,
-    /// Times, s.
+    /// The horizontal axis.
+    pub(crate) along: TimeAxis,
+    /// Times in the unit of the axis.
     pub(crate) time: Vec<f64>,
     /// Names and values.
     pub(crate) curves: Vec<(String, Vec<f64>)>,
@@ -25,7 +29,7 @@ impl Chart {
     /// Returns the chart as a picture.
     pub(crate) fn drawn(&self) -> LineChart {
         let axes = (
-            Axis::new("time", "s"),
+            self.along.axis(),
             Axis::new(self.name.clone(), self.unit.clone()),
         );
         let several = self.curves.len() > 1;
@@ -37,13 +41,14 @@ impl Chart {
     }
 }
 
-/// Returns charts of the selected columns of a table over its column `time`. A table without this column or with fewer
-/// than two rows has no charts. Constant columns and step numbers are omitted.
+/// Returns charts of the selected columns of a table over its column `time`, with the time axis of the run. A table
+/// without this column or with fewer than two rows has no charts. Constant columns and step numbers are omitted.
 ///
 /// # Errors
 /// The table cannot be read.
 pub(crate) fn of_table(
     path: &Path,
+    along: TimeAxis,
     mut wanted: impl FnMut(&str) -> bool,
 ) -> Result<Vec<Chart>, IoError> {
     let table = read_csv(path)?;
@@ -68,7 +73,8 @@ pub(crate) fn of_table(
             None => charts.push(Chart {
                 name: String::new(),
                 unit: column.unit().to_owned(),
-                time: thinned(time, stride),
+                along,
+                time: along.scaled(&thinned(time, stride)),
                 curves: vec![curve],
             }),
         }
@@ -134,7 +140,7 @@ mod tests {
         let path = place.path().join("a.csv");
         let text = "step,time [s],a [J],b [J],c [N],still [N],ratio,count\n0,0,1,2,3,7,0,0\n1,1,2,3,4,7,0.5,9\n";
         std::fs::write(&path, text).unwrap();
-        let names: Vec<String> = of_table(&path, |_| true)
+        let names: Vec<String> = of_table(&path, TimeAxis::TIME, |_| true)
             .unwrap()
             .into_iter()
             .map(|chart| chart.name)

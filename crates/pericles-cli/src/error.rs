@@ -67,12 +67,36 @@ pub(crate) enum CliError {
         /// The problem.
         problem: String,
     },
-    /// Columns of a chart are in different tables.
-    #[error("no table contains all of the columns {columns}")]
-    #[diagnostic(help("choose columns of one table; `pericles info DIR` lists them"))]
-    NoCommonTable {
-        /// The columns.
+    /// Columns of a chart are in tables without common times.
+    #[error("the columns {columns} cannot be drawn over each other: {reason}")]
+    #[diagnostic(help(
+        "choose columns of one table, or of tables with the same schedule; [[output.quantity]] makes columns with the schedule of the history, such as crack_1_advance"
+    ))]
+    NoCommonTimes {
+        /// The columns and their tables.
         columns: String,
+        /// The reason.
+        reason: String,
+    },
+    /// The width of a picture is out of range.
+    #[error("{problem}")]
+    #[diagnostic(help("choose --width and --dpi accordingly"))]
+    PictureWidth {
+        /// The width and what is allowed.
+        problem: String,
+    },
+    /// A size of text or a resolution without a width on paper.
+    #[error("--font-size and --dpi require a width on paper")]
+    #[diagnostic(help("give a length, such as --width 88mm"))]
+    NoPaperWidth,
+    /// The ranges of `--crop` do not have the dimension of the body.
+    #[error("--crop has {given} range(s); the body has {dimension} dimension(s)")]
+    #[diagnostic(help("give one range for each axis, such as 10mm:30mm,0:20mm in two dimensions"))]
+    CropRanges {
+        /// Number of ranges given.
+        given: usize,
+        /// Dimension of the body.
+        dimension: usize,
     },
     /// A run has no field files.
     #[error("{} contains no field files", folder.display())]
@@ -183,11 +207,14 @@ impl CliError {
             | Self::NotStatic { .. }
             | Self::Surface { .. }
             | Self::Mesh { .. }
-            | Self::NoCommonTable { .. }
+            | Self::NoCommonTimes { .. }
             | Self::NoFields { .. } => Exit::Input,
-            Self::UnknownShape { .. } | Self::NoVertex { .. } | Self::Components { .. } => {
-                Exit::Usage
-            }
+            Self::UnknownShape { .. }
+            | Self::NoVertex { .. }
+            | Self::PictureWidth { .. }
+            | Self::NoPaperWidth
+            | Self::CropRanges { .. }
+            | Self::Components { .. } => Exit::Usage,
             Self::OutExists { .. } | Self::FileExists { .. } => Exit::Output,
             Self::OneProcess { .. }
             | Self::NoMpi { .. }

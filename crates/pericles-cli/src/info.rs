@@ -11,6 +11,7 @@ use crate::args::InfoArgs;
 use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
+use crate::time_axis::TimeAxis;
 
 /// Describes the results of a run.
 ///
@@ -93,10 +94,10 @@ fn status(results: &Results) -> String {
     let status = results.text("/status");
     let seconds = results.number("/progress/wall_seconds").unwrap_or(f64::NAN);
     let mut text = format!(
-        "{status}; step {} of {}, t = {}, after {}",
+        "{status}; step {} of {}, {}, after {}",
         count(results.count("/progress/last_step")),
         count(results.count("/model/steps")),
-        quantity(results.number("/progress/t").unwrap_or_default(), "s"),
+        TimeAxis::of(results).stamp(results.number("/progress/t").unwrap_or_default()),
         duration(seconds),
     );
     let folder = results.folder().display();

@@ -45,6 +45,7 @@ mod signals;
 mod summary;
 mod sweep;
 mod text_chart;
+mod time_axis;
 
 use std::ffi::OsString;
 

@@ -18,6 +18,7 @@ use crate::error::CliError;
 use crate::exit::Exit;
 use crate::info;
 use crate::plot;
+use crate::time_axis::TimeAxis;
 
 /// Most pictures per field; of more, evenly spaced ones are shown.
 const MOST_PICTURES: usize = 6;
@@ -272,7 +273,7 @@ impl Page {
         let mut is_first = true;
         for table in results.tables() {
             let file = file_name(&table);
-            for chart in charts::of_table(&table, |_| true)? {
+            for chart in charts::of_table(&table, TimeAxis::of(results), |_| true)? {
                 if std::mem::take(&mut is_first) {
                     self.heading("Time histories");
                 }

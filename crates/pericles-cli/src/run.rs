@@ -2,7 +2,7 @@
 
 use pericles_run::sweep::is_sweep;
 use pericles_run::units::{count, quantity};
-use pericles_run::{Assembled, Deadline, Means, Run, Source, shared_folder};
+use pericles_run::{Assembled, Deadline, Means, Results, Run, Source, shared_folder};
 
 use crate::args::{ResumeArgs, RunArgs};
 use crate::charts;
@@ -17,6 +17,7 @@ use crate::signals::Signals;
 use crate::summary;
 use crate::sweep;
 use crate::text_chart::TextChart;
+use crate::time_axis::TimeAxis;
 
 /// Runs a deck.
 ///
@@ -113,7 +114,8 @@ fn drive(
         summary::closing(run.report(), run.folder())?;
     }
     if chart {
-        let charts = charts::of_table(&run.folder().join("history.csv"), |_| true)?;
+        let along = TimeAxis::of(&Results::open(run.folder())?);
+        let charts = charts::of_table(&run.folder().join("history.csv"), along, |_| true)?;
         for chart in &charts {
             console::print(format_args!("{}", TextChart::of(chart)))?;
         }

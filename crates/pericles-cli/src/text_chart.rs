@@ -80,7 +80,7 @@ impl fmt::Display for TextChart<'_> {
             writeln!(f, "{label:>width$} |{}", row.trim_end())?;
         }
         writeln!(f, "{:width$} +{}", "", "-".repeat(WIDTH))?;
-        let (from, to) = (quantity(time.0, "s"), quantity(time.1, "s"));
+        let [from, to] = [time.0, time.1].map(|t| chart.along.label(t));
         let room = WIDTH.saturating_sub(from.chars().count());
         writeln!(f, "{:width$}  {from}{to:>room$}", "")
     }
@@ -97,6 +97,7 @@ fn extent(values: impl Iterator<Item = f64>) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::time_axis::TimeAxis;
 
     #[test]
     fn straight_lines_connect_the_corners_and_curves_have_markers() {
@@ -106,6 +107,7 @@ mod tests {
         let chart = Chart {
             name: "energy".into(),
             unit: "J".into(),
+            along: TimeAxis::TIME,
             time,
             curves: vec![("up".into(), up), ("down".into(), down)],
         };

@@ -123,10 +123,7 @@ pub(crate) fn expression(item: &Item<'_>, variables: &[&str]) -> Option<Expressi
             Some(expression)
         }
         Err(malformed) => {
-            item.report(Fault::BadExpression {
-                text,
-                reason: malformed.reason,
-            });
+            item.report(Fault::bad_expression(text, malformed.reason));
             None
         }
     }

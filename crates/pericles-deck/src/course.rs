@@ -184,12 +184,9 @@ impl Course {
 
     /// Returns the error for a prescribed motion with jumps or kinks.
     pub fn rough(&self) -> Fault {
-        Fault::BadExpression {
-            text: self.value.text().into(),
-            reason: "it has no derivative in time at jumps or kinks of abs, ceil, floor, round, sign or step of t, but a prescribed motion needs one; use a smooth expression, or the piecewise \
-                     linear function = { kind = \"table\", rows = [[time, value], …] }"
-                .into(),
-        }
+        let reason = "it has no derivative in time at jumps or kinks of abs, ceil, floor, round, sign or step of t, but a prescribed motion needs one; use a smooth expression, or the piecewise \
+                     linear function = { kind = \"table\", rows = [[time, value], …] }";
+        Fault::bad_expression(self.value.text().into(), reason.into())
     }
 
     /// Returns whether it has derivatives.

@@ -70,7 +70,7 @@ pub(crate) fn read(
             let parsed = BondExpression::parse(&text, dimension.unwrap_or(3));
             let parsed = parsed.map_err(|malformed| {
                 let reason = malformed.reason;
-                item.report(Fault::BadExpression { text, reason });
+                item.report(Fault::bad_expression(text, reason));
             });
             FailureCriterion::Expression(parsed.ok()?)
         }

@@ -90,6 +90,7 @@ mod crack;
 mod criterion;
 mod damping;
 mod deck;
+mod dimension;
 mod document;
 mod error;
 mod exact;
@@ -149,7 +150,7 @@ pub use damping::Damping;
 pub use deck::Deck;
 pub use error::DeckError;
 pub use exact::{Exact, KnownSolution, Pulse};
-pub use expression::{BondExpression, Condition, Expression};
+pub use expression::{BondExpression, Condition, Expression, SignalCondition, SignalExpression};
 pub use fault::Fault;
 pub use finding::{Finding, Problem, Warning};
 pub use impactor::{Impactor, ImpactorInertia, ImpactorMotion, ImpactorShape};
@@ -161,12 +162,12 @@ pub use material::{
 };
 pub use model::{Body, Model, Solid};
 pub use output::{
-    CellChoice, Checkpoint, CrackOutput, FieldBlocks, FieldFormat, FragmentOutput, Output, Picture,
-    PointNumber, Precision, Profile,
+    CellChoice, Checkpoint, CrackOutput, DerivedQuantity, FieldBlocks, FieldFormat, FragmentOutput,
+    Output, Picture, PictureColours, PictureFormat, PictureLook, PointNumber, Precision, Profile,
 };
 pub use quantity::{metres, seconds};
 pub use remark::{BuildError, Keys, ModelProblem, ModelWarning, Remark};
-pub use schema::{json_schema, reference, specimens};
+pub use schema::{json_schema, reference, specimens, unit_of_key};
 pub use scheme::{FineRegion, FineStep, Interface, Scheme};
 pub use set::{ALL, Depth, Members, NamedSet};
 pub use source::{Location, is_invisible};

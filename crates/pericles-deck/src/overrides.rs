@@ -2,7 +2,8 @@
 //!
 //! The key is a dotted path with indices from zero, such as `time.dt`, `crack.0.ends` or `load.0.traction`.
 //! The value is TOML if it parses as TOML, otherwise a string. A key replaces its synonyms and mutually
-//! exclusive keys: `material.K=…` replaces a deck's `youngs_modulus`. Missing tables are created.
+//! exclusive keys: `material.K=…` replaces a deck's `youngs_modulus`. Missing tables are created. The value `unset`
+//! removes the key, table or entry of a list.
 
 use crate::document::{self, Entry, Node, Value};
 use crate::error::DeckError;
@@ -10,6 +11,9 @@ use crate::fault::Fault;
 use crate::finding::Problem;
 use crate::source::{Place, Sources};
 use crate::vocabulary::{canonical, replaces};
+
+/// The value that removes a key. In quotes it is a text.
+const UNSET: &str = "unset";
 
 /// Larger than the nesting depth of any deck.
 const DEEPEST: usize = 16;
@@ -59,6 +63,9 @@ fn set(root: &mut Node, text: &str, source: usize) -> Result<(), Rejection> {
     if steps.len() > DEEPEST {
         return Err(whole("its key has too many parts"));
     }
+    if written.trim() == UNSET {
+        return unset(root, &steps);
+    }
     let new = value(written, source, path.len() + 1);
     let mut node = root;
     for (k, (step, start)) in steps.iter().enumerate() {
@@ -71,31 +78,89 @@ fn set(root: &mut Node, text: &str, source: usize) -> Result<(), Rejection> {
         node = match &mut node.value {
             Value::Table(entries) => descend(entries, step, place, last),
             Value::Array(items) => {
-                let count = items.len();
-                let item = step.parse::<usize>().ok().and_then(|k| items.get_mut(k));
-                item.ok_or_else(|| Rejection {
-                    reason: format!("`{step}` is not the index of an entry"),
-                    allowed: match count {
-                        0 => "the list is empty".into(),
-                        1 => "allowed: 0, the list has one entry".into(),
-                        _ => format!("allowed: 0 to {}", count - 1),
-                    },
-                    start: place.start,
-                    end: place.end,
-                })?
+                let index = index(items, step, *start)?;
+                &mut items[index]
             }
-            other => {
-                return Err(Rejection {
-                    reason: format!("`{step}` cannot be a key of {}", other.kind()),
-                    allowed: "only tables and lists have parts".into(),
-                    start: place.start,
-                    end: place.end,
-                });
-            }
+            other => return Err(no_part(other, step, *start)),
         };
     }
     *node = new;
     Ok(())
+}
+
+/// Removes the key, table or entry of a list with these steps.
+fn unset(root: &mut Node, steps: &[(&str, usize)]) -> Result<(), Rejection> {
+    let mut node = root;
+    for (k, &(step, start)) in steps.iter().enumerate() {
+        let last = k + 1 == steps.len();
+        node = match &mut node.value {
+            Value::Table(entries) => {
+                let known = |entry: &Entry| canonical(&entry.key) == canonical(step);
+                let Some(found) = entries.iter().position(known) else {
+                    let keys: Vec<String> =
+                        (entries.iter().map(|entry| format!("`{}`", entry.key))).collect();
+                    let table = match k {
+                        0 => "the deck".into(),
+                        _ => {
+                            let above: Vec<&str> =
+                                steps[..k].iter().map(|(step, _)| *step).collect();
+                            format!("[{}]", above.join("."))
+                        }
+                    };
+                    return Err(Rejection {
+                        reason: format!("{table} does not set `{step}`"),
+                        allowed: match keys.is_empty() {
+                            true => "the table is empty".into(),
+                            false => format!("keys that can be removed: {}", keys.join(", ")),
+                        },
+                        start,
+                        end: start + step.len(),
+                    });
+                };
+                if last {
+                    entries.remove(found);
+                    return Ok(());
+                }
+                &mut entries[found].node
+            }
+            Value::Array(items) => {
+                let index = index(items, step, start)?;
+                if last {
+                    items.remove(index);
+                    return Ok(());
+                }
+                &mut items[index]
+            }
+            other => return Err(no_part(other, step, start)),
+        };
+    }
+    Ok(())
+}
+
+/// Returns the index of an entry of a list.
+fn index(items: &[Node], step: &str, start: usize) -> Result<usize, Rejection> {
+    let count = items.len();
+    let index = step.parse::<usize>().ok().filter(|&index| index < count);
+    index.ok_or_else(|| Rejection {
+        reason: format!("`{step}` is not the index of an entry"),
+        allowed: match count {
+            0 => "the list is empty".into(),
+            1 => "allowed: 0, the list has one entry".into(),
+            _ => format!("allowed: 0 to {}", count - 1),
+        },
+        start,
+        end: start + step.len(),
+    })
+}
+
+/// Returns the rejection of a key within a value that has no keys.
+fn no_part(value: &Value, step: &str, start: usize) -> Rejection {
+    Rejection {
+        reason: format!("`{step}` cannot be a key of {}", value.kind()),
+        allowed: "only tables and lists have parts".into(),
+        start,
+        end: start + step.len(),
+    }
 }
 
 /// Splits a dotted key into its parts with their offsets.

@@ -1,6 +1,7 @@
 //! Physical quantities of numbers in decks.
 
-use crate::units::{self, Dimension};
+use crate::dimension::Dimension;
+use crate::units;
 
 /// A physical quantity with its SI unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -201,7 +201,11 @@ fn condition(item: &Item<'_>, dimension: Option<usize>) -> Option<Condition> {
     let read = Condition::parse(&text, &variables);
     read.map_err(|malformed| {
         let reason = malformed.reason;
-        item.report(Fault::BadCondition { text, reason });
+        item.report(Fault::BadCondition {
+            text,
+            reason,
+            allowed: Condition::ALLOWED,
+        });
     })
     .ok()
 }

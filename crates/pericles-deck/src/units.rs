@@ -5,47 +5,7 @@
 //! ten are added to the exponent of the number before it is rounded to binary, so that `"0.25 mm"` is the
 //! same double as `0.25e-3`.
 
-/// Powers of kilogram, metre, second and kelvin.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Dimension {
-    pub(crate) kg: i32,
-    pub(crate) m: i32,
-    pub(crate) s: i32,
-    pub(crate) k: i32,
-}
-
-impl Dimension {
-    pub(crate) const NONE: Self = Self::new(0, 0, 0);
-
-    pub(crate) const fn new(kg: i32, m: i32, s: i32) -> Self {
-        Self { kg, m, s, k: 0 }
-    }
-
-    /// A power of the kelvin.
-    pub(crate) const fn kelvin(k: i32) -> Self {
-        Self {
-            kg: 0,
-            m: 0,
-            s: 0,
-            k,
-        }
-    }
-
-    /// The dimension per kelvin.
-    pub(crate) const fn per_kelvin(self) -> Self {
-        Self {
-            k: self.k - 1,
-            ..self
-        }
-    }
-
-    fn add(&mut self, other: Self, power: i32) {
-        self.kg += other.kg * power;
-        self.m += other.m * power;
-        self.s += other.s * power;
-        self.k += other.k * power;
-    }
-}
+use crate::dimension::Dimension;
 
 /// A number in SI units and the dimension of its unit; none without a unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -101,7 +61,7 @@ const fn plain(symbol: &'static str, exponent: i32, factor: f64, s: i32) -> Unit
     }
 }
 
-const UNITS: [Unit; 15] = [
+const UNITS: [Unit; 16] = [
     unit("m", 0, 0, 1, 0),
     unit("g", -3, 1, 0, 0),
     unit("s", 0, 0, 0, 1),
@@ -117,6 +77,14 @@ const UNITS: [Unit; 15] = [
         factor: 1.0,
         dimension: Dimension::kelvin(1),
         prefixed: true,
+    },
+    // A point of typography, 1/72 inch.
+    Unit {
+        symbol: "pt",
+        exponent: 0,
+        factor: 25.4e-3 / 72.0,
+        dimension: Dimension::new(0, 1, 0),
+        prefixed: false,
     },
     plain("min", 0, 60.0, 1),
     plain("h", 0, 3600.0, 1),
@@ -177,6 +145,15 @@ pub(crate) fn parse(text: &str) -> Result<Measure, UnitError> {
         ))?,
         dimension: Some(scale.dimension),
     })
+}
+
+/// Returns the dimension of an SI unit as in tables, such as `kg m/s`; none if the unit is unknown or has a factor.
+pub(crate) fn dimension_of(unit: &str) -> Option<Dimension> {
+    if unit.is_empty() || unit == "1" {
+        return Some(Dimension::NONE);
+    }
+    let measure = parse(&format!("1 {}", unit.trim().replace(' ', "·"))).ok()?;
+    measure.dimension.filter(|_| measure.value == 1.0)
 }
 
 fn finite(value: Result<f64, std::num::ParseFloatError>) -> Result<f64, UnitError> {

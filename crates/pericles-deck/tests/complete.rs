@@ -227,6 +227,7 @@ fn conditions_time_and_output_are_read() {
         view: None,
         animation: false,
         schedule: Schedule::Count(2),
+        look: PictureLook::default(),
     };
     let uplift = Picture {
         field: Field::Displacement,
@@ -236,6 +237,7 @@ fn conditions_time_and_output_are_read() {
         view: None,
         animation: true,
         schedule: Schedule::Interval(1e-6),
+        look: PictureLook::default(),
     };
     assert_eq!(
         deck.model.output,
@@ -247,6 +249,7 @@ fn conditions_time_and_output_are_read() {
             cells: pericles_deck::CellChoice::Auto,
             mesh_cells: false,
             profiles: Vec::new(),
+            quantities: Vec::new(),
             blocks: FieldBlocks::Groups,
             history: Schedule::Every(20),
             extremes: Vec::new(),
@@ -506,6 +509,10 @@ fn overrides_create_tables_and_errors_point_at_them() {
         ("time..dt=1", 1, "empty part"),
         ("material.E=[1]", 12, "a list"),
         ("load.0.body_force=[0, '1 Gm']", 23, "a force per volume"),
+        ("time.ratio=unset", 6, "[time] does not set `ratio`"),
+        ("times.ratio=unset", 1, "the deck does not set `times`"),
+        ("crack.2=unset", 7, "0 to 1"),
+        ("time.end.x=unset", 10, "a string"),
     ] {
         let error = with(&[text]).unwrap_err();
         let problem = &error.problems()[0];
@@ -514,6 +521,34 @@ fn overrides_create_tables_and_errors_point_at_them() {
         assert_eq!(problem.location().column(), column, "{text}: {error}");
         assert!(error.to_string().contains(words), "{text}: {error}");
     }
+}
+
+#[test]
+fn overrides_remove_keys() {
+    let whole = with(&[]).unwrap();
+    assert_ne!(whole.model.time.step, TimeStep::default());
+    let deck = with(&[
+        "time.dt=unset",
+        "title = unset",
+        "crack.0=unset",
+        "output=unset",
+        "constraint.1.function=unset",
+    ])
+    .unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(deck.model.time.step, TimeStep::default());
+    assert_eq!(deck.model.title, None);
+    assert_eq!(deck.model.cracks, whole.model.cracks[1..]);
+    assert_eq!(deck.model.output, Output::default());
+    assert!(deck.model.constraints[1].function.is_constant());
+    // A text in quotes is a value.
+    let deck = with(&["title=\"unset\""]).unwrap();
+    assert_eq!(deck.model.title.as_deref(), Some("unset"));
+    // A removed key has to be given again if it is required.
+    let error = with(&["time.end=unset"]).unwrap_err().to_string();
+    assert!(error.contains("requires `end`"), "{error}");
+    // A table can be removed and written anew.
+    let deck = with(&["time.scheme=unset", "time=unset", "time.end=2 us"]).unwrap();
+    assert_eq!(deck.model.time.end, 2e-6);
 }
 
 #[test]

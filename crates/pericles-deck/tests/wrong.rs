@@ -253,7 +253,7 @@ const WRONG: &[Wrong] = &[
     wrong("youngs_modulus = \"72 GPa\"\n", "youngs_modulus = \"72 GPa\"\ncriterion = \"stress_1\"\n", (12, 1), "criterion", &["not allowed", "state-based"]),
     wrong("youngs_modulus = \"72 GPa\"\n", "youngs_modulus = \"72 GPa\"\nlaw = \"neo-hooke\"\n", (12, 1), "law", &["not allowed", "correspondence"]),
     // Stop conditions.
-    wrong("[output]", "[[time.stop_when]]\nset = \"top\"\n[output]", (37, 1), "[[time.stop_when]]", &["[time.stop_when.0] requires one of `reaction_below` and `damage_above`"]),
+    wrong("[output]", "[[time.stop_when]]\nset = \"top\"\n[output]", (37, 1), "[[time.stop_when]]", &["[time.stop_when.0] requires one of `reaction_below`, `damage_above` and `condition`"]),
     wrong("[output]", "[[time.stop_when]]\nset = \"tip\"\ndamage_above = 0.9\n[output]", (38, 7), "\"tip\"", &["unknown set `tip`", "did you mean `top`?"]),
     wrong("[output]", "[[time.stop_when]]\nset = \"top\"\nreaction_below = 2\n[output]", (39, 18), "2", &["out of range", "fraction of the largest reaction"]),
     wrong("[output]", "[[time.stop_when]]\nset = \"top\"\ndamage_above = 1\n[output]", (39, 16), "1", &["out of range", "below 1"]),

@@ -85,8 +85,8 @@ pub use npz::NpzWriter;
 pub use numbering::in_user_order;
 pub use outline::{parse_outline, read_outline};
 pub use picture::{
-    Axis, Backdrop, CellSize, ColourMap, Curve, Extent, FieldPicture, LineChart, quantity,
-    write_animation,
+    Axis, Backdrop, CellSize, ColourMap, Curve, Extent, FieldPicture, LineChart, PictureStyle,
+    Print, quantity, write_animation,
 };
 pub use points::{parse_points, read_points};
 pub use result_body::{ResultBody, write_error};

@@ -1,9 +1,9 @@
 //! Facts, history columns and heat balance of bodies with heat conduction.
 
-use pericles::observe::Snapshot;
-use pericles::{Archive, Checkpointed, Result, Simulation};
+use pericles::Simulation;
+use pericles::observe::{ObserveError, Snapshot};
 use pericles_heat::{DiffusingField, SharedField};
-use pericles_io::observers::HistoryColumns;
+use pericles_io::observers::Signals;
 use pericles_io::{Cell, Column};
 use serde::Serialize;
 
@@ -137,13 +137,13 @@ fn inflows(field: &SharedField, t: f64) -> Vec<Inflow> {
 pub(crate) struct HeatColumns(SharedField);
 
 impl HeatColumns {
-    /// Returns the columns of a simulation, if its body conducts heat.
-    pub(crate) fn of(simulation: &Simulation) -> Option<Self> {
-        of_system(simulation.system()).map(Self)
+    /// Returns the columns of a system, if its body conducts heat.
+    pub(crate) fn of(system: &pericles::System) -> Option<Self> {
+        of_system(system).map(Self)
     }
 }
 
-impl HistoryColumns for HeatColumns {
+impl Signals for HeatColumns {
     fn columns(&self) -> Vec<Column> {
         let mut columns = vec![Column::real("heat_content", "J")];
         for inflow in inflows(&self.0, 0.0) {
@@ -158,22 +158,13 @@ impl HistoryColumns for HeatColumns {
         columns
     }
 
-    fn cells(&mut self, snapshot: &Snapshot<'_>) -> Vec<Cell> {
+    fn cells(&self, snapshot: &Snapshot<'_>) -> Result<Vec<Cell>, ObserveError> {
         let t = snapshot.state().t;
         let heats = inflows(&self.0, t).into_iter().map(|inflow| inflow.heat);
         let mut cells = vec![Cell::Real(self.0.content(t))];
         cells.extend(heats.map(Cell::Real));
         cells.extend(self.0.heat_from_dissipation().map(Cell::Real));
         cells.extend(self.0.range(t).map(Cell::Real));
-        cells
-    }
-}
-
-/// Columns without state.
-impl Checkpointed for HeatColumns {
-    fn save(&self, _archive: &mut Archive) {}
-
-    fn restore(&mut self, _archive: &Archive) -> Result<()> {
-        Ok(())
+        Ok(cells)
     }
 }

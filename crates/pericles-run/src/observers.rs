@@ -11,22 +11,22 @@ use pericles::family::Crack;
 use pericles::observe::{CrackTracker, Schedule};
 use pericles::space::PointCloud;
 use pericles_deck::{
-    CellChoice, CrackSurface, FieldFormat, Model, Picture, Precision, Scheme, StaticBreaking,
+    CellChoice, CrackSurface, FieldFormat, Model, Picture, PictureColours, PictureFormat,
+    PictureLook, Precision,
 };
-use pericles_io::OutputFolder;
 use pericles_io::observers::{
-    CellMesh, ContactColumns, Cracks, EnergyBoundColumns, ErrorColumns, ExtremeColumns,
-    FieldSeries, ForceDisplacement, FragmentCourse, History, HistoryRows, InnerColumns,
-    LoadFactorColumn, Overlay, PictureOf, Pictures, Probes, Profile, Reactions, ResultFile,
-    ResultFormat, SurfaceCourse,
+    CellMesh, Cracks, EnergyBoundColumns, ErrorColumns, FieldSeries, ForceDisplacement,
+    FragmentCourse, History, HistoryRows, Overlay, PictureOf, Pictures, ProbeSignals, Profile,
+    ReactionSignals, ResultFile, ResultFormat, SignalTable, Signals, SurfaceCourse,
 };
+use pericles_io::{ColourMap, OutputFolder, PictureStyle, Print};
 use pericles_manifold::surface::Surface;
 use pericles_manifold::{EnergyInequality, SurfaceMeasure};
 
 use crate::build::{Assembly, ExactReference, Meshes, Sets, gathered, is_on_grid};
 use crate::checkpoint;
 use crate::error::RunError;
-use crate::heat::HeatColumns;
+use crate::signals::{QuantitySignals, follows_events, history_signals};
 
 use self::impactors::add_impactors;
 
@@ -52,10 +52,9 @@ pub(crate) fn observed(
     let output = &model.output;
     let dimension = assembly.cloud.dimension();
     let can_break = assembly.system.operator().can_break();
-    let reactions = (!assembly.system.motions().is_empty())
-        .then(|| Reactions::new(folder.file("reactions.csv"), assembly.system.motions()));
+    let tables = signal_tables(&assembly);
     let loaded: Vec<String> = model.loads.iter().map(|load| load.set.clone()).collect();
-    let acts = reactions.is_some() || !loaded.is_empty();
+    let acts = !assembly.system.motions().is_empty() || !loaded.is_empty();
     let curve = (model.time.scheme.is_static() && acts).then(|| {
         ForceDisplacement::new(
             folder.file("force_displacement.csv"),
@@ -65,7 +64,7 @@ pub(crate) fn observed(
             &loaded,
         )
     });
-    let (probes, cracks) = (assembly.probes.clone(), assembly.cracks.clone());
+    let cracks = assembly.cracks.clone();
     let exact = assembly.exact.take();
     let surface = assembly.surface.clone();
     let body = FieldBody::of(&assembly, needs_whole_body(model, &assembly));
@@ -86,18 +85,14 @@ pub(crate) fn observed(
     let history = Arc::new(Mutex::new(history));
     simulation.observe(output.history, Box::new(Arc::clone(&history)));
     names.extend(add_impactors(model, folder, &mut simulation)?);
-    if let Some(reactions) = reactions {
-        names.push("reactions.csv".into());
-        simulation.observe(output.history, Box::new(reactions));
+    for (name, key, signals) in tables {
+        names.push(name.into());
+        let table = SignalTable::new(folder.file(name), key, signals);
+        simulation.observe(output.history, Box::new(table));
     }
     if let Some(curve) = curve {
         names.extend(["force_displacement.csv", "force_displacement.png"].map(String::from));
         simulation.observe(Schedule::Every(1), Box::new(curve));
-    }
-    if !probes.is_empty() {
-        names.push("probes.csv".into());
-        let probes = Probes::new(folder.file("probes.csv"), probes, dimension);
-        simulation.observe(output.history, Box::new(probes));
     }
     if can_break && !cracks.is_empty() {
         names.push("cracks.csv".into());
@@ -127,6 +122,27 @@ pub(crate) fn observed(
     })
 }
 
+/// Returns the tables of signals: file, name of the length in checkpoints, content.
+fn signal_tables(assembly: &Assembly) -> Vec<(&'static str, &'static str, Box<dyn Signals>)> {
+    let mut tables: Vec<(_, _, Box<dyn Signals>)> = Vec::new();
+    let (motions, probes) = (assembly.system.motions(), assembly.probes.clone());
+    if !motions.is_empty() {
+        let reactions = ReactionSignals::new(motions);
+        tables.push(("reactions.csv", "observer/reactions", Box::new(reactions)));
+    }
+    if !probes.is_empty() {
+        let dimension = assembly.cloud.dimension();
+        let probes = ProbeSignals { probes, dimension };
+        tables.push(("probes.csv", "observer/probes", Box::new(probes)));
+    }
+    if assembly.signals.has_quantities() {
+        let quantities = QuantitySignals(Arc::clone(&assembly.signals));
+        let quantities = Box::new(quantities);
+        tables.push(("quantities.csv", "observer/quantities", quantities));
+    }
+    tables
+}
+
 /// Returns the rows of the history that a model requests; `exact` is the exact solution of its assembly, if it has one.
 pub fn history_rows(
     model: &Model,
@@ -134,15 +150,11 @@ pub fn history_rows(
     exact: Option<ExactReference>,
 ) -> HistoryRows {
     let (output, dimension) = (&model.output, simulation.system().dimension());
+    let [of_scheme, of_state] =
+        history_signals(model, simulation.system(), simulation.integrator());
     let mut rows = HistoryRows::new(dimension);
-    if simulation.integrator().inner_iterations().is_some() {
-        rows = rows.with(match model.time.scheme {
-            Scheme::Relaxation(_) | Scheme::Static(_) => InnerColumns::Residual,
-            _ => InnerColumns::Velocity,
-        });
-    }
-    if follows_events(model) {
-        rows = rows.with(LoadFactorColumn);
+    for signals in of_scheme {
+        rows = rows.with_signals(signals);
     }
     if let Some(ExactReference { solution, points }) = exact {
         rows = rows.with(ErrorColumns::new(solution, points));
@@ -150,14 +162,8 @@ pub fn history_rows(
     if let Some(rate) = output.energy_bound {
         rows = rows.with(EnergyBoundColumns(EnergyInequality::new(rate)));
     }
-    if !output.extremes.is_empty() {
-        rows = rows.with(ExtremeColumns::new(output.extremes.clone(), dimension));
-    }
-    if let Some(columns) = HeatColumns::of(simulation) {
-        rows = rows.with(columns);
-    }
-    if simulation.system().interactions().next().is_some() {
-        rows = rows.with(ContactColumns);
+    for signals in of_state {
+        rows = rows.with_signals(signals);
     }
     rows
 }
@@ -165,6 +171,8 @@ pub fn history_rows(
 /// Returns a picture requested by a model.
 pub fn picture_of(model: &Model, picture: &Picture, surface: Option<&Arc<Surface>>) -> PictureOf {
     PictureOf {
+        style: style_of(&picture.look),
+        crop: picture.look.crop,
         component: picture.component,
         scale: picture.scale,
         range: picture.range,
@@ -176,9 +184,25 @@ pub fn picture_of(model: &Model, picture: &Picture, surface: Option<&Arc<Surface
     }
 }
 
-/// Returns whether the scheme scales the loads from event to event, whatever the time is.
-fn follows_events(model: &Model) -> bool {
-    matches!(&model.time.scheme, Scheme::Static(options) if options.breaking == StaticBreaking::Event)
+/// Returns the size and style of a picture of a deck.
+fn style_of(look: &PictureLook) -> PictureStyle {
+    let sized = match look.width {
+        None => PictureStyle::default(),
+        Some(width) => {
+            let (font_size, dpi) = (look.font_size, look.dpi);
+            PictureStyle::printed(width, Print { font_size, dpi })
+        }
+    };
+    PictureStyle {
+        titled: look.title,
+        transparent: look.transparent,
+        colours: look.colour_map.map(|colours| match colours {
+            PictureColours::Viridis => ColourMap::Viridis,
+            PictureColours::CoolToWarm => ColourMap::Diverging,
+            PictureColours::Grey => ColourMap::Grey,
+        }),
+        ..sized
+    }
 }
 
 /// Returns the time at which all loads of a static run act; none if the time is not proportional to the loads.
@@ -402,15 +426,19 @@ fn add_pictures(
             1 => what.name(dimension),
             number => format!("{}_{number}", what.name(dimension)),
         };
-        names.push(format!("pictures/{stem}-*.png"));
-        if picture.animation {
+        let ending = picture.look.format.ending();
+        // Animations consist of PNG files.
+        let is_animated = picture.animation && picture.look.format == PictureFormat::Png;
+        names.push(format!("pictures/{stem}-*.{ending}"));
+        if is_animated {
             names.push(format!("pictures/{stem}.apng"));
         }
         if what.has_own_range() {
             names.push(format!("pictures/.{stem}-*.state"));
         }
-        let mut pictures = Pictures::new(&place, stem, what).with_common_range(cloud.clone());
-        if picture.animation {
+        let pictures = Pictures::new(&place, stem, what).with_ending(ending);
+        let mut pictures = pictures.with_common_range(cloud.clone());
+        if is_animated {
             pictures = pictures.animated();
         }
         simulation.observe(picture.schedule, Box::new(pictures));

@@ -34,7 +34,18 @@ impl Scalar {
         }
     }
 
-    /// Returns the scalar of a run and its unit, which is empty for numbers of run.json.
+    /// Returns the name in charts: `kinetic energy`, `largest u x`.
+    pub(crate) fn title(&self) -> String {
+        let name = self.name.rsplit('.').next().unwrap_or_default();
+        let name = name.replace('_', " ");
+        match self.pick {
+            Pick::Last => name,
+            Pick::Greatest => format!("largest {name}"),
+            Pick::Least => format!("smallest {name}"),
+        }
+    }
+
+    /// Returns the scalar of a run and its unit.
     ///
     /// # Errors
     /// The run does not have the scalar, or a table is damaged.
@@ -53,9 +64,8 @@ impl Scalar {
             known.extend(table.columns.iter().map(|column| column.name().to_owned()));
         }
         let pointer = format!("/{}", self.name.replace('.', "/"));
-        let number = results
-            .number(&pointer)
-            .map(|number| (number, String::new()));
+        let unit = unit_of_number(&self.name).to_owned();
+        let number = results.number(&pointer).map(|number| (number, unit));
         number.ok_or_else(|| {
             let listing = format!(
                 "the tables have the columns {}; run.json has numbers such as audit.elastic_energy",
@@ -74,6 +84,37 @@ impl Scalar {
     }
 }
 
+/// Returns the SI unit of a number of `run.json`; empty for ratios and counts.
+fn unit_of_number(name: &str) -> &'static str {
+    /// Ends of names and their units.
+    const UNITS: [(&str, &str); 17] = [
+        ("_energy", "J"),
+        ("_work", "J"),
+        (".contact_dissipated", "J"),
+        (".impactor_kinetic", "J"),
+        (".scheme_correction", "J"),
+        (".balance", "J"),
+        (".largest_balance", "J"),
+        (".momentum_error", "kg m/s"),
+        (".spacing", "m"),
+        (".horizon", "m"),
+        (".dt", "s"),
+        (".stable_step", "s"),
+        (".t", "s"),
+        (".wall_seconds", "s"),
+        (".youngs_modulus", "Pa"),
+        (".highest_frequency", "1/s"),
+        (".limiting_frequency", "1/s"),
+    ];
+    match name {
+        "model.fracture_energy" => return "J/m2",
+        ratio if ratio.contains("_over_") => return "",
+        _ => {}
+    }
+    let known = UNITS.iter().find(|(end, _)| name.ends_with(end));
+    known.map_or("", |(_, unit)| *unit)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -85,5 +126,24 @@ mod tests {
         assert_eq!(of("max:u"), Some(5.0));
         assert_eq!(of("min:u"), Some(1.0));
         assert_eq!(Scalar::named("min:u").name, "u");
+        assert_eq!(Scalar::named("max:tip_u_x").title(), "largest tip u x");
+        assert_eq!(
+            Scalar::named("audit.elastic_energy").title(),
+            "elastic energy"
+        );
+    }
+
+    #[test]
+    fn numbers_of_reports_have_units() {
+        for (name, unit) in [
+            ("audit.elastic_energy", "J"),
+            ("audit.balance", "J"),
+            ("audit.balance_over_work", ""),
+            ("model.fracture_energy", "J/m2"),
+            ("model.dt", "s"),
+            ("audit.broken_bonds", ""),
+        ] {
+            assert_eq!(unit_of_number(name), unit, "{name}");
+        }
     }
 }

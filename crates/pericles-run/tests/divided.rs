@@ -70,6 +70,11 @@ dt = "0.04 us"
 history = { every = 1, extremes = ["Velocity_y"] }
 fields = { count = 4, names = ["Displacement", "Velocity", "Damage", "Reaction_Density", "External_Force_Density", "Strain_Energy_Density"], format = ["vtu", "vtkhdf"] }
 cracks = { every = 5 }
+[[output.quantity]]
+name = "energy"
+expression = "(tip_u_y - 1e-3*crack_1_advance)*top_y + elastic_energy"
+[[time.stop_when]]
+condition = "energy > 1e9 || crack_1_tip_x > 1"
 [[output.picture]]
 field = "Velocity_y"
 count = 2

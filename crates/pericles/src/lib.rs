@@ -209,6 +209,6 @@ pub use simulation::{
 };
 pub use step_end::{BreakingBond, Path, StepEnd};
 pub use step_kind::{StepKind, schemes_of};
-pub use stop::{Found, StopCondition, StopReason, StopWhen};
+pub use stop::{Found, StopCondition, StopReason, StopTest, StopWhen};
 pub use system::System;
 pub use thermal::{Expandable, Temperature, ThermalExpansion};

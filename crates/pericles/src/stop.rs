@@ -1,15 +1,27 @@
 //! Stop conditions: conditions on the state that end a run early.
 
 use std::fmt;
+use std::sync::Arc;
 
 use crate::archive::{Archive, Checkpointed, Values};
 use crate::error::{PericlesError, Result};
+use crate::observe::{ObserveError, Snapshot};
 use crate::space::{PointSet, check_points};
 use crate::system::System;
 use crate::units::quantity;
 
-/// A condition on a set of points.
-#[derive(Debug, Clone, PartialEq)]
+/// A condition of a program on an accepted state. It has no state of its own, so that a resumed run stops at the same step.
+pub trait StopTest: fmt::Debug + Send + Sync {
+    /// Returns the values that meet the condition as a text for the report; `None` if it is not met. All processes call
+    /// it together and must return the same.
+    ///
+    /// # Errors
+    /// The condition cannot be evaluated.
+    fn test(&self, snapshot: &Snapshot<'_>) -> std::result::Result<Option<String>, ObserveError>;
+}
+
+/// A condition on a set of points, or of a program.
+#[derive(Debug, Clone)]
 pub enum StopCondition {
     /// The reaction force of the set, |Σ R| over its constraints, falls below this fraction of its largest value so
     /// far.
@@ -26,13 +38,15 @@ pub enum StopCondition {
         /// Points of the set.
         points: PointSet,
     },
+    /// A condition of a program.
+    Test(Arc<dyn StopTest>),
 }
 
 /// A stop condition; it is evaluated after every step and ends the run as if its last step were reached.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct StopWhen {
-    /// Name of the set in reports.
-    pub set: String,
+    /// Name in reports: of the set, or the text of the condition of a program.
+    pub name: String,
     /// The condition.
     pub condition: StopCondition,
     /// Largest reaction so far, N.
@@ -44,8 +58,8 @@ pub struct StopWhen {
 /// The reason why a run ended early.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StopReason {
-    /// Name of the set.
-    pub set: String,
+    /// Name of the condition: of its set, or its text.
+    pub name: String,
     /// Step after which the condition was met.
     pub step: u64,
     /// Time of that step, s.
@@ -55,7 +69,7 @@ pub struct StopReason {
 }
 
 /// The values that met a stop condition.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Found {
     /// The reaction force of the set fell.
     Reaction {
@@ -71,37 +85,47 @@ pub enum Found {
         /// Point with this damage, in the user's numbering.
         point: usize,
     },
+    /// The condition of a program is met.
+    Test {
+        /// The values that meet it.
+        values: String,
+    },
 }
 
 impl fmt::Display for StopReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.found {
+        let name = &self.name;
+        match &self.found {
             Found::Reaction { now, peak } => write!(
                 f,
-                "the reaction of `{}` has fallen to {:.2} % of its peak, from {} to {}",
-                self.set,
+                "the reaction of `{name}` has fallen to {:.2} % of its peak, from {} to {}",
                 100.0 * now / peak,
-                quantity(peak, "N"),
-                quantity(now, "N")
+                quantity(*peak, "N"),
+                quantity(*now, "N")
             ),
             Found::Damage { damage, point } => write!(
                 f,
-                "the damage of point {point} of `{}` has reached {damage:.3}",
-                self.set
+                "the damage of point {point} of `{name}` has reached {damage:.3}"
             ),
+            Found::Test { values } => write!(f, "the condition `{name}` holds: {values}"),
         }
     }
 }
 
 impl StopWhen {
-    /// Makes a condition on the set of this name.
-    pub fn new(set: String, condition: StopCondition) -> Self {
+    /// Makes a condition with its name in reports: the name of its set, or its text.
+    pub fn new(name: String, condition: StopCondition) -> Self {
         Self {
-            set,
+            name,
             condition,
             peak: 0.0,
             broken: 0,
         }
+    }
+
+    /// Returns whether this is a condition of a program.
+    pub(crate) fn is_test(&self) -> bool {
+        matches!(self.condition, StopCondition::Test(_))
     }
 
     /// Checks that the system has the constraints or points of a condition.
@@ -121,12 +145,25 @@ impl StopWhen {
             StopCondition::DamageAbove { points, .. } => {
                 check_points("the points of a stop condition", points, system.points())
             }
+            StopCondition::Test(_) => Ok(()),
         }
     }
 
     /// Evaluates the condition on an accepted state; returns the values if it is met.
-    pub(crate) fn look(&mut self, system: &System) -> Option<Found> {
-        match &self.condition {
+    /// The snapshot is taken if the condition needs it.
+    ///
+    /// # Errors
+    /// The condition of a program cannot be evaluated.
+    pub(crate) fn look<'s>(
+        &mut self,
+        system: &System,
+        snapshot: impl FnOnce() -> &'s Snapshot<'s>,
+    ) -> std::result::Result<Option<Found>, ObserveError> {
+        Ok(match &self.condition {
+            StopCondition::Test(test) => {
+                let values = test.test(snapshot())?;
+                values.map(|values| Found::Test { values })
+            }
             StopCondition::ReactionBelow { share, motions } => {
                 let mut sum = [0.0; 3];
                 for &motion in motions {
@@ -142,7 +179,7 @@ impl StopWhen {
                 let operator = system.operator();
                 let broken = operator.broken_bonds();
                 if broken == self.broken {
-                    return None;
+                    return Ok(None);
                 }
                 self.broken = broken;
                 let mut all = vec![0.0; system.points()];
@@ -160,7 +197,7 @@ impl StopWhen {
                     point: number as usize,
                 })
             }
-        }
+        })
     }
 }
 
@@ -171,7 +208,7 @@ impl Checkpointed for Vec<StopWhen> {
             let StopWhen {
                 peak,
                 broken: _,
-                set: _,
+                name: _,
                 condition: _,
             } = stop;
             *peak

@@ -3,6 +3,7 @@
 mod converge;
 mod geometry;
 mod modes;
+mod plot;
 mod shared;
 mod values;
 
@@ -14,15 +15,15 @@ use pericles_manifold::geodesic::GeodesicMethod;
 use pericles_run::sweep::Axis;
 
 use crate::exit::Exit;
-use crate::frames::Frames;
 
 pub(crate) use converge::ConvergeArgs;
 pub(crate) use geometry::{ExportArgs, ExportFormat, MeshArgs};
 pub(crate) use modes::ModesArgs;
+pub(crate) use plot::{Format, PlotArgs};
 pub(crate) use shared::{Caching, Execution, Memory, Overrides, RunOptions, Threads};
-pub(crate) use values::{Direction, Format, Length, Pair, Range};
+pub(crate) use values::{Direction, Length, Pair};
 
-use values::{direction, instruction_set, length, pair, range, tolerance};
+use values::{direction, instruction_set, length, pair, tolerance};
 
 const ABOUT: &str = "Peridynamics: elastic waves, cracks and nonlocal surfaces from a TOML deck";
 
@@ -354,52 +355,6 @@ pub(crate) struct ReportArgs {
     pub(crate) dir: PathBuf,
     /// The file to write [default: report.html in the output folder]
     #[arg(long, value_name = "FILE")]
-    pub(crate) out: Option<PathBuf>,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct PlotArgs {
-    /// The output folder of a run
-    pub(crate) dir: PathBuf,
-    /// Comma-separated fields, such as Damage or Velocity_y
-    #[arg(long = "field", value_name = "NAMES", value_delimiter = ',')]
-    pub(crate) fields: Vec<String>,
-    /// Comma-separated table columns, such as kinetic_energy
-    #[arg(long = "history", value_name = "COLUMNS", value_delimiter = ',')]
-    pub(crate) columns: Vec<String>,
-    /// Horizontal axis of a chart: a column of the tables; of a parameter sweep one of its keys [default: the first key]
-    #[arg(long, value_name = "COLUMN", requires = "y", conflicts_with_all = ["fields", "columns", "terminal"])]
-    pub(crate) x: Option<String>,
-    /// Comma-separated vertical axes: columns of the table that contains --x; of a parameter sweep scalars of its runs
-    #[arg(long, value_name = "COLUMNS", value_delimiter = ',', conflicts_with_all = ["fields", "columns", "terminal"])]
-    pub(crate) y: Vec<String>,
-    /// Output times: all, first, last, or the nearest to times such as "20 us" or 1e-5,2e-5 [default: last; all for an
-    /// animation]
-    #[arg(long, value_name = "TIMES")]
-    pub(crate) time: Option<Frames>,
-    /// Range of the colour bar in SI units, such as 0:1 or --range=-2e-3:2e-3
-    #[arg(long, value_name = "LOW:HIGH", value_parser = range)]
-    pub(crate) range: Option<Range>,
-    /// View direction for 3D bodies, from the body to the viewer, such as 1,-2,1
-    #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
-    pub(crate) view: Option<Direction>,
-    /// Scale factor for displacements
-    #[arg(long, value_name = "FACTOR", value_parser = tolerance)]
-    pub(crate) scale: Option<f64>,
-    /// Width in pixels, from 200 to 16000
-    #[arg(long, value_name = "PIXELS", default_value_t = 1200, value_parser = clap::value_parser!(u32).range(200..=16_000))]
-    pub(crate) width: u32,
-    /// The file format
-    #[arg(long, value_enum, default_value_t = Format::Png)]
-    pub(crate) format: Format,
-    /// Write one animated PNG per field
-    #[arg(long, conflicts_with = "terminal")]
-    pub(crate) animation: bool,
-    /// Show terminal plots of the time histories and write no files
-    #[arg(long, conflicts_with = "fields")]
-    pub(crate) terminal: bool,
-    /// Folder for the pictures; existing pictures of the same name are replaced [default: plots in the output folder]
-    #[arg(long, value_name = "FOLDER")]
     pub(crate) out: Option<PathBuf>,
 }
 

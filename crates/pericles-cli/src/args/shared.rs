@@ -12,7 +12,7 @@ use super::values::{threads, wall_time};
 /// Overrides of deck keys.
 #[derive(Debug, Args)]
 pub(crate) struct Overrides {
-    /// Override a key of the deck, such as time.dt=auto or crack.0.ends=open; may be repeated
+    /// Override a key of the deck, such as time.dt=auto or crack.0.ends=open; KEY=unset removes it; may be repeated
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
 }

@@ -3,7 +3,6 @@
 use std::num::NonZeroUsize;
 use std::time::Duration;
 
-use clap::ValueEnum;
 use pericles::operator::InstructionSet;
 use pericles::sum::max_norm;
 
@@ -96,25 +95,6 @@ pub(super) fn threads(text: &str) -> Result<NonZeroUsize, String> {
     number.ok_or_else(|| {
         format!("expected an integer from 1 to {most}; this machine has {cores} cores")
     })
-}
-
-/// Formats of pictures.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Format {
-    /// Raster image
-    Png,
-    /// Vector graphics
-    Svg,
-}
-
-impl Format {
-    /// Returns the file extension.
-    pub(crate) fn ending(self) -> &'static str {
-        match self {
-            Self::Png => "png",
-            Self::Svg => "svg",
-        }
-    }
 }
 
 /// A closed interval.

@@ -14,6 +14,7 @@ use pericles_run::{
 };
 
 use crate::args::{Format, PlotArgs};
+use crate::error::CliError;
 use crate::frames::Frames;
 
 /// Renders pictures into a folder; returns the files of pictures and animations.
@@ -21,13 +22,14 @@ pub(super) fn draw(
     results: &Results,
     args: &PlotArgs,
     place: &Path,
-) -> Result<Vec<PathBuf>, RunError> {
+) -> Result<Vec<PathBuf>, CliError> {
     let states = results.fields()?;
     let Some(last) = states.last() else {
         if args.fields.is_empty() {
             return Ok(Vec::new());
         }
-        return Err(results.damaged("fields.pvd", "the run wrote no field files".into()));
+        let error = results.damaged("fields.pvd", "the run wrote no field files".into());
+        return Err(error.into());
     };
     let source = results.source()?.read()?;
     let model = source.model();
@@ -46,18 +48,21 @@ pub(super) fn draw(
         folder: results.folder().to_path_buf(),
         impactors: model.impactors.iter().map(|one| one.name.clone()).collect(),
     };
-    let mut pictures: Vec<PictureOf> = wanted(model, args, &last.read()?, body.cloud.dimension())?
-        .into_iter()
-        .map(|what| PictureOf {
+    let dimension = body.cloud.dimension();
+    let crop = args.style.crop(dimension)?;
+    let mut pictures = Vec::new();
+    for what in wanted(model, args, &last.read()?, dimension)? {
+        pictures.push(PictureOf {
             surface: surface.clone(),
             overlay: overlay.clone(),
             steady: args.animation,
-            width: args.width,
+            style: args.style.style(what.style)?,
+            crop: crop.or(what.crop),
             view: args.view.map(|view| view.vector()).or(what.view),
             scale: args.scale.unwrap_or(what.scale),
             ..what
-        })
-        .collect();
+        });
+    }
     let all = Frames::All;
     let frames = match &args.time {
         Some(frames) => frames,

@@ -6,7 +6,7 @@ mod sweep;
 
 use std::path::{Path, PathBuf};
 
-use pericles_io::{IoError, LineChart};
+use pericles_io::{IoError, LineChart, PictureStyle};
 use pericles_run::sweep::is_sweep;
 use pericles_run::{Results, RunError, file_name};
 
@@ -16,6 +16,7 @@ use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
 use crate::text_chart::TextChart;
+use crate::time_axis::TimeAxis;
 
 pub(crate) use sweep::usual as usual_scalars;
 
@@ -44,6 +45,7 @@ pub(crate) fn plot(args: &PlotArgs) -> Result<Exit, CliError> {
         return Ok(Exit::Done);
     }
     let place = place(args)?;
+    let style = args.style.style(PictureStyle::default())?;
     let mut written: Vec<PathBuf> = Vec::new();
     if everything || !args.fields.is_empty() {
         written.extend(fields::draw(&results, args, &place)?);
@@ -55,7 +57,7 @@ pub(crate) fn plot(args: &PlotArgs) -> Result<Exit, CliError> {
             args.format.ending()
         );
         let path = place.join(name);
-        chart.drawn().width(args.width).write(&path)?;
+        chart.drawn().style(style).write(&path)?;
         written.push(path);
     }
     for path in &written {
@@ -73,23 +75,25 @@ fn place(args: &PlotArgs) -> Result<PathBuf, IoError> {
 
 /// Writes a chart into the folder of the pictures and prints its path; characters of the name that are not allowed in file names are
 /// replaced.
-fn write(chart: LineChart, name: &str, place: &Path, args: &PlotArgs) -> Result<(), IoError> {
+fn write(chart: LineChart, name: &str, place: &Path, args: &PlotArgs) -> Result<(), CliError> {
     let plain = |c: char| match c.is_alphanumeric() || "+-.=_".contains(c) {
         true => c,
         false => '_',
     };
     let name: String = name.chars().map(plain).collect();
     let path = place.join(format!("{name}.{}", args.format.ending()));
-    chart.width(args.width).write(&path)?;
-    console::print(format_args!("{}", path.display()))
+    let style = args.style.style(PictureStyle::default())?;
+    chart.style(style).write(&path)?;
+    Ok(console::print(format_args!("{}", path.display()))?)
 }
 
 /// Returns the charts of the requested columns, by default of all, with the names of their tables.
 fn charts_of(results: &Results, columns: &[String]) -> Result<Vec<(String, Chart)>, CliError> {
+    let along = TimeAxis::of(results);
     let stem = |table: &Path| file_name(table).trim_end_matches(".csv").to_owned();
     let (mut charts, mut known) = (Vec::new(), Vec::new());
     for table in results.tables() {
-        let found = charts::of_table(&table, |column| {
+        let found = charts::of_table(&table, along, |column| {
             known.push(column.to_owned());
             columns.is_empty() || columns.iter().any(|wanted| wanted == column)
         })?;

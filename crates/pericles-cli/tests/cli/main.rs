@@ -17,6 +17,7 @@ mod mesh;
 mod messages;
 mod plot;
 mod processes;
+mod quantities;
 mod ranks;
 mod reproduce;
 mod results;

@@ -39,6 +39,27 @@ fn other_picture_formats_and_terminal_plots_are_available() {
             "{name}"
         );
     }
+    let line = "plot a --field Damage --width 88mm --font-size 7pt --dpi 200 --no-title --background transparent \
+                --colour-map grey --crop 0mm:12mm,0mm:12mm --format pdf --out d";
+    let names = text(&succeed(place.path(), line).stdout);
+    let pdf = fs::read(place.path().join(names.trim_end())).unwrap();
+    assert!(pdf.starts_with(b"%PDF-1.7"));
+    for (line, says) in [
+        ("plot a --font-size 8pt", "require a width on paper"),
+        ("plot a --width 1mm", "the width is 1.0 mm"),
+        (
+            "plot a --width 88",
+            "expected a number of pixels from 200 to 16000",
+        ),
+        (
+            "plot a --field Damage --crop 0mm:1mm",
+            "--crop has 1 range(s); the body has 2",
+        ),
+    ] {
+        let (status, message) = fail(place.path(), line);
+        assert_eq!(status, 2, "{message}");
+        assert!(message.contains(says), "{says}: {message}");
+    }
     let line = "plot a --field Displacement --animation --width 400 --range 0:1e-4 --out c";
     let names = text(&succeed(place.path(), line).stdout);
     assert!(names.contains("Displacement.apng"), "{names}");
@@ -57,6 +78,54 @@ fn other_picture_formats_and_terminal_plots_are_available() {
     let (status, message) = fail(place.path(), "plot a --history energie");
     assert_eq!(status, 2);
     assert!(message.contains("kinetic_energy"), "{message}");
+}
+
+#[test]
+fn pictures_of_a_run_have_the_format_and_size_of_the_deck() {
+    let place = with_plate();
+    let deck = fs::read_to_string(place.path().join("plate.toml")).unwrap();
+    let look = "count = 2\nformat = \"svg\"\nwidth = \"88 mm\"\nfont_size = \"8 pt\"\ndpi = 600\ntitle = false\n";
+    let deck = deck.replacen("count = 2\n", look, 1);
+    fs::write(place.path().join("plate.toml"), &deck).unwrap();
+    let line = "run plate.toml --quiet --set time.end=4e-6 --set output.fields.every=20 --out a";
+    succeed(place.path(), line);
+    let svg = fs::read_to_string(place.path().join("a/pictures/Damage-000002.svg")).unwrap();
+    assert!(
+        svg.contains("width=\"88.01mm\"") && !svg.contains(">Torn plate<"),
+        "{svg}"
+    );
+    // The pictures of a finished run have the same style.
+    succeed(place.path(), "plot a --field Damage --format svg --out b");
+    let again = fs::read_to_string(place.path().join("b/Damage-000002.svg")).unwrap();
+    assert!(again == svg);
+    for (old, new, says) in [
+        ("width = \"88 mm\"\n", "", "it requires `width`"),
+        (
+            "\"88 mm\"",
+            "\"5 mm\"",
+            "8.5 mm to 677 mm at 600 pixels per inch",
+        ),
+        ("\"8 pt\"", "\"80 pt\"", "from \"4 pt\" to \"24 pt\""),
+        (
+            "title = false",
+            "animation = true",
+            "an animation consists of PNG files",
+        ),
+        (
+            "title = false",
+            "crop = { min = [0, 1], max = [1, 1] }",
+            "above the lower corner",
+        ),
+        ("title = false", "colour_map = \"jet\"", "\"cool-to-warm\""),
+    ] {
+        fs::write(place.path().join("wrong.toml"), deck.replacen(old, new, 1)).unwrap();
+        let (status, message) = fail(place.path(), "check wrong.toml");
+        assert_eq!(status, 3, "{message}");
+        assert!(
+            message.contains("wrong.toml:") && message.contains(says),
+            "{says}: {message}"
+        );
+    }
 }
 
 #[test]
@@ -165,7 +234,7 @@ fn a_bar_in_tension_converges_with_its_horizon() {
 }
 
 #[test]
-fn columns_are_drawn_over_another_column_of_their_table() {
+fn columns_are_drawn_over_another_column() {
     let place = with_plate();
     succeed(
         place.path(),
@@ -176,10 +245,16 @@ fn columns_are_drawn_over_another_column_of_their_table() {
     assert_eq!(said, "a/plots/corner_v_x-corner_v_y-over-corner_u_y.svg\n");
     let svg = fs::read_to_string(place.path().join(said.trim_end())).unwrap();
     assert!(svg.contains("corner v y"), "{svg}");
-    // Columns of different tables have no common rows.
-    let (status, message) = fail(place.path(), "plot a --x top_y --y kinetic_energy");
-    assert_eq!(status, 3);
-    assert!(message.contains("top_y, kinetic_energy"), "{message}");
+    // Columns of different tables with the same schedule.
+    let said = succeed(place.path(), "plot a --x top_y --y kinetic_energy");
+    assert!(said.stderr.is_empty(), "{}", text(&said.stderr));
+    // The table of crack tips has other times than the history; equal ones are drawn.
+    let said = succeed(place.path(), "plot a --x advance --y kinetic_energy");
+    let note = text(&said.stderr);
+    assert!(
+        note.contains("cracks.csv has 5 rows") && note.contains("rows with equal times"),
+        "{note}"
+    );
     let (status, message) = fail(place.path(), "plot a --y corner_v_w");
     assert_eq!(status, 2);
     assert!(message.contains("corner_v_"), "{message}");
@@ -209,7 +284,15 @@ fn sweeps_have_charts_contents_and_reports() {
     let line = "plot plate-sweep --x density --y audit.external_work --format svg --out b";
     let svg = text(&succeed(place.path(), line).stdout);
     let svg = fs::read_to_string(place.path().join(svg.trim_end())).unwrap();
-    assert!(svg.contains("material.density") && svg.contains("horizon_ratio = 3"));
+    for words in [
+        "material.density [",
+        "kg/m3]",
+        ">external work [",
+        "J]",
+        "horizon_ratio = 3",
+    ] {
+        assert!(svg.contains(words), "{words}: {svg}");
+    }
     succeed(place.path(), "report plate-sweep");
     let page = fs::read_to_string(place.path().join("plate-sweep/report.html")).unwrap();
     for words in [
@@ -225,6 +308,38 @@ fn sweeps_have_charts_contents_and_reports() {
     );
     assert_eq!(status, 2, "{message}");
     assert!(message.contains("material.density"), "{message}");
+}
+
+#[test]
+fn charts_of_static_runs_are_over_the_load() {
+    let place = with_plate();
+    let bar = "[body]\nshape = 'bar'\nlength = 1\nspacing = 0.05\n[material]\ndensity = 1\nyoungs_modulus = 1\nhorizon_ratio = 3\nfracture_energy = 1\n\
+               [sets.left]\nlayer = { side = '-x', cells = 3 }\n[sets.right]\nlayer = { side = '+x', cells = 3 }\n\
+               [[constraint]]\nset = 'left'\ndisplacement = [0]\n[[constraint]]\nset = 'right'\ndisplacement = [1e-3]\n\
+               [time]\nscheme = 'static'\nload_steps = 4\nend = 3\n[output]\nhistory = { every = 1 }\n";
+    fs::write(place.path().join("bar.toml"), bar).unwrap();
+    for (changes, name, last) in [
+        ("--out a", "load factor", "load factor 1"),
+        (
+            "--set time.breaking=event --out b",
+            "load step",
+            "load step 4",
+        ),
+    ] {
+        succeed(place.path(), &format!("run bar.toml --quiet {changes}"));
+        let folder = changes.rsplit(' ').next().unwrap();
+        let line = format!("plot {folder} --y right_x --format svg --out plots");
+        let svg = text(&succeed(place.path(), &line).stdout);
+        let svg = fs::read_to_string(place.path().join(svg.trim_end())).unwrap();
+        assert!(
+            svg.contains(&format!(">{name}<")) && !svg.contains("time ["),
+            "{svg}"
+        );
+        let shown = text(&succeed(place.path(), &format!("plot {folder} --terminal")).stdout);
+        assert!(shown.contains(last), "{shown}");
+        let said = text(&succeed(place.path(), &format!("info {folder}")).stdout);
+        assert!(said.contains(&format!("step 4 of 4, {last}")), "{said}");
+    }
 }
 
 #[test]

@@ -52,15 +52,16 @@ impl Check {
         }
         for (k, stop) in time.stop_when.iter().enumerate() {
             let key = key.key("stop_when").index(k);
-            match stop.condition {
+            match &stop.condition {
                 StopCondition::ReactionBelow(share) => {
-                    self.between(key.key("reaction_below"), share, [0.0, 1.0]);
+                    self.between(key.key("reaction_below"), *share, [0.0, 1.0]);
                 }
                 StopCondition::DamageAbove(damage) => {
                     let allowed = "allowed: a damage of at least 0 and below 1";
-                    let right = (0.0..1.0).contains(&damage);
-                    self.within(right, key.key("damage_above"), damage, allowed);
+                    let right = (0.0..1.0).contains(damage);
+                    self.within(right, key.key("damage_above"), *damage, allowed);
                 }
+                StopCondition::Holds(_) => {}
             }
         }
     }

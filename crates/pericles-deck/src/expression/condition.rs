@@ -18,18 +18,19 @@ const DEEPEST: usize = 60;
 #[derive(Clone)]
 pub struct Condition {
     text: Arc<str>,
-    test: Arc<Test>,
+    test: Arc<Test<Expression>>,
 }
 
-enum Test {
-    Any(Vec<Test>),
-    Every(Vec<Test>),
-    Not(Box<Test>),
-    Compare(Expression, Comparison, Expression),
+/// A condition on the values of expressions.
+pub(super) enum Test<E> {
+    Any(Vec<Self>),
+    Every(Vec<Self>),
+    Not(Box<Self>),
+    Compare(E, Comparison, E),
 }
 
 #[derive(Clone, Copy)]
-enum Comparison {
+pub(super) enum Comparison {
     Less,
     AtMost,
     Greater,
@@ -49,17 +50,15 @@ const COMPARISONS: [(&str, Comparison); 6] = [
 ];
 
 impl Condition {
+    /// What decks may contain.
+    pub(crate) const ALLOWED: &str = "such as where = \"x > 0.01 && y < 0.02 || block == 2\", in m";
+
     /// Parses a condition on the variables named by `allowed`.
     pub(crate) fn parse(text: &str, allowed: &[&str]) -> Result<Self, Malformed> {
-        if text.len() > LONGEST {
-            return reject(format!(
-                "it has {} characters; allowed: at most {LONGEST}",
-                text.len()
-            ));
-        }
+        let test = Test::of(text, &|side| Expression::parse(side, allowed))?;
         Ok(Self {
             text: text.into(),
-            test: Test::parse(text, allowed, 0)?.into(),
+            test: test.into(),
         })
     }
 
@@ -71,12 +70,27 @@ impl Condition {
     /// Returns whether it holds for a point of a block at a position (m).
     pub fn holds(&self, place: [f64; 3], block: u32) -> bool {
         let [x, y, z] = place;
-        self.test.holds([x, y, z, f64::NAN, f64::from(block)])
+        let values = [x, y, z, f64::NAN, f64::from(block)];
+        self.test.holds(&|side| side.at(values))
     }
 }
 
-impl Test {
-    fn parse(text: &str, allowed: &[&str], depth: usize) -> Result<Self, Malformed> {
+/// Parses a side of a comparison.
+type Side<'a, E> = &'a dyn Fn(&str) -> Result<E, Malformed>;
+
+impl<E: Clone> Test<E> {
+    /// Parses a condition on expressions that `side` parses.
+    pub(super) fn of(text: &str, side: Side<'_, E>) -> Result<Self, Malformed> {
+        if text.len() > LONGEST {
+            return reject(format!(
+                "it has {} characters; allowed: at most {LONGEST}",
+                text.len()
+            ));
+        }
+        Self::parse(text, side, 0)
+    }
+
+    fn parse(text: &str, side: Side<'_, E>, depth: usize) -> Result<Self, Malformed> {
         if depth > DEEPEST {
             return reject(format!("it is nested more than {DEEPEST} deep"));
         }
@@ -89,13 +103,13 @@ impl Test {
             if parts.len() > 1 {
                 let parts = parts.into_iter();
                 let tests: Result<Vec<Self>, _> = parts
-                    .map(|part| Self::parse(part, allowed, depth + 1))
+                    .map(|part| Self::parse(part, side, depth + 1))
                     .collect();
                 return Ok(join(tests?));
             }
         }
         if let Some(rest) = text.strip_prefix('!') {
-            return Ok(Self::Not(Self::parse(rest, allowed, depth + 1)?.into()));
+            return Ok(Self::Not(Self::parse(rest, side, depth + 1)?.into()));
         }
         let signs = COMPARISONS.map(|(sign, _)| sign);
         let (sides, found) = split(text, &signs)?;
@@ -104,16 +118,13 @@ impl Test {
                 .strip_prefix('(')
                 .and_then(|rest| rest.strip_suffix(')'))
             {
-                Some(inner) => Self::parse(inner, allowed, depth + 1),
+                Some(inner) => Self::parse(inner, side, depth + 1),
                 None => reject(format!(
                     "`{text}` is not a comparison; allowed: comparisons (< <= > >= == !=) such as x > 0.1, combined with && (and), || (or), ! (not)"
                 )),
             };
         }
-        let sides: Result<Vec<Expression>, _> = sides
-            .into_iter()
-            .map(|side| Expression::parse(side, allowed))
-            .collect();
+        let sides: Result<Vec<E>, _> = sides.into_iter().map(side).collect();
         let sides = sides?;
         let pairs = sides.windows(2).zip(found);
         let mut tests: Vec<Self> = pairs
@@ -127,13 +138,14 @@ impl Test {
         })
     }
 
-    fn holds(&self, values: [f64; 5]) -> bool {
+    /// Returns whether the condition holds for the values of its expressions.
+    pub(super) fn holds(&self, value: &dyn Fn(&E) -> f64) -> bool {
         match self {
-            Self::Any(parts) => parts.iter().any(|part| part.holds(values)),
-            Self::Every(parts) => parts.iter().all(|part| part.holds(values)),
-            Self::Not(part) => !part.holds(values),
+            Self::Any(parts) => parts.iter().any(|part| part.holds(value)),
+            Self::Every(parts) => parts.iter().all(|part| part.holds(value)),
+            Self::Not(part) => !part.holds(value),
             Self::Compare(left, comparison, right) => {
-                let (left, right) = (left.at(values), right.at(values));
+                let (left, right) = (value(left), value(right));
                 match comparison {
                     Comparison::Less => left < right,
                     Comparison::AtMost => left <= right,
@@ -143,6 +155,17 @@ impl Test {
                     Comparison::Unequal => left != right,
                 }
             }
+        }
+    }
+
+    /// Adds both sides of every comparison, in the order of the text.
+    pub(super) fn comparisons<'t>(&'t self, found: &mut Vec<[&'t E; 2]>) {
+        match self {
+            Self::Any(parts) | Self::Every(parts) => {
+                parts.iter().for_each(|part| part.comparisons(found));
+            }
+            Self::Not(part) => part.comparisons(found),
+            Self::Compare(left, _, right) => found.push([left, right]),
         }
     }
 }
@@ -155,8 +178,15 @@ fn reject<T>(reason: String) -> Result<T, Malformed> {
 fn split<'t>(text: &'t str, signs: &[&str]) -> Result<(Vec<&'t str>, Vec<usize>), Malformed> {
     let (mut parts, mut found) = (Vec::new(), Vec::new());
     let (mut depth, mut from, mut skip) = (0usize, 0, 0);
+    let mut is_quoted = false;
     for (at, character) in text.char_indices() {
         if at < skip {
+            continue;
+        }
+        if character == '\'' {
+            is_quoted = !is_quoted;
+        }
+        if is_quoted {
             continue;
         }
         match character {

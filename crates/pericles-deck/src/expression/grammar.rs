@@ -15,12 +15,39 @@ enum Token<'a> {
     /// Text and value.
     Number(&'a str, f64),
     Name(&'a str),
+    /// A name in single quotes, which may contain any other character.
+    Quoted(&'a str),
     /// One of `+ - * / ^ ( )`.
     Sign(char),
 }
 
+/// Names that an expression may use for its variables.
+enum Variables<'t> {
+    /// These names.
+    Only(&'t [&'t str]),
+    /// Any name; the names found so far. The text refers to them as `v0`, `v1` ….
+    Any(Vec<String>),
+}
+
 /// Returns the expression with `(base)^(exponent)` for every power and `(-(…))` for every sign.
 pub(super) fn group_powers(text: &str, variables: &[&str]) -> Result<String, Malformed> {
+    grouped(text, Variables::Only(variables)).map(|(text, _)| text)
+}
+
+/// Returns the expression as [`group_powers`], with `v0`, `v1` … in place of its variables, which may have any name,
+/// and their names in the order of these numbers.
+pub(super) fn group_names(text: &str) -> Result<(String, Vec<String>), Malformed> {
+    let (text, variables) = grouped(text, Variables::Any(Vec::new()))?;
+    Ok(match variables {
+        Variables::Any(names) => (text, names),
+        Variables::Only(_) => (text, Vec::new()),
+    })
+}
+
+fn grouped<'t>(
+    text: &'t str,
+    variables: Variables<'t>,
+) -> Result<(String, Variables<'t>), Malformed> {
     if text.len() > LONGEST {
         return reject(format!(
             "it has {} characters; allowed: at most {LONGEST}",
@@ -38,7 +65,7 @@ pub(super) fn group_powers(text: &str, variables: &[&str]) -> Result<String, Mal
     };
     let grouped = reader.sum()?;
     match reader.tokens.first() {
-        None => Ok(grouped),
+        None => Ok((grouped, reader.variables)),
         Some(Token::Sign(')')) => reject("a closing parenthesis has no opening one".into()),
         Some(token) => reject(format!("an operator is missing before {}", shown(token))),
     }
@@ -51,6 +78,7 @@ fn reject<T>(reason: String) -> Result<T, Malformed> {
 fn shown(token: &Token<'_>) -> String {
     match token {
         Token::Number(text, _) | Token::Name(text) => format!("`{text}`"),
+        Token::Quoted(name) => format!("`'{name}'`"),
         Token::Sign(sign) => format!("`{sign}`"),
     }
 }
@@ -65,6 +93,11 @@ fn tokens(text: &str) -> Result<Vec<Token<'_>>, Malformed> {
                 .find(|c: char| !c.is_ascii_alphanumeric() && c != '_')
                 .unwrap_or(rest.len()),
             '+' | '-' | '*' | '/' | '^' | '(' | ')' => 1,
+            '\'' => match rest[1..].find('\'') {
+                Some(0) => return reject("a name in quotes is empty".into()),
+                Some(length) => length + 2,
+                None => return reject("a quote is not closed".into()),
+            },
             other => {
                 return reject(format!(
                     "it contains `{other}`; allowed: numbers, names, + - * / ^ and parentheses"
@@ -78,6 +111,7 @@ fn tokens(text: &str) -> Result<Vec<Token<'_>>, Malformed> {
                 _ => return reject(format!("`{token}` is not a number")),
             },
             c if c.is_ascii_alphabetic() => Token::Name(token),
+            '\'' => Token::Quoted(&token[1..token.len() - 1]),
             sign => Token::Sign(sign),
         });
         rest = tail.trim_start();
@@ -108,13 +142,13 @@ fn number_length(text: &str) -> usize {
     length
 }
 
-struct Reader<'t> {
-    tokens: &'t [Token<'t>],
-    variables: &'t [&'t str],
+struct Reader<'r, 't> {
+    tokens: &'r [Token<'t>],
+    variables: Variables<'t>,
     depth: usize,
 }
 
-impl Reader<'_> {
+impl Reader<'_, '_> {
     fn take_sign(&mut self, signs: &[char]) -> Option<char> {
         match self.tokens {
             [Token::Sign(sign), rest @ ..] if signs.contains(sign) => {
@@ -172,6 +206,7 @@ impl Reader<'_> {
             // Written without an exponent, which exmex does not read in all cases.
             Token::Number(_, value) => Ok(format!("{value}")),
             Token::Name(name) => self.named(name),
+            Token::Quoted(name) => self.variable(name),
             Token::Sign('(') => self.parenthesis(),
             Token::Sign(sign) => reject(format!("a value is missing before `{sign}`")),
         }
@@ -198,16 +233,32 @@ impl Reader<'_> {
                 )),
             };
         }
-        if CONSTANTS.contains(&name) || self.variables.contains(&name) {
+        if CONSTANTS.contains(&name) {
             return Ok(name.to_owned());
         }
-        let known = || {
-            let variables = self.variables.iter().copied();
-            variables.chain(CONSTANTS).chain(FUNCTIONS)
+        self.variable(name)
+    }
+
+    fn variable(&mut self, name: &str) -> Result<String, Malformed> {
+        let is_called = self.tokens.first() == Some(&Token::Sign('('));
+        let allowed = match &mut self.variables {
+            Variables::Only(names) if names.contains(&name) => return Ok(name.to_owned()),
+            Variables::Only(names) => *names,
+            // An unknown function.
+            Variables::Any(_) if is_called => &[],
+            Variables::Any(names) => {
+                let number = names.iter().position(|known| known == name);
+                let number = number.unwrap_or_else(|| {
+                    names.push(name.to_owned());
+                    names.len() - 1
+                });
+                return Ok(format!("v{number}"));
+            }
         };
-        let hint = nearest(name, known())
+        let known = allowed.iter().copied().chain(CONSTANTS).chain(FUNCTIONS);
+        let hint = nearest(name, known)
             .map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
-        let variables = match self.variables {
+        let variables = match allowed {
             [] => "none".to_owned(),
             names => names.join(", "),
         };

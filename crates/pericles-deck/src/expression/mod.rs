@@ -12,6 +12,8 @@ mod bond;
 mod condition;
 mod grammar;
 mod jet;
+mod signal;
+mod unit;
 
 use std::fmt;
 use std::sync::Arc;
@@ -23,6 +25,7 @@ pub use bond::BondExpression;
 pub use condition::Condition;
 use exmex::{Express, FlatEx, FloatOpsFactory, MakeOperators, Operator};
 use jet::{Jet, JetOperators, Variation};
+pub use signal::{SignalCondition, SignalExpression};
 
 /// Functions of one argument. `step` is 0 for negative arguments, otherwise 1.
 pub(crate) const FUNCTIONS: [&str; 20] = [

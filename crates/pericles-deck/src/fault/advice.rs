@@ -63,7 +63,9 @@ impl Subject for Fault {
             Self::NotShared { .. } => {
                 "materials of a body may differ in density, elastic constants, failure and, if bond-based, horizon; set all other keys once, in [material]".into()
             }
-            Self::BadExpression { .. } => "such as { expression = \"1e-3 * exp(-(x/0.01)^2)\" }, in SI units".into(),
+            Self::BadExpression { allowed, .. } | Self::BadCondition { allowed, .. } => {
+                (*allowed).into()
+            }
             Self::TwoCourses { .. } => "remove `function`".into(),
             Self::BadSurfaceFile { .. } => {
                 "a surface must be closed, connected and consistently oriented, unless open, several or flip = true; `pericles geodesics FILE` reports details".into()
@@ -80,9 +82,6 @@ impl Subject for Fault {
             }
             Self::LongSum { .. } => {
                 "move exact.centre into the body, use a larger width, or shorten the run; the number of terms is 2 (distance from the centre + 6 c end)/width".into()
-            }
-            Self::BadCondition { .. } => {
-                "such as where = \"x > 0.01 && y < 0.02 || block == 2\", in m".into()
             }
             Self::BadPoints { .. } => {
                 "expected: one line `x y z block volume` per point, in m and m³; a relative path starts at the deck's folder".into()

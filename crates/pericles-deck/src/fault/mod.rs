@@ -99,8 +99,10 @@ pub enum Fault {
     BadExpression {
         /// The expression.
         text: String,
-        /// What is wrong, and what is allowed.
+        /// What is wrong.
         reason: String,
+        /// What is allowed.
+        allowed: &'static str,
     },
     /// A load or prescribed motion that becomes NaN or infinite.
     #[error("the {what} on `{set}` has no finite value at t = {}, within the run", quantity(*t, "s"))]
@@ -133,8 +135,10 @@ pub enum Fault {
     BadCondition {
         /// The condition.
         text: String,
-        /// What is wrong, and what is allowed.
+        /// What is wrong.
         reason: String,
+        /// What is allowed.
+        allowed: &'static str,
     },
     /// An invalid file of points.
     #[error("{reason}")]

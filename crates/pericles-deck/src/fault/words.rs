@@ -16,6 +16,15 @@ pub(super) fn no_faces(set: &str, inner: usize) -> String {
 }
 
 impl Fault {
+    /// Creates the error for an expression of position and time, or of stress and strain.
+    pub fn bad_expression(text: String, reason: String) -> Self {
+        Self::BadExpression {
+            text,
+            reason,
+            allowed: "such as { expression = \"1e-3 * exp(-(x/0.01)^2)\" }, in SI units",
+        }
+    }
+
     /// An unknown word, with the most similar allowed word and the first 30 allowed words.
     pub fn unknown_word<'w>(
         what: &'static str,

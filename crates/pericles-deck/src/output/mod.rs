@@ -1,13 +1,16 @@
 //! `[output]` and `[checkpoint]`: output files and their schedules.
 
+mod derived;
 mod fields;
+mod picture;
 mod profile;
 
+pub use derived::DerivedQuantity;
 pub use fields::{CellChoice, FieldBlocks, FieldFormat, PointNumber};
+pub use picture::{Picture, PictureColours, PictureFormat, PictureLook};
 pub use profile::Profile;
 
 use pericles::observe::{Field, Schedule};
-use pericles::space::Point;
 use serde::{Deserialize, Serialize};
 
 use self::fields::{Fields, cells, field_names, fields, quantity};
@@ -63,6 +66,9 @@ pub struct Output {
     /// Fields along straight lines at the end of the run.
     #[serde(default, rename = "profile", skip_serializing_if = "Vec::is_empty")]
     pub profiles: Vec<Profile>,
+    /// Quantities derived from columns of the tables.
+    #[serde(default, rename = "quantity", skip_serializing_if = "Vec::is_empty")]
+    pub quantities: Vec<DerivedQuantity>,
 }
 
 impl Default for Output {
@@ -84,6 +90,7 @@ impl Default for Output {
             energy_bound: None,
             pictures: Vec::new(),
             profiles: Vec::new(),
+            quantities: Vec::new(),
         }
     }
 }
@@ -126,31 +133,6 @@ pub enum Precision {
     Single,
     /// 64 bits.
     Double,
-}
-
-/// A picture of a field on the points.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Picture {
-    /// The field.
-    #[serde(with = "crate::form")]
-    pub field: Field,
-    /// Component of a vector or tensor; none for its magnitude.
-    #[serde(default)]
-    pub component: Option<usize>,
-    /// Magnification of displacements.
-    pub scale: f64,
-    /// Lowest and highest value of the colour bar; none for the range of the field.
-    #[serde(default)]
-    pub range: Option<[f64; 2]>,
-    /// Direction from which a 3D body is seen; none for the front, right and above.
-    #[serde(default)]
-    pub view: Option<Point>,
-    /// Whether an animation of all pictures is written at the end.
-    pub animation: bool,
-    /// Schedule.
-    #[serde(with = "crate::form")]
-    pub schedule: Schedule,
 }
 
 /// Schedule of checkpoints.
@@ -208,9 +190,10 @@ pub(crate) fn read(
     let pictures: Vec<Option<Picture>> = table
         .tables("picture")
         .into_iter()
-        .map(|table| picture(table, dimension))
+        .map(|table| picture::read(table, dimension))
         .collect();
     let profiles = profile::read(table.tables("profile"), dimension);
+    let quantities = derived::read(table.tables("quantity"));
     table.finish();
     let Fields {
         schedule,
@@ -235,6 +218,7 @@ pub(crate) fn read(
         energy_bound: energy_bound?,
         pictures: pictures.into_iter().collect::<Option<_>>()?,
         profiles: profiles?,
+        quantities: quantities?,
     })
 }
 
@@ -380,47 +364,6 @@ fn fragments(table: &Table<'_>) -> Option<FragmentOutput> {
     })
 }
 
-fn picture(table: Table<'_>, dimension: Option<usize>) -> Option<Picture> {
-    let field = table
-        .required("field")
-        .and_then(|item| field(&item, dimension));
-    let scale = table.or("scale", 1.0, |item| {
-        item.within(Quantity::Number, "a number of at least 0", |scale| {
-            scale >= 0.0
-        })
-    });
-    let quantity = field.map_or(Quantity::Number, |(field, _)| quantity(field));
-    let range = table.maybe("range", |item| range(&item, quantity));
-    let view = if dimension == Some(3) {
-        table.maybe("view", |item| {
-            let view = item.vector(Quantity::Number, Some(3))?;
-            if view == [0.0; 3] {
-                item.out_of_range("a nonzero vector");
-                return None;
-            }
-            Some(view)
-        })
-    } else {
-        if dimension.is_some() {
-            table.forbid("view", "it requires a 3D body");
-        }
-        Some(None)
-    };
-    let animation = table.or("animation", false, |item| item.boolean());
-    let schedule = schedule(&table, Schedule::Count(4));
-    table.finish();
-    let (field, component) = field?;
-    Some(Picture {
-        field,
-        component,
-        scale: scale?,
-        range: range?,
-        view: view?,
-        animation: animation?,
-        schedule: schedule?,
-    })
-}
-
 impl Output {
     /// Returns the table of crack tips; the default schedule is the schedule of the history.
     pub fn cracks(&self) -> CrackOutput {
@@ -464,15 +407,4 @@ impl Output {
 /// Reads a field by its name in files, with or without an axis of the body for a component.
 fn field(item: &Item<'_>, dimension: Option<usize>) -> Option<FieldComponent> {
     item.choice("field", &field_names(dimension))
-}
-
-fn range(item: &Item<'_>, quantity: Quantity) -> Option<[f64; 2]> {
-    let ends = item.exactly(2, "two numbers [lowest, highest]")?;
-    let (low, high) = (ends[0].quantity(quantity), ends[1].quantity(quantity));
-    let (low, high) = (low?, high?);
-    if low < high {
-        return Some([low, high]);
-    }
-    item.out_of_range("two numbers [lowest, highest], the first smaller");
-    None
 }

@@ -13,6 +13,7 @@ mod descriptions;
 mod json;
 mod markdown;
 mod specimens;
+mod unit;
 
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
@@ -21,6 +22,7 @@ use std::sync::OnceLock;
 use serde_json::Value as Json;
 
 use self::descriptions::Descriptions;
+pub use self::unit::unit_of_key;
 use crate::deck::Deck;
 use crate::reader::{Form, Survey, below};
 use crate::vocabulary::synonyms;

@@ -441,9 +441,11 @@ pub(super) const SPECIMENS: &[Specimen] = &[
     specimen(BAR, &["time={ end = 1, scheme = 'fire', tolerance = 1e-6, iterations = 9, load_steps = 2 }"]),
     specimen(BAR, &["time={ scheme = 'static' }"]),
     specimen(BAR, &["time={ end = 1, scheme = 'static', tolerance = 1e-6, newton_steps = 9, load_steps = 2, rigid_modes = 'fix', breaking = 'all' }"]),
-    specimen(BAR, &["constraint=[{ set = 'left', velocity = 0 }]", "time.stop_when=[{ set = 'left', reaction_below = 0.02 }, { set = 'left', damage_above = 0.9 }]"]),
+    specimen(BAR, &["constraint=[{ set = 'left', velocity = 0 }]", "time.stop_when=[{ set = 'left', reaction_below = 0.02 }, { set = 'left', damage_above = 0.9 }, { condition = 'time > 1' }]"]),
+    specimen(BAR, &["output.quantity=[{ name = 'a', expression = 'kinetic_energy', unit = 'J' }]"]),
     // Output.
     specimen(BAR, &["output={ fields = { every = 1 }, history = { interval = 1 }, cracks = { every = 1 }, fragments = { every = 1 }, energy_bound = 1 }"]),
     specimen(BAR, &["output={ fields = { count = 1 }, history = { count = 1 }, cracks = { interval = 1 }, fragments = { interval = 1 } }"]),
-    specimen(BAR, &["output.picture=[{ field = 'Damage' }]", "checkpoint.interval=1"]),
+    specimen(BAR, &["output.picture=[{ field = 'Damage' }, { field = 'Damage', width = '88 mm' }]", "checkpoint.interval=1"]),
+    specimen(BAR, &["output.picture=[{ field = 'Damage', format = 'pdf', width = '88 mm', font_size = '8 pt', dpi = 600, colour_map = 'grey', crop = { min = 0, max = 1 }, title = false, background = 'transparent' }]"]),
 ];

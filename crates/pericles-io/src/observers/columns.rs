@@ -3,23 +3,27 @@
 //! Every scalar time history is a column of `history.csv`: inner iterations, errors against a known solution, bounds
 //! of the energy.
 
-use pericles::observe::{Field, Snapshot};
+use pericles::observe::{Field, ObserveError, Snapshot};
 use pericles::space::PointSet;
 use pericles::{Archive, Checkpointed, Result};
 use pericles_manifold::EnergyInequality;
 use pericles_waves::exact::{ExactSolution, SolutionError};
 
 use super::picture_of::{name_of, scalar_of};
+use super::signals::Signals;
 use super::table::whole;
 use crate::csv::{Cell, Column};
 
-/// Additional columns of a [`History`](super::History).
+/// Additional columns of a [`History`](super::History) that depend on earlier states; [`Signals`] do not.
 pub trait HistoryColumns: Checkpointed + Send {
     /// Returns their names and units.
     fn columns(&self) -> Vec<Column>;
 
     /// Returns their cells for a state.
-    fn cells(&mut self, snapshot: &Snapshot<'_>) -> Vec<Cell>;
+    ///
+    /// # Errors
+    /// They cannot be computed.
+    fn cells(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<Vec<Cell>, ObserveError>;
 }
 
 /// Columns of schemes with inner iterations: iterations of the last step, and the remaining residual.
@@ -31,7 +35,7 @@ pub enum InnerColumns {
     Residual,
 }
 
-impl HistoryColumns for InnerColumns {
+impl Signals for InnerColumns {
     fn columns(&self) -> Vec<Column> {
         let left = match self {
             Self::Velocity => Column::real("inner_change", "m/s"),
@@ -40,18 +44,9 @@ impl HistoryColumns for InnerColumns {
         vec![Column::integer("inner_iterations"), left]
     }
 
-    fn cells(&mut self, snapshot: &Snapshot<'_>) -> Vec<Cell> {
+    fn cells(&self, snapshot: &Snapshot<'_>) -> std::result::Result<Vec<Cell>, ObserveError> {
         let inner = snapshot.inner_iterations().unwrap_or_default();
-        vec![whole(inner.last), inner.change.into()]
-    }
-}
-
-/// Columns without state.
-impl Checkpointed for InnerColumns {
-    fn save(&self, _archive: &mut Archive) {}
-
-    fn restore(&mut self, _archive: &Archive) -> Result<()> {
-        Ok(())
+        Ok(vec![whole(inner.last), inner.change.into()])
     }
 }
 
@@ -59,21 +54,14 @@ impl Checkpointed for InnerColumns {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct LoadFactorColumn;
 
-impl HistoryColumns for LoadFactorColumn {
+impl Signals for LoadFactorColumn {
     fn columns(&self) -> Vec<Column> {
         vec![Column::real("load_factor", "1")]
     }
 
-    fn cells(&mut self, snapshot: &Snapshot<'_>) -> Vec<Cell> {
-        vec![snapshot.system().load_factor().unwrap_or(f64::NAN).into()]
-    }
-}
-
-impl Checkpointed for LoadFactorColumn {
-    fn save(&self, _archive: &mut Archive) {}
-
-    fn restore(&mut self, _archive: &Archive) -> Result<()> {
-        Ok(())
+    fn cells(&self, snapshot: &Snapshot<'_>) -> std::result::Result<Vec<Cell>, ObserveError> {
+        let factor = snapshot.system().load_factor();
+        Ok(vec![factor.unwrap_or(f64::NAN).into()])
     }
 }
 
@@ -105,13 +93,13 @@ impl HistoryColumns for ErrorColumns {
         ]
     }
 
-    fn cells(&mut self, snapshot: &Snapshot<'_>) -> Vec<Cell> {
+    fn cells(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<Vec<Cell>, ObserveError> {
         let state = snapshot.state();
         let pick = |field: &[f64]| -> Vec<f64> {
             self.points.iter().map(|&i| field[i as usize]).collect()
         };
         let Some(u) = snapshot.whole(Field::Displacement) else {
-            return [f64::NAN; 3].map(Cell::from).to_vec();
+            return Ok([f64::NAN; 3].map(Cell::from).to_vec());
         };
         let places = pick(snapshot.whole_cloud().axis(0));
         let mut exact = vec![0.0; places.len()];
@@ -123,9 +111,8 @@ impl HistoryColumns for ErrorColumns {
         } else {
             self.largest.max(error.largest)
         };
-        [error.largest, self.largest, error.relative]
-            .map(Cell::from)
-            .to_vec()
+        let errors = [error.largest, self.largest, error.relative];
+        Ok(errors.map(Cell::from).to_vec())
     }
 }
 
@@ -150,7 +137,7 @@ impl ExtremeColumns {
     }
 }
 
-impl HistoryColumns for ExtremeColumns {
+impl Signals for ExtremeColumns {
     fn columns(&self) -> Vec<Column> {
         let named = self.fields.iter().flat_map(|&(field, component)| {
             let name = name_of(field, component, self.dimension);
@@ -159,7 +146,7 @@ impl HistoryColumns for ExtremeColumns {
         named.collect()
     }
 
-    fn cells(&mut self, snapshot: &Snapshot<'_>) -> Vec<Cell> {
+    fn cells(&self, snapshot: &Snapshot<'_>) -> std::result::Result<Vec<Cell>, ObserveError> {
         let points = snapshot.system().points();
         let extremes = self.fields.iter().flat_map(|&(field, component)| {
             let values = scalar_of(snapshot.field(field), points, component);
@@ -179,13 +166,7 @@ impl HistoryColumns for ExtremeColumns {
                 domain.max(fold(f64::NEG_INFINITY, f64::max)),
             ]
         });
-        extremes.map(Cell::from).collect()
-    }
-}
-
-pericles::saved! {
-    impl Checkpointed for ExtremeColumns {
-        fields, dimension: fixed,
+        Ok(extremes.map(Cell::from).collect())
     }
 }
 
@@ -200,13 +181,11 @@ impl HistoryColumns for EnergyBoundColumns {
         ]
     }
 
-    fn cells(&mut self, snapshot: &Snapshot<'_>) -> Vec<Cell> {
+    fn cells(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<Vec<Cell>, ObserveError> {
         let bound = self.0.bound(snapshot);
         let energies = snapshot.energies();
-        vec![
-            bound.into(),
-            (bound - energies.kinetic - energies.elastic).into(),
-        ]
+        let margin = bound - energies.kinetic - energies.elastic;
+        Ok(vec![bound.into(), margin.into()])
     }
 }
 

@@ -3,54 +3,63 @@
 use std::path::PathBuf;
 
 use pericles::observe::{ObserveError, Observer, Snapshot};
+use pericles::{Archive, Checkpointed, Result};
 
 use super::HistoryColumns;
-use super::table::{AXES, ObserverTable, step_and_time, whole};
+use super::signals::{EnergySignals, Signals};
+use super::table::{ObserverTable, step_and_time, whole};
 use crate::csv::{Cell, Column};
 
-/// The rows of a history: energies, momentum and broken bonds of states.
-///
-/// Columns: step, time, kinetic, elastic and dissipated energy, external work (loads and supports, since the
-/// start), the correction by which the energy conserved by the time scheme differs, the balance (sum of
-/// energies and correction, minus the work and the initial energy; zero if energy is conserved), momentum
-/// along each axis of the body, broken bonds, and the columns added by [`HistoryRows::with`].
+/// Signals as columns of a history; they have no state.
+struct Stateless(Box<dyn Signals>);
+
+impl HistoryColumns for Stateless {
+    fn columns(&self) -> Vec<Column> {
+        self.0.columns()
+    }
+
+    fn cells(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<Vec<Cell>, ObserveError> {
+        self.0.cells(snapshot)
+    }
+}
+
+impl Checkpointed for Stateless {
+    fn save(&self, _archive: &mut Archive) {}
+
+    fn restore(&mut self, _archive: &Archive) -> Result<()> {
+        Ok(())
+    }
+}
+
+/// The rows of a history: step, time, the columns of [`EnergySignals`], and those added by [`HistoryRows::with`] and
+/// [`HistoryRows::with_signals`].
 pub struct HistoryRows {
     columns: Vec<Column>,
-    dimension: usize,
-    more: Vec<Box<dyn HistoryColumns>>,
+    parts: Vec<Box<dyn HistoryColumns>>,
 }
 
 impl HistoryRows {
     /// Creates the rows for a body of the given dimension.
     pub fn new(dimension: usize) -> Self {
-        let mut columns = step_and_time();
-        for name in [
-            "kinetic_energy",
-            "elastic_energy",
-            "dissipated_energy",
-            "external_work",
-            "scheme_correction",
-            "balance",
-        ] {
-            columns.push(Column::real(name, "J"));
-        }
-        for axis in &AXES[..dimension] {
-            columns.push(Column::real(format!("momentum_{axis}"), "kg m/s"));
-        }
-        columns.push(Column::integer("broken_bonds"));
-        Self {
-            columns,
-            dimension,
-            more: Vec::new(),
-        }
+        let rows = Self {
+            columns: step_and_time(),
+            parts: Vec::new(),
+        };
+        rows.with_signals(EnergySignals { dimension })
     }
 
     /// Adds columns.
     #[must_use]
     pub fn with(mut self, columns: impl HistoryColumns + 'static) -> Self {
         self.columns.extend(columns.columns());
-        self.more.push(Box::new(columns));
+        self.parts.push(Box::new(columns));
         self
+    }
+
+    /// Adds signals.
+    #[must_use]
+    pub fn with_signals(self, signals: impl Signals + 'static) -> Self {
+        self.with(Stateless(Box::new(signals)))
     }
 
     /// Returns names and units of the columns.
@@ -59,33 +68,23 @@ impl HistoryRows {
     }
 
     /// Returns the row of a state.
-    pub fn row(&mut self, snapshot: &Snapshot<'_>) -> Vec<Cell> {
-        let (state, system) = (snapshot.state(), snapshot.system());
-        let energies = snapshot.energies();
-        let mut row = vec![
-            whole(state.step),
-            state.t.into(),
-            energies.kinetic.into(),
-            energies.elastic.into(),
-            energies.dissipated.into(),
-            energies.work.into(),
-            energies.scheme.into(),
-            energies.balance().into(),
-        ];
-        let momentum = system.momentum(&state.v);
-        row.extend(momentum[..self.dimension].iter().map(|&p| Cell::Real(p)));
-        row.push(whole(system.operator().broken_bonds()));
-        for columns in &mut self.more {
-            row.extend(columns.cells(snapshot));
+    ///
+    /// # Errors
+    /// A column cannot be computed.
+    pub fn row(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<Vec<Cell>, ObserveError> {
+        let state = snapshot.state();
+        let mut row = vec![whole(state.step), state.t.into()];
+        for columns in &mut self.parts {
+            row.extend(columns.cells(snapshot)?);
         }
-        row
+        Ok(row)
     }
 }
 
 pericles::saved! {
     impl Checkpointed for HistoryRows {
-        more: part,
-        columns, dimension: fixed,
+        parts: part,
+        columns: fixed,
     }
 }
 
@@ -116,7 +115,7 @@ impl History {
 
 impl Observer for History {
     fn observe(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), ObserveError> {
-        let row = self.rows.row(snapshot);
+        let row = self.rows.row(snapshot)?;
         let balance = snapshot.energies().balance();
         self.largest_balance = self.largest_balance.max(balance.abs());
         Ok(self.table.append(snapshot, &row)?)

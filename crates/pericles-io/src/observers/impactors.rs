@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use pericles::observe::{ObserveError, Observer, Snapshot};
 use pericles::{Archive, Checkpointed, Result, Values};
 
-use super::HistoryColumns;
 use super::rigid::{RigidMesh, impactors};
-use super::table::{AXES, ObserverTable, misfit, step_and_time, whole};
+use super::signals::Signals;
+use super::table::{AXES, misfit, whole};
 use crate::csv::{Cell, Column};
 use crate::error::IoError;
 use crate::file_stem::file_stem;
@@ -18,68 +18,35 @@ use crate::vtk::{PvdSeries, read_polydata, write_polydata};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ContactColumns;
 
-impl HistoryColumns for ContactColumns {
+impl Signals for ContactColumns {
     fn columns(&self) -> Vec<Column> {
         let names = ["contact_energy", "contact_dissipated", "impactor_kinetic"];
         names.map(|name| Column::real(name, "J")).into()
     }
 
-    fn cells(&mut self, snapshot: &Snapshot<'_>) -> Vec<Cell> {
+    fn cells(&self, snapshot: &Snapshot<'_>) -> std::result::Result<Vec<Cell>, ObserveError> {
         let energies = snapshot.energies();
         let all = [
             energies.contact,
             energies.contact_dissipated,
             energies.bodies,
         ];
-        all.map(Cell::Real).into()
+        Ok(all.map(Cell::Real).into())
     }
 }
 
-/// Columns without state.
-impl Checkpointed for ContactColumns {
-    fn save(&self, _archive: &mut Archive) {}
-
-    fn restore(&mut self, _archive: &Archive) -> Result<()> {
-        Ok(())
-    }
-}
-
-/// Place, motion and contact of impactors: `impactors.csv`.
+/// Place, motion and contact of impactors.
 ///
-/// Columns: step, time, then for each impactor the position of its centre of mass `<name>_<axis>` (m), its velocity
+/// For each impactor the position of its centre of mass `<name>_<axis>` (m), its velocity
 /// `<name>_v_<axis>` (m/s), its angular velocity `<name>_spin_<axis>` (rad/s; about z only in two dimensions), force
 /// `<name>_force_<axis>` (N) and torque `<name>_torque_<axis>` (N m) on it, the impulse that it has given to the body
 /// `<name>_impulse_<axis>` (N s), the number of points in contact and the largest overlap (m).
-pub struct Impactors {
-    table: ObserverTable,
-    dimension: usize,
-}
-
-impl Impactors {
-    /// Creates the observer of impactors with these names.
-    pub fn new(path: impl Into<PathBuf>, names: &[String], dimension: usize) -> Self {
-        let mut columns = step_and_time();
-        for name in names {
-            let mut add = |quantity: &str, axes: &[&str], unit: &str| {
-                for axis in axes {
-                    columns.push(Column::real(format!("{name}{quantity}_{axis}"), unit));
-                }
-            };
-            let (along, about) = (&AXES[..dimension], about(dimension));
-            add("", along, "m");
-            add("_v", along, "m/s");
-            add("_spin", about, "rad/s");
-            add("_force", along, "N");
-            add("_torque", about, "N m");
-            add("_impulse", along, "N s");
-            columns.push(Column::integer(format!("{name}_points")));
-            columns.push(Column::real(format!("{name}_overlap"), "m"));
-        }
-        Self {
-            table: ObserverTable::new(path.into(), "observer/impactors", columns),
-            dimension,
-        }
-    }
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ImpactorSignals {
+    /// Names of the impactors.
+    pub names: Vec<String>,
+    /// Dimension of the body.
+    pub dimension: usize,
 }
 
 /// Returns the axes about which impactors rotate.
@@ -91,31 +58,44 @@ fn about(dimension: usize) -> &'static [&'static str] {
     }
 }
 
-impl Observer for Impactors {
-    fn observe(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), ObserveError> {
-        let state = snapshot.state();
-        let mut row = vec![whole(state.step), state.t.into()];
+impl Signals for ImpactorSignals {
+    fn columns(&self) -> Vec<Column> {
+        let mut columns = Vec::new();
+        for name in &self.names {
+            let mut add = |quantity: &str, axes: &[&str], unit: &str| {
+                for axis in axes {
+                    columns.push(Column::real(format!("{name}{quantity}_{axis}"), unit));
+                }
+            };
+            let (along, about) = (&AXES[..self.dimension], about(self.dimension));
+            add("", along, "m");
+            add("_v", along, "m/s");
+            add("_spin", about, "rad/s");
+            add("_force", along, "N");
+            add("_torque", about, "N m");
+            add("_impulse", along, "N s");
+            columns.push(Column::integer(format!("{name}_points")));
+            columns.push(Column::real(format!("{name}_overlap"), "m"));
+        }
+        columns
+    }
+
+    fn cells(&self, snapshot: &Snapshot<'_>) -> std::result::Result<Vec<Cell>, ObserveError> {
+        let mut cells = Vec::new();
         let turns = 3 - about(self.dimension).len();
         for impactor in impactors(snapshot.system()) {
             let reading = impactor.reading();
-            let mut add = |values: &[f64]| row.extend(values.iter().map(|&x| Cell::Real(x)));
+            let mut add = |values: &[f64]| cells.extend(values.iter().map(|&x| Cell::Real(x)));
             add(&reading.centre[..self.dimension]);
             add(&reading.velocity[..self.dimension]);
             add(&reading.spin[turns..]);
             add(&reading.force[..self.dimension]);
             add(&reading.torque[turns..]);
             add(&reading.impulse[..self.dimension]);
-            row.push(whole(reading.points));
-            row.push(reading.overlap.into());
+            cells.push(whole(reading.points));
+            cells.push(reading.overlap.into());
         }
-        Ok(self.table.append(snapshot, &row)?)
-    }
-}
-
-pericles::saved! {
-    impl Checkpointed for Impactors {
-        table: part,
-        dimension: fixed,
+        Ok(cells)
     }
 }
 

@@ -5,11 +5,13 @@
 //! | [`FieldSeries`] | `fields.pvd`, `fields/fields_000000.vtu` … | all fields on the points |
 //! | [`ResultFile`] | `fields.exo`, `fields.vtkhdf` | all fields on the points, in one file |
 //! | [`History`] | `history.csv` | energies and their balance, momentum, broken bonds; if available, errors against an exact solution, an energy bound, inner iterations |
-//! | [`Reactions`] | `reactions.csv` | forces of supports |
+//! | [`SignalTable`] | `probes.csv` | displacement and velocity at probe positions |
+//! | | `reactions.csv` | forces of supports |
+//! | | `impactors.csv` | place, motion and contact of impactors |
+//! | | `quantities.csv` | quantities derived from other scalars |
 //! | [`ForceDisplacement`] | `force_displacement.csv`, `force_displacement.png` | displacements and forces of supports at static states |
 //! | [`Cracks`] | `cracks.csv` | crack tips |
 //! | [`FragmentCourse`] | `fragments.csv` | pieces connected by intact bonds |
-//! | [`Probes`] | `probes.csv` | displacement and velocity at probe positions |
 //! | [`SurfaceCourse`] | `surface.csv` | stretch of a surface, energy bound, localisation of energy |
 //! | [`Profile`] | `profile_<name>.csv`, `profile_<name>.png` | a field along a straight line at the end of a run, with a known solution if there is one |
 //! | [`Pictures`] | `pictures/Damage-000000.png` …, `pictures/Damage.apng` | pictures of a field and their animation |
@@ -67,11 +69,10 @@ mod impactors;
 mod overlay;
 mod picture_of;
 mod pictures;
-mod probes;
 mod profile;
-mod reactions;
 mod result_file;
 mod rigid;
+mod signals;
 mod surface;
 mod table;
 
@@ -80,21 +81,20 @@ pub use columns::{
     EnergyBoundColumns, ErrorColumns, ExtremeColumns, HistoryColumns, InnerColumns,
     LoadFactorColumn,
 };
-pub use cracks::Cracks;
+pub use cracks::{CrackSignals, Cracks};
 pub use field_columns::{FieldSelection, PointMark};
 pub use fields::FieldSeries;
 pub use force_displacement::ForceDisplacement;
 pub use fragments::FragmentCourse;
 pub use history::{History, HistoryRows};
-pub use impactors::{ContactColumns, ImpactorSurfaces, Impactors};
+pub use impactors::{ContactColumns, ImpactorSignals, ImpactorSurfaces};
 pub use overlay::Overlay;
 pub use picture_of::{DrawnState, PictureOf};
 pub use pictures::Pictures;
-pub use probes::Probes;
 pub use profile::{Profile, Reference};
-pub use reactions::Reactions;
 pub use result_file::{RecordedFields, ResultFile, ResultFormat};
 pub use rigid::{RigidMesh, impactors};
+pub use signals::{EnergySignals, ProbeSignals, ReactionSignals, SignalTable, Signals, TimeSignal};
 pub use surface::SurfaceCourse;
 
 #[cfg(test)]

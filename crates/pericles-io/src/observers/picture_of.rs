@@ -11,10 +11,7 @@ use pericles_manifold::surface::Surface;
 use super::overlay::Overlay;
 use super::rigid::{RigidMesh, rigid_meshes};
 use crate::error::IoError;
-use crate::picture::{CellSize, Extent, FieldPicture};
-
-/// Default width in pixels.
-const WIDTH: u32 = 1200;
+use crate::picture::{CellSize, Extent, FieldPicture, PictureStyle};
 
 /// Settings of a picture.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,8 +34,10 @@ pub struct PictureOf {
     /// Whether all pictures show the same region: the box of the body at rest plus a tenth of its longest
     /// side. Otherwise each picture shows the extent of the displaced body.
     pub steady: bool,
-    /// Width in pixels.
-    pub width: u32,
+    /// Size and style.
+    pub style: PictureStyle,
+    /// Lowest and highest coordinates of the region shown, m; `None` for the whole body.
+    pub crop: Option<[[f64; 3]; 2]>,
     /// Time at which all loads act, s; pictures of static states then show the load factor instead of the time.
     pub load_end: Option<f64>,
     /// Lines on a plane body.
@@ -102,7 +101,8 @@ impl PictureOf {
             view: None,
             surface: None,
             steady: false,
-            width: WIDTH,
+            style: PictureStyle::default(),
+            crop: None,
             load_end: None,
             overlay: None,
         }
@@ -199,13 +199,16 @@ impl PictureOf {
                 .displacement(state.displacement, self.scale)
                 .title(&self.title)
                 .time(state.t)
-                .width(self.width);
+                .style(self.style);
         let whole = (self.field == Field::Damage).then_some([0.0, 1.0]);
         if let Some(surface) = &self.surface {
             picture = picture.triangles(surface.triangles());
         }
         if self.steady {
             let (low, high) = surroundings(cloud);
+            picture = picture.window(low, high);
+        }
+        if let Some([low, high]) = self.crop {
             picture = picture.window(low, high);
         }
         if let Some(view) = self.view {

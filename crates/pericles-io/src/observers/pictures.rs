@@ -16,11 +16,13 @@ use crate::checkpoint::Container;
 use crate::error::IoError;
 use crate::picture::{Extent, write_animation};
 
-/// Pictures `<stem>-000000.png`, `<stem>-000001.png` … in a folder and, if requested, an animation
+/// Pictures `<stem>-000000.png`, `<stem>-000001.png` …, or SVG or PDF files, in a folder and, if requested, an animation
 /// `<stem>.apng` of the existing pictures at the end of the run.
 pub struct Pictures {
     folder: PathBuf,
     stem: String,
+    /// Ending of the file names, which is the format.
+    ending: &'static str,
     what: PictureOf,
     animated: bool,
     drawn: u64,
@@ -116,6 +118,7 @@ impl Pictures {
         Self {
             folder: folder.into(),
             stem: stem.into(),
+            ending: "png",
             what,
             animated: false,
             drawn: 0,
@@ -124,7 +127,13 @@ impl Pictures {
         }
     }
 
-    /// Adds an animation at the end of the run; all pictures then show the same region.
+    /// Sets the ending of the file names, `png`, `svg` or `pdf`, which is the format.
+    pub fn with_ending(mut self, ending: &'static str) -> Self {
+        self.ending = ending;
+        self
+    }
+
+    /// Adds an animation of PNG files at the end of the run; all pictures then show the same region.
     pub fn animated(mut self) -> Self {
         self.animated = true;
         self.what.steady = true;
@@ -132,7 +141,8 @@ impl Pictures {
     }
 
     fn still(&self, number: u64) -> PathBuf {
-        self.folder.join(format!("{}-{number:06}.png", self.stem))
+        self.folder
+            .join(format!("{}-{number:06}.{}", self.stem, self.ending))
     }
 
     /// Draws all pictures again at the end of the run with one range of the colour bar, unless the range is fixed.
@@ -224,6 +234,7 @@ impl Checkpointed for Pictures {
             drawn,
             folder: _,
             stem: _,
+            ending: _,
             what: _,
             animated: _,
             cloud: _,

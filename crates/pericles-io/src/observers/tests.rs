@@ -73,7 +73,11 @@ fn simulation(folder: &Path) -> Simulation {
         .unwrap();
         system.add_motion(motion).unwrap();
     }
-    let reactions = Reactions::new(folder.join("reactions.csv"), system.motions());
+    let reactions = SignalTable::new(
+        folder.join("reactions.csv"),
+        "observer/reactions",
+        ReactionSignals::new(system.motions()),
+    );
     let mut simulation =
         Simulation::new(system, Box::new(VelocityVerlet), state, 0.2, STEPS).unwrap();
     let tracker = CrackTracker::new(&cloud, vec![TrackedCrack { crack, points }], 0.35).unwrap();
@@ -103,7 +107,14 @@ fn simulation(folder: &Path) -> Simulation {
     let bound = EnergyBoundColumns(EnergyInequality::new(0.1));
     let rows = HistoryRows::new(2).with(errors).with(bound);
     let history = History::new(folder.join("history.csv"), rows);
-    let probes = Probes::new(folder.join("probes.csv"), vec![probe], 2);
+    let probes = SignalTable::new(
+        folder.join("probes.csv"),
+        "observer/probes",
+        ProbeSignals {
+            probes: vec![probe],
+            dimension: 2,
+        },
+    );
     simulation.observe(Schedule::Every(4), Box::new(history));
     simulation.observe(Schedule::Every(4), Box::new(reactions));
     simulation.observe(Schedule::Every(6), Box::new(cracks));

@@ -36,17 +36,52 @@ pub(super) struct Pen {
 pub(super) struct Bitmap {
     width: usize,
     height: usize,
-    /// Red, green, blue, and 255.
+    /// Red, green, blue, and opacity: 255 while shapes are drawn.
     rgba: Vec<u8>,
+    is_transparent: bool,
+    /// Pixels per inch, if the picture has a size on paper.
+    dpi: Option<f64>,
 }
 
 impl Bitmap {
+    #[cfg(test)]
     pub(super) fn white(width: usize, height: usize) -> Self {
+        Self::filled(width, height, WHITE)
+    }
+
+    pub(super) fn filled(width: usize, height: usize, [r, g, b]: Rgb) -> Self {
         Self {
             width,
             height,
-            rgba: vec![255; 4 * width * height],
+            rgba: [r, g, b, 255].repeat(width * height),
+            is_transparent: false,
+            dpi: None,
         }
+    }
+
+    /// Sets the resolution in pixels per inch, which is written to the file.
+    pub(super) fn with_dpi(self, dpi: Option<f64>) -> Self {
+        Self { dpi, ..self }
+    }
+
+    /// Returns the picture without its background, from the same picture on white and on black: a shape of opacity a is
+    /// 1 − a brighter on white.
+    pub(super) fn without_background(on_white: Self, on_black: &Self) -> Self {
+        let mut picture = on_white;
+        let pairs = picture.rgba.chunks_exact_mut(4);
+        for (light, dark) in pairs.zip(on_black.rgba.chunks_exact(4)) {
+            let through = (0..3).map(|c| light[c].saturating_sub(dark[c])).max();
+            let opacity = 255 - through.unwrap_or_default();
+            for c in 0..3 {
+                light[c] = match opacity {
+                    0 => 0,
+                    _ => rounded((255.0 * f64::from(dark[c]) / f64::from(opacity)).min(255.0)),
+                };
+            }
+            light[3] = opacity;
+        }
+        picture.is_transparent = true;
+        picture
     }
 
     #[cfg(test)]
@@ -65,7 +100,13 @@ impl Bitmap {
         [self.rgba[at], self.rgba[at + 1], self.rgba[at + 2]]
     }
 
-    fn rgb(&self) -> Vec<u8> {
+    /// Returns the opacities of the pixels.
+    pub(super) fn alpha(&self) -> Vec<u8> {
+        let pixels = self.rgba.chunks_exact(4);
+        pixels.map(|pixel| pixel[3]).collect()
+    }
+
+    pub(super) fn rgb(&self) -> Vec<u8> {
         let pixels = self.rgba.chunks_exact(4);
         pixels.flat_map(|pixel| &pixel[..3]).copied().collect()
     }
@@ -173,10 +214,25 @@ impl Bitmap {
     /// Encodes the picture as PNG.
     pub(super) fn encode(&self, out: impl Write) -> io::Result<()> {
         let mut encoder = png::Encoder::new(out, self.width as u32, self.height as u32);
-        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_color(match self.is_transparent {
+            true => png::ColorType::Rgba,
+            false => png::ColorType::Rgb,
+        });
         encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_pixel_dims(self.dpi.map(|dpi| {
+            let per_metre = (dpi / 25.4e-3).round() as u32;
+            png::PixelDimensions {
+                xppu: per_metre,
+                yppu: per_metre,
+                unit: png::Unit::Meter,
+            }
+        }));
         let mut writer = encoder.write_header().map_err(encoding)?;
-        writer.write_image_data(&self.rgb()).map_err(encoding)?;
+        let written = match self.is_transparent {
+            true => writer.write_image_data(&self.rgba),
+            false => writer.write_image_data(&self.rgb()),
+        };
+        written.map_err(encoding)?;
         writer.finish().map_err(encoding)
     }
 }

@@ -55,6 +55,7 @@ impl Category {
 #[cfg(test)]
 mod tests {
     use super::super::frame::{ColourBar, Sizes};
+    use super::super::style::PictureStyle;
     use super::*;
 
     #[test]
@@ -70,7 +71,12 @@ mod tests {
         let bar = ColourBar::of_numbers(&values, &[]);
         assert_eq!(bar.colour(7.0), CURVES[0]);
         assert_eq!(bar.colour(15.0), NO_VALUE);
-        assert_eq!(bar.ticks(400.0, &Sizes::of_width(1200)).major.len(), 9);
+        assert_eq!(
+            bar.ticks(400.0, &Sizes::of(&PictureStyle::default()))
+                .major
+                .len(),
+            9
+        );
     }
 
     #[test]

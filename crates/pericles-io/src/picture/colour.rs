@@ -13,6 +13,8 @@ pub enum ColourMap {
     /// Diverging, from blue over light grey to red, with zero in the middle. For displacements, velocities
     /// and other signed quantities.
     Diverging,
+    /// Sequential, from dark to light grey, for print without colours.
+    Grey,
 }
 
 /// Every sixteenth colour of `viridis` by N. Smith and S. van der Walt (2015),
@@ -60,6 +62,17 @@ const COOL_TO_WARM: [Rgb; 17] = [
     [180, 4, 38],
 ];
 
+/// Dark to light grey.
+const GREY: [Rgb; 17] = {
+    let mut table = [[0; 3]; 17];
+    let mut k = 0;
+    while k < 17 {
+        table[k] = [30 + 13 * k as u8; 3];
+        k += 1;
+    }
+    table
+};
+
 /// Colour of missing values.
 pub(super) const NO_VALUE: Rgb = [170, 170, 170];
 
@@ -86,6 +99,7 @@ impl ColourMap {
         let table = match self {
             Self::Viridis => &VIRIDIS,
             Self::Diverging => &COOL_TO_WARM,
+            Self::Grey => &GREY,
         };
         let last = table.len() - 1;
         let place = fraction.clamp(0.0, 1.0) * last as f64;

@@ -1,11 +1,12 @@
-//! A picture as a list of shapes, from which pixels or SVG are produced.
+//! A picture as a list of shapes, from which pixels, SVG or PDF are produced.
 //!
 //! Charts and frames are shapes; the cells of a body are always pixels. Cells are rendered by our code, with a depth
 //! buffer in which the smallest key wins, so that the result does not depend on the order; lines are clipped in
 //! doubles, because curves may leave their chart by any factor.
 
-use super::bitmap::{Bitmap, Pen, Rgb};
+use super::bitmap::{Bitmap, Pen, Rgb, WHITE};
 use super::raster::Raster;
+use super::style::PictureStyle;
 use super::text::{self, Style};
 
 /// A position in pixels from the left and from the top.
@@ -49,21 +50,38 @@ pub(super) enum Shape {
     },
 }
 
-/// A white page with shapes.
+/// A page with shapes.
 #[derive(Debug)]
 pub(super) struct Drawing {
     width: usize,
     height: usize,
     shapes: Vec<Shape>,
+    style: PictureStyle,
 }
 
 impl Drawing {
-    pub(super) fn new(width: usize, height: usize) -> Self {
+    /// Creates a page of a style and a height in pixels.
+    pub(super) fn new(style: &PictureStyle, height: usize) -> Self {
         Self {
-            width,
+            width: style.width as usize,
             height,
             shapes: Vec::new(),
+            style: *style,
         }
+    }
+
+    pub(super) fn is_transparent(&self) -> bool {
+        self.style.transparent
+    }
+
+    /// Returns the pixels per inch, if the picture has a size on paper.
+    pub(super) fn dpi(&self) -> Option<f64> {
+        self.style.print.map(|print| print.dpi)
+    }
+
+    /// Returns the length of a pixel in points.
+    pub(super) fn pixel(&self) -> f64 {
+        self.style.pixel()
     }
 
     pub(super) fn width(&self) -> usize {
@@ -133,7 +151,15 @@ impl Drawing {
 
     /// Renders the shapes.
     pub(super) fn to_bitmap(&self) -> Bitmap {
-        let mut bitmap = Bitmap::white(self.width, self.height);
+        let bitmap = match self.is_transparent() {
+            true => Bitmap::without_background(self.on(WHITE), &self.on([0; 3])),
+            false => self.on(WHITE),
+        };
+        bitmap.with_dpi(self.dpi())
+    }
+
+    fn on(&self, background: Rgb) -> Bitmap {
+        let mut bitmap = Bitmap::filled(self.width, self.height, background);
         for shape in &self.shapes {
             match shape {
                 Shape::Rectangle {

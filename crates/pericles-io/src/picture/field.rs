@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use super::bitmap::SIZES;
 use super::colour::ColourMap;
 use super::curve::{Axis, Curve};
 use super::drawing::Drawing;
@@ -10,6 +9,7 @@ use super::extent::{Extent, is_signed};
 use super::frame::{ColourBar, Header, finite_range, widened};
 use super::line_chart::LineChart;
 use super::scene::{Drawn, Facet, Scene};
+use super::style::PictureStyle;
 use super::write::write;
 use super::{plane, solid};
 use crate::IoError;
@@ -60,7 +60,7 @@ pub struct FieldPicture<'a> {
     range: Option<(f64, f64)>,
     window: Option<([f64; 3], [f64; 3])>,
     view: [f64; 3],
-    width: u32,
+    style: PictureStyle,
 }
 
 /// Returns the normal of a triangle, as long as twice its area.
@@ -104,7 +104,7 @@ impl<'a> FieldPicture<'a> {
             window: None,
             // From the front right, slightly above: x points to the right, z upwards.
             view: [0.5, -1.0, 0.6],
-            width: 1200,
+            style: PictureStyle::default(),
         }
     }
 
@@ -204,12 +204,18 @@ impl<'a> FieldPicture<'a> {
     /// Sets the width in pixels, 200 to 16 000; the default is 1200. The height follows from the shape of the
     /// body.
     pub fn width(mut self, width: u32) -> Self {
-        self.width = width;
+        self.style.width = width;
         self
     }
 
-    /// Draws the picture and writes it atomically: as SVG, with the cells as an embedded image, if the file
-    /// name ends in `.svg`; otherwise as PNG.
+    /// Sets size and style.
+    pub fn style(mut self, style: PictureStyle) -> Self {
+        self.style = style;
+        self
+    }
+
+    /// Draws the picture and writes it atomically: as SVG or PDF, with the cells as an embedded image, if the file
+    /// name ends in `.svg` or `.pdf`; otherwise as PNG.
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), IoError> {
         let path = path.as_ref();
         write(&self.draw(path)?, path)
@@ -244,11 +250,8 @@ impl<'a> FieldPicture<'a> {
                 "the body has dimension {given}; allowed: 1, 2 and 3"
             )));
         }
-        if !SIZES.contains(&self.width) {
-            let (width, least, most) = (self.width, SIZES.start(), SIZES.end());
-            return Err(unsuitable(format!(
-                "the width is {width} pixels; allowed: {least} to {most}"
-            )));
+        if let Some(problem) = self.style.problem() {
+            return Err(unsuitable(problem));
         }
         if self.view.iter().any(|c| !c.is_finite()) || self.view == [0.0; 3] {
             return Err(unsuitable(
@@ -303,6 +306,11 @@ impl<'a> FieldPicture<'a> {
         })
     }
 
+    /// Returns the colour map, if it is set.
+    fn colour_map(&self) -> Option<ColourMap> {
+        self.colours.or(self.style.colours)
+    }
+
     fn colour_bar(&self) -> ColourBar {
         if let Some(names) = &self.categories {
             return ColourBar::of_numbers(self.values, names);
@@ -311,7 +319,7 @@ impl<'a> FieldPicture<'a> {
             Some((low, high)) => [low, high],
             None => {
                 let [low, high] = Extent::of(self.values, 0.0).ends();
-                match self.colours {
+                match self.colour_map() {
                     Some(ColourMap::Diverging) => {
                         let size = low.abs().max(high.abs());
                         [-size, size]
@@ -321,7 +329,7 @@ impl<'a> FieldPicture<'a> {
             }
         };
         let (low, high) = widened(low, high);
-        let colours = self.colours.unwrap_or(match is_signed(low, high) {
+        let colours = self.colour_map().unwrap_or(match is_signed(low, high) {
             true => ColourMap::Diverging,
             false => ColourMap::Viridis,
         });
@@ -377,13 +385,13 @@ impl<'a> FieldPicture<'a> {
         }
         let (low, high) = self.window.unwrap_or((low, high));
         let header = Header {
-            title: self.title.clone(),
+            title: self.shown_title().into(),
             stamp: self.stamp(),
             note: self.note(),
             bar_label: bar.shown.label(&self.name),
         };
         Scene {
-            width: self.width as usize,
+            style: self.style,
             is_strip: self.dimension == 1,
             cells,
             facets: self.facets(),
@@ -434,7 +442,17 @@ impl<'a> FieldPicture<'a> {
             .collect()
     }
 
+    fn shown_title(&self) -> &str {
+        match self.style.titled {
+            true => &self.title,
+            false => "",
+        }
+    }
+
     fn stamp(&self) -> String {
+        if !self.style.titled {
+            return String::new();
+        }
         match (self.load_factor, self.time) {
             (Some(factor), _) => format!("load factor {}", significant(factor, 3)),
             (None, Some(time)) => format!("t = {}", quantity(time, "s")),
@@ -466,9 +484,9 @@ impl<'a> FieldPicture<'a> {
             across = across.range(low, high);
         }
         LineChart::new(along, across)
-            .title(&self.title)
+            .title(self.shown_title())
             .stamp(self.stamp())
-            .width(self.width)
+            .style(self.style)
             .curve(Curve::line("", &x, &y))
     }
 }

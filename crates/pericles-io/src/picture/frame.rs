@@ -4,6 +4,7 @@ use super::bitmap::{INK, Rgb};
 use super::category::Category;
 use super::colour::ColourMap;
 use super::drawing::Drawing;
+use super::style::PictureStyle;
 use super::text::{self, Align, Style};
 use super::ticks::Ticks;
 use pericles::units::Shown;
@@ -20,11 +21,25 @@ pub(super) struct Sizes {
     pub(super) gap: f64,
     pub(super) tick: f64,
     pub(super) line: f64,
+    /// Whether text has a given size, which is not reduced.
+    is_fixed: bool,
 }
 
 impl Sizes {
-    pub(super) fn of_width(width: usize) -> Self {
-        let unit = width as f64 / 1200.0;
+    pub(super) fn of(style: &PictureStyle) -> Self {
+        if let Some(print) = style.print {
+            let text = print.pixels(print.font_size);
+            return Self {
+                tick_text: text,
+                label_text: text,
+                title_text: text,
+                gap: 0.5 * text,
+                tick: 0.35 * text,
+                line: (text / 16.0).max(1.0),
+                is_fixed: true,
+            };
+        }
+        let unit = f64::from(style.width) / 1200.0;
         Self {
             tick_text: 21.0 * unit,
             label_text: 23.0 * unit,
@@ -32,6 +47,48 @@ impl Sizes {
             gap: 12.0 * unit,
             tick: 8.0 * unit,
             line: (1.5 * unit).max(1.0),
+            is_fixed: false,
+        }
+    }
+
+    /// Returns the room for a tick in pixels, from heights of its text: `fixed` for text of a given size, which is large in
+    /// relation to the picture, else `usual`.
+    pub(super) fn tick_room(&self, usual: f64, fixed: f64) -> f64 {
+        match self.is_fixed {
+            true => fixed * self.tick_text,
+            false => usual * self.tick_text,
+        }
+    }
+
+    /// Returns how often a layout is repeated: the labels need space, which changes the size of the plot and thereby the
+    /// labels.
+    pub(super) fn rounds(&self) -> usize {
+        match self.is_fixed {
+            true => 4,
+            false => 2,
+        }
+    }
+
+    /// Draws a text that is shortened, or reduced in size if text has no given size, where it would be longer than `room`.
+    pub(super) fn text_within(
+        &self,
+        drawing: &mut Drawing,
+        text: &str,
+        place: (f64, f64),
+        (style, room): (Style, f64),
+    ) {
+        match self.is_fixed {
+            true => drawing.text(&text::shortened(text, style.size, room), place, style),
+            false => drawing.text(text, place, style.fitted(text, room)),
+        }
+    }
+
+    /// Returns the room for the label of an axis between two ends on a page: text of a given size may be longer than the
+    /// axis.
+    fn room(&self, [from, to]: [f64; 2], page: f64) -> f64 {
+        match self.is_fixed {
+            true => (from + to).min(2.0 * page - from - to) - self.gap,
+            false => to - from,
         }
     }
 
@@ -171,13 +228,16 @@ impl Frame {
             let style = Style::new(sizes.tick_text, Align::End);
             drawing.text(label, (area.left - 1.5 * sizes.tick, place), style);
         }
-        let style = Style::new(sizes.label_text, Align::Middle).fitted(&x.label, area.width());
+        let page = [drawing.width(), drawing.height()].map(|pixels| pixels as f64);
+        let style = Style::new(sizes.label_text, Align::Middle);
+        let style = style.fitted(&x.label, sizes.room([area.left, area.right], page[0]));
         let place = (
             (area.left + area.right) / 2.0,
             area.bottom + sizes.below() - sizes.gap - 0.5 * sizes.label_text,
         );
         drawing.text(&x.label, place, style);
-        let style = Style::new(sizes.label_text, Align::Middle).fitted(&y.label, area.height());
+        let style = Style::new(sizes.label_text, Align::Middle);
+        let style = style.fitted(&y.label, sizes.room([area.top, area.bottom], page[1]));
         let place = (
             area.left - sizes.beside(&y.ticks) + sizes.gap + 0.5 * sizes.label_text,
             (area.top + area.bottom) / 2.0,
@@ -226,8 +286,8 @@ impl Header {
         if !self.stamp.is_empty() {
             room -= text::width(&self.stamp, sizes.title_text) + sizes.title_text;
         }
-        let style = Style::new(sizes.title_text, Align::Start).fitted(&self.title, room);
-        drawing.text(&self.title, (left, middle), style);
+        let style = Style::new(sizes.title_text, Align::Start);
+        sizes.text_within(drawing, &self.title, (left, middle), (style, room));
 
         let middle = sizes.gap + self.first_line(sizes) + 0.5 * self.second_line(sizes);
         let style = Style::new(sizes.label_text, Align::Start);
@@ -236,8 +296,8 @@ impl Header {
         if !self.note.is_empty() {
             room -= text::width(&self.note, sizes.label_text) + sizes.label_text;
         }
-        let style = Style::new(sizes.label_text, Align::End).fitted(&self.bar_label, room);
-        drawing.text(&self.bar_label, (right, middle), style);
+        let style = Style::new(sizes.label_text, Align::End);
+        sizes.text_within(drawing, &self.bar_label, (right, middle), (style, room));
     }
 }
 
@@ -290,7 +350,7 @@ impl ColourBar {
             };
         }
         let factor = self.shown.factor;
-        let wanted = (height / (3.0 * sizes.tick_text)).clamp(2.0, 8.0) as usize;
+        let wanted = (height / sizes.tick_room(3.0, 2.0)).clamp(2.0, 8.0) as usize;
         Ticks::linear(self.low / factor, self.high / factor, wanted)
     }
 

@@ -3,15 +3,17 @@
 use std::path::Path;
 
 use super::backdrop::Backdrop;
-use super::bitmap::{INK, SIZES, WHITE};
-use super::clip::{clipped, inside, length_inside};
+use super::bitmap::SIZES;
+use super::clip::{clipped, inside};
 use super::curve::{Axis, Curve, Look};
 use super::drawing::Drawing;
-use super::frame::{Area, AxisText, ColourBar, Frame, Header, Sizes};
-use super::text::{self, Align, Style};
+use super::frame::{Area, AxisText, ColourBar, Frame, Header, Scale, Sizes};
+use super::legend::{Legend, LegendRows};
+use super::style::PictureStyle;
+use super::text;
 use super::write::write;
 use crate::IoError;
-use pericles::units::quantity;
+use pericles::units::{Shown, quantity};
 
 /// A chart of curves over common axes.
 #[derive(Debug, Clone)]
@@ -23,17 +25,8 @@ pub struct LineChart {
     curves: Vec<Curve>,
     backdrop: Option<Backdrop>,
     key_beside: bool,
-    width: u32,
+    style: PictureStyle,
     height: u32,
-}
-
-/// Size of the legend in pixels: curve names with samples of their lines.
-struct KeySize {
-    sample: f64,
-    /// Width of a name.
-    room: f64,
-    width: f64,
-    height: f64,
 }
 
 impl LineChart {
@@ -46,7 +39,7 @@ impl LineChart {
             curves: Vec::new(),
             backdrop: None,
             key_beside: false,
-            width: 1200,
+            style: PictureStyle::default(),
             height: 750,
         }
     }
@@ -89,18 +82,25 @@ impl LineChart {
 
     /// Sets the width in pixels, 200 to 16 000; the default is 1200. The aspect ratio is 8 : 5.
     pub fn width(self, width: u32) -> Self {
-        let height = (f64::from(width) * 0.625).round() as u32;
-        self.size(width, height.max(*SIZES.start()))
+        self.style(PictureStyle::of_width(width))
+    }
+
+    /// Sets size and style. The aspect ratio is 8 : 5.
+    pub fn style(mut self, style: PictureStyle) -> Self {
+        let height = (f64::from(style.width) * 0.625).round() as u32;
+        self.height = height.max(*SIZES.start());
+        self.style = style;
+        self
     }
 
     /// Sets width and height in pixels, 200 to 16 000 each.
     pub fn size(mut self, width: u32, height: u32) -> Self {
-        self.width = width;
+        self.style.width = width;
         self.height = height;
         self
     }
 
-    /// Draws the chart and writes it atomically: as SVG if the file name ends in `.svg`, otherwise as PNG.
+    /// Draws the chart and writes it atomically: as SVG or PDF if the file name ends in `.svg` or `.pdf`, otherwise as PNG.
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), IoError> {
         let path = path.as_ref();
         write(&self.draw(path)?, path)
@@ -119,54 +119,65 @@ impl LineChart {
 
     pub(super) fn draw(&self, path: &Path) -> Result<Drawing, IoError> {
         self.check(path)?;
-        let sizes = Sizes::of_width(self.width as usize);
-        let usable = |point: &(f64, f64)| self.allows(*point);
-        let all = || {
-            self.curves
-                .iter()
-                .flat_map(|c| &c.points)
-                .filter(|p| usable(p))
-        };
-        let (x_shown, x) = self.x.scale(all().map(|p| p.0));
-        let (y_shown, y) = self.y.scale(all().map(|p| p.1));
+        let sizes = Sizes::of(&self.style);
+        let legend = Legend::of(&self.curves, &sizes);
+        let (drawing, area, hidden) = self.drawn(&sizes, &legend, None);
+        // Text of a given size may leave no corner for the legend.
+        if hidden == 0.0 || self.style.print.is_none() {
+            return Ok(drawing);
+        }
+        let rows = legend.rows(area.width());
+        let (drawing, ..) = self.drawn(&sizes, &legend, Some(&rows));
+        Ok(drawing)
+    }
 
-        let top = self.header.height(&sizes).max(2.0 * sizes.gap).round();
-        let bottom = (f64::from(self.height) - sizes.below()).round();
+    /// Draws the chart with its legend in rows above the plot, or within or beside it; returns the plot and the length of the
+    /// curves that the legend covers, in pixels.
+    fn drawn(
+        &self,
+        sizes: &Sizes,
+        legend: &Legend<'_>,
+        rows: Option<&LegendRows>,
+    ) -> (Drawing, Area, f64) {
+        let (x_scale, y_scale) = self.scales();
+        let header = self.shown_header();
+        let above = rows.map_or(0.0, |rows| rows.height.round());
+        let height = self.height as usize + above as usize;
+        let top = header.height(sizes).max(2.0 * sizes.gap).round() + above;
+        let bottom = (height as f64 - sizes.below()).round();
+        let (y_shown, y) = y_scale;
+        let wanted = (bottom - top) / sizes.tick_room(3.0, 2.0);
         let y_text = AxisText {
-            ticks: self.y.ticks(
-                &y,
-                &y_shown,
-                ((bottom - top) / (3.0 * sizes.tick_text)).clamp(2.0, 9.0) as usize,
-            ),
+            ticks: self.y.ticks(&y, &y_shown, wanted.clamp(2.0, 9.0) as usize),
             label: y_shown.label(&self.y.name),
         };
         let left = sizes.beside(&y_text.ticks).round();
-        let mut right = (f64::from(self.width) - 2.0 * sizes.gap).round();
+        let mut right = (f64::from(self.style.width) - 2.0 * sizes.gap).round();
         let bar = self.backdrop.as_ref().map(|backdrop| {
             let bar = backdrop.bar();
-            let ticks = bar.ticks(bottom - top, &sizes);
+            let ticks = bar.ticks(bottom - top, sizes);
             (backdrop, bar, ticks)
         });
         let end = right;
         if let Some((_, _, ticks)) = &bar {
-            right = (f64::from(self.width) - ColourBar::room(ticks, &sizes)).round();
+            right = (f64::from(self.style.width) - ColourBar::room(ticks, sizes)).round();
         }
-        let beside = self.key_beside && bar.is_none();
-        if beside {
-            // At most a third of the picture: longer names are shrunk.
-            let key = self.key_size((right - left) / 3.0, &sizes);
-            right -= (key.width + sizes.gap).round();
+        // At most a third of the picture: longer names are shrunk.
+        let beside = (self.key_beside && bar.is_none()).then(|| legend.size((right - left) / 3.0));
+        if let Some(size) = &beside {
+            right -= (size.width + sizes.gap).round();
         }
-        let wanted = ((right - left) / (6.0 * sizes.tick_text)).clamp(2.0, 10.0) as usize;
+        let (x_shown, x) = x_scale;
+        let wanted = (right - left) / sizes.tick_room(6.0, 4.0);
         let x_text = AxisText {
-            ticks: self.x.ticks(&x, &x_shown, wanted),
+            ticks: self.x.ticks(&x, &x_shown, wanted.clamp(2.0, 10.0) as usize),
             label: x_shown.label(&self.x.name),
         };
         // The label at the right end must not be clipped.
         let overhang = x_text
             .ticks
             .longest(|label| text::width(label, sizes.tick_text));
-        if bar.is_none() && !beside {
+        if bar.is_none() && beside.is_none() {
             right -= (0.5 * overhang - sizes.gap).max(0.0).round();
         }
         let area = Area {
@@ -176,36 +187,78 @@ impl LineChart {
             bottom,
         };
         let frame = Frame { area, x, y };
-
-        let mut drawing = Drawing::new(self.width as usize, self.height as usize);
-        frame.draw_grid(&mut drawing, &x_text, &y_text, &sizes);
-        if let Some((backdrop, bar, ticks)) = &bar {
-            let factors = [x_shown.factor, y_shown.factor];
-            backdrop.draw(&mut drawing, &frame, bar, factors);
-            bar.draw(&mut drawing, area, ticks, &sizes);
-        }
         let factors = [x_shown.factor, y_shown.factor];
+        let mut drawing = Drawing::new(&self.style, height);
+        frame.draw_grid(&mut drawing, &x_text, &y_text, sizes);
+        if let Some((backdrop, bar, ticks)) = &bar {
+            backdrop.draw(&mut drawing, &frame, bar, factors);
+            bar.draw(&mut drawing, area, ticks, sizes);
+        }
+        let pieces = self.draw_curves(&mut drawing, &frame, factors, sizes);
+        frame.draw_axes(&mut drawing, &x_text, &y_text, sizes);
+        let hidden = match (&beside, rows) {
+            (_, Some(rows)) => {
+                legend.draw_rows(&mut drawing, rows, (left, top - above - 0.5 * sizes.gap));
+                0.0
+            }
+            (Some(size), None) => {
+                legend.draw(&mut drawing, size, (area.right + sizes.gap, area.top));
+                0.0
+            }
+            (None, None) => {
+                let (place, hidden) = legend.emptiest(area, &pieces);
+                let size = legend.size(area.width() - 2.0 * sizes.gap);
+                legend.draw(&mut drawing, &size, place);
+                hidden
+            }
+        };
+        let end = if bar.is_some() || beside.is_some() {
+            end
+        } else {
+            right
+        };
+        header.draw(&mut drawing, left, end, sizes);
+        (drawing, area, hidden)
+    }
+
+    /// Returns the scales of both axes.
+    fn scales(&self) -> ((Shown, Scale), (Shown, Scale)) {
+        let usable = |point: &&(f64, f64)| self.allows(**point);
+        let all = || {
+            let points = self.curves.iter().flat_map(|curve| &curve.points);
+            points.filter(usable)
+        };
+        let x = self.x.scale(all().map(|point| point.0));
+        (x, self.y.scale(all().map(|point| point.1)))
+    }
+
+    /// Draws the curves; returns their pieces in pixels.
+    fn draw_curves(
+        &self,
+        drawing: &mut Drawing,
+        frame: &Frame,
+        factors: [f64; 2],
+        sizes: &Sizes,
+    ) -> Vec<Vec<Vec<(f64, f64)>>> {
         let curves = self.curves.iter().enumerate();
-        let drawn: Vec<_> = curves
+        curves
             .map(|(number, curve)| {
-                let pieces = self.pieces(curve, &frame, factors);
-                let look = Look::of(number, curve, &sizes);
-                draw_curve(&mut drawing, curve, &pieces, (&look, area));
+                let pieces = self.pieces(curve, frame, factors);
+                let look = Look::of(number, curve, sizes);
+                draw_curve(drawing, curve, &pieces, (&look, frame.area));
                 pieces
             })
-            .collect();
-        frame.draw_axes(&mut drawing, &x_text, &y_text, &sizes);
-        match beside {
-            true => {
-                let key = self.key_size((end - left) / 3.0, &sizes);
-                let place = (area.right + sizes.gap, area.top);
-                self.draw_key(&mut drawing, &key, place, &sizes);
-            }
-            false => self.draw_key_within(&mut drawing, area, &drawn, &sizes),
+            .collect()
+    }
+
+    /// Returns the lines above the plot.
+    fn shown_header(&self) -> Header {
+        let mut header = self.header.clone();
+        if !self.style.titled {
+            header.title.clear();
+            header.stamp.clear();
         }
-        let end = if bar.is_some() || beside { end } else { right };
-        self.header.draw(&mut drawing, left, end, &sizes);
-        Ok(drawing)
+        header
     }
 
     /// Returns whether both axes can show a point.
@@ -230,14 +283,17 @@ impl LineChart {
     }
 
     fn check(&self, path: &Path) -> Result<(), IoError> {
-        if !SIZES.contains(&self.width) || !SIZES.contains(&self.height) {
-            let (width, height, least, most) =
-                (self.width, self.height, SIZES.start(), SIZES.end());
+        if let Some(problem) = self.style.problem() {
             return Err(IoError::Unsuitable {
                 path: path.to_path_buf(),
-                reason: format!(
-                    "the chart is {width} × {height} pixels; allowed: {least} to {most} each"
-                ),
+                reason: problem,
+            });
+        }
+        if !SIZES.contains(&self.height) {
+            let (height, least, most) = (self.height, SIZES.start(), SIZES.end());
+            return Err(IoError::Unsuitable {
+                path: path.to_path_buf(),
+                reason: format!("the height is {height} pixels; allowed: {least} to {most}"),
             });
         }
         if let Some(backdrop) = &self.backdrop {
@@ -263,87 +319,6 @@ impl LineChart {
             }
         }
         Ok(())
-    }
-
-    /// Returns the named curves with their indices.
-    fn named(&self) -> impl Iterator<Item = (usize, &Curve)> {
-        let curves = self.curves.iter().enumerate();
-        curves.filter(|(_, curve)| !curve.name.is_empty())
-    }
-
-    /// Returns the size of the legend for a maximum width.
-    fn key_size(&self, most: f64, sizes: &Sizes) -> KeySize {
-        let sample = 2.2 * sizes.tick_text;
-        let room = most - sample - 3.0 * sizes.gap;
-        let longest = self
-            .named()
-            .map(|(_, curve)| text::width(&curve.name, sizes.tick_text))
-            .fold(0.0, f64::max);
-        KeySize {
-            sample,
-            room,
-            width: sample + 3.0 * sizes.gap + longest.min(room),
-            height: 1.5 * sizes.tick_text * self.named().count() as f64 + sizes.gap,
-        }
-    }
-
-    /// Draws the legend in the corner where it covers least of the curves.
-    fn draw_key_within(
-        &self,
-        drawing: &mut Drawing,
-        area: Area,
-        drawn: &[Vec<Vec<(f64, f64)>>],
-        sizes: &Sizes,
-    ) {
-        let gap = sizes.gap;
-        let key = self.key_size(area.width() - 2.0 * gap, sizes);
-        let KeySize { width, height, .. } = key;
-        let places = [
-            (area.right - gap - width, area.top + gap),
-            (area.left + gap, area.top + gap),
-            (area.right - gap - width, area.bottom - gap - height),
-            (area.left + gap, area.bottom - gap - height),
-        ];
-        let hidden = |&(left, top): &(f64, f64)| {
-            let area = Area {
-                left,
-                top,
-                right: left + width,
-                bottom: top + height,
-            };
-            let pieces = drawn.iter().flatten();
-            pieces.map(|piece| length_inside(piece, area)).sum::<f64>()
-        };
-        let emptiest = places
-            .into_iter()
-            .min_by(|a, b| hidden(a).total_cmp(&hidden(b)));
-        if let Some(place) = emptiest {
-            self.draw_key(drawing, &key, place, sizes);
-        }
-    }
-
-    /// Draws the legend with its upper left corner at a position.
-    fn draw_key(&self, drawing: &mut Drawing, key: &KeySize, place: (f64, f64), sizes: &Sizes) {
-        if self.named().next().is_none() {
-            return;
-        }
-        let (gap, row) = (sizes.gap, 1.5 * sizes.tick_text);
-        let corner = (place.0 + key.width, place.1 + key.height);
-        drawing.fill_rectangle(place, corner, WHITE, 0.85);
-        drawing.outline(place, corner, 1.0, [200, 200, 200]);
-        for (line, (number, curve)) in self.named().enumerate() {
-            let look = Look::of(number, curve, sizes);
-            let y = place.1 + 0.5 * gap + row * (line as f64 + 0.5);
-            let (from, to) = (place.0 + gap, place.0 + gap + key.sample);
-            if curve.line {
-                look.stroke(drawing, vec![vec![(from, y), (to, y)]]);
-            }
-            if curve.markers {
-                look.mark(drawing, (0.5 * (from + to), y));
-            }
-            let style = Style::new(sizes.tick_text, Align::Start).fitted(&curve.name, key.room);
-            drawing.text(&curve.name, (to + gap, y), style.colour(INK));
-        }
     }
 }
 

@@ -1,4 +1,4 @@
-//! Pictures as PNG or SVG files: fields on the points of a body, and charts of curves.
+//! Pictures as PNG, SVG or PDF files: fields on the points of a body, and charts of curves.
 //!
 //! * [`FieldPicture`]: every point as a filled cell at its displaced position, coloured by a scalar, with
 //!   colour bar, time stamp and suitable length unit. A plane body has axes; a solid is shown in parallel
@@ -42,11 +42,14 @@ mod drawing;
 mod extent;
 mod field;
 mod frame;
+mod legend;
 mod line_chart;
+mod pdf;
 mod plane;
 mod raster;
 mod scene;
 mod solid;
+mod style;
 mod svg;
 mod text;
 mod ticks;
@@ -60,3 +63,4 @@ pub use extent::Extent;
 pub use field::{CellSize, FieldPicture};
 pub use line_chart::LineChart;
 pub use pericles::units::quantity;
+pub use style::{PictureStyle, Print};

@@ -1,6 +1,7 @@
 //! Picture of a plane body with axes.
 
 use super::bitmap::{INK, Pen, WHITE};
+use super::clip::clipped;
 use super::drawing::{Drawing, Spot};
 use super::frame::{Area, AxisText, ColourBar, Frame, Scale, Sizes};
 use super::raster::Raster;
@@ -19,15 +20,15 @@ const TALLEST: f64 = 1.1;
 const FINE: usize = 2;
 
 pub(super) fn draw(scene: &Scene) -> Drawing {
-    let sizes = Sizes::of_width(scene.width);
-    let width = scene.width as f64;
+    let sizes = Sizes::of(&scene.style);
+    let width = f64::from(scene.style.width);
     let (bw, bh) = (scene.high[0] - scene.low[0], scene.high[1] - scene.low[1]);
     let largest = bw.max(bh).max(f64::MIN_POSITIVE);
     let shown = Shown::for_size(largest, scene.length_unit);
     let margin = MARGIN * largest;
     let (ew, eh) = (bw + 2.0 * margin, bh + 2.0 * margin);
 
-    // The labels need space, which changes the size of the plot and thereby the labels: two iterations suffice.
+    // A first guess of the space for the labels.
     let (mut left, mut right) = (100.0 * width / 1200.0, 130.0 * width / 1200.0);
     let mut height = 0.0;
     let mut y_ticks = Ticks::default();
@@ -38,13 +39,13 @@ pub(super) fn draw(scene: &Scene) -> Drawing {
         high: (middle(c) + 0.5 * pixels / per_metre) / shown.factor,
         logarithmic: false,
     };
-    for _ in 0..2 {
+    for _ in 0..sizes.rounds() {
         let plot = width - left - right;
         height = (plot * eh / ew)
             .clamp(FLATTEST * width, TALLEST * width)
             .round();
         let per_metre = (plot / ew).min(height / eh);
-        let wanted = (height / (4.0 * sizes.tick_text)).clamp(2.0, 8.0) as usize;
+        let wanted = (height / sizes.tick_room(4.0, 2.2)).clamp(2.0, 8.0) as usize;
         if !scene.is_strip {
             y_ticks = scale(1, height, per_metre).ticks(wanted);
         }
@@ -72,13 +73,13 @@ pub(super) fn draw(scene: &Scene) -> Drawing {
         let half = (cell.half[0] * per_metre, cell.half[1] * per_metre);
         raster.cell((x - left, y - top), half, cell.colour);
     }
-    let mut drawing = Drawing::new(scene.width, (area.bottom + sizes.below()).ceil() as usize);
+    let mut drawing = Drawing::new(&scene.style, (area.bottom + sizes.below()).ceil() as usize);
     drawing.cells(raster, left as usize, top as usize);
     let lines = scene.lines.iter().map(|line| {
         let place = |p: &[f64; 2]| frame.place(p[0] / shown.factor, p[1] / shown.factor);
-        line.iter().map(place).collect()
+        line.iter().map(place).collect::<Vec<Spot>>()
     });
-    let lines: Vec<Vec<Spot>> = lines.collect();
+    let lines: Vec<Vec<Spot>> = lines.flat_map(|line| clipped(&line, area)).collect();
     if !lines.is_empty() {
         // Dark lines with a light rim, visible on all colours.
         for (width, colour) in [(3.0 * sizes.line, WHITE), (sizes.line, INK)] {
@@ -94,7 +95,7 @@ pub(super) fn draw(scene: &Scene) -> Drawing {
     let x = AxisText {
         ticks: frame
             .x
-            .ticks((area.width() / (6.0 * sizes.tick_text)).max(2.0) as usize),
+            .ticks((area.width() / sizes.tick_room(6.0, 4.0)).max(2.0) as usize),
         label: shown.label("x"),
     };
     let y = AxisText {

@@ -218,6 +218,20 @@ impl Raster {
         (self.width / self.fine, self.height / self.fine)
     }
 
+    /// Returns the raster as a picture of its own, on white or without a background.
+    pub(super) fn bitmap(&self, is_transparent: bool) -> Bitmap {
+        let (width, height) = self.size();
+        let on = |colour| {
+            let mut bitmap = Bitmap::filled(width, height, colour);
+            self.lay_on(&mut bitmap, 0, 0);
+            bitmap
+        };
+        match is_transparent {
+            true => Bitmap::without_background(on(WHITE), &on([0; 3])),
+            false => on(WHITE),
+        }
+    }
+
     /// Draws the raster on a bitmap with its corner at (left, top). Uncovered pixels are unchanged.
     pub(super) fn lay_on(&self, bitmap: &mut Bitmap, left: usize, top: usize) {
         let fine = self.fine;

@@ -2,6 +2,7 @@
 
 use super::bitmap::Rgb;
 use super::frame::{ColourBar, Header};
+use super::style::PictureStyle;
 
 /// A cell to draw: position, half edges and colour.
 #[derive(Debug, Clone, Copy)]
@@ -23,7 +24,7 @@ pub(super) struct Facet {
 /// The cells or triangles of a body with title, time and colour bar.
 #[derive(Debug)]
 pub(super) struct Scene {
-    pub(super) width: usize,
+    pub(super) style: PictureStyle,
     /// Whether the body is a bar, whose height has no meaning.
     pub(super) is_strip: bool,
     pub(super) cells: Vec<Drawn>,

@@ -87,8 +87,8 @@ impl View {
 }
 
 pub(super) fn draw(scene: &Scene) -> Drawing {
-    let sizes = Sizes::of_width(scene.width);
-    let width = scene.width as f64;
+    let sizes = Sizes::of(&scene.style);
+    let width = f64::from(scene.style.width);
     let view = View::new(scene.view);
 
     let (low, high) = extent(scene, &view);
@@ -105,7 +105,7 @@ pub(super) fn draw(scene: &Scene) -> Drawing {
     let mut right = 130.0 * width / 1200.0;
     let mut height = 0.0;
     let mut bar_ticks = Ticks::default();
-    for _ in 0..2 {
+    for _ in 0..sizes.rounds() {
         let plot = width - left - right;
         height = (plot * eh / ew)
             .clamp(FLATTEST * width, TALLEST * width)
@@ -137,7 +137,7 @@ pub(super) fn draw(scene: &Scene) -> Drawing {
 
     let arm = 3.0 * sizes.tick_text;
     let below = 2.0 * arm + sizes.tick_text + 2.0 * sizes.gap;
-    let mut drawing = Drawing::new(scene.width, (area.bottom + below).ceil() as usize);
+    let mut drawing = Drawing::new(&scene.style, (area.bottom + below).ceil() as usize);
     drawing.cells(raster, left as usize, top as usize);
     draw_directions(&mut drawing, &view, area, arm, &sizes);
     draw_length(&mut drawing, area, (per_metre, scene.length_unit), &sizes);

@@ -5,7 +5,7 @@ use std::io;
 
 use base64::prelude::{BASE64_STANDARD, Engine as _};
 
-use super::bitmap::{Bitmap, Rgb};
+use super::bitmap::Rgb;
 use super::drawing::{Drawing, Shape, Spot};
 use super::raster::Raster;
 use super::text::{self, Align, Direction, Style};
@@ -20,12 +20,22 @@ const FONTS: &str = "DejaVu Sans, Verdana, sans-serif";
 /// Returns an error if an image cannot be encoded.
 pub(super) fn document(drawing: &Drawing) -> io::Result<String> {
     let (width, height) = (drawing.width(), drawing.height());
+    let size = |pixels: usize| match drawing.dpi() {
+        Some(dpi) => format!("{:.2}mm", pixels as f64 / dpi * 25.4),
+        None => pixels.to_string(),
+    };
     let mut page = Page(format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" font-family=\"{FONTS}\">\n\
-         <rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n"
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" viewBox=\"0 0 {width} {height}\" font-family=\"{FONTS}\">\n",
+        size(width),
+        size(height)
     ));
+    if !drawing.is_transparent() {
+        page.line(format_args!(
+            "<rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>"
+        ));
+    }
     for shape in drawing.shapes() {
-        page.shape(shape)?;
+        page.shape(shape, drawing.is_transparent())?;
     }
     page.0 += "</svg>\n";
     Ok(page.0)
@@ -40,7 +50,7 @@ impl Page {
         let _ = writeln!(self.0, "{line}");
     }
 
-    fn shape(&mut self, shape: &Shape) -> io::Result<()> {
+    fn shape(&mut self, shape: &Shape, is_transparent: bool) -> io::Result<()> {
         match shape {
             Shape::Rectangle {
                 from,
@@ -79,7 +89,9 @@ impl Page {
                 ));
             }
             Shape::Text { text, place, style } => self.text(text, *place, style),
-            Shape::Cells { cells, left, top } => self.image(cells, *left, *top)?,
+            Shape::Cells { cells, left, top } => {
+                self.image(cells, [*left, *top], is_transparent)?;
+            }
         }
         Ok(())
     }
@@ -130,12 +142,15 @@ impl Page {
         ));
     }
 
-    fn image(&mut self, cells: &Raster, left: usize, top: usize) -> io::Result<()> {
+    fn image(
+        &mut self,
+        cells: &Raster,
+        [left, top]: [usize; 2],
+        is_transparent: bool,
+    ) -> io::Result<()> {
         let (width, height) = cells.size();
-        let mut bitmap = Bitmap::white(width, height);
-        cells.lay_on(&mut bitmap, 0, 0);
         let mut png = Vec::new();
-        bitmap.encode(&mut png)?;
+        cells.bitmap(is_transparent).encode(&mut png)?;
         self.line(format_args!(
             "<image x=\"{left}\" y=\"{top}\" width=\"{width}\" height=\"{height}\" href=\"data:image/png;base64,{}\"/>",
             BASE64_STANDARD.encode(png)
@@ -174,10 +189,11 @@ fn short(number: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::picture::bitmap::Pen;
+    use crate::picture::style::PictureStyle;
 
     #[test]
     fn every_shape_is_written_and_text_is_escaped() {
-        let mut drawing = Drawing::new(300, 200);
+        let mut drawing = Drawing::new(&PictureStyle::of_width(300), 200);
         let black = [0, 0, 0];
         drawing.fill_rectangle((1.2, 2.0), (10.0, 20.4), [255, 0, 128], 0.5);
         drawing.stroke(

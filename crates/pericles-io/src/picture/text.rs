@@ -6,10 +6,12 @@ use ab_glyph::{Font, FontRef, GlyphId, PxScale, ScaleFont};
 
 use super::bitmap::{Bitmap, Rgb};
 
+/// The font file.
+pub(super) const FONT_FILE: &[u8] = include_bytes!("../../assets/DejaVuSans-subset.ttf");
+
 static FONT: LazyLock<FontRef<'static>> = LazyLock::new(|| {
     // The bytes are part of the program: this can fail only in a broken build, which the tests detect.
-    FontRef::try_from_slice(include_bytes!("../../assets/DejaVuSans-subset.ttf"))
-        .expect("the embedded font is valid")
+    FontRef::try_from_slice(FONT_FILE).expect("the embedded font is valid")
 });
 
 /// Half the height of capitals in DejaVu Sans relative to its size (1493 of 2048 units).
@@ -21,6 +23,17 @@ pub(super) enum Align {
     Start,
     Middle,
     End,
+}
+
+impl Align {
+    /// Returns the part of the text before the given position.
+    pub(super) fn share(self) -> f64 {
+        match self {
+            Self::Start => 0.0,
+            Self::Middle => 0.5,
+            Self::End => 1.0,
+        }
+    }
 }
 
 /// Direction of the text.
@@ -98,14 +111,46 @@ pub(super) fn width(text: &str, size: f64) -> f64 {
     f64::from(place(text, size).1)
 }
 
+/// Returns the numbers of the glyphs of a text with their positions along the line, and the length, in pixels.
+pub(super) fn glyphs(text: &str, size: f64) -> (Vec<(u16, f64)>, f64) {
+    let (glyphs, length) = place(text, size);
+    let placed = glyphs.into_iter();
+    let placed = placed.map(|(glyph, at)| (glyph.0, f64::from(at)));
+    (placed.collect(), f64::from(length))
+}
+
+/// Returns the width of a glyph relative to the size of the text.
+pub(super) fn advance(glyph: u16) -> f64 {
+    let em = FONT.units_per_em().unwrap_or(2048.0);
+    f64::from(FONT.h_advance_unscaled(GlyphId(glyph)) / em)
+}
+
+/// Returns ascent and descent relative to the size of the text.
+pub(super) fn metrics() -> [f32; 2] {
+    let em = FONT.units_per_em().unwrap_or(2048.0);
+    [FONT.ascent_unscaled() / em, FONT.descent_unscaled() / em]
+}
+
+/// Returns a text of at most `room` pixels: its beginning with an ellipsis if it is longer.
+pub(super) fn shortened(text: &str, size: f64, room: f64) -> String {
+    if width(text, size) <= room {
+        return text.to_owned();
+    }
+    let mut kept: Vec<char> = text.chars().collect();
+    while kept.pop().is_some() {
+        let short: String = kept.iter().collect();
+        let short = format!("{}...", short.trim_end());
+        if width(&short, size) <= room {
+            return short;
+        }
+    }
+    String::new()
+}
+
 /// Draws a text at (x, y); along its direction, y is at half the height of its capitals.
 pub(super) fn draw(bitmap: &mut Bitmap, text: &str, (x, y): (f64, f64), style: Style) {
     let (glyphs, length) = place(text, style.size);
-    let back = match style.align {
-        Align::Start => 0.0,
-        Align::Middle => f64::from(length) / 2.0,
-        Align::End => f64::from(length),
-    };
+    let back = style.align.share() * f64::from(length);
     // Across the line, positions are whole pixels: a baseline between two rows of pixels looks blurred.
     let (along, across) = match style.direction {
         Direction::Right => (x - back, y),

@@ -15,6 +15,7 @@ use super::discretisation::Discretisation;
 use super::discretise::discretise;
 use super::rejection::{at, at_path};
 use super::resources::Resources;
+use crate::signals::SignalRegistry;
 
 /// Builds forces, conditions and scheme of a model on its points, and determines the time step. All processes that share a body
 /// must call it together.
@@ -140,7 +141,9 @@ pub fn assemble(
     if !system.domain().is_divided() {
         assembler.check_supports(&system, steps.count as f64 * steps.dt, &mut warnings);
     }
-    let stops = assembler.stops(&system, sets)?;
+    let signals = SignalRegistry::of(model, (&system, &*integrator), &probes, &tracked)?;
+    let signals = Arc::new(signals);
+    let stops = assembler.stops(&system, sets, &signals)?;
     let loads = assembler.load_reports(&system, areas, steps.count as f64 * steps.dt);
     let Discretisation {
         cloud,
@@ -169,6 +172,7 @@ pub fn assemble(
         steps: steps.count,
         contact_frequency: (contact.frequency > 0.0).then_some(contact.frequency),
         probes,
+        signals,
         ends,
         open,
         exact,

@@ -20,6 +20,7 @@ use super::mesh_body::Meshes;
 use super::open::OpenReport;
 use super::softening::MaterialSoftening;
 use super::step::damped_step;
+use crate::signals::SignalRegistry;
 
 /// An assembled model, ready to run.
 pub struct Assembly {
@@ -62,6 +63,8 @@ pub struct Assembly {
     pub contact_frequency: Option<f64>,
     /// The probes.
     pub probes: Vec<PointProbe>,
+    /// The scalars of the run by name.
+    pub signals: Arc<SignalRegistry>,
     /// The absorbing boundaries.
     pub ends: Vec<(Side, EndReport)>,
     /// The open boundary.

@@ -146,6 +146,6 @@ impl Assembler<'_> {
         let reason = format!(
             "the value at ({x}, {y}, {z}) and t = 0 is NaN or infinite; it must be finite at every point of the set"
         );
-        at_path(path, Fault::BadExpression { text, reason })
+        at_path(path, Fault::bad_expression(text, reason))
     }
 }

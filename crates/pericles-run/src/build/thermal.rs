@@ -227,7 +227,7 @@ impl Assembler<'_> {
         let reason = format!(
             "the value at ({x}, {y}, {z}) and t = 0 is NaN or infinite; it must be finite at every point"
         );
-        let fault = Fault::BadExpression { text, reason };
+        let fault = Fault::bad_expression(text, reason);
         Err(at_path(path.key("temperature"), fault))
     }
 }

@@ -144,12 +144,12 @@ impl Convergence {
             reference,
             limit,
         } = &self.question;
-        let name = scalar.replace('_', " ");
+        let name = Scalar::named(scalar).title();
         let unit = self.unit.as_str();
         let (step, step_unit) = limit.axis();
         let x = Axis::new(step, step_unit).logarithmic();
         let y = match reference {
-            Some(_) => Axis::new(format!("|{name} − reference|"), unit).logarithmic(),
+            Some(_) => Axis::new(format!("error of {name}"), unit).logarithmic(),
             None => Axis::new(name, unit),
         };
         let mut chart = LineChart::new(x, y);

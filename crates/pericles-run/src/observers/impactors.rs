@@ -4,9 +4,10 @@ use pericles::Simulation;
 use pericles::observe::Schedule;
 use pericles_deck::{FieldFormat, Model};
 use pericles_io::OutputFolder;
-use pericles_io::observers::{ImpactorSurfaces, Impactors};
+use pericles_io::observers::{ImpactorSurfaces, SignalTable};
 
 use crate::error::RunError;
+use crate::signals::impactor_signals;
 
 /// Adds the table and the files of impactors; returns their names relative to the folder.
 pub(super) fn add_impactors(
@@ -14,13 +15,12 @@ pub(super) fn add_impactors(
     folder: &OutputFolder,
     simulation: &mut Simulation,
 ) -> Result<Vec<String>, RunError> {
-    let impactors = model.impactors.iter().map(|impactor| impactor.name.clone());
-    let impactors: Vec<String> = impactors.collect();
-    if impactors.is_empty() {
+    let output = &model.output;
+    let Some(signals) = impactor_signals(model, simulation.system().dimension()) else {
         return Ok(Vec::new());
-    }
-    let (output, dimension) = (&model.output, simulation.system().dimension());
-    let table = Impactors::new(folder.file("impactors.csv"), &impactors, dimension);
+    };
+    let impactors = signals.names.clone();
+    let table = SignalTable::new(folder.file("impactors.csv"), "observer/impactors", signals);
     simulation.observe(output.history, Box::new(table));
     let mut names = vec!["impactors.csv".to_owned()];
     if output.fields != Schedule::Never && output.formats.contains(&FieldFormat::Vtu) {

@@ -1,5 +1,6 @@
 //! Charts of scalars over the values of a sweep.
 
+use pericles_deck::unit_of_key;
 use pericles_io::{Axis as ChartAxis, Curve, LineChart};
 use serde_json::Value;
 
@@ -64,10 +65,10 @@ impl SweepResults {
             }
         }
         let across = match is_numeric {
-            true => ChartAxis::new(axes[place].key.as_str(), unit_of(&axes[place].key)),
+            true => ChartAxis::new(axes[place].key.as_str(), unit_of_key(&axes[place].key)),
             false => ChartAxis::new(format!("{} (number of the value)", axes[place].key), ""),
         };
-        let upward = ChartAxis::new(scalar.replace('_', " "), unit);
+        let upward = ChartAxis::new(source.title(), unit);
         let chart = curves
             .into_iter()
             .fold(LineChart::new(across, upward), |chart, family| {
@@ -101,13 +102,4 @@ fn value_of(member: &Member, key: &str) -> Result<Option<f64>, RunError> {
         }
     });
     Ok(found.and_then(Value::as_f64))
-}
-
-/// Returns the SI unit of lengths and times of frequent keys; empty for others.
-fn unit_of(key: &str) -> &'static str {
-    match key.rsplit('.').next() {
-        Some("spacing" | "dx" | "horizon" | "length") => "m",
-        Some("dt" | "end") => "s",
-        _ => "",
-    }
 }

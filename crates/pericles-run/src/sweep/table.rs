@@ -48,7 +48,7 @@ impl Table {
             .iter()
             .map(|results| last_readings(results.as_ref()))
             .collect();
-        // All runs have the same probes; runs that failed early have no values.
+        // All runs have the same probes and quantities; runs that failed early have no values.
         let longest = probes.iter().max_by_key(|readings| readings.len());
         let readings: Vec<&str> = longest
             .into_iter()
@@ -149,17 +149,22 @@ impl Table {
     }
 }
 
-/// Returns the probe values in the last row of their table.
+/// Returns the values of probes and derived quantities in the last row of their tables.
 fn last_readings(results: Option<&Results>) -> Vec<(String, f64)> {
-    let table = results.map(|results| read_csv(results.folder().join("probes.csv")));
-    let Some(Ok(table)) = table else {
-        return Vec::new();
-    };
-    let columns = table.columns.iter().zip(&table.values).skip(2);
-    columns
-        .filter_map(|(column, values)| {
-            let name = format!("{} [{}]", column.name(), column.unit());
+    let mut readings = Vec::new();
+    for name in ["probes.csv", "quantities.csv"] {
+        let table = results.map(|results| read_csv(results.folder().join(name)));
+        let Some(Ok(table)) = table else {
+            continue;
+        };
+        let columns = table.columns.iter().zip(&table.values).skip(2);
+        readings.extend(columns.filter_map(|(column, values)| {
+            let name = match column.unit() {
+                "" => column.name().to_owned(),
+                unit => format!("{} [{unit}]", column.name()),
+            };
             Some((name, *values.last()?))
-        })
-        .collect()
+        }));
+    }
+    readings
 }

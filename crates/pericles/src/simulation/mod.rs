@@ -6,6 +6,7 @@ mod builder;
 mod failure;
 mod step;
 
+use std::cell::OnceCell;
 use std::sync::{Arc, OnceLock};
 
 pub use builder::SimulationBuilder;
@@ -287,7 +288,7 @@ impl Simulation {
                 }
                 Ok(()) => {}
             }
-            self.stopped = self.met();
+            self.stopped = self.met()?;
             let last = self.state.step == self.steps || self.stopped.is_some();
             self.guard(last)?;
             self.show(last)?;
@@ -324,18 +325,30 @@ impl Simulation {
     }
 
     /// Evaluates all conditions and returns the first that the current state meets.
-    fn met(&mut self) -> Option<StopReason> {
-        let mut met = None;
-        for stop in &mut self.stops {
-            let found = stop.look(&self.system);
-            met = met.or(found.map(|found| StopReason {
-                set: stop.set.clone(),
-                step: self.state.step,
-                t: self.state.t,
-                found,
-            }));
+    fn met(&mut self) -> Result<Option<StopReason>, SimulationError> {
+        let mut stops = std::mem::take(&mut self.stops);
+        let snapshot = OnceCell::new();
+        let (mut met, mut failed) = (None, Ok(()));
+        // All conditions are evaluated, because other processes may have no error.
+        for stop in &mut stops {
+            match stop.look(&self.system, || snapshot.get_or_init(|| self.snapshot())) {
+                Ok(found) => {
+                    met = met.or(found.map(|found| StopReason {
+                        name: stop.name.clone(),
+                        step: self.state.step,
+                        t: self.state.t,
+                        found,
+                    }));
+                }
+                Err(error) => failed = failed.and(Err(error)),
+            }
         }
-        met
+        let has_tests = stops.iter().any(StopWhen::is_test);
+        self.stops = stops;
+        if has_tests {
+            self.agreed(failed)?;
+        }
+        Ok(met)
     }
 
     /// Passes the current state to the observers that are due; the last state to all observers with a schedule.

@@ -1,0 +1,416 @@
+//! Named scalars of a run: the columns of its tables and the quantities derived from them.
+//!
+//! A registry lists the sources of the scalars that depend on the current state alone, so that tables, derived
+//! quantities and stop conditions have the same values whatever their schedules are. Columns that depend on earlier
+//! rows (errors so far, the energy bound) are not signals.
+
+use std::fmt;
+use std::sync::Arc;
+
+use pericles::System;
+use pericles::observe::{ObserveError, Probe, Snapshot, TrackedCrack};
+use pericles::time::Integrator;
+use pericles_deck::{
+    BuildError, DerivedQuantity, Fault, KeyPath, Model, Remark, Scheme, SignalCondition,
+    SignalExpression, StaticBreaking,
+};
+use pericles_io::observers::{
+    ContactColumns, CrackSignals, EnergySignals, ExtremeColumns, ImpactorSignals, InnerColumns,
+    LoadFactorColumn, ProbeSignals, ReactionSignals, Signals, TimeSignal,
+};
+use pericles_io::{Cell, Column};
+
+use crate::heat::HeatColumns;
+use crate::units::{quantity, significant};
+
+/// The scalars of a run by name.
+pub struct SignalRegistry {
+    sources: Vec<Source>,
+    /// Columns of all sources, in their order.
+    columns: Vec<Column>,
+    quantities: Vec<Quantity>,
+}
+
+/// A source and the index of its first column.
+struct Source {
+    signals: Box<dyn Signals>,
+    first: usize,
+}
+
+/// A derived quantity.
+struct Quantity {
+    name: String,
+    unit: String,
+    value: Bound,
+}
+
+/// An expression with the indices of its names.
+#[derive(Debug, Clone)]
+struct Bound {
+    expression: SignalExpression,
+    names: Vec<usize>,
+}
+
+impl Bound {
+    fn value(&self, values: &[f64]) -> f64 {
+        let given: Vec<f64> = self.names.iter().map(|&k| values[k]).collect();
+        self.expression.value(&given)
+    }
+}
+
+/// Returns the signals in the history of a model after the energies: those of the scheme, and those of fields and contact.
+pub(crate) fn history_signals(
+    model: &Model,
+    system: &System,
+    integrator: &dyn Integrator,
+) -> [Vec<Box<dyn Signals>>; 2] {
+    let mut of_scheme: Vec<Box<dyn Signals>> = Vec::new();
+    if integrator.inner_iterations().is_some() {
+        of_scheme.push(Box::new(match model.time.scheme {
+            Scheme::Relaxation(_) | Scheme::Static(_) => InnerColumns::Residual,
+            _ => InnerColumns::Velocity,
+        }));
+    }
+    if follows_events(model) {
+        of_scheme.push(Box::new(LoadFactorColumn));
+    }
+    let mut of_state: Vec<Box<dyn Signals>> = Vec::new();
+    let extremes = &model.output.extremes;
+    if !extremes.is_empty() {
+        let columns = ExtremeColumns::new(extremes.clone(), system.dimension());
+        of_state.push(Box::new(columns));
+    }
+    if let Some(columns) = HeatColumns::of(system) {
+        of_state.push(Box::new(columns));
+    }
+    if system.interactions().next().is_some() {
+        of_state.push(Box::new(ContactColumns));
+    }
+    [of_scheme, of_state]
+}
+
+/// Returns whether the scheme scales the loads from event to event, whatever the time is.
+pub(crate) fn follows_events(model: &Model) -> bool {
+    matches!(&model.time.scheme, Scheme::Static(options) if options.breaking == StaticBreaking::Event)
+}
+
+/// Returns the impactors of a model as signals; `None` without impactors.
+pub(crate) fn impactor_signals(model: &Model, dimension: usize) -> Option<ImpactorSignals> {
+    let impactors = model.impactors.iter().map(|impactor| impactor.name.clone());
+    let names: Vec<String> = impactors.collect();
+    (!names.is_empty()).then_some(ImpactorSignals { names, dimension })
+}
+
+impl SignalRegistry {
+    /// Creates the registry of a model with its derived quantities.
+    ///
+    /// # Errors
+    /// A quantity refers to an unknown column, has the name of another column, or has no unit.
+    pub(crate) fn of(
+        model: &Model,
+        (system, integrator): (&System, &dyn Integrator),
+        probes: &[Probe],
+        cracks: &[TrackedCrack],
+    ) -> Result<Self, BuildError> {
+        let dimension = system.dimension();
+        let mut registry = Self {
+            sources: Vec::new(),
+            columns: Vec::new(),
+            quantities: Vec::new(),
+        };
+        registry.add(Box::new(TimeSignal));
+        registry.add(Box::new(EnergySignals { dimension }));
+        let of_history = history_signals(model, system, integrator);
+        (of_history.into_iter().flatten()).for_each(|signals| registry.add(signals));
+        registry.add(Box::new(ProbeSignals {
+            probes: probes.to_vec(),
+            dimension,
+        }));
+        registry.add(Box::new(ReactionSignals::new(system.motions())));
+        if let Some(impactors) = impactor_signals(model, dimension) {
+            registry.add(Box::new(impactors));
+        }
+        if system.operator().can_break() {
+            let threshold = model.output.cracks().threshold;
+            let cracks = CrackSignals::new(cracks.to_vec(), threshold, dimension);
+            registry.add(Box::new(cracks));
+        }
+        for (k, quantity) in model.output.quantities.iter().enumerate() {
+            let path = KeyPath::from("output.quantity").index(k);
+            registry.derive(quantity, &path)?;
+        }
+        Ok(registry)
+    }
+
+    fn add(&mut self, signals: Box<dyn Signals>) {
+        let first = self.columns.len();
+        self.columns.extend(signals.columns());
+        self.sources.push(Source { signals, first });
+    }
+
+    /// Adds a quantity.
+    fn derive(&mut self, quantity: &DerivedQuantity, path: &KeyPath) -> Result<(), BuildError> {
+        let DerivedQuantity {
+            name,
+            expression,
+            unit,
+        } = quantity;
+        let fault = |key: &str, fault: Fault| Err(Remark::new(path.key(key), fault).into());
+        if self.names().any(|known| known == name) {
+            return fault(
+                "name",
+                Fault::BadName {
+                    name: name.clone(),
+                    reason: "a column of another table has it",
+                    allowed: "allowed: a name that no other table has, such as \"CMOD\"",
+                },
+            );
+        }
+        let value = self.bound(expression, &path.key("expression"))?;
+        let units: Vec<&str> = value.names.iter().map(|&k| self.unit(k)).collect();
+        let unit = match (expression.unit(&units), unit) {
+            (Ok(derived), None) => derived,
+            (Err(_), Some(unit)) => unit.clone(),
+            (Ok(derived), Some(unit)) if SignalExpression::is_same_unit(unit, &derived) => {
+                unit.clone()
+            }
+            (Ok(derived), Some(unit)) => {
+                let derived = match derived.as_str() {
+                    "" => "numbers without a unit",
+                    derived => derived,
+                };
+                return fault(
+                    "unit",
+                    Fault::OutOfRange {
+                        value: unit.clone(),
+                        allowed: format!(
+                            "allowed: the SI unit of the expression, {derived}, in any notation; remove `unit` to use it"
+                        ),
+                    },
+                );
+            }
+            (Err(reason), None) => {
+                return fault(
+                    "expression",
+                    Fault::BadExpression {
+                        text: expression.text().into(),
+                        reason: format!("its unit cannot be derived: {reason}"),
+                        allowed: "combine values of equal units, or set `unit`, such as unit = \"N/m\"",
+                    },
+                );
+            }
+        };
+        self.quantities.push(Quantity {
+            name: name.clone(),
+            unit,
+            value,
+        });
+        Ok(())
+    }
+
+    /// Names of all signals, quantities last.
+    fn names(&self) -> impl Iterator<Item = &str> {
+        let columns = self.columns.iter().map(Column::name);
+        columns.chain(
+            self.quantities
+                .iter()
+                .map(|quantity| quantity.name.as_str()),
+        )
+    }
+
+    fn name(&self, index: usize) -> &str {
+        match self.columns.get(index) {
+            Some(column) => column.name(),
+            None => &self.quantities[index - self.columns.len()].name,
+        }
+    }
+
+    fn unit(&self, index: usize) -> &str {
+        match self.columns.get(index) {
+            Some(column) => column.unit(),
+            None => &self.quantities[index - self.columns.len()].unit,
+        }
+    }
+
+    fn bound(&self, expression: &SignalExpression, path: &KeyPath) -> Result<Bound, BuildError> {
+        let names = expression.names().iter();
+        let names: Result<Vec<usize>, BuildError> =
+            names.map(|name| self.index(name, path)).collect();
+        Ok(Bound {
+            expression: expression.clone(),
+            names: names?,
+        })
+    }
+
+    /// Returns the index of a signal.
+    fn index(&self, name: &str, path: &KeyPath) -> Result<usize, BuildError> {
+        let mut found = self.names().enumerate().filter(|(_, known)| *known == name);
+        let fault = match (found.next(), found.next()) {
+            (Some((index, _)), None) => return Ok(index),
+            (Some(_), Some(_)) => Fault::BadName {
+                name: name.into(),
+                reason: "several tables have a column with this name",
+                allowed: "rename the probe, set or impactor to which one of them belongs",
+            },
+            (None, _) => {
+                let known: Vec<&str> = self.names().collect();
+                Fault::unknown_word("column", name, known.into_iter())
+            }
+        };
+        Err(Remark::new(path.clone(), fault).into())
+    }
+
+    /// Evaluates the signals with these indices, and those that they are derived from; others are NaN. All processes call
+    /// it together.
+    fn values(&self, snapshot: &Snapshot<'_>, wanted: &[usize]) -> Result<Vec<f64>, ObserveError> {
+        let count = self.columns.len();
+        let mut is_needed = vec![false; count + self.quantities.len()];
+        wanted.iter().for_each(|&k| is_needed[k] = true);
+        for (k, quantity) in self.quantities.iter().enumerate().rev() {
+            if is_needed[count + k] {
+                quantity
+                    .value
+                    .names
+                    .iter()
+                    .for_each(|&k| is_needed[k] = true);
+            }
+        }
+        let mut values = vec![f64::NAN; is_needed.len()];
+        for (k, source) in self.sources.iter().enumerate() {
+            let end = self.sources.get(k + 1).map_or(count, |next| next.first);
+            if !is_needed[source.first..end].contains(&true) {
+                continue;
+            }
+            let cells = source.signals.cells(snapshot)?;
+            for (value, cell) in values[source.first..end].iter_mut().zip(cells) {
+                *value = match cell {
+                    Cell::Real(value) => value,
+                    Cell::Integer(value) => value as f64,
+                };
+            }
+        }
+        for (k, quantity) in self.quantities.iter().enumerate() {
+            if is_needed[count + k] {
+                values[count + k] = quantity.value.value(&values);
+            }
+        }
+        Ok(values)
+    }
+
+    /// Returns the indices of all quantities.
+    fn derived(&self) -> Vec<usize> {
+        (self.columns.len()..self.columns.len() + self.quantities.len()).collect()
+    }
+
+    /// Returns whether the model has derived quantities.
+    pub(crate) fn has_quantities(&self) -> bool {
+        !self.quantities.is_empty()
+    }
+}
+
+impl fmt::Debug for SignalRegistry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_list().entries(self.names()).finish()
+    }
+}
+
+/// The derived quantities of a run, as signals.
+pub(crate) struct QuantitySignals(pub(crate) Arc<SignalRegistry>);
+
+impl Signals for QuantitySignals {
+    fn columns(&self) -> Vec<Column> {
+        let quantities = self.0.quantities.iter();
+        quantities
+            .map(|quantity| Column::real(quantity.name.as_str(), quantity.unit.as_str()))
+            .collect()
+    }
+
+    fn cells(&self, snapshot: &Snapshot<'_>) -> Result<Vec<Cell>, ObserveError> {
+        let wanted = self.0.derived();
+        let values = self.0.values(snapshot, &wanted)?;
+        Ok(wanted.into_iter().map(|k| values[k].into()).collect())
+    }
+}
+
+/// Formats a value; units that are not one symbol or a quotient take no prefix.
+fn shown(value: f64, unit: &str) -> String {
+    match unit.starts_with("kg") || unit.starts_with('1') || unit.contains(['^', ' ']) {
+        true => format!("{} {unit}", significant(value, 4)),
+        false => quantity(value, unit),
+    }
+}
+
+/// A condition on signals that ends a run.
+#[derive(Debug)]
+pub(crate) struct SignalStop {
+    registry: Arc<SignalRegistry>,
+    condition: SignalCondition,
+    /// The signals of the condition.
+    indices: Vec<usize>,
+}
+
+impl SignalStop {
+    /// Creates a condition of a key of the deck.
+    ///
+    /// # Errors
+    /// The condition refers to an unknown column, or compares values with different units.
+    pub(crate) fn new(
+        registry: &Arc<SignalRegistry>,
+        condition: &SignalCondition,
+        path: &KeyPath,
+    ) -> Result<Self, BuildError> {
+        let names = condition.names();
+        let indices: Result<Vec<usize>, BuildError> = names
+            .iter()
+            .map(|name| registry.index(name, path))
+            .collect();
+        let indices = indices?;
+        let unit = |name: &str| {
+            let known = names
+                .iter()
+                .zip(&indices)
+                .find(|(known, _)| **known == name);
+            known.map_or(String::new(), |(_, &k)| registry.unit(k).to_owned())
+        };
+        condition.check_units(&unit).map_err(|reason| {
+            let fault = Fault::BadCondition {
+                text: condition.text().into(),
+                reason,
+                allowed: "compare values with the same unit; plain numbers are in its SI unit",
+            };
+            BuildError::from(Remark::new(path.clone(), fault))
+        })?;
+        Ok(Self {
+            registry: Arc::clone(registry),
+            condition: condition.clone(),
+            indices,
+        })
+    }
+}
+
+impl pericles::StopTest for SignalStop {
+    fn test(&self, snapshot: &Snapshot<'_>) -> Result<Option<String>, ObserveError> {
+        let values = self.registry.values(snapshot, &self.indices)?;
+        let names = self.condition.names();
+        let index = |name: &String| {
+            let place = names.iter().position(|known| known == name);
+            self.indices[place.unwrap_or_default()]
+        };
+        let holds = self.condition.holds(&|side| {
+            let given: Vec<f64> = side
+                .names()
+                .iter()
+                .map(|name| values[index(name)])
+                .collect();
+            side.value(&given)
+        });
+        if !snapshot.system().domain().all(holds) {
+            return Ok(None);
+        }
+        let shown = self.indices.iter().map(|&k| {
+            let (name, unit) = (self.registry.name(k), self.registry.unit(k));
+            format!("{name} = {}", shown(values[k], unit))
+        });
+        Ok(Some(shown.collect::<Vec<_>>().join(", ")))
+    }
+}
