@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use super::pool::{Lent, Pool};
 use super::{
-    BondView, Breakable, Capabilities, DilatationView, Force, InstructionSet, Inversion,
-    LinearOperator, Linearity, LocalForce, PlasticView, PointSubset, StressView,
+    BondView, Breakable, Capabilities, DilatationView, Force, InstructionSet, LinearOperator,
+    Linearity, LocalForce, PointSubset,
 };
 use crate::archive::{Archive, Checkpointed};
 use crate::domain::{Domain, Field};
@@ -93,28 +93,8 @@ pub trait TwoPass: Checkpointed + Send + Sync {
         None
     }
 
-    /// See [`Force::inversion`].
-    fn inversion(&self) -> Option<Inversion> {
-        None
-    }
-
     /// Returns access to individual bonds, if available.
     fn bonds(&self) -> Option<&dyn BondView> {
-        None
-    }
-
-    /// Returns whether the force depends on the history of states.
-    fn is_path_dependent(&self) -> bool {
-        false
-    }
-
-    /// Returns the stresses of points, if the force follows from them.
-    fn stress(&self) -> Option<&dyn StressView> {
-        None
-    }
-
-    /// Returns the plastic strain, if points can yield.
-    fn plastic(&self) -> Option<&dyn PlasticView> {
         None
     }
 
@@ -304,9 +284,6 @@ impl<F: TwoPass> Force for TwoPassForce<F> {
             split: None,
             bonds: self.force.bonds(),
             dilatation: self.force.dilatation().map(|_| self as &dyn DilatationView),
-            stress: self.force.stress(),
-            plastic: self.force.plastic(),
-            path_dependent: self.force.is_path_dependent(),
             thermal: self.force.thermal(),
             ..Capabilities::default()
         }
@@ -319,10 +296,6 @@ impl<F: TwoPass> Force for TwoPassForce<F> {
     fn expandable_mut(&mut self) -> Option<&mut dyn Expandable> {
         self.force.expandable_mut()?;
         Some(self)
-    }
-
-    fn inversion(&self) -> Option<Inversion> {
-        self.force.inversion()
     }
 
     fn directed_bonds(&self) -> u64 {
