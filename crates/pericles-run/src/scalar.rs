@@ -58,7 +58,7 @@ impl Scalar {
                 .and_then(|values| self.picked(values))
             {
                 let mut columns = table.columns.iter();
-                let column = columns.find(|column| column.name() == self.name);
+                let column = columns.find(|column| column.is_named(&self.name));
                 return Ok((number, column.map_or("", |column| column.unit()).to_owned()));
             }
             known.extend(table.columns.iter().map(|column| column.name().to_owned()));

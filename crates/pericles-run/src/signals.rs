@@ -244,7 +244,11 @@ impl SignalRegistry {
 
     /// Returns the index of a signal.
     fn index(&self, name: &str, path: &KeyPath) -> Result<usize, BuildError> {
-        let mut found = self.names().enumerate().filter(|(_, known)| *known == name);
+        let is_named = |known: &&str| Column::real(*known, "").is_named(name);
+        let mut found = self
+            .names()
+            .enumerate()
+            .filter(|(_, known)| is_named(known));
         let fault = match (found.next(), found.next()) {
             (Some((index, _)), None) => return Ok(index),
             (Some(_), Some(_)) => Fault::BadName {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use pericles_io::{Axis, CsvData, Curve, LineChart, read_csv};
+use pericles_io::{Axis, Column, CsvData, Curve, LineChart, read_csv};
 use pericles_run::{Results, RunError, file_name};
 
 use crate::args::PlotArgs;
@@ -26,7 +26,6 @@ struct NamedTable {
 /// # Errors
 /// A column does not exist, two tables have too few equal times, or the chart cannot be written.
 pub(super) fn plot(results: &Results, args: &PlotArgs) -> Result<Exit, CliError> {
-    let x = args.x.as_deref().unwrap_or(TIME);
     let tables: Result<Vec<NamedTable>, CliError> = results
         .tables()
         .iter()
@@ -34,20 +33,27 @@ pub(super) fn plot(results: &Results, args: &PlotArgs) -> Result<Exit, CliError>
         .collect();
     let tables = tables?;
     let columns = tables.iter().flat_map(|table| &table.data.columns);
-    let known: Vec<&str> = columns.map(|column| column.name()).collect();
-    let mut wanted = std::iter::once(x).chain(args.y.iter().map(String::as_str));
-    if let Some(unknown) = wanted.find(|name| !known.contains(name)) {
-        let listing = format!("the tables have the columns {}", known.join(", "));
-        return Err(RunError::unknown("column", unknown, &known, &listing).into());
-    }
+    let columns: Vec<&Column> = columns.collect();
+    let column = |name: &str| {
+        let mut named = columns.iter().filter(|column| column.is_named(name));
+        let column = named.next().map(|column| column.name());
+        column.ok_or_else(|| {
+            let known: Vec<&str> = columns.iter().map(|column| column.name()).collect();
+            let listing = format!("the tables have the columns {}", known.join(", "));
+            RunError::unknown("column", name, &known, &listing)
+        })
+    };
+    let x = column(args.x.as_deref().unwrap_or(TIME))?;
+    let ys: Result<Vec<&str>, RunError> = args.y.iter().map(|y| column(y)).collect();
+    let ys = ys?;
     let mut curves = Vec::new();
-    for y in &args.y {
+    for y in &ys {
         curves.push(PairOfColumns::of(&tables, x, y)?);
     }
     let place = super::place(args)?;
-    let name = format!("{}-over-{x}", args.y.join("-"));
+    let name = format!("{}-over-{x}", ys.join("-"));
     let along = (x == TIME).then(|| TimeAxis::of(results));
-    super::write(chart(x, &args.y, &curves, along), &name, &place, args)?;
+    super::write(chart(x, &ys, &curves, along), &name, &place, args)?;
     Ok(Exit::Done)
 }
 
@@ -163,9 +169,9 @@ fn rows_at_equal_times(one: &NamedTable, other: &NamedTable) -> Result<Vec<[usiz
 }
 
 /// Returns the chart of columns; curves of several columns are named in the legend.
-fn chart(x: &str, y: &[String], curves: &[PairOfColumns], along: Option<TimeAxis>) -> LineChart {
+fn chart(x: &str, y: &[&str], curves: &[PairOfColumns], along: Option<TimeAxis>) -> LineChart {
     let plain = |name: &str| name.replace('_', " ");
-    let first = y.first().map_or("", String::as_str);
+    let first = y.first().copied().unwrap_or_default();
     let upward = match y.len() {
         1 => plain(first),
         _ => "value".into(),

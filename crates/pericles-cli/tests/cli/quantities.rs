@@ -17,10 +17,10 @@ name = "lower"
 at = ["0.5 mm", "4.5 mm"]
 [[output.quantity]]
 name = "CMOD"
-expression = "'upper lip_u_y' - lower_u_y"
+expression = "'upper lip'.u_y - lower.u_y"
 [[output.quantity]]
 name = "stiffness"
-expression = "(top_y - bottom_y)/2/CMOD"
+expression = "(reaction.top.y - bottom_y)/2/CMOD"
 [[output.quantity]]
 name = "released"
 expression = "dissipated_energy/(abs(crack_1_advance) + 1e-6)"
@@ -85,7 +85,7 @@ fn quantities_are_the_values_of_their_expressions() {
     }
     let said = succeed(
         place.path(),
-        "plot a --x CMOD --y top_y,stiffness --format svg",
+        "plot a --x CMOD --y reaction.top.y,stiffness --format svg",
     );
     assert_eq!(
         text(&said.stdout),
@@ -168,21 +168,21 @@ fn errors_of_quantities_are_explained() {
     let deck = fs::read_to_string(place.path().join("plate.toml")).unwrap();
     for (replace, by, says) in [
         (
-            "'upper lip_u_y' - lower_u_y",
+            "'upper lip'.u_y - lower.u_y",
             "'upper lip_u_y' - lowr_u_y",
             &["unknown column `lowr_u_y`", "did you mean `lower_u_y`"][..],
         ),
         (
-            "'upper lip_u_y' - lower_u_y",
-            "'upper lip_u_y' - top_y",
+            "'upper lip'.u_y - lower.u_y",
+            "'upper lip'.u_y - top_y",
             &[
                 "its unit cannot be derived: it adds values in m and N",
                 "unit = \"N/m\"",
             ],
         ),
         (
-            "'upper lip_u_y' - lower_u_y\"",
-            "lower_u_y\"\nunit = \"mm\"",
+            "'upper lip'.u_y - lower.u_y\"",
+            "lower.u_y\"\nunit = \"mm\"",
             &["`mm` is out of range", "the SI unit of the expression, m"],
         ),
         (
@@ -204,8 +204,8 @@ fn errors_of_quantities_are_explained() {
             &["another quantity has it"],
         ),
         (
-            "'upper lip_u_y' - lower_u_y",
-            "upper lip_u_y - lower_u_y",
+            "'upper lip'.u_y - lower.u_y",
+            "upper lip_u_y - lower.u_y",
             &[
                 "an operator is missing before `lip_u_y`",
                 "in single quotes",

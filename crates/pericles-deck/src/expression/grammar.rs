@@ -15,7 +15,7 @@ enum Token<'a> {
     /// Text and value.
     Number(&'a str, f64),
     Name(&'a str),
-    /// A name in single quotes, which may contain any other character.
+    /// A name in single quotes, which may contain any other character, and its component outside of them.
     Quoted(&'a str),
     /// One of `+ - * / ^ ( )`.
     Sign(char),
@@ -77,8 +77,7 @@ fn reject<T>(reason: String) -> Result<T, Malformed> {
 
 fn shown(token: &Token<'_>) -> String {
     match token {
-        Token::Number(text, _) | Token::Name(text) => format!("`{text}`"),
-        Token::Quoted(name) => format!("`'{name}'`"),
+        Token::Number(text, _) | Token::Name(text) | Token::Quoted(text) => format!("`{text}`"),
         Token::Sign(sign) => format!("`{sign}`"),
     }
 }
@@ -89,13 +88,11 @@ fn tokens(text: &str) -> Result<Vec<Token<'_>>, Malformed> {
     while let Some(first) = rest.chars().next() {
         let length = match first {
             '0'..='9' | '.' => number_length(rest),
-            c if c.is_ascii_alphabetic() => rest
-                .find(|c: char| !c.is_ascii_alphanumeric() && c != '_')
-                .unwrap_or(rest.len()),
+            c if c.is_ascii_alphabetic() => name_length(rest),
             '+' | '-' | '*' | '/' | '^' | '(' | ')' => 1,
             '\'' => match rest[1..].find('\'') {
                 Some(0) => return reject("a name in quotes is empty".into()),
-                Some(length) => length + 2,
+                Some(length) => length + 2 + component_length(&rest[length + 2..]),
                 None => return reject("a quote is not closed".into()),
             },
             other => {
@@ -111,12 +108,31 @@ fn tokens(text: &str) -> Result<Vec<Token<'_>>, Malformed> {
                 _ => return reject(format!("`{token}` is not a number")),
             },
             c if c.is_ascii_alphabetic() => Token::Name(token),
-            '\'' => Token::Quoted(&token[1..token.len() - 1]),
+            '\'' => Token::Quoted(token),
             sign => Token::Sign(sign),
         });
         rest = tail.trim_start();
     }
     Ok(tokens)
+}
+
+/// Returns the length of a dot and a name at the start of a text; zero if there are none.
+fn component_length(text: &str) -> usize {
+    match text.strip_prefix('.').map(name_length) {
+        Some(length) if length > 0 => length + 1,
+        _ => 0,
+    }
+}
+
+/// Returns the length of the name at the start of a text: letters, digits, `_`, and dots between them.
+fn name_length(text: &str) -> usize {
+    let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let end = |&(k, c): &(usize, char)| match c {
+        '.' => !text[k + 1..].starts_with(is_part),
+        c => !is_part(c),
+    };
+    let mut letters = text.char_indices();
+    letters.find(end).map_or(text.len(), |(k, _)| k)
 }
 
 /// Returns the length of a number: digits, a point, digits, and an exponent if digits follow it.
@@ -206,7 +222,7 @@ impl Reader<'_, '_> {
             // Written without an exponent, which exmex does not read in all cases.
             Token::Number(_, value) => Ok(format!("{value}")),
             Token::Name(name) => self.named(name),
-            Token::Quoted(name) => self.variable(name),
+            Token::Quoted(text) => self.variable(&text.replace('\'', "")),
             Token::Sign('(') => self.parenthesis(),
             Token::Sign(sign) => reject(format!("a value is missing before `{sign}`")),
         }

@@ -12,12 +12,12 @@ use super::unit::{UnitOperators, UnitValue};
 use super::{Compiled, Malformed, grammar};
 use crate::units;
 
-const NO_COLUMN: &str = "it refers to no column of the tables, such as tip_u_x";
+const NO_COLUMN: &str = "it refers to no column of the tables, such as tip.u_x";
 
 /// A compiled function of named scalars of a run.
 ///
-/// The names are those of columns, such as `tip_u_x`. Names with other characters than letters, digits and `_` are
-/// written in single quotes: `'left edge_u_x'`.
+/// The names are those of columns, such as `tip_u_x` or `tip.u_x`. Names with other characters than letters, digits and
+/// `_` are written in single quotes: `'left edge'.u_x`.
 #[derive(Clone)]
 pub struct SignalExpression {
     text: Arc<str>,
@@ -30,7 +30,7 @@ pub struct SignalExpression {
 
 impl SignalExpression {
     /// What decks may contain.
-    pub(crate) const ALLOWED: &str = "such as expression = \"tip_u_x - base_u_x\": columns of the tables, numbers in \
+    pub(crate) const ALLOWED: &str = "such as expression = \"tip.u_x - base.u_x\": columns of the tables, numbers in \
                                       SI units, functions; names with other characters than letters, digits and `_` \
                                       in single quotes";
 
@@ -120,7 +120,7 @@ pub struct SignalCondition {
 
 impl SignalCondition {
     /// What decks may contain.
-    pub(crate) const ALLOWED: &str = "such as condition = \"tip_u_x > 1e-4 && broken_bonds > 0\": columns of the \
+    pub(crate) const ALLOWED: &str = "such as condition = \"tip.u_x > 1e-4 && broken_bonds > 0\": columns of the \
                                       tables, quantities of [[output.quantity]], numbers in SI units";
 
     /// Parses a condition; its names are not checked.
@@ -251,6 +251,9 @@ mod tests {
         let expression =
             SignalExpression::parse("'left edge_y'^2 - 3*a_u_x + 'left edge_y'").unwrap();
         assert_eq!(expression.names(), ["left edge_y", "a_u_x"]);
+        let dotted = SignalExpression::parse("2.5*'left edge'.u_y - reaction.top.y/3.").unwrap();
+        assert_eq!(dotted.names(), ["left edge.u_y", "reaction.top.y"]);
+        assert_eq!(dotted.value(&[2.0, 6.0]), 3.0);
         assert_eq!(expression.value(&[4.0, 5.0]), 5.0);
         // More than ten names: `v10` sorts before `v2`.
         let names: Vec<String> = (0..12).map(|k| format!("{}*s{k}", 1 << k)).collect();
@@ -324,7 +327,7 @@ mod tests {
             ("a_u_x b_u_x", "operator"),
             ("'a_u_x", "quote is not closed"),
             ("''", "empty"),
-            ("a.u_x", "is not a number"),
+            ("a. u_x", "is not a number"),
         ] {
             let malformed = SignalExpression::parse(text).unwrap_err();
             assert!(

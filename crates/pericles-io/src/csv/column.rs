@@ -36,6 +36,17 @@ impl Column {
         &self.name
     }
 
+    /// Returns whether the column has this name, in which dots may separate the source from its component and the table
+    /// from both: `tip.u_x` is the column `tip_u_x`, and `reaction.top.y` the column `top_y`.
+    pub fn is_named(&self, name: &str) -> bool {
+        /// Words for the tables in names.
+        const TABLES: [&str; 5] = ["history", "probe", "reaction", "impactor", "quantity"];
+        let joined = |name: &str| self.name == name.replace('.', "_");
+        let in_table = |(table, rest): (&str, &str)| TABLES.contains(&table) && joined(rest);
+        self.name == name
+            || name.contains('.') && (joined(name) || name.split_once('.').is_some_and(in_table))
+    }
+
     /// Returns the unit; empty for dimensionless values.
     pub fn unit(&self) -> &str {
         &self.unit
@@ -129,6 +140,18 @@ pub fn csv_row(cells: &[String]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn dots_separate_the_parts_of_a_name() {
+        let column = Column::real("top_y", "N");
+        for name in ["top_y", "top.y", "reaction.top.y", "reaction.top_y"] {
+            assert!(column.is_named(name), "{name}");
+        }
+        for name in ["top", "y", "top.y.x", "force.top.y", "audit.top_y", "Top_y"] {
+            assert!(!column.is_named(name), "{name}");
+        }
+        assert!(Column::real("a.b_u_x", "m").is_named("a.b_u_x"));
+    }
 
     #[test]
     fn cells_that_look_like_formulas_are_marked_as_text() {

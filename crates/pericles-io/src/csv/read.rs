@@ -16,9 +16,10 @@ pub struct CsvData {
 }
 
 impl CsvData {
-    /// Returns the values of the first column with this name.
+    /// Returns the values of the first column with this name; see [`Column::is_named`].
     pub fn column(&self, name: &str) -> Option<&[f64]> {
-        let index = self.columns.iter().position(|column| column.name == name)?;
+        let mut columns = self.columns.iter();
+        let index = columns.position(|column| column.is_named(name))?;
         Some(&self.values[index])
     }
 
