@@ -41,13 +41,9 @@ pub(super) struct PointShape<const D: usize> {
     share: f64,
 }
 
-/// Returns H = F − I of a point, with η of `moved`.
+/// Returns Σ ω η ⊗ ξ of a point, with η of `moved`.
 #[inline(always)]
-fn gradient<T: Lanes, const D: usize>(
-    family: &Family<'_, D>,
-    moved: &Family<'_, D>,
-    inverse: &Matrix<D>,
-) -> Matrix<D> {
+fn moment<T: Lanes, const D: usize>(family: &Family<'_, D>, moved: &Family<'_, D>) -> Matrix<D> {
     let mut sums = [[T::splat(0.0); D]; D];
     for batch in 0..family.batches() {
         if family.intact(batch) == 0 {
@@ -68,7 +64,7 @@ fn gradient<T: Lanes, const D: usize>(
             moment[a][b] = F64x8(sums[a][b].to_array()).sum();
         }
     }
-    product(&moment, inverse)
+    moment
 }
 
 impl<const D: usize> PointShape<D> {
@@ -104,6 +100,55 @@ fn places<const D: usize>() -> impl Iterator<Item = (usize, usize)> {
 }
 
 impl<const TENSOR: bool> ForceState<TENSOR> {
+    /// [`Solid::state`] from Σ ω η ⊗ ξ: the part that is not a loop over bonds.
+    #[inline(never)]
+    fn state_of_moment<const D: usize>(
+        &self,
+        at: &Point<'_, PointShape<D>, D>,
+        moment: &Matrix<D>,
+        out: &mut State<'_>,
+    ) -> f64 {
+        let shape = at.shape;
+        let gradient = product(moment, &shape.inverse);
+        let f = combination(1.0, &unit::<D>(), 1.0, &gradient);
+        let solid = self.0.point.expanded(1.0 + at.thermal);
+        let stress = solid.stress(&f, &self.history_at(at)).stress;
+        shape.values_into(&stress, &gradient, &shape.control, out.values);
+        determinant(&in_space(&f, 1.0)) - 1.0
+    }
+
+    /// [`Solid::state_change`] from Σ ω η ⊗ ξ and its change.
+    #[inline(never)]
+    fn change_of_moment<const D: usize>(
+        &self,
+        at: &Point<'_, PointShape<D>, D>,
+        moments: [&Matrix<D>; 2],
+        out: &mut State<'_>,
+    ) {
+        let shape = at.shape;
+        let [gradient, change] = moments.map(|moment| product(moment, &shape.inverse));
+        let f = combination(1.0, &unit::<D>(), 1.0, &gradient);
+        let solid = self.0.point.expanded(1.0 + at.thermal);
+        let stress = solid.stress_change(&f, &change, &self.history_at(at));
+        shape.values_into(&stress, &change, &Control::NONE, out.values);
+    }
+
+    /// [`Solid::advance`] from Σ ω η ⊗ ξ.
+    #[inline(never)]
+    fn advance_of_moment<const D: usize>(
+        &self,
+        at: &Point<'_, PointShape<D>, D>,
+        moment: &Matrix<D>,
+        next: &mut NextHistory<'_>,
+    ) -> f64 {
+        let gradient = product(moment, &at.shape.inverse);
+        let f = combination(1.0, &unit::<D>(), 1.0, &gradient);
+        let solid = self.0.point.expanded(1.0 + at.thermal);
+        let (history, work) = solid.advanced(&f, &self.history_at(at));
+        history.keep(next.history);
+        at.shape.share * work
+    }
+
     fn history_at<S, const D: usize>(&self, at: &Point<'_, S, D>) -> History {
         match at.history.len() >= History::KEPT {
             true => History::of(at.history),
@@ -185,13 +230,8 @@ impl<const TENSOR: bool, const D: usize> Solid<D> for ForceState<TENSOR> {
 
     #[inline(always)]
     fn state<T: Lanes>(&self, at: &Point<'_, PointShape<D>, D>, out: &mut State<'_>) -> f64 {
-        let shape = at.shape;
-        let gradient = gradient::<T, D>(&at.family, &at.family, &shape.inverse);
-        let f = combination(1.0, &unit::<D>(), 1.0, &gradient);
-        let solid = self.0.point.expanded(1.0 + at.thermal);
-        let stress = solid.stress(&f, &self.history_at(at)).stress;
-        shape.values_into(&stress, &gradient, &shape.control, out.values);
-        determinant(&in_space(&f, 1.0)) - 1.0
+        let moment = moment::<T, D>(&at.family, &at.family);
+        self.state_of_moment(at, &moment, out)
     }
 
     /// The control is constant.
@@ -202,13 +242,9 @@ impl<const TENSOR: bool, const D: usize> Solid<D> for ForceState<TENSOR> {
         direction: &Family<'_, D>,
         out: &mut State<'_>,
     ) {
-        let shape = at.shape;
-        let f = gradient::<T, D>(&at.family, &at.family, &shape.inverse);
-        let f = combination(1.0, &unit::<D>(), 1.0, &f);
-        let change = gradient::<T, D>(&at.family, direction, &shape.inverse);
-        let solid = self.0.point.expanded(1.0 + at.thermal);
-        let stress = solid.stress_change(&f, &change, &self.history_at(at));
-        shape.values_into(&stress, &change, &Control::NONE, out.values);
+        let now = moment::<T, D>(&at.family, &at.family);
+        let change = moment::<T, D>(&at.family, direction);
+        self.change_of_moment(at, [&now, &change], out);
     }
 
     #[inline(always)]
@@ -233,7 +269,8 @@ impl<const TENSOR: bool, const D: usize> Solid<D> for ForceState<TENSOR> {
     #[inline(always)]
     fn energy<T: Lanes>(&self, at: &Point<'_, PointShape<D>, D>) -> f64 {
         let shape = at.shape;
-        let gradient = gradient::<T, D>(&at.family, &at.family, &shape.inverse);
+        let moment = moment::<T, D>(&at.family, &at.family);
+        let gradient = product(&moment, &shape.inverse);
         let f = combination(1.0, &unit::<D>(), 1.0, &gradient);
         // Σ ω z ⊗ z
         let mut sums = [[T::splat(0.0); D]; D];
@@ -264,7 +301,8 @@ impl<const TENSOR: bool, const D: usize> Solid<D> for ForceState<TENSOR> {
 
     fn potential(&self, at: &Point<'_, PointShape<D>, D>) -> f64 {
         let energy = <Self as Solid<D>>::energy::<F64x8>(self, at);
-        let gradient = gradient::<F64x8, D>(&at.family, &at.family, &at.shape.inverse);
+        let moment = moment::<F64x8, D>(&at.family, &at.family);
+        let gradient = product(&moment, &at.shape.inverse);
         let f = combination(1.0, &unit::<D>(), 1.0, &gradient);
         let solid = self.0.point.expanded(1.0 + at.thermal);
         let (_, work) = solid.advanced(&f, &self.history_at(at));
@@ -302,12 +340,8 @@ impl<const TENSOR: bool, const D: usize> Solid<D> for ForceState<TENSOR> {
         at: &Point<'_, PointShape<D>, D>,
         next: &mut NextHistory<'_>,
     ) -> f64 {
-        let gradient = gradient::<T, D>(&at.family, &at.family, &at.shape.inverse);
-        let f = combination(1.0, &unit::<D>(), 1.0, &gradient);
-        let solid = self.0.point.expanded(1.0 + at.thermal);
-        let (history, work) = solid.advanced(&f, &self.history_at(at));
-        history.keep(next.history);
-        at.shape.share * work
+        let moment = moment::<T, D>(&at.family, &at.family);
+        self.advance_of_moment(at, &moment, next)
     }
 
     /// The accumulated plastic strain ∫ √(2/3 d_p : d_p) dt.
@@ -318,7 +352,8 @@ impl<const TENSOR: bool, const D: usize> Solid<D> for ForceState<TENSOR> {
 
     /// σ = P Fᵀ/J
     fn stress(&self, at: &Point<'_, PointShape<D>, D>) -> Matrix<D> {
-        let gradient = gradient::<F64x8, D>(&at.family, &at.family, &at.shape.inverse);
+        let moment = moment::<F64x8, D>(&at.family, &at.family);
+        let gradient = product(&moment, &at.shape.inverse);
         let f = combination(1.0, &unit::<D>(), 1.0, &gradient);
         let solid = self.0.point.expanded(1.0 + at.thermal);
         let state = solid.stress(&f, &self.history_at(at));

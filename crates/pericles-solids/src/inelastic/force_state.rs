@@ -174,9 +174,11 @@ impl<K: Kinematics, const D: usize> Solid<D> for InelasticSolid<K> {
                 (factor, 1.0 - factor, Some((law, step)))
             }
         };
-        let turn = step.as_ref().map_or(0.0, |(law, step)| {
-            factor_change::<T, K, D>(&at, law, step, direction, mean)
-        });
+        // No closure here: without inlining it would use baseline instructions.
+        let turn = match &step {
+            Some((law, step)) => factor_change::<T, K, D>(&at, law, step, direction, mean),
+            None => 0.0,
+        };
         for batch in 0..family.batches() {
             let bond = family.bond::<T>(batch);
             let change = bond.stretch_change::<K>(direction.eta(batch));

@@ -348,7 +348,7 @@ impl<S: Solid<D>, const D: usize> SolidForce<S, D> {
             });
         }
         let works = blocks.into_iter().flat_map(|block| block.works);
-        for (i, work) in works {
+        for (i, work) in works.enumerate().filter(|(_, work)| *work != 0.0) {
             self.bonds.all.tally_mut(i).dissipate(i, work);
         }
         self.history = history;

@@ -33,7 +33,7 @@ fn moment<const D: usize>(family: &Family<'_, D>) -> Matrix<D> {
     sums.map(|row| row.map(F64x8::sum))
 }
 
-/// Returns Σ ω T ⊗ y/|y| |ξ| … of the force state of a point: the stress whose virtual work is that of its bonds.
+/// Returns Σ ω T ⊗ y over the intact bonds of a point, with y = ξ + η, or ξ for linear kinematics.
 pub(super) fn stress_of_force_state<S: Solid<D> + ?Sized, const D: usize>(
     material: &S,
     at: &Point<'_, S::Shape, D>,

@@ -75,8 +75,10 @@ pub(super) struct BlockHistory<'a> {
     pub points: &'a mut [f64],
     pub bonds: &'a mut [f64],
     pub time: &'a mut [f64],
-    /// Points and the energies that they dissipate in a step, J.
-    pub works: Vec<(usize, f64)>,
+    /// Stored numbers of points and of bonds at the end of the last step.
+    pub former: [Vec<f64>; 2],
+    /// Energy that each point dissipates in the step, J.
+    pub works: Vec<f64>,
 }
 
 impl History {
@@ -111,7 +113,7 @@ impl History {
         self.time.get(i).map_or(0.0, |last| (t - last).max(0.0))
     }
 
-    /// Divides the stored numbers into blocks of points.
+    /// Divides the stored numbers into blocks of points, with copies of their former values.
     pub fn blocks(&mut self) -> Vec<BlockHistory<'_>> {
         let n = self.time.len();
         let HistorySize {
@@ -127,11 +129,14 @@ impl History {
         for first in (0..n).step_by(BLOCK) {
             let end = n.min(first + BLOCK);
             let groups = self.start[end] - self.start[first];
+            let of_points = cut(&mut points, (end - first) * per_point);
+            let of_bonds = cut(&mut bonds, groups * per_bond * LANES);
             blocks.push(BlockHistory {
-                points: cut(&mut points, (end - first) * per_point),
-                bonds: cut(&mut bonds, groups * per_bond * LANES),
+                former: [of_points.to_vec(), of_bonds.to_vec()],
+                points: of_points,
+                bonds: of_bonds,
                 time: cut(&mut time, end - first),
-                works: Vec::new(),
+                works: vec![0.0; end - first],
             });
         }
         blocks

@@ -51,8 +51,10 @@ fn state_rows_body<T: Lanes, S: Solid<D>, const D: usize>(
             },
         };
         let Some(at) = force.point(i, first_loop.t, first_loop.heat, first_loop.u) else {
-            out.values.fill(0.0);
-            out.of_bonds.fill(0.0);
+            // `fill` is not inlined.
+            for value in out.values.iter_mut().chain(&mut *out.of_bonds) {
+                *value = 0.0;
+            }
             dilatations[place] = 0.0;
             continue;
         };
@@ -216,7 +218,7 @@ fn advance_rows_body<T: Lanes, S: Solid<D>, const D: usize>(
 ) {
     let force = first_loop.force;
     let (start, size) = (force.bonds.list().start(), force.history_size);
-    let mut former = Vec::new();
+    let [former_points, former_bonds] = &block.former;
     for k in 0..rows.count() {
         let i = rows.at(k);
         let place = i - rows.first;
@@ -224,10 +226,6 @@ fn advance_rows_body<T: Lanes, S: Solid<D>, const D: usize>(
         let groups =
             (start[i] - start[rows.first]) * width..(start[i + 1] - start[rows.first]) * width;
         let points = place * size.per_point..(place + 1) * size.per_point;
-        former.clear();
-        former.extend_from_slice(&block.points[points.clone()]);
-        former.extend_from_slice(&block.bonds[groups.clone()]);
-        let (history, of_bonds) = former.split_at(size.per_point);
         let dt = match starts {
             true => 0.0,
             false => (first_loop.t - block.time[place]).max(0.0),
@@ -240,8 +238,8 @@ fn advance_rows_body<T: Lanes, S: Solid<D>, const D: usize>(
         let at = Point {
             family: force.family(i, first_loop.u),
             shape,
-            history,
-            of_bonds,
+            history: &former_points[points.clone()],
+            of_bonds: &former_bonds[groups.clone()],
             per_bond: size.per_bond,
             dt,
             thermal: first_loop.heat.stretch(i),
@@ -252,8 +250,8 @@ fn advance_rows_body<T: Lanes, S: Solid<D>, const D: usize>(
             per_bond: size.per_bond,
         };
         let work = force.material(i).advance::<T>(&at, &mut next);
-        if work != 0.0 && !starts {
-            block.works.push((i, work * force.cloud.volumes()[i]));
+        if !starts {
+            block.works[place] = work * force.cloud.volumes()[i];
         }
     }
 }
