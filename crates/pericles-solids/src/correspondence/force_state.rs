@@ -41,32 +41,6 @@ pub(super) struct PointShape<const D: usize> {
     share: f64,
 }
 
-/// Returns Σ ω η ⊗ ξ of a point, with η of `moved`.
-#[inline(always)]
-fn moment<T: Lanes, const D: usize>(family: &Family<'_, D>, moved: &Family<'_, D>) -> Matrix<D> {
-    let mut sums = [[T::splat(0.0); D]; D];
-    for batch in 0..family.batches() {
-        if family.intact(batch) == 0 {
-            continue;
-        }
-        let bond = family.bond::<T>(batch);
-        let eta = moved.eta::<T>(batch);
-        for a in 0..D {
-            let weighted = bond.weight * eta[a];
-            for b in 0..D {
-                sums[a][b] = weighted.mul_add(bond.xi[b], sums[a][b]);
-            }
-        }
-    }
-    let mut moment = [[0.0; D]; D];
-    for a in 0..D {
-        for b in 0..D {
-            moment[a][b] = F64x8(sums[a][b].to_array()).sum();
-        }
-    }
-    moment
-}
-
 impl<const D: usize> PointShape<D> {
     /// Sets the values of a push s P K⁻¹ − Z H and, unless derivatives are computed, of the control.
     fn values_into(
@@ -230,7 +204,7 @@ impl<const TENSOR: bool, const D: usize> Solid<D> for ForceState<TENSOR> {
 
     #[inline(always)]
     fn state<T: Lanes>(&self, at: &Point<'_, PointShape<D>, D>, out: &mut State<'_>) -> f64 {
-        let moment = moment::<T, D>(&at.family, &at.family);
+        let moment = at.family.moment::<T>(&at.family);
         self.state_of_moment(at, &moment, out)
     }
 
@@ -242,8 +216,8 @@ impl<const TENSOR: bool, const D: usize> Solid<D> for ForceState<TENSOR> {
         direction: &Family<'_, D>,
         out: &mut State<'_>,
     ) {
-        let now = moment::<T, D>(&at.family, &at.family);
-        let change = moment::<T, D>(&at.family, direction);
+        let now = at.family.moment::<T>(&at.family);
+        let change = at.family.moment::<T>(direction);
         self.change_of_moment(at, [&now, &change], out);
     }
 
@@ -269,7 +243,7 @@ impl<const TENSOR: bool, const D: usize> Solid<D> for ForceState<TENSOR> {
     #[inline(always)]
     fn energy<T: Lanes>(&self, at: &Point<'_, PointShape<D>, D>) -> f64 {
         let shape = at.shape;
-        let moment = moment::<T, D>(&at.family, &at.family);
+        let moment = at.family.moment::<T>(&at.family);
         let gradient = product(&moment, &shape.inverse);
         let f = combination(1.0, &unit::<D>(), 1.0, &gradient);
         // Σ ω z ⊗ z
@@ -301,7 +275,7 @@ impl<const TENSOR: bool, const D: usize> Solid<D> for ForceState<TENSOR> {
 
     fn potential(&self, at: &Point<'_, PointShape<D>, D>) -> f64 {
         let energy = <Self as Solid<D>>::energy::<F64x8>(self, at);
-        let moment = moment::<F64x8, D>(&at.family, &at.family);
+        let moment = at.family.moment::<F64x8>(&at.family);
         let gradient = product(&moment, &at.shape.inverse);
         let f = combination(1.0, &unit::<D>(), 1.0, &gradient);
         let solid = self.0.point.expanded(1.0 + at.thermal);
@@ -340,7 +314,7 @@ impl<const TENSOR: bool, const D: usize> Solid<D> for ForceState<TENSOR> {
         at: &Point<'_, PointShape<D>, D>,
         next: &mut NextHistory<'_>,
     ) -> f64 {
-        let moment = moment::<T, D>(&at.family, &at.family);
+        let moment = at.family.moment::<T>(&at.family);
         self.advance_of_moment(at, &moment, next)
     }
 
@@ -352,7 +326,7 @@ impl<const TENSOR: bool, const D: usize> Solid<D> for ForceState<TENSOR> {
 
     /// σ = P Fᵀ/J
     fn stress(&self, at: &Point<'_, PointShape<D>, D>) -> Matrix<D> {
-        let moment = moment::<F64x8, D>(&at.family, &at.family);
+        let moment = at.family.moment::<F64x8>(&at.family);
         let gradient = product(&moment, &at.shape.inverse);
         let f = combination(1.0, &unit::<D>(), 1.0, &gradient);
         let solid = self.0.point.expanded(1.0 + at.thermal);

@@ -21,7 +21,7 @@ use rayon::prelude::*;
 
 use super::family::SingleBond;
 use super::heat::Heat;
-use super::loops::{FirstLoop, advance_rows, end_of, watch_rows};
+use super::loops::{FirstLoop, advance_rows, for_each_pull, watch_rows};
 use super::view::in_lanes;
 use super::{Solid, SolidForce, State};
 
@@ -44,15 +44,13 @@ impl<S: Solid<D>, const D: usize> SolidForce<S, D> {
     pub(super) fn break_bonds(&mut self, step: &StepEnd<'_>, u: Field<'_>, on: &PointSubset<'_>) {
         let domain = self.cloud.domain().clone();
         let heat = self.heat_at(step.t);
-        let mut found = self.over_stretched(&self.packed(u), on, &heat, 1.0);
-        if !self.materials.criteria().is_empty() {
-            let rows = self.packed(u);
-            found.extend(self.over_stressed(step.t, &rows, on, &heat, 1.0));
-        }
+        let packed = self.packed(u);
+        let mut found = self.beyond(step.t, &packed, on, &heat, 1.0);
         if domain.all(found.is_empty()) {
             return;
         }
-        let rows = self.packed(u).to_vec();
+        let rows = packed.to_vec();
+        drop(packed);
         let mut before = BTreeMap::new();
         while !domain.all(found.is_empty()) {
             let others = self.other_ends(&found);
@@ -78,6 +76,23 @@ impl<S: Solid<D>, const D: usize> SolidForce<S, D> {
             }
         }
         self.book(step, &rows, before, &heat);
+    }
+
+    /// Returns the entries of the points `on` whose bonds exceed `fraction` of their critical stretch or strength. All
+    /// processes must call it together.
+    fn beyond(
+        &self,
+        t: f64,
+        rows: &[Row],
+        on: &PointSubset<'_>,
+        heat: &Heat,
+        fraction: f64,
+    ) -> Entries {
+        let mut found = self.over_stretched(rows, on, heat, fraction);
+        if !self.materials.criteria().is_empty() {
+            found.extend(self.over_stressed(t, rows, on, heat, fraction));
+        }
+        found
     }
 
     /// Returns the entries that `of_point` adds for the points `on`, in their order.
@@ -301,27 +316,14 @@ impl<S: Solid<D>, const D: usize> SolidForce<S, D> {
         if velocities.is_empty() {
             return [energy, 0.0];
         }
-        let batches = at.family.batches();
-        let mut values = vec![0.0; S::VALUES];
-        let mut of_bonds = vec![0.0; if S::BOND_VALUES { batches * LANES } else { 0 }];
-        let mut out = State {
-            values: &mut values,
-            of_bonds: &mut of_bonds,
-        };
-        self.material(i).potential_state(&at, &mut out);
         let (moving, mut power) = (at.family.at(velocities), F64x8([0.0; LANES]));
-        for batch in 0..batches {
-            let bond = at.family.bond::<F64x8>(batch);
-            let of_bond = match S::BOND_VALUES {
-                true => std::array::from_fn(|lane| of_bonds[batch * LANES + lane]),
-                false => [0.0; LANES],
-            };
-            let pull = S::pull(&end_of(&values, F64x8(of_bond)), &bond);
+        let set_state = |out: &mut State<'_>| self.material(i).potential_state(&at, out);
+        for_each_pull::<S, D>(&at, set_state, |batch, bond, pull| {
             let moved = moving.eta::<F64x8>(batch);
             for c in 0..D {
                 power = power + bond.weight * pull[c] * moved[c];
             }
-        }
+        });
         [energy, power.sum()]
     }
 
@@ -401,11 +403,7 @@ impl<S: Solid<D>, const D: usize> Breakable for SolidForce<S, D> {
         let ghosts = self.cloud.domain().ghosts(u);
         let rows = self.packed(Field::new(u, &ghosts));
         let (heat, all) = (self.latest_heat(), PointSubset::All);
-        let mut found = self.over_stretched(&rows, &all, &heat, fraction);
-        if !self.materials.criteria().is_empty() {
-            let t = self.latest_time();
-            found.extend(self.over_stressed(t, &rows, &all, &heat, fraction));
-        }
+        let found = self.beyond(self.latest_time(), &rows, &all, &heat, fraction);
         for (i, _) in found {
             marks[i] = true;
         }

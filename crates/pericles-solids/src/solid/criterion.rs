@@ -11,62 +11,31 @@ use pericles::operator::{Kinematics, PointSubset};
 use pericles::parallel::for_each_point;
 
 use super::breaking::Entries;
-use super::family::{Family, Point, SingleBond};
+use super::family::{Point, SingleBond};
 use super::heat::Heat;
-use super::loops::end_of;
+use super::loops::for_each_pull;
 use super::shape::ShapeTensor;
 use super::view::in_lanes;
 use super::{Solid, SolidForce, State};
 use crate::tensor::{Matrix, combination, product, symmetric, unit};
-
-/// Returns Σ ω η ⊗ ξ over the intact bonds of a point.
-fn moment<const D: usize>(family: &Family<'_, D>) -> Matrix<D> {
-    let mut sums = [[F64x8([0.0; LANES]); D]; D];
-    for batch in 0..family.batches() {
-        let bond = family.bond::<F64x8>(batch);
-        for a in 0..D {
-            for b in 0..D {
-                sums[a][b] = sums[a][b] + bond.weight * bond.eta[a] * bond.xi[b];
-            }
-        }
-    }
-    sums.map(|row| row.map(F64x8::sum))
-}
 
 /// Returns Σ ω T ⊗ y over the intact bonds of a point, with y = ξ + η, or ξ for linear kinematics.
 pub(super) fn stress_of_force_state<S: Solid<D> + ?Sized, const D: usize>(
     material: &S,
     at: &Point<'_, S::Shape, D>,
 ) -> Matrix<D> {
-    let mut values = vec![0.0; S::VALUES];
-    let mut of_bonds = vec![
-        0.0;
-        if S::BOND_VALUES {
-            at.family.batches() * LANES
-        } else {
-            0
-        }
-    ];
-    let mut out = State {
-        values: &mut values,
-        of_bonds: &mut of_bonds,
-    };
-    material.state::<F64x8>(at, &mut out);
     let mut stress = [[F64x8([0.0; LANES]); D]; D];
-    for batch in 0..at.family.batches() {
-        let bond = at.family.bond::<F64x8>(batch);
-        let of_bond = match S::BOND_VALUES {
-            true => std::array::from_fn(|lane| of_bonds[batch * LANES + lane]),
-            false => [0.0; LANES],
-        };
-        let pull = S::pull(&end_of(&values, F64x8(of_bond)), &bond);
+    let set_state = |out: &mut State<'_>| {
+        material.state::<F64x8>(at, out);
+    };
+    for_each_pull::<S, D>(at, set_state, |_, bond, pull| {
         let along = S::Kinematics::direction(bond.xi, bond.eta);
         for a in 0..D {
             for b in 0..D {
                 stress[a][b] = stress[a][b] + bond.weight * pull[a] * along[b];
             }
         }
-    }
+    });
     stress.map(|row| row.map(F64x8::sum))
 }
 
@@ -80,7 +49,7 @@ impl<S: Solid<D>, const D: usize> SolidForce<S, D> {
             let stress = self.material(i).stress(&at);
             let inverse = ShapeTensor::of(&at.family).inverse();
             let strain = inverse.map_or([[0.0; D]; D], |inverse| {
-                let gradient = product(&moment(&at.family), &inverse);
+                let gradient = product(&at.family.moment::<F64x8>(&at.family), &inverse);
                 combination(1.0, &symmetric(&gradient), -at.thermal, &unit::<D>())
             });
             [stress, strain]

@@ -4,6 +4,7 @@ use pericles::lanes::{F64x8, LANES, Lanes, Row};
 use pericles::operator::Kinematics;
 
 use super::bonds::Bonds;
+use crate::tensor::Matrix;
 
 /// The bonds of a point, at a displacement.
 #[derive(Clone, Copy)]
@@ -172,6 +173,32 @@ impl<'a, const D: usize> Family<'a, D> {
             square,
             inverse_square: T::splat(1.0) / square,
         }
+    }
+
+    /// Returns Σ ω η ⊗ ξ, with η of `moved`, the same bonds at another displacement or in a direction.
+    #[inline(always)]
+    pub fn moment<T: Lanes>(&self, moved: &Self) -> Matrix<D> {
+        let mut sums = [[T::splat(0.0); D]; D];
+        for batch in 0..self.batches() {
+            if self.intact(batch) == 0 {
+                continue;
+            }
+            let bond = self.bond::<T>(batch);
+            let eta = moved.eta::<T>(batch);
+            for a in 0..D {
+                let weighted = bond.weight * eta[a];
+                for b in 0..D {
+                    sums[a][b] = weighted.mul_add(bond.xi[b], sums[a][b]);
+                }
+            }
+        }
+        let mut moment = [[0.0; D]; D];
+        for a in 0..D {
+            for b in 0..D {
+                moment[a][b] = F64x8(sums[a][b].to_array()).sum();
+            }
+        }
+        moment
     }
 
     /// Returns the influence function w of a batch; zero if the material does not read it

@@ -34,7 +34,7 @@ impl HistorySize {
 
 /// Output of [`Solid::advance`](super::Solid::advance): the stored numbers at the end of a step.
 pub struct NextHistory<'a> {
-    /// Stored numbers of the point, with their former values.
+    /// Stored numbers of the point, which are those at the end of the last step until they are set.
     pub history: &'a mut [f64],
     pub(super) of_bonds: &'a mut [f64],
     pub(super) per_bond: usize,
@@ -76,7 +76,7 @@ pub(super) struct BlockHistory<'a> {
     pub bonds: &'a mut [f64],
     pub time: &'a mut [f64],
     /// Stored numbers of points and of bonds at the end of the last step.
-    pub former: [Vec<f64>; 2],
+    pub last: [Vec<f64>; 2],
     /// Energy that each point dissipates in the step, J.
     pub works: Vec<f64>,
 }
@@ -113,7 +113,7 @@ impl History {
         self.time.get(i).map_or(0.0, |last| (t - last).max(0.0))
     }
 
-    /// Divides the stored numbers into blocks of points, with copies of their former values.
+    /// Divides the stored numbers into blocks of points, with copies for the values at the end of the last step.
     pub fn blocks(&mut self) -> Vec<BlockHistory<'_>> {
         let n = self.time.len();
         let HistorySize {
@@ -132,7 +132,7 @@ impl History {
             let of_points = cut(&mut points, (end - first) * per_point);
             let of_bonds = cut(&mut bonds, groups * per_bond * LANES);
             blocks.push(BlockHistory {
-                former: [of_points.to_vec(), of_bonds.to_vec()],
+                last: [of_points.to_vec(), of_bonds.to_vec()],
                 points: of_points,
                 bonds: of_bonds,
                 time: cut(&mut time, end - first),

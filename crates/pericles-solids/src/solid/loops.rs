@@ -218,7 +218,7 @@ fn advance_rows_body<T: Lanes, S: Solid<D>, const D: usize>(
 ) {
     let force = first_loop.force;
     let (start, size) = (force.bonds.list().start(), force.history_size);
-    let [former_points, former_bonds] = &block.former;
+    let [last_points, last_bonds] = &block.last;
     for k in 0..rows.count() {
         let i = rows.at(k);
         let place = i - rows.first;
@@ -238,8 +238,8 @@ fn advance_rows_body<T: Lanes, S: Solid<D>, const D: usize>(
         let at = Point {
             family: force.family(i, first_loop.u),
             shape,
-            history: &former_points[points.clone()],
-            of_bonds: &former_bonds[groups.clone()],
+            history: &last_points[points.clone()],
+            of_bonds: &last_bonds[groups.clone()],
             per_bond: size.per_bond,
             dt,
             thermal: first_loop.heat.stretch(i),
@@ -298,6 +298,30 @@ for_each_instruction_set! {
         rows: &Rows<'_>,
         found: &mut Vec<(usize, usize, u8)>,
     ) = watch_rows_body on lanes
+}
+
+/// Calls `visit(batch, bonds, T⟨ξ⟩)` for the bonds of a point, with the values that `set_state` sets.
+pub(super) fn for_each_pull<S: Solid<D> + ?Sized, const D: usize>(
+    at: &Point<'_, S::Shape, D>,
+    set_state: impl FnOnce(&mut State<'_>),
+    mut visit: impl FnMut(usize, &Bond<F64x8, D>, [F64x8; D]),
+) {
+    let batches = at.family.batches();
+    let mut values = vec![0.0; S::VALUES];
+    let mut of_bonds = vec![0.0; if S::BOND_VALUES { batches * LANES } else { 0 }];
+    set_state(&mut State {
+        values: &mut values,
+        of_bonds: &mut of_bonds,
+    });
+    for batch in 0..batches {
+        let bond = at.family.bond::<F64x8>(batch);
+        let of_bond = match S::BOND_VALUES {
+            true => F64x8::load(&of_bonds, batch * LANES),
+            false => F64x8([0.0; LANES]),
+        };
+        let pull = S::pull(&end_of(&values, of_bond), &bond);
+        visit(batch, &bond, pull);
+    }
 }
 
 /// Returns the values of a state as those of an end, for single bonds.
