@@ -172,7 +172,7 @@ pub use scheme::{FineRegion, FineStep, Interface, Scheme};
 pub use set::{ALL, Depth, Members, NamedSet};
 pub use source::{Location, is_invisible};
 pub use state_based::StateBased;
-pub use statics::{RigidModes, StaticBreaking, Statics};
+pub use statics::{LoadControl, RigidModes, StaticBreaking, Statics};
 pub use stop::{StopCondition, StopWhen};
 pub use subject::Subject;
 pub use surface::SurfaceBody;

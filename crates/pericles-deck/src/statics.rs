@@ -6,10 +6,10 @@ use crate::quantity::Quantity;
 use crate::reader::Table;
 
 /// Keys of this scheme only.
-pub(crate) const KEYS: [&str; 3] = ["newton_steps", "rigid_modes", "breaking"];
+pub(crate) const KEYS: [&str; 4] = ["newton_steps", "rigid_modes", "breaking", "control"];
 
 /// Options of the static solver.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Statics {
     /// Residual norm relative to the larger norm of loads and reactions.
@@ -22,6 +22,19 @@ pub struct Statics {
     /// Breaking rule for bonds beyond their critical stretch.
     #[serde(default)]
     pub breaking: StaticBreaking,
+    /// Control of the loads by a quantity of the displacements.
+    #[serde(default)]
+    pub control: Option<LoadControl>,
+}
+
+/// Control of the loads by a quantity of the displacements that grows in proportion to time.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LoadControl {
+    /// A displacement of a probe or a derived quantity.
+    pub quantity: String,
+    /// Its rate, m/s.
+    pub rate: f64,
 }
 
 /// Breaking rule for bonds beyond their critical stretch.
@@ -55,6 +68,7 @@ impl Default for Statics {
             newton_steps: 25,
             rigid_modes: RigidModes::default(),
             breaking: StaticBreaking::default(),
+            control: None,
         }
     }
 }
@@ -91,10 +105,35 @@ pub(crate) fn read(table: &Table<'_>) -> Option<Statics> {
             ("event", StaticBreaking::Event),
         ],
     );
+    let control = match breaking {
+        Some(StaticBreaking::Event) => {
+            table.forbid(
+                "control",
+                "breaking = \"event\" follows falling branches and snap-backs itself; end the run by a condition on the quantity in [[time.stop_when]]",
+            );
+            Some(None)
+        }
+        _ => table.maybe("control", |item| control(item.table()?)),
+    };
     Some(Statics {
         tolerance: tolerance?,
         newton_steps: newton_steps?,
         rigid_modes: rigid_modes?,
         breaking: breaking?,
+        control: control?,
+    })
+}
+
+fn control(table: Table<'_>) -> Option<LoadControl> {
+    let quantity = table.required("quantity").and_then(|item| item.text());
+    let rate = table.required("rate").and_then(|item| {
+        item.within(Quantity::Velocity, "a speed other than 0", |rate| {
+            rate != 0.0
+        })
+    });
+    table.finish();
+    Some(LoadControl {
+        quantity: quantity?,
+        rate: rate?,
     })
 }

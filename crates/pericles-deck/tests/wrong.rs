@@ -158,6 +158,8 @@ const WRONG: &[Wrong] = &[
     wrong("dt = \"auto\"", "scheme = \"static\"\ntolerance = 2", (36, 13), "2", &["residual relative to loads"]),
     wrong("dt = \"auto\"", "scheme = \"static\"\nnewton_steps = 4000", (36, 16), "4000", &["from 1 to 1000"]),
     wrong("dt = \"auto\"", "scheme = \"static\"\nrigid_modes = \"keep\"", (36, 15), "\"keep\"", &["rigid", "refuse", "fix"]),
+    wrong("dt = \"auto\"", "scheme = \"static\"\ncontrol = { quantity = \"CMOD\", rate = 0 }", (36, 39), "0", &["a speed other than 0"]),
+    wrong("dt = \"auto\"", "scheme = \"static\"\nbreaking = \"event\"\ncontrol = { quantity = \"CMOD\", rate = 1 }", (37, 1), "control", &["[[time.stop_when]]"]),
     wrong("dt = \"auto\"", "scheme = \"static\"\nbreaking = \"first\"", (36, 12), "\"first\"", &["breaking rule", "worst-first", "all", "event"]),
     wrong("dt = \"auto\"", "newton_steps = 4", (35, 1), "newton_steps", &["not allowed", "scheme = \"static\""]),
     wrong("dt = \"auto\"", "load_steps = 4", (35, 1), "load_steps", &["not allowed", "a static scheme: \"adaptive-dynamic-relaxation\", \"fire\" or \"static\""]),

@@ -53,6 +53,7 @@ mod build;
 mod cancel;
 mod checkpoint;
 pub mod composition;
+mod control;
 pub mod convergence;
 mod deadline;
 mod deck_text;

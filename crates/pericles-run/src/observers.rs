@@ -26,7 +26,7 @@ use pericles_manifold::{EnergyInequality, SurfaceMeasure};
 use crate::build::{Assembly, ExactReference, Meshes, Sets, gathered, is_on_grid};
 use crate::checkpoint;
 use crate::error::RunError;
-use crate::signals::{QuantitySignals, follows_events, history_signals};
+use crate::signals::{QuantitySignals, history_signals, scales_loads};
 
 use self::impactors::add_impactors;
 
@@ -207,7 +207,7 @@ fn style_of(look: &PictureLook) -> PictureStyle {
 
 /// Returns the time at which all loads of a static run act; none if the time is not proportional to the loads.
 fn load_end(model: &Model) -> Option<f64> {
-    (model.time.scheme.is_static() && !follows_events(model)).then_some(model.time.end)
+    (model.time.scheme.is_static() && !scales_loads(model)).then_some(model.time.end)
 }
 
 /// Returns the lines on pictures of a plane body: pre-cracks, interfaces of materials, borders of refined parts.

@@ -71,7 +71,7 @@ pub(crate) fn history_signals(
             _ => InnerColumns::Velocity,
         }));
     }
-    if follows_events(model) {
+    if scales_loads(model) {
         of_scheme.push(Box::new(LoadFactorColumn));
     }
     let mut of_state: Vec<Box<dyn Signals>> = Vec::new();
@@ -89,9 +89,13 @@ pub(crate) fn history_signals(
     [of_scheme, of_state]
 }
 
-/// Returns whether the scheme scales the loads from event to event, whatever the time is.
-pub(crate) fn follows_events(model: &Model) -> bool {
-    matches!(&model.time.scheme, Scheme::Static(options) if options.breaking == StaticBreaking::Event)
+/// Returns whether the scheme determines the factor of the loads, so that they are not proportional to time.
+pub(crate) fn scales_loads(model: &Model) -> bool {
+    matches!(
+        &model.time.scheme,
+        Scheme::Static(options)
+            if options.breaking == StaticBreaking::Event || options.control.is_some()
+    )
 }
 
 /// Returns the impactors of a model as signals; `None` without impactors.
@@ -140,6 +144,42 @@ impl SignalRegistry {
             registry.derive(quantity, &path)?;
         }
         Ok(registry)
+    }
+
+    /// Creates the registry of the displacements of probes and of the quantities that are derived from them alone.
+    pub(crate) fn of_probes(model: &Model, probes: &[Probe]) -> Self {
+        let mut registry = Self {
+            sources: Vec::new(),
+            columns: Vec::new(),
+            quantities: Vec::new(),
+        };
+        registry.add(Box::new(ProbeSignals {
+            probes: probes.to_vec(),
+            dimension: model.body.dimension(),
+        }));
+        for (k, quantity) in model.output.quantities.iter().enumerate() {
+            // Quantities of other columns have errors here.
+            let _ = registry.derive(quantity, &KeyPath::from("output.quantity").index(k));
+        }
+        registry
+    }
+
+    /// Returns the names of the signals in metres.
+    pub(crate) fn lengths(&self) -> impl Iterator<Item = &str> {
+        let is_length = |&k: &usize| SignalExpression::is_same_unit(self.unit(k), "m");
+        let count = self.columns.len() + self.quantities.len();
+        (0..count).filter(is_length).map(|k| self.name(k))
+    }
+
+    /// Returns the index of a signal in metres; `None` if there is none with this name.
+    pub(crate) fn length(&self, name: &str) -> Option<usize> {
+        let index = self.index(name, &KeyPath::from("")).ok()?;
+        SignalExpression::is_same_unit(self.unit(index), "m").then_some(index)
+    }
+
+    /// Evaluates a signal. All processes call it together.
+    pub(crate) fn value(&self, snapshot: &Snapshot<'_>, index: usize) -> Result<f64, ObserveError> {
+        Ok(self.values(snapshot, &[index])?[index])
     }
 
     fn add(&mut self, signals: Box<dyn Signals>) {

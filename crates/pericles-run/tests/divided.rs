@@ -133,6 +133,59 @@ fn an_open_plate_divided_among_processes_has_the_files_of_one_process() {
     check_resumed(OPEN_SIDES, 97, &[(3, 1), (1, 2)]);
 }
 
+/// A notched plate of softening bonds whose loads follow the opening of the notch.
+const CONTROLLED: &str = r#"
+[body]
+shape = "plate"
+size = ["24 mm", "12 mm"]
+spacing = "1 mm"
+plane = "stress"
+[material]
+youngs_modulus = "30 GPa"
+density = 2400
+horizon_ratio = 3
+fracture_energy = "20 J/m2"
+tensile_strength = "3 MPa"
+softening = { law = "trilinear" }
+no_fail = ["left", "right"]
+[sets.left]
+layer = { side = "-x", cells = 3 }
+[sets.right]
+layer = { side = "+x", cells = 3 }
+[[crack]]
+segment = [["12 mm", "0 mm"], ["12 mm", "4 mm"]]
+[[constraint]]
+set = "left"
+displacement = [0, 0]
+[[load]]
+set = "right"
+body_force = ["1e9 N/m3", 0]
+[[probe]]
+name = "near"
+at = ["11.5 mm", "0.5 mm"]
+[[probe]]
+name = "far"
+at = ["12.5 mm", "0.5 mm"]
+[time]
+scheme = "static"
+load_steps = 6
+control = { quantity = "opening", rate = "4 um/s" }
+[output]
+history = { every = 1 }
+fields = { count = 2, names = ["Displacement", "Damage"] }
+[[output.quantity]]
+name = "opening"
+expression = "far.u_x - near.u_x"
+[checkpoint]
+every = 2
+"#;
+
+#[test]
+fn a_controlled_static_run_divided_among_processes_has_the_files_of_one_process() {
+    check(CONTROLLED, &[1, 2, 3]);
+    check_resumed(CONTROLLED, 3, &[(3, 1), (1, 2)]);
+}
+
 /// Steps of the example decks.
 const STEPS: u64 = 8;
 

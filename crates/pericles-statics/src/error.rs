@@ -71,6 +71,33 @@ pub enum StaticsError {
         /// Reason and suggested change.
         reason: &'static str,
     },
+    /// Control of the load factor is not supported for the system.
+    #[error("`control` cannot be used: {reason}")]
+    NoControl {
+        /// Reason and suggested change.
+        reason: &'static str,
+    },
+    /// The load factor at which a controlled quantity has its value was not found.
+    #[error(
+        "no static state found at t = {}: at the fraction {} of the step the controlled quantity is {} m (wanted {} m), the relative residual {} (tolerance {}); \
+         the quantity must grow along the path of states: choose one that opens with the crack; or use shorter steps, a larger tolerance, or stop the run before by [[time.stop_when]]",
+        quantity(*.t, "s"), significant(*.fraction, 3), significant(*.value, 6), significant(*.wanted, 6),
+        significant(*.residual, 3), significant(*.tolerance, 3)
+    )]
+    NotControlled {
+        /// Time, s.
+        t: f64,
+        /// Fraction of the step up to which static states were found.
+        fraction: f64,
+        /// Value of the quantity in the last iteration, m.
+        value: f64,
+        /// Its value at the end of the step, m.
+        wanted: f64,
+        /// Residual relative to loads and reactions.
+        residual: f64,
+        /// Tolerance of the relative residual.
+        tolerance: f64,
+    },
     /// The iteration of natural modes does not converge.
     #[error("the natural modes did not converge to a residual of {} within {iterations} iterations; allow more iterations or compute fewer modes", significant(*.tolerance, 3))]
     ModesNotFound {

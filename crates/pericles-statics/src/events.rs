@@ -1,46 +1,28 @@
 //! Event-by-event analysis, from one breaking bond to the next.
 
-use pericles::operator::PointSubset;
 use pericles::{Result, System};
 
 use crate::error::StaticsError;
+use crate::reference::Reference;
 use crate::stretch::load_factor;
 
 /// Returns an error for systems that event-by-event analysis does not support: the state between events must be
 /// determined by the bonds and one factor of loads and supports.
 pub(crate) fn check(system: &System, reference: f64) -> Result<()> {
-    let refuse = |reason| Err(StaticsError::NoEvents { reason }.into());
-    let capabilities = system.operator().capabilities();
-    if capabilities.path_dependent {
-        return refuse(
+    let refuse = |reason| StaticsError::NoEvents { reason };
+    if system.operator().capabilities().path_dependent {
+        return Err(refuse(
             "forces depend on the history of the deformation, so that the load factor does not determine the state (use an elastic material)",
-        );
-    }
-    if capabilities.thermal.is_some() {
-        return refuse("thermal strain is not scaled with the loads (remove [thermal])");
-    }
-    if system.has_interactions() {
-        return refuse("contact opens and closes between events (remove [contact] and impactors)");
+        )
+        .into());
     }
     if !system.operator().can_break() {
-        return refuse(
+        return Err(refuse(
             "no bond can break (set a fracture energy or a critical stretch of the material)",
-        );
+        )
+        .into());
     }
-    let (mut supports, mut load) = (vec![0.0; entries(system)], vec![0.0; entries(system)]);
-    system.place_on(reference, &PointSubset::All, &mut supports);
-    system.load_density_into(reference, &mut load);
-    let nothing = supports.iter().chain(&load).all(|x| *x == 0.0);
-    if system.domain().all(nothing) {
-        return refuse(
-            "no load and no prescribed displacement differs from zero at the end of the run",
-        );
-    }
-    Ok(())
-}
-
-fn entries(system: &System) -> usize {
-    system.dimension() * system.points()
+    Reference::check(system, reference, refuse)
 }
 
 /// Factors beyond this multiple of the last one come from bonds stretched by round-off: the body is severed.

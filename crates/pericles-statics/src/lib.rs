@@ -5,6 +5,7 @@
 //! |---|---|
 //! | [`StaticScheme`] | integrator whose steps are static load steps, solved by Newton's method |
 //! | [`BreakingRule`] | rule that selects the bonds that break at a static state |
+//! | [`Control`] | control of the load factor by a quantity of the displacements |
 //! | [`NaturalModes`] | lowest natural frequencies and mode shapes |
 //! | [`krylov`] | preconditioned conjugate gradients |
 //! | [`surrogate`] | springs between neighbouring points that approximate the body in the preconditioner |
@@ -15,15 +16,18 @@
 
 mod block;
 mod breaking;
+mod control;
 mod eigen;
 mod equilibrium;
 mod error;
 mod events;
 pub mod krylov;
+mod mixing;
 mod modes;
 pub mod multigrid;
 mod options;
 mod path;
+mod reference;
 pub mod rigid;
 mod scheme;
 pub mod sparse;
@@ -33,6 +37,7 @@ mod tangent;
 mod unknowns;
 
 pub use breaking::BreakingRule;
+pub use control::{Control, ControlledQuantity};
 pub use eigen::symmetric_eigen;
 pub use equilibrium::{Effort, Equilibrium, Target};
 pub use error::{MOST_REPLICATED, StaticsError};

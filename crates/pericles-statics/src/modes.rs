@@ -10,7 +10,7 @@ use crate::multigrid::Multigrid;
 use crate::rigid::{free_pieces, spread};
 use crate::sparse::add_multiple;
 use crate::surrogate::Surrogate;
-use crate::tangent::stiffness_into;
+use crate::tangent::{Derivative, stiffness_into};
 use crate::unknowns::Unknowns;
 
 /// Number and accuracy of natural modes.
@@ -227,7 +227,14 @@ impl<'a> Problem<'a> {
     /// Returns K x on free entries.
     fn product(&mut self, x: &[f64]) -> Vec<f64> {
         let mut out = vec![0.0; x.len()];
-        stiffness_into(self.system, [self.t; 2], self.u, x, &mut out);
+        stiffness_into(
+            self.system,
+            Derivative::Tangent,
+            [self.t; 2],
+            self.u,
+            x,
+            &mut out,
+        );
         out.iter_mut()
             .zip(&self.free)
             .for_each(|(k, free)| *k *= free);

@@ -3,21 +3,43 @@
 //! Rigid bodies in contact are at their positions of intermediate times, and their work is integrated like that of
 //! the loads.
 
-use pericles::{Interrupt, Result, System};
+use pericles::{Interrupt, PericlesError, Result, System};
 
-use crate::equilibrium::{Effort, Equilibrium, Target, add_internal, is_interrupt, is_linear};
+use crate::control::Control;
+use crate::equilibrium::{
+    ControlledTarget, Effort, Equilibrium, Target, add_internal, is_interrupt, is_linear,
+};
 use crate::error::StaticsError;
+use crate::reference::Reference;
 
-/// Loads and supports at both ends of a load step, interpolated linearly in between.
+/// Loads and supports along a load step.
+pub enum Loading<'a> {
+    /// Given at both ends and interpolated linearly in between.
+    Prescribed {
+        /// Loads before and after, N/m³.
+        loads: [&'a [f64]; 2],
+        /// Displacements before and after, m; only constrained entries are used.
+        supports: [&'a [f64]; 2],
+    },
+    /// Multiples of their values at a reference time, with the factors at which a quantity has its values.
+    Controlled {
+        /// Loads and supports at the reference time.
+        reference: &'a Reference,
+        /// The quantity.
+        control: &'a Control,
+        /// Its values before and after, interpolated linearly in between, m.
+        values: [f64; 2],
+    },
+}
+
+/// A load step.
 pub struct LoadStep<'a> {
     /// Time at the end, s.
     pub t: f64,
     /// Time at the start (s), from which rigid bodies in contact move to their positions at the end.
     pub start: f64,
-    /// Loads before and after, N/m³.
-    pub loads: [&'a [f64]; 2],
-    /// Displacements before and after, m; only constrained entries are used.
-    pub supports: [&'a [f64]; 2],
+    /// Loads and supports.
+    pub loading: Loading<'a>,
     /// Largest norm of loads or reactions before, N.
     pub largest: f64,
 }
@@ -26,7 +48,10 @@ impl LoadStep<'_> {
     /// Returns whether loads and supports do not change, so that a part of the step is the same problem.
     fn is_jump(&self) -> bool {
         let same = |[a, b]: [&[f64]; 2]| std::ptr::eq(a, b);
-        same(self.loads) && same(self.supports)
+        match self.loading {
+            Loading::Prescribed { loads, supports } => same(loads) && same(supports),
+            Loading::Controlled { values: [a, b], .. } => a == b,
+        }
     }
 
     /// Returns the time at a fraction of the step.
@@ -43,6 +68,8 @@ struct Station {
     /// Fraction of the load step, 0 … 1.
     s: f64,
     u: Vec<f64>,
+    /// Factor of the reference loads; 1 for prescribed loads.
+    factor: f64,
     /// External force on each entry, N: loads on free entries, reactions and loads on constrained entries.
     acting: Vec<f64>,
 }
@@ -80,86 +107,114 @@ pub struct Follower<'a, 'i> {
 }
 
 impl Follower<'_, '_> {
-    /// Advances `u` from the start of the load step to its end. The step is divided if Newton's method does
-    /// not converge.
+    /// Advances `u` from the start of the load step to its end, and the factor of the loads if it is controlled. The step is
+    /// divided if the iteration does not converge.
     ///
     /// # Errors
     /// No static state for the shortest part of the step; interruption.
-    pub fn follow(&mut self, u: &mut Vec<f64>, with_work: bool) -> Result<Followed> {
+    pub fn follow(
+        &mut self,
+        u: &mut Vec<f64>,
+        factor: &mut f64,
+        with_work: bool,
+    ) -> Result<Followed> {
         let mut followed = Followed::default();
-        let mut here = self.station(0.0, std::mem::take(u));
+        let mut here = self.station(0.0, std::mem::take(u), *factor);
+        let end = self.advance(&mut here, &mut followed, with_work);
+        *u = here.u;
+        *factor = here.factor;
+        end.map_err(|error| at_fraction(error, here.s))?;
+        Ok(followed)
+    }
+
+    /// Advances a station to the end of the load step, or to the last static state before an error.
+    fn advance(
+        &mut self,
+        here: &mut Station,
+        followed: &mut Followed,
+        with_work: bool,
+    ) -> Result<()> {
         let mut length: f64 = 1.0;
         while here.s < 1.0 {
             let s = (here.s + length).min(1.0);
-            let mut next = here.u.clone();
-            match self.find(s, &mut next) {
-                Ok(effort) => {
+            match self.find(s, (here.u.clone(), here.factor)) {
+                Ok((there, effort)) => {
                     followed.effort.add(effort);
                     followed.parts += 1;
                     self.step.largest = self.step.largest.max(effort.acting);
-                    let there = self.station(s, next);
-                    let work = self.work(&here, &there, with_work, 0, &mut followed.effort);
-                    here = there;
-                    match work {
-                        Ok(work) => followed.work += work,
-                        Err(error) => {
-                            *u = here.u;
-                            return Err(error);
-                        }
-                    }
+                    let work = self.work(here, &there, with_work, 0, &mut followed.effort);
+                    *here = there;
+                    followed.work += work?;
                     length = (2.0 * length).min(1.0 - here.s);
                 }
                 Err(error) => {
                     length *= 0.5;
                     if is_interrupt(&error) || self.step.is_jump() || length < SHORTEST {
-                        *u = here.u;
-                        return Err(at_fraction(error, here.s));
+                        return Err(error);
                     }
                 }
             }
         }
-        *u = here.u;
-        Ok(followed)
+        Ok(())
     }
 
-    /// Advances `u` to the static state at a fraction of the step.
-    fn find(&mut self, s: f64, u: &mut [f64]) -> Result<Effort> {
-        let mix = |[a, b]: [&[f64]; 2]| -> Vec<f64> {
-            if s == 1.0 {
-                return b.to_vec();
+    /// Returns the static state at a fraction of the step, from a state and a factor nearby.
+    fn find(&mut self, s: f64, (mut u, mut factor): (Vec<f64>, f64)) -> Result<(Station, Effort)> {
+        let effort = match &self.step.loading {
+            Loading::Prescribed { loads, supports } => {
+                let (load, supports) = (mix(*loads, s), mix(*supports, s));
+                let target = Target {
+                    t: self.step.t,
+                    place: self.step.time_at(s),
+                    load: &load,
+                    supports: &supports,
+                    largest: self.step.largest,
+                };
+                (self.equilibrium).find(self.system, &target, &mut u, self.interrupt)?
             }
-            let pairs = a.iter().zip(b);
-            pairs.map(|(a, b)| (1.0 - s) * a + s * b).collect()
+            Loading::Controlled {
+                reference,
+                control,
+                values: [before, after],
+            } => {
+                let target = ControlledTarget {
+                    t: self.step.t,
+                    reference,
+                    control,
+                    value: before + s * (after - before),
+                    largest: self.step.largest,
+                };
+                let found = (&mut u[..], &mut factor);
+                (self.equilibrium).find_controlled(self.system, &target, found, self.interrupt)?
+            }
         };
-        let (load, supports) = (mix(self.step.loads), mix(self.step.supports));
-        let target = Target {
-            t: self.step.t,
-            place: self.step.time_at(s),
-            load: &load,
-            supports: &supports,
-            largest: self.step.largest,
-        };
-        self.equilibrium
-            .find(self.system, &target, u, self.interrupt)
+        Ok((self.station(s, u, factor), effort))
     }
 
-    fn station(&self, s: f64, u: Vec<f64>) -> Station {
+    fn station(&self, s: f64, u: Vec<f64>, factor: f64) -> Station {
         let (system, n) = (self.system, self.system.points());
         let mut acting = vec![0.0; u.len()];
         let times = [self.step.t, self.step.time_at(s)];
         add_internal(system, times, &u, &mut acting);
-        let [before, after] = self.step.loads;
+        let load = |k: usize| match &self.step.loading {
+            Loading::Prescribed {
+                loads: [before, after],
+                ..
+            } => (1.0 - s) * before[k] + s * after[k],
+            Loading::Controlled { reference, .. } => factor * reference.load[k],
+        };
         let free = self.equilibrium.free();
         let volumes = system.cloud().volumes();
         for k in 0..u.len() {
-            let density = if free[k] != 0.0 {
-                (1.0 - s) * before[k] + s * after[k]
-            } else {
-                -acting[k]
-            };
+            let density = if free[k] != 0.0 { load(k) } else { -acting[k] };
             acting[k] = volumes[k % n] * density;
         }
-        Station { s, u, acting }
+        Station {
+            s,
+            u,
+            factor,
+            acting,
+        }
     }
 
     /// Returns the work between two stations by the trapezoidal rule; for nonlinear forces by Simpson's rule
@@ -177,17 +232,19 @@ impl Follower<'_, '_> {
             return Ok(whole);
         }
         let s = 0.5 * (a.s + b.s);
-        let mut u: Vec<f64> = a.u.iter().zip(&b.u).map(|(a, b)| 0.5 * (a + b)).collect();
-        match self.find(s, &mut u) {
-            Ok(found) => effort.add(Effort {
-                residual: effort.residual,
-                ..found
-            }),
+        let u = a.u.iter().zip(&b.u).map(|(a, b)| 0.5 * (a + b)).collect();
+        let middle = match self.find(s, (u, 0.5 * (a.factor + b.factor))) {
+            Ok((middle, found)) => {
+                effort.add(Effort {
+                    residual: effort.residual,
+                    ..found
+                });
+                middle
+            }
             Err(error) if is_interrupt(&error) => return Err(error),
             // The body jumps from one state to the other, without intermediate static states.
             Err(_) => return Ok(whole),
-        }
-        let middle = self.station(s, u);
+        };
         let halves = self.trapezoid(a, &middle) + self.trapezoid(&middle, b);
         let correction = (halves - whole) / 3.0;
         let scale = halves.abs().max(self.exchanged);
@@ -207,29 +264,29 @@ impl Follower<'_, '_> {
     }
 }
 
+/// Returns the value at a fraction of a linear path.
+fn mix([a, b]: [&[f64]; 2], s: f64) -> Vec<f64> {
+    if s == 1.0 {
+        return b.to_vec();
+    }
+    let pairs = a.iter().zip(b);
+    pairs.map(|(a, b)| (1.0 - s) * a + s * b).collect()
+}
+
 /// Adds the fraction of the load step up to which static states were found to an error.
-fn at_fraction(error: pericles::PericlesError, s: f64) -> pericles::PericlesError {
-    let pericles::PericlesError::Extension(inner) = error else {
+fn at_fraction(error: PericlesError, s: f64) -> PericlesError {
+    let PericlesError::Extension(inner) = error else {
         return error;
     };
     match inner.downcast::<StaticsError>() {
-        Ok(found) => match *found {
-            StaticsError::NoEquilibrium {
-                t,
-                residual,
-                tolerance,
-                indefinite,
-                ..
-            } => StaticsError::NoEquilibrium {
-                t,
-                fraction: s,
-                residual,
-                tolerance,
-                indefinite,
+        Ok(mut found) => {
+            if let StaticsError::NoEquilibrium { fraction, .. }
+            | StaticsError::NotControlled { fraction, .. } = &mut *found
+            {
+                *fraction = s;
             }
-            .into(),
-            other => other.into(),
-        },
-        Err(inner) => pericles::PericlesError::Extension(inner),
+            PericlesError::Extension(found)
+        }
+        Err(inner) => PericlesError::Extension(inner),
     }
 }

@@ -8,8 +8,19 @@ use crate::krylov::LinearProblem;
 use crate::multigrid::Multigrid;
 use crate::unknowns::Unknowns;
 
-/// Tangent stiffness at a displacement, A = −V ∂f/∂u (N/m), preconditioned by multigrid of the surrogate.
+/// Derivative of the force of bonds that is the matrix of a linear problem.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Derivative {
+    /// The tangent.
+    Tangent,
+    /// The derivative with constant damage.
+    Secant,
+}
+
+/// Stiffness at a displacement, A = −V ∂f/∂u (N/m), preconditioned by multigrid of the surrogate.
 pub struct Tangent<'a> {
+    /// The derivative.
+    pub of: Derivative,
     /// The body.
     pub system: &'a System,
     /// Times of bonds and of contact, s.
@@ -30,7 +41,7 @@ pub struct Tangent<'a> {
 
 impl LinearProblem for Tangent<'_> {
     fn multiply_into(&mut self, x: &[f64], out: &mut [f64]) {
-        stiffness_into(self.system, self.times, self.u, x, out);
+        stiffness_into(self.system, self.of, self.times, self.u, x, out);
     }
 
     fn precondition_into(&mut self, residual: &[f64], out: &mut [f64]) {
@@ -47,10 +58,18 @@ impl LinearProblem for Tangent<'_> {
 
 /// Computes `out` = −V ∂f/∂u x at displacement u, on all entries, with bonds at the first time and contact at the second
 /// one.
-pub fn stiffness_into(system: &System, times: [f64; 2], u: &[f64], x: &[f64], out: &mut [f64]) {
-    match system.operator().as_linear() {
-        Some(linear) => linear.apply_into(x, out),
-        None => system.operator().tangent_into(times[0], u, x, out),
+pub fn stiffness_into(
+    system: &System,
+    of: Derivative,
+    times: [f64; 2],
+    u: &[f64],
+    x: &[f64],
+    out: &mut [f64],
+) {
+    match (system.operator().as_linear(), of) {
+        (Some(linear), _) => linear.apply_into(x, out),
+        (None, Derivative::Tangent) => system.operator().tangent_into(times[0], u, x, out),
+        (None, Derivative::Secant) => system.operator().secant_into(times[0], u, x, out),
     }
     system.add_contact_tangent(times[1], u, x, out);
     let (n, volumes) = (system.points(), system.cloud().volumes());

@@ -43,6 +43,11 @@ impl Check {
             Scheme::Static(options) => {
                 self.between(key.key("tolerance"), options.tolerance, [0.0, 1.0]);
                 self.count(key.key("newton_steps"), options.newton_steps);
+                if let Some(control) = &options.control {
+                    let right = control.rate != 0.0 && control.rate.is_finite();
+                    let key = key.key("control").key("rate");
+                    self.within(right, key, control.rate, "allowed: a speed other than 0");
+                }
             }
             Scheme::VelocityVerlet
             | Scheme::Thermal

@@ -441,6 +441,7 @@ pub(super) const SPECIMENS: &[Specimen] = &[
     specimen(BAR, &["time={ end = 1, scheme = 'fire', tolerance = 1e-6, iterations = 9, load_steps = 2 }"]),
     specimen(BAR, &["time={ scheme = 'static' }"]),
     specimen(BAR, &["time={ end = 1, scheme = 'static', tolerance = 1e-6, newton_steps = 9, load_steps = 2, rigid_modes = 'fix', breaking = 'all' }"]),
+    specimen(BAR, &["time={ scheme = 'static', control = { quantity = 'end.u_x', rate = 1 } }"]),
     specimen(BAR, &["constraint=[{ set = 'left', velocity = 0 }]", "time.stop_when=[{ set = 'left', reaction_below = 0.02 }, { set = 'left', damage_above = 0.9 }, { condition = 'time > 1' }]"]),
     specimen(BAR, &["output.quantity=[{ name = 'a', expression = 'kinetic_energy', unit = 'J' }]"]),
     // Output.

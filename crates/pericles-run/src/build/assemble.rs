@@ -106,7 +106,7 @@ pub fn assemble(
         &mut warnings,
     )?;
     let probes = assembler.point_probes(place, &mut warnings)?;
-    let integrator = assembler.integrator(&system, sets)?;
+    let integrator = assembler.integrator(&system, sets, &probes)?;
     let ends = assembler.ends(&system, &state, sets, &*integrator, resources)?;
     assembler.check_open(cloud, &*integrator)?;
     let exterior = exterior_frequency(&ends);

@@ -1,5 +1,6 @@
 //! The integrator of a model.
 
+use pericles::observe::Probe;
 use pericles::time::{
     AdaptiveRungeKutta, DiscreteGradient, Fine, Implicit, Integrator, MultiTimeStep,
     MultiTimeStepOptions, Newmark, Predictor, Relaxation, Respa, RungeKutta, Tableau,
@@ -23,6 +24,7 @@ impl Assembler<'_> {
         &self,
         system: &System,
         sets: &Sets,
+        probes: &[Probe],
     ) -> Result<Box<dyn Integrator>, BuildError> {
         Ok(match &self.model.time.scheme {
             Scheme::VelocityVerlet => Box::new(VelocityVerlet),
@@ -62,7 +64,7 @@ impl Assembler<'_> {
             Scheme::Relaxation(options) => {
                 Box::new(Relaxation::new(*options, system).map_err(|error| self.at_scheme(error))?)
             }
-            Scheme::Static(options) => self.statics(options, system)?,
+            Scheme::Static(options) => self.statics(options, system, probes)?,
             Scheme::Thermal if system.fields().next().is_none() => {
                 let error = PericlesError::SchemeNotUsable {
                     scheme: "thermal",

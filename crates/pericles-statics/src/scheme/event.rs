@@ -4,22 +4,15 @@
 //! fixed bonds. Only the load factor is kept between steps, so that a resumed run is bitwise identical.
 
 use pericles::boundary::{Exchange, ProportionalLoading};
-use pericles::operator::PointSubset;
 use pericles::time::State;
 use pericles::{Interrupt, Result, System};
 
 use super::{StaticScheme, chord};
 use crate::error::StaticsError;
 use crate::events;
-use crate::path::LoadStep;
+use crate::path::{LoadStep, Loading};
+use crate::reference::{Reference, scaled};
 use crate::stretch::largest_ratio;
-
-/// Loads and displacements of the supports at the reference time.
-struct Reference {
-    t: f64,
-    load: Vec<f64>,
-    supports: Vec<f64>,
-}
 
 /// States between the last event and the next one.
 struct Between {
@@ -31,10 +24,6 @@ struct Between {
     factor: Option<f64>,
     /// Work of loads and supports, J; `None` if it is that of the mean forces.
     work: Option<f64>,
-}
-
-fn scaled(by: f64, vector: &[f64]) -> Vec<f64> {
-    vector.iter().map(|x| by * x).collect()
 }
 
 impl StaticScheme {
@@ -49,16 +38,8 @@ impl StaticScheme {
     ) -> Result<()> {
         self.prepare(system, reference)?;
         let first = state.step == 0;
-        let zeros = || vec![0.0; self.entries];
-        let mut at = Reference {
-            t: reference,
-            load: zeros(),
-            supports: zeros(),
-        };
+        let at = Reference::of(system, reference);
         let loading = |factors| ProportionalLoading { reference, factors };
-        system.place_on(reference, &PointSubset::All, &mut at.supports);
-        system.load_proportionally(loading([1.0; 2]));
-        system.load_density_into(reference, &mut at.load);
         self.equilibrium.check_loads(system, t, &at.load)?;
         let between = if system.operator().as_linear().is_some() {
             self.next_of_linear(system, &at, &state.u, interrupt)?
@@ -125,11 +106,13 @@ impl StaticScheme {
         let step = LoadStep {
             start: at.t,
             t: at.t,
-            loads: [&at.load; 2],
-            supports: [&at.supports; 2],
+            loading: Loading::Prescribed {
+                loads: [&at.load; 2],
+                supports: [&at.supports; 2],
+            },
             largest: SEVERED * self.largest,
         };
-        self.follow(system, step, (&mut response, false), interrupt)?;
+        self.follow(system, step, (&mut response, &mut 1.0, false), interrupt)?;
         let factor = events::next(system, &response, self.factor);
         Ok(Between {
             settled: scaled(self.factor, &response),
@@ -213,7 +196,7 @@ impl StaticScheme {
         system: &System,
         at: &Reference,
         factors: [f64; 2],
-        u: (&mut Vec<f64>, bool),
+        (u, with_work): (&mut Vec<f64>, bool),
         interrupt: Interrupt<'_>,
     ) -> Result<f64> {
         let loads = factors.map(|factor| scaled(factor, &at.load));
@@ -221,10 +204,12 @@ impl StaticScheme {
         let step = LoadStep {
             start: at.t,
             t: at.t,
-            loads: [&loads[0], &loads[1]],
-            supports: [&supports[0], &supports[1]],
+            loading: Loading::Prescribed {
+                loads: [&loads[0], &loads[1]],
+                supports: [&supports[0], &supports[1]],
+            },
             largest: self.largest,
         };
-        self.follow(system, step, u, interrupt)
+        self.follow(system, step, (u, &mut 1.0, with_work), interrupt)
     }
 }

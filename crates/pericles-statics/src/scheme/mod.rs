@@ -5,6 +5,7 @@
 //! reported as the correction of the scheme. Path-dependent forces are notified of every accepted state: a step then
 //! ends at each static state, even where no bond can break.
 
+mod controlled;
 mod event;
 
 use pericles::boundary::{Exchange, ProportionalLoading};
@@ -15,11 +16,13 @@ use pericles::{
 };
 
 use crate::breaking::BreakingRule;
+use crate::control::Control;
 use crate::equilibrium::{Effort, Equilibrium};
 use crate::error::{MOST_REPLICATED, StaticsError, is_no_equilibrium};
 use crate::events;
 use crate::options::StaticOptions;
-use crate::path::{Follower, LoadStep};
+use crate::path::{Follower, LoadStep, Loading};
+use crate::reference::Reference;
 use pericles::units::significant;
 
 /// Static integrator: each step is a load step to the next static state. Loads and supports have their values
@@ -41,6 +44,9 @@ use pericles::units::significant;
 /// its critical stretch is 1. Between events the bonds do not change, so that the load factor determines the state;
 /// it jumps backwards where the body snaps back, and no arc length along a falling branch is needed.
 ///
+/// With a [`Control`] each step is the state in which a quantity of the displacements has the value of its time, at the
+/// load that belongs to it. Softening bodies are followed beyond the largest load in this way.
+///
 /// Energy balance: loads and supports change linearly within a load step. For linear forces their work is
 /// exactly that of the mean forces; for nonlinear forces it is integrated by Simpson's rule over intermediate
 /// static states, so that the energy balance closes to a small multiple of the tolerance. The run starts from
@@ -49,6 +55,8 @@ use pericles::units::significant;
 #[derive(Debug, Clone)]
 pub struct StaticScheme {
     options: StaticOptions,
+    /// Control of the load factor.
+    control: Option<Control>,
     entries: usize,
     /// Solver for the bonds and supports of the last static state.
     equilibrium: Equilibrium,
@@ -92,6 +100,27 @@ impl StaticScheme {
     /// # Errors
     /// Options out of range, a system that does not meet the requirements, unconstrained rigid-body motions.
     pub fn new(options: StaticOptions, system: &System) -> Result<Self> {
+        Self::with(options, None, system)
+    }
+
+    /// Creates the scheme whose steps prescribe a quantity of the displacements. Loads and displacements of supports are
+    /// multiples of their values at the reference time of the control.
+    ///
+    /// # Errors
+    /// The errors of [`StaticScheme::new`]; event-by-event breaking, contact, thermal strain, no loads.
+    pub fn controlled(options: StaticOptions, control: Control, system: &System) -> Result<Self> {
+        let refuse = |reason| StaticsError::NoControl { reason };
+        if let BreakingRule::Event { .. } = options.breaking {
+            return Err(refuse(
+                "breaking = \"event\" follows falling branches and snap-backs itself (end the run by a condition on the quantity in [[time.stop_when]])",
+            )
+            .into());
+        }
+        Reference::check(system, control.reference, refuse)?;
+        Self::with(options, Some(control), system)
+    }
+
+    fn with(options: StaticOptions, control: Option<Control>, system: &System) -> Result<Self> {
         if !(options.tolerance > 0.0 && options.tolerance < 1.0) {
             return Err(PericlesError::SchemeParameter {
                 parameter: "the tolerance",
@@ -105,7 +134,7 @@ impl StaticScheme {
                 events::check(system, reference)?;
                 reference
             }
-            _ => 0.0,
+            _ => control.as_ref().map_or(0.0, |control| control.reference),
         };
         let unknowns = system.dimension() * system.domain().whole_points();
         if system.domain().is_divided() && unknowns > MOST_REPLICATED {
@@ -115,6 +144,7 @@ impl StaticScheme {
         equilibrium.check_support()?;
         Ok(Self {
             options,
+            control,
             entries: system.dimension() * system.points(),
             broken: system.operator().broken_bonds(),
             restored: false,
@@ -140,6 +170,15 @@ impl StaticScheme {
         &self.equilibrium
     }
 
+    /// Returns the time at which loads and supports have the values that are scaled, if they are.
+    fn reference(&self) -> Option<f64> {
+        match (&self.control, self.options.breaking) {
+            (Some(control), _) => Some(control.reference),
+            (None, BreakingRule::Event { reference, .. }) => Some(reference),
+            (None, _) => None,
+        }
+    }
+
     /// Recreates the solver if supports or bonds have changed.
     fn prepare(&mut self, system: &System, t: f64) -> Result<()> {
         let free = free_at(system, t);
@@ -159,12 +198,12 @@ impl StaticScheme {
         Ok(())
     }
 
-    /// Advances `u` along a load step and returns the work done.
+    /// Advances `u`, and the factor of controlled loads, along a load step and returns the work done.
     fn follow(
         &mut self,
         system: &System,
         step: LoadStep<'_>,
-        (u, with_work): (&mut Vec<f64>, bool),
+        (u, factor, with_work): (&mut Vec<f64>, &mut f64, bool),
         interrupt: Interrupt<'_>,
     ) -> Result<f64> {
         let mut follower = Follower {
@@ -174,7 +213,7 @@ impl StaticScheme {
             interrupt,
             exchanged: system.ledger().exchanged,
         };
-        let followed = follower.follow(u, with_work)?;
+        let followed = follower.follow(u, factor, with_work)?;
         self.left_out = self.left_out.max(self.equilibrium.left_out());
         self.effort.add(followed.effort);
         self.largest = self.largest.max(followed.effort.acting);
@@ -191,10 +230,11 @@ impl StaticScheme {
         interrupt: Interrupt<'_>,
     ) -> Result<Option<f64>> {
         let (t, largest) = (step.t, self.largest.max(step.largest));
+        let mut whole = 1.0;
         let failed = if self.relaxing {
             None
         } else {
-            match self.follow(system, step, (u, with_work), interrupt) {
+            match self.follow(system, step, (u, &mut whole, with_work), interrupt) {
                 Ok(work) => return Ok(Some(work)),
                 Err(error) if is_no_equilibrium(&error) => Some(error),
                 Err(error) => return Err(error),
@@ -244,8 +284,10 @@ impl StaticScheme {
             let step = LoadStep {
                 t,
                 start: t,
-                loads: [load; 2],
-                supports: [&before; 2],
+                loading: Loading::Prescribed {
+                    loads: [load; 2],
+                    supports: [&before; 2],
+                },
                 largest: self.largest,
             };
             self.reach(system, step, (&mut state.u, false), interrupt)?;
@@ -343,7 +385,7 @@ impl Integrator for StaticScheme {
     }
 
     fn start(&mut self, system: &mut System, state: &mut State) {
-        if let BreakingRule::Event { reference, .. } = self.options.breaking {
+        if let Some(reference) = self.reference() {
             let factors = [0.0; 2];
             system.load_proportionally(ProportionalLoading { reference, factors });
         }
@@ -365,6 +407,11 @@ impl Integrator for StaticScheme {
             self.close_step(state, t_next);
             return Ok(());
         }
+        if let Some(control) = self.control.clone() {
+            self.step_controlled(system, state, (t_next, &control), interrupt)?;
+            self.close_step(state, t_next);
+            return Ok(());
+        }
         self.prepare(system, t_next)?;
         let first = state.step == 0;
         let before = state.u.clone();
@@ -381,8 +428,10 @@ impl Integrator for StaticScheme {
         let step = LoadStep {
             t: t_next,
             start: state.t,
-            loads: [&loads[0], &loads[1]],
-            supports: [&before, &supports],
+            loading: Loading::Prescribed {
+                loads: [&loads[0], &loads[1]],
+                supports: [&before, &supports],
+            },
             largest: self.largest.max(system.thermal_force(t_next, &before)),
         };
         self.relaxing = false;
@@ -415,7 +464,7 @@ pericles::saved! {
         inner: part,
         broken, relaxed: array("static/counts"),
         equilibrium: part,
-        options, entries: fixed,
+        options, control, entries: fixed,
         effort, relaxing: scratch,
         restored: set(true),
     }

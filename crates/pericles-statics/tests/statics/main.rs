@@ -2,6 +2,7 @@
 
 mod bodies;
 mod breaking;
+mod control;
 mod divided;
 mod equilibrium;
 mod events;

@@ -20,6 +20,16 @@ pub struct Forces {
 }
 
 impl Forces {
+    /// Sets `out` to the sum of what `part_into` computes for each force.
+    fn sum_into(&self, out: &mut [f64], part_into: &dyn Fn(&dyn Force, &mut [f64])) {
+        let mut part = vec![0.0; out.len()];
+        out.fill(0.0);
+        for force in self.iter() {
+            part_into(force, &mut part);
+            add(&part, out);
+        }
+    }
+
     /// Creates a sum of one force.
     pub fn new(force: Box<dyn Force>) -> Self {
         Self { list: vec![force] }
@@ -129,12 +139,15 @@ impl Force for Forces {
     }
 
     fn tangent_into(&self, t: f64, u: &[f64], direction: &[f64], out: &mut [f64]) {
-        let mut part = vec![0.0; out.len()];
-        out.fill(0.0);
-        for force in &self.list {
-            force.tangent_into(t, u, direction, &mut part);
-            add(&part, out);
-        }
+        self.sum_into(out, &|force, part| {
+            force.tangent_into(t, u, direction, part);
+        });
+    }
+
+    fn secant_into(&self, t: f64, u: &[f64], direction: &[f64], out: &mut [f64]) {
+        self.sum_into(out, &|force, part| {
+            force.secant_into(t, u, direction, part);
+        });
     }
 
     fn end_step(&mut self, step: &StepEnd<'_>, on: PointSubset<'_>, out: &mut [f64]) {

@@ -112,6 +112,12 @@ pub trait Force: Checkpointed + Send + Sync {
     /// methods and frequency estimates.
     fn tangent_into(&self, t: f64, u: &[f64], direction: &[f64], out: &mut [f64]);
 
+    /// Sets `out` to the derivative of the force density at `u` in the given direction if damage stays that of `u`, for
+    /// iterations that must not lose positive stiffness. Forces without damage by softening have the tangent.
+    fn secant_into(&self, t: f64, u: &[f64], direction: &[f64], out: &mut [f64]) {
+        self.tangent_into(t, u, direction, out);
+    }
+
     /// Applies the failure criterion at the end of a step and adds the force density for the points `on`. An
     /// over-stretched bond exerts no force from this evaluation on.
     ///

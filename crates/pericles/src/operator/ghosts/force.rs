@@ -119,6 +119,20 @@ impl GhostForce {
         }
     }
 
+    /// Sets `out` to a derivative of the force density on the body; `of_all` computes it on the body with its ghosts.
+    fn derivative_into(
+        &self,
+        [u, direction]: [&[f64]; 2],
+        out: &mut [f64],
+        of_all: impl Fn(&[f64], &[f64], &mut [f64]),
+    ) {
+        let (all, direction) = (self.extended(u), self.extended(direction));
+        let mut change = self.vectors.take();
+        of_all(&all, &direction, &mut change);
+        out.fill(0.0);
+        self.add_returned(&change, &PointSubset::All, out);
+    }
+
     /// Copies the values at the places of the points of the body.
     fn restrict(&self, all: &[f64], out: &mut [f64]) {
         for (&place, out) in self.layer.body().iter().zip(out) {
@@ -197,11 +211,15 @@ impl Force for GhostForce {
     }
 
     fn tangent_into(&self, t: f64, u: &[f64], direction: &[f64], out: &mut [f64]) {
-        let (all, direction) = (self.extended(u), self.extended(direction));
-        let mut change = self.vectors.take();
-        self.inner.tangent_into(t, &all, &direction, &mut change);
-        out.fill(0.0);
-        self.add_returned(&change, &PointSubset::All, out);
+        self.derivative_into([u, direction], out, |u, direction, change| {
+            self.inner.tangent_into(t, u, direction, change);
+        });
+    }
+
+    fn secant_into(&self, t: f64, u: &[f64], direction: &[f64], out: &mut [f64]) {
+        self.derivative_into([u, direction], out, |u, direction, change| {
+            self.inner.secant_into(t, u, direction, change);
+        });
     }
 
     fn capabilities(&self) -> Capabilities<'_> {

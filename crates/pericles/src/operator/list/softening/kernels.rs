@@ -23,6 +23,14 @@ pub(super) struct Softened<'a> {
     pub is_frozen: bool,
 }
 
+/// Bonds of a derivative of the force.
+#[derive(Clone, Copy)]
+pub(super) struct Change<'a> {
+    pub kept: &'a Softened<'a>,
+    /// Whether the damage changes with the stretch; otherwise it stays that of the displacement.
+    pub is_softening: bool,
+}
+
 impl Softened<'_> {
     /// Returns the index of the first entry of a group.
     #[inline(always)]
@@ -218,13 +226,14 @@ fn softening_rates(
 #[inline(always)]
 fn tangent_rows_body<T: Lanes, L: VectorLaw, const D: usize>(
     bonds: &Bonds<'_>,
-    kept: &Softened<'_>,
+    change: &Change<'_>,
     u: &Records,
     direction: &Records,
     intact: &[u8],
     rows: &Rows<'_>,
     out: &mut [&mut [f64]; D],
 ) {
+    let kept = change.kept;
     for k in 0..rows.count() {
         let i = rows.at(k);
         let here = bonds.here::<T, D>(i, u);
@@ -244,7 +253,8 @@ fn tangent_rows_body<T: Lanes, L: VectorLaw, const D: usize>(
                 let both = [stretch.to_array(), largest.to_array()];
                 let neighbours = bonds.list.group(group);
                 let factors = retained_of(kept, site, neighbours, both, lanes);
-                let rates = softening_rates(kept, site, neighbours, both, lanes);
+                let softening = if change.is_softening { lanes } else { 0 };
+                let rates = softening_rates(kept, site, neighbours, both, softening);
                 let (factor, rate) = (T::load(&factors, 0), T::load(&rates, 0));
                 // ds = n·d/|ξ| with n = F/s; the rate is zero for bonds that do not soften.
                 let pull = L::force(bond.xi, eta);
@@ -296,7 +306,7 @@ for_each_instruction_set! {
     /// Adds the derivative of the force density in a direction to `out`.
     pub(super) fn tangent_rows [L: VectorLaw, const D: usize] <L, D> (
         bonds: &Bonds<'_>,
-        kept: &Softened<'_>,
+        change: &Change<'_>,
         u: &Records,
         direction: &Records,
         intact: &[u8],

@@ -1,7 +1,7 @@
 //! [`Force`] for softening bonds.
 
 use super::force::SofteningForce;
-use super::kernels::{Softened, energy_rows, force_rows, tangent_rows};
+use super::kernels::{Change, Softened, energy_rows, force_rows, tangent_rows};
 use crate::operator::fast_law::VectorLaw;
 use crate::operator::heating::heating_of;
 use crate::operator::{
@@ -19,6 +19,31 @@ impl<L: VectorLaw, const D: usize> SofteningForce<L, D> {
         list.with_packed(u, &PointSubset::All, |u| {
             list.sweep::<1>(&PointSubset::All, out, |intact, rows, out| {
                 energy_rows::<L, D>(list.instruction_set, &bonds, kept, u, intact, rows, out);
+            });
+        });
+    }
+
+    /// Sets `out` to the derivative of the force density at `u` in a direction, with or without the change of the damage.
+    fn derivative_into(
+        &self,
+        t: f64,
+        [u, direction]: [&[f64]; 2],
+        is_softening: bool,
+        out: &mut [f64],
+    ) {
+        let (list, kept) = (&self.list, self.kept());
+        let heat = list.heat_at(t);
+        let bonds = list.view().heated(heat.as_deref().map(Vec::as_slice));
+        let change = Change {
+            kept: &kept,
+            is_softening,
+        };
+        list.with_packed(u, &PointSubset::All, |u| {
+            list.with_packed(direction, &PointSubset::All, |direction| {
+                list.sweep::<D>(&PointSubset::All, out, |intact, rows, out| {
+                    let set = list.instruction_set;
+                    tangent_rows::<L, D>(set, &bonds, &change, u, direction, intact, rows, out);
+                });
             });
         });
     }
@@ -82,17 +107,11 @@ impl<L: VectorLaw, const D: usize> Force for SofteningForce<L, D> {
     }
 
     fn tangent_into(&self, t: f64, u: &[f64], direction: &[f64], out: &mut [f64]) {
-        let (list, kept) = (&self.list, self.kept());
-        let heat = list.heat_at(t);
-        let bonds = list.view().heated(heat.as_deref().map(Vec::as_slice));
-        list.with_packed(u, &PointSubset::All, |u| {
-            list.with_packed(direction, &PointSubset::All, |direction| {
-                list.sweep::<D>(&PointSubset::All, out, |intact, rows, out| {
-                    let set = list.instruction_set;
-                    tangent_rows::<L, D>(set, &bonds, &kept, u, direction, intact, rows, out);
-                });
-            });
-        });
+        self.derivative_into(t, [u, direction], true, out);
+    }
+
+    fn secant_into(&self, t: f64, u: &[f64], direction: &[f64], out: &mut [f64]) {
+        self.derivative_into(t, [u, direction], false, out);
     }
 
     fn directed_bonds(&self) -> u64 {

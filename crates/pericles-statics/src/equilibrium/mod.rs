@@ -1,5 +1,9 @@
 //! Solver for a static state: Newton's method with conjugate gradients.
 
+mod controlled;
+
+pub use self::controlled::ControlledTarget;
+
 use pericles::domain::Replicated;
 use pericles::operator::PointSubset;
 use pericles::{Interrupt, IterationProgress, PericlesError, Result, System};
@@ -11,7 +15,7 @@ use crate::options::StaticOptions;
 use crate::rigid::{FreePiece, free_pieces, spread};
 use crate::sparse::add_multiple;
 use crate::surrogate::{Stiffness, Surrogate};
-use crate::tangent::{Tangent, remove, stiffness_into};
+use crate::tangent::{Derivative, Tangent, remove, stiffness_into};
 use crate::unknowns::Unknowns;
 
 /// Loads and supports of a static state.
@@ -262,7 +266,8 @@ impl Equilibrium {
                 self.linearise_lift(system, target, u);
                 effort.products += 1;
             }
-            let solved = self.solve(system, target, u, &goal)?;
+            let times = [target.t, target.place];
+            let solved = self.solve(system, (Derivative::Tangent, times), u, &goal)?;
             effort.products += solved.products;
             indefinite |= solved.end == End::Indefinite;
             if lifted {
@@ -353,22 +358,30 @@ impl Equilibrium {
     /// Adds the linearised effect of the motion of the supports to the residual.
     fn linearise_lift(&mut self, system: &System, target: &Target<'_>, u: &[f64]) {
         let times = [target.t, target.place];
-        stiffness_into(system, times, u, &self.lift, &mut self.correction);
+        stiffness_into(
+            system,
+            Derivative::Tangent,
+            times,
+            u,
+            &self.lift,
+            &mut self.correction,
+        );
         add_multiple(&mut self.residual, -1.0, &self.correction);
         remove(system, &self.rigid, &mut self.residual);
     }
 
-    /// Computes the Newton correction.
-    fn solve(
+    /// Computes the correction for the residual.
+    pub(crate) fn solve(
         &mut self,
         system: &System,
-        target: &Target<'_>,
+        (of, times): (Derivative, [f64; 2]),
         u: &[f64],
         goal: &Goal<'_>,
     ) -> Result<Solution> {
         let mut tangent = Tangent {
+            of,
             system,
-            times: [target.t, target.place],
+            times,
             u,
             replicated: &self.replicated,
             unknowns: &self.unknowns,
