@@ -157,8 +157,8 @@ pub use impactor::{Impactor, ImpactorInertia, ImpactorMotion, ImpactorShape};
 pub use interface::{InterfaceFailure, MaterialInterface};
 pub use key_path::KeyPath;
 pub use material::{
-    BondSoftening, Material, MaterialModel, NamedMaterial, Scatter, ScatteredStrength,
-    SofteningWord,
+    BondSoftening, FailureSurface, Material, MaterialModel, NamedMaterial, Scatter,
+    ScatteredStrength, SofteningWord,
 };
 pub use model::{Body, Model, Solid};
 pub use output::{

@@ -54,6 +54,7 @@ pub(crate) const OWN_CONSTANTS: &[&str] = &[
     "fracture_energy",
     "critical_stretch",
     "tensile_strength",
+    "strength_surface",
     "strength",
     "criterion",
     "viscosity",

@@ -8,7 +8,7 @@ use crate::build::{Assembly, LoadReport, MaterialConstants};
 use crate::heat::HeatFacts;
 use crate::open_facts::OpenFacts;
 use crate::refinement::RefinementFacts;
-use crate::strength::SofteningFacts;
+use crate::strength::{SofteningFacts, StrengthFacts};
 use crate::units::{bytes, count, quantity, significant};
 
 /// Properties of a run before its first step; SI units.
@@ -59,6 +59,9 @@ pub struct Facts {
     /// Softening and strengths of the materials whose bonds soften, the body's material first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub softening: Vec<SofteningFacts>,
+    /// Strengths of the materials whose bonds are elastic until the stress reaches the strength, the body's material first.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub strength_failure: Vec<StrengthFacts>,
     /// Relative error of the bulk stiffness in the interior of the grid; zero for state-based materials, `None` for
     /// surfaces.
     pub stiffness_error: Option<f64>,
@@ -270,6 +273,7 @@ impl Facts {
                 .map(|given| given.name()),
             crack_planes: constants.map(plane_facts).unwrap_or_default(),
             softening: SofteningFacts::of(model, assembly),
+            strength_failure: StrengthFacts::of(model, assembly),
             stiffness_error: constants.map(|constants| match constants {
                 MaterialConstants::Bonds(constants) => constants.stiffness_error,
                 // The bulk stiffness is exact for any points.

@@ -116,5 +116,5 @@ pub use sharing::Sharing;
 pub use signals::SignalRegistry;
 pub use source::{ModelData, Source, SourceRecord};
 pub use static_balance::StaticBalance;
-pub use strength::SofteningFacts;
+pub use strength::{SofteningFacts, StrengthFacts};
 pub use vibration::Vibration;

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use pericles::material::{BondConstants, BondMaterial, HomogeneousBonds};
-use pericles_deck::{Model, Solid};
+use pericles::material::{BondConstants, BondMaterial, HomogeneousBonds, TensileStrength};
+use pericles_deck::{MaterialModel, Model, Solid};
 use serde::Serialize;
 
 use crate::build::{Assembly, MaterialConstants, MaterialSoftening};
@@ -50,47 +50,133 @@ pub struct SofteningFacts {
     pub largest_horizon_over_irwin_length: f64,
 }
 
-impl SofteningFacts {
-    /// Returns the facts of all materials that soften, the body's material first.
-    pub(crate) fn of(model: &Model, assembly: &Assembly) -> Vec<Self> {
-        let Some(solid) = model.body.solid() else {
-            return Vec::new();
-        };
-        let own = (solid.material.name(), &solid.material.model);
-        let others = model
-            .materials
-            .iter()
-            .map(|other| (&*other.name, &other.model));
-        let materials = std::iter::once(own).chain(others);
+/// A material whose bonds soften.
+struct Softened<'a> {
+    name: &'a str,
+    material: &'a BondMaterial,
+    constants: &'a BondConstants,
+    softening: &'a MaterialSoftening,
+    /// Its tensile strength, if it is given.
+    given: Option<TensileStrength>,
+    solid: &'a Solid,
+}
+
+/// Returns the materials that soften, the body's material first.
+fn materials<'a>(model: &'a Model, assembly: &'a Assembly) -> impl Iterator<Item = Softened<'a>> {
+    let solid = model.body.solid();
+    let found = solid.into_iter().flat_map(move |solid| {
+        let own = &solid.material;
+        let own = (own.name(), &own.model, own.tensile_strength);
+        let others = model.materials.iter();
+        let others = others.map(|other| (&*other.name, &other.model, other.tensile_strength));
         let constants = assembly.constants.iter().chain(&assembly.other_materials);
-        let found = materials.zip(constants).zip(&assembly.softening);
-        let facts = found.filter_map(|(((name, material), constants), softening)| {
-            let pericles_deck::MaterialModel::Bonds(material) = material else {
-                return None;
-            };
-            let bonds = MaterialConstants::bonds(constants)?;
-            Self::of_material(
-                name,
-                (material, bonds),
-                *softening.as_ref()?,
-                (solid, assembly),
-            )
+        let materials = std::iter::once(own).chain(others).zip(constants);
+        let all = materials.zip(&assembly.softening);
+        all.map(move |(pair, softening)| (solid, pair, softening))
+    });
+    found.filter_map(|(solid, ((name, model, given), constants), softening)| {
+        let MaterialModel::Bonds(material) = model else {
+            return None;
+        };
+        Some(Softened {
+            name,
+            material,
+            constants: MaterialConstants::bonds(constants)?,
+            softening: softening.as_ref()?,
+            given,
+            solid,
+        })
+    })
+}
+
+/// Strength and fracture energy of a material whose bonds are elastic until the stress reaches the strength; SI units.
+#[derive(Debug, Clone, Serialize)]
+pub struct StrengthFacts {
+    /// Name of the material.
+    pub name: String,
+    /// Where bonds begin to soften or break, in words.
+    pub surface: String,
+    /// Tensile strength.
+    pub tensile_strength: f64,
+    /// Softening law of bonds that open below their critical stretch.
+    pub law: &'static str,
+    /// Critical stretch s₀, beyond which bonds break as soon as they open.
+    pub critical_stretch: f64,
+    /// Strength in uniaxial tension of a material whose bonds break at s₀ alone, E s₀.
+    pub brittle_strength: f64,
+    /// Irwin length E G/f_t², m.
+    pub irwin_length: f64,
+    /// Horizon over the Irwin length.
+    pub horizon_over_irwin_length: f64,
+}
+
+impl StrengthFacts {
+    /// Returns the facts of all materials that fail by strength, the body's material first.
+    pub(crate) fn of(model: &Model, assembly: &Assembly) -> Vec<Self> {
+        let facts = materials(model, assembly).filter_map(|own| {
+            let strength = own.softening.strength.as_ref()?;
+            let (tensile, constants) = (own.given?.strength, own.constants);
+            let irwin = constants.young * constants.fracture_energy / (tensile * tensile);
+            Some(Self {
+                name: own.name.to_owned(),
+                surface: strength.surface.words(),
+                tensile_strength: tensile,
+                law: own.softening.softening.law.name(),
+                critical_stretch: constants.critical_stretch,
+                brittle_strength: constants.young * constants.critical_stretch,
+                irwin_length: irwin,
+                horizon_over_irwin_length: own.material.horizon / irwin,
+            })
+        });
+        facts.collect()
+    }
+
+    /// Returns lines with their labels: strength, lengths.
+    pub fn lines(&self) -> Vec<(&'static str, String)> {
+        let strength = format!(
+            "{}: bonds open {}; they then soften ({}), or break if their stretch is beyond {}, which alone would give {}",
+            self.name,
+            self.surface,
+            self.law,
+            significant(self.critical_stretch, 4),
+            quantity(self.brittle_strength, "Pa")
+        );
+        let lengths = format!(
+            "{}; the horizon is {} of it",
+            quantity(self.irwin_length, "m"),
+            significant(self.horizon_over_irwin_length, 4)
+        );
+        vec![("strength", strength), ("Irwin length", lengths)]
+    }
+}
+
+impl SofteningFacts {
+    /// Returns the facts of all materials that soften beyond a stretch, the body's material first.
+    pub(crate) fn of(model: &Model, assembly: &Assembly) -> Vec<Self> {
+        let facts = materials(model, assembly).filter_map(|own| match own.softening.strength {
+            None => Self::of_material(&own, assembly),
+            Some(_) => None,
         });
         facts.collect()
     }
 
     fn of_material(
-        name: &str,
-        (material, constants): (&BondMaterial, &BondConstants),
-        given: MaterialSoftening,
-        (solid, assembly): (&Solid, &Assembly),
+        Softened {
+            name,
+            material,
+            constants,
+            softening: given,
+            solid,
+            ..
+        }: &Softened<'_>,
+        assembly: &Assembly,
     ) -> Option<Self> {
         let bonds = HomogeneousBonds::new(material, constants, &assembly.cloud, solid.state);
         // The assembly has rejected softening without a curve.
         let curve = given.softening.curve(constants.critical_stretch).ok()?;
         let strengths = bonds.strengths(&given.softening, given.calibration).ok()?;
         Some(Self {
-            name: name.to_owned(),
+            name: (*name).to_owned(),
             law: given.softening.law.name(),
             onset_stretch: given.softening.onset,
             critical_stretch: constants.critical_stretch,

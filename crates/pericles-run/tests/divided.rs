@@ -186,6 +186,61 @@ fn a_controlled_static_run_divided_among_processes_has_the_files_of_one_process(
     check_resumed(CONTROLLED, 3, &[(3, 1), (1, 2)]);
 }
 
+/// A notched plate of two materials that fail where the stress reaches their strength.
+const STRENGTH: &str = r#"
+[body]
+shape = "plate"
+size = ["20 mm", "20 mm"]
+spacing = "1 mm"
+plane = "stress"
+[material]
+youngs_modulus = "72 GPa"
+density = 2440
+horizon_ratio = 3
+fracture_energy = "20 J/m2"
+failure = "strength"
+tensile_strength = "60 MPa"
+scatter = { shape = 20, seed = 1 }
+[materials.tough]
+youngs_modulus = "50 GPa"
+density = 2440
+horizon_ratio = 3
+fracture_energy = "400 J/m2"
+tensile_strength = "40 MPa"
+strength_surface = "stress_1 / 40e6 + stress_2 / 400e6"
+[sets.end]
+where = "x > 13e-3"
+[[assign]]
+set = "end"
+material = "tough"
+[sets.upper]
+where = "y > 10e-3"
+[sets.lower]
+where = "y < 10e-3"
+[[crack]]
+segment = [["0 mm", "10 mm"], ["6 mm", "10 mm"]]
+[[initial]]
+set = "upper"
+velocity = [0, "8 m/s"]
+[[initial]]
+set = "lower"
+velocity = [0, "-8 m/s"]
+[time]
+end = "10 us"
+dt = "0.1 us"
+[output]
+history = { every = 5 }
+fields = { count = 2, names = ["Displacement", "Damage"] }
+[checkpoint]
+every = 30
+"#;
+
+#[test]
+fn failure_by_strength_of_a_divided_plate_has_the_files_of_one_process() {
+    check(STRENGTH, &[1, 2, 3]);
+    check_resumed(STRENGTH, 47, &[(3, 1), (1, 2)]);
+}
+
 /// Steps of the example decks.
 const STEPS: u64 = 8;
 

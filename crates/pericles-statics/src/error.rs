@@ -145,6 +145,17 @@ pub(crate) fn is_no_equilibrium(error: &PericlesError) -> bool {
     )
 }
 
+/// Returns whether an error is that of a controlled state that was not found.
+pub(crate) fn is_not_controlled(error: &PericlesError) -> bool {
+    let PericlesError::Extension(inner) = error else {
+        return false;
+    };
+    matches!(
+        inner.downcast_ref::<StaticsError>(),
+        Some(StaticsError::NotControlled { .. })
+    )
+}
+
 fn list(names: &[&str]) -> String {
     match names {
         [] => String::new(),

@@ -54,6 +54,15 @@ impl LoadStep<'_> {
         }
     }
 
+    /// Returns the shortest part, as a fraction of the step. Under control it is larger, because a body without a static
+    /// path fails at the value at the end of the step.
+    fn shortest_part(&self) -> f64 {
+        match self.loading {
+            Loading::Prescribed { .. } => 1.0 / 1024.0,
+            Loading::Controlled { .. } => 1.0 / 4.0,
+        }
+    }
+
     /// Returns the time at a fraction of the step.
     fn time_at(&self, s: f64) -> f64 {
         if s == 1.0 {
@@ -85,8 +94,6 @@ pub struct Followed {
     pub parts: u32,
 }
 
-/// Shortest part of a load step, as a fraction of it.
-const SHORTEST: f64 = 1.0 / 1024.0;
 /// Relative tolerance of the estimated error of the work.
 const WORK_TOLERANCE: f64 = 1e-8;
 /// Largest number of halvings of a part of a load step for the integral of the work.
@@ -149,7 +156,10 @@ impl Follower<'_, '_> {
                 }
                 Err(error) => {
                     length *= 0.5;
-                    if is_interrupt(&error) || self.step.is_jump() || length < SHORTEST {
+                    if is_interrupt(&error)
+                        || self.step.is_jump()
+                        || length < self.step.shortest_part()
+                    {
                         return Err(error);
                     }
                 }

@@ -43,6 +43,10 @@ pub(super) fn material(
         let found = material.lines(facts.dimension).into_iter();
         lines.extend(found.map(|(name, text)| Line::new(name, text)));
     }
+    for material in &facts.strength_failure {
+        let found = material.lines().into_iter();
+        lines.extend(found.map(|(name, text)| Line::new(name, text)));
+    }
     for (other, own) in others.0.iter().zip(others.1) {
         lines.push(other_material(other, own));
     }

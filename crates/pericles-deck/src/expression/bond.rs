@@ -102,6 +102,16 @@ impl BondExpression {
         })
     }
 
+    /// Returns whether it is a function of the stress of a point, whatever strains and directions of bonds are.
+    pub(crate) fn is_of_stress(&self) -> bool {
+        self.variables.iter().all(|variable| {
+            matches!(
+                variable,
+                Variable::Stress(..) | Variable::PrincipalStress(_) | Variable::EquivalentStress
+            )
+        })
+    }
+
     /// Returns the text of the expression.
     pub fn text(&self) -> &str {
         &self.text

@@ -4,7 +4,9 @@ use pericles::material::{Approximation, BondMaterial, CubicLaw, PairLaw};
 
 use super::keys::{damage, density, form, horizon, no_fail, setting, volume_correction};
 use super::scatter::scatter;
-use super::softening::{forbid_softening, forbid_tensile_strength, softening, tensile_strength};
+use super::softening::{
+    failure, forbid_failure, forbid_softening, forbid_tensile_strength, softening, tensile_strength,
+};
 use super::types::{Material, MaterialModel};
 use crate::body::BodyRead;
 use crate::constants::{
@@ -30,7 +32,7 @@ pub(super) fn read(
             "it requires model = \"state-based\" or \"correspondence\", whose points have a stress",
         );
     }
-    for key in ["yield_stress", "hardening", "failure"] {
+    for key in ["yield_stress", "hardening"] {
         table.forbid(
             key,
             "it requires model = \"state-based\" or \"correspondence\"",
@@ -58,20 +60,19 @@ pub(super) fn read(
     let fracture_calibration = fracture_calibration(&table, body, shared);
     let no_fail = no_fail(&table, sets);
     let scatter = scatter(&table);
-    let softening = match law {
-        None | Some(PairLaw::Linear | PairLaw::BondStretch) => softening(&table),
-        Some(_) => {
-            forbid_softening(&table);
-            Some(None)
-        }
-    };
-    let tensile_strength = match law {
+    let (surface, softening, tensile_strength) = match law {
         None | Some(PairLaw::Linear | PairLaw::BondStretch) => {
-            tensile_strength(&table, softening, fracture_calibration)
+            let surface = failure(&table, dimension);
+            let chosen = surface.as_ref().and_then(Option::as_ref);
+            let softening = softening(&table, chosen);
+            let strength = tensile_strength(&table, softening, chosen, fracture_calibration);
+            (surface, softening, strength)
         }
         Some(_) => {
+            forbid_failure(&table);
+            forbid_softening(&table);
             forbid_tensile_strength(&table);
-            Some(None)
+            (Some(None), Some(None), Some(None))
         }
     };
     let damage = damage(&table);
@@ -102,6 +103,7 @@ pub(super) fn read(
         scatter: scatter?,
         softening: softening?,
         tensile_strength: tensile_strength?,
+        strength_surface: surface?,
         surface_correction: surface_correction?,
         damage: damage?,
         form: form?,

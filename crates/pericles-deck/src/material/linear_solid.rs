@@ -57,6 +57,10 @@ pub(super) fn read(
     let scatter = scatter(&table);
     forbid_softening(&table);
     forbid_tensile_strength(&table);
+    table.forbid(
+        "strength_surface",
+        "it requires failure = \"strength\" of a bond-based material; failure = \"expression\" has the key `criterion`",
+    );
     let damage = damage(&table);
     let form = form(&table);
     table.finish();

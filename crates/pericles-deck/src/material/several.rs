@@ -84,12 +84,14 @@ pub(crate) fn read(root: &Table<'_>, body: &BodyRead, sets: &SetNames) -> Materi
             let Material {
                 model,
                 tensile_strength,
+                strength_surface,
                 ..
             } = other(&item, own.as_ref(), body, sets)?;
             Some(NamedMaterial {
                 name: name.into(),
                 model,
                 tensile_strength,
+                strength_surface,
             })
         })
         .collect();

@@ -49,6 +49,10 @@ pub(super) fn difference_of_tables(a: &Material, b: &Material) -> Option<&'stati
         ),
         (a.no_fail != b.no_fail, "no_fail"),
         (a.scatter != b.scatter, "scatter"),
+        (
+            a.strength_surface.is_some() != b.strength_surface.is_some(),
+            "failure",
+        ),
         (a.softening != b.softening, "softening"),
         (a.damage != b.damage, "damage"),
         (a.form != b.form, "bonds"),

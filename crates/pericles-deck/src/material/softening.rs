@@ -1,8 +1,14 @@
-//! `softening` and `tensile_strength`: bonds that soften before they break.
+//! `softening`, `tensile_strength` and `failure = "strength"`: bonds that soften before they break, and the strength from
+//! which they do.
 
-use pericles::material::{FractureCalibration, SofteningLaw, TensileStrength};
+use pericles::Result;
+use pericles::material::{
+    Criterion, FractureCalibration, SofteningLaw, StrengthSurface, TensileStrength,
+};
 use serde::{Deserialize, Serialize};
 
+use crate::expression::BondExpression;
+use crate::fault::Fault;
 use crate::quantity::Quantity;
 use crate::reader::Table;
 use crate::vocabulary::STRENGTHS;
@@ -36,6 +42,31 @@ pub enum SofteningWord {
     Exponential,
 }
 
+/// Stresses at which the bonds of a point begin to soften or break.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FailureSurface {
+    /// The largest principal stress is the tensile strength.
+    Rankine,
+    /// A function of the stress (Pa) is 1.
+    Expression(BondExpression),
+}
+
+impl FailureSurface {
+    /// Returns the surface of the engine for a tensile strength, Pa.
+    ///
+    /// # Errors
+    /// A strength that is not positive.
+    pub fn surface(&self, strength: f64) -> Result<StrengthSurface> {
+        match self {
+            Self::Rankine => StrengthSurface::rankine(strength),
+            Self::Expression(expression) => Ok(StrengthSurface::Function(Criterion::new(
+                expression.clone(),
+            ))),
+        }
+    }
+}
+
 /// The defaults of the knee: the curve of concrete by Petersson.
 const KNEE: [f64; 2] = [1.0 / 3.0, 2.0 / 9.0];
 
@@ -61,18 +92,80 @@ pub(super) fn forbid_softening(table: &Table<'_>) {
     );
 }
 
-/// Reads the tensile strength of a material, from which the onset of its softening follows. It requires a softening law
-/// without an onset; `calibration` is that of the fracture energy.
+/// Reads `failure` of a bond-based material, and the strength surface of failure = "strength".
+pub(super) fn failure(
+    table: &Table<'_>,
+    dimension: Option<usize>,
+) -> Option<Option<FailureSurface>> {
+    const KEY: &str = "strength_surface";
+    const RANKINE: &str = "rankine";
+    if !STRENGTHS.iter().any(|key| table.has(key)) {
+        for key in ["failure", KEY] {
+            table.forbid(
+                key,
+                "bonds without `fracture_energy` or `critical_stretch` never break",
+            );
+        }
+        return Some(None);
+    }
+    let by_strength = table.choice_or_first(
+        "failure",
+        "failure criterion",
+        &[("stretch", false), ("strength", true)],
+    );
+    if !by_strength? {
+        table.forbid(KEY, "it requires failure = \"strength\"");
+        return Some(None);
+    }
+    let Some(item) = table.optional(KEY) else {
+        table.record(KEY, RANKINE);
+        return Some(Some(FailureSurface::Rankine));
+    };
+    if item.is_keyword(RANKINE) {
+        return Some(Some(FailureSurface::Rankine));
+    }
+    let text = item.text()?;
+    let report = |reason: String| item.report(Fault::bad_expression(text.clone(), reason));
+    match BondExpression::parse(&text, dimension.unwrap_or(3)) {
+        Ok(expression) if expression.is_of_stress() => {
+            Some(Some(FailureSurface::Expression(expression)))
+        }
+        Ok(_) => {
+            report("a strength surface is a function of the stress of a point: of its components, stress_1, stress_2, stress_3 and equivalent_stress".into());
+            None
+        }
+        Err(malformed) => {
+            report(malformed.reason);
+            None
+        }
+    }
+}
+
+/// Rejects the keys in the table of a material whose bonds have no strength.
+pub(super) fn forbid_failure(table: &Table<'_>) {
+    for key in ["failure", "strength_surface"] {
+        table.forbid(
+            key,
+            "it requires model = \"bond-stretch\", \"linear\", \"state-based\" or \"correspondence\"",
+        );
+    }
+}
+
+/// Reads the tensile strength of a material, from which the onset of its softening follows, or at which its bonds begin to
+/// fail. It requires a softening law without an onset or failure = "strength"; `calibration` is that of the fracture
+/// energy.
 pub(super) fn tensile_strength(
     table: &Table<'_>,
     softening: Option<Option<BondSoftening>>,
+    surface: Option<&FailureSurface>,
     calibration: Option<FractureCalibration>,
 ) -> Option<Option<TensileStrength>> {
     const KEY: &str = "tensile_strength";
     let breaks = STRENGTHS.iter().any(|key| table.has(key));
     let forbidden = match softening? {
+        Some(_) if surface.is_some() && breaks => None,
         None => Some(
-            "it requires `softening = { law = … }`: the tensile strength gives the stretch at which softening starts",
+            "it requires `softening = { law = … }`: the tensile strength gives the stretch at which softening starts; or failure = \"strength\"",
         ),
         Some(given) if given.onset_stretch.is_some() => Some(
             "`softening` has an `onset_stretch`, which determines the strength; give one of the two keys",
@@ -87,7 +180,10 @@ pub(super) fn tensile_strength(
         return Some(None);
     }
     let Some(item) = table.optional(KEY) else {
-        table.requires_one_of(&[KEY, "softening.onset_stretch"]);
+        match surface {
+            Some(_) => table.requires_one_of(&[KEY]),
+            None => table.requires_one_of(&[KEY, "softening.onset_stretch"]),
+        }
         return None;
     };
     Some(Some(TensileStrength {
@@ -104,11 +200,23 @@ pub(super) fn forbid_tensile_strength(table: &Table<'_>) {
     );
 }
 
-pub(super) fn softening(table: &Table<'_>) -> Option<Option<BondSoftening>> {
-    table.maybe("softening", |item| read(item.table()?))
+/// Reads the softening of bonds; with failure = "strength" its default is a straight line.
+pub(super) fn softening(
+    table: &Table<'_>,
+    surface: Option<&FailureSurface>,
+) -> Option<Option<BondSoftening>> {
+    let given = table.maybe("softening", |item| read(item.table()?, surface))?;
+    Some(given.or_else(|| {
+        surface.map(|_| BondSoftening {
+            law: SofteningWord::Linear,
+            onset_stretch: None,
+            knee_force: None,
+            knee_position: None,
+        })
+    }))
 }
 
-fn read(table: Table<'_>) -> Option<BondSoftening> {
+fn read(table: Table<'_>, surface: Option<&FailureSurface>) -> Option<BondSoftening> {
     let law = table.required("law").and_then(|item| {
         item.choice(
             "softening law",
@@ -119,13 +227,22 @@ fn read(table: Table<'_>) -> Option<BondSoftening> {
             ],
         )
     });
-    let onset = table.maybe("onset_stretch", |item| {
-        item.within(
-            Quantity::Number,
-            "a positive stretch below the critical stretch",
-            |stretch| stretch > 0.0,
-        )
-    });
+    let onset = match surface {
+        Some(_) => {
+            table.forbid(
+                "onset_stretch",
+                "with failure = \"strength\" a bond softens from its stretch when the stress reaches the strength",
+            );
+            Some(None)
+        }
+        None => table.maybe("onset_stretch", |item| {
+            item.within(
+                Quantity::Number,
+                "a positive stretch below the critical stretch",
+                |stretch| stretch > 0.0,
+            )
+        }),
+    };
     let mut knee = [Some(None); 2];
     for (k, key) in ["knee_force", "knee_position"].into_iter().enumerate() {
         if law != Some(SofteningWord::Trilinear) {

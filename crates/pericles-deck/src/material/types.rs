@@ -8,7 +8,7 @@ use pericles_waves::ForceForm;
 use serde::{Deserialize, Serialize};
 
 use super::scatter::Scatter;
-use super::softening::BondSoftening;
+use super::softening::{BondSoftening, FailureSurface};
 use crate::correspondence::Correspondence;
 use crate::state_based::StateBased;
 
@@ -42,6 +42,9 @@ pub struct Material {
     /// Tensile strength from which the onset of softening follows, if it is given.
     #[serde(default, with = "crate::form")]
     pub tensile_strength: Option<TensileStrength>,
+    /// Stresses at which bonds begin to soften or break; `None` if they do so by their stretch.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub strength_surface: Option<FailureSurface>,
     /// Damage measure, if it is given.
     #[serde(default, with = "crate::form")]
     pub damage: Option<DamageMeasure>,
@@ -96,6 +99,7 @@ impl From<MaterialModel> for Material {
             scatter: None,
             softening: None,
             tensile_strength: None,
+            strength_surface: None,
             damage: None,
             form: ForceForm::default(),
         }
@@ -113,6 +117,9 @@ pub struct NamedMaterial {
     /// Tensile strength from which the onset of softening follows, if it is given.
     #[serde(default, with = "crate::form")]
     pub tensile_strength: Option<TensileStrength>,
+    /// Stresses at which its bonds begin to soften or break; `None` if they do so by their stretch.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub strength_surface: Option<FailureSurface>,
 }
 
 impl MaterialModel {

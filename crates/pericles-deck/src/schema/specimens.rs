@@ -429,6 +429,8 @@ pub(super) const SPECIMENS: &[Specimen] = &[
     specimen(PLATE, &["material={ model = 'state-based', density = 1, youngs_modulus = 2, poisson_ratio = 0.3, horizon_ratio = 3, failure = 'expression', criterion = 'stress_1' }"]),
     specimen(BAR, &["material.softening={ law = 'exponential', onset_stretch = 1e-4 }"]),
     specimen(BAR, &["material.fracture_energy=1", "material.tensile_strength=1", "material.softening={ law = 'exponential' }"]),
+    specimen(BAR, &["material.fracture_energy=1", "material.tensile_strength=1", "material.failure=strength", "material.strength_surface=rankine"]),
+    specimen(BAR, &["material.fracture_energy=1", "material.tensile_strength=1", "material.failure=strength", "material.strength_surface='stress_1 / 2'", "material.softening={ law = 'exponential' }"]),
     specimen(BAR, &["damping={ mass = 1, stiffness = 1e-3 }"]),
     specimen(BAR, &["damping={ stiffness = 1e-3 }"]),
     specimen(BAR, &["thermal={ expansion = 1e-5, temperature = { expression = '300 + t' }, reference = 293 }"]),

@@ -20,7 +20,7 @@ use super::graded::have_several_horizons;
 use super::materials::{Between, Composition};
 use super::rejection::{at_material, at_path};
 use super::resources::Resources;
-use super::softening::MaterialSoftening;
+use super::softening::{MaterialSoftening, strengths_of};
 use crate::composition::has_need;
 
 /// Force operator and material of a body.
@@ -92,11 +92,13 @@ impl Assembler<'_> {
             stiffness: &stiffness,
             damage: solid.material.damage.unwrap_or_default(),
         };
+        let strengths = strengths_of(&softening);
         let composite = CompositeBody {
             body,
             classes: classes.as_ref(),
             correction: solid.material.surface_correction,
             softening: self.softening_of_body(solid, &softening)?,
+            strengths: &strengths,
         };
         let all = (&materials[..], &interfaces[..]);
         let (bonds, cracks) =

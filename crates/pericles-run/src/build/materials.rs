@@ -55,7 +55,8 @@ impl<'m> Assembler<'m> {
         let checked = checked_key(&bonds.fracture, &path);
         self.check_stretch(constants.critical_stretch, checked, warnings);
         self.check_stiffness(solid, constants, &path, warnings);
-        let given = solid.material.tensile_strength;
+        let own = &solid.material;
+        let given = (own.tensile_strength, own.strength_surface.as_ref());
         let mut softening =
             vec![self.softening_of(solid, (bonds, constants), given, cloud, &path)?];
         let mut all = vec![constants.clone()];
@@ -73,7 +74,8 @@ impl<'m> Assembler<'m> {
             self.check_stretch(own_constants.critical_stretch, checked, warnings);
             self.check_stiffness(solid, &own_constants, &path, warnings);
             let pair = (own, &own_constants);
-            softening.push(self.softening_of(solid, pair, other.tensile_strength, cloud, &path)?);
+            let given = (other.tensile_strength, other.strength_surface.as_ref());
+            softening.push(self.softening_of(solid, pair, given, cloud, &path)?);
             all.push(own_constants);
         }
         let (of_point, density) =

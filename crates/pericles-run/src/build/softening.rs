@@ -3,20 +3,22 @@
 use pericles::PericlesError;
 use pericles::material::{
     BondConstants, BondMaterial, Fracture, FractureCalibration, HomogeneousBonds, MaterialPairs,
-    Softening, TensileStrength,
+    Softening, Strength, TensileStrength,
 };
 use pericles::space::PointCloud;
 use pericles::units::significant;
-use pericles_deck::{BuildError, Fault, KeyPath, Solid};
+use pericles_deck::{BuildError, FailureSurface, Fault, KeyPath, Solid};
 
 use super::assembler::Assembler;
 use super::rejection::{at, at_path};
 
 /// The softening of a material.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct MaterialSoftening {
     /// Law and onset.
     pub softening: Softening,
+    /// Strength that keeps bonds elastic until the stress reaches it; the onset of the law is then the smallest one.
+    pub strength: Option<Strength>,
     /// Bonds that give the tensile strength in reports: those of the given strength, otherwise those of the fracture
     /// energy.
     pub calibration: FractureCalibration,
@@ -24,12 +26,12 @@ pub struct MaterialSoftening {
 
 impl Assembler<'_> {
     /// Returns the softening of a material, `None` if its bonds do not soften or never break. `given` is its tensile
-    /// strength, `path` its table.
+    /// strength and the surface of failure by strength, `path` its table.
     pub(super) fn softening_of(
         &self,
         solid: &Solid,
         (material, constants): (&BondMaterial, &BondConstants),
-        given: Option<TensileStrength>,
+        (given, surface): (Option<TensileStrength>, Option<&FailureSurface>),
         cloud: &PointCloud,
         path: &KeyPath,
     ) -> Result<Option<MaterialSoftening>, BuildError> {
@@ -45,9 +47,30 @@ impl Assembler<'_> {
             };
         };
         let law = own.law();
+        if let (Some(surface), Some(given)) = (surface, given) {
+            let surface = surface.surface(given.strength);
+            let surface = surface.map_err(|error| at(&key, error))?;
+            // Part of f_t/E below which no bond softens, and of s₀, because softening needs an onset below it.
+            const LEAST: f64 = 0.2;
+            const OF_CRITICAL: f64 = 0.5;
+            let least = LEAST * given.strength / constants.young;
+            let least_onset = least.min(OF_CRITICAL * constants.critical_stretch);
+            return Ok(Some(MaterialSoftening {
+                softening: Softening {
+                    law,
+                    onset: least_onset,
+                },
+                strength: Some(Strength {
+                    surface,
+                    least_onset,
+                }),
+                calibration: given.calibration,
+            }));
+        }
         match (own.onset_stretch, given) {
             (Some(onset), None) => Ok(Some(MaterialSoftening {
                 softening: Softening { law, onset },
+                strength: None,
                 calibration: calibration_of(material),
             })),
             (None, Some(mut given)) => {
@@ -64,6 +87,7 @@ impl Assembler<'_> {
                 })?;
                 Ok(Some(MaterialSoftening {
                     softening,
+                    strength: None,
                     calibration: given.calibration,
                 }))
             }
@@ -87,7 +111,7 @@ impl Assembler<'_> {
         materials: &[Option<MaterialSoftening>],
     ) -> Result<Option<Softening>, BuildError> {
         let first = materials.iter().flatten().next();
-        match (first, solid.material.softening) {
+        match (first, &solid.material.softening) {
             (None, Some(own)) => {
                 let value = own.law().name().into();
                 let allowed = "allowed: with a `fracture_energy` or `critical_stretch`; without them bonds never break".into();
@@ -106,8 +130,9 @@ impl Assembler<'_> {
         critical_stretch: f64,
         path: &KeyPath,
     ) -> Result<(), BuildError> {
-        let onsets = pair.map(|number| softening.get(usize::from(number)).copied().flatten());
-        let onsets = onsets.into_iter().flatten().map(|own| own.softening.onset);
+        let onsets = pair.map(|number| softening.get(usize::from(number)));
+        let onsets = onsets.into_iter().flatten().flatten();
+        let onsets = onsets.map(|own| own.softening.onset);
         let onset = onsets.fold(f64::INFINITY, f64::min);
         if onset < critical_stretch || onset.is_infinite() {
             return Ok(());
@@ -129,11 +154,25 @@ impl Assembler<'_> {
         if softening.iter().all(Option::is_none) {
             return Ok(classes);
         }
-        let onset =
-            |own: &Option<MaterialSoftening>| own.map_or(f64::INFINITY, |own| own.softening.onset);
+        let onset = |own: &Option<MaterialSoftening>| {
+            (own.as_ref()).map_or(f64::INFINITY, |own| own.softening.onset)
+        };
         let onsets: Vec<f64> = softening.iter().map(onset).collect();
         (classes.with_onsets(&onsets)).map_err(|error| at("material.softening", error))
     }
+}
+
+/// Returns the strengths of all materials; none if bonds fail by their stretch. A material whose bonds never break has the
+/// strength of the others, which has no effect.
+pub(super) fn strengths_of(softening: &[Option<MaterialSoftening>]) -> Vec<Strength> {
+    let own = |one: &Option<MaterialSoftening>| one.as_ref()?.strength.clone();
+    let Some(first) = softening.iter().find_map(own) else {
+        return Vec::new();
+    };
+    let strengths = softening
+        .iter()
+        .map(|one| own(one).unwrap_or_else(|| first.clone()));
+    strengths.collect()
 }
 
 /// Returns the calibration of the fracture energy.

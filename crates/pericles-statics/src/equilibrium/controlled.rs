@@ -1,6 +1,7 @@
 //! Static states in which a quantity of the displacements has a given value.
 
-use pericles::{Interrupt, IterationProgress, Result, System};
+use pericles::operator::PointSubset;
+use pericles::{Interrupt, IterationProgress, Result, StepEnd, System};
 
 use super::{Effort, Equilibrium, Target, free_norm};
 use crate::control::Control;
@@ -25,10 +26,22 @@ pub struct ControlledTarget<'a> {
     pub largest: f64,
 }
 
-/// Largest number of iterations.
-const ITERATIONS: u64 = 300;
 /// Number of earlier iterates that are combined with the present one.
 const DEPTH: usize = 5;
+/// Largest number of products per linear problem.
+const PRODUCTS: u64 = 2000;
+
+/// Residual and value of the quantity at an iterate.
+struct Measured {
+    /// Norm of the residual, N.
+    norm: f64,
+    /// Norm of the loads, N.
+    of_loads: f64,
+    /// Whether it is the wanted state.
+    is_reached: bool,
+    /// The error if it is the last iterate.
+    failure: StaticsError,
+}
 
 impl Equilibrium {
     /// Advances `u` and the factor of the reference loads to the static state in which the quantity has its value.
@@ -48,100 +61,181 @@ impl Equilibrium {
         (u, factor): (&mut [f64], &mut f64),
         interrupt: Interrupt<'_>,
     ) -> Result<Effort> {
-        let domain = system.domain();
-        let tolerance = self.options.tolerance;
+        /// Largest number of iterations.
+        const ITERATIONS: u64 = 300;
+        /// Largest ratio of successive residuals of Newton's method.
+        const FALL: f64 = 0.5;
         let mut effort = Effort::default();
         let mut mixing = Mixing::new(DEPTH);
         let mut matrix = Derivative::Tangent;
         let mut last = f64::INFINITY;
-        let value = |u: &[f64]| target.control.quantity.value(system, target.t, u);
         loop {
-            self.place(*factor, &target.reference.supports, u);
-            let load = scaled(*factor, &target.reference.load);
-            let at = Target {
-                t: target.t,
-                place: target.t,
-                load: &load,
-                supports: &target.reference.supports,
-                largest: target.largest,
-            };
-            let norm = self.evaluate(system, &at, u, &mut effort);
-            let of_loads = self.load_norm(system, &at)?;
-            effort.acting = self.acting(system, of_loads, target.largest, norm);
-            effort.residual = if norm == 0.0 {
-                0.0
-            } else {
-                norm / effort.acting
-            };
-            let (now, wanted) = (value(u)?, target.value);
-            interrupt.report(IterationProgress {
-                iteration: effort.newton,
-                residual: effort.residual,
-                tolerance,
-                evaluations: effort.products + effort.forces,
-            });
-            let reached = (now - wanted).abs() <= tolerance * now.abs().max(wanted.abs());
-            if effort.residual <= tolerance && reached {
+            let at = (&mut *u, *factor);
+            let found = self.measure(system, target, at, &mut effort, interrupt)?;
+            if found.is_reached {
                 return Ok(effort);
             }
-            let failed = StaticsError::NotControlled {
-                t: target.t,
-                fraction: 0.0,
-                value: now,
-                wanted,
-                residual: effort.residual,
-                tolerance,
-            };
-            if effort.newton == ITERATIONS || !norm.is_finite() {
-                return Err(failed.into());
+            if effort.newton == ITERATIONS || !found.norm.is_finite() {
+                return Err(found.failure.into());
             }
-            /// Largest ratio of successive residuals of Newton's method.
-            const FALL: f64 = 0.5;
-            if effort.newton > 1 && norm > FALL * last {
+            if effort.newton > 1 && found.norm > FALL * last {
                 matrix = Derivative::Secant;
             }
-            last = norm;
-            effort.newton += 1;
-            // A part of the tolerance of the state, because the next residuals are smaller.
-            let goal = Goal {
-                absolute: 0.1 * tolerance * effort.acting,
-                relative: 0.0,
-                acting: of_loads,
-                products: 2000,
+            last = found.norm;
+            let at = (&*u, *factor);
+            let next = self.improved(
+                system,
+                target,
+                (&found, &mut matrix),
+                at,
+                &mut effort,
                 interrupt,
-            };
-            let times = [target.t; 2];
-            let residual = self.residual.clone();
-            let solved = self.solve(system, (matrix, times), u, &goal)?;
-            effort.products += solved.products;
-            let mut correction = self.correction.clone();
-            let mut response = None;
-            if solved.end != End::Indefinite {
-                response = self.response(system, (target, matrix), u, &mut effort, interrupt)?;
-            }
-            if response.is_none() && matrix == Derivative::Tangent {
-                matrix = Derivative::Secant;
-                self.residual.copy_from_slice(&residual);
-                let solved = self.solve(system, (matrix, times), u, &goal)?;
-                effort.products += solved.products;
-                correction.copy_from_slice(&self.correction);
-                response = self.response(system, (target, matrix), u, &mut effort, interrupt)?;
-            }
-            let Some(response) = response else {
-                return Err(failed.into());
-            };
-            let mut next = u.to_vec();
-            add_multiple(&mut next, 1.0, &correction);
-            let change = factor_change(&next, &response, wanted, &value)?;
-            add_multiple(&mut next, change, &response);
-            let next = (next, *factor + change);
+            )?;
             let (next, at) = match matrix {
                 Derivative::Tangent => next,
-                Derivative::Secant => mixing.next(domain, u, next),
+                Derivative::Secant => mixing.next(system.domain(), u, next),
             };
             u.copy_from_slice(&next);
             *factor = at;
         }
+    }
+
+    /// Advances `u` and the factor to a static state to which no static path leads: bonds keep the damage of all iterates,
+    /// so that the body fails until it is in equilibrium. `work` is scratch memory for forces.
+    ///
+    /// # Errors
+    /// As [`Self::find_controlled`].
+    pub(crate) fn fail_to_controlled(
+        &mut self,
+        system: &mut System,
+        target: &ControlledTarget<'_>,
+        (u, factor): (&mut [f64], &mut f64),
+        work: &mut [f64],
+        interrupt: Interrupt<'_>,
+    ) -> Result<Effort> {
+        /// Largest number of iterations.
+        const ITERATIONS: u64 = 3000;
+        let mut effort = Effort::default();
+        let mut matrix = Derivative::Secant;
+        loop {
+            let at = (&mut *u, *factor);
+            let found = self.measure(system, target, at, &mut effort, interrupt)?;
+            if found.is_reached {
+                return Ok(effort);
+            }
+            if effort.newton == ITERATIONS || !found.norm.is_finite() {
+                return Err(found.failure.into());
+            }
+            let at = (&*u, *factor);
+            let (next, at) = self.improved(
+                system,
+                target,
+                (&found, &mut matrix),
+                at,
+                &mut effort,
+                interrupt,
+            )?;
+            u.copy_from_slice(&next);
+            *factor = at;
+            let end = StepEnd::sub_step(target.t, 0.0, u);
+            system.end_step_on(&end, &PointSubset::All, work);
+        }
+    }
+
+    /// Places the supports and evaluates the residual and the quantity.
+    fn measure(
+        &mut self,
+        system: &System,
+        target: &ControlledTarget<'_>,
+        (u, factor): (&mut [f64], f64),
+        effort: &mut Effort,
+        interrupt: Interrupt<'_>,
+    ) -> Result<Measured> {
+        let tolerance = self.options.tolerance;
+        self.place(factor, &target.reference.supports, u);
+        let load = scaled(factor, &target.reference.load);
+        let at = Target {
+            t: target.t,
+            place: target.t,
+            load: &load,
+            supports: &target.reference.supports,
+            largest: target.largest,
+        };
+        let norm = self.evaluate(system, &at, u, effort);
+        let of_loads = self.load_norm(system, &at)?;
+        effort.acting = self.acting(system, of_loads, target.largest, norm);
+        effort.residual = match norm {
+            0.0 => 0.0,
+            norm => norm / effort.acting,
+        };
+        interrupt.report(IterationProgress {
+            iteration: effort.newton,
+            residual: effort.residual,
+            tolerance,
+            evaluations: effort.products + effort.forces,
+        });
+        let value = target.control.quantity.value(system, target.t, u)?;
+        let wanted = target.value;
+        let is_value = (value - wanted).abs() <= tolerance * value.abs().max(wanted.abs());
+        Ok(Measured {
+            norm,
+            of_loads,
+            is_reached: effort.residual <= tolerance && is_value,
+            failure: StaticsError::NotControlled {
+                t: target.t,
+                fraction: 0.0,
+                value,
+                wanted,
+                residual: effort.residual,
+                tolerance,
+            },
+        })
+    }
+
+    /// Returns displacements and factor of the next iterate. The matrix changes to the stiffness at constant damage if
+    /// the tangent is not positive definite.
+    fn improved(
+        &mut self,
+        system: &System,
+        target: &ControlledTarget<'_>,
+        (found, matrix): (&Measured, &mut Derivative),
+        (u, factor): (&[f64], f64),
+        effort: &mut Effort,
+        interrupt: Interrupt<'_>,
+    ) -> Result<(Vec<f64>, f64)> {
+        effort.newton += 1;
+        // A part of the tolerance of the state, because the next residuals are smaller.
+        let goal = Goal {
+            absolute: 0.1 * self.options.tolerance * effort.acting,
+            relative: 0.0,
+            acting: found.of_loads,
+            products: PRODUCTS,
+            interrupt,
+        };
+        let times = [target.t; 2];
+        let residual = self.residual.clone();
+        let (correction, response) = loop {
+            self.residual.copy_from_slice(&residual);
+            let solved = self.solve(system, (*matrix, times), u, &goal)?;
+            effort.products += solved.products;
+            let correction = self.correction.clone();
+            if solved.end != End::Indefinite {
+                let response = self.response(system, (target, *matrix), u, effort, interrupt)?;
+                if let Some(response) = response {
+                    break (correction, response);
+                }
+            }
+            if *matrix == Derivative::Secant {
+                return Err(found.failure.clone().into());
+            }
+            *matrix = Derivative::Secant;
+        };
+        let mut next = u.to_vec();
+        add_multiple(&mut next, 1.0, &correction);
+        let value = |u: &[f64]| target.control.quantity.value(system, target.t, u);
+        let change = factor_change(&next, &response, target.value, &value)?;
+        add_multiple(&mut next, change, &response);
+        Ok((next, factor + change))
     }
 
     /// Sets the constrained entries of a vector to a multiple of the displacements of supports.
@@ -179,7 +273,7 @@ impl Equilibrium {
             absolute: 0.0,
             relative: ACCURACY,
             acting: norm,
-            products: 2000,
+            products: PRODUCTS,
             interrupt,
         };
         let solved = self.solve(system, (matrix, times), u, &goal)?;

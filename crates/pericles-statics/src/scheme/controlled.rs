@@ -6,7 +6,8 @@ use pericles::{Interrupt, Result, System};
 
 use super::{StaticScheme, chord};
 use crate::control::Control;
-use crate::error::StaticsError;
+use crate::equilibrium::ControlledTarget;
+use crate::error::{StaticsError, is_not_controlled};
 use crate::path::{LoadStep, Loading};
 use crate::reference::Reference;
 
@@ -39,37 +40,43 @@ impl StaticScheme {
             control,
             values,
         };
+        self.relaxing = false;
+        let mut change = Change::of(system, t, &state.u);
         let before = state.u.clone();
-        let work = self.move_on(system, (&step, &mut state.u), interrupt)?;
+        let work = self.move_on(system, (&step, state), interrupt)?;
         let booked = system.ledger().work;
         let end = chord(t, t - state.t, &state.u, &before, first);
         system.book_equilibrium(&end, &mut state.a);
         let of_means = system.ledger().work - booked;
-        system.book_exchange(Exchange {
-            work: work - of_means,
-            impulse: [0.0; 3],
-        });
+        let mut is_jump = work.is_none();
+        match work {
+            Some(work) => system.book_exchange(Exchange {
+                work: work - of_means,
+                impulse: [0.0; 3],
+            }),
+            None => self.released += change.lost(system, &state.u) + of_means,
+        }
         step.values[0] = step.values[1];
         let rule = self.options.breaking;
-        while let Some(beyond) = rule.apply(system, t, &state.u, &mut state.a) {
-            self.released += beyond;
-            let before = state.u.clone();
-            let (elastic, work) = (system.stored_energy(t, &before), system.ledger().work);
-            self.move_on(system, (&step, &mut state.u), interrupt)?;
+        while self.break_bonds(system, state, (t, is_jump), rule) {
+            is_jump = true;
+            change = Change::of(system, t, &state.u);
+            let (before, work) = (state.u.clone(), system.ledger().work);
+            self.move_on(system, (&step, state), interrupt)?;
             system.book_equilibrium(&chord(t, 0.0, &state.u, &before, false), &mut state.a);
-            self.released +=
-                elastic - system.stored_energy(t, &state.u) + system.ledger().work - work;
+            self.released += change.lost(system, &state.u) + system.ledger().work - work;
         }
         Ok(())
     }
 
-    /// Advances `u` and the factor of the loads along a step with fixed bonds and returns the work done.
+    /// Advances the state and the factor of the loads along a step with fixed bonds and returns the work done; `None` if
+    /// there is no static path and the body fails until it is in equilibrium at the end of the step.
     fn move_on(
         &mut self,
         system: &mut System,
-        (step, u): (&ControlledStep<'_>, &mut Vec<f64>),
+        (step, state): (&ControlledStep<'_>, &mut State),
         interrupt: Interrupt<'_>,
-    ) -> Result<f64> {
+    ) -> Result<Option<f64>> {
         let load_step = LoadStep {
             t: step.t,
             start: step.t,
@@ -80,14 +87,65 @@ impl StaticScheme {
             },
             largest: self.largest,
         };
+        let before = (state.u.clone(), self.factor);
         let mut factor = self.factor;
-        let work = self.follow(system, load_step, (u, &mut factor, true), interrupt)?;
+        let followed = self.follow(
+            system,
+            load_step,
+            (&mut state.u, &mut factor, true),
+            interrupt,
+        );
+        let work = match followed {
+            Ok(work) => Some(work),
+            Err(error) if is_not_controlled(&error) => {
+                (state.u, factor) = before;
+                self.relaxing = true;
+                let target = ControlledTarget {
+                    t: step.t,
+                    reference: step.reference,
+                    control: step.control,
+                    value: step.values[1],
+                    largest: self.largest,
+                };
+                let at = (&mut state.u[..], &mut factor);
+                let solver = &mut self.equilibrium;
+                let effort =
+                    solver.fail_to_controlled(system, &target, at, &mut state.a, interrupt)?;
+                self.effort.add(effort);
+                self.largest = self.largest.max(effort.acting);
+                None
+            }
+            Err(error) => return Err(error),
+        };
         system.load_proportionally(ProportionalLoading {
             reference: step.reference.t,
             factors: [self.factor, factor],
         });
         self.factor = factor;
         Ok(work)
+    }
+}
+
+/// Energies before a jump.
+struct Change {
+    t: f64,
+    stored: f64,
+    dissipated: f64,
+}
+
+impl Change {
+    fn of(system: &System, t: f64, u: &[f64]) -> Self {
+        Self {
+            t,
+            stored: system.stored_energy(t, u),
+            dissipated: system.operator().dissipated(),
+        }
+    }
+
+    /// Returns the stored energy that the body has lost and not dissipated in bonds, J.
+    fn lost(&self, system: &System, u: &[f64]) -> f64 {
+        let dissipated = system.operator().dissipated() - self.dissipated;
+        self.stored - system.stored_energy(self.t, u) - dissipated
     }
 }
 

@@ -261,12 +261,35 @@ impl StaticScheme {
         }
     }
 
-    /// Breaks bonds beyond their limits and recomputes the static state until no bond breaks.
+    /// Breaks bonds beyond their limits at a static state; returns whether any broke. `is_jump` states that the energy
+    /// released on the way to the state is known as the difference of stored energies. It then includes what bonds
+    /// dissipated by softening on the way, which the end of the step books.
+    fn break_bonds(
+        &mut self,
+        system: &mut System,
+        state: &mut State,
+        (t, is_jump): (f64, bool),
+        rule: BreakingRule,
+    ) -> bool {
+        let follows_history = system.operator().capabilities().path_dependent;
+        let energy =
+            |system: &System| system.stored_energy(t, &state.u) + system.operator().dissipated();
+        let before = (is_jump && follows_history).then(|| energy(system));
+        let beyond = rule.apply(system, t, &state.u, &mut state.a);
+        self.released += match before {
+            Some(before) => before - energy(system),
+            None => beyond.unwrap_or(0.0),
+        };
+        beyond.is_some()
+    }
+
+    /// Breaks bonds beyond their limits and recomputes the static state until no bond breaks. `is_jump` is that of
+    /// [`Self::break_bonds`] for the present state.
     fn settle(
         &mut self,
         system: &mut System,
         state: &mut State,
-        (t, load): (f64, &[f64]),
+        (t, load, mut is_jump): (f64, &[f64], bool),
         interrupt: Interrupt<'_>,
     ) -> Result<()> {
         loop {
@@ -275,10 +298,10 @@ impl StaticScheme {
                 true => BreakingRule::All,
                 false => self.options.breaking,
             };
-            let Some(beyond) = rule.apply(system, t, &state.u, &mut state.a) else {
+            if !self.break_bonds(system, state, (t, is_jump), rule) {
                 return Ok(());
-            };
-            self.released += beyond;
+            }
+            is_jump = true;
             let before = state.u.clone();
             let (elastic, work) = (system.stored_energy(t, &before), system.ledger().work);
             let step = LoadStep {
@@ -374,9 +397,13 @@ impl Integrator for StaticScheme {
                 significant(100.0 * self.left_out, 2)
             )
         });
+        let found_by = match self.control {
+            Some(_) => "failure of bonds at the controlled value",
+            None => "damped dynamics",
+        };
         let relaxed = (self.relaxed > 0).then(|| {
             format!(
-                "{} load steps have no static path, because the body splits, softens or buckles: their states were found by damped dynamics, and the energy released on the way is part of the scheme correction",
+                "{} load steps have no static path, because the body splits, softens or buckles: their states were found by {found_by}, and the energy released on the way is part of the scheme correction",
                 self.relaxed
             )
         });
@@ -442,6 +469,7 @@ impl Integrator for StaticScheme {
         let heating = system.operator().heating(&end);
         system.book_equilibrium(&end, &mut state.a);
         let of_means = system.ledger().work - booked;
+        let is_jump = work.is_none() || displaced;
         match work {
             Some(work) if !displaced => system.book_exchange(Exchange {
                 work: work + heating - of_means,
@@ -451,7 +479,7 @@ impl Integrator for StaticScheme {
             _ => self.released += elastic - system.stored_energy(t_next, &state.u) + of_means,
         }
         if system.operator().changes_at_step_ends() {
-            self.settle(system, state, (t_next, &loads[1]), interrupt)?;
+            self.settle(system, state, (t_next, &loads[1], is_jump), interrupt)?;
         }
         self.close_step(state, t_next);
         Ok(())

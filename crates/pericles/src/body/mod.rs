@@ -8,7 +8,7 @@ use crate::boundary::{Boundary, Load, PrescribedMotion};
 use crate::error::{PericlesError, Result};
 use crate::family::{Crack, EndRule};
 use crate::material::{
-    BondConstants, BondMaterial, InterfaceRule, PairForce, Softening, StressState,
+    BondConstants, BondMaterial, InterfaceRule, PairForce, Softening, Strength, StressState,
     SurfaceCorrection,
 };
 use crate::operator::{
@@ -61,6 +61,7 @@ pub struct Body {
     assemble: Assemble,
     expansion: Option<ThermalExpansion>,
     softening: Option<Softening>,
+    strengths: Vec<Strength>,
     forces: Vec<Box<dyn Force>>,
     loads: Vec<Load>,
     motions: Vec<PrescribedMotion>,
@@ -84,6 +85,7 @@ impl Body {
             assemble: |body, form| body.operator(form),
             expansion: None,
             softening: None,
+            strengths: Vec::new(),
             forces: Vec::new(),
             loads: Vec::new(),
             motions: Vec::new(),
@@ -159,6 +161,13 @@ impl Body {
         self
     }
 
+    /// Keeps bonds elastic until the stress of one of their ends reaches the strength of its material. The strengths are
+    /// those of the body's material and of the further ones, in their order; the onset of the softening law is not used.
+    pub fn strengths(mut self, strengths: Vec<Strength>) -> Self {
+        self.strengths = strengths;
+        self
+    }
+
     /// Adds thermal expansion of the bonds, which then use a neighbour list.
     pub fn expansion(mut self, expansion: ThermalExpansion) -> Self {
         self.expansion = Some(expansion);
@@ -222,6 +231,7 @@ impl Body {
             classes: mixture.classes.as_ref(),
             correction: self.correction,
             softening: self.softening,
+            strengths: &self.strengths,
             ..CompositeBody::from(body)
         };
         let form = self.form;

@@ -34,7 +34,7 @@ impl UnreachableStrength {
         if self.by_energy {
             return format!(
                 "Allowed: a horizon of at most {largest} with this strength and fracture energy, instead of {}; or a strength of at \
-                 most {strength} with this horizon. Use a smaller horizon and spacing, a larger fracture energy or a smaller strength",
+                 most {strength} with this horizon. Use a smaller horizon and spacing, a larger fracture energy, a smaller strength, or failure = \"strength\" without a limit of the horizon",
                 precise(self.horizon, "m")
             );
         }

@@ -33,6 +33,7 @@ mod scatter;
 mod softening;
 mod state_based;
 mod strength;
+mod strength_surface;
 mod surface_correction;
 mod waves;
 
@@ -57,5 +58,6 @@ pub use state_based::{
     StateInfluence, Strains, StretchDefinition,
 };
 pub use strength::{HomogeneousBonds, Strengths, TensileStrength};
+pub use strength_surface::{Strength, StrengthSurface};
 pub use surface_correction::{SurfaceCorrection, SurfaceFactors};
 pub use waves::{ElasticWaves, TransverseWaves};

@@ -152,10 +152,18 @@ impl Softening {
                 allowed: "below the critical stretch, at which the elastic energy alone equals the fracture energy; use a larger fracture energy, a smaller horizon or a smaller onset",
             });
         }
-        let (onset, area) = (self.onset, 0.5 * critical_stretch * critical_stretch);
+        let area = 0.5 * critical_stretch * critical_stretch;
+        Ok(SofteningCurve::new(self.law, self.onset, area))
+    }
+}
+
+impl SofteningCurve {
+    /// Returns the curve of a law with an elastic limit and an area, ½ s₀² with s₀ above the limit.
+    #[inline(always)]
+    fn new(law: SofteningLaw, onset: f64, area: f64) -> Self {
         // Area beyond the elastic limit over the largest force.
         let beyond = area / onset - 0.5 * onset;
-        let (end, length) = match self.law {
+        let (end, length) = match law {
             SofteningLaw::Exponential => {
                 let length = beyond / (1.0 - SofteningLaw::RESIDUAL);
                 (onset - length * SofteningLaw::RESIDUAL.ln(), length)
@@ -166,17 +174,26 @@ impl Softening {
                 (onset + reach, onset + position * reach)
             }
         };
-        Ok(SofteningCurve {
-            law: self.law,
+        Self {
+            law,
             onset,
             end,
             length,
             area,
-        })
+        }
     }
-}
 
-impl SofteningCurve {
+    /// Returns the curve with another elastic limit and the same area.
+    #[inline(always)]
+    pub(crate) fn with_onset(self, onset: f64) -> Self {
+        Self::new(self.law, onset, self.area)
+    }
+
+    /// Returns the critical stretch s₀ of a brittle bond with this area.
+    pub fn critical_stretch(&self) -> f64 {
+        (2.0 * self.area).sqrt()
+    }
+
     /// Returns the stretch at which softening starts.
     pub fn onset(&self) -> f64 {
         self.onset

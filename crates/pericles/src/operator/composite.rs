@@ -3,13 +3,15 @@
 use super::assemble::fastest_form;
 use super::by_law::{ByLaw, by_law};
 use super::limits::{Feature, Features};
-use super::list::no_softening;
+use super::list::{PointStrengths, no_softening};
 use super::{
     AssembledBonds, BondBody, BondForce, BondForm, Breaking, Force, GridForce, SofteningForce,
 };
 use crate::error::{PericlesError, Result};
 use crate::family::BondList;
-use crate::material::{BondConstants, MaterialPairs, Softening, SurfaceCorrection, SurfaceFactors};
+use crate::material::{
+    BondConstants, MaterialPairs, Softening, Strength, SurfaceCorrection, SurfaceFactors,
+};
 use crate::operator::fast_law::VectorLaw;
 use crate::space::{Sites, check_length};
 
@@ -29,6 +31,9 @@ pub struct CompositeBody<'a> {
     pub correction: SurfaceCorrection,
     /// Softening law, if bonds soften before they break.
     pub softening: Option<Softening>,
+    /// Strengths of the materials that keep bonds elastic until the stress reaches them; empty for none. They require a
+    /// softening law.
+    pub strengths: &'a [Strength],
 }
 
 impl<'a> From<BondBody<'a>> for CompositeBody<'a> {
@@ -39,6 +44,7 @@ impl<'a> From<BondBody<'a>> for CompositeBody<'a> {
             classes: None,
             correction: SurfaceCorrection::None,
             softening: None,
+            strengths: &[],
         }
     }
 }
@@ -146,8 +152,9 @@ impl CompositeBody<'_> {
         self.check()?;
         if self.is_plain() {
             let (list, cuts) = self.body.list::<L, D>()?;
+            let of_ends = self.of_ends(list.sites(), None);
             return Ok(AssembledBonds {
-                operator: self.softened(list)?,
+                operator: self.softened(list, &of_ends)?,
                 cuts,
                 form: BondForm::List,
             });
@@ -182,7 +189,7 @@ impl CompositeBody<'_> {
             None => list,
         };
         Ok(AssembledBonds {
-            operator: self.softened(list)?,
+            operator: self.softened(list, &of_ends)?,
             cuts,
             form: BondForm::List,
         })
@@ -192,19 +199,27 @@ impl CompositeBody<'_> {
     fn softened<L: VectorLaw, const D: usize>(
         &self,
         list: BondForce<L, D>,
+        of_ends: &EndStiffness<'_>,
     ) -> Result<Box<dyn Force>> {
         match &self.softening {
             None => Ok(Box::new(list)),
             // The loops of softening are compiled for laws that support it only.
             Some(softening) => {
-                if L::OF_STRETCH {
-                    return Ok(Box::new(SofteningForce::new(
-                        list,
-                        self.classes,
-                        softening,
-                    )?));
+                if !L::OF_STRETCH {
+                    return Err(no_softening());
                 }
-                Err(no_softening())
+                let force = SofteningForce::new(list, self.classes, softening)?;
+                if self.strengths.is_empty() {
+                    return Ok(Box::new(force));
+                }
+                let strengths = PointStrengths {
+                    materials: self.strengths,
+                    constants: &|a, b, xi| {
+                        let constant = of_ends.micromodulus(a, b) * of_ends.inclusion(a, b);
+                        [constant, of_ends.factors.of_bond(a, b, xi)]
+                    },
+                };
+                Ok(Box::new(force.with_strengths(&strengths)?))
             }
         }
     }
@@ -229,11 +244,15 @@ impl EndStiffness<'_> {
 
     /// Returns the factor of the constant for a bond with the vector ξ, m; it is the same from both ends.
     fn factor(&self, a: usize, b: usize, xi: [f64; 3]) -> f64 {
-        let inclusion = match &self.inclusions[..] {
+        self.inclusion(a, b) * self.factors.of_bond(a, b, xi)
+    }
+
+    /// Returns the factor of the constant for a bond by inclusions.
+    fn inclusion(&self, a: usize, b: usize) -> f64 {
+        match &self.inclusions[..] {
             [] => 1.0,
             stiffness => 0.5 * (stiffness[a] + stiffness[b]),
-        };
-        inclusion * self.factors.of_bond(a, b, xi)
+        }
     }
 }
 

@@ -25,6 +25,7 @@ mod single_precision;
 mod state_based;
 mod statics;
 mod strength;
+mod strength_surface;
 mod surface_correction;
 mod two_pass;
 mod values;

@@ -55,6 +55,7 @@ fn operator(
         classes,
         correction,
         softening: None,
+        strengths: &[],
     };
     composite.operator(BondForm::List).unwrap().operator
 }
@@ -272,6 +273,7 @@ fn equal_materials_equal_a_single_material() {
             classes,
             correction: SurfaceCorrection::None,
             softening: None,
+            strengths: &[],
         };
         let mut operator = composite.operator(BondForm::List).unwrap().operator;
         let entries = 2 * cloud.len();
@@ -370,6 +372,7 @@ fn surface_corrections_preserve_interior_and_momentum() {
                 classes: None,
                 correction,
                 softening: None,
+                strengths: &[],
             };
             let operator = composite.operator(BondForm::List).unwrap().operator;
             let n = cloud.len();

@@ -32,6 +32,7 @@ fn corrected(
         classes: None,
         correction,
         softening: None,
+        strengths: &[],
     };
     composite.operator(BondForm::List).unwrap().operator
 }

@@ -66,6 +66,7 @@ fn bond_based(cloud: &Arc<PointCloud>, law: PairLaw) -> Box<dyn Force> {
         classes: None,
         correction: SurfaceCorrection::Ghosts,
         softening: None,
+        strengths: &[],
     };
     composite.operator(BondForm::List).unwrap().operator
 }

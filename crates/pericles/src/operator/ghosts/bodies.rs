@@ -91,6 +91,7 @@ impl CompositeBody<'_> {
             classes: classes.as_ref(),
             correction: SurfaceCorrection::None,
             softening: None,
+            strengths: &[],
         };
         let halved = CompositeBody {
             body: BondBody {

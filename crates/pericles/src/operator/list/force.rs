@@ -21,7 +21,7 @@ use crate::operator::rows::Rows;
 use crate::operator::thresholds::PairThresholds;
 use crate::operator::{Breaking, Force, InstructionSet, PointSubset};
 use crate::parallel::{BLOCK, components_mut, for_each_block};
-use crate::space::{PointCloud, check_length, check_points};
+use crate::space::{PointCloud, Sites, check_length, check_points};
 use crate::step_end::StepEnd;
 
 /// Force density f(x_i) = Σ_j c α κ V_j s n over the bonds of a neighbour list, N/m³.
@@ -211,6 +211,11 @@ impl<L: VectorLaw, const D: usize> BondForce<L, D> {
     /// Returns the families.
     pub fn bonds(&self) -> &Neighbourhood<BondList> {
         &self.bonds
+    }
+
+    /// Returns the end points of bonds.
+    pub(in crate::operator) fn sites(&self) -> &Sites {
+        self.bonds.form().sites()
     }
 
     pub(super) fn view(&self) -> Bonds<'_> {

@@ -22,4 +22,4 @@ mod zoned;
 
 pub use force::BondForce;
 pub use softening::SofteningForce;
-pub(in crate::operator) use softening::no_softening;
+pub(in crate::operator) use softening::{PointStrengths, no_softening};

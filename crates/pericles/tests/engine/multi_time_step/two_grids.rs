@@ -437,6 +437,7 @@ fn several_materials_on_a_grid_refined_everywhere_equal_those_on_small_cells() {
         classes: Some(&classes),
         correction: Default::default(),
         softening: None,
+        strengths: &[],
     };
     let expected = || composite.operator(BondForm::List).unwrap().operator;
     // The points have a different order.

@@ -38,8 +38,9 @@ impl<L: VectorLaw, const D: usize> Breakable for SofteningForce<L, D> {
         let (u, sites) = (Field::new(u, &ghosts), list.bonds.form().sites());
         let heat = list.latest_heat();
         let bonds = list.view().heated(heat.as_deref().map(Vec::as_slice));
-        let over = |a: usize, b: usize| {
-            let Some((curve, factor)) = self.curves.of(a, b) else {
+        let kept = self.kept();
+        let over = |entry: usize, a: usize, b: usize| {
+            let Some((curve, factor)) = kept.curve(entry, [a, b]) else {
                 return false;
             };
             let eta = u.difference::<D>([a, b].map(|site| sites.point(site)));
@@ -49,6 +50,6 @@ impl<L: VectorLaw, const D: usize> Breakable for SofteningForce<L, D> {
         };
         let families = list.bonds.form();
         list.bonds
-            .mark(marks, |i, _, site| over(families.site(i), site));
+            .mark(marks, |i, entry, site| over(entry, families.site(i), site));
     }
 }

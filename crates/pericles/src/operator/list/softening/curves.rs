@@ -76,12 +76,19 @@ impl Curves {
         }
     }
 
-    /// Returns 1 − d of a bond between two sites with the largest stretch κ.
-    #[inline(always)]
-    pub fn retained(&self, a: usize, b: usize, largest: f64) -> f64 {
-        match self.of(a, b) {
-            Some((curve, factor)) => curve.retained(largest / factor),
-            None => 1.0,
+    /// Returns the number of materials.
+    pub fn materials(&self) -> usize {
+        self.table.len().isqrt()
+    }
+
+    /// Returns the material number of a site and the factor of its strength.
+    pub fn of_point(&self, site: usize) -> (usize, f64) {
+        match &self.classes {
+            None => (0, 1.0),
+            Some(classes) => {
+                let number = usize::from(classes.of_point()[site]);
+                (number, classes.strength(site, site))
+            }
         }
     }
 }

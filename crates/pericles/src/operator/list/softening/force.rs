@@ -1,7 +1,8 @@
 //! Force kernel of softening bonds.
 
-use super::advance::{Advance, Part, advance_rows};
+use super::advance::{Advance, Part, advance_rows, open_rows};
 use super::curves::Curves;
+use super::gate::{Gate, Marks, PointStrengths};
 use super::kernels::Softened;
 use crate::archive::Laid;
 use crate::error::{PericlesError, Result};
@@ -12,6 +13,7 @@ use crate::operator::fast_law::VectorLaw;
 use crate::operator::list::BondForce;
 use crate::operator::rows::Rows;
 use crate::parallel::{BLOCK, components_mut, for_each_block};
+use crate::space::check_length;
 use crate::step_end::StepEnd;
 
 /// Force density f(x_i) = Σ_j (1 − d_ij) c α κ V_j s n over the bonds of a neighbour list, N/m³. The damage d
@@ -23,18 +25,25 @@ use crate::step_end::StepEnd;
 /// remaining stiffness. Energy dissipated by softening is added to that of breaking bonds. A bond breaks at
 /// the end of its curve.
 ///
-/// Memory in addition to [`BondForce`]: 8 bytes per directed bond.
+/// With [strengths](SofteningForce::with_strengths) a bond is elastic at any stretch until the stress of one of its ends
+/// reaches the strength of its material. Stresses are computed at the ends of accepted steps, and bonds that open then
+/// soften from their stretch at that time, or break if it is beyond the critical one.
+///
+/// Memory in addition to [`BondForce`]: 8 bytes per directed bond, 16 with strengths.
 pub struct SofteningForce<L: VectorLaw, const D: usize> {
     pub(super) list: BondForce<L, D>,
     pub(super) curves: Curves,
     /// Largest stretch of each entry, 0 for bonds that have not softened.
     pub(super) largest: Vec<f64>,
+    /// State of bonds that are elastic until the stress reaches the strength, if softening begins in this way.
+    pub(super) gate: Option<Gate>,
 }
 
 crate::saved! {
     impl<L: VectorLaw, const D: usize> Checkpointed for SofteningForce<L, D> {
         list: part,
         largest: by(Laid::rows("softening/largest", list.bonds.form().start(), largest.len())),
+        gate: part,
         curves: fixed,
     }
 }
@@ -69,6 +78,29 @@ impl<L: VectorLaw, const D: usize> SofteningForce<L, D> {
             list,
             curves,
             largest: vec![0.0; entries],
+            gate: None,
+        })
+    }
+
+    /// Keeps bonds elastic until the stress of one of their ends reaches the strength of its material. Its onset replaces
+    /// that of the softening law.
+    ///
+    /// # Errors
+    /// A number of strengths that is not that of the materials.
+    pub(in crate::operator) fn with_strengths(
+        self,
+        strengths: &PointStrengths<'_>,
+    ) -> Result<Self> {
+        let count = self.curves.materials();
+        check_length(
+            "the strengths of the materials",
+            strengths.materials.len(),
+            count,
+        )?;
+        let gate = Gate::new(&self.list, strengths);
+        Ok(Self {
+            gate: Some(gate),
+            ..self
         })
     }
 
@@ -83,19 +115,30 @@ impl<L: VectorLaw, const D: usize> SofteningForce<L, D> {
         Softened {
             curves: &self.curves,
             largest: &self.largest,
+            onsets: (self.gate.as_ref()).map(|gate| &gate.onsets[..]),
             first: 0,
             breakable: self.list.bonds.form().breakable(),
             is_frozen: false,
         }
     }
 
+    /// Finds the points whose stress has reached the strength and those that have lost stiffness; `None` if there are
+    /// none. All processes must call it together.
+    fn marks(&mut self, t: f64, u: &[f64]) -> Option<Marks> {
+        let gate = self.gate.as_ref()?;
+        let states = gate.states(&self.list, &self.kept(), (t, u));
+        self.gate.as_mut()?.note(&states);
+        Marks::of(self.list.cloud.domain(), &states)
+    }
+
     /// Returns 1 − d of an entry of a point for the largest stretch at the end of the last step.
     pub(super) fn retained(&self, i: usize, entry: usize, site: usize) -> f64 {
         let largest = self.largest[entry];
         match largest > 0.0 {
-            true => self
-                .curves
-                .retained(self.list.bonds.form().site(i), site, largest),
+            true => {
+                let ends = [self.list.bonds.form().site(i), site];
+                self.kept().retained(entry, ends, largest)
+            }
             false => 1.0,
         }
     }
@@ -103,8 +146,10 @@ impl<L: VectorLaw, const D: usize> SofteningForce<L, D> {
     /// Updates the largest stretches at the end of a step and adds the force.
     pub(super) fn advance(&mut self, step: &StepEnd<'_>, on: &PointSubset<'_>, out: &mut [f64]) {
         let n = self.list.cloud.len();
+        let marks = self.marks(step.t, step.u);
         let mut blocks = self.list.bonds.take_blocks();
         let mut largest = std::mem::take(&mut self.largest);
+        let mut onsets = (self.gate.as_mut()).map(|gate| std::mem::take(&mut gate.onsets));
         let Self { list, curves, .. } = &*self;
         let heat = list.heat_at(step.t);
         let bonds = list.view().heated(heat.as_deref().map(Vec::as_slice));
@@ -113,6 +158,7 @@ impl<L: VectorLaw, const D: usize> SofteningForce<L, D> {
             kept: Softened {
                 curves,
                 largest: &[],
+                onsets: None,
                 first: 0,
                 breakable: list.bonds.form().breakable(),
                 is_frozen: false,
@@ -121,14 +167,23 @@ impl<L: VectorLaw, const D: usize> SofteningForce<L, D> {
             step,
             velocity: step.velocities(&moved),
         };
+        let opening = marks.as_ref().zip(self.gate.as_ref());
         let mut parts = Vec::with_capacity(blocks.len());
         let mut rest = &mut largest[..];
+        let mut rest_of_onsets = onsets.as_deref_mut();
         for damage in &mut blocks {
-            let (own, behind) = rest.split_at_mut(damage.intact.len() * LANES);
+            let entries = damage.intact.len() * LANES;
+            let (own, behind) = rest.split_at_mut(entries);
             rest = behind;
+            let own_onsets = rest_of_onsets.take().map(|rest| {
+                let (own, behind) = rest.split_at_mut(entries);
+                rest_of_onsets = Some(behind);
+                own
+            });
             parts.push(Part {
                 damage,
                 largest: own,
+                onsets: own_onsets,
             });
         }
         list.with_packed(step.u, on, |u| {
@@ -140,6 +195,9 @@ impl<L: VectorLaw, const D: usize> SofteningForce<L, D> {
                     let len = n.min(first + BLOCK) - first;
                     if let Some(wanted) = Rows::of_block(on, first, len) {
                         let set = list.instruction_set;
+                        if let Some(opening) = opening {
+                            open_rows::<L, D>(&bonds, &rule, opening, u, part, &wanted);
+                        }
                         advance_rows::<L, D>(set, &bonds, &rule, u, part, &wanted, &mut out);
                     }
                 },
@@ -148,5 +206,8 @@ impl<L: VectorLaw, const D: usize> SofteningForce<L, D> {
         drop(heat);
         self.list.bonds.put_blocks(blocks);
         self.largest = largest;
+        if let (Some(gate), Some(onsets)) = (&mut self.gate, onsets) {
+            gate.onsets = onsets;
+        }
     }
 }

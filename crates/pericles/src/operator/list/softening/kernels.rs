@@ -5,6 +5,7 @@
 use super::curves::Curves;
 use crate::family::BondList;
 use crate::lanes::{F64x8, LANES, Lanes, for_each_instruction_set, vector};
+use crate::material::SofteningCurve;
 use crate::operator::fast_law::{FixedBond, VectorLaw};
 use crate::operator::list::arrays::Bonds;
 use crate::operator::records::Records;
@@ -16,6 +17,8 @@ pub(super) struct Softened<'a> {
     pub curves: &'a Curves,
     /// Largest stretches of the entries of groups from `first` on.
     pub largest: &'a [f64],
+    /// Onsets of these entries; `None` if they are those of the curves.
+    pub onsets: Option<&'a [f64]>,
     pub first: usize,
     /// Bits of the bonds that may soften; `None`: all.
     pub breakable: Option<&'a [u8]>,
@@ -36,6 +39,38 @@ impl Softened<'_> {
     #[inline(always)]
     fn at(&self, group: usize) -> usize {
         (group - self.first) * LANES
+    }
+
+    /// Returns the curve of an entry, given by its index from `first` on, and the factor of its stretches; `None` if the
+    /// bond is elastic.
+    #[inline(always)]
+    pub fn curve(&self, index: usize, [here, there]: [usize; 2]) -> Option<(SofteningCurve, f64)> {
+        let (curve, factor) = self.curves.of(here, there)?;
+        match self.onsets {
+            None => Some((*curve, factor)),
+            Some(onsets) if onsets[index].is_finite() => {
+                Some((curve.with_onset(onsets[index] / factor), factor))
+            }
+            Some(_) => None,
+        }
+    }
+
+    /// Returns 1 − d of an entry with the largest stretch κ.
+    #[inline(always)]
+    pub fn retained(&self, index: usize, ends: [usize; 2], largest: f64) -> f64 {
+        match self.curve(index, ends) {
+            Some((curve, factor)) => curve.retained(largest / factor),
+            None => 1.0,
+        }
+    }
+
+    /// Returns the stretches at which the bonds of a group soften, or a smaller one.
+    #[inline(always)]
+    fn onset<T: Lanes>(&self, group: usize) -> T {
+        match self.onsets {
+            None => T::splat(self.curves.smallest_onset()),
+            Some(onsets) => T::load(onsets, self.at(group)),
+        }
     }
 
     /// Returns the bits of the bonds of a group that may soften.
@@ -61,7 +96,7 @@ fn softened_lanes<T: Lanes, L: VectorLaw, const D: usize>(
     let (measure, square) = L::stretch_measure(bond.xi, eta);
     let stretch = L::stretch(measure / square);
     let largest = T::load(kept.largest, kept.at(group));
-    let onset = T::splat(kept.curves.smallest_onset());
+    let onset = kept.onset::<T>(group);
     let either = stretch.greater(onset) | largest.greater(onset);
     (stretch, largest, either & kept.candidates(group, intact))
 }
@@ -72,7 +107,7 @@ fn softened_lanes<T: Lanes, L: VectorLaw, const D: usize>(
 #[inline(never)]
 fn retained_of(
     kept: &Softened<'_>,
-    here: usize,
+    [here, group]: [usize; 2],
     neighbours: [usize; LANES],
     [stretch, largest]: [[f64; LANES]; 2],
     lanes: u8,
@@ -84,7 +119,8 @@ fn retained_of(
                 true => largest[lane],
                 false => stretch[lane].max(largest[lane]),
             };
-            kept.curves.retained(here, neighbours[lane], reached)
+            let index = kept.at(group) + lane;
+            kept.retained(index, [here, neighbours[lane]], reached)
         }
     })
 }
@@ -92,7 +128,7 @@ fn retained_of(
 /// Returns 1 − d of the bonds of a group at the current displacement, and whether the stretch of a bond
 /// exceeds its largest one and the smallest elastic limit.
 #[inline(always)]
-fn retained<T: Lanes, L: VectorLaw, const D: usize>(
+pub(super) fn retained<T: Lanes, L: VectorLaw, const D: usize>(
     bonds: &Bonds<'_>,
     kept: &Softened<'_>,
     [here, group]: [usize; 2],
@@ -105,7 +141,7 @@ fn retained<T: Lanes, L: VectorLaw, const D: usize>(
     }
     let grown = stretch.greater(largest) & lanes != 0;
     let both = [stretch.to_array(), largest.to_array()];
-    let factors = retained_of(kept, here, bonds.list.group(group), both, lanes);
+    let factors = retained_of(kept, [here, group], bonds.list.group(group), both, lanes);
     (T::load(&factors, 0), grown)
 }
 
@@ -201,14 +237,14 @@ fn energy_rows_body<T: Lanes, L: VectorLaw, const D: usize>(
 #[inline(never)]
 fn softening_rates(
     kept: &Softened<'_>,
-    here: usize,
+    [here, group]: [usize; 2],
     neighbours: [usize; LANES],
     [stretch, largest]: [[f64; LANES]; 2],
     lanes: u8,
 ) -> [f64; LANES] {
     std::array::from_fn(|lane| {
         let s = stretch[lane];
-        let curve = kept.curves.of(here, neighbours[lane]);
+        let curve = kept.curve(kept.at(group) + lane, [here, neighbours[lane]]);
         match curve {
             Some((curve, factor)) if lanes >> lane & 1 == 1 && s > largest[lane] => {
                 let s = s / factor;
@@ -252,9 +288,10 @@ fn tangent_rows_body<T: Lanes, L: VectorLaw, const D: usize>(
             if lanes != 0 {
                 let both = [stretch.to_array(), largest.to_array()];
                 let neighbours = bonds.list.group(group);
-                let factors = retained_of(kept, site, neighbours, both, lanes);
+                let ends = [site, group];
+                let factors = retained_of(kept, ends, neighbours, both, lanes);
                 let softening = if change.is_softening { lanes } else { 0 };
-                let rates = softening_rates(kept, site, neighbours, both, softening);
+                let rates = softening_rates(kept, ends, neighbours, both, softening);
                 let (factor, rate) = (T::load(&factors, 0), T::load(&rates, 0));
                 // ds = n·d/|ξ| with n = F/s; the rate is zero for bonds that do not soften.
                 let pull = L::force(bond.xi, eta);

@@ -1,6 +1,7 @@
 //! [`Force`] for softening bonds.
 
 use super::force::SofteningForce;
+use super::gate::Gate;
 use super::kernels::{Change, Softened, energy_rows, force_rows, tangent_rows};
 use crate::operator::fast_law::VectorLaw;
 use crate::operator::heating::heating_of;
@@ -119,7 +120,8 @@ impl<L: VectorLaw, const D: usize> Force for SofteningForce<L, D> {
     }
 
     fn bytes(&self) -> usize {
-        self.list.bytes() + size_of_val(&self.largest[..])
+        let gate = self.gate.as_ref().map_or(0, Gate::bytes);
+        self.list.bytes() + size_of_val(&self.largest[..]) + gate
     }
 
     fn instruction_set(&self) -> InstructionSet {
