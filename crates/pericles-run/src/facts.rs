@@ -1,6 +1,6 @@
 //! Properties of a run before its first step, for reports, `check` and `run.json`.
 
-use pericles_deck::{Body, Deck, Model, ModelWarning};
+use pericles_deck::{Body, Deck, LoadControl, Model, ModelWarning, Scheme};
 use pericles_waves::absorbing::{EndReport, KernelMethod, Side};
 use serde::Serialize;
 
@@ -74,6 +74,9 @@ pub struct Facts {
     pub dt: f64,
     /// Number of steps of the whole run.
     pub steps: u64,
+    /// Quantity that controls the loads of a static run, and its rate, m/s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub control: Option<LoadControl>,
     /// Lower estimate of the highest frequency of the body, for any scheme, 1/s; `None` without stiffness.
     pub highest_frequency: Option<f64>,
     /// Upper bound of the highest frequency, which fails with the probability below, 1/s.
@@ -285,6 +288,10 @@ impl Facts {
                 .or(shear.map(|shear| shear.axes - 1.0)),
             dt: assembly.dt,
             steps: assembly.steps,
+            control: match &model.time.scheme {
+                Scheme::Static(options) => options.control.clone(),
+                _ => None,
+            },
             highest_frequency: assembly.body_frequency.map(|f| f.estimate),
             highest_frequency_bound: assembly.body_frequency.map(|f| f.bound),
             highest_frequency_failure_probability: assembly

@@ -376,6 +376,15 @@ fn time(facts: &Facts) -> Vec<Line> {
             ratio.map(|ratio| (ratio - 1.0).max(0.0)),
         );
     lines.push(steps);
+    if let Some(control) = &facts.control {
+        let text = format!(
+            "the loads follow {}: {} per step, {} at the end",
+            control.quantity,
+            quantity(control.rate * facts.dt, "m"),
+            quantity(control.rate * end, "m")
+        );
+        lines.push(Line::new("control", text));
+    }
     lines
 }
 

@@ -107,6 +107,24 @@ fn energy_balances_in_every_breaking_mode() {
     }
 }
 
+/// A softening body that splits at once: what its bonds dissipate by softening on the way is part of the energy that it
+/// loses, and is booked once.
+#[test]
+fn energy_balances_where_a_softening_body_splits() {
+    for breaking in ["worst-first", "all"] {
+        let time = format!(
+            "scheme = \"static\", tolerance = 1e-8, load_steps = 6, breaking = \"{breaking}\""
+        );
+        let mut run = simulation(WITH_HISTORY[0], 0.6, &time);
+        run.run(|_| Control::Continue).unwrap();
+        assert!(run.integrator().remark().is_some(), "no jump");
+        let energies = run.snapshot().energies();
+        let error = energies.balance() / energies.work;
+        assert!(energies.dissipated > 0.1 * energies.work);
+        assert!(error.abs() < 1e-3, "{error}, {breaking}");
+    }
+}
+
 #[test]
 fn relaxation_and_bodies_with_a_history_break_too() {
     for scheme in ["adaptive-dynamic-relaxation", "fire"] {
