@@ -6,17 +6,19 @@ use serde_json::Value as Json;
 
 use crate::assign::{self, Assignable, Assignment};
 use crate::body::{self, BodyRead, SurfaceRead};
-use crate::boundary;
+use crate::boundary::BoundaryCondition;
 use crate::conditions::{self, Constraint};
-use crate::contact;
+use crate::contact::Contact;
+use crate::course::TimeHistory;
 use crate::crack;
-use crate::damping;
+use crate::damping::Damping;
+use crate::declaration::{DeckTable, DeckValue};
 use crate::document::{self, Node};
 use crate::error::DeckError;
 use crate::exact;
 use crate::fault::Fault;
 use crate::finding::Finding;
-use crate::impactor;
+use crate::impactor::Impactor;
 use crate::inheritance::inherit;
 use crate::interface::{self, MaterialInterface};
 use crate::material::{self, Material, MaterialModel, Materials, NamedMaterial};
@@ -26,11 +28,12 @@ use crate::overrides;
 use crate::reader::{Ledger, Record, Survey, Table};
 use crate::region::Frame;
 use crate::remark::{BuildError, Remark};
+use crate::scope::Scope;
 use crate::set::{self, SetNames};
 use crate::source::Sources;
 use crate::subject::Subject;
 use crate::surface::{self, SurfaceBody};
-use crate::thermal::{self, Thermal};
+use crate::thermal::{Thermal, ThermalScope};
 use crate::time;
 
 /// A deck: the model and the location of every value in the text.
@@ -180,22 +183,30 @@ fn model(root: Table<'_>, further: &[String]) -> Option<Model> {
         .required("time")
         .and_then(|item| time::read(item.table()?, &names));
     let usual = conditions::usual_function(time.as_ref(), initial.as_deref());
+    let scope = Scope {
+        dimension: frame.dimension,
+        sets: &names,
+        materials: &[],
+        usual: &usual,
+    };
     let constraints = each(&root, "constraint", |table| {
         conditions::constraint(table, frame.dimension, &names, &usual)
     });
     let loads = each(&root, "load", |table| {
         conditions::load(table, frame.dimension, &names, &usual)
     });
-    let boundaries = each(&root, "boundary", boundary::read);
+    let boundaries = each(&root, "boundary", |table| {
+        BoundaryCondition::read_table(table, ())
+    });
     let probes = conditions::probes(root.tables("probe"), frame.dimension, &names);
     let exact = root.maybe("exact", |item| {
         exact::read(item.table()?, frame.dimension, gaussian)
     });
-    let contact = root.maybe("contact", |item| contact::read(item.table()?));
+    let contact = root.maybe("contact", |item| Contact::read(&item, ()));
     let impactors = each(&root, "impactor", |table| {
-        impactor::read(table, frame.dimension, &usual)
+        Impactor::read_table(table, scope)
     });
-    let damping = root.maybe("damping", |item| damping::read(item.table()?));
+    let damping = root.maybe("damping", |item| Damping::read(&item, ()));
     let output = root.table_or_empty("output").and_then(|table| {
         let driven = constraints.iter().flatten().any(Constraint::moves);
         output::read(
@@ -294,11 +305,15 @@ fn thermal_of(
     sets: &SetNames,
 ) -> Option<Option<Thermal>> {
     root.maybe("thermal", |item| {
-        thermal::read(
-            item.table()?,
-            body.frame.dimension,
-            (&materials.names, sets),
-        )
+        let table = item.table()?;
+        let scope = Scope {
+            dimension: body.frame.dimension,
+            sets,
+            materials: &materials.names,
+            usual: &TimeHistory::Constant,
+        };
+        let scope = ThermalScope::of(&table, scope);
+        Thermal::read_table(table, scope)
     })
 }
 

@@ -86,10 +86,6 @@ pub(crate) const DEPTHS: &[&str] = &["depth", "cells"];
 /// Keys of the amplitude of a load.
 pub(crate) const LOADS: &[&str] = &["body_force", "traction", "pressure"];
 
-/// Keys of a thermal condition.
-pub(crate) const THERMAL_CONDITIONS: &[&str] =
-    &["temperature", "flux", "source", "convection", "radiation"];
-
 /// Keys of the points with the fine time step.
 pub(crate) const FINE_REGIONS: &[&str] = &["fine", "adaptive"];
 

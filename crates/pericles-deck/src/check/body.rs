@@ -8,11 +8,11 @@ use pericles::material::{
 use pericles::space::{Finer, Region, Shape};
 use pericles_manifold::{PowerMaterial, SurfaceBond};
 
-use super::ranges::{Check, POSITIVE};
 use crate::body::{
     Boundary, FilledCells, FilledShape, Lattice, Piece, Positions, Quadrature, SolidShape,
     VertexAreas, piece_path,
 };
+use crate::declaration::Check;
 use crate::fault::Fault;
 use crate::interface::InterfaceFailure;
 use crate::key_path::KeyPath;
@@ -410,7 +410,7 @@ impl Check {
             right,
             key.key("critical_stretch"),
             critical_stretch,
-            POSITIVE,
+            "allowed: a positive number",
         );
     }
 }

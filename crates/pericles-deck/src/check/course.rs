@@ -2,7 +2,7 @@
 
 use pericles::observe::{Field, Schedule};
 
-use super::ranges::Check;
+use crate::declaration::Check;
 use crate::key_path::KeyPath;
 use crate::output::{Checkpoint, Output};
 use crate::scheme::{FineRegion, FineStep, Scheme};

@@ -4,13 +4,14 @@ mod body;
 mod conditions;
 mod contact;
 mod course;
-mod ranges;
 
-use self::ranges::Check;
+use crate::declaration::{Check, DeckValue};
 use crate::key_path::KeyPath;
 use crate::model::{Body, Model};
 use crate::remark::BuildError;
+use crate::scope::Scope;
 use crate::set::Members;
+use crate::thermal::ThermalScope;
 
 impl Model {
     /// Rejects numbers out of range. Decks have the same ranges, so that a model read from a deck always passes.
@@ -32,9 +33,7 @@ impl Model {
         }
         check.conditions(self);
         check.contact(self);
-        check.thermal(self);
-        check.damping(self);
-        check.boundaries(&self.boundaries);
+        Scope::of_model(self.body.dimension(), |scope| check.declared(self, scope));
         if let Some(exact) = &self.exact {
             check.exact(exact);
         }
@@ -45,5 +44,23 @@ impl Model {
             true => Ok(()),
             false => Err(BuildError::of(check.problems)),
         }
+    }
+}
+
+impl Check {
+    /// Checks the declared tables.
+    fn declared(&mut self, model: &Model, scope: Scope<'_>) {
+        if let Some(thermal) = &model.thermal {
+            let scope = ThermalScope::new(thermal.conduction.is_some(), scope);
+            thermal.check("thermal".into(), scope, self);
+        }
+        if let Some(contact) = &model.contact {
+            contact.check("contact".into(), scope, self);
+        }
+        model.impactors.check("impactor".into(), scope, self);
+        if let Some(damping) = &model.damping {
+            damping.check("damping".into(), scope, self);
+        }
+        model.boundaries.check("boundary".into(), scope, self);
     }
 }

@@ -7,11 +7,9 @@ use crate::document::{Entry, Node, Value};
 use crate::fault::Fault;
 use crate::key_path::KeyPath;
 use crate::quantity::Quantity;
+use crate::range::{POSITIVE, Range};
 use crate::source::Place;
 use crate::units::{self, UnitError};
-
-/// The range of positive numbers, in words.
-pub(crate) const POSITIVE: &str = "a positive number";
 
 /// A value with its path from the root.
 #[derive(Clone)]
@@ -226,7 +224,15 @@ impl<'a> Item<'a> {
 
     /// Reads a positive number.
     pub(crate) fn positive(&self, quantity: Quantity) -> Option<f64> {
-        self.within(quantity, POSITIVE, |value| value > 0.0)
+        self.number(quantity, POSITIVE)
+    }
+
+    /// Reads a number in a range.
+    pub(crate) fn number(&self, quantity: Quantity, range: Range) -> Option<f64> {
+        match range.is_any() {
+            true => self.quantity(quantity),
+            false => self.within(quantity, &range.words(), |value| range.contains(value)),
+        }
     }
 
     /// Reads a number that satisfies a condition, which `allowed` describes.

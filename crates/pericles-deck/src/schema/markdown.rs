@@ -3,7 +3,8 @@
 use serde_json::Value as Json;
 
 use super::{Schema, names};
-use crate::reader::{Form, POSITIVE, TableSurvey, below};
+use crate::range::POSITIVE_WORDS;
+use crate::reader::{Form, TableSurvey, below};
 
 pub(super) fn document(schema: &Schema) -> String {
     let mut page = Page {
@@ -169,7 +170,7 @@ impl Page<'_> {
             Form::Boolean => "`true`, `false`".into(),
             Form::Count => "integer ≥ 1".into(),
             Form::Number { quantity, allowed } => {
-                let sign = if allowed.as_deref() == Some(POSITIVE) {
+                let sign = if allowed.as_deref() == Some(POSITIVE_WORDS) {
                     "positive "
                 } else {
                     ""

@@ -128,9 +128,10 @@ impl Schema {
             survey = Deck::survey(specimen.deck, &changes, survey)
                 .unwrap_or_else(|error| panic!("a specimen is rejected: {changes:?} {error}"));
         }
+        let descriptions = Descriptions::new(survey.descriptions());
         Self {
             survey,
-            descriptions: Descriptions::new(),
+            descriptions,
         }
     }
 
@@ -172,7 +173,7 @@ impl Schema {
                 Form::Number {
                     allowed: Some(allowed),
                     ..
-                } if allowed != crate::reader::POSITIVE => Some(allowed.as_str()),
+                } if allowed != crate::range::POSITIVE_WORDS => Some(allowed.as_str()),
                 _ => None,
             })
             .collect();

@@ -1,0 +1,126 @@
+//! Values of keys that need no reader of their own.
+
+use std::path::PathBuf;
+
+use serde_json::Value as Json;
+
+use super::{Check, DeckTable, DeckValue, Fallback, Spatial};
+use crate::key_path::KeyPath;
+use crate::quantity::Quantity;
+use crate::range::Range;
+use crate::reader::{Item, Table};
+use crate::words::Worded;
+
+/// A number or several numbers of a quantity.
+pub(crate) trait Measured<S>: Sized {
+    /// Reads the value in SI units; none after reporting an error.
+    fn read(item: &Item<'_>, quantity: Quantity, range: Range, scope: S) -> Option<Self>;
+
+    /// Checks the range of the value at a path.
+    fn check(&self, path: KeyPath, range: Range, scope: S, check: &mut Check);
+}
+
+impl<S> Measured<S> for f64 {
+    fn read(item: &Item<'_>, quantity: Quantity, range: Range, _: S) -> Option<Self> {
+        item.number(quantity, range)
+    }
+
+    fn check(&self, path: KeyPath, range: Range, _: S, check: &mut Check) {
+        check.number(path, *self, range);
+    }
+}
+
+/// A vector with one component per dimension of the body.
+impl<S: Spatial> Measured<S> for [f64; 3] {
+    fn read(item: &Item<'_>, quantity: Quantity, range: Range, scope: S) -> Option<Self> {
+        let dimension = scope.dimension();
+        let vector = item.vector(quantity, dimension)?;
+        let mut components = vector.iter().take(dimension.unwrap_or(3));
+        if components.any(|&component| !range.contains(component)) {
+            item.out_of_range(&range.words());
+            return None;
+        }
+        Some(vector)
+    }
+
+    fn check(&self, path: KeyPath, range: Range, scope: S, check: &mut Check) {
+        let components = self.iter().take(scope.dimension().unwrap_or(3));
+        for (c, component) in components.enumerate() {
+            check.number(path.index(c), *component, range);
+        }
+    }
+}
+
+impl<S> DeckValue<S> for bool {
+    fn read(item: &Item<'_>, _: S) -> Option<Self> {
+        item.boolean()
+    }
+
+    fn check(&self, _: KeyPath, _: S, _: &mut Check) {}
+}
+
+impl<S, T: Worded> DeckValue<S> for T {
+    fn read(item: &Item<'_>, _: S) -> Option<Self> {
+        item.choice(T::WHAT, &T::words())
+    }
+
+    fn check(&self, _: KeyPath, _: S, _: &mut Check) {}
+}
+
+impl<S> DeckValue<S> for PathBuf {
+    fn read(item: &Item<'_>, _: S) -> Option<Self> {
+        item.text().map(Self::from)
+    }
+
+    fn check(&self, _: KeyPath, _: S, _: &mut Check) {}
+}
+
+/// Records defaults as they are.
+macro_rules! recorded {
+    ($($type:ty),*) => {$(
+        impl<S> Fallback<S> for $type {
+            fn missing(self, table: &Table<'_>, key: &'static str, _: S) -> Option<Self> {
+                table.record(key, self.clone());
+                Some(self)
+            }
+        }
+    )*};
+}
+
+recorded!(f64, bool, u32, u64, String);
+
+/// Zero is not recorded, because the dimension of the body determines the number of components.
+impl<S> Fallback<S> for [f64; 3] {
+    fn missing(self, table: &Table<'_>, key: &'static str, _: S) -> Option<Self> {
+        if self != [0.0; 3] {
+            table.record(key, self.to_vec());
+        }
+        Some(self)
+    }
+}
+
+impl<S, T: Worded> Fallback<S> for T {
+    fn missing(self, table: &Table<'_>, key: &'static str, _: S) -> Option<Self> {
+        let words = T::words();
+        let word = words.iter().find(|(_, value)| *value == self);
+        table.record(key, word.map_or(Json::Null, |(word, _)| (*word).into()));
+        Some(self)
+    }
+}
+
+impl<S: Copy, T: DeckTable<S>> DeckValue<S> for Vec<T> {
+    fn read(item: &Item<'_>, scope: S) -> Option<Self> {
+        let read: Vec<Option<T>> = item
+            .tables()
+            .into_iter()
+            .map(|table| T::read_table(table, scope))
+            .collect();
+        read.into_iter().collect()
+    }
+
+    fn check(&self, path: KeyPath, scope: S, check: &mut Check) {
+        for (k, table) in self.iter().enumerate() {
+            table.check_keys(&path.index(k), scope, check);
+        }
+    }
+}
