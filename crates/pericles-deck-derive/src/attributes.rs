@@ -71,6 +71,8 @@ pub(crate) struct Attributes {
     pub(crate) remote: Option<Path>,
     /// Groups of keys, with the function of a table that reads which of them are given.
     pub(crate) groups: Vec<(Ident, Vec<LitStr>)>,
+    /// The key whose texts are unique in a list of tables, with what a table is called.
+    pub(crate) unique: Option<(String, String)>,
     pub(crate) tag: Option<LitStr>,
     /// The description of a tag, if it is not the documentation of the enum.
     pub(crate) tag_about: Option<LitStr>,
@@ -99,8 +101,14 @@ pub(crate) const OF_FIELD: &[&str] = &[
 /// Names of the attributes of variants.
 pub(crate) const OF_VARIANT: &[&str] = &["word", "key", "table", "allow_if"];
 /// Names of the attributes of structs.
-pub(crate) const OF_STRUCT: &[&str] =
-    &["scope", "remote", "default", "at_least_one", "exactly_one"];
+pub(crate) const OF_STRUCT: &[&str] = &[
+    "scope",
+    "remote",
+    "default",
+    "at_least_one",
+    "exactly_one",
+    "unique",
+];
 /// Names of the attributes of enums.
 pub(crate) const OF_ENUM: &[&str] = &[
     "scope",
@@ -159,6 +167,10 @@ impl Attributes {
             "exclusive" => self.exclusive = true,
             "table" => self.table = true,
             "keys" => self.keys = words(meta)?,
+            "unique" => match &words(meta)?[..] {
+                [key, table] => self.unique = Some((key.value(), table.value())),
+                _ => return Err(meta.error("expected unique(\"key\", \"name of the table\")")),
+            },
             "at_least_one" | "exactly_one" => {
                 let function = meta.path.require_ident()?.clone();
                 self.groups.push((function, words(meta)?));

@@ -88,9 +88,11 @@ fn tagged(
         .position(|variant| variant.attributes.default.is_some());
     let found = match (&attributes.default, usual) {
         (Some(Fallback::Value(word)), _) => quote_spanned!(here()=> {
-            let word: &str = #word;
-            table.record(#tag, word);
-            WORDS.iter().find(|(known, _)| *known == word).map(|(_, number)| *number)
+            let word: ::core::option::Option<&str> = #word;
+            if let Some(word) = word {
+                table.record(#tag, word);
+            }
+            WORDS.iter().find(|(known, _)| Some(*known) == word).map(|(_, number)| *number)
         }),
         (_, Some(number)) => {
             let (word, number) = (&words[number], Literal::usize_suffixed(number));

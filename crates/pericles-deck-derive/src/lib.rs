@@ -39,12 +39,13 @@
 //! | `remote = Type` | declares a type of another crate, whose fields or variants are repeated |
 //! | `default` | of a struct whose fields all have defaults: implements `Default` |
 //! | `at_least_one("mass", "stiffness")`, `exactly_one("temperature", "file")` | of a struct: how many of these keys are given; the first one is the key of a field |
+//! | `unique("name", "probe")` | of a struct: texts of the key are unique in a list of tables, which are called so |
 //! | `what = "contact law"` | of enums of words and tagged enums: what the word is, in messages |
 //! | `tag_about = "…"` | description of the tag of an enum that is a table, whose documentation describes the table |
 //! | `word = "half-space"`, `key = "at"` | of a variant: its word or key, if not its name in kebab case or snake case |
 //! | `otherwise = "reason"` | of a field of a variant: why other variants do not have it |
 //! | `#[default]` | of a variant: the variant of a missing tag |
-//! | `default = expression` | of a tagged enum: the word of a missing tag |
+//! | `default = expression` | of a tagged enum: the word of a missing tag, an `Option`; none if it depends on an invalid value |
 //! | `allow_if(condition, "allowed words")` | of a variant: its word is out of range unless the condition holds |
 //! | `table` | of a variant with an exclusive key: its fields are keys of a table under that key |
 

@@ -112,6 +112,14 @@ pub(crate) fn implementation(
     check: &TokenStream,
 ) -> TokenStream {
     let (about, scope) = (&attributes.about, scope());
+    let unique = attributes.unique.as_ref().map(|(key, table)| {
+        let reason = format!("another {table} has this {key}");
+        let allowed = format!("allowed: a unique {key} per {table}");
+        quote_spanned!(here()=>
+            const UNIQUE: ::core::option::Option<crate::declaration::Unique> =
+                Some(crate::declaration::Unique { key: #key, reason: #reason, allowed: #allowed });
+        )
+    });
     let (generics, ty) = match &attributes.scope_type {
         Some(ty) => (quote_spanned!(here()=> <'s>), quote_spanned!(here()=> #ty)),
         None => (
@@ -144,6 +152,7 @@ pub(crate) fn implementation(
 
         impl #generics crate::declaration::DeckTable<#ty> for #target {
             const ABOUT: &'static str = #about;
+            #unique
         }
 
         impl #generics crate::declaration::DeckValue<#ty> for #target {

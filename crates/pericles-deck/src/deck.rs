@@ -6,8 +6,7 @@ use serde_json::Value as Json;
 
 use crate::assign::{self, Assignable, Assignment};
 use crate::body::{self, BodyRead, SurfaceRead};
-use crate::boundary::BoundaryCondition;
-use crate::conditions::{self, Constraint};
+use crate::conditions::{self, Constraint, Initial};
 use crate::contact::Contact;
 use crate::course::TimeHistory;
 use crate::crack;
@@ -18,7 +17,6 @@ use crate::error::DeckError;
 use crate::exact;
 use crate::fault::Fault;
 use crate::finding::Finding;
-use crate::impactor::Impactor;
 use crate::inheritance::inherit;
 use crate::interface::{self, MaterialInterface};
 use crate::material::{self, Material, MaterialModel, Materials, NamedMaterial};
@@ -176,36 +174,30 @@ fn model(root: Table<'_>, further: &[String]) -> Option<Model> {
         }
     };
     let cracks = each(&root, "crack", |table| crack::read(table, frame, &names));
-    let initial = each(&root, "initial", |table| {
-        conditions::initial(table, frame.dimension, &names)
-    });
+    let scope = Scope {
+        dimension: frame.dimension,
+        sets: &names,
+        materials: &[],
+        usual: &TimeHistory::Constant,
+    };
+    let initial: Option<Vec<Initial>> = declared(&root, "initial", scope);
     let time = root
         .required("time")
         .and_then(|item| time::read(item.table()?, &names));
     let usual = conditions::usual_function(time.as_ref(), initial.as_deref());
     let scope = Scope {
-        dimension: frame.dimension,
-        sets: &names,
-        materials: &[],
         usual: &usual,
+        ..scope
     };
-    let constraints = each(&root, "constraint", |table| {
-        conditions::constraint(table, frame.dimension, &names, &usual)
-    });
-    let loads = each(&root, "load", |table| {
-        conditions::load(table, frame.dimension, &names, &usual)
-    });
-    let boundaries = each(&root, "boundary", |table| {
-        BoundaryCondition::read_table(table, ())
-    });
-    let probes = conditions::probes(root.tables("probe"), frame.dimension, &names);
+    let constraints: Option<Vec<Constraint>> = declared(&root, "constraint", scope);
+    let loads = declared(&root, "load", scope);
+    let boundaries = declared(&root, "boundary", scope);
+    let probes = declared(&root, "probe", scope);
     let exact = root.maybe("exact", |item| {
         exact::read(item.table()?, frame.dimension, gaussian)
     });
     let contact = root.maybe("contact", |item| Contact::read(&item, ()));
-    let impactors = each(&root, "impactor", |table| {
-        Impactor::read_table(table, scope)
-    });
+    let impactors = declared(&root, "impactor", scope);
     let damping = root.maybe("damping", |item| Damping::read(&item, ()));
     let output = root.table_or_empty("output").and_then(|table| {
         let driven = constraints.iter().flatten().any(Constraint::moves);
@@ -359,6 +351,17 @@ fn surface_of(
         method,
         ball,
     })
+}
+
+/// Reads a list of declared tables.
+fn declared<S, T>(root: &Table<'_>, key: &'static str, scope: S) -> Option<Vec<T>>
+where
+    Vec<T>: DeckValue<S>,
+{
+    match root.optional(key) {
+        Some(item) => DeckValue::read(&item, scope),
+        None => Some(Vec::new()),
+    }
 }
 
 fn each<'a, T>(

@@ -14,8 +14,7 @@ use crate::key_path::KeyPath;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 use crate::region;
-use crate::scope::Scope;
-use crate::set::bad_name;
+use crate::scope::{Scope, name};
 
 /// A rigid body in contact with the body: a projectile, indenter or wall. Its motion follows from the contact forces or
 /// is prescribed.
@@ -122,7 +121,7 @@ pub enum ImpactorShape {
 )]
 pub enum ImpactorMotion {
     /// Moves by the contact forces.
-    #[deck(allow_if(!scope.is_half_space, "\"prescribed\": a half-space has no finite mass"))]
+    #[deck(allow_if(scope.is_half_space != Some(true), "\"prescribed\": a half-space has no finite mass"))]
     Free {
         /// Mass.
         #[deck(
@@ -203,14 +202,15 @@ impl Impactor {
 #[derive(Clone, Copy)]
 struct MotionScope<'s> {
     deck: Scope<'s>,
-    is_half_space: bool,
+    /// None if the shape is invalid.
+    is_half_space: Option<bool>,
 }
 
 impl<'s> MotionScope<'s> {
     fn new(shape: Option<&ImpactorShape>, deck: Scope<'s>) -> Self {
         Self {
             deck,
-            is_half_space: matches!(shape, Some(ImpactorShape::HalfSpace { .. })),
+            is_half_space: shape.map(|shape| matches!(shape, ImpactorShape::HalfSpace { .. })),
         }
     }
 }
@@ -221,11 +221,13 @@ impl Spatial for MotionScope<'_> {
     }
 }
 
-fn usual_motion(scope: MotionScope<'_>) -> &'static str {
-    match scope.is_half_space {
-        true => "prescribed",
-        false => "free",
-    }
+fn usual_motion(scope: MotionScope<'_>) -> Option<&'static str> {
+    scope
+        .is_half_space
+        .map(|is_half_space| match is_half_space {
+            true => "prescribed",
+            false => "free",
+        })
 }
 
 /// Shapes of bars and plane bodies.
@@ -239,17 +241,6 @@ fn is_spatial(scope: Scope<'_>) -> bool {
 fn has_no_rotation(shape: Option<&ImpactorShape>, scope: Scope<'_>) -> bool {
     use ImpactorShape::{Ball, HalfSpace};
     scope.dimension == Some(1) || matches!(shape, Some(Ball { .. } | HalfSpace { .. }))
-}
-
-fn name(item: &Item<'_>, _: Scope<'_>) -> Option<String> {
-    let name = item.text()?;
-    match bad_name(&name) {
-        Some(fault) => {
-            item.report(fault());
-            None
-        }
-        None => Some(name),
-    }
 }
 
 fn direction(item: &Item<'_>, scope: Scope<'_>) -> Option<[f64; 3]> {

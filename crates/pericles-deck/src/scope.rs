@@ -4,7 +4,7 @@ use crate::component::Variables;
 use crate::course::TimeHistory;
 use crate::declaration::Spatial;
 use crate::reader::Item;
-use crate::set::SetNames;
+use crate::set::{SetNames, bad_name};
 
 /// The body and the names to which the tables of a deck refer.
 #[derive(Clone, Copy)]
@@ -42,6 +42,18 @@ impl Scope<'_> {
 impl Spatial for Scope<'_> {
     fn dimension(&self) -> Option<usize> {
         self.dimension
+    }
+}
+
+/// Reads a name that becomes part of column names.
+pub(crate) fn name<S>(item: &Item<'_>, _: S) -> Option<String> {
+    let name = item.text()?;
+    match bad_name(&name) {
+        Some(fault) => {
+            item.report(fault());
+            None
+        }
+        None => Some(name),
     }
 }
 

@@ -31,7 +31,6 @@ impl Model {
                 check.region(&KeyPath::from("sets").key(&set.name), region);
             }
         }
-        check.conditions(self);
         check.contact(self);
         Scope::of_model(self.body.dimension(), |scope| check.declared(self, scope));
         if let Some(exact) = &self.exact {
@@ -54,6 +53,10 @@ impl Check {
             let scope = ThermalScope::new(thermal.conduction.is_some(), scope);
             thermal.check("thermal".into(), scope, self);
         }
+        model.initial.check("initial".into(), scope, self);
+        model.constraints.check("constraint".into(), scope, self);
+        model.loads.check("load".into(), scope, self);
+        model.probes.check("probe".into(), scope, self);
         if let Some(contact) = &model.contact {
             contact.check("contact".into(), scope, self);
         }

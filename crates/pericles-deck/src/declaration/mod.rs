@@ -57,6 +57,9 @@ pub(crate) trait DeckTable<S>: DeckKeys<S> {
     /// Description of the table.
     const ABOUT: &'static str;
 
+    /// The key whose texts are unique in a list of tables, with the fault of a text that another table has.
+    const UNIQUE: Option<Unique> = None;
+
     /// Reads a table and reports unknown keys; none after reporting an error.
     fn read_table(table: Table<'_>, scope: S) -> Option<Self> {
         table.about(Self::ABOUT);
@@ -64,6 +67,14 @@ pub(crate) trait DeckTable<S>: DeckKeys<S> {
         table.finish();
         read
     }
+}
+
+/// A key whose texts are unique in a list of tables.
+pub(crate) struct Unique {
+    pub(crate) key: &'static str,
+    /// Why a text that another table has is rejected.
+    pub(crate) reason: &'static str,
+    pub(crate) allowed: &'static str,
 }
 
 /// A value of a key.

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use serde_json::Value as Json;
 
-use super::{Check, DeckTable, DeckValue, Fallback, Spatial};
+use super::{Check, DeckTable, DeckValue, Fallback, Spatial, Unique};
+use crate::fault::Fault;
 use crate::key_path::KeyPath;
 use crate::quantity::Quantity;
 use crate::range::Range;
@@ -75,6 +76,24 @@ impl<S> DeckValue<S> for PathBuf {
     fn check(&self, _: KeyPath, _: S, _: &mut Check) {}
 }
 
+/// Reports the text of a unique key if it is known.
+fn is_unique<'a>(table: &Table<'a>, unique: &Unique, known: &mut Vec<&'a str>) -> bool {
+    let item = table.optional(unique.key);
+    let Some((item, text)) = item.and_then(|item| Some((item.clone(), item.word()?))) else {
+        return true;
+    };
+    if known.contains(&text) {
+        item.report(Fault::BadName {
+            name: text.into(),
+            reason: unique.reason,
+            allowed: unique.allowed,
+        });
+        return false;
+    }
+    known.push(text);
+    true
+}
+
 /// Records defaults as they are.
 macro_rules! recorded {
     ($($type:ty),*) => {$(
@@ -110,10 +129,15 @@ impl<S, T: Worded> Fallback<S> for T {
 
 impl<S: Copy, T: DeckTable<S>> DeckValue<S> for Vec<T> {
     fn read(item: &Item<'_>, scope: S) -> Option<Self> {
+        let mut known = Vec::new();
         let read: Vec<Option<T>> = item
             .tables()
             .into_iter()
-            .map(|table| T::read_table(table, scope))
+            .map(|table| {
+                let is_unique =
+                    T::UNIQUE.is_none_or(|unique| is_unique(&table, &unique, &mut known));
+                T::read_table(table, scope).filter(|_| is_unique)
+            })
             .collect();
         read.into_iter().collect()
     }
