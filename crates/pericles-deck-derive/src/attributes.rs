@@ -45,7 +45,7 @@ pub(crate) enum Fallback {
 pub(crate) struct Attributes {
     /// The first paragraph of the documentation.
     pub(crate) about: String,
-    pub(crate) quantity: Option<Ident>,
+    pub(crate) quantity: Option<Code>,
     pub(crate) range: Option<Code>,
     pub(crate) default: Option<Fallback>,
     /// The key or word.
@@ -54,7 +54,7 @@ pub(crate) struct Attributes {
     pub(crate) check: Option<Path>,
     pub(crate) flatten: bool,
     /// The keys that a reader of the table reads.
-    pub(crate) keys: Vec<LitStr>,
+    pub(crate) keys: Option<Vec<LitStr>>,
     pub(crate) required: bool,
     pub(crate) required_if: Option<Code>,
     /// The scope of a value, an expression.
@@ -69,6 +69,10 @@ pub(crate) struct Attributes {
     pub(crate) otherwise: Option<Code>,
     /// The type that a struct or enum declares, if it is not the struct or enum itself.
     pub(crate) remote: Option<Path>,
+    /// A function that checks the values of a table together.
+    pub(crate) verify: Option<Path>,
+    /// A word that may replace a table, with its value.
+    pub(crate) word: Option<(Code, Code)>,
     /// Groups of keys, with the function of a table that reads which of them are given.
     pub(crate) groups: Vec<(Ident, Vec<LitStr>)>,
     /// The key whose texts are unique in a list of tables, with what a table is called.
@@ -108,6 +112,8 @@ pub(crate) const OF_STRUCT: &[&str] = &[
     "at_least_one",
     "exactly_one",
     "unique",
+    "verify",
+    "word_for",
 ];
 /// Names of the attributes of enums.
 pub(crate) const OF_ENUM: &[&str] = &[
@@ -166,7 +172,7 @@ impl Attributes {
             "what" => self.what = Some(value(meta)?),
             "exclusive" => self.exclusive = true,
             "table" => self.table = true,
-            "keys" => self.keys = words(meta)?,
+            "keys" => self.keys = Some(words(meta)?),
             "unique" => match &words(meta)?[..] {
                 [key, table] => self.unique = Some((key.value(), table.value())),
                 _ => return Err(meta.error("expected unique(\"key\", \"name of the table\")")),
@@ -180,6 +186,8 @@ impl Attributes {
                 parenthesized!(inner in meta.input);
                 self.required_if = Some(inner.parse()?);
             }
+            "verify" => self.verify = Some(value(meta)?),
+            "word_for" => self.word = Some(condition(meta)?),
             "forbid_if" => self.forbidden.push(condition(meta)?),
             _ => self.allowed.push(condition(meta)?),
         }

@@ -127,12 +127,16 @@ impl Field {
         }
         if self.is_measured() {
             let quantity = match &self.attributes.quantity {
-                Some(quantity) => quantity.clone(),
-                None => Ident::new("Number", here()),
+                Some(quantity) => quote_spanned!(here()=> {
+                    #[allow(unused_imports)]
+                    use crate::quantity::Quantity::*;
+                    #quantity
+                }),
+                None => quote_spanned!(here()=> crate::quantity::Quantity::Number),
             };
             let range = self.range();
             return quote_spanned!(here()=> <#ty as crate::declaration::Measured<_>>::read(
-                &item, crate::quantity::Quantity::#quantity, #range, #scope,
+                &item, #quantity, #range, #scope,
             ));
         }
         quote_spanned!(here()=> <#ty as crate::declaration::DeckValue<_>>::read(&item, #scope))
@@ -201,7 +205,7 @@ impl Field {
     /// Returns an expression of the keys of the field, a vector.
     pub(crate) fn keys(&self) -> TokenStream {
         let (ty, key, keys) = (&self.ty, &self.key, &self.attributes.keys);
-        if !keys.is_empty() {
+        if let Some(keys) = keys {
             return quote_spanned!(here()=> ::std::vec![#(#keys),*]);
         }
         let is_named = self.attributes.name.is_some() || self.attributes.with.is_some();

@@ -47,13 +47,7 @@ pub(crate) fn derive(input: DeriveInput) -> Result<TokenStream> {
             check(&target, Some(&tag.value()), &variants),
         ),
         (None, true) => {
-            for variant in &variants {
-                if variant.fields.is_empty() {
-                    let message = "an exclusive key needs a value: a field";
-                    return Err(Error::new_spanned(variant.name, message));
-                }
-            }
-            let names = variants.iter().map(|variant| variant.named('_'));
+            let names = with_keys(&variants).map(|variant| variant.named('_'));
             let further = variants.iter().flat_map(Variant::further).map(Field::keys);
             (
                 quote_spanned!(here()=> [::std::vec![#(#names),*], #(#further),*].concat()),
@@ -167,10 +161,11 @@ fn exclusive(
     attributes: &Attributes,
     variants: &[Variant<'_>],
 ) -> Result<TokenStream> {
-    let keys: Vec<String> = variants.iter().map(|variant| variant.named('_')).collect();
-    let abouts = variants.iter().map(Variant::about);
-    let arms = variants
-        .iter()
+    let keys: Vec<String> = with_keys(variants)
+        .map(|variant| variant.named('_'))
+        .collect();
+    let abouts = with_keys(variants).map(Variant::about);
+    let arms = with_keys(variants)
         .zip(&keys)
         .map(|(variant, key)| {
             let others = variants.iter().filter(|other| other.name != variant.name);
@@ -216,22 +211,29 @@ fn exclusive(
     let scope = scope();
     let found = match &attributes.default {
         None => quote_spanned!(here()=> table.exactly_one(KEYS)),
-        Some(Fallback::OfType) => {
-            let record = variants.iter().zip(&keys).map(|(variant, key)| {
-                let name = variant.name;
-                quote_spanned!(here()=> #target::#name(value) => {
-                    crate::declaration::Fallback::missing(value, table, #key, #scope).map(#target::#name)
-                })
+        Some(usual) => {
+            let usual = match usual {
+                Fallback::OfType => quote_spanned!(here()=> ::core::default::Default::default()),
+                Fallback::Value(value) => quote_spanned!(here()=> #value),
+            };
+            let record = variants.iter().map(|variant| {
+                let (name, key) = (variant.name, variant.named('_'));
+                match variant.fields.is_empty() {
+                    true => quote_spanned!(here()=> #target::#name => Some(#target::#name)),
+                    false => quote_spanned!(here()=> #target::#name(value) => {
+                        crate::declaration::Fallback::missing(value, table, #key, #scope)
+                            .map(#target::#name)
+                    }),
+                }
             });
             quote_spanned!(here()=> match table.at_most_one(KEYS) {
-                Some(None) => return match <#target as ::core::default::Default>::default() { #(#record)* },
+                Some(None) => {
+                    let usual: #target = #usual;
+                    return match usual { #(#record),* };
+                }
                 Some(found) => found,
                 None => None,
             })
-        }
-        Some(Fallback::Value(value)) => {
-            let message = "implement `Default`; an exclusive key has no expression of a default";
-            return Err(Error::new_spanned(value, message));
         }
     };
     Ok(quote_spanned!(here()=>
@@ -246,6 +248,11 @@ fn exclusive(
             }
         }
     ))
+}
+
+/// Returns the variants with a key: those with a value.
+fn with_keys<'a, 'b>(variants: &'a [Variant<'b>]) -> impl Iterator<Item = &'a Variant<'b>> {
+    variants.iter().filter(|variant| !variant.fields.is_empty())
 }
 
 /// Forbids keys of other variants, each with a reason, that are not keys of a variant itself.

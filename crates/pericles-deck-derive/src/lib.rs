@@ -6,13 +6,13 @@
 //! |---|---|---|
 //! | `DeckTable` | a struct | a table; each field is a key |
 //! | `DeckKeys` | an enum with `#[deck(tag = "shape")]` | a key whose word selects the variant, and the keys of that variant |
-//! | `DeckKeys` | an enum with `#[deck(exclusive)]` | keys of which one is given, which selects the variant |
+//! | `DeckKeys` | an enum with `#[deck(exclusive)]` | keys of which one is given, which selects the variant; variants without fields have no key |
 //! | `DeckWords` | an enum of variants without fields | a word |
 //!
 //! # Attributes of fields
 //! | attribute | meaning |
 //! |---|---|
-//! | `quantity = Length` | a number or vector of this quantity |
+//! | `quantity = Length` | a number or vector of this quantity, a variant of `Quantity` or an expression |
 //! | `range = at_least(0.0)` | its range, a function or constant of the module `range` |
 //! | `default`, `default = 0.5` | value of a missing key, recorded with the deck; without it, keys are required unless the type is an `Option` or a `Vec` |
 //! | `key = "file"` | the key, if it is not the name of the field |
@@ -21,7 +21,7 @@
 //! | `with = function` | reader of the value: a function of the item and the scope; with `flatten` of the table and the scope |
 //! | `check = function` | range check of a value with a reader of its own: a function of the value, the path of the table, the scope and the collector |
 //! | `flatten` | the field is a `DeckKeys` enum or `DeckTable` struct whose keys are in this table, or has a reader of the table (`with`); with `key`, the documentation of the field describes this key |
-//! | `keys("cells", "thickness")` | of a field with a reader of the table: the keys that it reads |
+//! | `keys("cells", "thickness")` | of a field with a reader of the table: the keys that it reads, if not the name of the field |
 //! | `scope = expression` | scope of the value, instead of the scope of the table |
 //! | `forbid_if(condition, "reason")` | the key is not allowed if the condition holds; the field then has its default |
 //! | `allow_if(condition, "allowed values")` | the value is out of range unless the condition, which may use the field itself, holds |
@@ -39,6 +39,8 @@
 //! | `remote = Type` | declares a type of another crate, whose fields or variants are repeated |
 //! | `default` | of a struct whose fields all have defaults: implements `Default` |
 //! | `at_least_one("mass", "stiffness")`, `exactly_one("temperature", "file")` | of a struct: how many of these keys are given; the first one is the key of a field |
+//! | `verify = function` | of a struct: function of the table, the value and the scope that reports values that do not fit together |
+//! | `word_for("never", value)` | of a struct: a word that may replace the table, with its value |
 //! | `unique("name", "probe")` | of a struct: texts of the key are unique in a list of tables, which are called so |
 //! | `what = "contact law"` | of enums of words and tagged enums: what the word is, in messages |
 //! | `tag_about = "…"` | description of the tag of an enum that is a table, whose documentation describes the table |

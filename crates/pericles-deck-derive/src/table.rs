@@ -34,9 +34,16 @@ pub(crate) fn derive(input: DeriveInput) -> Result<TokenStream> {
         })
         .collect::<Result<Vec<TokenStream>>>()?;
     let target = target(&input, &attributes);
+    let scope = scope();
+    let verify = attributes
+        .verify
+        .as_ref()
+        .map(|verify| quote_spanned!(here()=> #verify(table, &value, #scope)?;));
     let read = quote_spanned!(here()=>
         #(#reads)*
-        Some(#target { #(#names: #values),* })
+        let value = #target { #(#names: #values),* };
+        #verify
+        Some(value)
     );
     let check = quote_spanned!(here()=>
         let #target { #(#names),* } = self;
@@ -112,6 +119,11 @@ pub(crate) fn implementation(
     check: &TokenStream,
 ) -> TokenStream {
     let (about, scope) = (&attributes.about, scope());
+    let word = attributes.word.as_ref().map(|(word, value)| {
+        quote_spanned!(here()=> if item.is_keyword(#word) {
+            return Some(#value);
+        })
+    });
     let unique = attributes.unique.as_ref().map(|(key, table)| {
         let reason = format!("another {table} has this {key}");
         let allowed = format!("allowed: a unique {key} per {table}");
@@ -157,6 +169,7 @@ pub(crate) fn implementation(
 
         impl #generics crate::declaration::DeckValue<#ty> for #target {
             fn read(item: &crate::reader::Item<'_>, #scope: #ty) -> ::core::option::Option<Self> {
+                #word
                 crate::declaration::DeckTable::read_table(item.table()?, #scope)
             }
 

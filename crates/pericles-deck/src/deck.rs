@@ -11,17 +11,17 @@ use crate::contact::Contact;
 use crate::course::TimeHistory;
 use crate::crack;
 use crate::damping::Damping;
-use crate::declaration::{DeckTable, DeckValue};
+use crate::declaration::{DeckTable, DeckValue, declared};
 use crate::document::{self, Node};
 use crate::error::DeckError;
-use crate::exact;
+use crate::exact::{self, ExactScope};
 use crate::fault::Fault;
 use crate::finding::Finding;
 use crate::inheritance::inherit;
 use crate::interface::{self, MaterialInterface};
 use crate::material::{self, Material, MaterialModel, Materials, NamedMaterial};
 use crate::model::{Body, Model, Solid};
-use crate::output;
+use crate::output::{self, Checkpoint};
 use crate::overrides;
 use crate::reader::{Ledger, Record, Survey, Table};
 use crate::region::Frame;
@@ -194,7 +194,7 @@ fn model(root: Table<'_>, further: &[String]) -> Option<Model> {
     let boundaries = declared(&root, "boundary", scope);
     let probes = declared(&root, "probe", scope);
     let exact = root.maybe("exact", |item| {
-        exact::read(item.table()?, frame.dimension, gaussian)
+        exact::read(item.table()?, frame.dimension, ExactScope { gaussian })
     });
     let contact = root.maybe("contact", |item| Contact::read(&item, ()));
     let impactors = declared(&root, "impactor", scope);
@@ -212,7 +212,7 @@ fn model(root: Table<'_>, further: &[String]) -> Option<Model> {
     });
     let checkpoint = root
         .table_or_empty("checkpoint")
-        .and_then(output::checkpoint);
+        .and_then(|table| Checkpoint::read_table(table, ()));
     root.finish();
     let (materials, assignments, interfaces) = several?;
     Some(Model {
@@ -351,17 +351,6 @@ fn surface_of(
         method,
         ball,
     })
-}
-
-/// Reads a list of declared tables.
-fn declared<S, T>(root: &Table<'_>, key: &'static str, scope: S) -> Option<Vec<T>>
-where
-    Vec<T>: DeckValue<S>,
-{
-    match root.optional(key) {
-        Some(item) => DeckValue::read(&item, scope),
-        None => Some(Vec::new()),
-    }
 }
 
 fn each<'a, T>(

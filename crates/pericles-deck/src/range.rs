@@ -57,6 +57,11 @@ pub(crate) const fn above_to(low: f64, high: f64) -> Range {
     of(Beyond(low), At(high))
 }
 
+/// Returns the numbers of at least `low` and below `high`.
+pub(crate) const fn from_below(low: f64, high: f64) -> Range {
+    of(At(low), Beyond(high))
+}
+
 const fn of(low: Bound, high: Bound) -> Range {
     Range {
         low,

@@ -1,11 +1,11 @@
 //! Range checks of models made by programs. Decks are checked while they are read.
 
 mod body;
-mod conditions;
 mod contact;
 mod course;
 
 use crate::declaration::{Check, DeckValue};
+use crate::exact::ExactScope;
 use crate::key_path::KeyPath;
 use crate::model::{Body, Model};
 use crate::remark::BuildError;
@@ -33,12 +33,9 @@ impl Model {
         }
         check.contact(self);
         Scope::of_model(self.body.dimension(), |scope| check.declared(self, scope));
-        if let Some(exact) = &self.exact {
-            check.exact(exact);
-        }
         check.time(&self.time);
         check.output(&self.output, self.body.dimension().clamp(1, 3));
-        check.checkpoint(self.checkpoint);
+        self.checkpoint.check("checkpoint".into(), (), &mut check);
         match check.problems.is_empty() {
             true => Ok(()),
             false => Err(BuildError::of(check.problems)),
@@ -56,6 +53,9 @@ impl Check {
         model.initial.check("initial".into(), scope, self);
         model.constraints.check("constraint".into(), scope, self);
         model.loads.check("load".into(), scope, self);
+        if let Some(exact) = &model.exact {
+            exact.check("exact".into(), ExactScope { gaussian: None }, self);
+        }
         model.probes.check("probe".into(), scope, self);
         if let Some(contact) = &model.contact {
             contact.check("contact".into(), scope, self);

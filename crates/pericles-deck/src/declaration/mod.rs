@@ -97,3 +97,14 @@ pub(crate) trait Fallback<S>: Sized {
     /// Records the value as the default of a key and returns it.
     fn missing(self, table: &Table<'_>, key: &'static str, scope: S) -> Option<Self>;
 }
+
+/// Reads a list of declared tables.
+pub(crate) fn declared<S, T>(table: &Table<'_>, key: &'static str, scope: S) -> Option<Vec<T>>
+where
+    Vec<T>: DeckValue<S>,
+{
+    match table.optional(key) {
+        Some(item) => DeckValue::read(&item, scope),
+        None => Some(Vec::new()),
+    }
+}

@@ -68,6 +68,16 @@ impl<S, T: Worded> DeckValue<S> for T {
     fn check(&self, _: KeyPath, _: S, _: &mut Check) {}
 }
 
+impl<S> DeckValue<S> for u64 {
+    fn read(item: &Item<'_>, _: S) -> Option<Self> {
+        item.count()
+    }
+
+    fn check(&self, path: KeyPath, _: S, check: &mut Check) {
+        check.count(path, *self);
+    }
+}
+
 impl<S> DeckValue<S> for PathBuf {
     fn read(item: &Item<'_>, _: S) -> Option<Self> {
         item.text().map(Self::from)

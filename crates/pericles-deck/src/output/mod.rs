@@ -11,13 +11,16 @@ pub use picture::{Picture, PictureColours, PictureFormat, PictureLook};
 pub use profile::Profile;
 
 use pericles::observe::{Field, Schedule};
+use pericles_deck_derive::DeckKeys;
 use serde::{Deserialize, Serialize};
 
 use self::fields::{Fields, cells, field_names, fields, quantity};
+use crate::component::Variables;
+use crate::declaration::{Check, DeckKeys, declared};
+use crate::key_path::KeyPath;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 use crate::set::SetNames;
-use crate::vocabulary::{CHECKPOINTS, SCHEDULES};
 
 /// Output of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -135,16 +138,21 @@ pub enum Precision {
     Double,
 }
 
-/// Schedule of checkpoints.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+/// Schedule of checkpoints, from which `pericles resume` continues a stopped run.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, DeckKeys)]
 #[serde(rename_all = "snake_case")]
+#[deck(exclusive, default)]
 pub enum Checkpoint {
-    /// Wall-clock time between checkpoints, s.
-    Wall(f64),
+    /// Wall-clock time between checkpoints.
+    ///
+    /// In s.
+    Wall(#[deck(quantity = Time, range = POSITIVE)] f64),
     /// Steps between checkpoints.
     Every(u64),
-    /// Simulated time between checkpoints, s.
-    Interval(f64),
+    /// Simulated time between checkpoints.
+    ///
+    /// In s.
+    Interval(#[deck(quantity = Time, range = POSITIVE)] f64),
 }
 
 impl Default for Checkpoint {
@@ -187,13 +195,13 @@ pub(crate) fn read(
     let energy_bound = table.maybe("energy_bound", |item| {
         item.positive(Quantity::Time).map(f64::recip)
     });
-    let pictures: Vec<Option<Picture>> = table
-        .tables("picture")
-        .into_iter()
-        .map(|table| picture::read(table, dimension))
-        .collect();
-    let profiles = profile::read(table.tables("profile"), dimension);
-    let quantities = derived::read(table.tables("quantity"));
+    let scope = Variables {
+        dimension,
+        time: true,
+    };
+    let pictures = declared(&table, "picture", scope);
+    let profiles = declared(&table, "profile", scope);
+    let quantities = declared(&table, "quantity", scope);
     table.finish();
     let Fields {
         schedule,
@@ -216,28 +224,10 @@ pub(crate) fn read(
         fragments: fragments?,
         precision: precision?,
         energy_bound: energy_bound?,
-        pictures: pictures.into_iter().collect::<Option<_>>()?,
+        pictures: pictures?,
         profiles: profiles?,
         quantities: quantities?,
     })
-}
-
-pub(crate) fn checkpoint(table: Table<'_>) -> Option<Checkpoint> {
-    let checkpoint = match table.at_most_one(CHECKPOINTS) {
-        None => None,
-        Some(None) => {
-            let Checkpoint::Wall(seconds) = Checkpoint::default() else {
-                return None;
-            };
-            table.record("wall", seconds);
-            Some(Checkpoint::Wall(seconds))
-        }
-        Some(Some(("wall", item))) => item.positive(Quantity::Time).map(Checkpoint::Wall),
-        Some(Some(("every", item))) => item.count().map(Checkpoint::Every),
-        Some(Some((_, item))) => item.positive(Quantity::Time).map(Checkpoint::Interval),
-    };
-    table.finish();
-    checkpoint
 }
 
 /// The word for no output.
@@ -293,20 +283,7 @@ fn is_never(table: &Table<'_>, key: &'static str) -> bool {
 }
 
 fn schedule(table: &Table<'_>, default: Schedule) -> Option<Schedule> {
-    match table.at_most_one(SCHEDULES)? {
-        None => {
-            match default {
-                Schedule::Never => {}
-                Schedule::Interval(interval) => table.record("interval", interval),
-                Schedule::Every(steps) => table.record("every", steps),
-                Schedule::Count(count) => table.record("count", count),
-            }
-            Some(default)
-        }
-        Some(("interval", item)) => item.positive(Quantity::Time).map(Schedule::Interval),
-        Some(("every", item)) => item.count().map(Schedule::Every),
-        Some((_, item)) => item.count().map(Schedule::Count),
-    }
+    Schedule::read_keys(table, default)
 }
 
 impl CrackOutput {
@@ -402,6 +379,38 @@ impl Output {
             .chain(profiles)
             .any(is_wanted)
     }
+}
+
+/// Reads a field without its component.
+fn whole_field(item: &Item<'_>, scope: Variables) -> Option<Field> {
+    field(item, scope.dimension).map(|(field, _)| field)
+}
+
+/// Reads the component of the field under the key `field`.
+fn field_component(
+    table: &Table<'_>,
+    (_, scope): (Option<&Field>, Variables),
+) -> Option<Option<usize>> {
+    let item = table.optional("field")?;
+    field(&item, scope.dimension).map(|(_, component)| component)
+}
+
+/// Requires the component of a field to exist.
+fn check_component(
+    component: &usize,
+    path: &KeyPath,
+    (field, scope): (Option<&Field>, Variables),
+    check: &mut Check,
+) {
+    let components = |field: &Field| field.components(scope.dimension.unwrap_or(3)).len();
+    let known = field.map_or(0, components);
+    let allowed = format!("allowed: a component below {known}");
+    check.within(*component < known, path.key("field"), component, &allowed);
+}
+
+/// Returns the quantity of the values of a field.
+fn unit_of(field: Option<&Field>) -> Quantity {
+    field.map_or(Quantity::Number, |field| quantity(*field))
 }
 
 /// Reads a field by its name in files, with or without an axis of the body for a component.
