@@ -194,7 +194,8 @@ impl Field {
             });
         }
         // The keys of a flattened value have their own descriptions, unless its one key is named.
-        let describe = match self.attributes.flatten && self.attributes.name.is_none() {
+        let has_own = self.attributes.flatten && self.attributes.name.is_none();
+        let describe = match has_own || about.is_empty() {
             true => TokenStream::new(),
             false => quote_spanned!(here()=> table.describe(#key, #about);),
         };

@@ -41,7 +41,7 @@
 //! | `at_least_one("mass", "stiffness")`, `exactly_one("temperature", "file")` | of a struct: how many of these keys are given; the first one is the key of a field |
 //! | `verify = function` | of a struct: function of the table, the value and the scope that reports values that do not fit together |
 //! | `word_for("never", value)` | of a struct: a word that may replace the table, with its value |
-//! | `unique("name", "probe")` | of a struct: texts of the key are unique in a list of tables, which are called so |
+//! | `unique("name", "probe")` | of a struct: texts of the key and field of this name are unique in a list of tables, which are called so |
 //! | `what = "contact law"` | of enums of words and tagged enums: what the word is, in messages |
 //! | `tag_about = "…"` | description of the tag of an enum that is a table, whose documentation describes the table |
 //! | `word = "half-space"`, `key = "at"` | of a variant: its word or key, if not its name in kebab case or snake case |

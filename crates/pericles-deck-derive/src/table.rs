@@ -2,7 +2,7 @@
 
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote_spanned};
-use syn::{Data, DeriveInput, Error, Fields, LitStr, Path, Result};
+use syn::{Data, DeriveInput, Error, Fields, Ident, LitStr, Path, Result};
 
 use crate::attributes::{Attributes, OF_STRUCT};
 use crate::fields::{Field, fields, here, scope};
@@ -125,11 +125,16 @@ pub(crate) fn implementation(
         })
     });
     let unique = attributes.unique.as_ref().map(|(key, table)| {
+        let field = Ident::new(key, scope.span());
         let reason = format!("another {table} has this {key}");
         let allowed = format!("allowed: a unique {key} per {table}");
         quote_spanned!(here()=>
             const UNIQUE: ::core::option::Option<crate::declaration::Unique> =
                 Some(crate::declaration::Unique { key: #key, reason: #reason, allowed: #allowed });
+
+            fn unique_text(&self) -> ::core::option::Option<&str> {
+                Some(&self.#field)
+            }
         )
     });
     let (generics, ty) = match &attributes.scope_type {

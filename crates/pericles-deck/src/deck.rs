@@ -4,7 +4,7 @@ use std::path::{Path as FilePath, PathBuf};
 
 use serde_json::Value as Json;
 
-use crate::assign::{self, Assignable, Assignment};
+use crate::assign::{AssignScope, Assignable, Assignment};
 use crate::body::{self, BodyRead, SurfaceRead};
 use crate::conditions::{self, Constraint, Initial};
 use crate::contact::Contact;
@@ -263,16 +263,15 @@ fn several_of(
 ) -> Option<Several> {
     let names = &materials.names[..];
     let own = materials.own.as_ref();
-    let assignable = match own.map(|own| &own.model) {
+    let of = match own.map(|own| &own.model) {
         Some(MaterialModel::StateBased(_) | MaterialModel::Correspondence(_)) => {
-            Assignable::StateBased(names)
+            Assignable::Material
         }
-        _ => Assignable::Bonds(names),
+        _ => Assignable::Both,
     };
+    let deck = scope_of(body, names, sets);
     let assignments = match own {
-        Some(_) => each(root, "assign", |table| {
-            assign::read(table, &assignable, sets)
-        }),
+        Some(_) => declared(root, "assign", AssignScope { deck, of }),
         // The allowed assignments are unknown.
         None => root.optional("assign").and(None),
     };
@@ -289,6 +288,16 @@ fn several_of(
     Some((materials.others.clone()?, assignments?, interfaces?))
 }
 
+/// Returns the scope of tables of a body.
+fn scope_of<'s>(body: &BodyRead, materials: &'s [String], sets: &'s SetNames) -> Scope<'s> {
+    Scope {
+        dimension: body.frame.dimension,
+        sets,
+        materials,
+        usual: &TimeHistory::Constant,
+    }
+}
+
 /// Reads `[thermal]`, if the deck has it.
 fn thermal_of(
     root: &Table<'_>,
@@ -298,12 +307,7 @@ fn thermal_of(
 ) -> Option<Option<Thermal>> {
     root.maybe("thermal", |item| {
         let table = item.table()?;
-        let scope = Scope {
-            dimension: body.frame.dimension,
-            sets,
-            materials: &materials.names,
-            usual: &TimeHistory::Constant,
-        };
+        let scope = scope_of(body, &materials.names, sets);
         let scope = ThermalScope::of(&table, scope);
         Thermal::read_table(table, scope)
     })
@@ -314,9 +318,16 @@ fn surface_assignments(root: &Table<'_>, sets: &SetNames) -> Option<Several> {
     for key in ["materials", "interface"] {
         root.forbid(key, "a 2-manifold has one material");
     }
-    let assignments = each(root, "assign", |table| {
-        assign::read(table, &Assignable::Surface, sets)
-    });
+    let scope = AssignScope {
+        deck: Scope {
+            dimension: None,
+            sets,
+            materials: &[],
+            usual: &TimeHistory::Constant,
+        },
+        of: Assignable::Stiffness,
+    };
+    let assignments = declared(root, "assign", scope);
     Some((Vec::new(), assignments?, Vec::new()))
 }
 

@@ -20,7 +20,7 @@ use crate::scope::{Scope, name};
 /// is prescribed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, DeckTable)]
 #[serde(deny_unknown_fields)]
-#[deck(scope = Scope<'s>)]
+#[deck(scope = Scope<'s>, unique("name", "impactor"))]
 pub struct Impactor {
     /// Name of the impactor, used in `impactors.csv` and file names.
     #[deck(with = name)]

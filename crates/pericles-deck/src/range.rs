@@ -7,6 +7,8 @@ use std::borrow::Cow;
 pub(crate) struct Range {
     low: Bound,
     high: Bound,
+    /// Whether only whole numbers are in it.
+    is_whole: bool,
     /// The description, if it does not follow from the bounds.
     words: Option<&'static str>,
 }
@@ -62,10 +64,19 @@ pub(crate) const fn from_below(low: f64, high: f64) -> Range {
     of(At(low), Beyond(high))
 }
 
+/// Whole numbers of at least one.
+pub(crate) const COUNT: Range = at_least(1.0).whole();
+
+/// Returns the whole numbers from 1 to `most`.
+pub(crate) const fn count_to(most: u32) -> Range {
+    from_to(1.0, most as f64).whole()
+}
+
 const fn of(low: Bound, high: Bound) -> Range {
     Range {
         low,
         high,
+        is_whole: false,
         words: None,
     }
 }
@@ -75,6 +86,14 @@ impl Range {
     pub(crate) const fn described(self, words: &'static str) -> Self {
         Self {
             words: Some(words),
+            ..self
+        }
+    }
+
+    /// Returns the whole numbers of the range.
+    const fn whole(self) -> Self {
+        Self {
+            is_whole: true,
             ..self
         }
     }
@@ -91,7 +110,7 @@ impl Range {
             At(high) => value <= high,
             Beyond(high) => value < high,
         };
-        value.is_finite() && above && below
+        value.is_finite() && above && below && (!self.is_whole || value.fract() == 0.0)
     }
 
     /// Returns whether the range contains all finite numbers.
@@ -105,6 +124,19 @@ impl Range {
             return words.into();
         }
         let (low, high) = (self.low, self.high);
+        if self.is_whole {
+            let any = Self {
+                is_whole: false,
+                ..*self
+            };
+            let words = any.words().replace("a number ", "");
+            let of = if words.starts_with("at least") {
+                "of "
+            } else {
+                ""
+            };
+            return format!("a whole number {of}{words}").into();
+        }
         match (low, high) {
             (Unbounded, Unbounded) => "a finite number".into(),
             (At(low), Unbounded) => format!("at least {low}").into(),
@@ -152,6 +184,8 @@ mod tests {
                 0.5,
                 1.0,
             ),
+            (COUNT, "a whole number of at least 1", 7.0, 0.0),
+            (count_to(8), "a whole number from 1 to 8", 8.0, 7.5),
             (
                 above_to(0.0, 0.9),
                 "a number above 0 and at most 0.9",

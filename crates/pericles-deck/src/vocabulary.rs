@@ -63,8 +63,6 @@ pub(crate) const OWN_CONSTANTS: &[&str] = &[
 /// Failure rules that materials and interfaces with a fracture energy inherit from the first material.
 pub(crate) const FAILURE_RULES: &[&str] =
     &["fracture_calibration", "failure", "stretch_definition"];
-/// Keys that may be assigned to sets.
-pub(crate) const ASSIGNED: &[&str] = &["material", "stiffness"];
 /// Keys that determine the bond constant between two materials.
 pub(crate) const INTERFACE_STIFFNESSES: &[&str] =
     &["rule", "youngs_modulus", "bulk_modulus", "shear_modulus"];

@@ -279,9 +279,6 @@ impl Check {
         let allowed = "allowed: the name of a material of the body";
         for (k, assignment) in model.assignments.iter().enumerate() {
             let key = KeyPath::from("assign").index(k);
-            if let Some(stiffness) = assignment.stiffness {
-                self.positive(key.key("stiffness"), stiffness);
-            }
             if let Some(name) = &assignment.material {
                 let known = names.contains(&name.as_str());
                 self.within(known, key.key("material"), name, allowed);

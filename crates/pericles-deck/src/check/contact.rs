@@ -1,4 +1,4 @@
-//! Range checks of `[contact]` and `[[impactor]]`.
+//! Bodies that allow contact.
 
 use crate::declaration::Check;
 use crate::key_path::KeyPath;
@@ -17,13 +17,5 @@ impl Check {
             .is_some_and(|solid| solid.shape.is_periodic());
         let allowed = "allowed: bodies that are not periodic; contact through periodic faces is not supported";
         self.within(!(periodic && any), key.clone(), "contact", allowed);
-        for (k, impactor) in model.impactors.iter().enumerate() {
-            let key = KeyPath::from("impactor").index(k);
-            let known = model.impactors[..k]
-                .iter()
-                .any(|other| other.name == impactor.name);
-            let allowed = "allowed: a name that no other impactor has";
-            self.within(!known, key.key("name"), &impactor.name, allowed);
-        }
     }
 }

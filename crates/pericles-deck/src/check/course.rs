@@ -34,12 +34,10 @@ impl Check {
                 self.between(key.key("tolerance"), *tolerance, [0.0, 1.0]);
             }
             Scheme::Newmark(options) => {
-                self.positive(key.key("tolerance"), options.tolerance);
-                self.count(key.key("iterations"), options.iterations);
+                options.check_keys(&key, (), self);
             }
             Scheme::Relaxation(options) => {
-                self.between(key.key("tolerance"), options.tolerance, [0.0, 1.0]);
-                self.count(key.key("iterations"), options.iterations);
+                options.check_keys(&key, Some(options.damping), self);
             }
             Scheme::Static(options) => {
                 self.between(key.key("tolerance"), options.tolerance, [0.0, 1.0]);

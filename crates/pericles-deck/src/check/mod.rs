@@ -1,9 +1,12 @@
 //! Range checks of models made by programs. Decks are checked while they are read.
+//!
+//! Declared tables have their checks ([`crate::declaration`]); the others have checks written by hand here.
 
 mod body;
 mod contact;
 mod course;
 
+use crate::assign::{AssignScope, Assignable};
 use crate::declaration::{Check, DeckValue};
 use crate::exact::ExactScope;
 use crate::key_path::KeyPath;
@@ -50,6 +53,11 @@ impl Check {
             let scope = ThermalScope::new(thermal.conduction.is_some(), scope);
             thermal.check("thermal".into(), scope, self);
         }
+        let assign = AssignScope {
+            deck: scope,
+            of: Assignable::Both,
+        };
+        model.assignments.check("assign".into(), assign, self);
         model.initial.check("initial".into(), scope, self);
         model.constraints.check("constraint".into(), scope, self);
         model.loads.check("load".into(), scope, self);

@@ -6,10 +6,8 @@ use pericles::PericlesError;
 
 use crate::fault::Fault;
 use crate::key_path::KeyPath;
-use crate::range::{POSITIVE, Range};
+use crate::range::{COUNT, POSITIVE, Range};
 use crate::remark::{ModelProblem, Remark};
-
-const COUNT: &str = "allowed: a whole number of at least 1";
 
 /// Problems found so far.
 #[derive(Default)]
@@ -70,8 +68,7 @@ impl Check {
     }
 
     pub(crate) fn count(&mut self, key: KeyPath, value: impl Into<u64>) {
-        let value = value.into();
-        self.within(value > 0, key, value, COUNT);
+        self.number(key, value.into() as f64, COUNT);
     }
 
     pub(crate) fn axis(&mut self, key: KeyPath, axis: usize) {

@@ -60,6 +60,11 @@ pub(crate) trait DeckTable<S>: DeckKeys<S> {
     /// The key whose texts are unique in a list of tables, with the fault of a text that another table has.
     const UNIQUE: Option<Unique> = None;
 
+    /// Returns the text of the unique key.
+    fn unique_text(&self) -> Option<&str> {
+        None
+    }
+
     /// Reads a table and reports unknown keys; none after reporting an error.
     fn read_table(table: Table<'_>, scope: S) -> Option<Self> {
         table.about(Self::ABOUT);

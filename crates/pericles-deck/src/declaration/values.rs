@@ -31,6 +31,19 @@ impl<S> Measured<S> for f64 {
     }
 }
 
+impl<S> Measured<S> for u32 {
+    /// Reads a whole number of at least one; it has no unit.
+    fn read(item: &Item<'_>, _: Quantity, range: Range, _: S) -> Option<Self> {
+        let count = item.count_within(range)?;
+        let number = Self::try_from(count);
+        number.map_err(|_| item.out_of_range(&range.words())).ok()
+    }
+
+    fn check(&self, path: KeyPath, range: Range, _: S, check: &mut Check) {
+        check.number(path, f64::from(*self), range);
+    }
+}
+
 /// A vector with one component per dimension of the body.
 impl<S: Spatial> Measured<S> for [f64; 3] {
     fn read(item: &Item<'_>, quantity: Quantity, range: Range, scope: S) -> Option<Self> {
@@ -154,7 +167,14 @@ impl<S: Copy, T: DeckTable<S>> DeckValue<S> for Vec<T> {
 
     fn check(&self, path: KeyPath, scope: S, check: &mut Check) {
         for (k, table) in self.iter().enumerate() {
-            table.check_keys(&path.index(k), scope, check);
+            let path = path.index(k);
+            table.check_keys(&path, scope, check);
+            if let (Some(unique), Some(text)) = (T::UNIQUE, table.unique_text()) {
+                let known = self[..k]
+                    .iter()
+                    .any(|other| other.unique_text() == Some(text));
+                check.within(!known, path.key(unique.key), text, unique.allowed);
+            }
         }
     }
 }

@@ -4,6 +4,7 @@ mod derived;
 mod fields;
 mod picture;
 mod profile;
+mod schedule;
 
 pub use derived::DerivedQuantity;
 pub use fields::{CellChoice, FieldBlocks, FieldFormat, PointNumber};

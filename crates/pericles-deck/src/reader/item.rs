@@ -7,7 +7,7 @@ use crate::document::{Entry, Node, Value};
 use crate::fault::Fault;
 use crate::key_path::KeyPath;
 use crate::quantity::Quantity;
-use crate::range::{POSITIVE, Range};
+use crate::range::{COUNT, POSITIVE, Range};
 use crate::source::Place;
 use crate::units::{self, UnitError};
 
@@ -134,8 +134,14 @@ impl<'a> Item<'a> {
 
     /// Reads a whole number of at least one.
     pub(crate) fn count(&self) -> Option<u64> {
-        self.note(|| Form::Count);
-        let expected = "a whole number of at least 1";
+        self.count_within(COUNT)
+    }
+
+    /// Reads a whole number of at least one in a range.
+    pub(crate) fn count_within(&self, range: Range) -> Option<u64> {
+        self.note(|| Form::Count {
+            allowed: (range != COUNT).then(|| range.words().into_owned()),
+        });
         let whole = match self.node.value {
             Value::Integer(integer) => u64::try_from(integer).ok(),
             // Allows 1e6 for a million; a double is not exact beyond 2^53.
@@ -144,17 +150,17 @@ impl<'a> Item<'a> {
             }
             Value::Float(_) => None,
             _ => {
-                self.wrong_kind(expected);
+                self.wrong_kind(range.words());
                 return None;
             }
         };
         match whole {
-            Some(count) if count > 0 => {
+            Some(count) if count > 0 && range.contains(count as f64) => {
                 self.record(count);
                 Some(count)
             }
             _ => {
-                self.out_of_range(expected);
+                self.out_of_range(&range.words());
                 None
             }
         }

@@ -17,7 +17,10 @@ pub(crate) enum Form {
     Text,
     Boolean,
     /// A whole number of at least one.
-    Count,
+    Count {
+        /// The range in words, if it is smaller.
+        allowed: Option<String>,
+    },
     Number {
         quantity: Quantity,
         /// The range in words.

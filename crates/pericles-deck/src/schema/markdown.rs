@@ -168,7 +168,7 @@ impl Page<'_> {
         match form {
             Form::Text => "text".into(),
             Form::Boolean => "`true`, `false`".into(),
-            Form::Count => "integer ≥ 1".into(),
+            Form::Count { .. } => "integer ≥ 1".into(),
             Form::Number { quantity, allowed } => {
                 let sign = if allowed.as_deref() == Some(POSITIVE_WORDS) {
                     "positive "

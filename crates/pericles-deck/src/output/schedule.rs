@@ -1,10 +1,10 @@
-//! Declaration of output schedules.
+//! Schedules of outputs.
 
 use pericles::observe::Schedule;
 use pericles_deck_derive::DeckKeys;
 use serde::{Deserialize, Serialize};
 
-use super::described;
+use crate::form::described;
 
 /// The scope of a schedule is its default.
 #[derive(Serialize, Deserialize, DeckKeys)]
