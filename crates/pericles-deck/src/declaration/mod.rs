@@ -29,6 +29,8 @@
 //! names of sets. Tables that depend on nothing else have any scope.
 
 mod check;
+#[cfg(test)]
+mod tests;
 mod values;
 
 pub(crate) use check::Check;
