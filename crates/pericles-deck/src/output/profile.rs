@@ -10,8 +10,8 @@ use crate::component::{Component, Variables};
 use crate::fault::Fault;
 use crate::reader::Item;
 
-/// Fields along straight lines at the end of the run, each a table profile_<name>.csv and a chart profile_<name>.png; any
-/// number. The points within half a spacing of the line count; those at the same distance along it are averaged.
+/// Fields along straight lines at the end of the run, each a table `profile_<name>.csv` and a chart `profile_<name>.png`;
+/// any number. The points within half a spacing of the line count; those at the same distance along it are averaged.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, DeckTable)]
 #[serde(deny_unknown_fields)]
 #[deck(scope = Variables, unique("name", "profile"))]
