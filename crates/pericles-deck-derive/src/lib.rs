@@ -47,6 +47,7 @@
 //! | `word = "half-space"`, `key = "at"` | of a variant: its word or key, if not its name in kebab case or snake case |
 //! | `otherwise = "reason"` | of a field of a variant: why other variants do not have it |
 //! | `#[default]` | of a variant: the variant of a missing tag |
+//! | `default`, `default = expression` | of an exclusive enum: its value if none of the keys is given |
 //! | `default = expression` | of a tagged enum: the word of a missing tag, an `Option`; none if it depends on an invalid value |
 //! | `allow_if(condition, "allowed words")` | of a variant: its word is out of range unless the condition holds |
 //! | `table` | of a variant with an exclusive key: its fields are keys of a table under that key |
