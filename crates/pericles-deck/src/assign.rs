@@ -1,80 +1,64 @@
 //! `[[assign]]`: materials and relative stiffnesses of sets of points.
 
+use pericles_deck_derive::DeckTable;
 use serde::{Deserialize, Serialize};
 
-use crate::quantity::Quantity;
-use crate::reader::Table;
-use crate::set::SetNames;
-use crate::vocabulary::ASSIGNED;
+use crate::reader::Item;
+use crate::scope::Scope;
 
-/// Material or relative stiffness of sets of points. Later assignments replace earlier ones, separately for
-/// material and stiffness.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// Material or relative stiffness of a set of points. Any number of tables; later ones replace earlier ones, separately for
+/// `material` and `stiffness`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, DeckTable)]
 #[serde(deny_unknown_fields)]
+#[deck(scope = AssignScope<'s>, at_least_one("material", "stiffness"))]
 pub struct Assignment {
-    /// Names of the sets, at least one.
+    /// Set, or list of sets, of points.
+    ///
+    /// At least one name.
+    #[deck(key = "set", required, with = set_names)]
     pub sets: Vec<String>,
-    /// Name of the material, if one is assigned: the name of an entry of [`Model::materials`](crate::Model::materials), or
-    /// [`Material::name`](method@crate::Material::name) of the body's material.
+    /// Name of the material: a table of `[materials]`, the `name` of `[material]`, or "default" if it has no name.
     #[serde(default)]
+    #[deck(
+        with = material_name,
+        forbid_if(
+            scope.of == Assignable::Stiffness,
+            "a 2-manifold has one material; set `stiffness`"
+        )
+    )]
     pub material: Option<String>,
-    /// Stiffness relative to the point's material, if it is assigned; a bond has the mean of its end points.
-    /// Density and critical stretch are unchanged.
+    /// Stiffness relative to the point's material; a bond has the mean of its end points. Density and critical stretch do
+    /// not change. Bond-based materials and 2-manifolds only.
     #[serde(default)]
+    #[deck(range = POSITIVE, forbid_if(scope.of == Assignable::Material, NO_STIFFNESS))]
     pub stiffness: Option<f64>,
 }
 
-/// Kinds of assignment that a body allows.
-pub(crate) enum Assignable<'m> {
-    /// Bond-based materials with these names, and stiffnesses.
-    Bonds(&'m [String]),
-    /// State-based or correspondence materials with these names.
-    StateBased(&'m [String]),
-    /// Stiffnesses only.
-    Surface,
+/// What may be assigned to points of a body.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Assignable {
+    /// Bond-based materials and stiffnesses.
+    Both,
+    /// State-based or correspondence materials.
+    Material,
+    /// Stiffnesses, for 2-manifolds.
+    Stiffness,
 }
 
-pub(crate) fn read(
-    table: Table<'_>,
-    assignable: &Assignable<'_>,
-    sets: &SetNames,
-) -> Option<Assignment> {
-    let place = table
-        .required("set")
-        .and_then(|item| sets.references(&item));
-    if !ASSIGNED.iter().any(|key| table.has(key)) {
-        table.requires_one_of(ASSIGNED);
-    }
-    let material = match assignable {
-        Assignable::Surface => {
-            table.forbid("material", "a 2-manifold has one material; set `stiffness`");
-            Some(None)
-        }
-        Assignable::Bonds(names) | Assignable::StateBased(names) => {
-            table.maybe("material", |item| {
-                let name = item.text()?;
-                if names.contains(&name) {
-                    return Some(name);
-                }
-                item.unknown_word("material", &name, names.iter().map(String::as_str));
-                None
-            })
-        }
-    };
-    let stiffness = match assignable {
-        Assignable::StateBased(_) => {
-            table.forbid(
-                "stiffness",
-                "it scales the bond constant, which state-based and correspondence materials do not have; assign a material with other elastic constants",
-            );
-            Some(None)
-        }
-        _ => table.maybe("stiffness", |item| item.positive(Quantity::Number)),
-    };
-    table.finish();
-    Some(Assignment {
-        sets: place?,
-        material: material?,
-        stiffness: stiffness?,
-    })
+/// Scope of `[[assign]]`.
+#[derive(Clone, Copy)]
+pub(crate) struct AssignScope<'s> {
+    pub(crate) deck: Scope<'s>,
+    pub(crate) of: Assignable,
+}
+
+/// Why points of some materials have no stiffness of their own.
+const NO_STIFFNESS: &str = "it scales the bond constant, which state-based and correspondence materials do not have; assign a material with other elastic constants";
+
+fn set_names(item: &Item<'_>, scope: AssignScope<'_>) -> Option<Vec<String>> {
+    scope.deck.sets.references(item)
+}
+
+fn material_name(item: &Item<'_>, scope: AssignScope<'_>) -> Option<String> {
+    crate::scope::material_name(item, scope.deck)
 }

@@ -1,199 +1,194 @@
 //! `[[boundary]]`: absorbing boundaries.
 
 use pericles::space::Face;
+use pericles_deck_derive::{DeckKeys, DeckTable};
 use pericles_waves::absorbing::history::HistoryForm;
 use pericles_waves::absorbing::{AbsorbingBoundaryPlan, KernelMethod, Side};
 use serde::{Deserialize, Serialize};
 
+use crate::declaration::Check;
+use crate::form::described;
+use crate::key_path::KeyPath;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 use crate::set::Depth;
-use crate::words::Worded;
 
-/// An absorbing boundary.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// Absorbing boundaries. `absorbing` needs scheme = "velocity-verlet", "implicit-midpoint", "trapezoidal" or
+/// "discrete-gradient"; `damping-layer` works with all schemes but "adaptive-dynamic-relaxation", "fire" and "static";
+/// `open` needs scheme = "velocity-verlet".
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, DeckKeys)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
+#[deck(
+    tag = "kind",
+    what = "kind of boundary",
+    tag_about = "`absorbing`: exact non-reflecting boundary at an end of a bar, equivalent to a semi-infinite bar. \
+                 `damping-layer`: layer with increasing viscous damping at a side of any body; reflects a small part of a \
+                 wave. `open` (experimental): discrete perfectly matched layer at sides of a bond-based plate on a square \
+                 lattice; reflects about 1e-4 of waves longer than eight spacings."
+)]
 pub enum BoundaryCondition {
     /// An exact non-reflecting boundary at an end of a bar.
     Absorbing {
-        /// The end of the bar.
+        /// absorbing: end of the bar, -x or +x.
         #[serde(with = "crate::form")]
         side: Side,
         /// Kernels and form of the history.
         #[serde(with = "crate::form")]
+        #[deck(flatten)]
         plan: AbsorbingBoundaryPlan,
-        /// Distance over which the initial fields continue beyond the end, m; none if they are zero there.
+        /// absorbing: distance beyond the end over which the `[[initial]]` fields of set "all" continue; they propagate
+        /// from there into the body. Default: zero fields outside the body.
+        ///
+        /// In m.
         #[serde(default)]
+        #[deck(
+            quantity = Length,
+            range = POSITIVE,
+            forbid_if(has_continuous_kernels(plan), "it requires method = \"discrete\"")
+        )]
         exterior_extent: Option<f64>,
     },
     /// A damping layer at a side of any body.
     DampingLayer {
-        /// The side of the body.
+        /// damping-layer: side of the body.
         #[serde(rename = "side", with = "crate::form")]
+        #[deck(key = "side")]
         face: Face,
-        /// Thickness, m.
+        /// Thickness of the layer, which consists of the body's own material. damping-layer: a few wavelengths are best.
+        ///
+        /// In m.
+        #[deck(quantity = Length, range = POSITIVE)]
         thickness: f64,
-        /// Reflection coefficient (amplitude) of a long wave at normal incidence.
+        /// damping-layer: design reflection coefficient, the amplitude ratio of a long wave at normal incidence.
+        #[deck(range = between(1e-12, 1.0), default = 1e-3)]
         reflection: f64,
-        /// Exponent of the damping profile.
+        /// damping-layer: exponent of the damping profile over the depth of the layer.
+        #[deck(range = from_to(0.0, 10.0), default = 2.0)]
         power: f64,
     },
     /// Discrete perfectly matched layers at sides of a plate.
     Open {
-        /// The sides of the plate.
+        /// open: a side, a list of sides, or "all"; of the two sides across an open side at least one must be open too,
+        /// unless the body is periodic.
         #[serde(with = "crate::form")]
+        #[deck(key = "side", required, with = open_sides)]
         sides: Vec<Face>,
         /// Thickness of the layers.
+        #[deck(
+            flatten,
+            keys("cells", "thickness"),
+            with = open_thickness,
+            check = check_thickness
+        )]
         thickness: Depth,
     },
 }
+
+/// Plan of an exact non-reflecting boundary.
+#[derive(Serialize, Deserialize, DeckTable)]
+#[serde(remote = "AbsorbingBoundaryPlan", deny_unknown_fields)]
+#[deck(remote = AbsorbingBoundaryPlan)]
+struct AbsorbingBoundaryForm {
+    /// absorbing: kernels of the boundary. `discrete`: exact for the time integration scheme; `semi-discrete`: exact in
+    /// continuous time; `historical`: the same from a closed recursion, whose errors grow with time.
+    #[serde(with = "crate::form")]
+    #[deck(default = KernelMethod::Discrete)]
+    method: KernelMethod,
+    /// absorbing: evaluation of the convolution in time. `direct` and `blocked`: exact; `exponentials`: sum of
+    /// exponentials with error `tolerance`; `auto`: the least expensive of the exact forms, and of exponentials if
+    /// `tolerance` is given.
+    #[serde(default, rename = "history", with = "crate::form")]
+    #[deck(
+        key = "history",
+        default = None,
+        allow_if(
+            has_kernels(method, form),
+            "\"auto\", \"blocked\" or \"direct\"; exponentials require method = \"discrete\""
+        )
+    )]
+    form: Option<HistoryForm>,
+    /// absorbing: largest error of exterior displacements relative to interior ones. Allows exponentials, which need
+    /// little memory.
+    #[serde(default)]
+    #[deck(range = between(1e-14, 1.0), forbid_if(is_exact(method, form), EXACT))]
+    tolerance: Option<f64>,
+    /// absorbing: compare the exponentials with the exact kernels; `check` and run.json report the difference.
+    #[deck(
+        default = false,
+        forbid_if(is_exact(method, form), EXACT),
+        allow_if(
+            has_exponentials(form, tolerance, verify),
+            "false, or true with a `tolerance`; without it the history is exact and has no exponentials to compare"
+        )
+    )]
+    verify: bool,
+}
+
+/// Why an exact history has no tolerance.
+const EXACT: &str = "it requires exponentials (history = \"auto\" or \"exponentials\", method = \"discrete\"); all other histories are exact";
+
+type Form = Option<HistoryForm>;
+
+fn has_kernels(method: Option<&KernelMethod>, form: Option<&Form>) -> bool {
+    let is_discrete = matches!(method, None | Some(KernelMethod::Discrete));
+    is_discrete || form != Some(&Some(HistoryForm::Exponentials))
+}
+
+fn is_exact(method: Option<&KernelMethod>, form: Option<&Form>) -> bool {
+    let exact = matches!(form, Some(Some(HistoryForm::Blocked | HistoryForm::Direct)));
+    exact || method != Some(&KernelMethod::Discrete)
+}
+
+fn has_exponentials(
+    form: Option<&Form>,
+    tolerance: Option<&Option<f64>>,
+    verify: Option<&bool>,
+) -> bool {
+    let fitted = form == Some(&Some(HistoryForm::Exponentials)) || tolerance != Some(&None);
+    fitted || verify != Some(&true)
+}
+
+described!(AbsorbingBoundaryPlan: AbsorbingBoundaryForm);
 
 impl BoundaryCondition {
     /// Number of cells of an open boundary without a given thickness.
     pub const CELLS: u32 = 12;
 }
 
-#[derive(Clone, Copy)]
-enum Kind {
-    Absorbing,
-    DampingLayer,
-    Open,
+/// Returns whether the kernels of a boundary are exact in continuous time.
+fn has_continuous_kernels(plan: Option<&AbsorbingBoundaryPlan>) -> bool {
+    plan.is_some_and(|plan| plan.method != KernelMethod::Discrete)
 }
 
-pub(crate) fn read(table: Table<'_>) -> Option<BoundaryCondition> {
-    let kinds = [
-        ("absorbing", Kind::Absorbing),
-        ("damping-layer", Kind::DampingLayer),
-        ("open", Kind::Open),
-    ];
-    let kind = table
-        .required("kind")
-        .and_then(|item| item.choice("kind of boundary", &kinds));
-    match kind {
-        Some(Kind::DampingLayer) => damping_layer(table),
-        Some(Kind::Open) => open(table),
-        // The keys of an unknown kind are read as for the first kind.
-        _ => absorbing(table).filter(|_| kind.is_some()),
-    }
-}
-
-fn absorbing(table: Table<'_>) -> Option<BoundaryCondition> {
-    let side = table
-        .required("side")
-        .and_then(|item| item.choice("side", &Side::words()));
-    let method = table.worded("method", "method");
-    let form = table.choice_or_first(
-        "history",
-        "history",
-        &[
-            ("auto", None),
-            ("blocked", Some(HistoryForm::Blocked)),
-            ("direct", Some(HistoryForm::Direct)),
-            ("exponentials", Some(HistoryForm::Exponentials)),
-        ],
+/// Reads the thickness of the layers of an open boundary.
+fn open_thickness<S>(table: &Table<'_>, _: S) -> Option<Depth> {
+    table.describe(
+        "cells",
+        "open: thickness of the layers as a number of cells, from 8 to 64.",
     );
-    let exact = |form| matches!(form, Some(HistoryForm::Blocked | HistoryForm::Direct));
-    let discrete = method == Some(KernelMethod::Discrete);
-    let (mut tolerance, mut verify) = (Some(None), Some(false));
-    if form.is_some_and(exact) || !discrete {
-        let why = "it requires exponentials (history = \"auto\" or \"exponentials\", method = \"discrete\"); all other histories are exact";
-        table.forbid("tolerance", why);
-        table.forbid("verify", why);
-        if form == Some(Some(HistoryForm::Exponentials)) && method.is_some() {
-            table.forbid(
-                "history",
-                "use \"auto\", \"blocked\" or \"direct\"; exponentials require method = \"discrete\"",
-            );
-        }
-    } else {
-        tolerance = table.maybe("tolerance", |item| {
-            item.within(
-                Quantity::Number,
-                "a number above 1e-14 and below 1",
-                |tolerance| tolerance > 1e-14 && tolerance < 1.0,
-            )
-        });
-        let fitted =
-            form == Some(Some(HistoryForm::Exponentials)) || !matches!(tolerance, Some(None));
-        verify = table.or("verify", false, |item| {
-            let verify = item.boolean()?;
-            if verify && !fitted {
-                item.out_of_range("false, or true with a `tolerance`; without it the history is exact and has no exponentials to compare");
-                return None;
-            }
-            Some(verify)
-        });
-    }
-    let exterior_extent = match method {
-        Some(KernelMethod::SemiDiscrete | KernelMethod::Historical) => {
-            table.forbid("exterior_extent", "it requires method = \"discrete\"");
-            Some(None)
-        }
-        _ => table.maybe("exterior_extent", |item| item.positive(Quantity::Length)),
-    };
-    table.finish();
-    Some(BoundaryCondition::Absorbing {
-        side: side?,
-        plan: AbsorbingBoundaryPlan {
-            method: method?,
-            form: form?,
-            tolerance: tolerance?,
-            verify: verify?,
-        },
-        exterior_extent: exterior_extent?,
-    })
-}
-
-fn damping_layer(table: Table<'_>) -> Option<BoundaryCondition> {
-    let sides = ["-x", "+x", "-y", "+y", "-z", "+z"];
-    let face = table
-        .required("side")
-        .and_then(|item| item.choice("side", &sides.map(|side| (side, Face::named(side)))))
-        .flatten();
-    let thickness = table
-        .required("thickness")
-        .and_then(|item| item.positive(Quantity::Length));
-    let reflection = table.or("reflection", 1e-3, |item| {
-        item.within(
-            Quantity::Number,
-            "a number above 1e-12 and below 1",
-            |share| share > 1e-12 && share < 1.0,
-        )
-    });
-    let power = table.or("power", 2.0, |item| {
-        item.within(Quantity::Number, "a number from 0 to 10", |power| {
-            (0.0..=10.0).contains(&power)
-        })
-    });
-    table.finish();
-    Some(BoundaryCondition::DampingLayer {
-        face: face?,
-        thickness: thickness?,
-        reflection: reflection?,
-        power: power?,
-    })
-}
-
-fn open(table: Table<'_>) -> Option<BoundaryCondition> {
-    let sides = table.required("side").and_then(|item| open_sides(&item));
-    let thickness = table.at_most_one(&["cells", "thickness"]);
-    let thickness = thickness.and_then(|found| match found {
+    table.describe(
+        "thickness",
+        "open: in place of `cells`, rounded up to full cells; bonds in the layer and one horizon before it do not break.",
+    );
+    match table.at_most_one(&["cells", "thickness"])? {
         None => {
             table.record("cells", BoundaryCondition::CELLS);
             Some(Depth::Cells(f64::from(BoundaryCondition::CELLS)))
         }
         Some(("thickness", item)) => item.positive(Quantity::Length).map(Depth::Length),
         Some((_, item)) => item.count().map(|cells| Depth::Cells(cells as f64)),
-    });
-    table.finish();
-    Some(BoundaryCondition::Open {
-        sides: sides?,
-        thickness: thickness?,
-    })
+    }
+}
+
+fn check_thickness<S>(thickness: &Depth, path: &KeyPath, _: S, check: &mut Check) {
+    match thickness {
+        Depth::Length(length) => check.positive(path.key("thickness"), *length),
+        Depth::Cells(cells) => check.positive(path.key("cells"), *cells),
+    }
 }
 
 /// Reads a side, a list of sides, or all sides of a plate.
-fn open_sides(item: &Item<'_>) -> Option<Vec<Face>> {
+fn open_sides<S>(item: &Item<'_>, _: S) -> Option<Vec<Face>> {
     const SIDES: [&str; 4] = ["-x", "+x", "-y", "+y"];
     let named = SIDES
         .iter()

@@ -3,9 +3,12 @@
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
+use crate::declaration::{Check, Measured, Spatial};
 use crate::expression::{Expression, VARIABLES};
 use crate::fault::Fault;
+use crate::key_path::KeyPath;
 use crate::quantity::Quantity;
+use crate::range::Range;
 use crate::reader::Item;
 
 /// A vector component in SI units.
@@ -93,6 +96,36 @@ impl Variables {
             names.push("t");
         }
         names
+    }
+}
+
+impl Spatial for Variables {
+    fn dimension(&self) -> Option<usize> {
+        self.dimension
+    }
+}
+
+impl Measured<Variables> for Component {
+    fn read(item: &Item<'_>, quantity: Quantity, _: Range, variables: Variables) -> Option<Self> {
+        component(item, quantity, variables)
+    }
+
+    fn check(&self, path: KeyPath, range: Range, _: Variables, check: &mut Check) {
+        if let Self::Number(number) = self {
+            check.number(path, *number, range);
+        }
+    }
+}
+
+impl Measured<Variables> for VectorField {
+    fn read(item: &Item<'_>, quantity: Quantity, _: Range, variables: Variables) -> Option<Self> {
+        vector_field(item, quantity, variables)
+    }
+
+    fn check(&self, path: KeyPath, range: Range, variables: Variables, check: &mut Check) {
+        for (c, component) in self.iter().enumerate() {
+            Measured::check(component, path.index(c), range, variables, check);
+        }
     }
 }
 

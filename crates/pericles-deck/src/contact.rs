@@ -1,51 +1,72 @@
 //! `[contact]`: forces between points that no bond joins.
 
+use pericles_deck_derive::{DeckKeys, DeckTable, DeckWords};
 use serde::{Deserialize, Serialize};
 
+use crate::declaration::{Check, DeckValue, Fallback};
+use crate::key_path::KeyPath;
 use crate::quantity::Quantity;
+use crate::range::{Range, above_to};
 use crate::reader::{Item, Table};
 use crate::units;
 
-/// Contact between points of the body, and of the body with impactors.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+/// Contact forces between points that no bond joins. Without this table, points of a body do not interact by contact;
+/// impactors use the defaults.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, DeckTable)]
+#[serde(default, deny_unknown_fields)]
+#[deck(default)]
 pub struct Contact {
-    /// Pairs of points that may be in contact.
-    #[serde(default)]
-    pub pairs: ContactPairs,
     /// Contact law.
-    #[serde(default)]
+    #[deck(flatten, default)]
     pub law: ContactLaw,
-    /// Contact stiffness.
-    #[serde(default)]
+    /// Pairs of points that may be in contact. `unbonded`: points without an intact bond, so that crack faces, fragments
+    /// and pieces are in contact. `pieces`: points of different pieces. `all`: bonded points too, which keeps points of
+    /// strongly compressed bodies apart; the default for law = "emu".
+    #[deck(default = usual_pairs(law))]
+    pub pairs: ContactPairs,
+    /// Contact stiffness: χ in k = χ E V/δ² with Young's modulus E, the volume V of a point and the horizon δ (a
+    /// number), or k itself ("3 MN/m"). Above 2.25 contact raises the highest frequency of the body by more than 9 %.
+    #[deck(
+        default,
+        forbid_if(is_emu(law), "law = \"emu\" has the stiffness 15 c V V/δ")
+    )]
     pub stiffness: ContactStiffness,
-    /// Contact distance β relative to the mean cell size.
-    #[serde(default = "one")]
+    /// Contact distance β in mean cell sizes. Default 1.35 for law = "emu". Impactors are in contact with a point at half
+    /// of its cell size.
+    #[deck(range = POSITIVE, default = usual_distance(law))]
     pub distance: f64,
-    /// Contact distance θ relative to the initial distance of the two points, an upper bound.
-    #[serde(default = "one")]
+    /// Contact distance θ in initial distances of the two points: d = min(θ |ξ|, β h). With 1, a bond that breaks in
+    /// tension starts contact without a force, and a crack that closes carries load at once. Default 0.9 for
+    /// pairs = "all".
+    #[deck(range = closing_range(pairs), default = usual_closing(pairs))]
     pub closing: f64,
-    /// Damping ratio ζ of a pair of points in contact.
-    #[serde(default)]
+    /// Damping ratio ζ of a pair of points. It suppresses oscillations of the contact force; the coefficient of
+    /// restitution of bodies hardly depends on it.
+    #[deck(range = at_least(0.0), default = 0.0)]
     pub damping: f64,
     /// Coulomb friction.
-    #[serde(default)]
     pub friction: Option<ContactFriction>,
 }
 
-/// Coulomb friction.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+/// Coulomb friction of points in contact: F_t = −μ F_n w_t/√(w_t² + v²) with the sliding velocity w_t. On impactors
+/// friction is not regularised.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, DeckTable)]
 #[serde(deny_unknown_fields)]
 pub struct ContactFriction {
     /// Coefficient of friction μ.
+    #[deck(range = at_least(0.0))]
     pub coefficient: f64,
-    /// Sliding speed below which friction between points decreases, m/s; friction of impactors has no such speed.
+    /// Sliding speed v below which friction between points decreases. Points on a slope creep at about this speed.
+    ///
+    /// In m/s.
+    #[deck(quantity = Velocity, range = POSITIVE)]
     pub speed: f64,
 }
 
 /// Pairs of points that may be in contact.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, DeckWords)]
 #[serde(rename_all = "kebab-case")]
+#[deck(what = "kind of pairs")]
 pub enum ContactPairs {
     /// Points without an intact bond.
     #[default]
@@ -56,15 +77,22 @@ pub enum ContactPairs {
     All,
 }
 
-/// Contact force as a function of the overlap g.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+/// Contact force F for the overlap g and the contact distance d. `linear`: F = k g. `power`: F = k d (g/d)^p. `emu`:
+/// F = k g with k = 15 c V V/δ and the micromodulus c (Silling & Askari 2005), which decreases with the fifth power of
+/// the horizon ratio.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, DeckKeys)]
 #[serde(rename_all = "kebab-case")]
+#[deck(tag = "law", what = "contact law")]
 pub enum ContactLaw {
     /// F = k g.
     #[default]
     Linear,
     /// F = k d (g/d)^p with the contact distance d.
-    Power(f64),
+    Power(
+        /// law = "power": exponent p. 1.5 is the exponent of Hertz.
+        #[deck(key = "exponent", range = at_least(1.0))]
+        f64,
+    ),
     /// F = k g with the stiffness 15 c V V/δ of Silling and Askari (2005), c the micromodulus.
     Emu,
 }
@@ -85,20 +113,6 @@ impl Default for ContactStiffness {
     }
 }
 
-impl Default for Contact {
-    fn default() -> Self {
-        Self {
-            pairs: ContactPairs::default(),
-            law: ContactLaw::default(),
-            stiffness: ContactStiffness::default(),
-            distance: 1.0,
-            closing: 1.0,
-            damping: 0.0,
-            friction: None,
-        }
-    }
-}
-
 /// Default of the relative stiffness χ: the stiffest contact that raises the highest frequency of a body by less than
 /// 9 %.
 const RELATIVE: f64 = 2.25;
@@ -109,114 +123,63 @@ const SQUEEZED: f64 = 0.9;
 /// Contact distance of `law = "emu"` as published, in spacings.
 const EMU_DISTANCE: f64 = 1.35;
 
-fn one() -> f64 {
-    1.0
+fn is_emu(law: Option<&ContactLaw>) -> bool {
+    law == Some(&ContactLaw::Emu)
 }
 
-/// Reads `[contact]`.
-pub(crate) fn read(table: Table<'_>) -> Option<Contact> {
-    let law = law(&table);
-    let is_emu = law == Some(ContactLaw::Emu);
-    let mut words = [
-        ("unbonded", ContactPairs::Unbonded),
-        ("pieces", ContactPairs::Pieces),
-        ("all", ContactPairs::All),
-    ];
-    if is_emu {
+fn usual_pairs(law: Option<&ContactLaw>) -> ContactPairs {
+    match is_emu(law) {
         // As published.
-        words.rotate_right(1);
+        true => ContactPairs::All,
+        false => ContactPairs::Unbonded,
     }
-    let pairs = table.choice_or_first("pairs", "kind of pairs", &words);
-    let stiffness = match law {
-        Some(ContactLaw::Emu) => {
-            table.forbid("stiffness", "law = \"emu\" has the stiffness 15 c V V/δ");
-            Some(ContactStiffness::default())
+}
+
+fn usual_distance(law: Option<&ContactLaw>) -> f64 {
+    if is_emu(law) { EMU_DISTANCE } else { 1.0 }
+}
+
+/// Returns the range of θ.
+fn closing_range(pairs: Option<&ContactPairs>) -> Range {
+    match pairs {
+        Some(ContactPairs::All) => above_to(0.0, SQUEEZED).described(
+            "above 0 and at most 0.9 with pairs = \"all\": bonded points would be in contact at the start",
+        ),
+        _ => above_to(0.0, 1.0).described(
+            "above 0 and at most 1: a larger contact distance would release energy when a bond breaks",
+        ),
+    }
+}
+
+fn usual_closing(pairs: Option<&ContactPairs>) -> f64 {
+    match pairs {
+        Some(ContactPairs::All) => SQUEEZED,
+        _ => 1.0,
+    }
+}
+
+impl<S> DeckValue<S> for ContactStiffness {
+    /// Reads a relative stiffness (a number) or a stiffness with its unit.
+    fn read(item: &Item<'_>, _: S) -> Option<Self> {
+        let measure = item.word().and_then(|text| units::parse(text).ok());
+        let has_unit = measure.is_some_and(|measure| {
+            measure.dimension.is_some() && measure.dimension != Some(Quantity::Number.dimension())
+        });
+        match has_unit {
+            true => item.positive(Quantity::Stiffness).map(Self::Absolute),
+            false => item.positive(Quantity::Number).map(Self::Relative),
         }
-        _ => stiffness(&table),
-    };
-    let positive = |item: Item<'_>| item.positive(Quantity::Number);
-    let distance = table.or(
-        "distance",
-        if is_emu { EMU_DISTANCE } else { 1.0 },
-        positive,
-    );
-    let closing = match pairs {
-        Some(ContactPairs::All) => table.or("closing", SQUEEZED, |item| {
-            let allowed = "above 0 and at most 0.9 with pairs = \"all\": bonded points would be in contact at the start";
-            item.within(Quantity::Number, allowed, |theta| theta > 0.0 && theta <= SQUEEZED)
-        }),
-        _ => table.or("closing", 1.0, |item| {
-            let allowed = "above 0 and at most 1: a larger contact distance would release energy when a bond breaks";
-            item.within(Quantity::Number, allowed, |theta| theta > 0.0 && theta <= 1.0)
-        }),
-    };
-    let damping = table.or("damping", 0.0, |item| {
-        item.within(Quantity::Number, "at least 0", |zeta| zeta >= 0.0)
-    });
-    let friction = table.maybe("friction", |item| friction(item.table()?));
-    table.finish();
-    Some(Contact {
-        pairs: pairs?,
-        law: law?,
-        stiffness: stiffness?,
-        distance: distance?,
-        closing: closing?,
-        damping: damping?,
-        friction: friction?,
-    })
-}
-
-fn law(table: &Table<'_>) -> Option<ContactLaw> {
-    let law = table.choice_or_first(
-        "law",
-        "contact law",
-        &[
-            ("linear", ContactLaw::Linear),
-            ("power", ContactLaw::Power(1.0)),
-            ("emu", ContactLaw::Emu),
-        ],
-    )?;
-    if let ContactLaw::Power(_) = law {
-        let exponent = table.required("exponent")?;
-        let allowed = "at least 1";
-        return exponent
-            .within(Quantity::Number, allowed, |p| p >= 1.0)
-            .map(ContactLaw::Power);
     }
-    table.forbid("exponent", "it requires law = \"power\"");
-    Some(law)
-}
 
-/// Reads a relative stiffness (a number) or a stiffness with its unit.
-fn stiffness(table: &Table<'_>) -> Option<ContactStiffness> {
-    let Some(item) = table.optional("stiffness") else {
-        table.record("stiffness", RELATIVE);
-        return Some(ContactStiffness::default());
-    };
-    let measure = item.word().and_then(|text| units::parse(text).ok());
-    let has_unit = measure.is_some_and(|measure| {
-        measure.dimension.is_some() && measure.dimension != Some(Quantity::Number.dimension())
-    });
-    match has_unit {
-        true => item
-            .positive(Quantity::Stiffness)
-            .map(ContactStiffness::Absolute),
-        false => item
-            .positive(Quantity::Number)
-            .map(ContactStiffness::Relative),
+    fn check(&self, path: KeyPath, _: S, check: &mut Check) {
+        let (Self::Relative(stiffness) | Self::Absolute(stiffness)) = self;
+        check.positive(path, *stiffness);
     }
 }
 
-fn friction(table: Table<'_>) -> Option<ContactFriction> {
-    let coefficient = table
-        .required("coefficient")
-        .and_then(|item| item.within(Quantity::Number, "at least 0", |mu| mu >= 0.0));
-    let speed = table
-        .required("speed")
-        .and_then(|item| item.positive(Quantity::Velocity));
-    table.finish();
-    Some(ContactFriction {
-        coefficient: coefficient?,
-        speed: speed?,
-    })
+impl<S> Fallback<S> for ContactStiffness {
+    fn missing(self, table: &Table<'_>, key: &'static str, _: S) -> Option<Self> {
+        table.record(key, RELATIVE);
+        Some(self)
+    }
 }

@@ -1,36 +1,26 @@
 //! `[damping]`: Rayleigh damping.
 
+use pericles_deck_derive::DeckTable;
 use serde::{Deserialize, Serialize};
 
-use crate::quantity::Quantity;
-use crate::reader::Table;
-
-/// Rayleigh damping, α ρ u_t + β K u_t.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+/// Rayleigh damping: ρ u_tt = f − α ρ u_t − β K u_t. A vibration of angular frequency ω has the damping ratio
+/// (α/ω + β ω)/2. Constrained points are not damped.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, DeckTable)]
 #[serde(deny_unknown_fields)]
+#[deck(at_least_one("mass", "stiffness"))]
 pub struct Damping {
-    /// Mass-proportional coefficient α, 1/s.
+    /// Mass-proportional coefficient α. Needs scheme = "velocity-verlet", rk3, rk4, dormand-prince, multirate-rk3 or
+    /// multirate-rk4.
+    ///
+    /// In 1/s.
     #[serde(default)]
+    #[deck(quantity = Rate, range = NOT_NEGATIVE, default = 0.0)]
     pub mass: f64,
-    /// Stiffness-proportional coefficient β, s.
+    /// Stiffness-proportional coefficient β; K is the tangent stiffness of the intact bonds in the current
+    /// configuration. Needs scheme = "velocity-verlet". dt = "auto" stays below 1/(β ω²) with the highest frequency ω.
+    ///
+    /// In s.
     #[serde(default)]
+    #[deck(quantity = Time, range = NOT_NEGATIVE, default = 0.0)]
     pub stiffness: f64,
-}
-
-pub(crate) fn read(table: Table<'_>) -> Option<Damping> {
-    let factor = |key, quantity| {
-        table.or(key, 0.0, |item| {
-            item.within(quantity, "zero or a positive number", |value| value >= 0.0)
-        })
-    };
-    if !table.has("mass") && !table.has("stiffness") {
-        table.requires_one_of(&["mass", "stiffness"]);
-    }
-    let mass = factor("mass", Quantity::Rate);
-    let stiffness = factor("stiffness", Quantity::Time);
-    table.finish();
-    Some(Damping {
-        mass: mass?,
-        stiffness: stiffness?,
-    })
 }

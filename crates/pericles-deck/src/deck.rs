@@ -4,33 +4,34 @@ use std::path::{Path as FilePath, PathBuf};
 
 use serde_json::Value as Json;
 
-use crate::assign::{self, Assignable, Assignment};
+use crate::assign::{AssignScope, Assignable, Assignment};
 use crate::body::{self, BodyRead, SurfaceRead};
-use crate::boundary;
-use crate::conditions::{self, Constraint};
-use crate::contact;
+use crate::conditions::{self, Constraint, Initial};
+use crate::contact::Contact;
+use crate::course::TimeHistory;
 use crate::crack;
-use crate::damping;
+use crate::damping::Damping;
+use crate::declaration::{DeckTable, DeckValue, declared};
 use crate::document::{self, Node};
 use crate::error::DeckError;
-use crate::exact;
+use crate::exact::{self, ExactScope};
 use crate::fault::Fault;
 use crate::finding::Finding;
-use crate::impactor;
 use crate::inheritance::inherit;
 use crate::interface::{self, MaterialInterface};
 use crate::material::{self, Material, MaterialModel, Materials, NamedMaterial};
 use crate::model::{Body, Model, Solid};
-use crate::output;
+use crate::output::{self, Checkpoint};
 use crate::overrides;
 use crate::reader::{Ledger, Record, Survey, Table};
 use crate::region::Frame;
 use crate::remark::{BuildError, Remark};
+use crate::scope::Scope;
 use crate::set::{self, SetNames};
 use crate::source::Sources;
 use crate::subject::Subject;
 use crate::surface::{self, SurfaceBody};
-use crate::thermal::{self, Thermal};
+use crate::thermal::{Thermal, ThermalScope};
 use crate::time;
 
 /// A deck: the model and the location of every value in the text.
@@ -173,29 +174,31 @@ fn model(root: Table<'_>, further: &[String]) -> Option<Model> {
         }
     };
     let cracks = each(&root, "crack", |table| crack::read(table, frame, &names));
-    let initial = each(&root, "initial", |table| {
-        conditions::initial(table, frame.dimension, &names)
-    });
+    let scope = Scope {
+        dimension: frame.dimension,
+        sets: &names,
+        materials: &[],
+        usual: &TimeHistory::Constant,
+    };
+    let initial: Option<Vec<Initial>> = declared(&root, "initial", scope);
     let time = root
         .required("time")
         .and_then(|item| time::read(item.table()?, &names));
     let usual = conditions::usual_function(time.as_ref(), initial.as_deref());
-    let constraints = each(&root, "constraint", |table| {
-        conditions::constraint(table, frame.dimension, &names, &usual)
-    });
-    let loads = each(&root, "load", |table| {
-        conditions::load(table, frame.dimension, &names, &usual)
-    });
-    let boundaries = each(&root, "boundary", boundary::read);
-    let probes = conditions::probes(root.tables("probe"), frame.dimension, &names);
+    let scope = Scope {
+        usual: &usual,
+        ..scope
+    };
+    let constraints: Option<Vec<Constraint>> = declared(&root, "constraint", scope);
+    let loads = declared(&root, "load", scope);
+    let boundaries = declared(&root, "boundary", scope);
+    let probes = declared(&root, "probe", scope);
     let exact = root.maybe("exact", |item| {
-        exact::read(item.table()?, frame.dimension, gaussian)
+        exact::read(item.table()?, frame.dimension, ExactScope { gaussian })
     });
-    let contact = root.maybe("contact", |item| contact::read(item.table()?));
-    let impactors = each(&root, "impactor", |table| {
-        impactor::read(table, frame.dimension, &usual)
-    });
-    let damping = root.maybe("damping", |item| damping::read(item.table()?));
+    let contact = root.maybe("contact", |item| Contact::read(&item, ()));
+    let impactors = declared(&root, "impactor", scope);
+    let damping = root.maybe("damping", |item| Damping::read(&item, ()));
     let output = root.table_or_empty("output").and_then(|table| {
         let driven = constraints.iter().flatten().any(Constraint::moves);
         output::read(
@@ -209,7 +212,7 @@ fn model(root: Table<'_>, further: &[String]) -> Option<Model> {
     });
     let checkpoint = root
         .table_or_empty("checkpoint")
-        .and_then(output::checkpoint);
+        .and_then(|table| Checkpoint::read_table(table, ()));
     root.finish();
     let (materials, assignments, interfaces) = several?;
     Some(Model {
@@ -260,16 +263,15 @@ fn several_of(
 ) -> Option<Several> {
     let names = &materials.names[..];
     let own = materials.own.as_ref();
-    let assignable = match own.map(|own| &own.model) {
+    let of = match own.map(|own| &own.model) {
         Some(MaterialModel::StateBased(_) | MaterialModel::Correspondence(_)) => {
-            Assignable::StateBased(names)
+            Assignable::Material
         }
-        _ => Assignable::Bonds(names),
+        _ => Assignable::Both,
     };
+    let deck = scope_of(body, names, sets);
     let assignments = match own {
-        Some(_) => each(root, "assign", |table| {
-            assign::read(table, &assignable, sets)
-        }),
+        Some(_) => declared(root, "assign", AssignScope { deck, of }),
         // The allowed assignments are unknown.
         None => root.optional("assign").and(None),
     };
@@ -286,6 +288,16 @@ fn several_of(
     Some((materials.others.clone()?, assignments?, interfaces?))
 }
 
+/// Returns the scope of tables of a body.
+fn scope_of<'s>(body: &BodyRead, materials: &'s [String], sets: &'s SetNames) -> Scope<'s> {
+    Scope {
+        dimension: body.frame.dimension,
+        sets,
+        materials,
+        usual: &TimeHistory::Constant,
+    }
+}
+
 /// Reads `[thermal]`, if the deck has it.
 fn thermal_of(
     root: &Table<'_>,
@@ -294,11 +306,10 @@ fn thermal_of(
     sets: &SetNames,
 ) -> Option<Option<Thermal>> {
     root.maybe("thermal", |item| {
-        thermal::read(
-            item.table()?,
-            body.frame.dimension,
-            (&materials.names, sets),
-        )
+        let table = item.table()?;
+        let scope = scope_of(body, &materials.names, sets);
+        let scope = ThermalScope::of(&table, scope);
+        Thermal::read_table(table, scope)
     })
 }
 
@@ -307,9 +318,16 @@ fn surface_assignments(root: &Table<'_>, sets: &SetNames) -> Option<Several> {
     for key in ["materials", "interface"] {
         root.forbid(key, "a 2-manifold has one material");
     }
-    let assignments = each(root, "assign", |table| {
-        assign::read(table, &Assignable::Surface, sets)
-    });
+    let scope = AssignScope {
+        deck: Scope {
+            dimension: None,
+            sets,
+            materials: &[],
+            usual: &TimeHistory::Constant,
+        },
+        of: Assignable::Stiffness,
+    };
+    let assignments = declared(root, "assign", scope);
     Some((Vec::new(), assignments?, Vec::new()))
 }
 

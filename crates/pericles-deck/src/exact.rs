@@ -1,155 +1,132 @@
 //! `[exact]`: analytical solutions with which a run is compared.
 
 use pericles::kernel::{ActsOn, InfluenceFunction};
+use pericles_deck_derive::{DeckKeys, DeckTable};
 use serde::{Deserialize, Serialize};
 
+use crate::declaration::{Check, DeckTable};
 use crate::fault::Fault;
+use crate::key_path::KeyPath;
 use crate::material::Material;
-use crate::quantity::Quantity;
 use crate::reader::Table;
 
-/// Comparison with an analytical solution.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+/// Bars: analytical solution. history.csv then has columns with the error of the run.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, DeckTable)]
 #[serde(deny_unknown_fields)]
+#[deck(scope = ExactScope)]
 pub struct Exact {
     /// The solution.
+    #[deck(flatten)]
     pub solution: KnownSolution,
-    /// Half-width of the window of comparison around the centre of the pulse or the origin, m; none for all points.
+    /// Only points within this distance of the centre enter the error. Default: all points.
+    ///
+    /// In m; the centre is that of the pulse or the origin.
     #[serde(default)]
+    #[deck(quantity = Length, range = POSITIVE)]
     pub window: Option<f64>,
-    /// Whether the initial displacement is taken from the solution.
+    /// Start from the analytical solution; replaces the displacement of `[[initial]]`.
     #[serde(default)]
+    #[deck(default = false)]
     pub start: bool,
 }
 
-/// Analytical solutions of finite and infinite bars with the modulus, density and micromodulus of the material.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+/// Analytical solution. `nonlocal-pulse`: Gaussian initial displacement on an infinite bar with a Gaussian micromodulus;
+/// `local-pulse`: the same for the local wave equation; `stretched-bar`: local bar fixed at x = 0, released from a uniform
+/// strain; `bar-mode`: lowest vibration mode of that bar.
+///
+/// The solutions have the modulus, density and micromodulus of the material.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, DeckKeys)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
+#[deck(tag = "solution", what = "exact solution", scope = ExactScope)]
 pub enum KnownSolution {
     /// Gaussian initial displacement on an infinite nonlocal bar with a Gaussian micromodulus.
     NonlocalPulse {
         /// The initial displacement.
+        #[deck(flatten)]
         pulse: Pulse,
         /// Length of the micromodulus, m.
+        #[deck(flatten, keys(), with = micromodulus_length, check = check_length)]
         length: f64,
     },
     /// The same for the local wave equation.
-    LocalPulse(Pulse),
+    LocalPulse(#[deck(flatten)] Pulse),
     /// Local bar fixed at x = 0, released from a uniform strain.
     StretchedBar {
-        /// Length of the bar, m.
+        /// stretched-bar, bar-mode: length of the bar.
+        ///
+        /// In m.
+        #[deck(quantity = Length, range = POSITIVE)]
         length: f64,
-        /// Initial strain.
+        /// stretched-bar: initial strain.
+        #[deck(quantity = Number)]
         strain: f64,
     },
     /// The lowest vibration mode of that bar.
     BarMode {
-        /// Length of the bar, m.
+        /// stretched-bar, bar-mode: length of the bar.
+        ///
+        /// In m.
+        #[deck(quantity = Length, range = POSITIVE)]
         length: f64,
-        /// Amplitude, m.
+        /// Pulses, bar-mode: amplitude.
+        ///
+        /// In m.
+        #[deck(quantity = Length)]
         amplitude: f64,
     },
 }
 
 /// u = amplitude · exp(−((x − centre)/width)²), initially at rest.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, DeckTable)]
 #[serde(deny_unknown_fields)]
 pub struct Pulse {
-    /// Width, m.
+    /// Pulses: width w of u = amplitude · exp(−((x − centre)/w)²), initially at rest.
+    ///
+    /// In m.
+    #[deck(quantity = Length, range = POSITIVE)]
     pub width: f64,
-    /// Amplitude, m.
+    /// Pulses, bar-mode: amplitude.
+    ///
+    /// In m.
+    #[deck(quantity = Length)]
     pub amplitude: f64,
-    /// Position of the maximum, m.
+    /// Pulses: position of the maximum.
+    ///
+    /// In m.
+    #[deck(quantity = Length, default = 0.0)]
     pub centre: f64,
 }
 
+/// Scope of `[exact]`.
 #[derive(Clone, Copy)]
-enum Kind {
-    NonlocalPulse,
-    LocalPulse,
-    StretchedBar,
-    BarMode,
+pub(crate) struct ExactScope {
+    /// Length of the Gaussian micromodulus, `Some(None)` for other micromoduli, none if the material could not be read.
+    pub(crate) gaussian: Option<Option<f64>>,
 }
 
-/// Reads `[exact]`. `gaussian`: the length of the Gaussian micromodulus, `Some(None)` for other micromoduli,
-/// none if the material could not be read.
-pub(crate) fn read(
-    table: Table<'_>,
-    dimension: Option<usize>,
-    gaussian: Option<Option<f64>>,
-) -> Option<Exact> {
-    const KINDS: [(&str, Kind); 4] = [
-        ("nonlocal-pulse", Kind::NonlocalPulse),
-        ("local-pulse", Kind::LocalPulse),
-        ("stretched-bar", Kind::StretchedBar),
-        ("bar-mode", Kind::BarMode),
-    ];
+/// Reads `[exact]` of a body of some dimension.
+pub(crate) fn read(table: Table<'_>, dimension: Option<usize>, scope: ExactScope) -> Option<Exact> {
     if dimension.is_some_and(|dimension| dimension != 1) {
         table.report(Fault::NoExactSolution {
             reason: "exact solutions are available for bars only",
         });
     }
-    let item = table.required("solution")?;
-    let kind = item.choice("exact solution", &KINDS)?;
-    let length = |key| {
-        table
-            .required(key)
-            .and_then(|item| item.positive(Quantity::Length))
-    };
-    let amplitude = |quantity| {
-        let key = if matches!(quantity, Quantity::Length) {
-            "amplitude"
-        } else {
-            "strain"
-        };
-        table.required(key).and_then(|item| item.quantity(quantity))
-    };
-    let pulse = || {
-        let (width, amplitude) = (length("width"), amplitude(Quantity::Length));
-        let centre = table.or("centre", 0.0, |item| item.quantity(Quantity::Length));
-        Some(Pulse {
-            width: width?,
-            amplitude: amplitude?,
-            centre: centre?,
-        })
-    };
-    let solution = match kind {
-        Kind::NonlocalPulse => {
-            let pulse = pulse();
-            let length = gaussian.and_then(|length| {
-                if length.is_none() {
-                    item.report(Fault::NoExactSolution {
-                        reason: "it requires model = \"linear\" with influence = { function = \"gaussian\", acts_on = \"displacement\" } and horizon = \"infinite\"",
-                    });
-                }
-                length
-            });
-            pulse
-                .zip(length)
-                .map(|(pulse, length)| KnownSolution::NonlocalPulse { pulse, length })
-        }
-        Kind::LocalPulse => pulse().map(KnownSolution::LocalPulse),
-        Kind::StretchedBar => {
-            let (length, strain) = (length("length"), amplitude(Quantity::Number));
-            length
-                .zip(strain)
-                .map(|(length, strain)| KnownSolution::StretchedBar { length, strain })
-        }
-        Kind::BarMode => {
-            let (length, amplitude) = (length("length"), amplitude(Quantity::Length));
-            length
-                .zip(amplitude)
-                .map(|(length, amplitude)| KnownSolution::BarMode { length, amplitude })
-        }
-    };
-    let window = table.maybe("window", |item| item.positive(Quantity::Length));
-    let start = table.or("start", false, |item| item.boolean());
-    table.finish();
-    Some(Exact {
-        start: start?,
-        solution: solution?,
-        window: window?,
-    })
+    Exact::read_table(table, scope)
+}
+
+fn check_length(length: &f64, path: &KeyPath, _: ExactScope, check: &mut Check) {
+    check.positive(path.key("length"), *length);
+}
+
+/// Returns the length of the micromodulus of the material.
+fn micromodulus_length(table: &Table<'_>, scope: ExactScope) -> Option<f64> {
+    let length = scope.gaussian?;
+    if let (None, Some(item)) = (length, table.optional("solution")) {
+        item.report(Fault::NoExactSolution {
+            reason: "it requires model = \"linear\" with influence = { function = \"gaussian\", acts_on = \"displacement\" } and horizon = \"infinite\"",
+        });
+    }
+    length
 }
 
 /// Returns the length of a Gaussian micromodulus without a significant cutoff.

@@ -3,111 +3,187 @@
 use std::path::{Path, PathBuf};
 
 use pericles::boundary::MotionKind;
+use pericles_deck_derive::{DeckKeys, DeckTable};
 use serde::{Deserialize, Serialize};
 
-use crate::body::{Rotation, rotation, unit};
+use crate::body::{self, Rotation};
 use crate::course::{TimeHistory, smooth_function};
+use crate::declaration::{Check, Spatial};
 use crate::fault::Fault;
+use crate::key_path::KeyPath;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
-use crate::region::direction;
-use crate::set::bad_name;
+use crate::region;
+use crate::scope::{Scope, name};
 
-/// A rigid body.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// A rigid body in contact with the body: a projectile, indenter or wall. Its motion follows from the contact forces or
+/// is prescribed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, DeckTable)]
 #[serde(deny_unknown_fields)]
+#[deck(scope = Scope<'s>, unique("name", "impactor"))]
 pub struct Impactor {
-    /// Name.
+    /// Name of the impactor, used in `impactors.csv` and file names.
+    #[deck(with = name)]
     pub name: String,
     /// Shape.
+    #[deck(flatten)]
     pub shape: ImpactorShape,
-    /// Position of the centre, a point of the plane of a half-space, or the position of the origin of a file's
-    /// coordinates, m.
+    /// Position of the centre. Half-space: a point of the plane. Surface: position of the origin of the file's
+    /// coordinates.
+    ///
+    /// In m.
+    #[deck(quantity = Length)]
     pub centre: [f64; 3],
-    /// Rotation about the centre of mass.
+    /// Initial rotation about the centre of mass.
     #[serde(default)]
+    #[deck(
+        with = rotation,
+        forbid_if(has_no_rotation(shape, scope), "it requires a box, cylinder or surface in 2D or 3D")
+    )]
     pub rotation: Option<Rotation>,
     /// Mass and motion.
+    #[deck(flatten, scope = MotionScope::new(shape, scope))]
     pub motion: ImpactorMotion,
 }
 
-/// The shape of a rigid body, at the origin and without rotation.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// Shape: `ball` (a disc in 2D), `box`, `cylinder`, `half-space` (a plane wall), or `surface` (a closed triangulated
+/// surface from a file).
+///
+/// At the origin and without rotation.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, DeckKeys)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
+#[deck(tag = "shape", what = "shape", scope = Scope<'s>)]
 pub enum ImpactorShape {
     /// A ball; a disc in 2D.
     Ball {
-        /// Radius, m.
+        /// Ball, cylinder: radius.
+        ///
+        /// In m.
+        #[deck(quantity = Length, range = POSITIVE)]
         radius: f64,
     },
     /// A box; a rectangle in 2D.
     Box {
-        /// Edge lengths, m.
+        /// Box: edge lengths.
+        ///
+        /// In m.
+        #[deck(quantity = Length, range = POSITIVE.described("positive edge lengths"))]
         size: [f64; 3],
     },
     /// A cylinder.
+    #[deck(allow_if(is_spatial(scope), SHAPES))]
     Cylinder {
-        /// Radius, m.
+        /// Ball, cylinder: radius.
+        ///
+        /// In m.
+        #[deck(quantity = Length, range = POSITIVE)]
         radius: f64,
-        /// Height, m.
+        /// Cylinder: height.
+        ///
+        /// In m.
+        #[deck(quantity = Length, range = POSITIVE)]
         height: f64,
-        /// Direction of the axis, of any length.
+        /// Cylinder: direction of the axis, of any length.
+        #[deck(with = direction, default = [0.0, 0.0, 1.0])]
         axis: [f64; 3],
     },
     /// All points on one side of a plane.
     HalfSpace {
-        /// Outward normal, of any length.
+        /// Half-space: outward normal, of any length.
+        #[deck(with = direction, check = check_normal)]
         normal: [f64; 3],
     },
     /// The interior of a closed triangulated surface.
+    #[deck(allow_if(is_spatial(scope), SHAPES))]
     Surface {
-        /// Path of the file; a relative path starts at the deck's folder.
+        /// Surface: OBJ, PLY, STL, OFF, Gmsh, VTU or VTP file of a closed surface; a relative path starts at the deck's
+        /// folder.
         #[serde(rename = "file")]
+        #[deck(key = "file")]
         path: PathBuf,
-        /// Unit of length of the file, m.
+        /// Surface: unit of length of the coordinates, such as "mm". Required for shape = "surface".
+        ///
+        /// In m.
+        #[deck(with = unit, check = check_unit)]
         unit: f64,
     },
 }
 
-/// Mass and motion of a rigid body.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// `free`: the contact forces move the impactor. `prescribed`: it moves as given by `velocity` or `displacement` times
+/// `function`, without rotation. Default for half-spaces: `prescribed`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, DeckKeys)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
+#[deck(
+    tag = "motion",
+    what = "kind of motion",
+    scope = MotionScope<'s>,
+    default = usual_motion(scope)
+)]
 pub enum ImpactorMotion {
     /// Moves by the contact forces.
+    #[deck(allow_if(scope.is_half_space != Some(true), "\"prescribed\": a half-space has no finite mass"))]
     Free {
         /// Mass.
+        #[deck(
+            flatten,
+            otherwise = "a prescribed motion does not depend on mass; it requires motion = \"free\""
+        )]
         inertia: ImpactorInertia,
-        /// Initial velocity, m/s.
+        /// Initial velocity of a free impactor; velocity of a prescribed motion, multiplied by `function`.
+        ///
+        /// In m/s.
+        #[deck(quantity = Velocity, default = [0.0; 3])]
         velocity: [f64; 3],
-        /// Initial angular velocity, rad/s.
+        /// Initial angular velocity of a free impactor: a vector, in 2D a number. "1 rad/s" or a plain number in 1/s.
+        ///
+        /// In rad/s.
+        #[deck(
+            with = spin,
+            default = [0.0; 3],
+            otherwise = "an impactor of prescribed motion does not rotate; it requires motion = \"free\""
+        )]
         spin: [f64; 3],
     },
     /// Moves as a function of time, without rotation.
     Prescribed {
         /// Whether the amplitude is a displacement or a velocity.
         #[serde(with = "crate::form")]
+        #[deck(flatten, keys("velocity", "displacement"), with = motion_kind)]
         kind: MotionKind,
         /// Amplitude, m or m/s.
+        #[deck(flatten, keys("velocity", "displacement"), with = amplitude, scope = (kind, scope))]
         amplitude: [f64; 3],
-        /// Time function that multiplies the amplitude.
+        /// Time function of a prescribed motion. Default: g = 1; in static schemes, a displacement grows linearly from
+        /// zero at t = 0 to its value at `end`.
         #[serde(default)]
+        #[deck(flatten, key = "function", with = function, scope = (kind, scope))]
         function: TimeHistory,
     },
 }
 
 /// Mass of a rigid body.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, DeckKeys)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
+#[deck(exclusive, scope = MotionScope<'s>)]
 pub enum ImpactorInertia {
-    /// Mass and moments of inertia of the shape with this density, kg/m³.
-    Density(f64),
-    /// Mass, kg, and principal moments of inertia about the axes of the shape, kg m²; moments of the shape with this
-    /// mass if none.
+    /// Free impactors: density, from which mass and moments of inertia follow. In 2D multiplied by the thickness, in 1D by
+    /// the area.
+    ///
+    /// In kg/m³.
+    Density(#[deck(quantity = Density, range = POSITIVE)] f64),
+    /// Mass and principal moments of inertia.
     Mass {
-        /// Mass, kg.
+        /// Free impactors: mass, instead of the density.
+        ///
+        /// In kg.
+        #[deck(quantity = Mass, range = POSITIVE)]
         mass: f64,
-        /// Principal moments of inertia, kg m².
+        /// Free impactors with a mass: principal moments of inertia about the axes of the shape; in 2D the moment about z.
+        /// Default: moments of the shape with this mass.
+        ///
+        /// In kg m².
         #[serde(default)]
+        #[deck(with = moments, otherwise = "it follows from `density`; it requires `mass`")]
         inertia: Option<[f64; 3]>,
     },
 }
@@ -122,215 +198,114 @@ impl Impactor {
     }
 }
 
-#[derive(Clone, Copy, PartialEq)]
-enum Kind {
-    Ball,
-    Box,
-    Cylinder,
-    HalfSpace,
-    Surface,
+/// Scope of the motion.
+#[derive(Clone, Copy)]
+struct MotionScope<'s> {
+    deck: Scope<'s>,
+    /// None if the shape is invalid.
+    is_half_space: Option<bool>,
 }
 
-/// Reads an entry of `[[impactor]]`.
-pub(crate) fn read(
-    table: Table<'_>,
-    dimension: Option<usize>,
-    usual: &TimeHistory,
-) -> Option<Impactor> {
-    const KINDS: [(&str, Kind); 5] = [
-        ("ball", Kind::Ball),
-        ("box", Kind::Box),
-        ("cylinder", Kind::Cylinder),
-        ("half-space", Kind::HalfSpace),
-        ("surface", Kind::Surface),
-    ];
-    let name = table.required("name").and_then(|item| {
-        let name = item.text()?;
-        match bad_name(&name) {
-            Some(fault) => {
-                item.report(fault());
-                None
-            }
-            None => Some(name),
-        }
-    });
-    let shape_item = table.required("shape");
-    let kind = shape_item
-        .as_ref()
-        .and_then(|item| item.choice("shape", &KINDS));
-    let solid = matches!(kind, Some(Kind::Cylinder | Kind::Surface));
-    if let (true, Some(item), Some(1 | 2)) = (solid, &shape_item, dimension) {
-        let allowed = "\"ball\" (a disc in 2D), \"box\" or \"half-space\"; cylinders and surfaces require a 3D body";
-        item.out_of_range(allowed);
-        return None;
-    }
-    let shape = kind.and_then(|kind| shape(&table, kind, dimension));
-    let centre = table
-        .required("centre")
-        .and_then(|item| item.vector(Quantity::Length, dimension));
-    let rotation = match (kind, dimension) {
-        (Some(Kind::Ball | Kind::HalfSpace), _) | (_, Some(1)) => {
-            table.forbid(
-                "rotation",
-                "it requires a box, cylinder or surface in 2D or 3D",
-            );
-            Some(None)
-        }
-        _ => table.maybe("rotation", |item| rotation(item.table()?, dimension, false)),
-    };
-    let motion = motion(&table, kind, dimension, usual);
-    table.finish();
-    Some(Impactor {
-        name: name?,
-        shape: shape?,
-        centre: centre?,
-        rotation: rotation?,
-        motion: motion?,
-    })
-}
-
-fn shape(table: &Table<'_>, kind: Kind, dimension: Option<usize>) -> Option<ImpactorShape> {
-    let length = |key| {
-        table
-            .required(key)
-            .and_then(|item| item.positive(Quantity::Length))
-    };
-    match kind {
-        Kind::Ball => length("radius").map(|radius| ImpactorShape::Ball { radius }),
-        Kind::Box => {
-            let item = table.required("size")?;
-            let size = item.vector(Quantity::Length, dimension)?;
-            if size
-                .iter()
-                .take(dimension.unwrap_or(3))
-                .any(|&side| side <= 0.0)
-            {
-                item.out_of_range("positive edge lengths");
-                return None;
-            }
-            Some(ImpactorShape::Box { size })
-        }
-        Kind::Cylinder => {
-            let (radius, height) = (length("radius"), length("height"));
-            let axis = match table.optional("axis") {
-                Some(item) => direction(&item, dimension),
-                None => {
-                    table.record("axis", vec![0.0, 0.0, 1.0]);
-                    Some([0.0, 0.0, 1.0])
-                }
-            };
-            Some(ImpactorShape::Cylinder {
-                radius: radius?,
-                height: height?,
-                axis: axis?,
-            })
-        }
-        Kind::HalfSpace => {
-            let normal = table.required("normal");
-            let normal = normal.and_then(|item| direction(&item, dimension));
-            normal.map(|normal| ImpactorShape::HalfSpace { normal })
-        }
-        Kind::Surface => {
-            let path = table.required("file").and_then(|item| item.text());
-            let unit = unit(table);
-            Some(ImpactorShape::Surface {
-                path: path?.into(),
-                unit: unit?,
-            })
+impl<'s> MotionScope<'s> {
+    fn new(shape: Option<&ImpactorShape>, deck: Scope<'s>) -> Self {
+        Self {
+            deck,
+            is_half_space: shape.map(|shape| matches!(shape, ImpactorShape::HalfSpace { .. })),
         }
     }
 }
 
-fn motion(
-    table: &Table<'_>,
-    kind: Option<Kind>,
-    dimension: Option<usize>,
-    usual: &TimeHistory,
-) -> Option<ImpactorMotion> {
-    const WORDS: [(&str, bool); 2] = [("free", true), ("prescribed", false)];
-    let motion = table.optional("motion");
-    let free = match (&motion, kind) {
-        (Some(item), _) => item.choice("kind of motion", &WORDS),
-        (None, Some(Kind::HalfSpace)) => {
-            table.record("motion", "prescribed");
-            Some(false)
-        }
-        (None, _) => {
-            table.record("motion", "free");
-            Some(true)
-        }
-    };
-    let vector = |key, quantity| table.maybe(key, |item| item.vector(quantity, dimension));
-    if free? {
-        if let (Some(Kind::HalfSpace), Some(item)) = (kind, &motion) {
-            item.out_of_range("\"prescribed\": a half-space has no finite mass");
-            return None;
-        }
-        for key in ["displacement", "function"] {
-            table.forbid(key, "it requires motion = \"prescribed\"");
-        }
-        let inertia = inertia(table, dimension);
-        let velocity = vector("velocity", Quantity::Velocity);
-        let spin = table.maybe("spin", |item| spin(&item, dimension));
-        return Some(ImpactorMotion::Free {
-            inertia: inertia?,
-            velocity: velocity?.unwrap_or_default(),
-            spin: spin?.unwrap_or_default(),
-        });
+impl Spatial for MotionScope<'_> {
+    fn dimension(&self) -> Option<usize> {
+        self.deck.dimension
     }
-    for key in ["density", "mass", "inertia"] {
-        table.forbid(
-            key,
-            "a prescribed motion does not depend on mass; it requires motion = \"free\"",
-        );
-    }
-    table.forbid(
-        "spin",
-        "an impactor of prescribed motion does not rotate; it requires motion = \"free\"",
+}
+
+fn usual_motion(scope: MotionScope<'_>) -> Option<&'static str> {
+    scope
+        .is_half_space
+        .map(|is_half_space| match is_half_space {
+            true => "prescribed",
+            false => "free",
+        })
+}
+
+/// Shapes of bars and plane bodies.
+const SHAPES: &str =
+    "\"ball\" (a disc in 2D), \"box\" or \"half-space\"; cylinders and surfaces require a 3D body";
+
+fn is_spatial(scope: Scope<'_>) -> bool {
+    !matches!(scope.dimension, Some(1 | 2))
+}
+
+fn has_no_rotation(shape: Option<&ImpactorShape>, scope: Scope<'_>) -> bool {
+    use ImpactorShape::{Ball, HalfSpace};
+    scope.dimension == Some(1) || matches!(shape, Some(Ball { .. } | HalfSpace { .. }))
+}
+
+fn direction(item: &Item<'_>, scope: Scope<'_>) -> Option<[f64; 3]> {
+    region::direction(item, scope.dimension)
+}
+
+fn check_normal(normal: &[f64; 3], path: &KeyPath, _: Scope<'_>, check: &mut Check) {
+    let right = normal.iter().any(|&x| x != 0.0);
+    let allowed = "allowed: a nonzero vector";
+    check.within(right, path.key("normal"), "zero", allowed);
+}
+
+fn unit(item: &Item<'_>, _: Scope<'_>) -> Option<f64> {
+    body::unit_of(item)
+}
+
+fn check_unit(unit: &f64, path: &KeyPath, _: Scope<'_>, check: &mut Check) {
+    check.positive(path.key("unit"), *unit);
+}
+
+fn rotation(item: &Item<'_>, scope: Scope<'_>) -> Option<Rotation> {
+    body::rotation(item.table()?, scope.dimension, false)
+}
+
+/// Reads which of the keys of a prescribed motion is given.
+fn motion_kind(table: &Table<'_>, _: MotionScope<'_>) -> Option<MotionKind> {
+    table.describe(
+        "displacement",
+        "Displacement of a prescribed motion, multiplied by `function`.",
     );
-    let found = table.at_most_one(&["velocity", "displacement"])?;
-    let (function, is_given) = (smooth_function(table), table.has("function"));
-    let (kind, amplitude) = match found {
-        None => (MotionKind::Displacement, Some([0.0; 3])),
-        Some(("velocity", item)) => (
-            MotionKind::Velocity,
-            item.vector(Quantity::Velocity, dimension),
-        ),
-        Some((_, item)) => (
-            MotionKind::Displacement,
-            item.vector(Quantity::Length, dimension),
-        ),
-    };
-    let is_constant = kind == MotionKind::Displacement;
-    Some(ImpactorMotion::Prescribed {
-        kind,
-        amplitude: amplitude?,
-        function: match is_constant && !is_given {
-            true => usual.clone(),
-            false => function?,
-        },
+    Some(match table.at_most_one(&["velocity", "displacement"])? {
+        Some(("velocity", _)) => MotionKind::Velocity,
+        _ => MotionKind::Displacement,
     })
 }
 
-fn inertia(table: &Table<'_>, dimension: Option<usize>) -> Option<ImpactorInertia> {
-    let (key, item) = table.exactly_one(&["density", "mass"])?;
-    if key == "density" {
-        table.forbid("inertia", "it follows from `density`; it requires `mass`");
-        return item
-            .positive(Quantity::Density)
-            .map(ImpactorInertia::Density);
+/// Reads the amplitude of a prescribed motion; zero if it is missing.
+fn amplitude(
+    table: &Table<'_>,
+    (kind, scope): (Option<&MotionKind>, MotionScope<'_>),
+) -> Option<[f64; 3]> {
+    let (key, quantity) = match kind? {
+        MotionKind::Velocity => ("velocity", Quantity::Velocity),
+        MotionKind::Displacement => ("displacement", Quantity::Length),
+    };
+    match table.optional(key) {
+        Some(item) => item.vector(quantity, scope.deck.dimension),
+        None => Some([0.0; 3]),
     }
-    let mass = item.positive(Quantity::Mass);
-    let moments = table.maybe("inertia", |item| moments(&item, dimension));
-    Some(ImpactorInertia::Mass {
-        mass: mass?,
-        inertia: moments?,
-    })
+}
+
+fn function(
+    table: &Table<'_>,
+    (kind, scope): (Option<&MotionKind>, MotionScope<'_>),
+) -> Option<TimeHistory> {
+    let (function, is_given) = (smooth_function(table), table.has("function"));
+    match kind == Some(&MotionKind::Displacement) && !is_given {
+        true => Some(scope.deck.usual.clone()),
+        false => function,
+    }
 }
 
 /// Reads principal moments of inertia: one about z in 2D, three in 3D.
-fn moments(item: &Item<'_>, dimension: Option<usize>) -> Option<[f64; 3]> {
-    if let Some(1 | 2) = dimension {
+fn moments(item: &Item<'_>, scope: MotionScope<'_>) -> Option<[f64; 3]> {
+    if let Some(1 | 2) = scope.deck.dimension {
         let about_z = item.positive(Quantity::Inertia)?;
         return Some([about_z; 3]);
     }
@@ -350,8 +325,8 @@ fn moments(item: &Item<'_>, dimension: Option<usize>) -> Option<[f64; 3]> {
 }
 
 /// Reads an angular velocity: about z in 2D, a vector in 3D.
-fn spin(item: &Item<'_>, dimension: Option<usize>) -> Option<[f64; 3]> {
-    match dimension {
+fn spin(item: &Item<'_>, scope: MotionScope<'_>) -> Option<[f64; 3]> {
+    match scope.deck.dimension {
         Some(1) => {
             item.out_of_range("no spin: impactors of a bar do not rotate");
             None

@@ -1,8 +1,13 @@
 //! Options of `scheme = "adaptive-dynamic-relaxation"` and `scheme = "fire"`.
 
 use pericles::time::{Damping, RelaxationOptions};
+use pericles_deck_derive::DeckTable;
+use serde::{Deserialize, Serialize};
 
+use crate::declaration::DeckKeys;
+use crate::form::described;
 use crate::quantity::Quantity;
+use crate::range::{Range, from_to};
 use crate::reader::{Item, Table};
 
 /// Keys of adaptive dynamic relaxation only.
@@ -13,6 +18,41 @@ pub(crate) const LOAD_STEPS: &str = "load_steps";
 
 /// Default pseudo-time at which all loads have their final values.
 pub(crate) const END: f64 = 1.0;
+
+/// The scope is the damping, which one of the two schemes reads.
+#[derive(Serialize, Deserialize, DeckTable)]
+#[serde(remote = "RelaxationOptions", deny_unknown_fields)]
+#[deck(remote = RelaxationOptions, scope = Option<Damping>)]
+struct RelaxationOptionsForm {
+    #[serde(with = "crate::form")]
+    #[deck(flatten, keys(), with = given)]
+    damping: Damping,
+    #[deck(range = RESIDUALS, default = RelaxationOptions::default().tolerance)]
+    tolerance: f64,
+    #[deck(range = count_to(100_000_000), default = RelaxationOptions::default().iterations)]
+    iterations: u32,
+}
+
+/// Range of relative residuals.
+const RESIDUALS: Range = from_to(1e-12, 0.1)
+    .described("a number from 1e-12 to 0.1, the residual relative to loads and reactions");
+
+fn given(_: &Table<'_>, damping: Option<Damping>) -> Option<Damping> {
+    damping
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "Damping", rename_all = "snake_case")]
+enum DampingForm {
+    Adaptive,
+    Viscous(f64),
+    Fire,
+}
+
+described!(
+    RelaxationOptions: RelaxationOptionsForm,
+    Damping: DampingForm,
+);
 
 /// Reads the damping of adaptive dynamic relaxation.
 pub(crate) fn damping(table: &Table<'_>) -> Option<Damping> {
@@ -27,28 +67,7 @@ pub(crate) fn damping(table: &Table<'_>) -> Option<Damping> {
 
 /// Reads the options of both schemes.
 pub(crate) fn read(table: &Table<'_>, damping: Option<Damping>) -> Option<RelaxationOptions> {
-    let default = RelaxationOptions::default();
-    let tolerance = table.or("tolerance", default.tolerance, |item| {
-        item.within(
-            Quantity::Number,
-            "a number from 1e-12 to 0.1, the residual relative to loads and reactions",
-            |tolerance| (1e-12..=0.1).contains(&tolerance),
-        )
-    });
-    let iterations = table.or("iterations", default.iterations, |item| {
-        const MOST: u64 = 100_000_000;
-        let count = item.count()?;
-        if count <= MOST {
-            return Some(count as u32);
-        }
-        item.out_of_range("a whole number from 1 to 100000000");
-        None
-    });
-    Some(RelaxationOptions {
-        damping: damping?,
-        tolerance: tolerance?,
-        iterations: iterations?,
-    })
+    RelaxationOptions::read_keys(table, damping)
 }
 
 fn damping_of(item: &Item<'_>) -> Option<Damping> {

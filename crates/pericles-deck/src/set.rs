@@ -94,6 +94,14 @@ pub(crate) struct SetNames {
 }
 
 impl SetNames {
+    /// Returns names that are all defined.
+    pub(crate) fn any() -> Self {
+        Self {
+            names: Vec::new(),
+            open: true,
+        }
+    }
+
     /// Reads a defined set name.
     pub(crate) fn reference(&self, item: &Item<'_>) -> Option<String> {
         let name = item.text()?;

@@ -2,98 +2,161 @@
 
 use std::path::PathBuf;
 
+use pericles_deck_derive::{DeckKeys, DeckTable, DeckWords};
 use serde::{Deserialize, Serialize};
 
-use crate::component::{Component, Variables, component};
+use crate::component::Component;
 use crate::course::{self, TimeHistory};
-use crate::quantity::Quantity;
-use crate::reader::{Item, Table};
-use crate::set::SetNames;
-use crate::vocabulary::THERMAL_CONDITIONS;
+use crate::declaration::DeckKeys;
+use crate::range::{Range, at_least};
+use crate::reader::Table;
+use crate::scope::{Scope, material_name, set_name};
 
-/// Thermal expansion and heat conduction.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// Thermal expansion and heat conduction. The stress-free strain is α (T − T₀). Without `conductivity` the temperature T
+/// is prescribed; with a time function g(t) it is T₀ + g(t) (T − T₀). With `conductivity` and `specific_heat` the
+/// temperature is computed from ρ c ∂T/∂t = ∫ κ (T′ − T) dx′ + q, where κ conducts the heat of Fourier's law with
+/// conductivity k.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, DeckTable)]
 #[serde(deny_unknown_fields)]
+#[deck(scope = ThermalScope<'s>, exactly_one("temperature", "file"))]
 pub struct Thermal {
-    /// Coefficient of thermal expansion α, 1/K, of all materials without their own; none for a body that conducts heat
-    /// only.
+    /// Coefficient of thermal expansion α of all materials without their own (steel: 12e-6). With heat conduction it is
+    /// optional. Bodies with scheme = "thermal" in `[time]` do not move and do not expand.
+    ///
+    /// In 1/K; none for a body that conducts heat only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[deck(quantity = Expansion, required_if(!scope.conducts))]
     pub expansion: Option<f64>,
-    /// Constants by material.
-    #[serde(default, rename = "material")]
-    pub materials: Vec<MaterialThermal>,
-    /// Temperature, K, unless a file gives it; the initial one with heat conduction.
+    /// Temperature T, a number or an expression of position and time; with heat conduction the initial temperature, an
+    /// expression of position. A temperature that changes with time does work, which the energy balance counts as
+    /// external work.
+    ///
+    /// In K; none if a file gives it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[deck(quantity = Temperature, scope = scope.deck.variables(!scope.conducts))]
     pub temperature: Option<Component>,
-    /// File with the temperature of every point; a relative path starts at the deck's folder.
+    /// Text file with one line per point of the body: its temperature T (K). Points are in the order of the field files
+    /// (listed points: of their own file). Replaces `temperature`.
+    ///
+    /// A relative path starts at the deck's folder.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub file: Option<PathBuf>,
     /// Time function that multiplies the difference to the reference temperature.
     #[serde(default, skip_serializing_if = "TimeHistory::is_constant")]
+    #[deck(flatten, key = "function", with = function, default, forbid_if(scope.conducts, INITIAL))]
     pub function: TimeHistory,
-    /// Reference temperature without thermal strain, K; needed for expansion and for time functions of temperatures.
+    /// Reference temperature T₀ without thermal strain. Required with `expansion`, and for time functions of
+    /// temperatures.
+    ///
+    /// In K.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[deck(quantity = Temperature, required_if(expansion != Some(&None)))]
     pub reference: Option<f64>,
     /// Heat conduction; none if the temperature is prescribed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[deck(flatten, with = conduction, scope = scope.with_reference(reference), check = Conduction::check_keys)]
     pub conduction: Option<Conduction>,
+    /// Thermal constants by material. Missing constants are taken from `[thermal]`.
+    #[serde(default, rename = "material")]
+    #[deck(key = "material")]
+    pub materials: Vec<MaterialThermal>,
 }
 
-/// Thermal constants of a material; none for the constants of the body.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// Thermal constants by material. Any number of tables. Missing constants are taken from `[thermal]`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, DeckTable)]
 #[serde(deny_unknown_fields)]
+#[deck(scope = ThermalScope<'s>)]
 pub struct MaterialThermal {
-    /// The name of the material.
+    /// Name of the material: its table in `[materials]`, or the name of the body's material.
+    #[deck(with = material_name, scope = scope.deck)]
     pub name: String,
-    /// α, 1/K.
+    /// Coefficient of thermal expansion α of this material.
+    ///
+    /// In 1/K.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[deck(quantity = Expansion, required_if(!scope.conducts))]
     pub expansion: Option<f64>,
-    /// k, W/(m K).
+    /// Thermal conductivity k of this material.
+    ///
+    /// In W/(m K).
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[deck(quantity = Conductivity, range = CONDUCTIVITIES, forbid_if(!scope.conducts, OF_BODY))]
     pub conductivity: Option<f64>,
-    /// c, J/(kg K).
+    /// Specific heat capacity c of this material.
+    ///
+    /// In J/(kg K).
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[deck(quantity = SpecificHeat, range = POSITIVE, forbid_if(!scope.conducts, OF_BODY))]
     pub specific_heat: Option<f64>,
 }
 
 /// Heat conduction.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, DeckTable)]
 #[serde(deny_unknown_fields)]
+#[deck(scope = ThermalScope<'s>)]
 pub struct Conduction {
-    /// Conductivity k, W/(m K), of all materials without their own.
+    /// Thermal conductivity k of all materials without their own (steel: 45 W/m/K). A linear temperature field in the
+    /// interior of a lattice conducts exactly k.
+    ///
+    /// In W/(m K).
+    #[deck(quantity = Conductivity, range = CONDUCTIVITIES)]
     pub conductivity: f64,
-    /// Specific heat capacity c, J/(kg K), of all materials without their own.
+    /// Specific heat capacity c of all materials without their own (steel: 460 J/kg/K). The heat capacity per volume is
+    /// ρ c.
+    ///
+    /// In J/(kg K).
+    #[deck(quantity = SpecificHeat, range = POSITIVE)]
     pub specific_heat: f64,
-    /// Time integration.
+    /// Time integration of the temperature. `explicit`: forward Euler method in sub-steps below its limit of stability.
+    /// `trapezoidal`: trapezoidal rule, second order. `backward-euler`: backward Euler method, first order, damps all
+    /// oscillations. `steady`: steady state of the conditions at each time.
     #[serde(default)]
+    #[deck(default)]
     pub scheme: ConductionScheme,
-    /// Thermal time step, s; none for the time step of the body.
+    /// Length of the thermal steps, shorter or longer than those of the body. Between their ends the temperature is
+    /// linear in time. Default: the temperature advances with the steps of the body.
+    ///
+    /// In s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[deck(quantity = Time, range = POSITIVE)]
     pub step: Option<f64>,
-    /// Mean conductivity of bonds between materials.
+    /// Conductivity of bonds between materials. `harmonic`: 2 k₁ k₂/(k₁ + k₂), conductors in series. `arithmetic`:
+    /// (k₁ + k₂)/2.
     #[serde(default)]
+    #[deck(default)]
     pub interface: ConductivityMean,
-    /// Whether bonds of points with incomplete families are corrected.
-    #[serde(default = "yes")]
+    /// Whether bonds between points with incomplete families conduct more, so that a unit temperature gradient along each
+    /// axis of the surface conducts the same as in the interior. Default: true.
+    #[serde(default = "Conduction::default_surface_correction")]
+    #[deck(default = true)]
     pub surface_correction: bool,
-    /// Part of its conductance that a broken bond keeps.
+    /// Part of its conductance that a broken bond keeps: 0 for insulating cracks, 1 for cracks without effect on the
+    /// heat.
     #[serde(default)]
+    #[deck(range = FRACTION, default = 0.0)]
     pub broken_conductance: f64,
-    /// Share of the energy dissipated by fracture and inelastic deformation that becomes heat.
+    /// Share of the energy dissipated by fracture, softening, plastic flow and viscosity that becomes heat at the points
+    /// that dissipate it (for plastic flow the Taylor–Quinney coefficient, 0.9 for many metals). Default: 0, no heat. Not
+    /// counted: damping, contact, absorbing boundaries, and the energy that static schemes release after bonds broke. Not
+    /// for scheme = "steady".
     #[serde(default)]
+    #[deck(
+        range = FRACTION,
+        default = 0.0,
+        forbid_if(is_steady(scheme), STORES_NO_HEAT),
+        allow_if(!is_steady(scheme) || dissipation == Some(&0.0), STORES_NO_HEAT)
+    )]
     pub dissipation: f64,
-    /// `[[thermal.condition]]`
+    /// Thermal conditions on sets. Surfaces without a condition are insulated.
     #[serde(default, rename = "condition")]
+    #[deck(key = "condition")]
     pub conditions: Vec<ThermalCondition>,
 }
 
-fn yes() -> bool {
-    true
-}
-
 /// Time integration of heat conduction.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, DeckWords)]
 #[serde(rename_all = "kebab-case")]
+#[deck(what = "scheme of heat conduction")]
 pub enum ConductionScheme {
     /// Forward Euler method in stable sub-steps.
     #[default]
@@ -107,8 +170,9 @@ pub enum ConductionScheme {
 }
 
 /// Mean conductivity of bonds between two materials.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, DeckWords)]
 #[serde(rename_all = "kebab-case")]
+#[deck(what = "mean conductivity")]
 pub enum ConductivityMean {
     /// 2 k₁ k₂/(k₁ + k₂).
     #[default]
@@ -117,50 +181,121 @@ pub enum ConductivityMean {
     Arithmetic,
 }
 
-/// A thermal condition on a set.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// Thermal conditions on sets. Any number of tables. Surfaces without a condition are insulated.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, DeckTable)]
 #[serde(deny_unknown_fields)]
+#[deck(scope = ThermalScope<'s>)]
 pub struct ThermalCondition {
-    /// Name of the set.
+    /// Set of points to which the condition applies. Flux, convection and radiation act on the volume of the set; use a
+    /// layer that is one cell deep.
+    #[deck(with = set_name, scope = scope.deck)]
     pub set: String,
     /// The condition.
+    #[deck(flatten)]
     pub amplitude: ThermalAmplitude,
-    /// Area of the set for flux, convection and radiation, m²; none for the area of its face.
+    /// Area for flux, convection and radiation. Default: the area of the face of the layer, or of the face set of a mesh.
+    ///
+    /// In m².
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[deck(
+        quantity = Area,
+        range = POSITIVE,
+        forbid_if(!acts_on_area(amplitude), "it requires `flux`, `convection` or `radiation`")
+    )]
     pub area: Option<f64>,
     /// Time function: multiplies flux and source, and the difference of temperatures to the reference temperature.
     #[serde(default, skip_serializing_if = "TimeHistory::is_constant")]
+    #[deck(
+        flatten,
+        key = "function",
+        with = function,
+        default,
+        forbid_if(is_of_temperature(amplitude) && !scope.has_reference, NO_REFERENCE)
+    )]
     pub function: TimeHistory,
 }
 
 /// A thermal condition.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, DeckKeys)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
+#[deck(exclusive, scope = ThermalScope<'s>)]
 pub enum ThermalAmplitude {
-    /// Prescribed temperature, K.
-    Temperature(Component),
-    /// Heat flux into the body, W/m².
-    Flux(Component),
-    /// Heat source, W/m³.
-    Source(Component),
-    /// Heat flux h (T∞ − T).
+    /// Prescribed temperature, a number or an expression of position and time.
+    ///
+    /// In K.
+    Temperature(#[deck(quantity = Temperature, scope = scope.deck.variables(true))] Component),
+    /// Heat flux into the body per area, a number or an expression of position and time.
+    ///
+    /// In W/m².
+    Flux(#[deck(quantity = HeatFlux, scope = scope.deck.variables(true))] Component),
+    /// Heat source per volume, a number or an expression of position and time.
+    ///
+    /// In W/m³.
+    Source(#[deck(quantity = HeatSource, scope = scope.deck.variables(true))] Component),
+    /// Convection: the heat flux into the body is h (T∞ − T).
+    #[deck(table)]
     Convection {
-        /// h, W/(m² K).
+        /// Heat transfer coefficient h.
+        ///
+        /// In W/(m² K).
+        #[deck(quantity = HeatTransfer, range = at_least(0.0).described("at least 0 W/m2/K"))]
         coefficient: f64,
-        /// T∞, K.
+        /// Ambient temperature T∞, a number or an expression of position and time.
+        ///
+        /// In K.
+        #[deck(quantity = Temperature, scope = scope.deck.variables(true))]
         ambient: Component,
     },
-    /// Heat flux ε σ (T∞⁴ − T⁴).
+    /// Radiation: the heat flux into the body is ε σ (T∞⁴ − T⁴) with the Stefan–Boltzmann constant σ. Temperatures are
+    /// absolute.
+    #[deck(table)]
     Radiation {
-        /// ε.
+        /// Emissivity ε, from 0 to 1.
+        #[deck(range = FRACTION)]
         emissivity: f64,
-        /// T∞, K.
+        /// Ambient temperature T∞, a number or an expression of position and time.
+        ///
+        /// In K.
+        #[deck(quantity = Temperature, scope = scope.deck.variables(true))]
         ambient: Component,
     },
 }
 
-/// Keys of the temperature.
-const TEMPERATURES: &[&str] = &["temperature", "file"];
+/// Scope of thermal keys.
+#[derive(Clone, Copy)]
+pub(crate) struct ThermalScope<'s> {
+    deck: Scope<'s>,
+    /// Whether the body conducts heat; otherwise its temperature is prescribed.
+    conducts: bool,
+    /// Whether there is a reference temperature, or one that is invalid.
+    has_reference: bool,
+}
+
+impl<'s> ThermalScope<'s> {
+    /// Returns the scope of a table.
+    pub(crate) fn of(table: &Table<'_>, deck: Scope<'s>) -> Self {
+        let conducts = CONDUCTION.iter().any(|key| table.has(key));
+        Self::new(conducts, deck)
+    }
+
+    pub(crate) fn new(conducts: bool, deck: Scope<'s>) -> Self {
+        Self {
+            deck,
+            conducts,
+            has_reference: false,
+        }
+    }
+
+    fn with_reference(self, reference: Option<&Option<f64>>) -> Self {
+        Self {
+            has_reference: reference != Some(&None),
+            ..self
+        }
+    }
+}
+
+/// Range of conductivities.
+const CONDUCTIVITIES: Range = at_least(0.0).described("at least 0 W/m/K (steel: 45)");
 
 /// Keys that heat conduction needs together.
 const CONDUCTION: &[&str] = &["conductivity", "specific_heat"];
@@ -168,282 +303,55 @@ const CONDUCTION: &[&str] = &["conductivity", "specific_heat"];
 /// Why steady states have no heat from dissipated energy.
 pub(crate) const STORES_NO_HEAT: &str = "with scheme = \"steady\" the temperature stores no heat; use scheme = \"explicit\", \"trapezoidal\" or \"backward-euler\"";
 
+/// Why a temperature that is computed has no time function.
+const INITIAL: &str = "with heat conduction `temperature` is the initial one; set the function of a [[thermal.condition]]";
+
+/// Why a body without heat conduction has no constants of it.
 const NEEDS: &str = "it requires `conductivity` and `specific_heat`";
+const OF_BODY: &str = "it requires `conductivity` and `specific_heat` in [thermal]";
 
-pub(crate) fn read(
-    table: Table<'_>,
-    dimension: Option<usize>,
-    (names, sets): (&[String], &SetNames),
-) -> Option<Thermal> {
-    let conducts = CONDUCTION.iter().any(|key| table.has(key));
-    let variables = Variables {
-        dimension,
-        // The initial temperature of a body that conducts has no time.
-        time: !conducts,
-    };
-    let expansion = match conducts {
-        true => table.maybe("expansion", |item| expansion(&item)),
-        false => table
-            .required("expansion")
-            .and_then(|item| expansion(&item))
-            .map(Some),
-    };
-    let expands = !matches!(expansion, Some(None));
-    let (temperature, file) = match table.exactly_one(TEMPERATURES) {
-        Some(("file", item)) => (None, item.text().map(PathBuf::from)),
-        Some((_, item)) => (component(&item, Quantity::Temperature, variables), None),
-        None => (None, None),
-    };
-    let function = match conducts {
-        false => course::function(&table),
-        true => {
-            table.forbid("function", "with heat conduction `temperature` is the initial one; set the function of a [[thermal.condition]]");
-            Some(TimeHistory::default())
-        }
-    };
-    let reference = match expands {
-        true => table
-            .required("reference")
-            .and_then(|item| item.quantity(Quantity::Temperature))
-            .map(Some),
-        false => table.maybe("reference", |item| item.quantity(Quantity::Temperature)),
-    };
-    let conduction = match conducts {
-        true => {
-            let has_reference = !matches!(reference, Some(None));
-            conduction(&table, dimension, (sets, has_reference)).map(Some)
-        }
-        false => {
-            for key in [
-                "scheme",
-                "step",
-                "interface",
-                "surface_correction",
-                "broken_conductance",
-                "dissipation",
-                "condition",
-            ] {
-                table.forbid(key, NEEDS);
-            }
-            Some(None)
-        }
-    };
-    let tables = table.tables("material").into_iter();
-    let materials: Vec<_> = tables
-        .map(|table| of_material(table, names, conducts))
-        .collect();
-    table.finish();
-    if temperature.is_none() && file.is_none() {
-        return None;
-    }
-    let materials: Vec<MaterialThermal> = materials.into_iter().collect::<Option<_>>()?;
-    Some(Thermal {
-        expansion: expansion?,
-        materials,
-        temperature,
-        file,
-        function: function?,
-        reference: reference?,
-        conduction: conduction?,
-    })
+/// Why temperatures without a reference have no time function.
+const NO_REFERENCE: &str = "the function multiplies the difference to the reference temperature; set `reference` in [thermal]";
+
+fn is_steady(scheme: Option<&ConductionScheme>) -> bool {
+    scheme == Some(&ConductionScheme::Steady)
 }
 
-fn expansion(item: &Item<'_>) -> Option<f64> {
-    item.quantity(Quantity::Expansion)
-}
-
-fn conductivity(item: &Item<'_>) -> Option<f64> {
-    item.within(
-        Quantity::Conductivity,
-        "at least 0 W/m/K (steel: 45)",
-        |k| k >= 0.0,
+fn acts_on_area(amplitude: Option<&ThermalAmplitude>) -> bool {
+    use ThermalAmplitude::{Convection, Flux, Radiation};
+    matches!(
+        amplitude,
+        None | Some(Flux(_) | Convection { .. } | Radiation { .. })
     )
 }
 
-fn conduction(
-    table: &Table<'_>,
-    dimension: Option<usize>,
-    (sets, has_reference): (&SetNames, bool),
-) -> Option<Conduction> {
-    let k = table
-        .required("conductivity")
-        .and_then(|item| conductivity(&item));
-    let specific_heat = table
-        .required("specific_heat")
-        .and_then(|item| item.positive(Quantity::SpecificHeat));
-    let scheme = table.choice_or_first(
+fn is_of_temperature(amplitude: Option<&ThermalAmplitude>) -> bool {
+    use ThermalAmplitude::{Convection, Radiation, Temperature};
+    matches!(
+        amplitude,
+        Some(Temperature(_) | Convection { .. } | Radiation { .. })
+    )
+}
+
+fn function(table: &Table<'_>, _: ThermalScope<'_>) -> Option<TimeHistory> {
+    course::function(table)
+}
+
+/// Reads the keys of heat conduction, if the table has them.
+fn conduction(table: &Table<'_>, scope: ThermalScope<'_>) -> Option<Option<Conduction>> {
+    if scope.conducts {
+        return Conduction::read_keys(table, scope).map(Some);
+    }
+    for key in [
         "scheme",
-        "scheme of heat conduction",
-        &[
-            ("explicit", ConductionScheme::Explicit),
-            ("trapezoidal", ConductionScheme::Trapezoidal),
-            ("backward-euler", ConductionScheme::BackwardEuler),
-            ("steady", ConductionScheme::Steady),
-        ],
-    );
-    let step = table.maybe("step", |item| item.positive(Quantity::Time));
-    let interface = table.choice_or_first(
+        "step",
         "interface",
-        "mean conductivity",
-        &[
-            ("harmonic", ConductivityMean::Harmonic),
-            ("arithmetic", ConductivityMean::Arithmetic),
-        ],
-    );
-    let surface_correction = table.or("surface_correction", true, |item| item.boolean());
-    let broken_conductance = table.or("broken_conductance", 0.0, |item| {
-        item.within(Quantity::Number, "a number from 0 to 1", |share| {
-            (0.0..=1.0).contains(&share)
-        })
-    });
-    let dissipation = match scheme {
-        Some(ConductionScheme::Steady) => {
-            table.forbid("dissipation", STORES_NO_HEAT);
-            Some(0.0)
-        }
-        _ => table.or("dissipation", 0.0, |item| {
-            item.within(Quantity::Number, "a number from 0 to 1", |share| {
-                (0.0..=1.0).contains(&share)
-            })
-        }),
-    };
-    let conditions: Vec<Option<ThermalCondition>> = table
-        .tables("condition")
-        .into_iter()
-        .map(|table| condition(table, dimension, (sets, has_reference)))
-        .collect();
-    Some(Conduction {
-        conductivity: k?,
-        specific_heat: specific_heat?,
-        scheme: scheme?,
-        step: step?,
-        interface: interface?,
-        surface_correction: surface_correction?,
-        broken_conductance: broken_conductance?,
-        dissipation: dissipation?,
-        conditions: conditions.into_iter().collect::<Option<_>>()?,
-    })
-}
-
-fn condition(
-    table: Table<'_>,
-    dimension: Option<usize>,
-    (sets, has_reference): (&SetNames, bool),
-) -> Option<ThermalCondition> {
-    let variables = Variables {
-        dimension,
-        time: true,
-    };
-    let set = table.required("set").and_then(|item| sets.reference(&item));
-    let ambient = |table: &Table<'_>| {
-        let item = table.required("ambient")?;
-        component(&item, Quantity::Temperature, variables)
-    };
-    let amplitude = table
-        .exactly_one(THERMAL_CONDITIONS)
-        .and_then(|(key, item)| {
-            Some(match key {
-                "temperature" => ThermalAmplitude::Temperature(component(
-                    &item,
-                    Quantity::Temperature,
-                    variables,
-                )?),
-                "flux" => ThermalAmplitude::Flux(component(&item, Quantity::HeatFlux, variables)?),
-                "source" => {
-                    ThermalAmplitude::Source(component(&item, Quantity::HeatSource, variables)?)
-                }
-                "convection" => {
-                    let table = item.table()?;
-                    let coefficient = table.required("coefficient").and_then(|item| {
-                        item.within(Quantity::HeatTransfer, "at least 0 W/m2/K", |h| h >= 0.0)
-                    });
-                    let ambient = ambient(&table);
-                    table.finish();
-                    ThermalAmplitude::Convection {
-                        coefficient: coefficient?,
-                        ambient: ambient?,
-                    }
-                }
-                _ => {
-                    let table = item.table()?;
-                    let emissivity = table.required("emissivity").and_then(|item| {
-                        item.within(Quantity::Number, "a number from 0 to 1", |e| {
-                            (0.0..=1.0).contains(&e)
-                        })
-                    });
-                    let ambient = ambient(&table);
-                    table.finish();
-                    ThermalAmplitude::Radiation {
-                        emissivity: emissivity?,
-                        ambient: ambient?,
-                    }
-                }
-            })
-        });
-    let on_area = ["flux", "convection", "radiation"]
-        .iter()
-        .any(|key| table.has(key));
-    let area = match on_area {
-        true => table.maybe("area", |item| item.positive(Quantity::Area)),
-        false => {
-            table.forbid("area", "it requires `flux`, `convection` or `radiation`");
-            Some(None)
-        }
-    };
-    let of_temperature = ["temperature", "convection", "radiation"]
-        .iter()
-        .any(|key| table.has(key));
-    let function = match of_temperature && !has_reference {
-        false => course::function(&table),
-        true => {
-            table.forbid("function", "the function multiplies the difference to the reference temperature; set `reference` in [thermal]");
-            Some(TimeHistory::default())
-        }
-    };
-    table.finish();
-    Some(ThermalCondition {
-        set: set?,
-        amplitude: amplitude?,
-        area: area?,
-        function: function?,
-    })
-}
-
-fn of_material(table: Table<'_>, names: &[String], conducts: bool) -> Option<MaterialThermal> {
-    let name = table.required("name").and_then(|item| {
-        let name = item.text()?;
-        if names.contains(&name) {
-            return Some(name);
-        }
-        item.unknown_word("material", &name, names.iter().map(String::as_str));
-        None
-    });
-    let (own_expansion, own_conductivity, own_heat) = match conducts {
-        true => (
-            table.maybe("expansion", |item| expansion(&item)),
-            table.maybe("conductivity", |item| conductivity(&item)),
-            table.maybe("specific_heat", |item| {
-                item.positive(Quantity::SpecificHeat)
-            }),
-        ),
-        false => {
-            for key in CONDUCTION {
-                table.forbid(
-                    key,
-                    "it requires `conductivity` and `specific_heat` in [thermal]",
-                );
-            }
-            let expansion = table
-                .required("expansion")
-                .and_then(|item| expansion(&item));
-            (expansion.map(Some), Some(None), Some(None))
-        }
-    };
-    table.finish();
-    Some(MaterialThermal {
-        name: name?,
-        expansion: own_expansion?,
-        conductivity: own_conductivity?,
-        specific_heat: own_heat?,
-    })
+        "surface_correction",
+        "broken_conductance",
+        "dissipation",
+        "condition",
+    ] {
+        table.forbid(key, NEEDS);
+    }
+    Some(None)
 }

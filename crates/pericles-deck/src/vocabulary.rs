@@ -64,8 +64,6 @@ pub(crate) const OWN_CONSTANTS: &[&str] = &[
 /// Failure rules that materials and interfaces with a fracture energy inherit from the first material.
 pub(crate) const FAILURE_RULES: &[&str] =
     &["fracture_calibration", "failure", "stretch_definition"];
-/// Keys that may be assigned to sets.
-pub(crate) const ASSIGNED: &[&str] = &["material", "stiffness"];
 /// Keys that determine the bond constant between two materials.
 pub(crate) const INTERFACE_STIFFNESSES: &[&str] =
     &["rule", "youngs_modulus", "bulk_modulus", "shear_modulus"];
@@ -86,10 +84,6 @@ pub(crate) const CHECKPOINTS: &[&str] = &["wall", "every", "interval"];
 pub(crate) const DEPTHS: &[&str] = &["depth", "cells"];
 /// Keys of the amplitude of a load.
 pub(crate) const LOADS: &[&str] = &["body_force", "traction", "pressure"];
-
-/// Keys of a thermal condition.
-pub(crate) const THERMAL_CONDITIONS: &[&str] =
-    &["temperature", "flux", "source", "convection", "radiation"];
 
 /// Keys of the points with the fine time step.
 pub(crate) const FINE_REGIONS: &[&str] = &["fine", "adaptive"];

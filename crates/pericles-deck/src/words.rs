@@ -25,13 +25,18 @@ use crate::form::Described;
 
 /// Types whose values are words in decks.
 pub(crate) trait Worded: Copy + PartialEq + 'static {
+    /// What the words are, in messages.
+    const WHAT: &'static str;
+
     /// Returns all words with their values; the first is the default of optional keys.
     fn words() -> Vec<(&'static str, Self)>;
 }
 
 macro_rules! words {
-    ($($type:ty: $words:expr;)*) => {$(
+    ($($type:ty, $what:literal: $words:expr;)*) => {$(
         impl Worded for $type {
+            const WHAT: &'static str = $what;
+
             fn words() -> Vec<(&'static str, Self)> {
                 $words.into()
             }
@@ -47,6 +52,20 @@ macro_rules! words {
             }
         }
     )*};
+}
+
+impl Worded for Option<HistoryForm> {
+    const WHAT: &'static str = HistoryForm::WHAT;
+
+    fn words() -> Vec<(&'static str, Self)> {
+        let forms = [
+            ("blocked", HistoryForm::Blocked),
+            ("direct", HistoryForm::Direct),
+            ("exponentials", HistoryForm::Exponentials),
+        ];
+        let given = forms.map(|(word, form)| (word, Some(form)));
+        [("auto", None)].into_iter().chain(given).collect()
+    }
 }
 
 fn write<T: Worded, S: Serializer>(value: T, serializer: S) -> Result<S::Ok, S::Error> {
@@ -69,48 +88,48 @@ fn read<'de, T: Worded, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::E
 }
 
 words! {
-    MotionKind: [("displacement", MotionKind::Displacement), ("velocity", MotionKind::Velocity)];
-    EndRule: [("closed", EndRule::Closed), ("open", EndRule::Open)];
-    VolumeCorrection: [
+    MotionKind, "kind of motion": [("displacement", MotionKind::Displacement), ("velocity", MotionKind::Velocity)];
+    EndRule, "end rule": [("closed", EndRule::Closed), ("open", EndRule::Open)];
+    VolumeCorrection, "volume correction": [
         ("extended", VolumeCorrection::Extended),
         ("linear", VolumeCorrection::Linear),
         ("none", VolumeCorrection::None),
     ];
-    ActsOn: [("stretch", ActsOn::Stretch), ("displacement", ActsOn::Displacement)];
-    Calibration: [
+    ActsOn, "argument": [("stretch", ActsOn::Stretch), ("displacement", ActsOn::Displacement)];
+    Calibration, "calibration": [
         ("continuum", Calibration::Continuum),
         ("lattice", Calibration::Lattice),
         ("unmodified", Calibration::Unmodified),
     ];
-    FractureCalibration: [
+    FractureCalibration, "fracture calibration": [
         ("lattice", FractureCalibration::Lattice),
         ("continuum", FractureCalibration::Continuum),
     ];
-    Strains: [("finite", Strains::Finite), ("small", Strains::Small)];
-    StretchDefinition: [
+    Strains, "strains": [("finite", Strains::Finite), ("small", Strains::Small)];
+    StretchDefinition, "definition of the critical stretch": [
         ("closing", StretchDefinition::Closing),
         ("bond", StretchDefinition::Bond),
         ("iso", StretchDefinition::Isotropic),
     ];
-    ElasticLaw: [
+    ElasticLaw, "elastic law": [
         ("st-venant-kirchhoff", ElasticLaw::StVenantKirchhoff),
         ("neo-hooke", ElasticLaw::NeoHooke),
         ("neo-hooke-split", ElasticLaw::NeoHookeSplit),
         ("hencky", ElasticLaw::Hencky),
     ];
-    Stabilisation: [
+    Stabilisation, "stabilisation": [
         ("isotropic", Stabilisation::Isotropic),
         ("wan", Stabilisation::Wan),
         ("silling", Stabilisation::Silling),
         ("none", Stabilisation::None),
     ];
-    InterfaceRule: [
+    InterfaceRule, "interface rule": [
         ("harmonic", InterfaceRule::Harmonic),
         ("arithmetic", InterfaceRule::Arithmetic),
         ("weaker", InterfaceRule::Weaker),
     ];
     // The word of `model`, followed by the word of `approximation`.
-    PairLaw: [
+    PairLaw, "pair law": [
         ("linear", PairLaw::Linear),
         ("bond-stretch", PairLaw::BondStretch),
         ("green-strain", PairLaw::GreenStrain),
@@ -120,43 +139,43 @@ words! {
         ("cubic-softening taylor-2", PairLaw::Approximated(CubicLaw::CubicSoftening, Approximation::SecondOrder)),
         ("cubic-softening trapezoidal", PairLaw::Approximated(CubicLaw::CubicSoftening, Approximation::Trapezoidal)),
     ];
-    StressState: [
+    StressState, "stress state": [
         ("uniaxial", StressState::Uniaxial),
         ("plane-stress", StressState::PlaneStress),
         ("plane-strain", StressState::PlaneStrain),
         ("spatial", StressState::Spatial),
     ];
-    SurfaceCorrection: [
+    SurfaceCorrection, "surface correction": [
         ("none", SurfaceCorrection::None),
         ("volume", SurfaceCorrection::Volume),
         ("energy", SurfaceCorrection::Energy),
         ("ghosts", SurfaceCorrection::Ghosts),
     ];
-    Field: Field::ALL.map(|field| (field.name(), field));
-    Face: ["-x", "+x", "-y", "+y", "-z", "+z"]
+    Field, "field": Field::ALL.map(|field| (field.name(), field));
+    Face, "side": ["-x", "+x", "-y", "+y", "-z", "+z"]
         .iter()
         .filter_map(|name| Some((*name, Face::named(name)?)))
         .collect::<Vec<_>>();
-    ImplicitRule: [ImplicitRule::Midpoint, ImplicitRule::Trapezoidal].map(|rule| (rule.name(), rule));
-    Interpolant: [Interpolant::Hermite, Interpolant::Stages].map(|kind| (kind.name(), kind));
-    LinearSolver: LinearSolver::ALL.map(|solver| (solver.name(), solver));
-    Predictor: [Predictor::Structured, Predictor::BackwardDifference].map(|kind| (kind.name(), kind));
-    VelocityNorm: [VelocityNorm::Sum, VelocityNorm::Weighted, VelocityNorm::Largest]
+    ImplicitRule, "implicit rule": [ImplicitRule::Midpoint, ImplicitRule::Trapezoidal].map(|rule| (rule.name(), rule));
+    Interpolant, "interpolant": [Interpolant::Hermite, Interpolant::Stages].map(|kind| (kind.name(), kind));
+    LinearSolver, "linear solver": LinearSolver::ALL.map(|solver| (solver.name(), solver));
+    Predictor, "predictor": [Predictor::Structured, Predictor::BackwardDifference].map(|kind| (kind.name(), kind));
+    VelocityNorm, "norm": [VelocityNorm::Sum, VelocityNorm::Weighted, VelocityNorm::Largest]
         .map(|norm| (norm.name(), norm));
-    Combination: Combination::ALL.map(|combination| (combination.name(), combination));
-    Method: Method::ALL.map(|method| (method.name(), method));
-    SurfaceBond: [("displacement", SurfaceBond::Displacement), ("chord", SurfaceBond::Chord)];
-    Ball: [("geodesic", Ball::Geodesic), ("euclid", Ball::Euclid)];
-    AreaRule: [("barycentric", AreaRule::Barycentric), ("mixed-voronoi", AreaRule::MixedVoronoi)];
-    HistoryForm: [
+    Combination, "combination of wave types": Combination::ALL.map(|combination| (combination.name(), combination));
+    Method, "tuning method": Method::ALL.map(|method| (method.name(), method));
+    SurfaceBond, "bond": [("displacement", SurfaceBond::Displacement), ("chord", SurfaceBond::Chord)];
+    Ball, "ball": [("geodesic", Ball::Geodesic), ("euclid", Ball::Euclid)];
+    AreaRule, "area rule": [("barycentric", AreaRule::Barycentric), ("mixed-voronoi", AreaRule::MixedVoronoi)];
+    HistoryForm, "history": [
         ("direct", HistoryForm::Direct),
         ("blocked", HistoryForm::Blocked),
         ("exponentials", HistoryForm::Exponentials),
     ];
-    KernelMethod: [KernelMethod::Discrete, KernelMethod::SemiDiscrete, KernelMethod::Historical]
+    KernelMethod, "method": [KernelMethod::Discrete, KernelMethod::SemiDiscrete, KernelMethod::Historical]
         .map(|method| (method.name(), method));
-    Side: [Side::Left, Side::Right].map(|side| (side.name(), side));
-    ForceForm: [
+    Side, "side": [Side::Left, Side::Right].map(|side| (side.name(), side));
+    ForceForm, "force kernel": [
         ("fastest", ForceForm::Fastest),
         ("grid", ForceForm::Grid),
         ("grid-f32", ForceForm::FloatGrid),
@@ -164,6 +183,6 @@ words! {
         ("convolution", ForceForm::Convolution),
         ("spectral", ForceForm::Spectral),
     ];
-    FunctionMethod: FunctionMethod::ALL.map(|method| (method.name(), method));
-    LoadRule: [("gauss", LoadRule::Gauss), ("midpoint", LoadRule::Midpoint)];
+    FunctionMethod, "method for matrix functions": FunctionMethod::ALL.map(|method| (method.name(), method));
+    LoadRule, "load quadrature": [("gauss", LoadRule::Gauss), ("midpoint", LoadRule::Midpoint)];
 }

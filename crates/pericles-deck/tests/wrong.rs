@@ -275,7 +275,7 @@ const WRONG: &[Wrong] = &[
     wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\nside = \"-x\"\nhistory = \"long\"\n[time]", (36, 11), "\"long\"", &["unknown history `long`", "\"blocked\""]),
     wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\nside = \"-x\"\nhistory = \"blocked\"\ntolerance = 1e-9\n[time]", (37, 1), "tolerance", &["not allowed", "\"exponentials\""]),
     wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\nside = \"-x\"\nhistory = \"direct\"\nverify = true\n[time]", (37, 1), "verify", &["not allowed", "\"exponentials\""]),
-    wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\nside = \"-x\"\nhistory = \"exponentials\"\nmethod = \"semi-discrete\"\n[time]", (36, 1), "history", &["not allowed", "\"discrete\""]),
+    wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\nside = \"-x\"\nhistory = \"exponentials\"\nmethod = \"semi-discrete\"\n[time]", (36, 11), "\"exponentials\"", &["out of range", "\"discrete\""]),
     wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\nside = \"-x\"\nmethod = \"exact\"\n[time]", (36, 10), "\"exact\"", &["unknown method `exact`", "\"semi-discrete\""]),
     wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\nside = \"-x\"\ntolerance = 2\n[time]", (36, 13), "2", &["above 1e-14 and below 1"]),
     wrong("[time]", "[[boundary]]\nkind = \"damping-layer\"\nside = \"+x\"\n[time]", (33, 1), "[[boundary]]", &["[boundary.0] requires `thickness`"]),
@@ -387,7 +387,7 @@ const WRONG_SURFACES: &[Wrong] = &[
     wrong("scheme = \"newmark\"", "scheme = \"newmark\"\nsolver = \"anderson\"\ndepth = 9", (28, 9), "9", &["from 1 to 8"]),
     wrong("scheme = \"newmark\"", "scheme = \"newmark\"\nbeta = 0\nsolver = \"newton-krylov\"", (27, 8), "0", &["above 0"]),
     wrong("scheme = \"newmark\"", "scheme = \"newmark\"\nnorm = \"l1\"", (27, 8), "\"l1\"", &["\"l2\"", "area-weighted"]),
-    wrong("scheme = \"newmark\"", "scheme = \"newmark\"\niterations = 0", (27, 14), "0", &["at least 1"]),
+    wrong("scheme = \"newmark\"", "scheme = \"newmark\"\niterations = 0", (27, 14), "0", &["from 1 to 1000000"]),
     wrong("scheme = \"newmark\"", "scheme = \"rk4\"\nsolver = \"anderson\"", (27, 1), "solver", &["newmark"]),
     wrong("scheme = \"newmark\"", "scheme = \"discrete-gradient\"\ntolerance = 1", (27, 13), "1", &["1e-14"]),
 ];

@@ -35,9 +35,11 @@ const CRATES: &[(&str, &[&str])] = &[
     ("pericles-mpi", &["pericles"]),
     ("pericles-statics", &["pericles"]),
     ("pericles-heat", &["pericles", "pericles-statics"]),
+    ("pericles-deck-derive", &[]),
     (
         "pericles-deck",
         &[
+            "pericles-deck-derive",
             "pericles",
             "pericles-waves",
             "pericles-manifold",

@@ -7,10 +7,11 @@ use crate::units::{self, UnitError};
 
 /// Reads the required key `unit`; files of meshes and surfaces do not store it.
 pub(crate) fn unit(table: &Table<'_>) -> Option<f64> {
-    table.required("unit").and_then(|item| of(&item))
+    table.required("unit").and_then(|item| unit_of(&item))
 }
 
-fn of(item: &Item<'_>) -> Option<f64> {
+/// Reads a unit of length, returned in metres.
+pub(crate) fn unit_of(item: &Item<'_>) -> Option<f64> {
     let text = item.text()?;
     length_unit(&text).map_err(|fault| item.report(fault)).ok()
 }

@@ -8,11 +8,11 @@ use pericles::material::{
 use pericles::space::{Finer, Region, Shape};
 use pericles_manifold::{PowerMaterial, SurfaceBond};
 
-use super::ranges::{Check, POSITIVE};
 use crate::body::{
     Boundary, FilledCells, FilledShape, Lattice, Piece, Positions, Quadrature, SolidShape,
     VertexAreas, piece_path,
 };
+use crate::declaration::Check;
 use crate::fault::Fault;
 use crate::interface::InterfaceFailure;
 use crate::key_path::KeyPath;
@@ -279,9 +279,6 @@ impl Check {
         let allowed = "allowed: the name of a material of the body";
         for (k, assignment) in model.assignments.iter().enumerate() {
             let key = KeyPath::from("assign").index(k);
-            if let Some(stiffness) = assignment.stiffness {
-                self.positive(key.key("stiffness"), stiffness);
-            }
             if let Some(name) = &assignment.material {
                 let known = names.contains(&name.as_str());
                 self.within(known, key.key("material"), name, allowed);
@@ -410,7 +407,7 @@ impl Check {
             right,
             key.key("critical_stretch"),
             critical_stretch,
-            POSITIVE,
+            "allowed: a positive number",
         );
     }
 }

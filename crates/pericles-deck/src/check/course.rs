@@ -2,11 +2,12 @@
 
 use pericles::observe::{Field, Schedule};
 
-use super::ranges::Check;
+use crate::component::Variables;
+use crate::declaration::{Check, DeckKeys, DeckValue};
 use crate::key_path::KeyPath;
-use crate::output::{Checkpoint, Output};
+use crate::output::Output;
 use crate::scheme::{FineRegion, FineStep, Scheme};
-use crate::stop::StopCondition;
+use crate::set::SetNames;
 use crate::time::{Time, TimeStep};
 
 impl Check {
@@ -33,12 +34,10 @@ impl Check {
                 self.between(key.key("tolerance"), *tolerance, [0.0, 1.0]);
             }
             Scheme::Newmark(options) => {
-                self.positive(key.key("tolerance"), options.tolerance);
-                self.count(key.key("iterations"), options.iterations);
+                options.check_keys(&key, (), self);
             }
             Scheme::Relaxation(options) => {
-                self.between(key.key("tolerance"), options.tolerance, [0.0, 1.0]);
-                self.count(key.key("iterations"), options.iterations);
+                options.check_keys(&key, Some(options.damping), self);
             }
             Scheme::Static(options) => {
                 self.between(key.key("tolerance"), options.tolerance, [0.0, 1.0]);
@@ -55,20 +54,8 @@ impl Check {
             | Scheme::Implicit { .. }
             | Scheme::Trigonometric(_) => {}
         }
-        for (k, stop) in time.stop_when.iter().enumerate() {
-            let key = key.key("stop_when").index(k);
-            match &stop.condition {
-                StopCondition::ReactionBelow(share) => {
-                    self.between(key.key("reaction_below"), *share, [0.0, 1.0]);
-                }
-                StopCondition::DamageAbove(damage) => {
-                    let allowed = "allowed: a damage of at least 0 and below 1";
-                    let right = (0.0..1.0).contains(damage);
-                    self.within(right, key.key("damage_above"), *damage, allowed);
-                }
-                StopCondition::Holds(_) => {}
-            }
-        }
+        time.stop_when
+            .check(key.key("stop_when"), &SetNames::any(), self);
     }
 
     fn alpha(&mut self, key: &KeyPath, alpha: f64) {
@@ -105,16 +92,13 @@ impl Check {
         if let Some(rate) = output.energy_bound {
             self.positive(key.key("energy_bound"), rate);
         }
-        for (k, picture) in output.pictures.iter().enumerate() {
-            let key = key.key("picture").index(k);
-            self.schedule(&key, picture.schedule);
-            self.component(
-                key.key("field"),
-                picture.field,
-                picture.component,
-                dimension,
-            );
-        }
+        let scope = Variables {
+            dimension: Some(dimension),
+            time: true,
+        };
+        output.pictures.check(key.key("picture"), scope, self);
+        output.profiles.check(key.key("profile"), scope, self);
+        output.quantities.check(key.key("quantity"), scope, self);
     }
 
     /// Requires a component of a field to exist.
@@ -133,20 +117,6 @@ impl Check {
     }
 
     fn schedule(&mut self, key: &KeyPath, schedule: Schedule) {
-        match schedule {
-            Schedule::Never => {}
-            Schedule::Every(steps) => self.count(key.key("every"), steps),
-            Schedule::Interval(interval) => self.positive(key.key("interval"), interval),
-            Schedule::Count(count) => self.count(key.key("count"), count),
-        }
-    }
-
-    pub(super) fn checkpoint(&mut self, checkpoint: Checkpoint) {
-        let key = KeyPath::from("checkpoint");
-        match checkpoint {
-            Checkpoint::Wall(seconds) => self.positive(key.key("wall"), seconds),
-            Checkpoint::Every(steps) => self.count(key.key("every"), steps),
-            Checkpoint::Interval(interval) => self.positive(key.key("interval"), interval),
-        }
+        schedule.check_keys(key, schedule, self);
     }
 }

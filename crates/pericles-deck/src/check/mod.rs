@@ -1,16 +1,20 @@
 //! Range checks of models made by programs. Decks are checked while they are read.
+//!
+//! Declared tables have their checks ([`crate::declaration`]); the others have checks written by hand here.
 
 mod body;
-mod conditions;
 mod contact;
 mod course;
-mod ranges;
 
-use self::ranges::Check;
+use crate::assign::{AssignScope, Assignable};
+use crate::declaration::{Check, DeckValue};
+use crate::exact::ExactScope;
 use crate::key_path::KeyPath;
 use crate::model::{Body, Model};
 use crate::remark::BuildError;
+use crate::scope::Scope;
 use crate::set::Members;
+use crate::thermal::ThermalScope;
 
 impl Model {
     /// Rejects numbers out of range. Decks have the same ranges, so that a model read from a deck always passes.
@@ -30,20 +34,44 @@ impl Model {
                 check.region(&KeyPath::from("sets").key(&set.name), region);
             }
         }
-        check.conditions(self);
         check.contact(self);
-        check.thermal(self);
-        check.damping(self);
-        check.boundaries(&self.boundaries);
-        if let Some(exact) = &self.exact {
-            check.exact(exact);
-        }
+        Scope::of_model(self.body.dimension(), |scope| check.declared(self, scope));
         check.time(&self.time);
         check.output(&self.output, self.body.dimension().clamp(1, 3));
-        check.checkpoint(self.checkpoint);
+        self.checkpoint.check("checkpoint".into(), (), &mut check);
         match check.problems.is_empty() {
             true => Ok(()),
             false => Err(BuildError::of(check.problems)),
         }
+    }
+}
+
+impl Check {
+    /// Checks the declared tables.
+    fn declared(&mut self, model: &Model, scope: Scope<'_>) {
+        if let Some(thermal) = &model.thermal {
+            let scope = ThermalScope::new(thermal.conduction.is_some(), scope);
+            thermal.check("thermal".into(), scope, self);
+        }
+        let assign = AssignScope {
+            deck: scope,
+            of: Assignable::Both,
+        };
+        model.assignments.check("assign".into(), assign, self);
+        model.initial.check("initial".into(), scope, self);
+        model.constraints.check("constraint".into(), scope, self);
+        model.loads.check("load".into(), scope, self);
+        if let Some(exact) = &model.exact {
+            exact.check("exact".into(), ExactScope { gaussian: None }, self);
+        }
+        model.probes.check("probe".into(), scope, self);
+        if let Some(contact) = &model.contact {
+            contact.check("contact".into(), scope, self);
+        }
+        model.impactors.check("impactor".into(), scope, self);
+        if let Some(damping) = &model.damping {
+            damping.check("damping".into(), scope, self);
+        }
+        model.boundaries.check("boundary".into(), scope, self);
     }
 }

@@ -7,11 +7,9 @@ mod kernel;
 mod manifold;
 mod material;
 mod number;
-mod output;
 mod space;
 mod time;
 mod tuned;
-mod waves;
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -114,4 +112,4 @@ macro_rules! described {
         }
     )*};
 }
-use described;
+pub(crate) use described;

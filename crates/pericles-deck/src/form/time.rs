@@ -1,8 +1,6 @@
 //! Serialised form of scheme options.
 
-use pericles::time::{
-    Damping, Follow, InnerSolver, NewmarkOptions, RelaxationOptions, VelocityNorm,
-};
+use pericles::time::Follow;
 use pericles_waves::{FunctionMethod, LoadRule, TrigonometricOptions};
 use serde::{Deserialize, Serialize};
 
@@ -18,44 +16,6 @@ struct FollowForm {
 }
 
 #[derive(Serialize, Deserialize)]
-#[serde(remote = "NewmarkOptions", deny_unknown_fields)]
-struct NewmarkOptionsForm {
-    beta: f64,
-    gamma: f64,
-    tolerance: f64,
-    #[serde(with = "crate::form")]
-    norm: VelocityNorm,
-    iterations: u32,
-    #[serde(with = "crate::form")]
-    solver: InnerSolver,
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(remote = "InnerSolver", rename_all = "kebab-case", deny_unknown_fields)]
-enum InnerSolverForm {
-    FixedPoint,
-    Anderson { depth: u32 },
-    NewtonKrylov,
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(remote = "RelaxationOptions", deny_unknown_fields)]
-struct RelaxationOptionsForm {
-    #[serde(with = "crate::form")]
-    damping: Damping,
-    tolerance: f64,
-    iterations: u32,
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(remote = "Damping", rename_all = "snake_case")]
-enum DampingForm {
-    Adaptive,
-    Viscous(f64),
-    Fire,
-}
-
-#[derive(Serialize, Deserialize)]
 #[serde(remote = "TrigonometricOptions", deny_unknown_fields)]
 struct TrigonometricOptionsForm {
     #[serde(with = "crate::form")]
@@ -67,9 +27,5 @@ struct TrigonometricOptionsForm {
 
 described!(
     Follow: FollowForm,
-    NewmarkOptions: NewmarkOptionsForm,
-    InnerSolver: InnerSolverForm,
-    RelaxationOptions: RelaxationOptionsForm,
-    Damping: DampingForm,
     TrigonometricOptions: TrigonometricOptionsForm,
 );

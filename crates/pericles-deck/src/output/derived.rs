@@ -1,52 +1,39 @@
 //! `[[output.quantity]]`: quantities derived from columns of the tables.
 
+use pericles_deck_derive::DeckTable;
 use serde::{Deserialize, Serialize};
 
 use crate::expression::{FUNCTIONS, SignalExpression};
 use crate::fault::Fault;
-use crate::reader::{Item, Table};
+use crate::reader::Item;
 
-/// A quantity derived from scalars of a run, a column of `quantities.csv`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// Quantities derived from columns of the tables, such as a crack mouth opening: the columns of quantities.csv, with the
+/// rows of the history. Any number of tables. Stop conditions, charts, sweeps and convergence studies refer to them by
+/// name.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, DeckTable)]
 #[serde(deny_unknown_fields)]
+#[deck(unique("name", "quantity"))]
 pub struct DerivedQuantity {
-    /// Name of the column.
+    /// The name, which is also the name of the column: a letter, then letters, digits and `_`.
+    #[deck(with = name)]
     pub name: String,
-    /// Its value.
+    /// The value: an expression of columns of history.csv, probes.csv, reactions.csv and impactors.csv by their names
+    /// without unit, of the tips of cracks `crack_1_tip_x` and `crack_1_advance`, of `time`, and of the quantities above
+    /// it, such as "mouth_right.u_x - mouth_left.u_x". Dots may separate the probe, set or impactor from its component,
+    /// and the word `probe`, `reaction` or `impactor` from both: `tip.u_x`, `reaction.top.y`. Names with other characters
+    /// than letters, digits and `_` are written in single quotes. Values and numbers are in SI units.
+    #[deck(with = expression)]
     pub expression: SignalExpression,
-    /// Its unit, if it does not follow from the expression.
+    /// Unit of the column. Default: the SI unit that follows from the expression; required if none follows.
     #[serde(default)]
+    #[deck(with = unit)]
     pub unit: Option<String>,
 }
 
 /// Names that have another meaning in expressions or tables.
 const RESERVED: [&str; 4] = ["e", "pi", "step", "time"];
 
-/// All quantities of a deck.
-pub(super) fn read(tables: Vec<Table<'_>>) -> Option<Vec<DerivedQuantity>> {
-    let mut names: Vec<String> = Vec::new();
-    let quantities: Vec<Option<DerivedQuantity>> = tables
-        .into_iter()
-        .map(|table| quantity(table, &mut names))
-        .collect();
-    quantities.into_iter().collect()
-}
-
-fn quantity(table: Table<'_>, names: &mut Vec<String>) -> Option<DerivedQuantity> {
-    let name = table.required("name").and_then(|item| name(&item, names));
-    let expression = table
-        .required("expression")
-        .and_then(|item| expression(&item));
-    let unit = table.maybe("unit", |item| unit(&item));
-    table.finish();
-    Some(DerivedQuantity {
-        name: name?,
-        expression: expression?,
-        unit: unit?,
-    })
-}
-
-fn expression(item: &Item<'_>) -> Option<SignalExpression> {
+fn expression<S>(item: &Item<'_>, _: S) -> Option<SignalExpression> {
     let text = item.text()?;
     match SignalExpression::parse(&text) {
         Ok(expression) => Some(expression),
@@ -61,7 +48,7 @@ fn expression(item: &Item<'_>) -> Option<SignalExpression> {
     }
 }
 
-fn unit(item: &Item<'_>) -> Option<String> {
+fn unit<S>(item: &Item<'_>, _: S) -> Option<String> {
     let unit = item.text()?;
     let wrong = |c: char| c.is_control() || matches!(c, '[' | ']' | ',' | '"');
     if unit.trim().is_empty() || unit.len() > 40 || unit.contains(wrong) {
@@ -71,31 +58,23 @@ fn unit(item: &Item<'_>) -> Option<String> {
     Some(unit)
 }
 
-/// A name that is the name of a column and of a variable of expressions.
-fn name(item: &Item<'_>, names: &mut Vec<String>) -> Option<String> {
+/// Reads a name of a column, which is also the name of a variable of expressions.
+fn name<S>(item: &Item<'_>, _: S) -> Option<String> {
     let name = item.text()?;
     let usable = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let begins = name.starts_with(|c: char| c.is_ascii_alphabetic());
     let reason = if !begins || name.len() > 60 || !name.chars().all(usable) {
-        Some("it is a variable of expressions")
+        "it is a variable of expressions"
     } else if RESERVED.contains(&name.as_str()) || FUNCTIONS.contains(&name.as_str()) {
-        Some("it has another meaning in expressions")
-    } else if names.contains(&name) {
-        Some("another quantity has it")
+        "it has another meaning in expressions"
     } else {
-        None
+        return Some(name);
     };
-    names.push(name.clone());
-    match reason {
-        None => Some(name),
-        Some(reason) => {
-            item.report(Fault::BadName {
-                name,
-                reason,
-                allowed: "allowed: a letter, then at most 59 letters, digits and `_`; a name of its own for each \
-                          quantity; not the name of a function, nor e, pi, step or time",
-            });
-            None
-        }
-    }
+    item.report(Fault::BadName {
+        name,
+        reason,
+        allowed: "allowed: a letter, then at most 59 letters, digits and `_`; a name of its own for each \
+                  quantity; not the name of a function, nor e, pi, step or time",
+    });
+    None
 }

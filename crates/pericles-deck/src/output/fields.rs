@@ -1,9 +1,10 @@
 //! `[output] fields`: schedule, names and formats of field files.
 
 use pericles::observe::{Field, Schedule};
+use pericles_deck_derive::{DeckTable, DeckWords};
 use serde::{Deserialize, Serialize};
 
-use super::{FieldComponent, is_never, schedule};
+use super::FieldComponent;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 use crate::set::SetNames;
@@ -28,8 +29,9 @@ impl FieldFormat {
 }
 
 /// Blocks of Exodus files.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, DeckWords)]
 #[serde(rename_all = "snake_case")]
+#[deck(what = "kind of blocks")]
 pub enum FieldBlocks {
     /// Element groups of a mesh, or blocks of listed points.
     #[default]
@@ -158,8 +160,14 @@ pub(super) struct Names {
     pub(super) numbers: Vec<PointNumber>,
 }
 
-/// `[output.fields] names`.
-fn names(item: &Item<'_>, dimension: Option<usize>, sets: &SetNames) -> Option<Names> {
+/// Reads the names of the arrays.
+fn names(table: &Table<'_>, scope: FieldScope<'_>) -> Option<Names> {
+    let Some(item) = table.optional("names") else {
+        return Some(scope.usual());
+    };
+    let FieldScope {
+        dimension, sets, ..
+    } = scope;
     let one = |item: &Item<'_>| -> Option<Name> {
         if let Some(number) = item.word().and_then(PointNumber::named) {
             if let PointNumber::Set(set) = &number {
@@ -195,7 +203,7 @@ fn names(item: &Item<'_>, dimension: Option<usize>, sets: &SetNames) -> Option<N
         }
     };
     let mut names = Names::default();
-    for name in super::each_once(item, one)? {
+    for name in super::each_once(&item, one)? {
         match name {
             Name::Field(field) => names.fields.push(field),
             Name::Number(number) => names.numbers.push(number),
@@ -210,69 +218,75 @@ enum Name {
     Number(PointNumber),
 }
 
-/// `[output] fields`.
+/// Field files for ParaView and other viewers.
+#[derive(DeckTable)]
+#[deck(scope = FieldScope<'s>, word_for(super::NEVER, Self::none(scope)))]
 pub(super) struct Fields {
+    #[deck(flatten, scope = Schedule::Count(20))]
     pub(super) schedule: Schedule,
+    /// Fields to write. Default: Displacement, Velocity, Force_Density, Damage and Strain_Energy_Density (2-manifolds: also
+    /// Kinetic_Energy_Density). Stress and Strain exclude the convolution kernel. Dilatation needs a state-based or
+    /// correspondence material, Plastic_Strain and Yield_Flag a `yield_stress`, Temperature the table `[thermal]`,
+    /// Heat_Flux heat conduction. Equivalent_Stress and Von_Mises_Stress are the von Mises stress, of the in-plane
+    /// components in 2D; Principal_Stress contains the eigenvalues of the stress in descending order. Integers: Point_Id
+    /// (number of the point), Fragment_Id (number of the fragment), Material_Id (1: the body's material, 2: the first of
+    /// `[materials]`, …), `Set_<name>` (1 in the set, 0 elsewhere). Radius is half the cell size. VTU files contain Stress and
+    /// Strain as symmetric tensors and their components as scalars.
+    #[deck(flatten, key = "names", with = names)]
     pub(super) names: Names,
+    /// File format or list of formats. `vtu`: fields.pvd and one file per output, read by `pericles plot`, `diff` and
+    /// `report`; `exodus`: one file fields.exo with blocks and sets; `vtkhdf`: one file fields.vtkhdf, for ParaView 5.12
+    /// and later. All can be read during the run.
+    #[deck(flatten, key = "format", with = formats)]
     pub(super) formats: Vec<FieldFormat>,
+    /// Mesh: also write the fields on the mesh elements, cells.pvd.
+    #[deck(
+        key = "cells",
+        default = false,
+        forbid_if(!scope.mesh, "it requires shape = \"mesh\"")
+    )]
     pub(super) mesh_cells: bool,
+    /// Blocks of Exodus files. `groups`: element groups of a mesh (the first one for elements of several groups), or blocks
+    /// of listed points; `materials`: one block per material.
+    #[deck(default)]
     pub(super) blocks: FieldBlocks,
 }
 
-/// Reads `[output] fields`.
-pub(super) fn fields(
-    table: &Table<'_>,
-    dimension: Option<usize>,
-    usual: Vec<Field>,
-    mesh: bool,
-    sets: &SetNames,
-) -> Option<Fields> {
-    let usual = Names {
-        fields: usual,
-        numbers: Vec::new(),
-    };
-    if is_never(table, "fields") {
-        return Some(Fields {
+/// Scope of `[output.fields]`.
+#[derive(Clone, Copy)]
+pub(super) struct FieldScope<'s> {
+    pub(super) dimension: Option<usize>,
+    /// Fields that are written by default.
+    pub(super) usual: &'s [Field],
+    /// Whether the body is a mesh, which has cells.
+    pub(super) mesh: bool,
+    pub(super) sets: &'s SetNames,
+}
+
+impl FieldScope<'_> {
+    fn usual(self) -> Names {
+        Names {
+            fields: self.usual.to_vec(),
+            numbers: Vec::new(),
+        }
+    }
+}
+
+impl Fields {
+    /// No field files.
+    fn none(scope: FieldScope<'_>) -> Self {
+        Self {
             schedule: Schedule::Never,
-            names: usual,
+            names: scope.usual(),
             formats: FieldFormat::usual(),
             mesh_cells: false,
             blocks: FieldBlocks::Groups,
-        });
+        }
     }
-    let table = table.table_or_empty("fields")?;
-    let schedule = schedule(&table, Schedule::Count(20));
-    let names = match table.optional("names") {
-        None => Some(usual),
-        Some(item) => names(&item, dimension, sets),
-    };
-    let formats = formats(&table);
-    let mesh_cells = if mesh {
-        table.or("cells", false, |item| item.boolean())
-    } else {
-        table.forbid("cells", "it requires shape = \"mesh\"");
-        Some(false)
-    };
-    let blocks = table.choice_or_first(
-        "blocks",
-        "kind of blocks",
-        &[
-            ("groups", FieldBlocks::Groups),
-            ("materials", FieldBlocks::Materials),
-        ],
-    );
-    table.finish();
-    Some(Fields {
-        schedule: schedule?,
-        names: names?,
-        formats: formats?,
-        mesh_cells: mesh_cells?,
-        blocks: blocks?,
-    })
 }
 
 /// Reads a format or a list of formats.
-fn formats(table: &Table<'_>) -> Option<Vec<FieldFormat>> {
+fn formats<S>(table: &Table<'_>, _: S) -> Option<Vec<FieldFormat>> {
     const WORDS: [(&str, FieldFormat); 3] = [
         ("vtu", FieldFormat::Vtu),
         ("exodus", FieldFormat::Exodus),

@@ -4,6 +4,7 @@ mod derived;
 mod fields;
 mod picture;
 mod profile;
+mod schedule;
 
 pub use derived::DerivedQuantity;
 pub use fields::{CellChoice, FieldBlocks, FieldFormat, PointNumber};
@@ -11,13 +12,16 @@ pub use picture::{Picture, PictureColours, PictureFormat, PictureLook};
 pub use profile::Profile;
 
 use pericles::observe::{Field, Schedule};
+use pericles_deck_derive::{DeckKeys, DeckTable};
 use serde::{Deserialize, Serialize};
 
-use self::fields::{Fields, cells, field_names, fields, quantity};
+use self::fields::{FieldScope, Fields, cells, field_names, quantity};
+use crate::component::Variables;
+use crate::declaration::{Check, DeckTable, DeckValue, declared};
+use crate::key_path::KeyPath;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 use crate::set::SetNames;
-use crate::vocabulary::{CHECKPOINTS, SCHEDULES};
 
 /// Output of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -95,25 +99,39 @@ impl Default for Output {
     }
 }
 
-/// The table of crack tips.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+/// Rows of the table of crack tips. Default: the schedule of the history.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, DeckTable)]
 #[serde(deny_unknown_fields)]
+#[deck(scope = Schedule, word_for(NEVER, Self::NONE))]
 pub struct CrackOutput {
     /// Schedule of the rows.
     #[serde(with = "crate::form")]
+    #[deck(flatten)]
     pub schedule: Schedule,
     /// Damage above which a point is part of a crack.
+    #[deck(
+        range = between(0.0, 1.0).described("a damage between 0 and 1, both excluded"),
+        default = Self::THRESHOLD
+    )]
     pub threshold: f64,
 }
 
-/// The table of fragments.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+/// Rows of the table of fragments, the sets of points connected by intact bonds. Default: "never", because each row needs a
+/// pass over all bonds.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, DeckTable)]
 #[serde(deny_unknown_fields)]
+#[deck(word_for(NEVER, Self::NONE))]
 pub struct FragmentOutput {
     /// Schedule of the rows.
     #[serde(with = "crate::form")]
+    #[deck(flatten, scope = Schedule::Count(50))]
     pub schedule: Schedule,
     /// Smallest mass of a fragment, as a fraction of the mass of the body.
+    #[deck(
+        range = from_below(0.0, 1.0)
+            .described("a fraction of the body's mass, at least 0 and below 1"),
+        default = Self::NONE.smallest
+    )]
     pub smallest: f64,
 }
 
@@ -122,6 +140,26 @@ impl FragmentOutput {
     pub const NONE: Self = Self {
         schedule: Schedule::Never,
         smallest: 1e-3,
+    };
+}
+
+/// Rows of history.csv: energies, probes and reactions.
+#[derive(DeckTable)]
+#[deck(scope = Variables, word_for(NEVER, Self::NONE))]
+struct History {
+    #[deck(flatten, scope = Schedule::Count(200))]
+    schedule: Schedule,
+    /// Fields or components, such as "Damage" or "Velocity_y", whose minimum and maximum over all points become columns
+    /// `min_…` and `max_…` of history.csv. Vectors and tensors without a component enter by their norm.
+    #[deck(with = extremes)]
+    extremes: Vec<FieldComponent>,
+}
+
+impl History {
+    /// No history.
+    const NONE: Self = Self {
+        schedule: Schedule::Never,
+        extremes: Vec::new(),
     };
 }
 
@@ -135,16 +173,21 @@ pub enum Precision {
     Double,
 }
 
-/// Schedule of checkpoints.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+/// Schedule of checkpoints, from which `pericles resume` continues a stopped run.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, DeckKeys)]
 #[serde(rename_all = "snake_case")]
+#[deck(exclusive, default)]
 pub enum Checkpoint {
-    /// Wall-clock time between checkpoints, s.
-    Wall(f64),
+    /// Wall-clock time between checkpoints.
+    ///
+    /// In s.
+    Wall(#[deck(quantity = Time, range = POSITIVE)] f64),
     /// Steps between checkpoints.
     Every(u64),
-    /// Simulated time between checkpoints, s.
-    Interval(f64),
+    /// Simulated time between checkpoints.
+    ///
+    /// In s.
+    Interval(#[deck(quantity = Time, range = POSITIVE)] f64),
 }
 
 impl Default for Checkpoint {
@@ -168,11 +211,27 @@ pub(crate) fn read(
     if surface {
         usual.push(Field::KineticEnergyDensity);
     }
-    let fields = fields(&table, dimension, usual, mesh, sets);
+    let scope = Variables {
+        dimension,
+        time: true,
+    };
+    let fields = inner(
+        &table,
+        "fields",
+        FieldScope {
+            dimension,
+            usual: &usual,
+            mesh,
+            sets,
+        },
+    );
     let cells = cells(&table);
-    let (history, extremes) = history(&table, dimension);
-    let cracks = cracks(&table, history);
-    let fragments = fragments(&table);
+    let history: Option<History> = inner(&table, "history", scope);
+    let cracks = cracks(&table, history.as_ref().map(|history| history.schedule));
+    let fragments = match table.optional("fragments") {
+        Some(item) => FragmentOutput::read(&item, ()),
+        None => Some(FragmentOutput::NONE),
+    };
     let precision = table.choice_or_first(
         "precision",
         "precision",
@@ -187,13 +246,9 @@ pub(crate) fn read(
     let energy_bound = table.maybe("energy_bound", |item| {
         item.positive(Quantity::Time).map(f64::recip)
     });
-    let pictures: Vec<Option<Picture>> = table
-        .tables("picture")
-        .into_iter()
-        .map(|table| picture::read(table, dimension))
-        .collect();
-    let profiles = profile::read(table.tables("profile"), dimension);
-    let quantities = derived::read(table.tables("quantity"));
+    let pictures = declared(&table, "picture", scope);
+    let profiles = declared(&table, "profile", scope);
+    let quantities = declared(&table, "quantity", scope);
     table.finish();
     let Fields {
         schedule,
@@ -202,6 +257,10 @@ pub(crate) fn read(
         mesh_cells,
         blocks,
     } = fields?;
+    let History {
+        schedule: history,
+        extremes,
+    } = history?;
     Some(Output {
         fields: schedule,
         names: names.fields,
@@ -210,34 +269,16 @@ pub(crate) fn read(
         cells: cells?,
         mesh_cells,
         blocks,
-        history: history?,
-        extremes: extremes?,
+        history,
+        extremes,
         cracks: cracks?,
         fragments: fragments?,
         precision: precision?,
         energy_bound: energy_bound?,
-        pictures: pictures.into_iter().collect::<Option<_>>()?,
+        pictures: pictures?,
         profiles: profiles?,
         quantities: quantities?,
     })
-}
-
-pub(crate) fn checkpoint(table: Table<'_>) -> Option<Checkpoint> {
-    let checkpoint = match table.at_most_one(CHECKPOINTS) {
-        None => None,
-        Some(None) => {
-            let Checkpoint::Wall(seconds) = Checkpoint::default() else {
-                return None;
-            };
-            table.record("wall", seconds);
-            Some(Checkpoint::Wall(seconds))
-        }
-        Some(Some(("wall", item))) => item.positive(Quantity::Time).map(Checkpoint::Wall),
-        Some(Some(("every", item))) => item.count().map(Checkpoint::Every),
-        Some(Some((_, item))) => item.positive(Quantity::Time).map(Checkpoint::Interval),
-    };
-    table.finish();
-    checkpoint
 }
 
 /// The word for no output.
@@ -246,24 +287,20 @@ const NEVER: &str = "never";
 /// A field, and optionally one of its components.
 type FieldComponent = (Field, Option<usize>);
 
-/// Reads the schedule of the history and the fields whose extremes it contains.
-fn history(
+/// Reads a table of `[output]`, or an empty one if it is missing.
+fn inner<S: Copy, T: DeckTable<S> + DeckValue<S>>(
     table: &Table<'_>,
-    dimension: Option<usize>,
-) -> (Option<Schedule>, Option<Vec<FieldComponent>>) {
-    if is_never(table, "history") {
-        return (Some(Schedule::Never), Some(Vec::new()));
+    key: &'static str,
+    scope: S,
+) -> Option<T> {
+    match table.optional(key) {
+        Some(item) => T::read(&item, scope),
+        None => T::read_table(table.table_or_empty(key)?, scope),
     }
-    let Some(table) = table.table_or_empty("history") else {
-        return (None, None);
-    };
-    let schedule = schedule(&table, Schedule::Count(200));
-    let extremes = match table.optional("extremes") {
-        None => Some(Vec::new()),
-        Some(item) => each_once(&item, |item| field(item, dimension)),
-    };
-    table.finish();
-    (schedule, extremes)
+}
+
+fn extremes(item: &Item<'_>, scope: Variables) -> Option<Vec<FieldComponent>> {
+    each_once(item, |item| field(item, scope.dimension))
 }
 
 /// Reads a list of distinct fields.
@@ -286,82 +323,22 @@ fn each_once<T: PartialEq>(
     fields
 }
 
-fn is_never(table: &Table<'_>, key: &'static str) -> bool {
-    table
-        .optional(key)
-        .is_some_and(|item| item.is_keyword(NEVER))
-}
-
-fn schedule(table: &Table<'_>, default: Schedule) -> Option<Schedule> {
-    match table.at_most_one(SCHEDULES)? {
-        None => {
-            match default {
-                Schedule::Never => {}
-                Schedule::Interval(interval) => table.record("interval", interval),
-                Schedule::Every(steps) => table.record("every", steps),
-                Schedule::Count(count) => table.record("count", count),
-            }
-            Some(default)
-        }
-        Some(("interval", item)) => item.positive(Quantity::Time).map(Schedule::Interval),
-        Some(("every", item)) => item.count().map(Schedule::Every),
-        Some((_, item)) => item.count().map(Schedule::Count),
-    }
-}
-
 impl CrackOutput {
     /// The damage on a straight crack is close to 1/2; this value detects cracks without their surroundings.
     const THRESHOLD: f64 = 0.35;
-}
 
-/// Reads the table of crack tips; the default schedule is the schedule of the history.
-fn cracks(table: &Table<'_>, history: Option<Schedule>) -> Option<Option<CrackOutput>> {
-    const THRESHOLD: f64 = CrackOutput::THRESHOLD;
-    if is_never(table, "cracks") {
-        return Some(Some(CrackOutput {
-            schedule: Schedule::Never,
-            threshold: THRESHOLD,
-        }));
-    }
-    let given = table.has("cracks");
-    let table = table.table_or_empty("cracks")?;
-    let schedule = schedule(&table, history.unwrap_or(Schedule::Count(200)));
-    let threshold = table.or("threshold", THRESHOLD, |item| {
-        item.within(
-            Quantity::Number,
-            "a damage between 0 and 1, both excluded",
-            |threshold| threshold > 0.0 && threshold < 1.0,
-        )
-    });
-    table.finish();
-    let cracks = CrackOutput {
-        schedule: schedule?,
-        threshold: threshold?,
+    /// No table.
+    const NONE: Self = Self {
+        schedule: Schedule::Never,
+        threshold: Self::THRESHOLD,
     };
-    Some(given.then_some(cracks))
 }
 
-/// Reads the table of fragments; off by default, because it needs a pass over all bonds.
-fn fragments(table: &Table<'_>) -> Option<FragmentOutput> {
-    const SMALLEST: f64 = FragmentOutput::NONE.smallest;
-    let wanted = table.optional("fragments").is_some();
-    if !wanted || is_never(table, "fragments") {
-        return Some(FragmentOutput::NONE);
-    }
-    let table = table.table_or_empty("fragments")?;
-    let schedule = schedule(&table, Schedule::Count(50));
-    let smallest = table.or("smallest", SMALLEST, |item| {
-        item.within(
-            Quantity::Number,
-            "a fraction of the body's mass, at least 0 and below 1",
-            |share| (0.0..1.0).contains(&share),
-        )
-    });
-    table.finish();
-    Some(FragmentOutput {
-        schedule: schedule?,
-        smallest: smallest?,
-    })
+/// Reads the table of crack tips, if it is given; its defaults are recorded in any case.
+fn cracks(table: &Table<'_>, history: Option<Schedule>) -> Option<Option<CrackOutput>> {
+    let usual = history.unwrap_or(Schedule::Count(200));
+    let cracks = inner(table, "cracks", usual)?;
+    Some(table.has("cracks").then_some(cracks))
 }
 
 impl Output {
@@ -402,6 +379,38 @@ impl Output {
             .chain(profiles)
             .any(is_wanted)
     }
+}
+
+/// Reads a field without its component.
+fn whole_field(item: &Item<'_>, scope: Variables) -> Option<Field> {
+    field(item, scope.dimension).map(|(field, _)| field)
+}
+
+/// Reads the component of the field under the key `field`.
+fn field_component(
+    table: &Table<'_>,
+    (_, scope): (Option<&Field>, Variables),
+) -> Option<Option<usize>> {
+    let item = table.optional("field")?;
+    field(&item, scope.dimension).map(|(_, component)| component)
+}
+
+/// Requires the component of a field to exist.
+fn check_component(
+    component: &usize,
+    path: &KeyPath,
+    (field, scope): (Option<&Field>, Variables),
+    check: &mut Check,
+) {
+    let components = |field: &Field| field.components(scope.dimension.unwrap_or(3)).len();
+    let known = field.map_or(0, components);
+    let allowed = format!("allowed: a component below {known}");
+    check.within(*component < known, path.key("field"), component, &allowed);
+}
+
+/// Returns the quantity of the values of a field.
+fn unit_of(field: Option<&Field>) -> Quantity {
+    field.map_or(Quantity::Number, |field| quantity(*field))
 }
 
 /// Reads a field by its name in files, with or without an axis of the body for a component.

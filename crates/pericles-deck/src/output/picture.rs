@@ -2,43 +2,66 @@
 
 use pericles::observe::{Field, Schedule};
 use pericles::space::Point;
+use pericles_deck_derive::{DeckTable, DeckWords};
 use serde::{Deserialize, Serialize};
 
-use super::{field, quantity, schedule};
+use super::{check_component, field_component, unit_of, whole_field};
+use crate::component::Variables;
 use crate::quantity::Quantity;
+use crate::range::{Range, from_to};
 use crate::reader::{Item, Table};
 
-/// A picture of a field on the points.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// Pictures of a field. Any number of tables.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, DeckTable)]
 #[serde(deny_unknown_fields)]
+#[deck(scope = Variables)]
 pub struct Picture {
-    /// The field.
+    /// Field to draw: a component, the magnitude of a vector or the norm of a tensor.
     #[serde(with = "crate::form")]
+    #[deck(with = whole_field)]
     pub field: Field,
     /// Component of a vector or tensor; none for its magnitude.
     #[serde(default)]
+    #[deck(
+        flatten,
+        keys(),
+        with = field_component,
+        scope = (field, scope),
+        check = check_component
+    )]
     pub component: Option<usize>,
     /// Magnification of displacements.
+    #[deck(range = at_least(0.0).described("a number of at least 0"), default = 1.0)]
     pub scale: f64,
-    /// Lowest and highest value of the colour bar; none for the range of the field.
+    /// Lowest and highest value of the colour bar. Default: the range of the field.
     #[serde(default)]
+    #[deck(with = range, scope = unit_of(field))]
     pub range: Option<[f64; 2]>,
-    /// Direction from which a 3D body is seen; none for the front, right and above.
+    /// 3D: direction from which the body is seen. Default: from the front, right and above.
     #[serde(default)]
+    #[deck(with = view, forbid_if(is_plane(scope), "it requires a 3D body"))]
     pub view: Option<Point>,
-    /// Whether an animation of all pictures is written at the end.
+    /// Format, size and style.
+    #[serde(default)]
+    #[deck(flatten)]
+    pub look: PictureLook,
+    /// Also write one animated PNG of all pictures at the end, ten frames per second. All frames then show the bounding
+    /// box of the undeformed body plus a margin of 10 %.
+    #[deck(
+        default = false,
+        forbid_if(is_vector(look), "an animation consists of PNG files")
+    )]
     pub animation: bool,
     /// Schedule.
     #[serde(with = "crate::form")]
+    #[deck(flatten, scope = Schedule::Count(4))]
     pub schedule: Schedule,
-    /// Format, size and style.
-    #[serde(default)]
-    pub look: PictureLook,
 }
 
 /// File formats of pictures.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, DeckWords)]
 #[serde(rename_all = "snake_case")]
+#[deck(what = "picture format")]
 pub enum PictureFormat {
     /// Pixels.
     #[default]
@@ -61,8 +84,9 @@ impl PictureFormat {
 }
 
 /// Colour maps of pictures.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, DeckWords)]
 #[serde(rename_all = "kebab-case")]
+#[deck(what = "colour map")]
 pub enum PictureColours {
     /// From dark blue over green to yellow.
     Viridis,
@@ -73,27 +97,56 @@ pub enum PictureColours {
 }
 
 /// Format, size and style of a picture.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, DeckTable)]
 #[serde(deny_unknown_fields)]
+#[deck(scope = Variables, verify = require_pixels)]
 pub struct PictureLook {
-    /// File format.
+    /// File format: pixels (`png`) or vector graphics (`svg`, `pdf`), in which the cells of the body are an image. HTML
+    /// reports and animations need `png`.
+    #[deck(default)]
     pub format: PictureFormat,
-    /// Width on paper, m; none for 1200 pixels.
+    /// Width on paper, such as "88 mm" for a column of a journal. Default: 1200 pixels with text in proportion.
+    ///
+    /// In m.
     #[serde(default)]
+    #[deck(quantity = Length, range = POSITIVE)]
     pub width: Option<f64>,
-    /// Size of text on paper, points of 1/72 inch.
+    /// With `width`: size of all text, 4 to 24 points, such as "8 pt". Lines are in proportion to it, 0.5 points at
+    /// 8 points.
+    ///
+    /// In points of 1/72 inch.
+    #[deck(
+        flatten,
+        key = "font_size",
+        with = font_size,
+        default = 8.0,
+        forbid_if(width == Some(&None), NEEDS_WIDTH)
+    )]
     pub font_size: f64,
-    /// Pixels per inch of paper.
+    /// With `width`: pixels per inch of paper.
+    #[deck(
+        range = RESOLUTIONS,
+        default = 300.0,
+        forbid_if(width == Some(&None), NEEDS_WIDTH)
+    )]
     pub dpi: f64,
-    /// Colour map; none for the one that suits the values.
+    /// Colours from low to high values. `viridis`: dark blue over green to yellow; `cool-to-warm`: blue over light grey to
+    /// red; `grey`: dark to light grey. Default: `cool-to-warm` for values of both signs, otherwise `viridis`.
     #[serde(default)]
     pub colour_map: Option<PictureColours>,
-    /// Lowest and highest coordinates of the region shown, m; none for the whole body.
+    /// Region of the body shown. Default: the whole body.
+    ///
+    /// Lowest and highest coordinates, m.
     #[serde(default)]
+    #[deck(with = crop)]
     pub crop: Option<[Point; 2]>,
     /// Whether title and time are drawn above the picture.
+    #[deck(default = true)]
     pub title: bool,
-    /// Whether the background is transparent instead of white.
+    /// Background of the picture.
+    ///
+    /// Whether it is transparent instead of white.
+    #[deck(flatten, key = "background", with = background, default = false)]
     pub transparent: bool,
 }
 
@@ -102,12 +155,12 @@ impl Default for PictureLook {
         Self {
             format: PictureFormat::default(),
             width: None,
-            font_size: 8.0,
-            dpi: 300.0,
+            font_size: Self::default_font_size(),
+            dpi: Self::default_dpi(),
             colour_map: None,
             crop: None,
-            title: true,
-            transparent: false,
+            title: Self::default_title(),
+            transparent: Self::default_transparent(),
         }
     }
 }
@@ -115,125 +168,63 @@ impl Default for PictureLook {
 /// A point of 1/72 inch, m.
 const POINT: f64 = 25.4e-3 / 72.0;
 
-/// Reads a picture.
-pub(super) fn read(table: Table<'_>, dimension: Option<usize>) -> Option<Picture> {
-    let field = table
-        .required("field")
-        .and_then(|item| field(&item, dimension));
-    let scale = table.or("scale", 1.0, |item| {
-        item.within(Quantity::Number, "a number of at least 0", |scale| {
-            scale >= 0.0
-        })
-    });
-    let quantity = field.map_or(Quantity::Number, |(field, _)| quantity(field));
-    let range = table.maybe("range", |item| range(&item, quantity));
-    let view = if dimension == Some(3) {
-        table.maybe("view", |item| {
-            let view = item.vector(Quantity::Number, Some(3))?;
-            if view == [0.0; 3] {
-                item.out_of_range("a nonzero vector");
-                return None;
-            }
-            Some(view)
-        })
-    } else {
-        if dimension.is_some() {
-            table.forbid("view", "it requires a 3D body");
-        }
-        Some(None)
-    };
-    let look = look(&table, dimension);
-    let animation = match look.as_ref().map(|look| look.format) {
-        Some(PictureFormat::Svg | PictureFormat::Pdf) => {
-            table.forbid("animation", "an animation consists of PNG files");
-            Some(false)
-        }
-        _ => table.or("animation", false, |item| item.boolean()),
-    };
-    let schedule = schedule(&table, Schedule::Count(4));
-    table.finish();
-    let (field, component) = field?;
-    Some(Picture {
-        field,
-        component,
-        scale: scale?,
-        range: range?,
-        view: view?,
-        animation: animation?,
-        schedule: schedule?,
-        look: look?,
-    })
+/// Why the size of text on paper has no meaning.
+const NEEDS_WIDTH: &str = "it requires `width`, such as width = \"88 mm\"";
+
+/// Range of resolutions.
+const RESOLUTIONS: Range =
+    from_to(72.0, 2400.0).described("a number of pixels per inch from 72 to 2400");
+
+fn is_plane(scope: Variables) -> bool {
+    matches!(scope.dimension, Some(1 | 2))
 }
 
-fn look(table: &Table<'_>, dimension: Option<usize>) -> Option<PictureLook> {
-    let usual = PictureLook::default();
-    let formats = [
-        ("png", PictureFormat::Png),
-        ("svg", PictureFormat::Svg),
-        ("pdf", PictureFormat::Pdf),
-    ];
-    let format = table.choice_or_first("format", "picture format", &formats);
-    let item = table.optional("width");
-    let (width, font_size, dpi) = match &item {
-        None => {
-            let needs = "it requires `width`, such as width = \"88 mm\"";
-            table.forbid("font_size", needs);
-            table.forbid("dpi", needs);
-            (Some(None), Some(usual.font_size), Some(usual.dpi))
-        }
-        Some(item) => (
-            item.positive(Quantity::Length).map(Some),
-            match table.optional("font_size") {
-                Some(item) => font_size(&item),
-                None => {
-                    table.record("font_size", format!("{} pt", usual.font_size));
-                    Some(usual.font_size)
-                }
-            },
-            table.or("dpi", usual.dpi, |item| {
-                item.within(
-                    Quantity::Number,
-                    "a number of pixels per inch from 72 to 2400",
-                    |dpi| (72.0..=2400.0).contains(&dpi),
-                )
-            }),
-        ),
+fn is_vector(look: Option<&PictureLook>) -> bool {
+    look.is_some_and(|look| look.format != PictureFormat::Png)
+}
+
+/// Requires a picture of given width to have a useful number of pixels.
+fn require_pixels(table: &Table<'_>, look: &PictureLook, _: Variables) -> Option<()> {
+    let (Some(item), Some(width)) = (table.optional("width"), look.width) else {
+        return Some(());
     };
-    if let (Some(item), Some(Some(width)), Some(dpi)) = (&item, width, dpi) {
-        let [least, most] = [200.0, 16_000.0].map(|pixels| pixels / dpi * 25.4e-3);
-        if !(least..=most).contains(&width) {
-            item.out_of_range(&format!(
-                "{:.1} mm to {:.0} mm at {dpi} pixels per inch",
-                1e3 * least,
-                1e3 * most
-            ));
-            return None;
-        }
+    let dpi = look.dpi;
+    let [least, most] = [200.0, 16_000.0].map(|pixels| pixels / dpi * 25.4e-3);
+    if (least..=most).contains(&width) {
+        return Some(());
     }
-    let maps = [
-        ("viridis", PictureColours::Viridis),
-        ("cool-to-warm", PictureColours::CoolToWarm),
-        ("grey", PictureColours::Grey),
-    ];
-    let colour_map = table.maybe("colour_map", |item| item.choice("colour map", &maps));
-    let crop = table.maybe("crop", |item| crop(&item, dimension));
-    let title = table.or("title", true, |item| item.boolean());
+    item.out_of_range(&format!(
+        "{:.1} mm to {:.0} mm at {dpi} pixels per inch",
+        1e3 * least,
+        1e3 * most
+    ));
+    None
+}
+
+/// Reads the direction from which a 3D body is seen.
+fn view(item: &Item<'_>, scope: Variables) -> Option<Point> {
+    let view = item
+        .vector(Quantity::Number, Some(3))
+        .filter(|_| scope.dimension.is_some())?;
+    if view == [0.0; 3] {
+        item.out_of_range("a nonzero vector");
+        return None;
+    }
+    Some(view)
+}
+
+fn background(table: &Table<'_>, _: Variables) -> Option<bool> {
     let backgrounds = [("white", false), ("transparent", true)];
-    let transparent = table.choice_or_first("background", "background", &backgrounds);
-    Some(PictureLook {
-        format: format?,
-        width: width?,
-        font_size: font_size?,
-        dpi: dpi?,
-        colour_map: colour_map?,
-        crop: crop?,
-        title: title?,
-        transparent: transparent?,
-    })
+    table.choice_or_first("background", "background", &backgrounds)
 }
 
 /// Reads a size of text, returned in points.
-fn font_size(item: &Item<'_>) -> Option<f64> {
+fn font_size(table: &Table<'_>, _: Variables) -> Option<f64> {
+    let Some(item) = table.optional("font_size") else {
+        let usual = PictureLook::default_font_size();
+        table.record("font_size", format!("{usual} pt"));
+        return Some(usual);
+    };
     let metres = item.within(
         Quantity::Length,
         "a size of text from \"4 pt\" to \"24 pt\"",
@@ -244,8 +235,11 @@ fn font_size(item: &Item<'_>) -> Option<f64> {
 }
 
 /// Reads the lowest and the highest coordinates of a region.
-fn crop(item: &Item<'_>, dimension: Option<usize>) -> Option<[Point; 2]> {
+fn crop(item: &Item<'_>, scope: Variables) -> Option<[Point; 2]> {
     let table = item.table()?;
+    table.describe("min", "Lower corner of the region.");
+    table.describe("max", "Upper corner of the region.");
+    let dimension = scope.dimension;
     let corner = |key| {
         let item = table.required(key)?;
         item.vector(Quantity::Length, dimension)

@@ -7,11 +7,9 @@ use crate::document::{Entry, Node, Value};
 use crate::fault::Fault;
 use crate::key_path::KeyPath;
 use crate::quantity::Quantity;
+use crate::range::{COUNT, POSITIVE, Range};
 use crate::source::Place;
 use crate::units::{self, UnitError};
-
-/// The range of positive numbers, in words.
-pub(crate) const POSITIVE: &str = "a positive number";
 
 /// A value with its path from the root.
 #[derive(Clone)]
@@ -136,8 +134,14 @@ impl<'a> Item<'a> {
 
     /// Reads a whole number of at least one.
     pub(crate) fn count(&self) -> Option<u64> {
-        self.note(|| Form::Count);
-        let expected = "a whole number of at least 1";
+        self.count_within(COUNT)
+    }
+
+    /// Reads a whole number of at least one in a range.
+    pub(crate) fn count_within(&self, range: Range) -> Option<u64> {
+        self.note(|| Form::Count {
+            allowed: (range != COUNT).then(|| range.words().into_owned()),
+        });
         let whole = match self.node.value {
             Value::Integer(integer) => u64::try_from(integer).ok(),
             // Allows 1e6 for a million; a double is not exact beyond 2^53.
@@ -146,17 +150,17 @@ impl<'a> Item<'a> {
             }
             Value::Float(_) => None,
             _ => {
-                self.wrong_kind(expected);
+                self.wrong_kind(range.words());
                 return None;
             }
         };
         match whole {
-            Some(count) if count > 0 => {
+            Some(count) if count > 0 && range.contains(count as f64) => {
                 self.record(count);
                 Some(count)
             }
             _ => {
-                self.out_of_range(expected);
+                self.out_of_range(&range.words());
                 None
             }
         }
@@ -226,7 +230,15 @@ impl<'a> Item<'a> {
 
     /// Reads a positive number.
     pub(crate) fn positive(&self, quantity: Quantity) -> Option<f64> {
-        self.within(quantity, POSITIVE, |value| value > 0.0)
+        self.number(quantity, POSITIVE)
+    }
+
+    /// Reads a number in a range.
+    pub(crate) fn number(&self, quantity: Quantity, range: Range) -> Option<f64> {
+        match range.is_any() {
+            true => self.quantity(quantity),
+            false => self.within(quantity, &range.words(), |value| range.contains(value)),
+        }
     }
 
     /// Reads a number that satisfies a condition, which `allowed` describes.

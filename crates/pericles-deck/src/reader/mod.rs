@@ -15,7 +15,7 @@ use std::mem::{Discriminant, discriminant};
 
 use serde_json::{Map, Value as Json};
 
-pub(crate) use item::{Item, POSITIVE};
+pub(crate) use item::Item;
 pub(crate) use survey::{Form, Survey, TableSurvey, below};
 pub(crate) use table::Table;
 

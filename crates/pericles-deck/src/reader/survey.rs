@@ -17,7 +17,10 @@ pub(crate) enum Form {
     Text,
     Boolean,
     /// A whole number of at least one.
-    Count,
+    Count {
+        /// The range in words, if it is smaller.
+        allowed: Option<String>,
+    },
     Number {
         quantity: Quantity,
         /// The range in words.
@@ -116,6 +119,8 @@ impl TableSurvey {
 pub(crate) struct Survey {
     values: BTreeMap<String, ValueSurvey>,
     tables: BTreeMap<String, TableSurvey>,
+    /// Descriptions of declared tables (no key) and keys; several of a key with several meanings.
+    descriptions: BTreeMap<(String, Option<String>), Vec<&'static str>>,
     /// Places of the current deck with their definitions.
     definitions: BTreeMap<KeyPath, &'static str>,
     /// Places of the current deck with a vector component without brackets.
@@ -155,6 +160,12 @@ impl Survey {
         self.tables
             .iter()
             .map(|(place, table)| (place.as_str(), table))
+    }
+
+    /// Returns the descriptions of declared tables (no key) and keys.
+    pub(crate) fn descriptions(&self) -> impl Iterator<Item = (&str, Option<&str>, String)> {
+        let all = self.descriptions.iter();
+        all.map(|((table, key), texts)| (table.as_str(), key.as_deref(), texts.join(" ")))
     }
 
     /// Returns the names of all definitions.
@@ -209,6 +220,21 @@ impl Survey {
         let keys = &mut self.table_at(table).keys;
         if !keys.iter().any(|(name, _)| *name == key) {
             keys.push((key, 0));
+        }
+    }
+
+    /// Notes the description of a declared table.
+    pub(super) fn about(&mut self, table: &KeyPath, text: &'static str) {
+        let place = self.place(table);
+        self.descriptions.insert((place, None), vec![text]);
+    }
+
+    /// Notes the description of a declared key.
+    pub(super) fn describe(&mut self, table: &KeyPath, key: &str, text: &'static str) {
+        let described = (self.place(table), Some(key.to_owned()));
+        let texts = self.descriptions.entry(described).or_default();
+        if !texts.contains(&text) {
+            texts.push(text);
         }
     }
 

@@ -50,6 +50,17 @@ impl<'a> Table<'a> {
         self.ledger.record(&path, value);
     }
 
+    /// Notes the description of the table in the survey.
+    pub(crate) fn about(&self, text: &'static str) {
+        self.ledger.note(|survey| survey.about(&self.path, text));
+    }
+
+    /// Notes the description of a key in the survey.
+    pub(crate) fn describe(&self, key: &str, text: &'static str) {
+        self.ledger
+            .note(|survey| survey.describe(&self.path, key, text));
+    }
+
     /// Notes in the survey that this table has the shared definition `name`.
     pub(crate) fn define(&self, name: &'static str) {
         self.ledger.note(|survey| survey.define(&self.path, name));
@@ -192,6 +203,13 @@ impl<'a> Table<'a> {
         found
     }
 
+    /// Requires at least one of several keys.
+    pub(crate) fn at_least_one(&self, keys: &[&str]) {
+        if !keys.iter().any(|key| self.has(key)) {
+            self.requires_one_of(keys);
+        }
+    }
+
     /// Reports that none of several keys is given.
     pub(crate) fn requires_one_of(&self, keys: &[&str]) {
         self.report(Fault::MissingChoice {
@@ -285,6 +303,22 @@ impl<'a> Table<'a> {
                     allowed: allowed.into(),
                 },
             );
+        }
+    }
+
+    /// Rejects keys of other variants, with the reasons, that are not keys of the variant itself.
+    pub(crate) fn forbid_others(&self, own: &[&str], others: &[(Vec<&'static str>, &str)]) {
+        for (keys, reason) in others {
+            for key in keys.iter().filter(|key| !own.contains(key)) {
+                self.forbid(key, reason);
+            }
+        }
+    }
+
+    /// Marks keys as known whose values depend on an invalid one.
+    pub(crate) fn know(&self, keys: &[&'static str]) {
+        for key in keys {
+            self.optional(key);
         }
     }
 

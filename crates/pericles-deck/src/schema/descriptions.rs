@@ -5,16 +5,27 @@ use toml::Table;
 /// The key of the description of a table itself.
 const ABOUT: &str = "about";
 
-/// Descriptions from `descriptions.toml`, by table and key; names of tables have no list brackets.
+/// Descriptions by table and key; names of tables have no list brackets.
 pub(super) struct Descriptions(Table);
 
 impl Descriptions {
-    pub(super) fn new() -> Self {
+    /// Collects the descriptions of `descriptions.toml` and of declared tables.
+    pub(super) fn new<'a>(
+        declared: impl Iterator<Item = (&'a str, Option<&'a str>, String)>,
+    ) -> Self {
         let text = include_str!("descriptions.toml");
-        Self(
-            text.parse()
-                .unwrap_or_else(|error| panic!("descriptions.toml: {error}")),
-        )
+        let mut all: Table = text
+            .parse()
+            .unwrap_or_else(|error| panic!("descriptions.toml: {error}"));
+        for (table, key, text) in declared {
+            let place = table.replace("[]", "");
+            let keys = all.entry(place).or_insert_with(|| Table::new().into());
+            if let Some(keys) = keys.as_table_mut() {
+                let former = keys.insert(key.unwrap_or(ABOUT).to_owned(), text.into());
+                assert!(former.is_none(), "two descriptions of {key:?} in [{table}]");
+            }
+        }
+        Self(all)
     }
 
     /// Returns the description of a table or definition.

@@ -4,7 +4,8 @@ use serde_json::{Map, Value as Json, json};
 
 use super::{Schema, names};
 use crate::quantity::Quantity;
-use crate::reader::{Form, POSITIVE, below};
+use crate::range::POSITIVE_WORDS;
+use crate::reader::{Form, below};
 
 /// Regular expression of a decimal number without sign and with an optional unit.
 const DIGITS: &str = r"(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?(\s*[^\s\d,].*)?\s*$";
@@ -103,7 +104,7 @@ impl Schema {
         object(match form {
             Form::Text => json!({ "type": "string" }),
             Form::Boolean => json!({ "type": "boolean" }),
-            Form::Count => json!({ "type": "integer", "minimum": 1 }),
+            Form::Count { .. } => json!({ "type": "integer", "minimum": 1 }),
             Form::Number { quantity, allowed } => {
                 reference(&title(*quantity, is_positive(allowed.as_deref())))
             }
@@ -148,7 +149,7 @@ impl Schema {
 }
 
 fn is_positive(allowed: Option<&str>) -> bool {
-    allowed == Some(POSITIVE)
+    allowed == Some(POSITIVE_WORDS)
 }
 
 /// Returns the schema of a number in SI units or a text with a unit.

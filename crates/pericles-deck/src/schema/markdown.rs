@@ -3,7 +3,8 @@
 use serde_json::Value as Json;
 
 use super::{Schema, names};
-use crate::reader::{Form, POSITIVE, TableSurvey, below};
+use crate::range::POSITIVE_WORDS;
+use crate::reader::{Form, TableSurvey, below};
 
 pub(super) fn document(schema: &Schema) -> String {
     let mut page = Page {
@@ -167,9 +168,9 @@ impl Page<'_> {
         match form {
             Form::Text => "text".into(),
             Form::Boolean => "`true`, `false`".into(),
-            Form::Count => "integer ≥ 1".into(),
+            Form::Count { .. } => "integer ≥ 1".into(),
             Form::Number { quantity, allowed } => {
-                let sign = if allowed.as_deref() == Some(POSITIVE) {
+                let sign = if allowed.as_deref() == Some(POSITIVE_WORDS) {
                     "positive "
                 } else {
                     ""

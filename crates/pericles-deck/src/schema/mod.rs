@@ -1,13 +1,11 @@
 //! The schema of decks: keys, forms of their values and descriptions.
 //!
 //! Keys, forms, words, ranges and defaults are those that the reader requests while it reads the
-//! [`specimens`], so that schema and reader cannot disagree. Only the descriptions are written by hand, in
-//! `descriptions.toml`. Tests require a form and a description for every key of the reader, and a key for
-//! every description. The schema does not contain which keys need which shape, model or scheme: it allows more
+//! [`specimens`], so that schema and reader cannot disagree. Descriptions of declared tables
+//! ([`declaration`](crate::declaration)) come from the documentation of their fields; those of tables with a reader
+//! written by hand are in `descriptions.toml`. Tests require a form and a description for every key of the reader, and a
+//! key for every description. The schema does not contain which keys need which shape, model or scheme: it allows more
 //! than the reader, never less.
-//!
-//! A table of keys as data would repeat name, type, unit, range and default next to the code that creates the value,
-//! or need a language for conditions.
 
 mod descriptions;
 mod json;
@@ -128,9 +126,10 @@ impl Schema {
             survey = Deck::survey(specimen.deck, &changes, survey)
                 .unwrap_or_else(|error| panic!("a specimen is rejected: {changes:?} {error}"));
         }
+        let descriptions = Descriptions::new(survey.descriptions());
         Self {
             survey,
-            descriptions: Descriptions::new(),
+            descriptions,
         }
     }
 
@@ -172,7 +171,8 @@ impl Schema {
                 Form::Number {
                     allowed: Some(allowed),
                     ..
-                } if allowed != crate::reader::POSITIVE => Some(allowed.as_str()),
+                } if allowed != crate::range::POSITIVE_WORDS => Some(allowed.as_str()),
+                Form::Count { allowed } => allowed.as_deref(),
                 _ => None,
             })
             .collect();
@@ -256,7 +256,7 @@ mod tests {
         }
         assert!(
             unexplained.is_empty(),
-            "descriptions.toml has no entries for {unexplained:#?}"
+            "keys without documentation, also in descriptions.toml: {unexplained:#?}"
         );
         assert!(formless.is_empty(), "no specimen has {formless:#?}");
     }

@@ -1,0 +1,365 @@
+//! Enums as keys of a table: a tag with the keys of its variants, or exclusive keys.
+
+use proc_macro2::{Literal, TokenStream};
+use quote::quote_spanned;
+use syn::{Data, DeriveInput, Error, Fields, Ident, Path, Result};
+
+use crate::attributes::{Attributes, Fallback, OF_ENUM, OF_VARIANT};
+use crate::fields::{Field, fields, here, scope};
+use crate::table::{implementation, target};
+use crate::words::{spelt, what};
+
+/// A variant with its keys.
+struct Variant<'a> {
+    name: &'a Ident,
+    attributes: Attributes,
+    fields: Vec<Field>,
+    is_named: bool,
+}
+
+pub(crate) fn derive(input: DeriveInput) -> Result<TokenStream> {
+    let attributes = Attributes::of(&input.attrs, OF_ENUM)?;
+    let Data::Enum(data) = &input.data else {
+        let message = "derive `DeckTable` for structs";
+        return Err(Error::new_spanned(&input.ident, message));
+    };
+    let variants = data
+        .variants
+        .iter()
+        .map(|variant| {
+            Ok(Variant {
+                name: &variant.ident,
+                attributes: Attributes::of(&variant.attrs, OF_VARIANT)?,
+                fields: fields(&variant.fields)?,
+                is_named: matches!(variant.fields, Fields::Named(_)),
+            })
+        })
+        .collect::<Result<Vec<Variant<'_>>>>()?;
+    let target = target(&input, &attributes);
+    let all = variants
+        .iter()
+        .flat_map(|variant| &variant.fields)
+        .map(Field::keys);
+    let (keys, read, check) = match (&attributes.tag, attributes.exclusive) {
+        (Some(tag), false) => (
+            quote_spanned!(here()=> [::std::vec![#tag], #(#all),*].concat()),
+            tagged(&input, &attributes, &tag.value(), &variants)?,
+            check(&target, Some(&tag.value()), &variants),
+        ),
+        (None, true) => {
+            let names = with_keys(&variants).map(|variant| variant.named('_'));
+            let further = variants.iter().flat_map(Variant::further).map(Field::keys);
+            (
+                quote_spanned!(here()=> [::std::vec![#(#names),*], #(#further),*].concat()),
+                exclusive(&target, &attributes, &variants)?,
+                check(&target, None, &variants),
+            )
+        }
+        _ => {
+            let message = "add #[deck(tag = \"…\")] or #[deck(exclusive)]";
+            return Err(Error::new_spanned(&input.ident, message));
+        }
+    };
+    Ok(implementation(&attributes, &target, &keys, &read, &check))
+}
+
+/// Reads the word of a tag, then the keys of its variant.
+fn tagged(
+    input: &DeriveInput,
+    attributes: &Attributes,
+    tag: &str,
+    variants: &[Variant<'_>],
+) -> Result<TokenStream> {
+    let own = attributes.tag_about.as_ref().map(syn::LitStr::value);
+    let (about, what) = (
+        own.as_ref().unwrap_or(&attributes.about),
+        what(input, attributes)?,
+    );
+    let words: Vec<String> = variants.iter().map(|variant| variant.named('-')).collect();
+    let numbers = (0..variants.len()).map(Literal::usize_suffixed);
+    let usual = variants
+        .iter()
+        .position(|variant| variant.attributes.default.is_some());
+    let found = match (&attributes.default, usual) {
+        (Some(Fallback::Value(word)), _) => quote_spanned!(here()=> {
+            let word: ::core::option::Option<&str> = #word;
+            if let Some(word) = word {
+                table.record(#tag, word);
+            }
+            WORDS.iter().find(|(known, _)| Some(*known) == word).map(|(_, number)| *number)
+        }),
+        (_, Some(number)) => {
+            let (word, number) = (&words[number], Literal::usize_suffixed(number));
+            quote_spanned!(here()=> {
+                table.record(#tag, #word);
+                Some(#number)
+            })
+        }
+        (_, None) => quote_spanned!(here()=> None),
+    };
+    let is_required = attributes.default.is_none() && usual.is_none();
+    let request = Ident::new(if is_required { "required" } else { "optional" }, here());
+    let arms = variants
+        .iter()
+        .enumerate()
+        .map(|(number, variant)| {
+            let others = variants.iter().filter(|other| other.name != variant.name);
+            let others = others.flat_map(|other| &other.fields).map(|field| {
+                let with = variants.iter().filter(|other| other.has(field));
+                let with: Vec<String> = with
+                    .map(|other| format!("{:?}", other.named('-')))
+                    .collect();
+                (field, format!("it requires {tag} = {}", with.join(" or ")))
+            });
+            let forbid = forbid(variant.fields.iter(), others);
+            let reads = variant
+                .fields
+                .iter()
+                .map(Field::read)
+                .collect::<Result<Vec<_>>>()?;
+            let conditions = variant.attributes.allowed.iter().map(|(condition, words)| {
+                quote_spanned!(here()=> if !(#condition) {
+                    if let Some(item) = &item {
+                        item.out_of_range(#words);
+                    }
+                    table.know(&<Self as crate::declaration::Keyed>::keys());
+                    return None;
+                })
+            });
+            let number = Literal::usize_suffixed(number);
+            let made = variant.made(&target(input, attributes));
+            Ok(quote_spanned!(here()=> Some(#number) => {
+                #(#conditions)*
+                #forbid
+                #(#reads)*
+                Some(#made)
+            }))
+        })
+        .collect::<Result<Vec<TokenStream>>>()?;
+    let count = words.len();
+    Ok(quote_spanned!(here()=>
+        const WORDS: [(&str, usize); #count] = [#((#words, #numbers)),*];
+        table.describe(#tag, #about);
+        let item = table.#request(#tag);
+        let found = match &item {
+            Some(item) => item.choice(#what, &WORDS),
+            None => #found,
+        };
+        match found {
+            #(#arms)*
+            _ => {
+                table.know(&<Self as crate::declaration::Keyed>::keys());
+                None
+            }
+        }
+    ))
+}
+
+/// Reads the one key that is given, then further keys of its variant.
+fn exclusive(
+    target: &Path,
+    attributes: &Attributes,
+    variants: &[Variant<'_>],
+) -> Result<TokenStream> {
+    let keys: Vec<String> = with_keys(variants)
+        .map(|variant| variant.named('_'))
+        .collect();
+    let abouts = with_keys(variants).map(Variant::about);
+    let arms = with_keys(variants)
+        .zip(&keys)
+        .map(|(variant, key)| {
+            let others = variants.iter().filter(|other| other.name != variant.name);
+            let others = others.flat_map(Variant::further).map(|field| {
+                let with = variants.iter().filter(|other| other.has(field));
+                let with: Vec<String> = with
+                    .map(|other| format!("`{}`", other.named('_')))
+                    .collect();
+                (field, format!("it requires {}", with.join(" or ")))
+            });
+            let forbid = forbid(variant.further(), others);
+            let made = variant.made(target);
+            let body = if variant.attributes.table {
+                let reads = variant
+                    .fields
+                    .iter()
+                    .map(Field::read)
+                    .collect::<Result<Vec<_>>>()?;
+                let values = variant.fields.iter().map(|field| {
+                    let (name, value) = (&field.name, field.value());
+                    quote_spanned!(here()=> #name: #value)
+                });
+                let name = variant.name;
+                quote_spanned!(here()=>
+                    let inner = item.table()?;
+                    let table = &inner;
+                    #(#reads)*
+                    inner.finish();
+                    Some(#target::#name { #(#values),* })
+                )
+            } else {
+                let first = &variant.fields[0];
+                let value = first.bound(&first.rule());
+                let reads = variant
+                    .further()
+                    .map(Field::read)
+                    .collect::<Result<Vec<_>>>()?;
+                quote_spanned!(here()=> #value #(#reads)* Some(#made))
+            };
+            Ok(quote_spanned!(here()=> Some((#key, item)) => { #forbid #body }))
+        })
+        .collect::<Result<Vec<TokenStream>>>()?;
+    let scope = scope();
+    let found = match &attributes.default {
+        None => quote_spanned!(here()=> table.exactly_one(KEYS)),
+        Some(usual) => {
+            let usual = match usual {
+                Fallback::OfType => quote_spanned!(here()=> ::core::default::Default::default()),
+                Fallback::Value(value) => quote_spanned!(here()=> #value),
+            };
+            let record = variants.iter().map(|variant| {
+                let (name, key) = (variant.name, variant.named('_'));
+                match variant.fields.is_empty() {
+                    true => quote_spanned!(here()=> #target::#name => Some(#target::#name)),
+                    false => quote_spanned!(here()=> #target::#name(value) => {
+                        crate::declaration::Fallback::missing(value, table, #key, #scope)
+                            .map(#target::#name)
+                    }),
+                }
+            });
+            quote_spanned!(here()=> match table.at_most_one(KEYS) {
+                Some(None) => {
+                    let usual: #target = #usual;
+                    return match usual { #(#record),* };
+                }
+                Some(found) => found,
+                None => None,
+            })
+        }
+    };
+    Ok(quote_spanned!(here()=>
+        const KEYS: &[&str] = &[#(#keys),*];
+        #(table.describe(#keys, #abouts);)*
+        let found = #found;
+        match found {
+            #(#arms)*
+            _ => {
+                table.know(&<Self as crate::declaration::Keyed>::keys());
+                None
+            }
+        }
+    ))
+}
+
+/// Returns the variants with a key: those with a value.
+fn with_keys<'a, 'b>(variants: &'a [Variant<'b>]) -> impl Iterator<Item = &'a Variant<'b>> {
+    variants.iter().filter(|variant| !variant.fields.is_empty())
+}
+
+/// Forbids keys of other variants, each with a reason, that are not keys of a variant itself.
+fn forbid<'a>(
+    own: impl Iterator<Item = &'a Field>,
+    others: impl Iterator<Item = (&'a Field, String)>,
+) -> TokenStream {
+    let own = own.map(Field::keys);
+    let mut others = others
+        .map(|(field, reason)| {
+            let keys = field.keys();
+            match &field.attributes.otherwise {
+                Some(reason) => quote_spanned!(here()=> (#keys, #reason)),
+                None => quote_spanned!(here()=> (#keys, #reason)),
+            }
+        })
+        .peekable();
+    if others.peek().is_none() {
+        return TokenStream::new();
+    }
+    quote_spanned!(here()=>
+        table.forbid_others(&[::std::vec::Vec::new(), #(#own),*].concat(), &[#(#others),*]);
+    )
+}
+
+/// Checks the keys of a variant. Without a tag, the key of the first field is named after the variant.
+fn check(target: &Path, tag: Option<&str>, variants: &[Variant<'_>]) -> TokenStream {
+    let arms = variants.iter().map(|variant| {
+        let name = variant.name;
+        let pattern = variant.pattern();
+        if tag.is_none() && variant.attributes.table {
+            let (key, checks) = (variant.named('_'), variant.fields.iter().map(Field::check));
+            return quote_spanned!(here()=> #target::#name #pattern => {
+                let path = &path.key(#key);
+                #(#checks)*
+            });
+        }
+        let checks =
+            variant
+                .fields
+                .iter()
+                .enumerate()
+                .map(|(k, field)| match k == 0 && tag.is_none() {
+                    true => field.check_as(&variant.named('_')),
+                    false => field.check(),
+                });
+        let word = variant.named('-');
+        let conditions = variant.attributes.allowed.iter().map(|(condition, words)| {
+            quote_spanned!(here()=>
+                let allowed = ::std::format!("allowed: {}", #words);
+                check.within(#condition, path.key(#tag), #word, &allowed);
+            )
+        });
+        quote_spanned!(here()=> #target::#name #pattern => { #(#conditions)* #(#checks)* })
+    });
+    quote_spanned!(here()=> match self { #(#arms)* })
+}
+
+impl Variant<'_> {
+    /// Returns the word or key of the variant.
+    fn named(&self, mark: char) -> String {
+        let own = self.attributes.name.clone();
+        own.unwrap_or_else(|| spelt(&self.name.to_string(), mark))
+    }
+
+    /// Returns the description of the key of an exclusive variant.
+    fn about(&self) -> &str {
+        match self.fields.first() {
+            Some(first) if !self.attributes.table && !first.attributes.about.is_empty() => {
+                &first.attributes.about
+            }
+            _ => &self.attributes.about,
+        }
+    }
+
+    /// Returns the fields in the table of the variant besides the first one.
+    fn further(&self) -> impl Iterator<Item = &Field> {
+        let fields = match self.attributes.table {
+            true => &[],
+            false => &self.fields[..],
+        };
+        fields.iter().skip(1)
+    }
+
+    /// Returns whether it has the key of a field.
+    fn has(&self, wanted: &Field) -> bool {
+        self.fields.iter().any(|field| field.key == wanted.key)
+    }
+
+    /// Returns the pattern of the fields.
+    fn pattern(&self) -> TokenStream {
+        let names = self.fields.iter().map(|field| &field.name);
+        match (self.is_named, self.fields.is_empty()) {
+            (true, _) => quote_spanned!(here()=> { #(#names),* }),
+            (false, true) => TokenStream::new(),
+            (false, false) => quote_spanned!(here()=> ( #(#names),* )),
+        }
+    }
+
+    /// Returns the variant of the values that were read.
+    fn made(&self, target: &Path) -> TokenStream {
+        let (name, names) = (self.name, self.fields.iter().map(|field| &field.name));
+        let values = self.fields.iter().map(Field::value);
+        match (self.is_named, self.fields.is_empty()) {
+            (true, _) => quote_spanned!(here()=> #target::#name { #(#names: #values),* }),
+            (false, true) => quote_spanned!(here()=> #target::#name),
+            (false, false) => quote_spanned!(here()=> #target::#name( #(#values),* )),
+        }
+    }
+}

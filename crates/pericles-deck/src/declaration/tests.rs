@@ -1,0 +1,155 @@
+//! One field gives reader, default, range check, record and description of a key.
+
+use pericles_deck_derive::{DeckKeys, DeckTable, DeckWords};
+
+use super::{Check, DeckKeys, DeckTable, Keyed};
+use crate::document;
+use crate::key_path::KeyPath;
+use crate::reader::{Closed, Ledger, Survey};
+use crate::source::Sources;
+use crate::subject::Subject;
+
+/// Spring.
+#[derive(Debug, PartialEq, DeckTable)]
+#[deck(default)]
+struct Spring {
+    /// Stiffness k of the spring.
+    ///
+    /// In N/m.
+    #[deck(quantity = Stiffness, range = POSITIVE, default = 2.0)]
+    stiffness: f64,
+    /// Ends.
+    #[deck(default = End::Free)]
+    ends: End,
+    #[deck(flatten, default = Force::Linear)]
+    force: Force,
+    /// Length at rest.
+    #[deck(quantity = Length, forbid_if(force == Some(&Force::Linear), "a linear force has no length"))]
+    length: Option<f64>,
+    /// Number of coils.
+    #[deck(range = count_to(9), default = 3, allow_if(is_odd(coils), "an odd number"))]
+    coils: u32,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, DeckWords)]
+#[deck(what = "end")]
+enum End {
+    Free,
+    FixedInPlane,
+}
+
+/// Force law.
+#[derive(Debug, PartialEq, DeckKeys)]
+#[deck(tag = "law", what = "force law")]
+enum Force {
+    #[default]
+    Linear,
+    Power {
+        /// Exponent.
+        #[deck(range = at_least(1.0))]
+        exponent: f64,
+    },
+}
+
+fn is_odd(coils: Option<&u32>) -> bool {
+    coils.is_none_or(|coils| coils % 2 == 1)
+}
+
+fn read(text: &str) -> (Option<Spring>, Closed) {
+    let sources = Sources::new("spring.toml", text);
+    let root = document::parse(&sources).unwrap();
+    let ledger = Ledger::surveyed(sources, Survey::default());
+    let spring = ledger
+        .root(&root)
+        .and_then(|table| Spring::read_table(table, ()));
+    (spring, ledger.close())
+}
+
+/// Returns the messages about a text, with their advice.
+fn problems(text: &str) -> Vec<String> {
+    let (_, closed) = read(text);
+    let lines = closed.problems.iter().map(|problem| {
+        let advice = problem.subject().advice().unwrap_or_default();
+        format!("{problem}; {advice}")
+    });
+    lines.collect()
+}
+
+#[test]
+fn missing_keys_have_their_defaults_which_are_recorded() {
+    let (spring, closed) = read("");
+    assert_eq!(spring.unwrap(), Spring::default());
+    assert!(closed.problems.is_empty());
+    let recorded = r#"{"coils":3,"ends":"free","law":"linear","stiffness":2.0}"#;
+    assert_eq!(closed.record.json.to_string(), recorded);
+    assert_eq!(
+        Spring::keys(),
+        ["stiffness", "ends", "law", "exponent", "length", "coils"]
+    );
+}
+
+#[test]
+fn values_have_units_words_and_ranges() {
+    let text = "stiffness = \"3 kN/m\"\nends = \"fixed-in-plane\"\nlaw = \"power\"\nexponent = 2\nlength = \"1 mm\"";
+    let (spring, _) = read(text);
+    let spring = spring.unwrap();
+    assert_eq!((spring.stiffness, spring.ends), (3000.0, End::FixedInPlane));
+    assert_eq!(spring.force, Force::Power { exponent: 2.0 });
+    assert_eq!(spring.length, Some(1e-3));
+    for (text, expected) in [
+        ("stiffness = -1", "`-1` is out of range"),
+        ("stiffness = \"1 m\"", "not a stiffness"),
+        ("ends = \"fixed\"", "unknown end `fixed`"),
+        ("law = \"power\"", "requires `exponent`"),
+        ("exponent = 2", "it requires law = \"power\""),
+        ("length = 1", "a linear force has no length"),
+        ("coils = 4", "allowed: an odd number"),
+        ("coils = 11", "allowed: a whole number from 1 to 9"),
+        ("coil = 3", "did you mean `coils`?"),
+    ] {
+        let problems = problems(text);
+        let [problem] = &problems[..] else {
+            panic!("{text}: {problems:?}");
+        };
+        assert!(problem.contains(expected), "{text}: {problem}");
+    }
+    // The keys that an unknown word selects are not reported.
+    assert_eq!(
+        problems("law = \"cubic\"\nexponent = 2\nlength = 1").len(),
+        1
+    );
+}
+
+#[test]
+fn models_made_by_programs_have_the_same_ranges() {
+    let spring = Spring {
+        stiffness: f64::NAN,
+        force: Force::Power { exponent: 0.5 },
+        coils: 4,
+        ..Spring::default()
+    };
+    let mut check = Check::default();
+    spring.check_keys(&KeyPath::from("spring"), (), &mut check);
+    let lines: Vec<String> = check
+        .problems
+        .iter()
+        .map(|problem| problem.line())
+        .collect();
+    assert_eq!(lines.len(), 3, "{lines:#?}");
+    assert!(lines[0].starts_with("spring.stiffness: ") && lines[0].ends_with("a positive number"));
+    assert!(lines[1].starts_with("spring.exponent: ") && lines[1].ends_with("at least 1"));
+    assert!(lines[2].starts_with("spring.coils: ") && lines[2].ends_with("an odd number"));
+}
+
+#[test]
+fn the_first_paragraph_of_the_documentation_describes_a_key() {
+    let (_, closed) = read("");
+    let found: Vec<(Option<&str>, String)> = closed
+        .survey
+        .descriptions()
+        .map(|(_, key, text)| (key, text))
+        .collect();
+    assert!(found.contains(&(None, "Spring.".into())), "{found:?}");
+    assert!(found.contains(&(Some("stiffness"), "Stiffness k of the spring.".into())));
+    assert!(found.contains(&(Some("law"), "Force law.".into())));
+}
