@@ -61,21 +61,29 @@ impl Equilibrium {
         (u, factor): (&mut [f64], &mut f64),
         interrupt: Interrupt<'_>,
     ) -> Result<Effort> {
-        /// Largest number of iterations.
-        const ITERATIONS: u64 = 300;
-        /// Largest ratio of successive residuals of Newton's method.
+        /// Number of iterations within which the residual must fall below half of its least value before.
+        const PATIENCE: u64 = 25;
+        /// Largest ratio of successive residuals of Newton's method, and of the residual to its least value before.
         const FALL: f64 = 0.5;
         let mut effort = Effort::default();
         let mut mixing = Mixing::new(DEPTH);
         let mut matrix = Derivative::Tangent;
         let mut last = f64::INFINITY;
+        // The least residual and its iteration; the first one is that of a state that is not on the path.
+        let mut least = (f64::INFINITY, 0);
         loop {
             let at = (&mut *u, *factor);
             let found = self.measure(system, target, at, &mut effort, interrupt)?;
             if found.is_reached {
                 return Ok(effort);
             }
-            if effort.newton == ITERATIONS || !found.norm.is_finite() {
+            if effort.newton <= 1 {
+                least = (found.norm, effort.newton);
+            }
+            if found.norm < FALL * least.0 {
+                least = (found.norm, effort.newton);
+            }
+            if effort.newton > least.1 + PATIENCE || !found.norm.is_finite() {
                 return Err(found.failure.into());
             }
             if effort.newton > 1 && found.norm > FALL * last {
