@@ -201,7 +201,7 @@ fn errors_of_quantities_are_explained() {
         (
             "name = \"stiffness\"",
             "name = \"CMOD\"",
-            &["another quantity has it"],
+            &["another quantity has this name"],
         ),
         (
             "'upper lip'.u_y - lower.u_y",
