@@ -44,7 +44,7 @@ impl Reference {
         }
         if system.has_interactions() {
             return Err(refuse(
-                "contact opens and closes between events (remove [contact] and impactors)",
+                "contact forces are not multiples of the loads (remove [contact] and impactors)",
             )
             .into());
         }

@@ -430,6 +430,7 @@ pub(super) const SPECIMENS: &[Specimen] = &[
     specimen(BAR, &["material.softening={ law = 'exponential', onset_stretch = 1e-4 }"]),
     specimen(BAR, &["material.fracture_energy=1", "material.tensile_strength=1", "material.softening={ law = 'exponential' }"]),
     specimen(BAR, &["material.fracture_energy=1", "material.tensile_strength=1", "material.failure=strength", "material.strength_surface=rankine"]),
+    specimen(BAR, &["material.fracture_energy=1", "material.tensile_strength=1", "material.failure=strength"]),
     specimen(BAR, &["material.fracture_energy=1", "material.tensile_strength=1", "material.failure=strength", "material.strength_surface='stress_1 / 2'", "material.softening={ law = 'exponential' }"]),
     specimen(BAR, &["damping={ mass = 1, stiffness = 1e-3 }"]),
     specimen(BAR, &["damping={ stiffness = 1e-3 }"]),

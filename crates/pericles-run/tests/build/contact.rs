@@ -2,6 +2,7 @@
 
 use pericles::Control;
 use pericles_contact::{Impactor, PointContact};
+use pericles_deck::Deck;
 use pericles_waves::ForceForm;
 
 use crate::common::Build;
@@ -202,8 +203,13 @@ fn bodies_of_contact_are_checked() {
     let twice = format!(
         "{BAR}[[impactor]]\nname = \"wall\"\nshape = \"ball\"\nradius = 1\ncentre = -9\ndensity = 1\n"
     );
-    let message = rejection(&twice).to_string();
-    assert!(message.contains("no other impactor"), "{message}");
+    let message = Deck::parse(&twice, "deck.toml", &[])
+        .unwrap_err()
+        .to_string();
+    assert!(
+        message.contains("another impactor has this name"),
+        "{message}"
+    );
 }
 
 #[test]

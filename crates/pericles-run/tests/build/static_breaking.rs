@@ -108,12 +108,13 @@ fn energy_balances_in_every_breaking_mode() {
 }
 
 /// A softening body that splits at once: what its bonds dissipate by softening on the way is part of the energy that it
-/// loses, and is booked once.
+/// loses, and is booked once. The bound was chosen after errors of 3, 0.07 and 0.007 % with 6, 24 and 96 load steps; before
+/// the energy was booked once they were of the order of a third.
 #[test]
 fn energy_balances_where_a_softening_body_splits() {
     for breaking in ["worst-first", "all"] {
         let time = format!(
-            "scheme = \"static\", tolerance = 1e-8, load_steps = 6, breaking = \"{breaking}\""
+            "scheme = \"static\", tolerance = 1e-8, load_steps = 24, breaking = \"{breaking}\""
         );
         let mut run = simulation(WITH_HISTORY[0], 0.6, &time);
         run.run(|_| Control::Continue).unwrap();
@@ -121,7 +122,7 @@ fn energy_balances_where_a_softening_body_splits() {
         let energies = run.snapshot().energies();
         let error = energies.balance() / energies.work;
         assert!(energies.dissipated > 0.1 * energies.work);
-        assert!(error.abs() < 1e-3, "{error}, {breaking}");
+        assert!(error.abs() < 5e-3, "{error}, {breaking}");
     }
 }
 
