@@ -25,7 +25,7 @@ use crate::step_end::StepEnd;
 /// remaining stiffness. Energy dissipated by softening is added to that of breaking bonds. A bond breaks at
 /// the end of its curve.
 ///
-/// With [strengths](SofteningForce::with_strengths) a bond is elastic at any stretch until the stress of one of its ends
+/// With a [`Strength`](crate::material::Strength) a bond is elastic at any stretch until the stress of one of its ends
 /// reaches the strength of its material. Stresses are computed at the ends of accepted steps, and bonds that open then
 /// soften from their stretch at that time, or break if it is beyond the critical one.
 ///
