@@ -65,7 +65,11 @@ pub(super) fn read(
             let surface = failure(&table, dimension);
             let chosen = surface.as_ref().and_then(Option::as_ref);
             let softening = softening(&table, chosen);
-            let strength = tensile_strength(&table, softening, chosen, fracture_calibration);
+            let strength = match surface {
+                // Without the criterion it is unknown whether the key belongs to the material.
+                None => table.maybe("tensile_strength", |_| None),
+                Some(_) => tensile_strength(&table, softening, chosen, fracture_calibration),
+            };
             (surface, softening, strength)
         }
         Some(_) => {
