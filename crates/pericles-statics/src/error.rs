@@ -134,26 +134,22 @@ impl From<StaticsError> for PericlesError {
     }
 }
 
+/// Returns an error of this crate within one of the engine.
+fn of_statics(error: &PericlesError) -> Option<&StaticsError> {
+    match error {
+        PericlesError::Extension(inner) => inner.downcast_ref(),
+        _ => None,
+    }
+}
+
 /// Returns whether an error is that of Newton's method without a static state.
 pub(crate) fn is_no_equilibrium(error: &PericlesError) -> bool {
-    let PericlesError::Extension(inner) = error else {
-        return false;
-    };
-    matches!(
-        inner.downcast_ref::<StaticsError>(),
-        Some(StaticsError::NoEquilibrium { .. })
-    )
+    matches!(of_statics(error), Some(StaticsError::NoEquilibrium { .. }))
 }
 
 /// Returns whether an error is that of a controlled state that was not found.
 pub(crate) fn is_not_controlled(error: &PericlesError) -> bool {
-    let PericlesError::Extension(inner) = error else {
-        return false;
-    };
-    matches!(
-        inner.downcast_ref::<StaticsError>(),
-        Some(StaticsError::NotControlled { .. })
-    )
+    matches!(of_statics(error), Some(StaticsError::NotControlled { .. }))
 }
 
 fn list(names: &[&str]) -> String {

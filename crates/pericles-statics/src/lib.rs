@@ -22,7 +22,6 @@ mod equilibrium;
 mod error;
 mod events;
 pub mod krylov;
-mod mixing;
 mod modes;
 pub mod multigrid;
 mod options;

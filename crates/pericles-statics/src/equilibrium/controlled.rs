@@ -1,13 +1,13 @@
 //! Static states in which a quantity of the displacements has a given value.
 
 use pericles::operator::PointSubset;
+use pericles::solve::Anderson;
 use pericles::{Interrupt, IterationProgress, Result, StepEnd, System};
 
 use super::{Effort, Equilibrium, Target, free_norm};
 use crate::control::Control;
 use crate::error::StaticsError;
 use crate::krylov::{End, Goal};
-use crate::mixing::Mixing;
 use crate::reference::{Reference, scaled};
 use crate::sparse::add_multiple;
 use crate::tangent::{Derivative, remove, stiffness_into};
@@ -28,8 +28,6 @@ pub struct ControlledTarget<'a> {
 
 /// Number of earlier iterates that are combined with the present one.
 const DEPTH: usize = 5;
-/// Largest number of products per linear problem.
-const PRODUCTS: u64 = 2000;
 
 /// Residual and value of the quantity at an iterate.
 struct Measured {
@@ -66,7 +64,7 @@ impl Equilibrium {
         /// Largest ratio of successive residuals of Newton's method, and of the residual to its least value before.
         const FALL: f64 = 0.5;
         let mut effort = Effort::default();
-        let mut mixing = Mixing::new(DEPTH);
+        let mut mixing = Anderson::new(DEPTH, u.len());
         let mut matrix = Derivative::Tangent;
         let mut last = f64::INFINITY;
         // The least residual and its iteration; the first one is that of a state that is not on the path.
@@ -77,10 +75,7 @@ impl Equilibrium {
             if found.is_reached {
                 return Ok(effort);
             }
-            if effort.newton <= 1 {
-                least = (found.norm, effort.newton);
-            }
-            if found.norm < FALL * least.0 {
+            if effort.newton <= 1 || found.norm < FALL * least.0 {
                 least = (found.norm, effort.newton);
             }
             if effort.newton > least.1 + PATIENCE || !found.norm.is_finite() {
@@ -99,12 +94,12 @@ impl Equilibrium {
                 &mut effort,
                 interrupt,
             )?;
-            let (next, at) = match matrix {
-                Derivative::Tangent => next,
-                Derivative::Secant => mixing.next(system.domain(), u, next),
+            let (mut next, at) = next;
+            *factor = match matrix {
+                Derivative::Tangent => at,
+                Derivative::Secant => mixing.next_with(system.domain(), u, (&mut next, at)),
             };
             u.copy_from_slice(&next);
-            *factor = at;
         }
     }
 
@@ -217,7 +212,7 @@ impl Equilibrium {
             absolute: 0.1 * self.options.tolerance * effort.acting,
             relative: 0.0,
             acting: found.of_loads,
-            products: PRODUCTS,
+            products: u64::from(self.options.products),
             interrupt,
         };
         let times = [target.t; 2];
@@ -281,7 +276,7 @@ impl Equilibrium {
             absolute: 0.0,
             relative: ACCURACY,
             acting: norm,
-            products: PRODUCTS,
+            products: u64::from(self.options.products),
             interrupt,
         };
         let solved = self.solve(system, (matrix, times), u, &goal)?;

@@ -4,6 +4,7 @@ use pericles::boundary::{Exchange, ProportionalLoading};
 use pericles::time::State;
 use pericles::{Interrupt, Result, System};
 
+use super::jump::Change;
 use super::{StaticScheme, chord};
 use crate::control::Control;
 use crate::equilibrium::ControlledTarget;
@@ -123,29 +124,6 @@ impl StaticScheme {
         });
         self.factor = factor;
         Ok(work)
-    }
-}
-
-/// Energies before a jump.
-struct Change {
-    t: f64,
-    stored: f64,
-    dissipated: f64,
-}
-
-impl Change {
-    fn of(system: &System, t: f64, u: &[f64]) -> Self {
-        Self {
-            t,
-            stored: system.stored_energy(t, u),
-            dissipated: system.operator().dissipated(),
-        }
-    }
-
-    /// Returns the stored energy that the body has lost and not dissipated in bonds, J.
-    fn lost(&self, system: &System, u: &[f64]) -> f64 {
-        let dissipated = system.operator().dissipated() - self.dissipated;
-        self.stored - system.stored_energy(self.t, u) - dissipated
     }
 }
 

@@ -7,6 +7,7 @@
 
 mod controlled;
 mod event;
+mod jump;
 
 use pericles::boundary::{Exchange, ProportionalLoading};
 use pericles::operator::PointSubset;
@@ -259,28 +260,6 @@ impl StaticScheme {
             Err(PericlesError::Interrupted) => Err(PericlesError::Interrupted),
             Err(error) => Err(failed.unwrap_or(error)),
         }
-    }
-
-    /// Breaks bonds beyond their limits at a static state; returns whether any broke. `is_jump` states that the energy
-    /// released on the way to the state is known as the difference of stored energies. It then includes what bonds
-    /// dissipated by softening on the way, which the end of the step books.
-    fn break_bonds(
-        &mut self,
-        system: &mut System,
-        state: &mut State,
-        (t, is_jump): (f64, bool),
-        rule: BreakingRule,
-    ) -> bool {
-        let follows_history = system.operator().capabilities().path_dependent;
-        let energy =
-            |system: &System| system.stored_energy(t, &state.u) + system.operator().dissipated();
-        let before = (is_jump && follows_history).then(|| energy(system));
-        let beyond = rule.apply(system, t, &state.u, &mut state.a);
-        self.released += match before {
-            Some(before) => before - energy(system),
-            None => beyond.unwrap_or(0.0),
-        };
-        beyond.is_some()
     }
 
     /// Breaks bonds beyond their limits and recomputes the static state until no bond breaks. `is_jump` is that of

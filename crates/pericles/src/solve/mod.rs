@@ -1,4 +1,4 @@
-//! Solvers for implicit schemes: conjugate gradients, Newton–Krylov, banded Cholesky factorisation, and principal
+//! Solvers for implicit schemes: conjugate gradients, Newton–Krylov, Anderson acceleration, banded Cholesky factorisation, and principal
 //! axes and inverses of 3 × 3 matrices.
 //!
 //! A linear system is given by its matrix–vector products, a nonlinear one by its residual and the products with
@@ -26,11 +26,13 @@
 //! assert!((x[0] - 25.0).abs() < 1e-10 && solved.iterations <= n);
 //! ```
 
+mod anderson;
 mod axes;
 mod cholesky;
 mod conjugate_gradient;
 mod newton;
 
+pub use anderson::Anderson;
 pub use axes::{inverse, principal_axes};
 pub use cholesky::BandedCholesky;
 pub use conjugate_gradient::conjugate_gradient;

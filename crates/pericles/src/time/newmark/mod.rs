@@ -17,7 +17,6 @@
 //! [`DiscreteGradient`] conserves energy for any elastic forces and for any step where the elastic energy is
 //! convex.
 
-mod anderson;
 mod discrete_gradient;
 mod equation;
 mod scheme;

@@ -1,6 +1,5 @@
 //! Newmark's method.
 
-use super::anderson::Anderson;
 use super::equation::{StepEquation, root_masses};
 use super::{InnerIterations, InnerSolver, NewmarkOptions, VelocityNorm};
 use crate::boundary::Exchange;
@@ -8,7 +7,7 @@ use crate::compatibility::{Requirement, require};
 use crate::error::{PericlesError, Result};
 use crate::interrupt::Interrupt;
 use crate::operator::PointSubset;
-use crate::solve::{Nonlinear, SolveLimits, Work, newton_krylov};
+use crate::solve::{Anderson, Nonlinear, SolveLimits, Work, newton_krylov};
 use crate::step_end::{Path, StepEnd};
 use crate::step_kind::StepKind;
 use crate::system::System;

@@ -7,13 +7,16 @@ use crate::domain::Domain;
 ///
 /// Memory: 2 · depth + 2 vectors.
 #[derive(Debug, Clone)]
-pub(super) struct Anderson {
+pub struct Anderson {
     /// Differences of successive residuals and of successive images; the oldest is overwritten first.
     residuals: Vec<Vec<f64>>,
     images: Vec<Vec<f64>>,
     last_residual: Vec<f64>,
     last_image: Vec<f64>,
-    /// Number of images since the start of the step.
+    /// Differences of the scalars that belong to the images.
+    scalars: Vec<f64>,
+    last_scalar: f64,
+    /// Number of images since the last restart.
     seen: usize,
 }
 
@@ -21,24 +24,37 @@ pub(super) struct Anderson {
 const NEGLIGIBLE: f64 = 1e-14;
 
 impl Anderson {
-    pub(super) fn new(depth: usize, entries: usize) -> Self {
+    /// Combines up to `depth` + 1 images of `entries` numbers; the depth is at most 8.
+    pub fn new(depth: usize, entries: usize) -> Self {
         let array = || vec![0.0; entries];
         Self {
             residuals: (0..depth).map(|_| array()).collect(),
             images: (0..depth).map(|_| array()).collect(),
             last_residual: array(),
             last_image: array(),
+            scalars: vec![0.0; depth],
+            last_scalar: 0.0,
             seen: 0,
         }
     }
 
-    /// Discards the history of the previous step.
-    pub(super) fn restart(&mut self) {
+    /// Discards the history.
+    pub fn restart(&mut self) {
         self.seen = 0;
     }
 
-    /// Replaces `image`, which is g(x) for the iterate `x`, by the next iterate.
-    pub(super) fn next(&mut self, domain: &Domain, x: &[f64], image: &mut [f64]) {
+    /// Replaces `image`, which is g(x) for the iterate `x`, by the next iterate. All processes must call it together.
+    pub fn next(&mut self, domain: &Domain, x: &[f64], image: &mut [f64]) {
+        self.next_with(domain, x, (image, 0.0));
+    }
+
+    /// As [`Anderson::next`]; returns the same combination of scalars that belong to the images.
+    pub fn next_with(
+        &mut self,
+        domain: &Domain,
+        x: &[f64],
+        (image, scalar): (&mut [f64], f64),
+    ) -> f64 {
         let depth = self.residuals.len();
         if self.seen > 0 {
             let slot = (self.seen - 1) % depth;
@@ -47,11 +63,13 @@ impl Anderson {
                 df[k] = (image[k] - x[k]) - self.last_residual[k];
                 dg[k] = image[k] - self.last_image[k];
             }
+            self.scalars[slot] = scalar - self.last_scalar;
         }
         for k in 0..x.len() {
             self.last_residual[k] = image[k] - x[k];
             self.last_image[k] = image[k];
         }
+        self.last_scalar = scalar;
         let known = self.seen.min(depth);
         self.seen += 1;
         let weights = self.weights(domain, known);
@@ -60,6 +78,8 @@ impl Anderson {
                 *image -= weight * difference;
             }
         }
+        let changes = weights.iter().zip(&self.scalars[..known]);
+        scalar - changes.map(|(weight, change)| weight * change).sum::<f64>()
     }
 
     /// Returns argmin ‖f − ΔF w‖ by Cholesky factorisation of the normal equations; dependent directions are left
