@@ -328,7 +328,7 @@ impl Variant<'_> {
         }
     }
 
-    /// Returns the fields in the table of the variant besides the first one.
+    /// Returns the fields in the table of the variant except the first one.
     fn further(&self) -> impl Iterator<Item = &Field> {
         let fields = match self.attributes.table {
             true => &[],

@@ -35,7 +35,7 @@
 //! # Attributes of types and variants
 //! | attribute | meaning |
 //! |---|---|
-//! | `scope = Space<'s>` | type of the scope: what keys depend on besides the fields above; without it, any scope |
+//! | `scope = Space<'s>` | type of the scope: what keys depend on in addition to the fields above; without it, any scope |
 //! | `remote = Type` | declares a type of another crate, whose fields or variants are repeated |
 //! | `default` | of a struct whose fields all have defaults: implements `Default` |
 //! | `at_least_one("mass", "stiffness")`, `exactly_one("temperature", "file")` | of a struct: how many of these keys are given; the first one is the key of a field |

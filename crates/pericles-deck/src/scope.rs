@@ -1,4 +1,4 @@
-//! Scope of declared tables: what their keys depend on besides the keys above them.
+//! Scope of declared tables: what their keys depend on in addition to the keys above them.
 
 use crate::component::Variables;
 use crate::course::TimeHistory;

@@ -25,7 +25,7 @@
 //! defaults and the survey for the schema need no code of their own. Types with a reader of their own implement
 //! [`DeckValue`].
 //!
-//! What keys depend on besides the keys above them is the scope of a table, of type `S`: the dimension of the body, the
+//! What keys depend on in addition to the keys above them is the scope of a table, of type `S`: the dimension of the body, the
 //! names of sets. Tables that depend on nothing else have any scope.
 
 mod check;

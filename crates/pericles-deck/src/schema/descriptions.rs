@@ -21,8 +21,8 @@ impl Descriptions {
             let place = table.replace("[]", "");
             let keys = all.entry(place).or_insert_with(|| Table::new().into());
             if let Some(keys) = keys.as_table_mut() {
-                let former = keys.insert(key.unwrap_or(ABOUT).to_owned(), text.into());
-                assert!(former.is_none(), "two descriptions of {key:?} in [{table}]");
+                let other = keys.insert(key.unwrap_or(ABOUT).to_owned(), text.into());
+                assert!(other.is_none(), "two descriptions of {key:?} in [{table}]");
             }
         }
         Self(all)
