@@ -29,6 +29,8 @@ pub struct PointState<const D: usize> {
     pub stress: Matrix<D>,
     /// Transverse stretch of a plane or a bar; 1 in space.
     pub across: f64,
+    /// Plastic strain α accumulated since the history.
+    pub flow: f64,
 }
 
 /// Largest number of Newton iterations for the transverse stretch; a few suffice.
@@ -46,11 +48,12 @@ impl Expanded<'_> {
     /// Returns energy density and stress; see [`ClassicalSolid::stress`].
     pub fn stress<const D: usize>(&self, f: &Matrix<D>, history: &History) -> PointState<D> {
         let full = self.elastic_part(f, history);
-        let (energy, stress) = self.solid.stress_in_space(&full, history);
+        let (energy, stress, flow) = self.solid.stress_in_space(&full, history);
         PointState {
             energy,
             stress: self.over_factor(&in_body(&stress)),
             across: self.factor * full[2][2],
+            flow,
         }
     }
 
@@ -85,6 +88,16 @@ impl Expanded<'_> {
 }
 
 impl ClassicalSolid {
+    /// Returns the ratio of the secant shear modulus to the elastic one at the accumulated plastic strain α,
+    /// (σ_y + H α)/(σ_y + H α + 3 G α); one for an elastic material.
+    pub fn secant_ratio(&self, accumulated: f64) -> f64 {
+        let Some(plasticity) = &self.plasticity else {
+            return 1.0;
+        };
+        let limit = plasticity.yield_stress + plasticity.hardening * accumulated;
+        limit / (limit + 3.0 * self.moduli.shear * accumulated)
+    }
+
     /// Returns the solid with a stress-free state stretched by a positive factor, for thermal expansion.
     pub fn expanded(&self, factor: f64) -> Expanded<'_> {
         Expanded {
@@ -179,7 +192,7 @@ impl ClassicalSolid {
         let mut across = self.first_guess(f, history);
         for _ in 0..ITERATIONS {
             let full = in_space(f, across);
-            let (_, stress) = self.stress_in_space(&full, history);
+            let (_, stress, _) = self.stress_in_space(&full, history);
             let slope = self.change_in_space(&full, &direction, history);
             let step = -stress[2][2] / slope[2][2];
             // Steps are limited so that the stretch remains positive and concave laws do not overshoot.
@@ -206,16 +219,19 @@ impl ClassicalSolid {
         (1.0 - contraction * strain).clamp(0.2, 5.0)
     }
 
-    fn stress_in_space(&self, f: &Matrix<3>, history: &History) -> (f64, Matrix<3>) {
+    /// Returns energy density, stress P and the increment of α.
+    fn stress_in_space(&self, f: &Matrix<3>, history: &History) -> (f64, Matrix<3>, f64) {
         if self.law != ElasticLaw::Hencky {
-            return stress(self.law, &self.moduli, f);
+            let (energy, stress) = stress(self.law, &self.moduli, f);
+            return (energy, stress, 0.0);
         }
         let j = determinant(f);
         if j.is_nan() || j <= 0.0 {
-            return (f64::NAN, [[f64::NAN; 3]; 3]);
+            return (f64::NAN, [[f64::NAN; 3]; 3], f64::NAN);
         }
         let state = returned(&self.moduli, self.plasticity.as_ref(), f, history);
-        (state.energy(&self.moduli), state.first_stress(f))
+        let energy = state.energy(&self.moduli);
+        (energy, state.first_stress(f), state.increment)
     }
 
     fn change_in_space(&self, f: &Matrix<3>, df: &Matrix<3>, history: &History) -> Matrix<3> {

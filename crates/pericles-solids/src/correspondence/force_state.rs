@@ -17,7 +17,9 @@ use crate::tensor::{
 ///
 /// With K = Σ ω ξ ⊗ ξ, F = I + (Σ ω η ⊗ ξ) K⁻¹, P = ∂ψ/∂F and z = ξ + η − F ξ, the force state is
 /// T⟨ξ⟩ = P K⁻¹ ξ + Z z per unit of ω, and W = ψ(F) + ½ Σ ω z·Z z. The values of a point are the push
-/// P K⁻¹ − Z (F − I), and Z. If fewer than D + 1 bonds remain, or the condition number of K exceeds 10⁶, the bonds do not
+/// P K⁻¹ − Z (F − I), and Z. In plastic flow Z is multiplied by the ratio of the secant shear modulus to the elastic one,
+/// because an elastic control would carry stress beyond the yield stress where the strain varies within the horizon. The
+/// energy that it loses is dissipated. If fewer than D + 1 bonds remain, or the condition number of K exceeds 10⁶, the bonds do not
 /// determine F.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct ForceState<const TENSOR: bool>(pub CorrespondenceConstants);
@@ -42,7 +44,7 @@ pub(super) struct PointShape<const D: usize> {
 }
 
 impl<const D: usize> PointShape<D> {
-    /// Sets the values of a push s P K⁻¹ − Z H and, unless derivatives are computed, of the control.
+    /// Sets the values of a push s P K⁻¹ − Z H and of the control.
     fn values_into(
         &self,
         stress: &Matrix<D>,
@@ -52,7 +54,7 @@ impl<const D: usize> PointShape<D> {
     ) {
         let push = product(stress, &self.inverse);
         let push = push.map(|row| row.map(|entry| self.share * entry));
-        let push = combination(1.0, &push, -1.0, &self.control.times(gradient));
+        let push = combination(1.0, &push, -1.0, &control.times(gradient));
         for (value, entry) in values.iter_mut().zip(push.iter().flatten()) {
             *value = *entry;
         }
@@ -74,20 +76,24 @@ fn places<const D: usize>() -> impl Iterator<Item = (usize, usize)> {
 }
 
 impl<const TENSOR: bool> ForceState<TENSOR> {
-    /// [`Solid::state`] from Σ ω η ⊗ ξ: the part that is not a loop over bonds.
+    /// [`Solid::state`] from Σ ω η ⊗ ξ: the part that is not a loop over bonds. The control is that of the last step if
+    /// it is frozen.
     #[inline(never)]
     fn state_of_moment<const D: usize>(
         &self,
         at: &Point<'_, PointShape<D>, D>,
-        moment: &Matrix<D>,
+        (moment, is_frozen): (&Matrix<D>, bool),
         out: &mut State<'_>,
     ) -> f64 {
         let shape = at.shape;
         let gradient = product(moment, &shape.inverse);
         let f = combination(1.0, &unit::<D>(), 1.0, &gradient);
         let solid = self.0.point.expanded(1.0 + at.thermal);
-        let stress = solid.stress(&f, &self.history_at(at)).stress;
-        shape.values_into(&stress, &gradient, &shape.control, out.values);
+        let history = self.history_at(at);
+        let state = solid.stress(&f, &history);
+        let accumulated = history.accumulated + if is_frozen { 0.0 } else { state.flow };
+        let control = shape.control.scaled(self.0.point.secant_ratio(accumulated));
+        shape.values_into(&state.stress, &gradient, &control, out.values);
         determinant(&in_space(&f, 1.0)) - 1.0
     }
 
@@ -103,24 +109,64 @@ impl<const TENSOR: bool> ForceState<TENSOR> {
         let [gradient, change] = moments.map(|moment| product(moment, &shape.inverse));
         let f = combination(1.0, &unit::<D>(), 1.0, &gradient);
         let solid = self.0.point.expanded(1.0 + at.thermal);
-        let stress = solid.stress_change(&f, &change, &self.history_at(at));
-        shape.values_into(&stress, &change, &Control::NONE, out.values);
+        let history = self.history_at(at);
+        let accumulated = history.accumulated + solid.stress(&f, &history).flow;
+        let control = shape.control.scaled(self.0.point.secant_ratio(accumulated));
+        let stress = solid.stress_change(&f, &change, &history);
+        shape.values_into(&stress, &change, &control, out.values);
+        // The change of the control with the plastic strain is neglected: it would make the tangent unsymmetric.
+        out.values[D * D..].fill(0.0);
     }
 
-    /// [`Solid::advance`] from Σ ω η ⊗ ξ.
+    /// [`Solid::advance`] from Σ ω η ⊗ ξ and the energy of the control of the elastic material.
     #[inline(never)]
     fn advance_of_moment<const D: usize>(
         &self,
         at: &Point<'_, PointShape<D>, D>,
-        moment: &Matrix<D>,
+        (moment, control): (&Matrix<D>, f64),
         next: &mut NextHistory<'_>,
     ) -> f64 {
         let gradient = product(moment, &at.shape.inverse);
         let f = combination(1.0, &unit::<D>(), 1.0, &gradient);
         let solid = self.0.point.expanded(1.0 + at.thermal);
-        let (history, work) = solid.advanced(&f, &self.history_at(at));
+        let before = self.history_at(at);
+        let (mut history, work) = solid.advanced(&f, &before);
+        history.control = control;
         history.keep(next.history);
-        at.shape.share * work
+        // With Z in force at both ends of a step, the loss is ½ (Z_before − Z_after) z_before z_after.
+        let ratio = |history: &History| self.0.point.secant_ratio(history.accumulated);
+        let softened = ratio(&before) - ratio(&history);
+        at.shape.share * work + softened * 0.5 * (before.control + history.control)
+    }
+
+    /// Energy density of the control of the elastic material, ½ Σ ω z·Z z.
+    #[inline(always)]
+    fn control_energy<T: Lanes, const D: usize>(
+        at: &Point<'_, PointShape<D>, D>,
+        gradient: &Matrix<D>,
+    ) -> f64 {
+        let mut sums = [[T::splat(0.0); D]; D];
+        for batch in 0..at.family.batches() {
+            let bond = at.family.bond::<T>(batch);
+            let mut z = bond.eta;
+            for a in 0..D {
+                for b in 0..D {
+                    z[a] = z[a] - T::splat(gradient[a][b]) * bond.xi[b];
+                }
+            }
+            for a in 0..D {
+                for b in 0..D {
+                    sums[a][b] = (bond.weight * z[a]).mul_add(z[b], sums[a][b]);
+                }
+            }
+        }
+        let mut left = [[0.0; D]; D];
+        for a in 0..D {
+            for b in 0..D {
+                left[a][b] = F64x8(sums[a][b].to_array()).sum();
+            }
+        }
+        0.5 * at.shape.control.contraction(&left)
     }
 
     fn history_at<S, const D: usize>(&self, at: &Point<'_, S, D>) -> History {
@@ -205,7 +251,7 @@ impl<const TENSOR: bool, const D: usize> Solid<D> for ForceState<TENSOR> {
     #[inline(always)]
     fn state<T: Lanes>(&self, at: &Point<'_, PointShape<D>, D>, out: &mut State<'_>) -> f64 {
         let moment = at.family.moment::<T>(&at.family);
-        self.state_of_moment(at, &moment, out)
+        self.state_of_moment(at, (&moment, false), out)
     }
 
     /// The control is constant.
@@ -246,41 +292,30 @@ impl<const TENSOR: bool, const D: usize> Solid<D> for ForceState<TENSOR> {
         let moment = at.family.moment::<T>(&at.family);
         let gradient = product(&moment, &shape.inverse);
         let f = combination(1.0, &unit::<D>(), 1.0, &gradient);
-        // Σ ω z ⊗ z
-        let mut sums = [[T::splat(0.0); D]; D];
-        for batch in 0..at.family.batches() {
-            let bond = at.family.bond::<T>(batch);
-            let mut z = bond.eta;
-            for a in 0..D {
-                for b in 0..D {
-                    z[a] = z[a] - T::splat(gradient[a][b]) * bond.xi[b];
-                }
-            }
-            for a in 0..D {
-                for b in 0..D {
-                    sums[a][b] = (bond.weight * z[a]).mul_add(z[b], sums[a][b]);
-                }
-            }
-        }
-        let mut left = [[0.0; D]; D];
-        for a in 0..D {
-            for b in 0..D {
-                left[a][b] = F64x8(sums[a][b].to_array()).sum();
-            }
-        }
         let solid = self.0.point.expanded(1.0 + at.thermal);
-        let elastic = solid.stress(&f, &self.history_at(at)).energy;
-        shape.share * elastic + 0.5 * shape.control.contraction(&left)
+        let history = self.history_at(at);
+        let state = solid.stress(&f, &history);
+        let ratio = (self.0.point).secant_ratio(history.accumulated + state.flow);
+        shape.share * state.energy + ratio * Self::control_energy::<T, D>(at, &gradient)
     }
 
+    /// The control is that of the last step.
     fn potential(&self, at: &Point<'_, PointShape<D>, D>) -> f64 {
-        let energy = <Self as Solid<D>>::energy::<F64x8>(self, at);
         let moment = at.family.moment::<F64x8>(&at.family);
         let gradient = product(&moment, &at.shape.inverse);
         let f = combination(1.0, &unit::<D>(), 1.0, &gradient);
         let solid = self.0.point.expanded(1.0 + at.thermal);
-        let (_, work) = solid.advanced(&f, &self.history_at(at));
-        energy + at.shape.share * work
+        let history = self.history_at(at);
+        let elastic = solid.stress(&f, &history).energy;
+        let (_, work) = solid.advanced(&f, &history);
+        let ratio = self.0.point.secant_ratio(history.accumulated);
+        let control = Self::control_energy::<F64x8, D>(at, &gradient);
+        at.shape.share * (elastic + work) + ratio * control
+    }
+
+    fn potential_state(&self, at: &Point<'_, PointShape<D>, D>, out: &mut State<'_>) {
+        let moment = at.family.moment::<F64x8>(&at.family);
+        self.state_of_moment(at, (&moment, true), out);
     }
 
     /// H : H ≤ Σ ω |F ξ − ξ|²/K_min with the smallest principal value of K, so that k is the larger of the stiffest modulus
@@ -315,7 +350,14 @@ impl<const TENSOR: bool, const D: usize> Solid<D> for ForceState<TENSOR> {
         next: &mut NextHistory<'_>,
     ) -> f64 {
         let moment = at.family.moment::<T>(&at.family);
-        self.advance_of_moment(at, &moment, next)
+        let control = match self.0.point.plasticity {
+            Some(_) => {
+                let gradient = product(&moment, &at.shape.inverse);
+                Self::control_energy::<T, D>(at, &gradient)
+            }
+            None => 0.0,
+        };
+        self.advance_of_moment(at, (&moment, control), next)
     }
 
     /// The accumulated plastic strain ∫ √(2/3 d_p : d_p) dt.

@@ -33,6 +33,8 @@ pub struct History {
     pub accumulated: f64,
     /// Transverse stretch of the plane or the bar at the end of the last step, the initial guess of the next step.
     pub across: f64,
+    /// Energy density of the control of zero-energy modes at the end of the last step for the elastic material, J/m³.
+    pub control: f64,
 }
 
 impl Default for History {
@@ -42,6 +44,7 @@ impl Default for History {
             plastic: [1.0, 1.0, 1.0, 0.0, 0.0, 0.0],
             accumulated: 0.0,
             across: 1.0,
+            control: 0.0,
         }
     }
 }
@@ -51,13 +54,14 @@ const PLACES: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0,
 
 impl History {
     /// Numbers stored per point.
-    pub(super) const KEPT: usize = 8;
+    pub(super) const KEPT: usize = 9;
 
     pub(super) fn of(kept: &[f64]) -> Self {
         Self {
             plastic: std::array::from_fn(|k| kept[k]),
             accumulated: kept[6],
             across: kept[7],
+            control: kept[8],
         }
     }
 
@@ -65,6 +69,7 @@ impl History {
         kept[..6].copy_from_slice(&self.plastic);
         kept[6] = self.accumulated;
         kept[7] = self.across;
+        kept[8] = self.control;
     }
 
     fn inverse_plastic(&self) -> Matrix<3> {
@@ -238,6 +243,7 @@ impl Returned {
             plastic: PLACES.map(|(a, b)| plastic[a][b]),
             accumulated: history.accumulated + self.increment,
             across,
+            control: history.control,
         };
         (next, plasticity.work(history.accumulated, self.increment))
     }

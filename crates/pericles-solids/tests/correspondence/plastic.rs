@@ -232,3 +232,48 @@ fn energy_balance_of_plastic_flow_converges_with_second_order() {
 fn resumed_run_with_plastic_flow_is_bitwise_identical() {
     check_resume(|| thrown(1.0), [3, 9]).unwrap();
 }
+
+/// Two halves of a bar strike each other at the speed V each. The elastic wave carries the yield stress σ_y, so that the
+/// material behind it still moves at V − σ_y/(ρ c) with c = √(E/ρ); the plastic wave of speed √(E H/((E + H) ρ)) stops it.
+#[test]
+fn impact_of_a_bar_sends_out_an_elastic_and_a_plastic_wave() {
+    const SPEED: f64 = 0.02;
+    const HALF: f64 = 300.0;
+    let (young, yield_stress) = (10.0_f64, 0.01);
+    let mut material = yielding(Stabilisation::Isotropic);
+    material.solid.elastic.poisson_ratio = None;
+    material.plasticity = Some(Plasticity {
+        yield_stress,
+        hardening: HARDENING,
+    });
+    let cloud = lattice(&[2.0 * HALF]);
+    let operator = operator(&cloud, &material, StressState::Uniaxial);
+    let system = System::new(cloud.clone(), operator, PointScalar::Uniform(1.0)).unwrap();
+    let mut start = State::at_rest(cloud.len());
+    for i in 0..cloud.len() {
+        start.v[i] = -SPEED * (cloud.point(i)[0] - HALF).signum();
+    }
+    let (elastic, plastic) = (
+        young.sqrt(),
+        (young * HARDENING / (young + HARDENING)).sqrt(),
+    );
+    let t = 0.8 * HALF / elastic;
+    let steps = 1200;
+    let dt = t / steps as f64;
+    let mut run = Simulation::new(system, Box::new(VelocityVerlet), start, dt, steps).unwrap();
+    run.run(|_| Control::Continue).unwrap();
+    let mean = |from: f64, to: f64| {
+        let inside = |i: &usize| (from..to).contains(&(cloud.point(*i)[0] - HALF));
+        let points: Vec<usize> = (0..cloud.len()).filter(inside).collect();
+        points.iter().map(|&i| run.state().v[i]).sum::<f64>() / points.len() as f64
+    };
+    let [stopped, between, ahead] = [
+        mean(0.0, 0.8 * plastic * t),
+        mean(1.2 * plastic * t, 0.9 * elastic * t),
+        mean(1.1 * elastic * t, HALF),
+    ];
+    let jump = yield_stress / elastic;
+    assert!(stopped.abs() < 0.05 * jump, "{stopped}");
+    assert!((between + SPEED - jump).abs() < 0.05 * jump, "{between}");
+    assert!((ahead + SPEED).abs() < 0.05 * jump, "{ahead}");
+}
