@@ -3,8 +3,8 @@
 
     book/verification.py [PROGRAM] [SECONDS]
 
-PROGRAM is the release build (default target/release/pericles), SECONDS the time limit of a study (default 600). Studies that exceed it are listed as not run. Rows that fail are on the summary,
-all judged rows on the pages of the topics; wall times are left out, so that the pages change only with the results. The exit status is 1 if a row fails or a study was not run. A new topic needs
+PROGRAM is the release build (default target/release/pericles), SECONDS the time limit of a study (default 600). Studies that exceed it are listed as not run. Comparisons with experiments run with --full. Rows that fail are on the summary,
+all judged rows, and comparisons with measurements, on the pages of the topics; wall times are left out, so that the pages change only with the results. The exit status is 1 if a row fails or a study was not run. A new topic needs
 an entry in TITLES and in src/SUMMARY.md.
 """
 
@@ -30,6 +30,7 @@ TITLES = {
     "numerics": "Numerical methods",
     "state-based": "State-based materials",
     "statics": "Static equilibrium",
+    "validation": "Experiments",
 }
 STUDIES = "| study | content | source | rows | pass |\n|---|---|---|---|---|\n"
 BOUNDS = {"upper bound": "at most", "lower bound": "at least"}
@@ -44,8 +45,16 @@ def number(value):
     return f"{value:.3e}"
 
 
+def interval(pair):
+    return " to ".join(number(value) for value in pair)
+
+
 def row(entry):
     note, tolerance = entry["note"], entry["tolerance"]
+    if entry["measured"]:
+        case = entry["case"] + (f" ({note})" if note else "")
+        computed = number(entry["computed"]) + (f" ({interval(entry['spread'])})" if entry["spread"] else "")
+        return f"| {case} | – | {interval(entry['measured'])} | {computed} | measured | {entry['agreement']} |\n"
     if tolerance is None:
         bound, _, note = note.partition("; ")
         allowed = BOUNDS[bound]
@@ -79,6 +88,8 @@ class Study:
     def run(self, program, limit, folder):
         out = pathlib.Path(folder) / "rows.json"
         command = [program, "reproduce", self.name, "--quiet", "--json", str(out), "--out", str(pathlib.Path(folder) / self.name.replace("/", "-"))]
+        if self.topic == "validation":
+            command.append("--full")
         began = time.monotonic()
         try:
             subprocess.run(command, timeout=limit, stdout=subprocess.DEVNULL, check=False)
@@ -92,6 +103,11 @@ class Study:
     def judged(self):
         rows = self.results["rows"] if self.results else []
         return [entry for entry in rows if entry["pass"] is not None]
+
+    @property
+    def shown(self):
+        rows = self.results["rows"] if self.results else []
+        return [entry for entry in rows if entry["pass"] is not None or entry["measured"]]
 
     @property
     def failing(self):
@@ -117,7 +133,7 @@ def topic_page(topic, studies):
         if study.results is None:
             text += "Not run: the study exceeds the time limit.\n"
             continue
-        text += COLUMNS + "".join(map(row, study.judged))
+        text += COLUMNS + "".join(map(row, study.shown))
     (PAGES / f"{topic}.md").write_text(text)
 
 

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use pericles_io::OutputFolder;
 use pericles_run::units::duration;
-use pericles_studies::{Context, Row, Study, all_hold, find, studies, table};
+use pericles_studies::{Agreement, Context, Row, Study, all_hold, find, studies, table};
 use serde::Serialize;
 
 use crate::args::ReproduceArgs;
@@ -71,8 +71,21 @@ pub(crate) fn reproduce(args: &ReproduceArgs) -> Result<Exit, CliError> {
         console::print(format_args!("{}", table(&rows)))?;
         let judged = rows.iter().filter_map(Row::pass).count();
         let failed = rows.iter().filter(|row| row.pass() == Some(false)).count();
+        let with = |agreement| {
+            let rows = rows.iter().filter(|row| row.agreement() == Some(agreement));
+            rows.count()
+        };
+        let [inside, partly, outside] =
+            [Agreement::Inside, Agreement::Partly, Agreement::Outside].map(with);
+        let compared = inside + partly + outside;
+        let comparison = match compared {
+            0 => String::new(),
+            _ => format!(
+                "of {compared} rows compared with measurements {inside} are inside and {partly} partly inside; "
+            ),
+        };
         console::print(format_args!(
-            "{} of {judged} judged rows pass; {}",
+            "{comparison}{} of {judged} judged rows pass; {}",
             judged - failed,
             duration(seconds)
         ))?;

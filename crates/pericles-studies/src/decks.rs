@@ -12,7 +12,7 @@ macro_rules! decks {
     };
 }
 
-const DECKS: [(&str, &str); 21] = decks![
+const DECKS: [(&str, &str); 27] = decks![
     "examples/contact/kalthoff-winkler.toml",
     "examples/fracture/branching.toml",
     "examples/heat/bimaterial-strip.toml",
@@ -22,6 +22,12 @@ const DECKS: [(&str, &str); 21] = decks![
     "validation/contact/kalthoff-prescribed.toml",
     "validation/contact/kalthoff-rigid.toml",
     "validation/dispersion-and-fracture/inclined.toml",
+    "validation/experiments/eccentric-beam.toml",
+    "validation/experiments/glass-crack-speed.toml",
+    "validation/experiments/half-notched-beam.toml",
+    "validation/experiments/inclined-crack.toml",
+    "validation/experiments/kalthoff-winkler.toml",
+    "validation/experiments/taylor-impact.toml",
     "validation/manifolds/paper-calibrated.toml",
     "validation/manifolds/poles.toml",
     "validation/manifolds/standard.toml",

@@ -3,9 +3,10 @@
 //! A [`Study`] is a data file: its rows with the printed and the expected values, and the functions that compute
 //! them with their arguments. Every row but wall times is judged ([`Row`]), by a tolerance or a one-sided bound, and
 //! never by a clock; a printed value known not to be reproducible is shown beside the verified one that is judged,
-//! with the reason. Studies, their data and their
-//! decks are part of the library, so they run from any directory; they write no files except requested figures, and
-//! print nothing. The tests run the same studies.
+//! with the reason. Values of experiments are compared with the measured range instead ([`Agreement`]): that a model
+//! does not agree is a result and not a failure. Studies, their data and their
+//! decks are part of the library, so they run from any directory; they write no files except requested figures and
+//! temporary ones, and print nothing. The tests run the same studies.
 //!
 //! A new study is a file `data/TOPIC/NAME.toml`, listed in the `studies` of its topic; functions that it needs are
 //! listed in the topic's `measures`. A new topic is listed in `TOPICS`.
@@ -37,19 +38,20 @@ mod state_based;
 mod statics;
 mod study;
 mod table;
+mod validation;
 
 use std::sync::LazyLock;
 
 use pericles_run::RunError;
 
 pub use context::Context;
-pub use row::{Row, Rule};
+pub use row::{Agreement, Row, Rule};
 pub use study::Study;
 pub use table::table;
 
 use study::Topic;
 
-const TOPICS: [&Topic; 11] = [
+const TOPICS: [&Topic; 12] = [
     &absorbing_boundaries::TOPIC,
     &contact::TOPIC,
     &dispersion::TOPIC,
@@ -61,6 +63,7 @@ const TOPICS: [&Topic; 11] = [
     &numerics::TOPIC,
     &state_based::TOPIC,
     &statics::TOPIC,
+    &validation::TOPIC,
 ];
 
 static STUDIES: LazyLock<Vec<Study>> =

@@ -2,7 +2,8 @@
 
 use std::borrow::Cow;
 
-use serde::ser::{Serialize, SerializeStruct, Serializer};
+use serde::Serialize;
+use serde::ser::{SerializeStruct, Serializer};
 
 /// Rule by which a row is judged.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,6 +16,20 @@ pub enum Rule {
     AtMost,
     /// At least the expected value.
     AtLeast,
+    /// Compared with the smallest and the largest measured value, without a verdict on the program.
+    Measured([f64; 2]),
+}
+
+/// Agreement of a computed value with a measured range.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Agreement {
+    /// The value is in the range.
+    Inside,
+    /// The value is outside the range, but its spread overlaps the range.
+    Partly,
+    /// Neither is in the range.
+    Outside,
 }
 
 impl Rule {
@@ -22,14 +37,14 @@ impl Rule {
     pub fn tolerance(self) -> Option<f64> {
         match self {
             Self::Absolute(tolerance) | Self::Relative(tolerance) => Some(tolerance),
-            Self::AtMost | Self::AtLeast => None,
+            Self::AtMost | Self::AtLeast | Self::Measured(_) => None,
         }
     }
 
     /// Name of the bound of a one-sided rule.
     fn bound(self) -> Option<&'static str> {
         match self {
-            Self::Absolute(_) | Self::Relative(_) => None,
+            Self::Absolute(_) | Self::Relative(_) | Self::Measured(_) => None,
             Self::AtMost => Some("upper bound"),
             Self::AtLeast => Some("lower bound"),
         }
@@ -43,10 +58,12 @@ pub struct Row {
     pub case: String,
     /// Value printed in the paper.
     pub printed: Option<f64>,
-    /// Value to judge by; only wall times have none.
+    /// Value to judge by; only wall times and comparisons with measurements have none.
     pub expected: Option<f64>,
     /// Computed value; `None` if the measured event did not happen.
     pub computed: Option<f64>,
+    /// Smallest and largest computed value over other spacings, horizons and time steps, if they were computed.
+    pub spread: Option<[f64; 2]>,
     /// Comparison with the expected value.
     pub rule: Rule,
     /// Remark for the reader.
@@ -67,6 +84,7 @@ impl Row {
             printed: None,
             expected: None,
             computed,
+            spread: None,
             rule: Rule::Absolute(0.0),
             note: String::new(),
             unit: unit.into(),
@@ -88,6 +106,12 @@ impl Row {
     /// Judges the row by a difference relative to the expected value.
     pub fn within_share(self, expected: f64, tolerance: f64) -> Self {
         self.judged(expected, Rule::Relative(tolerance))
+    }
+
+    /// Compares the row with the smallest and the largest measured value.
+    pub fn measured(mut self, range: [f64; 2]) -> Self {
+        self.rule = Rule::Measured(range);
+        self
     }
 
     /// Sets the value printed in the paper.
@@ -116,6 +140,23 @@ impl Row {
             Rule::Relative(tolerance) => error <= tolerance * expected.abs(),
             Rule::AtMost => computed <= expected,
             Rule::AtLeast => computed >= expected,
+            Rule::Measured(_) => return None,
+        })
+    }
+
+    /// Returns the agreement with the measured range; `None` if the row is not compared with measurements.
+    pub fn agreement(&self) -> Option<Agreement> {
+        let Rule::Measured([low, high]) = self.rule else {
+            return None;
+        };
+        let inside = |value: f64| low <= value && value <= high;
+        let overlaps = |[least, greatest]: [f64; 2]| least <= high && low <= greatest;
+        Some(if self.computed.is_some_and(inside) {
+            Agreement::Inside
+        } else if self.spread.is_some_and(overlaps) {
+            Agreement::Partly
+        } else {
+            Agreement::Outside
         })
     }
 
@@ -129,13 +170,17 @@ impl Row {
 }
 
 /// A one-sided bound is an expected value without a tolerance, and the remark begins with `upper bound` or `lower
-/// bound`.
+/// bound`. The keys `measured`, `spread` and `agreement` are null in rows that are not compared with measurements.
 impl Serialize for Row {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let finite = |number: Option<f64>| number.filter(|x| x.is_finite());
         let tolerance = self.expected.and_then(|_| self.rule.tolerance());
         let absolute = self.expected.is_some() && !matches!(self.rule, Rule::Relative(_));
-        let mut row = serializer.serialize_struct("Row", 8)?;
+        let measured = match self.rule {
+            Rule::Measured(range) => Some(range),
+            _ => None,
+        };
+        let mut row = serializer.serialize_struct("Row", 11)?;
         row.serialize_field("case", &self.case)?;
         row.serialize_field("printed", &finite(self.printed))?;
         row.serialize_field("expected", &finite(self.expected))?;
@@ -143,6 +188,9 @@ impl Serialize for Row {
         row.serialize_field("tolerance", &tolerance)?;
         row.serialize_field("absolute", &absolute)?;
         row.serialize_field("pass", &self.pass())?;
+        row.serialize_field("measured", &measured)?;
+        row.serialize_field("spread", &self.spread)?;
+        row.serialize_field("agreement", &self.agreement())?;
         row.serialize_field("note", &self.remark())?;
         row.end()
     }
@@ -204,7 +252,7 @@ mod tests {
         assert_eq!(
             serde_json::to_value(judged.note("why")).unwrap(),
             json!({"case": "x", "printed": 1.2, "expected": 1.0, "computed": 2.0, "tolerance": 0.5,
-                   "absolute": true, "pass": false, "note": "why"})
+                   "absolute": true, "pass": false, "measured": null, "spread": null, "agreement": null, "note": "why"})
         );
         let bound = Row::new("z", "", Some(2.0)).judged(1.0, Rule::AtLeast);
         for (row, note) in [
@@ -214,14 +262,35 @@ mod tests {
             assert_eq!(
                 serde_json::to_value(row).unwrap(),
                 json!({"case": "z", "printed": null, "expected": 1.0, "computed": 2.0, "tolerance": null,
-                       "absolute": true, "pass": true, "note": note})
+                       "absolute": true, "pass": true, "measured": null, "spread": null, "agreement": null, "note": note})
             );
         }
         let lost = Row::new("y", "s", Some(f64::NAN));
         assert_eq!(
             serde_json::to_value(lost).unwrap(),
             json!({"case": "y", "printed": null, "expected": null, "computed": null, "tolerance": null,
-                   "absolute": false, "pass": null, "note": ""})
+                   "absolute": false, "pass": null, "measured": null, "spread": null, "agreement": null, "note": ""})
         );
+        let measured = Row::new("m", "N", Some(3.0)).measured([1.0, 2.0]);
+        let measured = serde_json::to_value(measured).unwrap();
+        assert_eq!(measured["measured"], json!([1.0, 2.0]));
+        assert_eq!(measured["agreement"], json!("outside"));
+        assert_eq!(measured["pass"], json!(null));
+    }
+
+    #[test]
+    fn agreement_with_a_measured_range_counts_the_spread() {
+        let row = |computed: Option<f64>| Row::new("m", "N", computed).measured([1.0, 2.0]);
+        assert_eq!(row(Some(1.0)).agreement(), Some(Agreement::Inside));
+        assert_eq!(row(Some(2.1)).agreement(), Some(Agreement::Outside));
+        assert_eq!(row(Some(f64::NAN)).agreement(), Some(Agreement::Outside));
+        assert_eq!(row(None).agreement(), Some(Agreement::Outside));
+        let mut wide = row(Some(2.1));
+        wide.spread = Some([1.9, 2.3]);
+        assert_eq!(wide.agreement(), Some(Agreement::Partly));
+        wide.spread = Some([2.05, 2.3]);
+        assert_eq!(wide.agreement(), Some(Agreement::Outside));
+        assert_eq!(wide.pass(), None);
+        assert_eq!(Row::new("x", "", Some(1.0)).agreement(), None);
     }
 }

@@ -2,7 +2,7 @@
 
 use pericles_run::units::{percent, quantity, significant};
 
-use crate::row::{Row, Rule};
+use crate::row::{Agreement, Row, Rule};
 
 const HEADER: [&str; 6] = [
     "case",
@@ -24,23 +24,35 @@ pub fn table(rows: &[Row]) -> String {
             case += &format!(" [{}]", notes.len());
         }
         let number = |value: Option<f64>| value.map_or("-".into(), |value| shown(value, &row.unit));
+        let range = |[low, high]: [f64; 2]| {
+            format!("{} to {}", shown(low, &row.unit), shown(high, &row.unit))
+        };
         let tolerance = match (row.expected, row.rule) {
+            (_, Rule::Measured(_)) => "measured".into(),
             (None, _) => "-".into(),
             (_, Rule::Absolute(tolerance)) => format!("± {}", shown(tolerance, &row.unit)),
             (_, Rule::Relative(tolerance)) => format!("± {}", percent(tolerance)),
             (_, Rule::AtMost) => "at most".into(),
             (_, Rule::AtLeast) => "at least".into(),
         };
-        let verdict = match row.pass() {
-            None => "-",
-            Some(true) => "holds",
-            Some(false) => "FAILS",
+        let verdict = match (row.pass(), row.agreement()) {
+            (_, Some(Agreement::Inside)) => "inside",
+            (_, Some(Agreement::Partly)) => "partly inside",
+            (_, Some(Agreement::Outside)) => "outside",
+            (None, None) => "-",
+            (Some(true), None) => "holds",
+            (Some(false), None) => "FAILS",
         };
+        let expected = match row.rule {
+            Rule::Measured(measured) => range(measured),
+            _ => number(row.expected),
+        };
+        let spread = row.spread.map(|spread| format!(" ({})", range(spread)));
         cells.push([
             case,
             number(row.printed),
-            number(row.expected),
-            number(row.computed),
+            expected,
+            number(row.computed) + &spread.unwrap_or_default(),
             tolerance,
             verdict.into(),
         ]);
@@ -95,10 +107,14 @@ mod tests {
             Row::new("arms", "", None).within(2.0, 0.0),
             Row::new("cost", "s", Some(f64::NAN)),
             Row::new("error", "", Some(0.25)).judged(0.5, Rule::AtMost),
+            Row {
+                spread: Some([1.0, 3.0]),
+                ..Row::new("peak", "N", Some(2.5)).measured([1.0, 2.0])
+            },
         ];
         let text = table(&rows);
         let lines: Vec<&str> = text.lines().collect();
-        assert_eq!(lines.len(), 8, "{text}");
+        assert_eq!(lines.len(), 9, "{text}");
         let cells = |line: usize| -> Vec<&str> { lines[line].split('|').map(str::trim).collect() };
         assert_eq!(
             cells(2),
@@ -128,8 +144,19 @@ mod tests {
             cells(6),
             ["error", "-", "0.5000", "0.2500", "at most", "holds"]
         );
-        assert_eq!(lines[7], "[1] too small by √2");
-        let bars: Vec<usize> = lines[2..7]
+        assert_eq!(
+            cells(7),
+            [
+                "peak",
+                "-",
+                "1.00 N to 2.00 N",
+                "2.50 N (1.00 N to 3.00 N)",
+                "measured",
+                "partly inside"
+            ]
+        );
+        assert_eq!(lines[8], "[1] too small by √2");
+        let bars: Vec<usize> = lines[2..8]
             .iter()
             .map(|line| line.chars().take_while(|&c| c != '|').count())
             .collect();

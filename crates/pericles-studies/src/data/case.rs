@@ -112,6 +112,18 @@ impl<'a> Case<'a> {
         texts.map(|text| self.expanded(text)).collect()
     }
 
+    /// Named lists of texts, with names of arguments replaced; empty if not given.
+    pub(crate) fn lists(&self, name: &str) -> Result<Vec<(String, Vec<String>)>, RunError> {
+        let table = self.get(name).and_then(Value::as_table);
+        let lists = table.into_iter().flatten().map(|(name, list)| {
+            let texts = list.as_array().into_iter().flatten();
+            let texts = texts.filter_map(Value::as_str);
+            let texts: Result<_, RunError> = texts.map(|text| self.expanded(text)).collect();
+            Ok((name.clone(), texts?))
+        });
+        lists.collect()
+    }
+
     /// Value that a text selects.
     pub(crate) fn one_of<T: Clone>(
         &self,

@@ -9,7 +9,7 @@ use serde::Deserialize;
 use toml::{Table, Value};
 
 use super::case::{Case, Found, Measure, Shared, number};
-use super::format::{Figure, Rows, StudyData, Style, When};
+use super::format::{Figure, Measured, Rows, StudyData, Style, When};
 use super::template;
 use crate::context::Context;
 use crate::row::{Row, Rule};
@@ -157,6 +157,15 @@ impl Expansion<'_> {
                 (None, None) => Rule::Relative(tolerance(&row.relative)?),
             };
             made = made.judged(expected, rule);
+        }
+        if let Some(Measured { low, high }) = &row.measured {
+            let limit = |cells: &Value| number(&Some(cells.clone()));
+            let (Some(low), Some(high)) = (limit(low)?, limit(high)?) else {
+                return Ok(());
+            };
+            made = made.measured([low, high]);
+            let spread = found.number("least").zip(found.number("greatest"));
+            made.spread = spread.and_then(|(least, greatest)| Some([least?, greatest?]));
         }
         if let Some(Value::String(note)) = place.entry(row.note.as_ref()) {
             made.note = text(note)?;

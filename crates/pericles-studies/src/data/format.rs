@@ -57,12 +57,22 @@ pub(super) struct Rows {
     pub(super) below: Option<Value>,
     /// Lower bound, in place of an expected value with a tolerance.
     pub(super) above: Option<Value>,
+    /// Smallest and largest measured value, `low` and `high`, in place of an expected value or a bound.
+    pub(super) measured: Option<Measured>,
     /// Remark for the reader.
     pub(super) note: Option<Value>,
     /// Curves of the result drawn in the figures with these names; not inherited by inner rows.
     pub(super) draw: Vec<String>,
     /// Inner rows.
     pub(super) row: Vec<Rows>,
+}
+
+/// Measured range.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Measured {
+    pub(super) low: Value,
+    pub(super) high: Value,
 }
 
 /// Form of the study to which a row belongs.
@@ -172,6 +182,7 @@ impl Rows {
             absolute: tolerance.absolute.clone(),
             below: bound.below.clone(),
             above: bound.above.clone(),
+            measured: self.measured.clone(),
             note: or(&self.note, &around.note),
             ..self.clone()
         }
@@ -198,6 +209,7 @@ impl StudyData {
                 rows.expected.is_some() && tolerance,
                 rows.below.is_some(),
                 rows.above.is_some(),
+                rows.measured.is_some(),
             ];
             let rules = rules.into_iter().filter(|rule| *rule).count();
             if let (true, Some(label)) = (is_leaf, &rows.label) {

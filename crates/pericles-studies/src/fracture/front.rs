@@ -72,7 +72,7 @@ pub(super) fn slope(points: &[(f64, f64)]) -> Option<f64> {
 }
 
 /// Slope in a window of this length around each point; `(middle of the window, slope)`.
-pub(super) fn slopes(points: &[(f64, f64)], window: f64) -> Vec<(f64, f64)> {
+pub(crate) fn slopes(points: &[(f64, f64)], window: f64) -> Vec<(f64, f64)> {
     let tolerance = 1e-6 * window;
     let mut slopes = Vec::new();
     for (first, start) in points.iter().enumerate() {

@@ -13,6 +13,8 @@ mod front;
 mod inclined;
 mod record;
 
+pub(crate) use front::slopes;
+
 use crate::study::{Topic, data};
 
 /// Studies of this topic.
