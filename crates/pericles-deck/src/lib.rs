@@ -115,7 +115,6 @@ mod quantity;
 mod range;
 mod reader;
 mod region;
-mod relaxation;
 mod remark;
 mod schema;
 mod scheme;
@@ -165,20 +164,21 @@ pub use material::{
 };
 pub use model::{Body, Model, Solid};
 pub use output::{
-    CellChoice, Checkpoint, CrackOutput, DerivedQuantity, FieldBlocks, FieldFormat, FragmentOutput,
-    Output, Picture, PictureColours, PictureFormat, PictureLook, PointNumber, Precision, Profile,
+    Checkpoint, CrackOutput, DerivedQuantity, FieldBlocks, FieldFormat, FieldNames, FieldOutput,
+    FragmentOutput, HistoryOutput, Output, Picture, PictureColours, PictureFormat, PictureLook,
+    PointNumber, Precision, Profile,
 };
 pub use quantity::{metres, seconds};
 pub use remark::{BuildError, Keys, ModelProblem, ModelWarning, Remark};
 pub use schema::{json_schema, reference, specimens, unit_of_key};
-pub use scheme::{FineRegion, FineStep, Interface, Scheme};
+pub use scheme::{FineRegion, FineStep, Interface, RelaxationLimits, Scheme};
 pub use set::{ALL, Depth, Members, NamedSet};
 pub use source::{Location, is_invisible};
 pub use state_based::StateBased;
 pub use statics::{LoadControl, RigidModes, StaticBreaking, Statics};
 pub use stop::{StopCondition, StopWhen};
 pub use subject::Subject;
-pub use surface::SurfaceBody;
+pub use surface::{Geodesics, SurfaceBody, SurfaceMaterial, SurfaceModel};
 pub use thermal::{
     Conduction, ConductionScheme, ConductivityMean, MaterialThermal, Thermal, ThermalAmplitude,
     ThermalCondition,

@@ -22,6 +22,16 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
+    /// Returns the frame of a body of a model, whose lengths are in metres.
+    pub(crate) fn of_model(dimension: usize) -> Self {
+        Self {
+            dimension: Some(dimension),
+            spacing: None,
+            cells: true,
+            mesh: true,
+        }
+    }
+
     /// Returns whether the spacing is unknown before a mesh is read.
     pub(crate) fn is_automatic(&self) -> bool {
         self.mesh && self.spacing.is_none()

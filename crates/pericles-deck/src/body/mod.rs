@@ -21,7 +21,7 @@ pub use unit::length_unit;
 
 pub(crate) use piece::rotation;
 pub(crate) use types::{BodyRead, SurfaceRead};
-pub(crate) use unit::{unit, unit_of};
+pub(crate) use unit::{check_unit, unit_of};
 
 use pericles::material::StressState;
 use pericles::space::{Finer, Grid, Region};

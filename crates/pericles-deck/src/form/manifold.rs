@@ -2,27 +2,10 @@
 
 use pericles_manifold::geodesic::GeodesicMethod;
 use pericles_manifold::surface::SurfaceChecks;
-use pericles_manifold::{PowerMaterial, SurfaceBond};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::{Described, described};
-
-#[derive(Serialize, Deserialize)]
-#[serde(remote = "PowerMaterial", deny_unknown_fields)]
-struct PowerMaterialForm {
-    density: f64,
-    kappa: f64,
-    alpha: f64,
-    p: f64,
-    horizon: f64,
-    #[serde(with = "crate::form")]
-    bond: SurfaceBond,
-    self_interaction: bool,
-    // Infinity: bonds never break.
-    #[serde(with = "crate::form")]
-    critical_stretch: f64,
-}
 
 #[derive(Serialize, Deserialize)]
 #[serde(remote = "SurfaceChecks", deny_unknown_fields)]
@@ -46,4 +29,4 @@ impl Described for GeodesicMethod {
     }
 }
 
-described!(PowerMaterial: PowerMaterialForm, SurfaceChecks: SurfaceChecksForm);
+described!(SurfaceChecks: SurfaceChecksForm);
