@@ -6,7 +6,7 @@ use pericles::boundary::MotionKind;
 use pericles_deck_derive::{DeckKeys, DeckTable};
 use serde::{Deserialize, Serialize};
 
-use crate::body::{self, Rotation};
+use crate::body::{self, Rotation, RotationScope};
 use crate::course::{self, TimeHistory};
 use crate::declaration::{Check, Spatial};
 use crate::fault::Fault;
@@ -37,7 +37,7 @@ pub struct Impactor {
     /// Initial rotation about the centre of mass.
     #[serde(default)]
     #[deck(
-        with = rotation,
+        scope = RotationScope::of_impactor(scope.dimension),
         forbid_if(has_no_rotation(shape, scope), "it requires a box, cylinder or surface in 2D or 3D")
     )]
     pub rotation: Option<Rotation>,
@@ -251,10 +251,6 @@ fn check_normal(normal: &[f64; 3], path: &KeyPath, _: Scope<'_>, check: &mut Che
     let right = normal.iter().any(|&x| x != 0.0);
     let allowed = "allowed: a nonzero vector";
     check.within(right, path.key("normal"), "zero", allowed);
-}
-
-fn rotation(item: &Item<'_>, scope: Scope<'_>) -> Option<Rotation> {
-    body::rotation(item.table()?, scope.dimension, false)
 }
 
 /// Reads which of the keys of a prescribed motion is given.

@@ -136,8 +136,8 @@ mod words;
 pub use assign::Assignment;
 pub use body::{
     Boundary, FilledCells, FilledShape, Lattice, MeshFile, Piece, PointsFile, Positions,
-    Quadrature, Rotation, SolidShape, SurfaceFormula, SurfaceShape, VertexAreas, length_unit,
-    piece_path,
+    Quadrature, Rotation, SolidShape, SurfaceFile, SurfaceFormula, SurfaceShape, VertexAreas,
+    length_unit, piece_path,
 };
 pub use boundary::BoundaryCondition;
 pub use caution::{AreaCaution, Caution, ContactCaution};
@@ -160,7 +160,7 @@ pub use interface::{InterfaceFailure, MaterialInterface};
 pub use key_path::KeyPath;
 pub use material::{
     BondSoftening, FailureSurface, Material, MaterialModel, NamedMaterial, Scatter,
-    ScatteredStrength, SofteningWord,
+    ScatteredStrength,
 };
 pub use model::{Body, Model, Solid};
 pub use output::{
@@ -169,10 +169,11 @@ pub use output::{
     PointNumber, Precision, Profile,
 };
 pub use quantity::{metres, seconds};
+pub use region::Depth;
 pub use remark::{BuildError, Keys, ModelProblem, ModelWarning, Remark};
 pub use schema::{json_schema, reference, specimens, unit_of_key};
 pub use scheme::{FineRegion, FineStep, Interface, RelaxationLimits, Scheme};
-pub use set::{ALL, Depth, Members, NamedSet};
+pub use set::{ALL, Members, NamedSet, NearFaces};
 pub use source::{Location, is_invisible};
 pub use state_based::StateBased;
 pub use statics::{LoadControl, RigidModes, StaticBreaking, Statics};

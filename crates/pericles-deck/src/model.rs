@@ -226,9 +226,9 @@ impl Body {
         match self {
             Self::Solid(solid) => solid.shape.files(),
             Self::Surface(SurfaceBody {
-                shape: SurfaceShape::File { path, .. },
+                shape: SurfaceShape::File(file),
                 ..
-            }) => vec![path],
+            }) => vec![&file.path],
             Self::Surface(_) => Vec::new(),
         }
     }

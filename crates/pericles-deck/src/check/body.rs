@@ -8,10 +8,10 @@ use pericles::material::{
 use pericles::space::{Finer, Region, Shape};
 
 use crate::body::{
-    Boundary, FilledCells, FilledShape, Lattice, Piece, Positions, Quadrature, SolidShape,
+    Boundary, FilledCells, FilledShape, Lattice, Piece, Quadrature, RotationScope, SolidShape,
     VertexAreas, piece_path,
 };
-use crate::declaration::{Check, DeckValue};
+use crate::declaration::{Check, DeckKeys, DeckValue};
 use crate::fault::Fault;
 use crate::interface::InterfaceFailure;
 use crate::key_path::KeyPath;
@@ -94,10 +94,8 @@ impl Check {
                 allowed,
             );
             if let Some(rotation) = piece.rotation {
-                let right = rotation.axis.iter().any(|&x| x != 0.0)
-                    && rotation.axis.iter().all(|x| x.is_finite());
-                let allowed = "allowed: a nonzero vector";
-                self.within(right, key.key("rotation").key("axis"), "zero", allowed);
+                let scope = RotationScope::of_piece(Some(first.dimension()));
+                rotation.check(key.key("rotation"), scope, self);
             }
         }
     }
@@ -123,18 +121,12 @@ impl Check {
         self.within(right, key.key("refine"), filled.finer.len(), allowed);
         self.finer(key, &filled.finer);
         self.holes(key, &filled.holes);
-        self.positions(key, filled.positions);
+        filled.positions.check_keys(key, (), self);
     }
 
     fn holes(&mut self, key: &KeyPath, holes: &[Region]) {
         for (k, hole) in holes.iter().enumerate() {
             self.region(&key.key("hole").index(k), hole);
-        }
-    }
-
-    fn positions(&mut self, key: &KeyPath, positions: Positions) {
-        if let Positions::Jittered { jitter, .. } = positions {
-            self.between(key.key("jitter"), jitter, [0.0, 0.5]);
         }
     }
 
@@ -180,7 +172,7 @@ impl Check {
             allowed,
         );
         self.holes(key, &lattice.grid.holes);
-        self.positions(key, lattice.positions);
+        lattice.positions.check_keys(key, (), self);
         let plain = lattice.rectangular.is_none()
             && lattice.finer.is_empty()
             && !lattice.periodic

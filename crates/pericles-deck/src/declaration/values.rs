@@ -61,14 +61,7 @@ impl<S> Measured<S> for u32 {
 /// A vector with one component per dimension of the body.
 impl<S: Spatial> Measured<S> for [f64; 3] {
     fn read(item: &Item<'_>, quantity: Quantity, range: Range, scope: S) -> Option<Self> {
-        let dimension = scope.dimension();
-        let vector = item.vector(quantity, dimension)?;
-        let mut components = vector.iter().take(dimension.unwrap_or(3));
-        if components.any(|&component| !range.contains(component)) {
-            item.out_of_range(&range.words());
-            return None;
-        }
-        Some(vector)
+        item.vector_within(quantity, range, scope.dimension())
     }
 
     fn check(&self, path: KeyPath, range: Range, scope: S, check: &mut Check) {

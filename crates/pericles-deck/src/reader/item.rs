@@ -7,7 +7,7 @@ use crate::document::{Entry, Node, Value};
 use crate::fault::Fault;
 use crate::key_path::KeyPath;
 use crate::quantity::Quantity;
-use crate::range::{COUNT, POSITIVE, Range};
+use crate::range::{ANY, COUNT, POSITIVE, Range};
 use crate::source::Place;
 use crate::units::{self, UnitError};
 
@@ -387,11 +387,21 @@ impl<'a> Item<'a> {
 
     /// Reads a vector of quantities; missing components are zero.
     pub(crate) fn vector(&self, quantity: Quantity, dimension: Option<usize>) -> Option<[f64; 3]> {
+        self.vector_within(quantity, ANY, dimension)
+    }
+
+    /// Reads a vector whose components are in a range; missing components are zero.
+    pub(crate) fn vector_within(
+        &self,
+        quantity: Quantity,
+        range: Range,
+        dimension: Option<usize>,
+    ) -> Option<[f64; 3]> {
         let items = self.components(dimension, &quantity.expected())?;
         let mut vector = Some([0.0; 3]);
         for (c, item) in items.iter().enumerate() {
             // Continue after an invalid entry to report all of them.
-            match (item.quantity(quantity), &mut vector) {
+            match (item.number(quantity, range), &mut vector) {
                 (Some(value), Some(vector)) => vector[c] = value,
                 _ => vector = None,
             }

@@ -24,6 +24,8 @@ pub(crate) struct Table<'a> {
     allowed: RefCell<Vec<&'static str>>,
     /// Keys that are not reported as unknown.
     settled: RefCell<Vec<&'a str>>,
+    /// Required keys.
+    needed: RefCell<Vec<&'static str>>,
     /// Keys that are not allowed.
     forbidden: RefCell<Vec<&'static str>>,
 }
@@ -42,6 +44,7 @@ impl<'a> Table<'a> {
             entries,
             allowed: RefCell::default(),
             settled: RefCell::default(),
+            needed: RefCell::default(),
             forbidden: RefCell::default(),
         }
     }
@@ -141,7 +144,11 @@ impl<'a> Table<'a> {
     /// Returns the value of a required key.
     pub(crate) fn required(&self, key: &'static str) -> Option<Item<'a>> {
         let item = self.optional(key);
-        self.ledger.note(|survey| survey.needed(&self.path, key));
+        let mut needed = self.needed.borrow_mut();
+        if !needed.contains(&key) {
+            needed.push(key);
+            self.ledger.note(|survey| survey.needed(&self.path, key));
+        }
         if item.is_none() {
             self.requires_one_of(&[key]);
         }

@@ -25,9 +25,7 @@ impl Assembler<'_> {
         resources: &Resources<'_>,
     ) -> Result<(Surface, PointCloud), BuildError> {
         let surface = match &deck.shape {
-            SurfaceShape::File { path, checks } => {
-                self.surface_of_file(path, *checks, resources)?
-            }
+            SurfaceShape::File(file) => self.surface_of_file(&file.path, file.checks, resources)?,
             SurfaceShape::Formula(shape) => {
                 self.check_vertices(shape.vertices(), resources)?;
                 let made = shape.surface();
