@@ -219,7 +219,12 @@ fn anchor(title: &str) -> String {
 /// Returns a default as written in decks.
 fn plain(value: &Json) -> String {
     match value {
-        Json::Array(entries) if !entries.is_empty() => plain(&entries[0]),
+        Json::Array(entries) if !entries.is_empty() => {
+            match entries.iter().all(|entry| *entry == entries[0]) {
+                true => plain(&entries[0]),
+                false => format!("`{value}`"),
+            }
+        }
         Json::Number(number) => match number.as_f64() {
             Some(number) => format!("`{number}`"),
             None => format!("`{number}`"),
