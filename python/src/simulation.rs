@@ -93,7 +93,7 @@ impl Simulation {
                 let rows = Course::new(history_rows(model, &simulation, exact));
                 let rows = Arc::new(Mutex::new(rows));
                 let history = Box::new(HistoryKeeper(Arc::clone(&rows)));
-                simulation.observe(model.output.history, history);
+                simulation.observe(model.output.history.schedule, history);
                 simulation.observe(plan.schedule, keeper);
                 course = Some(rows);
                 Engine::Memory(Box::new(simulation))

@@ -55,6 +55,10 @@ pub(crate) struct Attributes {
     pub(crate) flatten: bool,
     /// The keys that a reader of the table reads.
     pub(crate) keys: Option<Vec<LitStr>>,
+    /// The word for `None`.
+    pub(crate) none: Option<Code>,
+    /// Whether a missing table is read as an empty one.
+    pub(crate) or_empty: bool,
     pub(crate) required: bool,
     pub(crate) required_if: Option<Code>,
     /// The scope of a value, an expression.
@@ -69,6 +73,8 @@ pub(crate) struct Attributes {
     pub(crate) otherwise: Option<Code>,
     /// The type that a struct or enum declares, if it is not the struct or enum itself.
     pub(crate) remote: Option<Path>,
+    /// The name of the definition of the table.
+    pub(crate) define: Option<LitStr>,
     /// A function that checks the values of a table together.
     pub(crate) verify: Option<Path>,
     /// A word that may replace a table, with its value.
@@ -90,6 +96,8 @@ pub(crate) const OF_FIELD: &[&str] = &[
     "quantity",
     "range",
     "default",
+    "none",
+    "or_empty",
     "required",
     "required_if",
     "key",
@@ -109,6 +117,7 @@ pub(crate) const OF_STRUCT: &[&str] = &[
     "scope",
     "remote",
     "default",
+    "define",
     "at_least_one",
     "exactly_one",
     "unique",
@@ -120,6 +129,7 @@ pub(crate) const OF_ENUM: &[&str] = &[
     "scope",
     "remote",
     "default",
+    "define",
     "tag",
     "tag_about",
     "what",
@@ -158,9 +168,11 @@ impl Attributes {
             }
             "default" => self.default = Some(Fallback::OfType),
             "key" | "word" => self.name = Some(value::<LitStr>(meta)?.value()),
+            "none" => self.none = Some(value(meta)?),
             "with" => self.with = Some(value(meta)?),
             "check" => self.check = Some(value(meta)?),
             "flatten" => self.flatten = true,
+            "or_empty" => self.or_empty = true,
             "required" => self.required = true,
             "remote" => self.remote = Some(value(meta)?),
             // Types of scopes have lifetimes, expressions of scopes have calls.
@@ -186,6 +198,7 @@ impl Attributes {
                 parenthesized!(inner in meta.input);
                 self.required_if = Some(inner.parse()?);
             }
+            "define" => self.define = Some(value(meta)?),
             "verify" => self.verify = Some(value(meta)?),
             "word_for" => self.word = Some(condition(meta)?),
             "forbid_if" => self.forbidden.push(condition(meta)?),

@@ -40,8 +40,9 @@ pub(crate) fn fields(fields: &Fields) -> Result<Vec<Field>> {
                 None => format_ident!("value{number}"),
             };
             let key = attributes.name.clone().unwrap_or_else(|| name.to_string());
-            // With a default, `None` is a value like others.
-            let inner = inside(&field.ty, "Option").filter(|_| attributes.default.is_none());
+            // With a default, `None` is a value like others, unless it has a word.
+            let is_value = attributes.default.is_some() && attributes.none.is_none();
+            let inner = inside(&field.ty, "Option").filter(|_| !is_value);
             if attributes.with.is_some() && attributes.quantity.is_some() {
                 let message = "a field has a quantity or a reader of its own (`with`), not both";
                 return Err(Error::new_spanned(field, message));
@@ -135,11 +136,27 @@ impl Field {
                 None => quote_spanned!(here()=> crate::quantity::Quantity::Number),
             };
             let range = self.range();
-            return quote_spanned!(here()=> <#ty as crate::declaration::Measured<_>>::read(
-                &item, #quantity, #range, #scope,
-            ));
+            return match &self.attributes.none {
+                Some(word) => quote_spanned!(here()=>
+                    <#ty as crate::declaration::Measured<_>>::read_or(
+                        &item, #word, #quantity, #range, #scope,
+                    )
+                ),
+                None => quote_spanned!(here()=> <#ty as crate::declaration::Measured<_>>::read(
+                    &item, #quantity, #range, #scope,
+                )),
+            };
         }
-        quote_spanned!(here()=> <#ty as crate::declaration::DeckValue<_>>::read(&item, #scope))
+        let read = quote_spanned!(here()=>
+            <#ty as crate::declaration::DeckValue<_>>::read(&item, #scope)
+        );
+        match &self.attributes.none {
+            Some(word) => quote_spanned!(here()=> match item.is_keyword(#word) {
+                true => Some(None),
+                false => #read.map(Some),
+            }),
+            None => read,
+        }
     }
 
     /// Returns the default of a missing key.
@@ -152,9 +169,9 @@ impl Field {
     }
 
     /// Returns the expression of a default that is not the default of the type, and the type.
-    pub(crate) fn own_default(&self) -> Option<(TokenStream, &Type)> {
+    pub(crate) fn own_default(&self) -> Option<(TokenStream, TokenStream)> {
         match &self.attributes.default {
-            Some(Fallback::Value(value)) => Some((quote_spanned!(here()=> #value), &self.ty)),
+            Some(Fallback::Value(value)) => Some((quote_spanned!(here()=> #value), self.whole())),
             _ => None,
         }
     }
@@ -193,8 +210,11 @@ impl Field {
                 #reading
             });
         }
-        // The keys of a flattened value have their own descriptions, unless its one key is named.
-        let has_own = self.attributes.flatten && self.attributes.name.is_none();
+        // Lists of tables have descriptions, and so have the keys of a flattened value, unless its one key is named.
+        let has_own = match self.attributes.flatten {
+            true => self.attributes.name.is_none(),
+            false => self.is_list && self.attributes.with.is_none(),
+        };
         let describe = match has_own || about.is_empty() {
             true => TokenStream::new(),
             false => quote_spanned!(here()=> table.describe(#key, #about);),
@@ -229,29 +249,42 @@ impl Field {
     fn read_key(&self) -> TokenStream {
         let (key, ty, scope) = (&self.key, &self.ty, self.scope());
         let (rule, fallback) = (self.rule(), self.fallback());
-        if self.is_optional {
-            let maybe = quote_spanned!(here()=> table.maybe(#key, |item| #rule));
-            return match &self.attributes.required_if {
-                Some(condition) => quote_spanned!(here()=> match #condition {
-                    true => table.required(#key).and_then(|item| #rule).map(Some),
-                    false => #maybe,
+        let is_bare = self.is_optional && self.attributes.none.is_none();
+        let required = quote_spanned!(here()=> table.required(#key).and_then(|item| #rule));
+        if self.attributes.or_empty {
+            return quote_spanned!(here()=> match table.optional(#key) {
+                Some(item) => #rule,
+                None => table.table_or_empty(#key).and_then(|table| {
+                    <#ty as crate::declaration::DeckTable<_>>::read_table(table, #scope)
                 }),
-                None => maybe,
-            };
+            });
         }
         let Some(value) = fallback else {
-            return quote_spanned!(here()=> table.required(#key).and_then(|item| #rule));
+            return required;
         };
-        let missing = match self.attributes.default {
-            Some(_) => quote_spanned!(here()=>
+        let missing = match (&self.attributes.default, &self.attributes.none) {
+            (Some(_), Some(word)) => quote_spanned!(here()=> {
+                let value = #value;
+                table.record_or(#key, value, #word);
+                Some(value)
+            }),
+            (Some(_), None) => quote_spanned!(here()=>
                 <#ty as crate::declaration::Fallback<_>>::missing(#value, table, #key, #scope)
             ),
-            None => quote_spanned!(here()=> Some(#value)),
+            (None, _) => quote_spanned!(here()=> Some(#value)),
         };
-        quote_spanned!(here()=> match table.optional(#key) {
-            Some(item) => #rule,
+        let wrap = is_bare.then(|| quote_spanned!(here()=> .map(Some)));
+        let optional = quote_spanned!(here()=> match table.optional(#key) {
+            Some(item) => (#rule) #wrap,
             None => #missing,
-        })
+        });
+        match &self.attributes.required_if {
+            Some(condition) => quote_spanned!(here()=> match #condition {
+                true => #required #wrap,
+                false => #optional,
+            }),
+            None => optional,
+        }
     }
 
     /// Declares the variables of a value from the code that reads it.

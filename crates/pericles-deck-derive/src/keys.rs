@@ -98,20 +98,12 @@ fn tagged(
         (_, None) => quote_spanned!(here()=> None),
     };
     let is_required = attributes.default.is_none() && usual.is_none();
+    let selector = format!("{tag} = ");
     let request = Ident::new(if is_required { "required" } else { "optional" }, here());
     let arms = variants
         .iter()
         .enumerate()
         .map(|(number, variant)| {
-            let others = variants.iter().filter(|other| other.name != variant.name);
-            let others = others.flat_map(|other| &other.fields).map(|field| {
-                let with = variants.iter().filter(|other| other.has(field));
-                let with: Vec<String> = with
-                    .map(|other| format!("{:?}", other.named('-')))
-                    .collect();
-                (field, format!("it requires {tag} = {}", with.join(" or ")))
-            });
-            let forbid = forbid(variant.fields.iter(), others);
             let reads = variant
                 .fields
                 .iter()
@@ -130,15 +122,18 @@ fn tagged(
             let made = variant.made(&target(input, attributes));
             Ok(quote_spanned!(here()=> Some(#number) => {
                 #(#conditions)*
-                #forbid
+                table.forbid_others(#selector, #number, &alternatives);
                 #(#reads)*
                 Some(#made)
             }))
         })
         .collect::<Result<Vec<TokenStream>>>()?;
     let count = words.len();
+    let name = |variant: &Variant<'_>| format!("{:?}", variant.named('-'));
+    let alternatives = alternatives(variants, name, Variant::fields);
     Ok(quote_spanned!(here()=>
         const WORDS: [(&str, usize); #count] = [#((#words, #numbers)),*];
+        let alternatives = #alternatives;
         table.describe(#tag, #about);
         let item = table.#request(#tag);
         let found = match &item {
@@ -165,18 +160,18 @@ fn exclusive(
         .map(|variant| variant.named('_'))
         .collect();
     let abouts = with_keys(variants).map(Variant::about);
+    let conditions = with_keys(variants).zip(&keys).flat_map(|(variant, key)| {
+        let conditions = variant.attributes.allowed.iter();
+        conditions.map(move |(condition, reason)| {
+            quote_spanned!(here()=> if !(#condition) {
+                table.forbid(#key, #reason);
+            })
+        })
+    });
     let arms = with_keys(variants)
         .zip(&keys)
-        .map(|(variant, key)| {
-            let others = variants.iter().filter(|other| other.name != variant.name);
-            let others = others.flat_map(Variant::further).map(|field| {
-                let with = variants.iter().filter(|other| other.has(field));
-                let with: Vec<String> = with
-                    .map(|other| format!("`{}`", other.named('_')))
-                    .collect();
-                (field, format!("it requires {}", with.join(" or ")))
-            });
-            let forbid = forbid(variant.further(), others);
+        .enumerate()
+        .map(|(number, (variant, key))| {
             let made = variant.made(target);
             let body = if variant.attributes.table {
                 let reads = variant
@@ -205,7 +200,10 @@ fn exclusive(
                     .collect::<Result<Vec<_>>>()?;
                 quote_spanned!(here()=> #value #(#reads)* Some(#made))
             };
-            Ok(quote_spanned!(here()=> Some((#key, item)) => { #forbid #body }))
+            Ok(quote_spanned!(here()=> Some((#key, item)) => {
+                table.forbid_others("", #number, &alternatives);
+                #body
+            }))
         })
         .collect::<Result<Vec<TokenStream>>>()?;
     let scope = scope();
@@ -236,9 +234,13 @@ fn exclusive(
             })
         }
     };
+    let name = |variant: &Variant<'_>| format!("`{}`", variant.named('_'));
+    let alternatives = alternatives(with_keys(variants), name, Variant::further);
     Ok(quote_spanned!(here()=>
         const KEYS: &[&str] = &[#(#keys),*];
+        let alternatives = #alternatives;
         #(table.describe(#keys, #abouts);)*
+        #(#conditions)*
         let found = #found;
         match found {
             #(#arms)*
@@ -255,27 +257,25 @@ fn with_keys<'a, 'b>(variants: &'a [Variant<'b>]) -> impl Iterator<Item = &'a Va
     variants.iter().filter(|variant| !variant.fields.is_empty())
 }
 
-/// Forbids keys of other variants, each with a reason, that are not keys of a variant itself.
-fn forbid<'a>(
-    own: impl Iterator<Item = &'a Field>,
-    others: impl Iterator<Item = (&'a Field, String)>,
+/// Lists the alternatives of a choice with the keys that others reject.
+fn alternatives<'a, 'b: 'a, F: Iterator<Item = &'a Field>>(
+    variants: impl IntoIterator<Item = &'a Variant<'b>>,
+    name: impl Fn(&Variant<'b>) -> String,
+    fields: impl Fn(&'a Variant<'b>) -> F,
 ) -> TokenStream {
-    let own = own.map(Field::keys);
-    let mut others = others
-        .map(|(field, reason)| {
-            let keys = field.keys();
-            match &field.attributes.otherwise {
-                Some(reason) => quote_spanned!(here()=> (#keys, #reason)),
-                None => quote_spanned!(here()=> (#keys, #reason)),
-            }
-        })
-        .peekable();
-    if others.peek().is_none() {
-        return TokenStream::new();
-    }
-    quote_spanned!(here()=>
-        table.forbid_others(&[::std::vec::Vec::new(), #(#own),*].concat(), &[#(#others),*]);
-    )
+    let alternatives = variants.into_iter().map(|variant| {
+        let keys = fields(variant).map(|field| {
+            let (keys, reason) = (field.keys(), &field.attributes.otherwise);
+            let reason = match reason {
+                Some(reason) => quote_spanned!(here()=> Some(#reason)),
+                None => quote_spanned!(here()=> None),
+            };
+            quote_spanned!(here()=> (#keys, #reason))
+        });
+        let name = name(variant);
+        quote_spanned!(here()=> crate::reader::Alternative { name: #name, keys: ::std::vec![#(#keys),*] })
+    });
+    quote_spanned!(here()=> [#(#alternatives),*])
 }
 
 /// Checks the keys of a variant. Without a tag, the key of the first field is named after the variant.
@@ -299,11 +299,14 @@ fn check(target: &Path, tag: Option<&str>, variants: &[Variant<'_>]) -> TokenStr
                     true => field.check_as(&variant.named('_')),
                     false => field.check(),
                 });
-        let word = variant.named('-');
+        let (word, key) = match tag {
+            Some(tag) => (variant.named('-'), tag.to_owned()),
+            None => (variant.named('_'), variant.named('_')),
+        };
         let conditions = variant.attributes.allowed.iter().map(|(condition, words)| {
             quote_spanned!(here()=>
                 let allowed = ::std::format!("allowed: {}", #words);
-                check.within(#condition, path.key(#tag), #word, &allowed);
+                check.within(#condition, path.key(#key), #word, &allowed);
             )
         });
         quote_spanned!(here()=> #target::#name #pattern => { #(#conditions)* #(#checks)* })
@@ -328,6 +331,10 @@ impl Variant<'_> {
         }
     }
 
+    fn fields(&self) -> impl Iterator<Item = &Field> {
+        self.fields.iter()
+    }
+
     /// Returns the fields in the table of the variant except the first one.
     fn further(&self) -> impl Iterator<Item = &Field> {
         let fields = match self.attributes.table {
@@ -335,11 +342,6 @@ impl Variant<'_> {
             false => &self.fields[..],
         };
         fields.iter().skip(1)
-    }
-
-    /// Returns whether it has the key of a field.
-    fn has(&self, wanted: &Field) -> bool {
-        self.fields.iter().any(|field| field.key == wanted.key)
     }
 
     /// Returns the pattern of the fields.

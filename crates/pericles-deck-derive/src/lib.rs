@@ -16,8 +16,10 @@
 //! | `range = at_least(0.0)` | its range, a function or constant of the module `range` |
 //! | `default`, `default = 0.5` | value of a missing key, recorded with the deck; without it, keys are required unless the type is an `Option` or a `Vec` |
 //! | `key = "file"` | the key, if it is not the name of the field |
+//! | `or_empty` | of a table: if it is missing, an empty table is read, whose defaults are recorded |
+//! | `none = "auto"` | of an `Option`: the word for `None`, which `default` alone makes the default |
 //! | `required` | of a `Vec`: the key is required |
-//! | `required_if(condition)` | of an `Option`: the key is required if the condition holds |
+//! | `required_if(condition)` | of an `Option` or with a default: the key is required if the condition holds |
 //! | `with = function` | reader of the value: a function of the item and the scope; with `flatten` of the table and the scope |
 //! | `check = function` | range check of a value with a reader of its own: a function of the value, the path of the table, the scope and the collector |
 //! | `flatten` | the field is a `DeckKeys` enum or `DeckTable` struct whose keys are in this table, or has a reader of the table (`with`); with `key`, the documentation of the field describes this key |
@@ -30,13 +32,15 @@
 //! A field without `quantity`, `range` and `with` is read by the `DeckValue` of its type.
 //!
 //! The first paragraph of the documentation of a field describes the key to users of decks, in the schema and in the
-//! book. Further paragraphs are for programmers.
+//! book. Further paragraphs are for programmers. Lists of tables are described by the documentation of
+//! the type.
 //!
 //! # Attributes of types and variants
 //! | attribute | meaning |
 //! |---|---|
 //! | `scope = Space<'s>` | type of the scope: what keys depend on in addition to the fields above; without it, any scope |
 //! | `remote = Type` | declares a type of another crate, whose fields or variants are repeated |
+//! | `define = "function"` | the name of the definition of the table in the schema, if several keys share it |
 //! | `default` | of a struct whose fields all have defaults: implements `Default` |
 //! | `at_least_one("mass", "stiffness")`, `exactly_one("temperature", "file")` | of a struct: how many of these keys are given; the first one is the key of a field |
 //! | `verify = function` | of a struct: function of the table, the value and the scope that reports values that do not fit together |
@@ -49,7 +53,7 @@
 //! | `#[default]` | of a variant: the variant of a missing tag |
 //! | `default`, `default = expression` | of an exclusive enum: its value if none of the keys is given |
 //! | `default = expression` | of a tagged enum: the word of a missing tag, an `Option`; none if it depends on an invalid value |
-//! | `allow_if(condition, "allowed words")` | of a variant: its word is out of range unless the condition holds |
+//! | `allow_if(condition, "allowed words")` | of a variant: its word is out of range, its exclusive key is not allowed, unless the condition holds |
 //! | `table` | of a variant with an exclusive key: its fields are keys of a table under that key |
 
 mod attributes;

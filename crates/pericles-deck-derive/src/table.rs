@@ -137,6 +137,11 @@ pub(crate) fn implementation(
             }
         )
     });
+    let definition = attributes.define.as_ref().map(|name| {
+        quote_spanned!(here()=>
+            const DEFINITION: ::core::option::Option<&'static str> = Some(#name);
+        )
+    });
     let (generics, ty) = match &attributes.scope_type {
         Some(ty) => (quote_spanned!(here()=> <'s>), quote_spanned!(here()=> #ty)),
         None => (
@@ -169,6 +174,7 @@ pub(crate) fn implementation(
 
         impl #generics crate::declaration::DeckTable<#ty> for #target {
             const ABOUT: &'static str = #about;
+            #definition
             #unique
         }
 

@@ -11,7 +11,7 @@ use crate::form::described;
 use crate::key_path::KeyPath;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
-use crate::set::Depth;
+use crate::region::Depth;
 
 /// Absorbing boundaries. `absorbing` needs scheme = "velocity-verlet", "implicit-midpoint", "trapezoidal" or
 /// "discrete-gradient"; `damping-layer` works with all schemes but "adaptive-dynamic-relaxation", "fire" and "static";

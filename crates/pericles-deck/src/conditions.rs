@@ -8,7 +8,7 @@ use pericles_deck_derive::{DeckKeys, DeckTable};
 use serde::{Deserialize, Serialize};
 
 use crate::component::{Component, VectorField, component};
-use crate::course::{TimeHistory, function, smooth_function};
+use crate::course::{TimeHistory, function};
 use crate::fault::Fault;
 use crate::quantity::Quantity;
 use crate::reader::Table;
@@ -346,11 +346,11 @@ fn motion_function(
     table: &Table<'_>,
     (is_steady, scope): (bool, Scope<'_>),
 ) -> Option<TimeHistory> {
-    usual_if(is_steady, smooth_function(table), table, scope)
+    usual_if(is_steady, function(table, true), table, scope)
 }
 
 fn load_function(table: &Table<'_>, (is_steady, scope): (bool, Scope<'_>)) -> Option<TimeHistory> {
-    usual_if(is_steady, function(table), table, scope)
+    usual_if(is_steady, function(table, false), table, scope)
 }
 
 /// Returns the usual function for amplitudes that do not depend on time, unless the table has one.

@@ -5,39 +5,77 @@ use std::sync::{Arc, LazyLock};
 
 use gauss_quad::GaussLegendre;
 use pericles::boundary::{TimeCourse, TimeFunction, TimeTable};
+use pericles_deck_derive::DeckKeys;
 use serde::{Deserialize, Serialize};
 
 use crate::component;
+use crate::declaration::DeckTable;
 use crate::expression::{Expression, Rates};
 use crate::fault::Fault;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 
-/// A time function g(t) that multiplies the amplitude of a load or constraint.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+/// Time function g(t) that multiplies the amplitude of a load or constraint, or the difference between a prescribed
+/// temperature and its reference. Default: g = 1; in static schemes, loads and prescribed displacements that do not depend
+/// on time grow linearly over all load steps, from zero at t = 0 to their values at `end`, unless they have `from` or
+/// `until` or the body has initial displacements. `function = { kind = "constant" }` applies them at once.
+///
+/// The scope is whether the function is that of a prescribed motion, whose acceleration is its derivative.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, DeckKeys)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
+#[deck(
+    tag = "kind",
+    what = "time function",
+    tag_about = "Kind of time function, with t₀ = `start` and T = `duration`. `constant`: g = 1; `ramp`: g = (t − t₀)/T, \
+                 limited to 0 ≤ g ≤ 1; `pulse`: g = sin²(π (t − t₀)/T) for t₀ ≤ t ≤ t₀ + T, otherwise 0; `table`: \
+                 piecewise linear; `expression`: a function of t (s).",
+    define = "function",
+    scope = bool
+)]
 pub enum TimeHistory {
     /// g = 1.
     #[default]
     Constant,
     /// g = (t − start)/duration, limited to 0 ≤ g ≤ 1.
     Ramp {
-        /// Start time, s.
+        /// ramp, pulse: start time t₀.
+        ///
+        /// In s.
+        #[deck(quantity = Time, default = 0.0)]
         start: f64,
-        /// Duration, s.
+        /// ramp, pulse: duration T.
+        ///
+        /// In s.
+        #[deck(quantity = Time, range = POSITIVE)]
         duration: f64,
     },
     /// g = sin²(π (t − start)/duration) within the duration, otherwise 0.
     Pulse {
-        /// Start time, s.
+        /// ramp, pulse: start time t₀.
+        ///
+        /// In s.
+        #[deck(quantity = Time, default = 0.0)]
         start: f64,
-        /// Duration, s.
+        /// ramp, pulse: duration T.
+        ///
+        /// In s.
+        #[deck(quantity = Time, range = POSITIVE)]
         duration: f64,
     },
-    /// Piecewise linear between rows (time in s, value).
-    Table(Vec<(f64, f64)>),
-    /// An expression of t (s).
-    Expression(Expression),
+    /// Piecewise linear.
+    Table(
+        /// table: rows [time, value] with increasing times.
+        ///
+        /// Time in s.
+        #[deck(key = "rows", required, with = rows)]
+        Vec<(f64, f64)>,
+    ),
+    /// An expression.
+    Expression(
+        /// expression: g(t), such as "sin(2*pi*1e6*t)".
+        #[deck(key = "expression", with = expression)]
+        Expression,
+    ),
 }
 
 impl TimeHistory {
@@ -75,68 +113,23 @@ impl TimeHistory {
     }
 }
 
-#[derive(Clone, Copy)]
-enum Kind {
-    Constant,
-    Ramp,
-    Pulse,
-    Table,
-    Expression,
+/// Reads the time function of a table; `is_motion`: of a prescribed motion.
+pub(crate) fn function(table: &Table<'_>, is_motion: bool) -> Option<TimeHistory> {
+    TimeHistory::read_table(table.table_or_empty("function")?, is_motion)
 }
 
-/// Reads the time function of a load.
-pub(crate) fn function(table: &Table<'_>) -> Option<TimeHistory> {
-    read(table, false)
-}
-
-/// Reads the time function of a prescribed motion, whose acceleration is its derivative.
-pub(crate) fn smooth_function(table: &Table<'_>) -> Option<TimeHistory> {
-    read(table, true)
-}
-
-fn read(table: &Table<'_>, smooth: bool) -> Option<TimeHistory> {
-    const KINDS: [(&str, Kind); 5] = [
-        ("constant", Kind::Constant),
-        ("ramp", Kind::Ramp),
-        ("pulse", Kind::Pulse),
-        ("table", Kind::Table),
-        ("expression", Kind::Expression),
-    ];
-    let table = table.table_or_empty("function")?;
-    table.define("function");
-    let kind = table.choice_or_first("kind", "time function", &KINDS)?;
-    let function = match kind {
-        Kind::Constant => Some(TimeHistory::Constant),
-        Kind::Ramp | Kind::Pulse => {
-            let start = table.or("start", 0.0, |item| item.quantity(Quantity::Time));
-            let duration = table
-                .required("duration")
-                .and_then(|item| item.positive(Quantity::Time));
-            let (start, duration) = (start?, duration?);
-            Some(match kind {
-                Kind::Ramp => TimeHistory::Ramp { start, duration },
-                _ => TimeHistory::Pulse { start, duration },
-            })
-        }
-        Kind::Table => table.required("rows").and_then(|item| rows(&item)),
-        Kind::Expression => table.required("expression").and_then(|item| {
-            let expression = component::expression(&item, &["t"])?;
-            if smooth {
-                let course = Course::new(expression.clone());
-                if !course.has_rates() {
-                    item.report(course.rough());
-                    return None;
-                }
-            }
-            Some(TimeHistory::Expression(expression))
-        }),
-    };
-    table.finish();
-    function
+fn expression(item: &Item<'_>, is_motion: bool) -> Option<Expression> {
+    let expression = component::expression(item, &["t"])?;
+    let course = Course::new(expression.clone());
+    if is_motion && !course.has_rates() {
+        item.report(course.rough());
+        return None;
+    }
+    Some(expression)
 }
 
 /// Reads `[[time, value], …]`.
-fn rows(item: &Item<'_>) -> Option<TimeHistory> {
+fn rows<S>(item: &Item<'_>, _: S) -> Option<Vec<(f64, f64)>> {
     let mut rows = Some(Vec::new());
     for row in item.list("a list of rows, each [time, value]")? {
         let read = row.exactly(2, "a row [time, value]").and_then(|pair| {
@@ -151,7 +144,7 @@ fn rows(item: &Item<'_>) -> Option<TimeHistory> {
     }
     let rows = rows?;
     item.accept(TimeTable::new(rows.clone()))?;
-    Some(TimeHistory::Table(rows))
+    Some(rows)
 }
 
 /// A time function given as an expression.

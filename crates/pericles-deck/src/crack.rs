@@ -3,181 +3,184 @@
 use std::path::{Path, PathBuf};
 
 use pericles::family::{Crack, EndRule};
+use pericles::space::Point;
+use pericles_deck_derive::{DeckKeys, DeckTable};
 use serde::{Deserialize, Serialize};
 
-use crate::body::unit;
+use crate::body::{check_unit, unit_of};
+use crate::declaration::Spatial;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 use crate::region::{self, Frame};
 use crate::set::SetNames;
 
-/// A pre-crack.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// Pre-cracks: bonds that cross them are removed before the run and do not count as damage by default. Any number of
+/// tables.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, DeckTable)]
 #[serde(deny_unknown_fields)]
+#[deck(scope = CrackScope<'s>, verify = require_cutter)]
 pub struct PreCrack {
     /// The surface.
+    #[deck(flatten)]
     pub surface: CrackSurface,
-    /// Treatment of bonds through the crack edge.
+    /// Bonds through the edge of the crack are cut (`closed`) or kept (`open`).
     #[serde(default, with = "crate::form")]
+    #[deck(
+        default,
+        forbid_if(
+            matches!(surface, Some(CrackSurface::Layer(_))),
+            "bonds with an end in the `layer` always remain"
+        ),
+        forbid_if(
+            matches!(surface, Some(CrackSurface::File { .. })),
+            "a crack from a `file` always includes its edges"
+        )
+    )]
     pub ends: EndRule,
 }
 
 /// The surface of a pre-crack.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, DeckKeys)]
+#[serde(rename_all = "snake_case")]
+#[deck(exclusive, scope = CrackScope<'s>)]
 pub enum CrackSurface {
-    /// A planar crack.
-    Plane(#[serde(with = "crate::form")] Crack),
+    /// Bar: position of the cut.
+    ///
+    /// In m.
+    #[deck(allow_if(scope.fits(1), "`section` requires a bar (1D)"))]
+    Section(#[deck(with = section)] f64),
+    /// 2D: end points of a straight crack.
+    ///
+    /// In m.
+    #[deck(allow_if(scope.fits(2), "`segment` requires a 2D body"))]
+    Segment(#[deck(with = segment)] [[f64; 2]; 2]),
+    /// 3D: corners of a planar polygon.
+    ///
+    /// In m.
+    #[deck(allow_if(scope.fits(3), "`polygon` requires a 3D body"))]
+    Polygon(#[deck(with = polygon)] Vec<Point>),
+    /// 3D: circular crack.
+    #[deck(table, allow_if(scope.fits(3), "`disc` requires a 3D body"))]
+    Disc {
+        /// Centre.
+        ///
+        /// In m.
+        #[deck(quantity = Length)]
+        centre: Point,
+        /// Normal vector, of any length.
+        #[deck(with = direction)]
+        normal: Point,
+        /// Radius.
+        ///
+        /// In m.
+        #[deck(quantity = Length, range = POSITIVE)]
+        radius: f64,
+    },
     /// Triangles from a file.
+    #[deck(allow_if(scope.fits(3), "`file` requires a 3D body"))]
     File {
-        /// Path of the file; a relative path starts at the deck's folder.
+        /// 3D: file of triangles (STL, OBJ, PLY, OFF, Gmsh, VTU, VTP) that cut every bond they meet, edges included. A
+        /// relative path starts at the deck's folder.
         #[serde(rename = "file")]
         path: PathBuf,
-        /// Unit of length of the file, m.
+        /// Unit of length of the file's coordinates, such as "mm".
+        ///
+        /// In m.
+        #[deck(with = unit_of, check = check_unit)]
         unit: f64,
     },
-    /// A layer of points that bonds between other points do not cross.
-    Layer {
-        /// Name of the set of its points.
-        layer: String,
-    },
-}
-
-impl From<Crack> for CrackSurface {
-    fn from(crack: Crack) -> Self {
-        Self::Plane(crack)
-    }
+    /// Name of a set: bonds between points outside of this layer do not cross it, while bonds with an end in it remain. For
+    /// layers thinner than the horizon, such as adhesives, which bonds would bridge otherwise.
+    Layer(#[deck(with = set_name)] String),
 }
 
 impl CrackSurface {
+    /// Returns the crack of the engine; files (path, unit) and layers (name of the set) are read by functions.
+    ///
+    /// # Errors
+    /// Those of the functions.
+    pub fn crack<E>(
+        &self,
+        of_file: impl FnOnce(&Path, f64) -> Result<Crack, E>,
+        of_layer: impl FnOnce(&str) -> Result<Crack, E>,
+    ) -> Result<Crack, E> {
+        Ok(match self {
+            &Self::Section(x) => Crack::Section { x },
+            &Self::Segment([from, to]) => Crack::Segment { from, to },
+            Self::Polygon(corners) => Crack::Polygon {
+                corners: corners.clone(),
+            },
+            &Self::Disc {
+                centre,
+                normal,
+                radius,
+            } => Crack::Disc {
+                centre,
+                normal,
+                radius,
+            },
+            Self::File { path, unit } => return of_file(path, *unit),
+            Self::Layer(set) => return of_layer(set),
+        })
+    }
+
     /// Returns the path of the file, if there is one.
     pub fn file(&self) -> Option<&Path> {
         match self {
-            Self::Plane(_) | Self::Layer { .. } => None,
             Self::File { path, .. } => Some(path),
+            _ => None,
         }
     }
 }
 
-/// Keys of cracks, with the required dimension of the body and the advice.
-const KINDS: [(&str, usize, &str); 5] = [
-    ("section", 1, "`section` requires a bar (1D)"),
-    ("segment", 2, "`segment` requires a 2D body"),
-    ("polygon", 3, "`polygon` requires a 3D body"),
-    ("disc", 3, "`disc` requires a 3D body"),
-    ("file", 3, "`file` requires a 3D body"),
-];
+/// Scope of pre-cracks.
+#[derive(Clone, Copy)]
+pub(crate) struct CrackScope<'s> {
+    pub(crate) frame: Frame,
+    pub(crate) sets: &'s SetNames,
+}
 
-pub(crate) fn read(table: Table<'_>, frame: Frame, sets: &SetNames) -> Option<PreCrack> {
-    let is_layer = table.has("layer");
-    let surface = match frame.dimension {
-        Some(dimension) => {
-            for (kind, needs, reason) in KINDS {
-                if needs != dimension {
-                    table.forbid(kind, reason);
-                }
-            }
-            match dimension {
-                _ if is_layer => layer(&table, sets),
-                1 => table
-                    .required("section")
-                    .and_then(|item| section(&item))
-                    .map(CrackSurface::Plane),
-                2 => table
-                    .required("segment")
-                    .and_then(|item| segment(&item))
-                    .map(CrackSurface::Plane),
-                _ => spatial(&table),
-            }
-        }
-        // The body is invalid: mark all kinds of crack as known.
-        None => {
-            for (kind, ..) in KINDS {
-                table.optional(kind);
-            }
-            table.optional("layer");
-            None
-        }
-    };
-    if is_layer {
-        for key in KINDS.map(|(kind, ..)| kind) {
-            table.forbid(key, "a `layer` has no other surface");
-        }
-        table.forbid("ends", "bonds with an end in the `layer` always remain");
-    } else if table.has("file") {
-        table.forbid("ends", "a crack from a `file` always includes its edges");
-    } else {
-        table.forbid("unit", "it requires `file`");
+impl CrackScope<'_> {
+    /// Returns whether a body, if its dimension is known, has this dimension.
+    fn fits(self, dimension: usize) -> bool {
+        self.frame.dimension.is_none_or(|own| own == dimension)
     }
-    let ends = table.worded("ends", "end rule");
-    let crack = surface.zip(ends);
-    if let (Some((CrackSurface::Plane(surface), ends)), Some(spacing)) = (&crack, frame.spacing) {
+}
+
+impl Spatial for CrackScope<'_> {
+    fn dimension(&self) -> Option<usize> {
+        self.frame.dimension
+    }
+}
+
+/// Requires a surface that cuts bonds.
+fn require_cutter(table: &Table<'_>, crack: &PreCrack, scope: CrackScope<'_>) -> Option<()> {
+    let plane = crack.surface.crack(|_, _| Err(()), |_| Err(()));
+    if let (Ok(plane), Some(spacing)) = (plane, scope.frame.spacing) {
         // The tolerance must be the one with which bonds are cut.
-        table.accept(surface.cutter(*ends, 1e-9 * spacing))?;
+        table.accept(plane.cutter(crack.ends, 1e-9 * spacing))?;
     }
-    table.finish();
-    let (surface, ends) = crack?;
-    Some(PreCrack { surface, ends })
+    Some(())
 }
 
-fn layer(table: &Table<'_>, sets: &SetNames) -> Option<CrackSurface> {
-    let layer = table.required("layer")?;
-    let layer = sets.reference(&layer)?;
-    Some(CrackSurface::Layer { layer })
+fn section<S>(item: &Item<'_>, _: S) -> Option<f64> {
+    Some(item.vector(Quantity::Length, Some(1))?[0])
 }
 
-fn section(item: &Item<'_>) -> Option<Crack> {
-    Some(Crack::Section {
-        x: item.vector(Quantity::Length, Some(1))?[0],
-    })
-}
-
-fn segment(item: &Item<'_>) -> Option<Crack> {
+fn segment<S>(item: &Item<'_>, _: S) -> Option<[[f64; 2]; 2]> {
     let ends = item.exactly(2, "two points [[x, y], [x, y]]")?;
-    let (from, to) = (
-        ends[0].vector(Quantity::Length, Some(2)),
-        ends[1].vector(Quantity::Length, Some(2)),
-    );
-    let flat = |point: [f64; 3]| [point[0], point[1]];
-    Some(Crack::Segment {
-        from: flat(from?),
-        to: flat(to?),
-    })
+    let [from, to] = [&ends[0], &ends[1]].map(|end| end.vector(Quantity::Length, Some(2)));
+    Some([from?, to?].map(|[x, y, _]| [x, y]))
 }
 
-fn spatial(table: &Table<'_>) -> Option<CrackSurface> {
-    let (kind, item) = table.exactly_one(&["polygon", "disc", "file"])?;
-    match kind {
-        "polygon" => {
-            let corners = region::corners(&item, Some(3))?;
-            Some(Crack::Polygon { corners }.into())
-        }
-        "disc" => disc(&item).map(CrackSurface::Plane),
-        _ => {
-            let (path, unit) = (item.text(), unit(table));
-            Some(CrackSurface::File {
-                path: path?.into(),
-                unit: unit?,
-            })
-        }
-    }
+fn polygon<S>(item: &Item<'_>, _: S) -> Option<Vec<Point>> {
+    region::corners(item, Some(3))
 }
 
-fn disc(item: &Item<'_>) -> Option<Crack> {
-    let table = item.table()?;
-    let centre = table
-        .required("centre")
-        .and_then(|item| item.vector(Quantity::Length, Some(3)));
-    let normal = table
-        .required("normal")
-        .and_then(|item| region::direction(&item, Some(3)));
-    let radius = table
-        .required("radius")
-        .and_then(|item| item.positive(Quantity::Length));
-    table.finish();
-    Some(Crack::Disc {
-        centre: centre?,
-        normal: normal?,
-        radius: radius?,
-    })
+fn direction<S>(item: &Item<'_>, _: S) -> Option<Point> {
+    region::direction(item, Some(3))
+}
+
+fn set_name(item: &Item<'_>, scope: CrackScope<'_>) -> Option<String> {
+    scope.sets.reference(item)
 }

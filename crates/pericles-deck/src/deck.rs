@@ -9,7 +9,7 @@ use crate::body::{self, BodyRead, SurfaceRead};
 use crate::conditions::{self, Constraint, Initial};
 use crate::contact::Contact;
 use crate::course::TimeHistory;
-use crate::crack;
+use crate::crack::CrackScope;
 use crate::damping::Damping;
 use crate::declaration::{DeckTable, DeckValue, declared};
 use crate::document::{self, Node};
@@ -21,7 +21,7 @@ use crate::inheritance::inherit;
 use crate::interface::{self, MaterialInterface};
 use crate::material::{self, Material, MaterialModel, Materials, NamedMaterial};
 use crate::model::{Body, Model, Solid};
-use crate::output::{self, Checkpoint};
+use crate::output::{Checkpoint, Output, OutputScope};
 use crate::overrides;
 use crate::reader::{Ledger, Record, Survey, Table};
 use crate::region::Frame;
@@ -30,9 +30,9 @@ use crate::scope::Scope;
 use crate::set::{self, SetNames};
 use crate::source::Sources;
 use crate::subject::Subject;
-use crate::surface::{self, SurfaceBody};
+use crate::surface::{Geodesics, SurfaceBody, SurfaceMaterial, SurfaceScope};
 use crate::thermal::{Thermal, ThermalScope};
-use crate::time;
+use crate::time::Time;
 
 /// A deck: the model and the location of every value in the text.
 #[derive(Debug, Clone)]
@@ -173,7 +173,11 @@ fn model(root: Table<'_>, further: &[String]) -> Option<Model> {
             (solid.map(Body::Solid), gaussian, several, thermal)
         }
     };
-    let cracks = each(&root, "crack", |table| crack::read(table, frame, &names));
+    let scope = CrackScope {
+        frame,
+        sets: &names,
+    };
+    let cracks = declared(&root, "crack", scope);
     let scope = Scope {
         dimension: frame.dimension,
         sets: &names,
@@ -183,7 +187,7 @@ fn model(root: Table<'_>, further: &[String]) -> Option<Model> {
     let initial: Option<Vec<Initial>> = declared(&root, "initial", scope);
     let time = root
         .required("time")
-        .and_then(|item| time::read(item.table()?, &names));
+        .and_then(|item| Time::read(&item, &names));
     let usual = conditions::usual_function(time.as_ref(), initial.as_deref());
     let scope = Scope {
         usual: &usual,
@@ -199,17 +203,16 @@ fn model(root: Table<'_>, further: &[String]) -> Option<Model> {
     let contact = root.maybe("contact", |item| Contact::read(&item, ()));
     let impactors = declared(&root, "impactor", scope);
     let damping = root.maybe("damping", |item| Damping::read(&item, ()));
-    let output = root.table_or_empty("output").and_then(|table| {
-        let driven = constraints.iter().flatten().any(Constraint::moves);
-        output::read(
-            table,
-            frame.dimension,
-            driven,
-            body.surface.is_some(),
-            frame.mesh,
-            &names,
-        )
-    });
+    let output = OutputScope {
+        dimension: frame.dimension,
+        driven: constraints.iter().flatten().any(Constraint::moves),
+        surface: body.surface.is_some(),
+        mesh: frame.mesh,
+        sets: &names,
+    };
+    let output = root
+        .table_or_empty("output")
+        .and_then(|table| Output::read_table(table, output));
     let checkpoint = root
         .table_or_empty("checkpoint")
         .and_then(|table| Checkpoint::read_table(table, ()));
@@ -348,27 +351,18 @@ fn surface_of(
     names: &SetNames,
 ) -> Option<SurfaceBody> {
     root.forbid("crack", "pre-cracks in 2-manifolds are not supported");
-    let geodesics = root
-        .table_or_empty("geodesics")
-        .and_then(surface::geodesics);
-    let material = root.required("material").and_then(|item| item.table());
-    let (material, no_fail) = surface::material(material?, frame.spacing, names)?;
-    let (method, ball) = geodesics?;
+    let geodesics = root.table_or_empty("geodesics");
+    let geodesics = geodesics.and_then(|table| Geodesics::read_table(table, ()));
+    let scope = SurfaceScope {
+        spacing: frame.spacing,
+        sets: names,
+    };
+    let material = root.required("material");
+    let material = material.and_then(|item| SurfaceMaterial::read(&item, scope));
     Some(SurfaceBody {
         shape: read.shape.clone()?,
         areas: read.areas?,
-        material,
-        no_fail,
-        method,
-        ball,
+        material: material?,
+        geodesics: geodesics?,
     })
-}
-
-fn each<'a, T>(
-    root: &Table<'a>,
-    key: &'static str,
-    read: impl Fn(Table<'a>) -> Option<T>,
-) -> Option<Vec<T>> {
-    let read: Vec<Option<T>> = root.tables(key).into_iter().map(read).collect();
-    read.into_iter().collect()
 }

@@ -6,8 +6,8 @@ use pericles::boundary::MotionKind;
 use pericles_deck_derive::{DeckKeys, DeckTable};
 use serde::{Deserialize, Serialize};
 
-use crate::body::{self, Rotation};
-use crate::course::{TimeHistory, smooth_function};
+use crate::body::{self, Rotation, RotationScope};
+use crate::course::{self, TimeHistory};
 use crate::declaration::{Check, Spatial};
 use crate::fault::Fault;
 use crate::key_path::KeyPath;
@@ -37,7 +37,7 @@ pub struct Impactor {
     /// Initial rotation about the centre of mass.
     #[serde(default)]
     #[deck(
-        with = rotation,
+        scope = RotationScope::of_impactor(scope.dimension),
         forbid_if(has_no_rotation(shape, scope), "it requires a box, cylinder or surface in 2D or 3D")
     )]
     pub rotation: Option<Rotation>,
@@ -104,7 +104,7 @@ pub enum ImpactorShape {
         /// Surface: unit of length of the coordinates, such as "mm". Required for shape = "surface".
         ///
         /// In m.
-        #[deck(with = unit, check = check_unit)]
+        #[deck(with = body::unit_of, check = body::check_unit)]
         unit: f64,
     },
 }
@@ -253,18 +253,6 @@ fn check_normal(normal: &[f64; 3], path: &KeyPath, _: Scope<'_>, check: &mut Che
     check.within(right, path.key("normal"), "zero", allowed);
 }
 
-fn unit(item: &Item<'_>, _: Scope<'_>) -> Option<f64> {
-    body::unit_of(item)
-}
-
-fn check_unit(unit: &f64, path: &KeyPath, _: Scope<'_>, check: &mut Check) {
-    check.positive(path.key("unit"), *unit);
-}
-
-fn rotation(item: &Item<'_>, scope: Scope<'_>) -> Option<Rotation> {
-    body::rotation(item.table()?, scope.dimension, false)
-}
-
 /// Reads which of the keys of a prescribed motion is given.
 fn motion_kind(table: &Table<'_>, _: MotionScope<'_>) -> Option<MotionKind> {
     table.describe(
@@ -296,7 +284,7 @@ fn function(
     table: &Table<'_>,
     (kind, scope): (Option<&MotionKind>, MotionScope<'_>),
 ) -> Option<TimeHistory> {
-    let (function, is_given) = (smooth_function(table), table.has("function"));
+    let (function, is_given) = (course::function(table, true), table.has("function"));
     match kind == Some(&MotionKind::Displacement) && !is_given {
         true => Some(scope.deck.usual.clone()),
         false => function,

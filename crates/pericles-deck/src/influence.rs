@@ -3,10 +3,15 @@
 use pericles::family::VolumeCorrection;
 use pericles::kernel::{ClassOffset, ClassTable, Influence, InfluenceFunction};
 use pericles::material::{StateInfluence, StressState};
-use pericles_dispersion::tuning::{ScalingModel, TunedTable, Tuning, Weights};
+use pericles_deck_derive::DeckTable;
+use pericles_dispersion::tuning::{Combination, Method, ScalingModel, TunedTable, Tuning, Weights};
+use serde::{Deserialize, Serialize};
 
+use crate::declaration::DeckKeys;
 use crate::fault::Fault;
+use crate::form::described;
 use crate::quantity::Quantity;
+use crate::range::{POSITIVE, Range};
 use crate::reader::{Item, Table};
 
 /// Discretisation for which an influence function is made; none where the deck is invalid.
@@ -255,68 +260,87 @@ fn class(row: &Item<'_>, setting: &Setting) -> Option<(ClassOffset, f64)> {
     Some((offset, value?))
 }
 
-/// Lower bound of the coefficients of a tuned kernel.
-#[derive(Clone, Copy)]
-enum LowerBound {
-    /// No bound if the kernel is stable without one, otherwise zero.
-    Auto,
-    None,
-    Value(f64),
+/// Options of tuned kernels; the scope is the dimension of the body.
+#[derive(Serialize, Deserialize, DeckTable)]
+#[serde(remote = "Tuning", deny_unknown_fields)]
+#[deck(remote = Tuning, scope = Option<usize>)]
+struct TuningForm {
+    /// tuned: functional of the dispersion residual R = ω² − V²|k|² on the boundary of the irreducible Brillouin
+    /// zone that is minimised or set to zero. `least-squares`: ∮ R²; `point-collocation`: R at points;
+    /// `subdomain-collocation`: ∫ R over segments; `galerkin`: ∫ w R with the contributions w of the classes to ω²;
+    /// `galerkin-literal`: 1D only, all weights w from the classes; `absolute`: ∮ |R|.
+    #[serde(with = "crate::form")]
+    #[deck(default = Method::ALL[0])]
+    method: Method,
+    /// tuned: how the residuals of pressure waves (p) and shear waves (s) enter the functional F. `separated`: Σ
+    /// F(R_p)² + F(R_s)²; `absolute`: Σ F(|R_p| + |R_s|)²; `signed-sum`: F(R_p + R_s) = 0, mostly unstable. method
+    /// = "least-squares" needs `separated`.
+    #[serde(with = "crate::form")]
+    #[deck(default = Combination::ALL[0])]
+    combination: Combination,
+    #[serde(with = "crate::form")]
+    #[deck(flatten)]
+    weights: Weights,
+    /// tuned: lower bound of the coefficients. "auto": none if the unconstrained kernel is stable, otherwise 0 (3D,
+    /// and some horizons from 4 spacings in 2D); "none": no bound, unstable kernels are rejected; or a number.
+    /// Bodies whose bonds break need a positive bound such as 0.5.
+    #[serde(default)]
+    #[deck(flatten, key = "lower_bound", with = lower_bound)]
+    lower_bound: Option<f64>,
+}
+
+#[derive(Serialize, Deserialize, DeckTable)]
+#[serde(remote = "Weights", deny_unknown_fields)]
+#[deck(remote = Weights, scope = Option<usize>)]
+struct WeightsForm {
+    /// tuned, 2D and 3D: weight of the residuals of pressure waves.
+    #[deck(
+        key = "pressure_weight",
+        range = POSITIVE,
+        default = 1.0,
+        forbid_if(scope == Some(1), ONE_WAVE)
+    )]
+    pressure: f64,
+    /// tuned, 2D and 3D: weight of the residuals of shear waves.
+    #[deck(
+        key = "shear_weight",
+        range = POSITIVE,
+        default = 1.0,
+        forbid_if(scope == Some(1), ONE_WAVE)
+    )]
+    shear: f64,
+    /// tuned: decay wave number of the weight exp(−(|k| Δx/decay)²) of the residual at wave vector k, in rad per
+    /// spacing; emphasises long waves. "none": equal weights, as published.
+    #[serde(default)]
+    #[deck(range = DECAYS, none = NONE, default = Some(Weights::DECAY))]
+    decay: Option<f64>,
+}
+
+described!(Tuning: TuningForm, Weights: WeightsForm);
+
+const NONE: &str = "none";
+const AUTO: &str = "auto";
+const ONE_WAVE: &str = "weights have no effect on a bar, which has pressure waves only";
+const DECAYS: Range =
+    POSITIVE.described("a positive number of rad per spacing (usual: 1), or \"none\"");
+
+/// Reads the lower bound; none also for "auto", which means no bound if the kernel is stable without one, otherwise zero.
+fn lower_bound<S>(table: &Table<'_>, _: S) -> Option<Option<f64>> {
+    match table.optional("lower_bound") {
+        Some(item) if item.is_keyword(AUTO) || item.is_keyword(NONE) => Some(None),
+        Some(item) => item.quantity(Quantity::Number).map(Some),
+        None => {
+            table.record("lower_bound", AUTO);
+            Some(None)
+        }
+    }
 }
 
 /// Reads the tuning options and optimises the coefficients for this grid.
 fn tuned(table: &Table<'_>, setting: &Setting) -> Option<TunedTable> {
-    const NONE: &str = "none";
-    const AUTO: &str = "auto";
-    let method = table.worded("method", "tuning method");
-    let combination = table.worded("combination", "combination of wave types");
-    let weight = |key| {
-        if setting.dimension == Some(1) {
-            table.forbid(
-                key,
-                "weights have no effect on a bar, which has pressure waves only",
-            );
-            return Some(1.0);
-        }
-        table.or(key, 1.0, |item| item.positive(Quantity::Number))
-    };
-    let (pressure, shear) = (weight("pressure_weight"), weight("shear_weight"));
-    let decay = match table.optional("decay") {
-        Some(item) if item.is_keyword(NONE) => Some(None),
-        Some(item) => item
-            .within(
-                Quantity::Number,
-                "a positive number of rad per spacing (usual: 1), or \"none\"",
-                |decay| decay > 0.0,
-            )
-            .map(Some),
-        None => {
-            table.record("decay", Weights::DECAY);
-            Some(Some(Weights::DECAY))
-        }
-    };
-    let lower_bound = match table.optional("lower_bound") {
-        Some(item) if item.is_keyword(AUTO) => Some(LowerBound::Auto),
-        Some(item) if item.is_keyword(NONE) => Some(LowerBound::None),
-        Some(item) => item.quantity(Quantity::Number).map(LowerBound::Value),
-        None => {
-            table.record("lower_bound", AUTO);
-            Some(LowerBound::Auto)
-        }
-    };
-    let tuning = Tuning {
-        method: method?,
-        combination: combination?,
-        weights: Weights {
-            pressure: pressure?,
-            shear: shear?,
-            decay: decay?,
-        },
-        lower_bound: match lower_bound? {
-            LowerBound::Value(bound) => Some(bound),
-            LowerBound::Auto | LowerBound::None => None,
-        },
-    };
+    let tuning = Tuning::read_keys(table, setting.dimension)?;
+    let bound = table.optional("lower_bound");
+    let is_automatic = bound.is_none_or(|item| item.word() == Some(AUTO));
     let spacing = setting.spacing?;
     let ratio = setting.horizon? / spacing;
     let model = table.accept(ScalingModel::new(
@@ -324,9 +348,9 @@ fn tuned(table: &Table<'_>, setting: &Setting) -> Option<TunedTable> {
         ratio,
         setting.correction?,
     ))?;
-    table.accept(match lower_bound? {
-        LowerBound::Auto => model.tune_stable(tuning),
-        _ => model.tune(tuning),
+    table.accept(match is_automatic {
+        true => model.tune_stable(tuning),
+        false => model.tune(tuning),
     })
 }
 

@@ -115,7 +115,6 @@ mod quantity;
 mod range;
 mod reader;
 mod region;
-mod relaxation;
 mod remark;
 mod schema;
 mod scheme;
@@ -137,8 +136,8 @@ mod words;
 pub use assign::Assignment;
 pub use body::{
     Boundary, FilledCells, FilledShape, Lattice, MeshFile, Piece, PointsFile, Positions,
-    Quadrature, Rotation, SolidShape, SurfaceFormula, SurfaceShape, VertexAreas, length_unit,
-    piece_path,
+    Quadrature, Rotation, SolidShape, SurfaceFile, SurfaceFormula, SurfaceShape, VertexAreas,
+    length_unit, piece_path,
 };
 pub use boundary::BoundaryCondition;
 pub use caution::{AreaCaution, Caution, ContactCaution};
@@ -161,24 +160,26 @@ pub use interface::{InterfaceFailure, MaterialInterface};
 pub use key_path::KeyPath;
 pub use material::{
     BondSoftening, FailureSurface, Material, MaterialModel, NamedMaterial, Scatter,
-    ScatteredStrength, SofteningWord,
+    ScatteredStrength,
 };
 pub use model::{Body, Model, Solid};
 pub use output::{
-    CellChoice, Checkpoint, CrackOutput, DerivedQuantity, FieldBlocks, FieldFormat, FragmentOutput,
-    Output, Picture, PictureColours, PictureFormat, PictureLook, PointNumber, Precision, Profile,
+    Checkpoint, CrackOutput, DerivedQuantity, FieldBlocks, FieldFormat, FieldNames, FieldOutput,
+    FragmentOutput, HistoryOutput, Output, Picture, PictureColours, PictureFormat, PictureLook,
+    PointNumber, Precision, Profile,
 };
 pub use quantity::{metres, seconds};
+pub use region::Depth;
 pub use remark::{BuildError, Keys, ModelProblem, ModelWarning, Remark};
 pub use schema::{json_schema, reference, specimens, unit_of_key};
-pub use scheme::{FineRegion, FineStep, Interface, Scheme};
-pub use set::{ALL, Depth, Members, NamedSet};
+pub use scheme::{FineRegion, FineStep, Interface, RelaxationLimits, Scheme};
+pub use set::{ALL, Members, NamedSet, NearFaces};
 pub use source::{Location, is_invisible};
 pub use state_based::StateBased;
 pub use statics::{LoadControl, RigidModes, StaticBreaking, Statics};
 pub use stop::{StopCondition, StopWhen};
 pub use subject::Subject;
-pub use surface::SurfaceBody;
+pub use surface::{Geodesics, SurfaceBody, SurfaceMaterial, SurfaceModel};
 pub use thermal::{
     Conduction, ConductionScheme, ConductivityMean, MaterialThermal, Thermal, ThermalAmplitude,
     ThermalCondition,

@@ -217,7 +217,7 @@ impl Body {
     pub fn no_fail(&self) -> &[String] {
         match self {
             Self::Solid(solid) => &solid.material.no_fail,
-            Self::Surface(surface) => &surface.no_fail,
+            Self::Surface(surface) => &surface.material.no_fail,
         }
     }
 
@@ -226,9 +226,9 @@ impl Body {
         match self {
             Self::Solid(solid) => solid.shape.files(),
             Self::Surface(SurfaceBody {
-                shape: SurfaceShape::File { path, .. },
+                shape: SurfaceShape::File(file),
                 ..
-            }) => vec![path],
+            }) => vec![&file.path],
             Self::Surface(_) => Vec::new(),
         }
     }
@@ -265,7 +265,7 @@ impl Model {
     pub fn has_layer(&self, set: &str) -> bool {
         self.cracks
             .iter()
-            .any(|crack| matches!(&crack.surface, CrackSurface::Layer { layer } if layer == set))
+            .any(|crack| matches!(&crack.surface, CrackSurface::Layer(layer) if layer == set))
     }
 
     /// Returns the materials of pieces and of `[[assign]]`, with their paths and sets; later ones take precedence.

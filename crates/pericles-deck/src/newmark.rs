@@ -4,13 +4,8 @@ use pericles::time::{InnerSolver, NewmarkOptions, VelocityNorm};
 use pericles_deck_derive::{DeckKeys, DeckTable};
 use serde::{Deserialize, Serialize};
 
-use crate::declaration::DeckKeys;
 use crate::form::described;
 use crate::range::{Range, above_to, from_to};
-use crate::reader::Table;
-
-/// Keys of this scheme only.
-pub(crate) const KEYS: [&str; 6] = ["beta", "gamma", "norm", "iterations", "solver", "depth"];
 
 /// Options of the scheme.
 #[derive(Serialize, Deserialize, DeckTable)]
@@ -26,6 +21,7 @@ struct NewmarkOptionsForm {
     /// newmark: parameter γ.
     #[deck(range = from_to(0.5, 1.0), default = NewmarkOptions::default().gamma)]
     gamma: f64,
+    /// newmark: change of the velocity between iterations (m/s).
     #[deck(
         quantity = Velocity,
         range = POSITIVE,
@@ -36,6 +32,7 @@ struct NewmarkOptionsForm {
     #[serde(with = "crate::form")]
     #[deck(default = VelocityNorm::Sum)]
     norm: VelocityNorm,
+    /// newmark, adaptive-dynamic-relaxation, fire: largest number of iterations per step.
     #[deck(range = count_to(1_000_000), default = NewmarkOptions::default().iterations)]
     iterations: u32,
 }
@@ -68,7 +65,3 @@ described!(
     NewmarkOptions: NewmarkOptionsForm,
     InnerSolver: InnerSolverForm,
 );
-
-pub(crate) fn read(table: &Table<'_>) -> Option<NewmarkOptions> {
-    NewmarkOptions::read_keys(table, ())
-}

@@ -9,6 +9,8 @@ pub(crate) struct Range {
     high: Bound,
     /// Whether only whole numbers are in it.
     is_whole: bool,
+    /// Whether zero is not in it.
+    is_nonzero: bool,
     /// The description, if it does not follow from the bounds.
     words: Option<&'static str>,
 }
@@ -72,11 +74,24 @@ pub(crate) const fn count_to(most: u32) -> Range {
     from_to(1.0, most as f64).whole()
 }
 
+/// Returns the whole numbers from 0 to `most`.
+pub(crate) const fn whole_to(most: u32) -> Range {
+    from_to(0.0, most as f64).whole()
+}
+
+/// All finite numbers but zero.
+pub(crate) const NONZERO: Range = Range {
+    is_nonzero: true,
+    words: Some("any number but 0"),
+    ..ANY
+};
+
 const fn of(low: Bound, high: Bound) -> Range {
     Range {
         low,
         high,
         is_whole: false,
+        is_nonzero: false,
         words: None,
     }
 }
@@ -110,7 +125,19 @@ impl Range {
             At(high) => value <= high,
             Beyond(high) => value < high,
         };
-        value.is_finite() && above && below && (!self.is_whole || value.fract() == 0.0)
+        value.is_finite()
+            && above
+            && below
+            && (!self.is_whole || value.fract() == 0.0)
+            && !(self.is_nonzero && value == 0.0)
+    }
+
+    /// Returns the lower bound.
+    pub(crate) fn least(&self) -> f64 {
+        match self.low {
+            Unbounded => f64::NEG_INFINITY,
+            At(low) | Beyond(low) => low,
+        }
     }
 
     /// Returns whether the range contains all finite numbers.
@@ -140,7 +167,9 @@ impl Range {
         match (low, high) {
             (Unbounded, Unbounded) => "a finite number".into(),
             (At(low), Unbounded) => format!("at least {low}").into(),
-            (At(low), At(high)) => format!("a number from {low} to {high}").into(),
+            (At(low), At(high)) => {
+                format!("a number from {} to {}", plain(low), plain(high)).into()
+            }
             _ => {
                 let low = match low {
                     Unbounded => Option::None,

@@ -2,11 +2,14 @@
 
 use pericles::PericlesError;
 use pericles::space::{Face, Point, Region};
+use pericles_deck_derive::DeckKeys;
+use serde::{Deserialize, Serialize};
 
+use crate::declaration::{DeckKeys, Spatial};
 use crate::fault::Fault;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
-use crate::vocabulary::{DEPTHS, REGIONS};
+use crate::vocabulary::REGIONS;
 
 /// Reference of a region: dimension and spacing of the body.
 #[derive(Clone, Copy)]
@@ -22,9 +25,49 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
+    /// Returns the frame of a body of a model, whose lengths are in metres.
+    pub(crate) fn of_model(dimension: usize) -> Self {
+        Self {
+            dimension: Some(dimension),
+            spacing: None,
+            cells: true,
+            mesh: true,
+        }
+    }
+
     /// Returns whether the spacing is unknown before a mesh is read.
     pub(crate) fn is_automatic(&self) -> bool {
         self.mesh && self.spacing.is_none()
+    }
+}
+
+impl Spatial for Frame {
+    fn dimension(&self) -> Option<usize> {
+        self.dimension
+    }
+}
+
+/// Depth of a layer, or distance from the faces of a mesh.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, DeckKeys)]
+#[serde(rename_all = "snake_case")]
+#[deck(exclusive)]
+pub enum Depth {
+    /// Thickness of the layer; for faces the largest distance from them.
+    ///
+    /// In m.
+    #[deck(key = "depth")]
+    Length(#[deck(quantity = Length, range = POSITIVE)] f64),
+    /// Thickness of the layer in spacings; for faces the largest distance from them.
+    Cells(#[deck(range = POSITIVE)] f64),
+}
+
+impl Depth {
+    /// Returns the depth in metres for a given spacing (m).
+    pub fn length(self, spacing: f64) -> f64 {
+        match self {
+            Self::Length(length) => length,
+            Self::Cells(cells) => cells * spacing,
+        }
     }
 }
 
@@ -217,16 +260,17 @@ fn layer(table: Table<'_>, frame: Frame) -> Option<Region> {
     let side = table
         .required("side")
         .and_then(|item| item.choice("side", &sides));
-    let depth = table
-        .exactly_one(DEPTHS)
-        .and_then(|(kind, item)| match kind {
-            "depth" => item.positive(Quantity::Length),
-            _ if !frame.cells => {
+    let depth = match Depth::read_keys(&table, ()) {
+        Some(Depth::Cells(_)) if !frame.cells => {
+            if let Some(item) = table.optional("cells") {
                 item.out_of_range("`depth` instead; this body has no uniform spacing");
-                None
             }
-            _ => Some(item.positive(Quantity::Number)? * frame.spacing?),
-        });
+            None
+        }
+        Some(Depth::Cells(cells)) => frame.spacing.map(|spacing| cells * spacing),
+        Some(Depth::Length(length)) => Some(length),
+        None => None,
+    };
     table.finish();
     Some(Region::Layer {
         face: Face::named(side?)?,

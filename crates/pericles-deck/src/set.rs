@@ -1,14 +1,16 @@
 //! `[sets.NAME]`: named sets of points and references to them.
 
 use pericles::space::{PointCloud, PointSet, Region};
+use pericles_deck_derive::DeckTable;
 use serde::{Deserialize, Serialize};
 
+use crate::declaration::DeckValue;
 use crate::expression::{Condition, VARIABLES};
 use crate::fault::Fault;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
-use crate::region::{self, Frame};
-use crate::vocabulary::{DEPTHS, SELECTIONS};
+use crate::region::{self, Depth, Frame};
+use crate::vocabulary::SELECTIONS;
 
 /// Name of the set of all points, which always exists.
 pub const ALL: &str = "all";
@@ -34,32 +36,19 @@ pub enum Members {
     /// Points of some blocks.
     Blocks(Vec<u32>),
     /// Points near the faces of a face set of a mesh.
-    NearFaces {
-        /// Name of the face set in the mesh.
-        faces: String,
-        /// Largest distance.
-        depth: Depth,
-    },
+    NearFaces(NearFaces),
 }
 
-/// A distance from the faces of a mesh.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Depth {
-    /// A length, m.
-    Length(f64),
-    /// A number of spacings.
-    Cells(f64),
-}
-
-impl Depth {
-    /// Returns the depth in metres for a given spacing (m).
-    pub fn length(self, spacing: f64) -> f64 {
-        match self {
-            Self::Length(length) => length,
-            Self::Cells(cells) => cells * spacing,
-        }
-    }
+/// Mesh: points within a distance of the faces of a face set, for supports and loads that act on a layer of horizon
+/// thickness.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, DeckTable)]
+#[serde(deny_unknown_fields)]
+pub struct NearFaces {
+    /// Name of the face set of the mesh.
+    pub faces: String,
+    /// Largest distance.
+    #[deck(flatten)]
+    pub depth: Depth,
 }
 
 impl Members {
@@ -73,7 +62,7 @@ impl Members {
             Self::Region(region) => cloud.select(region),
             Self::Where(condition) => those(&|i| condition.holds(cloud.point(i), cloud.block(i))),
             Self::Blocks(blocks) => those(&|i| blocks.contains(&cloud.block(i))),
-            Self::NearFaces { .. } => return None,
+            Self::NearFaces(_) => return None,
         })
     }
 
@@ -187,19 +176,7 @@ fn near_faces(item: &Item<'_>, frame: Frame) -> Option<Members> {
         );
         return None;
     }
-    let table = item.table()?;
-    let faces = table.required("faces").and_then(|item| item.text());
-    let depth = table
-        .exactly_one(DEPTHS)
-        .and_then(|(kind, item)| match kind {
-            "depth" => item.positive(Quantity::Length).map(Depth::Length),
-            _ => item.positive(Quantity::Number).map(Depth::Cells),
-        });
-    table.finish();
-    Some(Members::NearFaces {
-        faces: faces?,
-        depth: depth?,
-    })
+    NearFaces::read(item, ()).map(Members::NearFaces)
 }
 
 fn condition(item: &Item<'_>, dimension: Option<usize>) -> Option<Condition> {

@@ -1,45 +1,64 @@
 //! Options of `scheme = "static"`.
 
+use pericles_deck_derive::{DeckTable, DeckWords};
 use serde::{Deserialize, Serialize};
 
-use crate::quantity::Quantity;
-use crate::reader::Table;
-
-/// Keys of this scheme only.
-pub(crate) const KEYS: [&str; 4] = ["newton_steps", "rigid_modes", "breaking", "control"];
+use crate::range::{Range, from_to};
 
 /// Options of the static solver.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, DeckTable)]
 #[serde(deny_unknown_fields)]
+#[deck(default)]
 pub struct Statics {
-    /// Residual norm relative to the larger norm of loads and reactions.
+    /// adaptive-dynamic-relaxation, fire, static: residual relative to loads and reactions.
+    ///
+    /// Relative to the larger norm.
+    #[deck(range = RESIDUALS, default = 1e-6)]
     pub tolerance: f64,
-    /// Largest number of Newton iterations per static state.
+    /// static: largest number of Newton iterations per static state.
+    #[deck(range = count_to(1000), default = 25)]
     pub newton_steps: u32,
-    /// Treatment of rigid-body modes that no support prevents.
+    /// static: rigid-body motions that no support prevents. `refuse`: reject the body and list them; `fix`: remove them;
+    /// loads must have zero net force and moment.
     #[serde(default)]
+    #[deck(default)]
     pub rigid_modes: RigidModes,
-    /// Breaking rule for bonds beyond their critical stretch.
+    /// static: which bonds beyond their critical stretch break in a static state before equilibrium is computed again at
+    /// the same load. `worst-first`: those within 2 % of the largest ratio of stretch to critical stretch; `all`: all of
+    /// them, with fewer static states but more broken bonds; `event`: each load step scales the loads and prescribed
+    /// displacements of `end` by the factor at which the next bond reaches its critical stretch, so that
+    /// force–displacement curves show snap-back; not for forces that depend on the history of the deformation or on
+    /// temperature.
     #[serde(default)]
+    #[deck(default)]
     pub breaking: StaticBreaking,
-    /// Control of the loads by a quantity of the displacements.
+    /// static: a displacement that grows in proportion to time, at the loads that belong to it. All loads and prescribed
+    /// displacements are multiples of their values at `end`; their factor is the column `load_factor` of history.csv. The
+    /// largest load and the falling branch behind it are followed if the quantity grows along the whole path, as the
+    /// opening of a crack mouth does. Not for contact, thermal strain and breaking = "event".
     #[serde(default)]
+    #[deck(forbid_if(breaking == Some(&StaticBreaking::Event), FOLLOWS))]
     pub control: Option<LoadControl>,
 }
 
-/// Control of the loads by a quantity of the displacements that grows in proportion to time.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// Control of the loads of scheme = "static" by a displacement.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, DeckTable)]
 #[serde(deny_unknown_fields)]
 pub struct LoadControl {
-    /// A displacement of a probe or a derived quantity.
+    /// Name of the displacement of a probe, such as `mouth.u_x`, or of a quantity of `[[output.quantity]]` in metres that
+    /// is derived from displacements of probes alone.
     pub quantity: String,
-    /// Its rate, m/s.
+    /// Rate of the quantity: its value at time t is `rate` times t.
+    ///
+    /// In m/s.
+    #[deck(quantity = Velocity, range = NONZERO.described("a speed other than 0"))]
     pub rate: f64,
 }
 
 /// Breaking rule for bonds beyond their critical stretch.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, DeckWords)]
 #[serde(rename_all = "kebab-case")]
+#[deck(what = "breaking rule")]
 pub enum StaticBreaking {
     /// Bonds with the largest ratio of stretch to critical stretch.
     #[default]
@@ -51,8 +70,9 @@ pub enum StaticBreaking {
 }
 
 /// Treatment of rigid-body modes that no support prevents.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, DeckWords)]
 #[serde(rename_all = "kebab-case")]
+#[deck(what = "treatment of rigid-body modes")]
 pub enum RigidModes {
     /// The body is rejected.
     #[default]
@@ -61,79 +81,9 @@ pub enum RigidModes {
     Fix,
 }
 
-impl Default for Statics {
-    fn default() -> Self {
-        Self {
-            tolerance: 1e-6,
-            newton_steps: 25,
-            rigid_modes: RigidModes::default(),
-            breaking: StaticBreaking::default(),
-            control: None,
-        }
-    }
-}
+/// Range of relative residuals of static states.
+pub(crate) const RESIDUALS: Range = from_to(1e-12, 0.1)
+    .described("a number from 1e-12 to 0.1, the residual relative to loads and reactions");
 
-pub(crate) fn read(table: &Table<'_>) -> Option<Statics> {
-    let default = Statics::default();
-    let tolerance = table.or("tolerance", default.tolerance, |item| {
-        item.within(
-            Quantity::Number,
-            "a number from 1e-12 to 0.1, the residual relative to loads and reactions",
-            |tolerance| (1e-12..=0.1).contains(&tolerance),
-        )
-    });
-    let newton_steps = table.or("newton_steps", default.newton_steps, |item| {
-        const MOST: u64 = 1000;
-        let count = item.count()?;
-        if count <= MOST {
-            return Some(count as u32);
-        }
-        item.out_of_range("a whole number from 1 to 1000");
-        None
-    });
-    let rigid_modes = table.choice_or_first(
-        "rigid_modes",
-        "treatment of rigid-body modes",
-        &[("refuse", RigidModes::Refuse), ("fix", RigidModes::Fix)],
-    );
-    let breaking = table.choice_or_first(
-        "breaking",
-        "breaking rule",
-        &[
-            ("worst-first", StaticBreaking::WorstFirst),
-            ("all", StaticBreaking::All),
-            ("event", StaticBreaking::Event),
-        ],
-    );
-    let control = match breaking {
-        Some(StaticBreaking::Event) => {
-            table.forbid(
-                "control",
-                "breaking = \"event\" follows falling branches and snap-backs itself; end the run by a condition on the quantity in [[time.stop_when]]",
-            );
-            Some(None)
-        }
-        _ => table.maybe("control", |item| control(item.table()?)),
-    };
-    Some(Statics {
-        tolerance: tolerance?,
-        newton_steps: newton_steps?,
-        rigid_modes: rigid_modes?,
-        breaking: breaking?,
-        control: control?,
-    })
-}
-
-fn control(table: Table<'_>) -> Option<LoadControl> {
-    let quantity = table.required("quantity").and_then(|item| item.text());
-    let rate = table.required("rate").and_then(|item| {
-        item.within(Quantity::Velocity, "a speed other than 0", |rate| {
-            rate != 0.0
-        })
-    });
-    table.finish();
-    Some(LoadControl {
-        quantity: quantity?,
-        rate: rate?,
-    })
-}
+/// Why the load of events is not controlled.
+const FOLLOWS: &str = "breaking = \"event\" follows falling branches and snap-backs itself; end the run by a condition on the quantity in [[time.stop_when]]";

@@ -3,11 +3,10 @@
 use pericles_deck_derive::{DeckKeys, DeckTable};
 use serde::{Deserialize, Serialize};
 
-use crate::declaration::DeckTable;
 use crate::expression::SignalCondition;
 use crate::fault::Fault;
 use crate::range::{Range, between, from_below};
-use crate::reader::{Item, Table};
+use crate::reader::Item;
 use crate::set::SetNames;
 
 /// Condition that ends the run early, as if at its last step: output is written, the exit status is 0, and run.json names
@@ -55,11 +54,6 @@ const REACTIONS: Range = between(0.0, 1.0)
 
 /// Range of damages that can be exceeded.
 const DAMAGES: Range = from_below(0.0, 1.0).described("a damage of at least 0 and below 1");
-
-/// Reads an entry of `[[time.stop_when]]`.
-pub(crate) fn stop_when(table: Table<'_>, sets: &SetNames) -> Option<StopWhen> {
-    StopWhen::read_table(table, sets)
-}
 
 fn is_of_scalars(condition: Option<&StopCondition>) -> bool {
     matches!(condition, Some(StopCondition::Holds(_)))

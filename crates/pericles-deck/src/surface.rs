@@ -1,12 +1,14 @@
 //! Materials and geodesic distances of 2-manifolds.
 
-use pericles_manifold::PowerMaterial;
+use pericles_deck_derive::{DeckTable, DeckWords};
 use pericles_manifold::geodesic::{Ball, GeodesicMethod};
+use pericles_manifold::{PowerMaterial, SurfaceBond};
 use serde::{Deserialize, Serialize};
 
 use crate::body::{SurfaceShape, VertexAreas};
-use crate::quantity::Quantity;
-use crate::reader::Table;
+use crate::declaration::{Check, DeckValue, Fallback};
+use crate::key_path::KeyPath;
+use crate::reader::{Item, Table};
 use crate::set::SetNames;
 
 /// A 2-manifold with its material.
@@ -18,103 +20,153 @@ pub struct SurfaceBody {
     /// The areas of its vertices.
     pub areas: VertexAreas,
     /// Its material.
-    #[serde(with = "crate::form")]
-    pub material: PowerMaterial,
-    /// Sets whose bonds never break.
+    pub material: SurfaceMaterial,
+    /// Distances along the surface.
     #[serde(default)]
-    pub no_fail: Vec<String>,
-    /// Algorithm for geodesic distances.
+    pub geodesics: Geodesics,
+}
+
+/// 2-manifolds: distances along the surface.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, DeckTable)]
+#[serde(deny_unknown_fields)]
+#[deck(default)]
+pub struct Geodesics {
+    /// Algorithm for geodesic distances: `exact`, `edge` (paths along edges), `edge-diagonals`, or `steiner(1)` to
+    /// `steiner(32)` (paths over that many extra points per edge).
     #[serde(default, with = "crate::form")]
+    #[deck(default)]
     pub method: GeodesicMethod,
-    /// Definition of neighbours.
+    /// Which points are bonded. `geodesic`: those within the horizon along the surface; `euclid`: those within the horizon
+    /// on the straight line. Force laws use geodesic distances in both cases.
     #[serde(default, with = "crate::form")]
+    #[deck(default)]
     pub ball: Ball,
 }
 
-/// Reads `[geodesics]`.
-pub(crate) fn geodesics(table: Table<'_>) -> Option<(GeodesicMethod, Ball)> {
-    let method = match table.optional("method") {
-        None => {
-            let method = GeodesicMethod::default();
-            table.record("method", method.to_string());
-            Some(method)
-        }
-        Some(item) => item.text().and_then(|text| {
-            let method = text.parse().ok();
-            if method.is_none() {
-                item.out_of_range(GeodesicMethod::NAMES);
-            }
-            method
-        }),
-    };
-    let ball = table.worded("ball", "ball");
-    table.finish();
-    Some((method?, ball?))
+/// 2-manifolds have one material.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, DeckTable)]
+#[serde(deny_unknown_fields)]
+#[deck(scope = SurfaceScope<'s>)]
+pub struct SurfaceMaterial {
+    /// `power`, the law of 2-manifolds: κ |η|^(p−2) η / d^(2+αp) with the distance d along the surface.
+    #[serde(default)]
+    #[deck(default)]
+    pub model: SurfaceModel,
+    /// 2-manifolds: not used.
+    #[serde(default)]
+    pub name: Option<String>,
+    /// 2-manifolds: mass per area.
+    ///
+    /// In kg/m².
+    #[deck(quantity = SurfaceDensity, range = POSITIVE)]
+    pub density: f64,
+    /// 2-manifolds: factor κ of the force law, in SI units, which depend on p and α.
+    #[deck(range = POSITIVE, default = 1.0)]
+    pub kappa: f64,
+    /// 2-manifolds: exponent α of the force law.
+    #[deck(range = between(0.0, 1.0))]
+    pub alpha: f64,
+    /// 2-manifolds: exponent p of the force law.
+    #[deck(range = at_least(2.0).described("a number of at least 2"))]
+    pub p: f64,
+    /// 2-manifolds: measured along the surface.
+    ///
+    /// In m.
+    #[deck(
+        quantity = Length,
+        range = POSITIVE.described(LENGTHS),
+        allow_if(is_above(scope, horizon), LENGTHS)
+    )]
+    pub horizon: f64,
+    /// 2-manifolds: part of the relative displacement η that enters the force law. `displacement`: all of η; `chord`: the
+    /// change of the chord length, invariant under rigid motions.
+    #[serde(default, with = "crate::form")]
+    #[deck(default)]
+    pub bond: SurfaceBond,
+    /// 2-manifolds, p = 2 with bond = "displacement": adds the integral over the point's own area, without which results
+    /// depend on the mesh. Default: true for alpha ≥ 0.5.
+    #[deck(
+        default = supports(p, bond) && alpha.is_some_and(|alpha| *alpha >= 0.5),
+        allow_if(
+            self_interaction == Some(&false) || supports(p, bond),
+            "false, or true with p = 2 and bond = \"displacement\""
+        )
+    )]
+    pub self_interaction: bool,
+    /// 2-manifolds: bonds break when |η|/d exceeds it.
+    #[serde(default)]
+    #[deck(range = POSITIVE)]
+    pub critical_stretch: Option<f64>,
+    /// Sets whose bonds never break.
+    #[serde(default)]
+    #[deck(flatten, keys("no_fail"), with = no_fail)]
+    pub no_fail: Vec<String>,
 }
 
-/// Reads `[material]` of a 2-manifold.
-pub(crate) fn material(
-    table: Table<'_>,
-    spacing: Option<f64>,
-    sets: &SetNames,
-) -> Option<(PowerMaterial, Vec<String>)> {
-    table.choice_or_first("model", "model", &[("power", ())]);
-    table.maybe("name", |item| item.text());
-    let positive = |key, quantity| table.required(key).and_then(|item| item.positive(quantity));
-    let density = positive("density", Quantity::SurfaceDensity);
-    let kappa = table.or("kappa", 1.0, |item| item.positive(Quantity::Number));
-    let alpha = table.required("alpha").and_then(|item| {
-        item.within(Quantity::Number, "a number above 0 and below 1", |alpha| {
-            alpha > 0.0 && alpha < 1.0
-        })
-    });
-    let p = table
-        .required("p")
-        .and_then(|item| item.within(Quantity::Number, "a number of at least 2", |p| p >= 2.0));
-    let horizon = table.required("horizon").and_then(|item| {
-        item.within(
-            Quantity::Length,
-            "a length above the mean edge length (usual: 3 times the mean edge length)",
-            |horizon| horizon > 0.0 && spacing.is_none_or(|spacing| horizon > spacing),
-        )
-    });
-    let bond = table.worded("bond", "bond");
-    let self_interaction = table.optional("self_interaction").map_or_else(
-        || {
-            // Without it results for larger α depend on the mesh.
-            let supported = PowerMaterial::supports_self_interaction(p?, bond?);
-            let default = supported && alpha? >= 0.5;
-            table.record("self_interaction", default);
-            Some(default)
-        },
-        |item| {
-            let wanted = item.boolean()?;
-            let supported = |p, bond| PowerMaterial::supports_self_interaction(p, bond);
-            if wanted && !p.zip(bond).is_none_or(|(p, bond)| supported(p, bond)) {
-                item.out_of_range("false, or true with p = 2 and bond = \"displacement\"");
-                return None;
-            }
-            Some(wanted)
-        },
-    );
-    let critical_stretch = table
-        .maybe("critical_stretch", |item| item.positive(Quantity::Number))
-        .map(|given| given.unwrap_or(f64::INFINITY));
-    let no_fail = table
-        .optional("no_fail")
-        .map_or(Some(Vec::new()), |item| sets.references(&item));
-    table.finish();
-    Some((
+/// Force law of 2-manifolds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, DeckWords)]
+#[serde(rename_all = "kebab-case")]
+#[deck(what = "model")]
+pub enum SurfaceModel {
+    /// κ |η|^(p−2) η / d^(2+αp) with the distance d along the surface.
+    #[default]
+    Power,
+}
+
+impl SurfaceMaterial {
+    /// Returns the material of the engine.
+    pub fn power(&self) -> PowerMaterial {
         PowerMaterial {
-            density: density?,
-            kappa: kappa?,
-            alpha: alpha?,
-            p: p?,
-            horizon: horizon?,
-            bond: bond?,
-            self_interaction: self_interaction?,
-            critical_stretch: critical_stretch?,
-        },
-        no_fail?,
-    ))
+            density: self.density,
+            kappa: self.kappa,
+            alpha: self.alpha,
+            p: self.p,
+            horizon: self.horizon,
+            bond: self.bond,
+            self_interaction: self.self_interaction,
+            critical_stretch: self.critical_stretch.unwrap_or(f64::INFINITY),
+        }
+    }
+}
+
+/// Scope of the material of a 2-manifold.
+#[derive(Clone, Copy)]
+pub(crate) struct SurfaceScope<'s> {
+    /// Mean edge length, m; none if it is unknown before a file is read.
+    pub(crate) spacing: Option<f64>,
+    pub(crate) sets: &'s SetNames,
+}
+
+const LENGTHS: &str = "a length above the mean edge length (usual: 3 times the mean edge length)";
+
+fn is_above(scope: SurfaceScope<'_>, horizon: Option<&f64>) -> bool {
+    let known = scope.spacing.zip(horizon);
+    known.is_none_or(|(spacing, horizon)| *horizon > spacing)
+}
+
+/// Returns whether the material may have a self-interaction; unknown exponents and bonds may.
+fn supports(p: Option<&f64>, bond: Option<&SurfaceBond>) -> bool {
+    let known = p.zip(bond);
+    known.is_none_or(|(p, bond)| PowerMaterial::supports_self_interaction(*p, *bond))
+}
+
+fn no_fail(table: &Table<'_>, scope: SurfaceScope<'_>) -> Option<Vec<String>> {
+    let item = table.optional("no_fail");
+    item.map_or(Some(Vec::new()), |item| scope.sets.references(&item))
+}
+
+impl<S> DeckValue<S> for GeodesicMethod {
+    fn read(item: &Item<'_>, _: S) -> Option<Self> {
+        let method = item.text()?.parse();
+        method.map_err(|_| item.out_of_range(Self::NAMES)).ok()
+    }
+
+    fn check(&self, _: KeyPath, _: S, _: &mut Check) {}
+}
+
+impl<S> Fallback<S> for GeodesicMethod {
+    fn missing(self, table: &Table<'_>, key: &'static str, _: S) -> Option<Self> {
+        table.record(key, self.to_string());
+        Some(self)
+    }
 }

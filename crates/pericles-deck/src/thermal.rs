@@ -6,7 +6,7 @@ use pericles_deck_derive::{DeckKeys, DeckTable, DeckWords};
 use serde::{Deserialize, Serialize};
 
 use crate::component::Component;
-use crate::course::{self, TimeHistory};
+use crate::course::TimeHistory;
 use crate::declaration::DeckKeys;
 use crate::range::{Range, at_least};
 use crate::reader::Table;
@@ -43,7 +43,7 @@ pub struct Thermal {
     pub file: Option<PathBuf>,
     /// Time function that multiplies the difference to the reference temperature.
     #[serde(default, skip_serializing_if = "TimeHistory::is_constant")]
-    #[deck(flatten, key = "function", with = function, default, forbid_if(scope.conducts, INITIAL))]
+    #[deck(or_empty, scope = false, default, forbid_if(scope.conducts, INITIAL))]
     pub function: TimeHistory,
     /// Reference temperature T₀ without thermal strain. Required with `expansion`, and for time functions of
     /// temperatures.
@@ -206,9 +206,8 @@ pub struct ThermalCondition {
     /// Time function: multiplies flux and source, and the difference of temperatures to the reference temperature.
     #[serde(default, skip_serializing_if = "TimeHistory::is_constant")]
     #[deck(
-        flatten,
-        key = "function",
-        with = function,
+        or_empty,
+        scope = false,
         default,
         forbid_if(is_of_temperature(amplitude) && !scope.has_reference, NO_REFERENCE)
     )]
@@ -331,10 +330,6 @@ fn is_of_temperature(amplitude: Option<&ThermalAmplitude>) -> bool {
         amplitude,
         Some(Temperature(_) | Convection { .. } | Radiation { .. })
     )
-}
-
-fn function(table: &Table<'_>, _: ThermalScope<'_>) -> Option<TimeHistory> {
-    course::function(table)
 }
 
 /// Reads the keys of heat conduction, if the table has them.

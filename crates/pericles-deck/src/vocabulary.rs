@@ -81,7 +81,7 @@ pub(crate) const SCHEDULES: &[&str] = &["interval", "every", "count"];
 /// Keys of checkpoint schedules.
 pub(crate) const CHECKPOINTS: &[&str] = &["wall", "every", "interval"];
 /// Keys of the depth of a layer.
-pub(crate) const DEPTHS: &[&str] = &["depth", "cells"];
+const DEPTHS: &[&str] = &["depth", "cells"];
 /// Keys of the amplitude of a load.
 pub(crate) const LOADS: &[&str] = &["body_force", "traction", "pressure"];
 

@@ -50,6 +50,15 @@ fn joined(words: &[String], mark: char) -> String {
     }
 }
 
+/// Formats alternatives: a, b or c.
+pub(crate) fn or<'a>(words: impl Iterator<Item = &'a str>) -> String {
+    let words: Vec<&str> = words.collect();
+    match words.split_last() {
+        Some((last, rest)) if !rest.is_empty() => format!("{} or {last}", rest.join(", ")),
+        _ => words.concat(),
+    }
+}
+
 /// Formats a number of bytes.
 pub(crate) fn bytes(count: f64) -> String {
     let units = [(1e12, "TB"), (1e9, "GB"), (1e6, "MB"), (1e3, "kB")];

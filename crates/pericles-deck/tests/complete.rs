@@ -1,7 +1,7 @@
 //! A deck with every key, and the expected model.
 
 use pericles::boundary::MotionKind;
-use pericles::family::{Crack, EndRule, VolumeCorrection};
+use pericles::family::{EndRule, VolumeCorrection};
 use pericles::kernel::{ActsOn, Influence, InfluenceFunction};
 use pericles::material::{
     BondMaterial, Calibration, ElasticModulus, Fracture, FractureCalibration, Modulus, PairLaw,
@@ -117,7 +117,7 @@ fn every_entry_is_read() {
         ]
     );
 
-    let segment = |from, to| CrackSurface::from(Crack::Segment { from, to });
+    let segment = |from, to| CrackSurface::Segment([from, to]);
     assert_eq!(
         deck.model.cracks[0].surface,
         segment([-0.05, 0.02], [0.0, 0.02])
@@ -242,22 +242,25 @@ fn conditions_time_and_output_are_read() {
     assert_eq!(
         deck.model.output,
         Output {
-            fields: Schedule::Interval(0.5e-6),
-            names: Field::USUAL.to_vec(),
-            formats: vec![FieldFormat::Vtu],
-            numbers: Vec::new(),
-            cells: pericles_deck::CellChoice::Auto,
-            mesh_cells: false,
+            fields: FieldOutput {
+                schedule: Schedule::Interval(0.5e-6),
+                names: Field::USUAL.to_vec().into(),
+                formats: vec![FieldFormat::Vtu],
+                cells: false,
+                blocks: FieldBlocks::Groups,
+            },
+            cells: None,
             profiles: Vec::new(),
             quantities: Vec::new(),
-            blocks: FieldBlocks::Groups,
-            history: Schedule::Every(20),
-            extremes: Vec::new(),
+            history: HistoryOutput {
+                schedule: Schedule::Every(20),
+                extremes: Vec::new(),
+            },
             energy_bound: None,
-            cracks: Some(CrackOutput {
+            cracks: CrackOutput {
                 schedule: Schedule::Count(92),
                 threshold: 0.4,
-            }),
+            },
             fragments: FragmentOutput {
                 schedule: Schedule::Every(40),
                 smallest: 0.01,
@@ -297,10 +300,10 @@ fn defaults_are_filled_in_and_recorded() {
         VolumeCorrection::Extended
     );
     assert_eq!(deck.model.time.step, TimeStep::Auto { safety: 0.95 });
-    assert_eq!(deck.model.output.fields, Schedule::Count(20));
+    assert_eq!(deck.model.output.fields.schedule, Schedule::Count(20));
     assert_eq!(
-        deck.model.output.cracks().schedule,
-        deck.model.output.history
+        deck.model.output.cracks.schedule,
+        deck.model.output.history.schedule
     );
     assert_eq!(deck.model.checkpoint, Checkpoint::Wall(600.0));
     assert_eq!(deck.source(), LEAST);
@@ -328,8 +331,6 @@ fn the_record_is_an_equivalent_deck() {
         let mut first = parse(text);
         let again = parse(&toml::to_string(first.to_json()).unwrap());
         // The record includes defaults.
-        let output = &mut first.model.output;
-        output.cracks = Some(output.cracks());
         let material = &mut first.model.body.solid_mut().unwrap().material;
         material.damage = Some(material.damage.unwrap_or_default());
         assert_eq!(again.to_json(), first.to_json());
@@ -412,7 +413,7 @@ fn cracks_of_each_dimension() {
     };
     assert_eq!(
         cracks("shape='bar'\nlength=1", "section='50 cm'"),
-        Crack::Section { x: 0.5 }.into()
+        CrackSurface::Section(0.5)
     );
     let block = "shape='block'\nsize=[1,1,1]";
     assert_eq!(
@@ -420,17 +421,16 @@ fn cracks_of_each_dimension() {
             block,
             "disc={centre=[0.5,0.5,0.5],normal=[0,0,1],radius='10 cm'}"
         ),
-        Crack::Disc {
+        CrackSurface::Disc {
             centre: [0.5; 3],
             normal: [0.0, 0.0, 1.0],
             radius: 0.1
         }
-        .into()
     );
     let corners = vec![[0.0, 0.0, 0.5], [1.0, 0.0, 0.5], [0.0, 1.0, 0.5]];
     assert_eq!(
         cracks(block, "polygon=[[0,0,0.5],[1,0,0.5],[0,1,0.5]]"),
-        Crack::Polygon { corners }.into()
+        CrackSurface::Polygon(corners)
     );
     assert_eq!(
         cracks(block, "file='crack.stl'\nunit='mm'"),
@@ -480,7 +480,7 @@ fn overrides_change_what_is_read() {
         ElasticModulus::Bulk(48e9)
     );
     assert_eq!(solid(&deck).material.bonds().unwrap().horizon, 2e-3);
-    assert_eq!(deck.model.output.history, Schedule::Interval(1e-6));
+    assert_eq!(deck.model.output.history.schedule, Schedule::Interval(1e-6));
     assert_eq!(deck.model.title.as_deref(), Some("Another one"));
     assert_eq!(deck.model.checkpoint, Checkpoint::Wall(60.0));
     assert_eq!(deck.source(), COMPLETE);

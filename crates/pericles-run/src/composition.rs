@@ -224,9 +224,13 @@ pub fn requirements(scheme: &DeckScheme) -> &'static [Requirement] {
         DeckScheme::Respa { .. } => Respa::REQUIREMENTS,
         DeckScheme::Newmark(options) => options.solver.requirements(),
         DeckScheme::DiscreteGradient { .. } => DiscreteGradient::REQUIREMENTS,
-        DeckScheme::Implicit { .. } => Implicit::REQUIREMENTS,
+        DeckScheme::ImplicitMidpoint { .. } | DeckScheme::Trapezoidal { .. } => {
+            Implicit::REQUIREMENTS
+        }
         DeckScheme::Trigonometric(_) => Trigonometric::REQUIREMENTS,
-        DeckScheme::Relaxation(_) => Relaxation::REQUIREMENTS,
+        DeckScheme::AdaptiveDynamicRelaxation { .. } | DeckScheme::Fire(_) => {
+            Relaxation::REQUIREMENTS
+        }
         DeckScheme::Static(_) => StaticScheme::REQUIREMENTS,
         DeckScheme::Thermal => FixedBody::REQUIREMENTS,
     }

@@ -262,12 +262,12 @@ impl Facts {
             bulk_modulus: elastic.map(|elastic| elastic.bulk()),
             shear_modulus: elastic.map(|elastic| elastic.shear()),
             micromodulus: bonds.map(|constants| constants.micromodulus),
-            critical_stretch: finite(match (&model.body, constants) {
-                (Body::Solid(_), constants) => {
-                    constants.map_or(f64::INFINITY, MaterialConstants::critical_stretch)
+            critical_stretch: match &model.body {
+                Body::Solid(_) => {
+                    constants.and_then(|constants| finite(constants.critical_stretch()))
                 }
-                (Body::Surface(surface), _) => surface.material.critical_stretch,
-            }),
+                Body::Surface(surface) => surface.material.critical_stretch,
+            },
             critical_bond_energy: constants
                 .and_then(|constants| finite(constants.critical_bond_energy())),
             fracture_energy: constants.and_then(|constants| finite(constants.fracture_energy())),

@@ -7,12 +7,11 @@ use std::collections::HashMap;
 use std::sync::{Arc, Mutex};
 
 use pericles::Simulation;
-use pericles::family::Crack;
 use pericles::observe::{CrackTracker, Schedule};
 use pericles::space::PointCloud;
 use pericles_deck::{
-    CellChoice, CrackSurface, FieldFormat, Model, Picture, PictureColours, PictureFormat,
-    PictureLook, Precision,
+    CrackSurface, FieldFormat, Model, Picture, PictureColours, PictureFormat, PictureLook,
+    Precision,
 };
 use pericles_io::observers::{
     CellMesh, Cracks, EnergyBoundColumns, ErrorColumns, FieldSeries, ForceDisplacement,
@@ -83,12 +82,12 @@ pub(crate) fn observed(
     let rows = history_rows(model, &simulation, exact);
     let history = History::new(folder.file("history.csv"), rows);
     let history = Arc::new(Mutex::new(history));
-    simulation.observe(output.history, Box::new(Arc::clone(&history)));
+    simulation.observe(output.history.schedule, Box::new(Arc::clone(&history)));
     names.extend(add_impactors(model, folder, &mut simulation)?);
     for (name, key, signals) in tables {
         names.push(name.into());
         let table = SignalTable::new(folder.file(name), key, signals);
-        simulation.observe(output.history, Box::new(table));
+        simulation.observe(output.history.schedule, Box::new(table));
     }
     if let Some(curve) = curve {
         names.extend(["force_displacement.csv", "force_displacement.png"].map(String::from));
@@ -96,9 +95,9 @@ pub(crate) fn observed(
     }
     if can_break && !cracks.is_empty() {
         names.push("cracks.csv".into());
-        let tracker = CrackTracker::new(&cloud, cracks, output.cracks().threshold)?;
+        let tracker = CrackTracker::new(&cloud, cracks, output.cracks.threshold)?;
         let cracks = Cracks::new(folder.file("cracks.csv"), tracker, dimension);
-        simulation.observe(output.cracks().schedule, Box::new(cracks));
+        simulation.observe(output.cracks.schedule, Box::new(cracks));
     }
     if can_break && output.fragments.schedule != Schedule::Never {
         names.push("fragments.csv".into());
@@ -110,7 +109,7 @@ pub(crate) fn observed(
         names.push("surface.csv".into());
         let measure = SurfaceMeasure::new(surface.clone());
         let course = SurfaceCourse::new(folder.file("surface.csv"), measure);
-        simulation.observe(output.history, Box::new(course));
+        simulation.observe(output.history.schedule, Box::new(course));
     }
     names.extend(add_fields(model, folder, &body, &mut simulation)?);
     names.extend(add_profiles(model, folder, &cloud, &mut simulation)?);
@@ -159,8 +158,8 @@ pub fn history_rows(
     if let Some(ExactReference { solution, points }) = exact {
         rows = rows.with(ErrorColumns::new(solution, points));
     }
-    if let Some(rate) = output.energy_bound {
-        rows = rows.with(EnergyBoundColumns(EnergyInequality::new(rate)));
+    if let Some(time) = output.energy_bound {
+        rows = rows.with(EnergyBoundColumns(EnergyInequality::new(1.0 / time)));
     }
     for signals in of_state {
         rows = rows.with_signals(signals);
@@ -219,7 +218,7 @@ pub fn overlay(model: &Model, cloud: &PointCloud, sets: &Sets) -> Option<Overlay
         .cracks
         .iter()
         .filter_map(|crack| match &crack.surface {
-            CrackSurface::Plane(Crack::Segment { from, to }) => Some([*from, *to]),
+            CrackSurface::Segment(ends) => Some(*ends),
             _ => None,
         });
     let class = match is_on_grid(model, cloud) {
@@ -245,7 +244,7 @@ pub fn overlay(model: &Model, cloud: &PointCloud, sets: &Sets) -> Option<Overlay
 /// and checkpoints it needs its own ones only.
 fn needs_whole_body(model: &Model, assembly: &Assembly) -> bool {
     let output = &model.output;
-    output.fields != Schedule::Never
+    output.fields.schedule != Schedule::Never
         || !output.profiles.is_empty()
         || !output.pictures.is_empty()
         || !model.impactors.is_empty()
@@ -264,6 +263,9 @@ struct FieldBody {
     dt: f64,
     steps: u64,
 }
+
+/// Cells of more points are written on request only, because their nodes double the size of a file of few fields.
+const MOST_CELLS: usize = 1_000_000;
 
 impl FieldBody {
     /// Collects the points and sets of the whole body on the process that writes the output, if it needs them. All processes must
@@ -303,10 +305,10 @@ impl FieldBody {
         let is_on_grid = is_on_grid(model, &self.cloud);
         let boxes = || is_on_grid.then(|| CellMesh::of_boxes(&self.cloud));
         match model.output.cells {
-            CellChoice::Never => None,
-            CellChoice::Always => self.meshes.cells_of_all(&self.cloud).or_else(boxes),
-            CellChoice::Auto if self.cloud.len() > CellChoice::MOST_POINTS => None,
-            CellChoice::Auto => boxes(),
+            Some(false) => None,
+            Some(true) => self.meshes.cells_of_all(&self.cloud).or_else(boxes),
+            None if self.cloud.len() > MOST_CELLS => None,
+            None => boxes(),
         }
     }
 }
@@ -320,7 +322,7 @@ fn add_fields(
 ) -> Result<Vec<String>, RunError> {
     let output = &model.output;
     let mut names = Vec::new();
-    if output.fields == Schedule::Never {
+    if output.fields.schedule == Schedule::Never {
         return Ok(names);
     }
     let single = output.precision == Precision::Single;
@@ -329,9 +331,9 @@ fn add_fields(
         let points = result_body(model, &body.cloud, &body.sets, &body.meshes);
         let path = folder.file(name);
         let file = ResultFile::new(path, format, Arc::new(points), selection.clone(), single);
-        simulation.observe(output.fields, Box::new(file));
+        simulation.observe(output.fields.schedule, Box::new(file));
     };
-    for format in &output.formats {
+    for format in &output.fields.formats {
         match format {
             FieldFormat::Vtu => {}
             FieldFormat::Exodus => {
@@ -340,12 +342,12 @@ fn add_fields(
             }
             FieldFormat::Vtkhdf => {
                 names.extend(["fields.vtkhdf".into(), "fields.vtkhdf.part".into()]);
-                let outputs = output.fields.most(body.dt, body.steps) as usize;
+                let outputs = output.fields.schedule.most(body.dt, body.steps) as usize;
                 one_file("fields.vtkhdf", ResultFormat::VtkHdf { outputs });
             }
         }
     }
-    if output.formats.contains(&FieldFormat::Vtu) {
+    if output.fields.formats.contains(&FieldFormat::Vtu) {
         names.extend(["fields.pvd".into(), "fields/fields_*.vtu".into()]);
         folder.subfolder("fields")?;
         let mut fields = FieldSeries::new(folder.path(), single).with(selection.clone());
@@ -355,14 +357,14 @@ fn add_fields(
         if let Some(cells) = body.cells(model) {
             fields = fields.on_cells(Arc::new(cells));
         }
-        simulation.observe(output.fields, Box::new(fields));
+        simulation.observe(output.fields.schedule, Box::new(fields));
     }
-    if let (true, Some(cells)) = (output.mesh_cells, body.meshes.cells()) {
+    if let (true, Some(cells)) = (output.fields.cells, body.meshes.cells()) {
         names.extend(["cells.pvd".into(), "cells/cells_*.vtu".into()]);
         folder.subfolder("cells")?;
         let fields = FieldSeries::new(folder.path(), single).with(selection.clone());
         let fields = fields.on_cells(Arc::new(cells)).as_second();
-        simulation.observe(output.fields, Box::new(fields));
+        simulation.observe(output.fields.schedule, Box::new(fields));
     }
     Ok(names)
 }

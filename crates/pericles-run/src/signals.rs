@@ -67,7 +67,9 @@ pub(crate) fn history_signals(
     let mut of_scheme: Vec<Box<dyn Signals>> = Vec::new();
     if integrator.inner_iterations().is_some() {
         of_scheme.push(Box::new(match model.time.scheme {
-            Scheme::Relaxation(_) | Scheme::Static(_) => InnerColumns::Residual,
+            Scheme::AdaptiveDynamicRelaxation { .. } | Scheme::Fire(_) | Scheme::Static(_) => {
+                InnerColumns::Residual
+            }
             _ => InnerColumns::Velocity,
         }));
     }
@@ -75,7 +77,7 @@ pub(crate) fn history_signals(
         of_scheme.push(Box::new(LoadFactorColumn));
     }
     let mut of_state: Vec<Box<dyn Signals>> = Vec::new();
-    let extremes = &model.output.extremes;
+    let extremes = &model.output.history.extremes;
     if !extremes.is_empty() {
         let columns = ExtremeColumns::new(extremes.clone(), system.dimension());
         of_state.push(Box::new(columns));
@@ -135,7 +137,7 @@ impl SignalRegistry {
             registry.add(Box::new(impactors));
         }
         if system.operator().can_break() {
-            let threshold = model.output.cracks().threshold;
+            let threshold = model.output.cracks.threshold;
             let cracks = CrackSignals::new(cracks.to_vec(), threshold, dimension);
             registry.add(Box::new(cracks));
         }

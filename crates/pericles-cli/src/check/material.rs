@@ -298,11 +298,11 @@ pub(super) fn surface_material(surface: &SurfaceBody) -> Vec<Line> {
     } else {
         "omitted"
     };
-    let breaking = if material.critical_stretch.is_finite() {
-        format!("at |η|/d = {}", significant(material.critical_stretch, 4))
-    } else {
-        "never".into()
+    let breaking = match material.critical_stretch {
+        Some(stretch) => format!("at |η|/d = {}", significant(stretch, 4)),
+        None => "never".into(),
     };
+    let method = surface.geodesics.method;
     vec![
         Line::new(
             "force",
@@ -317,12 +317,9 @@ pub(super) fn surface_material(surface: &SurfaceBody) -> Vec<Line> {
         ),
         Line::new(
             "distances",
-            match surface.ball {
-                Ball::Geodesic => surface.method.to_string(),
-                Ball::Euclid => format!(
-                    "{}, between vertices within a Euclidean ball",
-                    surface.method
-                ),
+            match surface.geodesics.ball {
+                Ball::Geodesic => method.to_string(),
+                Ball::Euclid => format!("{method}, between vertices within a Euclidean ball"),
             },
         ),
         Line::new("areas", areas).with("vertex_area", same_area),

@@ -6,7 +6,8 @@ use super::plane::{section, state};
 use super::sources::{Boundary, FilledCells, FilledShape};
 use super::types::{BodyRead, SolidShape};
 use super::unit::unit;
-use super::{finer, positions};
+use super::{Positions, finer};
+use crate::declaration::DeckKeys;
 use crate::fault::Fault;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
@@ -29,7 +30,7 @@ pub(super) fn read(table: Table<'_>, dimension: usize, mut read: BodyRead) -> Bo
         .into_iter()
         .map(|hole| region::read(hole, read.frame))
         .collect();
-    let positions = positions::read(&table);
+    let positions = Positions::read_keys(&table, ());
     let random = positions.is_some_and(|positions| positions.are_random());
     let cells = cells(&table, random);
     let finer: Vec<Option<Finer>> = table

@@ -1,7 +1,5 @@
 //! Words of `body.shape`.
 
-use super::surface::SurfaceKind;
-
 /// A word of `body.shape`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
@@ -15,7 +13,9 @@ pub(super) enum Kind {
     Mesh,
     Solid,
     Outline,
-    Surface(SurfaceKind),
+    /// A parametric 2-manifold.
+    Surface,
+    SurfaceFile,
 }
 
 /// All words with their values.
@@ -26,12 +26,12 @@ pub(super) const KINDS: [(&str, Kind); 16] = [
     ("block", Kind::Block),
     ("cylinder", Kind::Cylinder),
     ("ball", Kind::Ball),
-    ("icosphere", Kind::Surface(SurfaceKind::Icosphere)),
-    ("uv-sphere", Kind::Surface(SurfaceKind::UvSphere)),
-    ("ellipsoid", Kind::Surface(SurfaceKind::Ellipsoid)),
-    ("torus", Kind::Surface(SurfaceKind::Torus)),
-    ("capsule", Kind::Surface(SurfaceKind::Capsule)),
-    ("surface", Kind::Surface(SurfaceKind::File)),
+    ("icosphere", Kind::Surface),
+    ("uv-sphere", Kind::Surface),
+    ("ellipsoid", Kind::Surface),
+    ("torus", Kind::Surface),
+    ("capsule", Kind::Surface),
+    ("surface", Kind::SurfaceFile),
     ("points", Kind::Points),
     ("mesh", Kind::Mesh),
     ("solid", Kind::Solid),
@@ -45,7 +45,7 @@ impl Kind {
             Self::Plate | Self::Disc | Self::Outline => 2,
             Self::Block | Self::Cylinder | Self::Ball | Self::Solid => 3,
             // Points and meshes have a key for it.
-            Self::Points | Self::Mesh | Self::Surface(_) => 3,
+            Self::Points | Self::Mesh | Self::Surface | Self::SurfaceFile => 3,
         }
     }
 }

@@ -8,20 +8,22 @@ mod piece;
 mod plane;
 mod points;
 mod positions;
+mod rotation;
 mod sources;
 mod surface;
 mod types;
 mod unit;
 
 pub use positions::Positions;
+pub use rotation::Rotation;
 pub use sources::{Boundary, FilledCells, FilledShape, MeshFile};
-pub use surface::{SurfaceFormula, SurfaceShape, VertexAreas};
-pub use types::{Lattice, Piece, PointsFile, Quadrature, Rotation, SolidShape, piece_path};
+pub use surface::{SurfaceFile, SurfaceFormula, SurfaceShape, VertexAreas};
+pub use types::{Lattice, Piece, PointsFile, Quadrature, SolidShape, piece_path};
 pub use unit::length_unit;
 
-pub(crate) use piece::rotation;
+pub(crate) use rotation::RotationScope;
 pub(crate) use types::{BodyRead, SurfaceRead};
-pub(crate) use unit::{unit, unit_of};
+pub(crate) use unit::{check_unit, unit_of};
 
 use pericles::material::StressState;
 use pericles::space::{Finer, Grid, Region};
@@ -29,7 +31,7 @@ use pericles::space::{Finer, Grid, Region};
 use self::kind::{KINDS, Kind};
 use self::outline::{Outline, shape};
 use self::plane::{section, state};
-use self::surface::SurfaceKind;
+use crate::declaration::DeckKeys;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 use crate::region::{self, Frame};
@@ -49,10 +51,9 @@ fn one_piece(table: Table<'_>) -> BodyRead {
     let kind = table
         .required("shape")
         .and_then(|item| item.choice("shape", &KINDS));
-    if let Some(Kind::Surface(kind)) = kind {
-        return surface(table, kind, read);
-    }
     match kind {
+        Some(Kind::Surface) => return surface(table, false, read),
+        Some(Kind::SurfaceFile) => return surface(table, true, read),
         Some(Kind::Points) => return points::read(table, read),
         Some(Kind::Mesh) => return mesh::read(table, read),
         Some(kind @ (Kind::Solid | Kind::Outline)) => {
@@ -112,7 +113,7 @@ fn one_piece(table: Table<'_>) -> BodyRead {
 
 /// Reads the positions of points; random positions need equal spacings along all axes and no refinement.
 fn positions(table: &Table<'_>, plain: bool, finer: &[Option<Finer>]) -> Option<Positions> {
-    let positions = positions::read(table)?;
+    let positions = Positions::read_keys(table, ())?;
     if positions.are_random() && !plain {
         table.forbid(
             "positions",
@@ -125,8 +126,8 @@ fn positions(table: &Table<'_>, plain: bool, finer: &[Option<Finer>]) -> Option<
     Some(positions)
 }
 
-fn surface(table: Table<'_>, kind: SurfaceKind, mut read: BodyRead) -> BodyRead {
-    let shape = surface::shape(&table, kind);
+fn surface(table: Table<'_>, is_file: bool, mut read: BodyRead) -> BodyRead {
+    let shape = surface::shape(&table, is_file);
     let areas = surface::areas(&table);
     table.finish();
     let (shape, spacing) = shape.unzip();

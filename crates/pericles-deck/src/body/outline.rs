@@ -48,7 +48,12 @@ pub(super) fn shape(table: &Table<'_>, kind: Kind) -> Option<Outline> {
             })
         }
         // These have their own modules.
-        Kind::Points | Kind::Mesh | Kind::Solid | Kind::Outline | Kind::Surface(_) => None,
+        Kind::Points
+        | Kind::Mesh
+        | Kind::Solid
+        | Kind::Outline
+        | Kind::Surface
+        | Kind::SurfaceFile => None,
         Kind::Cylinder => {
             let base = place(table, "base", dimension);
             let axis = region::axis(table);

@@ -1,10 +1,11 @@
 //! `[[body.piece]]`: further pieces of a body, which no bond joins to the others.
 
-use super::types::{BodyRead, Piece, Rotation, SolidShape};
+use super::rotation::{Rotation, RotationScope};
+use super::types::{BodyRead, Piece, SolidShape};
+use crate::declaration::DeckValue;
 use crate::fault::Fault;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
-use crate::region::direction;
 use crate::set::bad_name;
 
 /// Name of the piece that `[body]` describes, unless it has another one.
@@ -72,7 +73,9 @@ fn one<'a>(table: Table<'a>, shape: impl Fn(Table<'a>) -> BodyRead) -> PieceRead
             table.forbid("rotation", "a bar cannot be rotated");
             Some(None)
         }
-        _ => table.maybe("rotation", |item| rotation(item.table()?, dimension, true)),
+        _ => table.maybe("rotation", |item| {
+            Rotation::read(&item, RotationScope::of_piece(dimension))
+        }),
     };
     let placed = matches!(
         shape_item.as_ref().and_then(Item::word),
@@ -114,44 +117,6 @@ fn name(item: &Item<'_>) -> Option<String> {
         }
         None => Some(name),
     }
-}
-
-/// Reads a rotation, `eccentric` if its axis may be anywhere.
-pub(crate) fn rotation(
-    table: Table<'_>,
-    dimension: Option<usize>,
-    eccentric: bool,
-) -> Option<Rotation> {
-    table.define("rotation");
-    let angle = table
-        .required("angle")
-        .and_then(|item| item.quantity(Quantity::Number));
-    let axis = match dimension {
-        Some(2) => {
-            table.forbid("axis", "a 2D piece rotates in its plane");
-            Some([0.0, 0.0, 1.0])
-        }
-        Some(_) => table
-            .required("axis")
-            .and_then(|item| direction(&item, dimension)),
-        None => match table.optional("axis") {
-            Some(item) => direction(&item, Some(3)),
-            None => Some([0.0, 0.0, 1.0]),
-        },
-    };
-    let centre = match eccentric {
-        true => table.maybe("centre", |item| item.vector(Quantity::Length, dimension)),
-        false => {
-            table.forbid("centre", "an impactor is rotated about its centre of mass");
-            Some(None)
-        }
-    };
-    table.finish();
-    Some(Rotation {
-        angle: angle?,
-        axis: axis?,
-        centre: centre?,
-    })
 }
 
 impl Pieces<'_> {

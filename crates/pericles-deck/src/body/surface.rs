@@ -2,77 +2,140 @@
 
 use std::path::PathBuf;
 
+use pericles_deck_derive::{DeckKeys, DeckTable};
 use pericles_manifold::surface::{AreaRule, Surface, SurfaceChecks, SurfaceError};
 use serde::{Deserialize, Serialize};
 
+use crate::declaration::DeckKeys;
+use crate::form::described;
 use crate::quantity::Quantity;
-use crate::reader::{Item, Table};
+use crate::range::{Range, count_to};
+use crate::reader::Table;
+use crate::region::Frame;
 
 /// Source of a triangulated surface.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum SurfaceShape {
     /// Triangles from a file.
-    File {
-        /// Path of the file; a relative path starts at the deck's folder.
-        #[serde(rename = "file")]
-        path: PathBuf,
-        /// Accepted defects.
-        #[serde(default, with = "crate::form")]
-        checks: SurfaceChecks,
-    },
+    File(SurfaceFile),
     /// A parametric surface.
     Formula(SurfaceFormula),
 }
 
-/// Parametric surfaces.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+/// A triangulated surface in a file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, DeckTable)]
+#[serde(deny_unknown_fields)]
+pub struct SurfaceFile {
+    /// Surface: OBJ, PLY, STL, OFF, Gmsh, VTU or VTP.
+    #[serde(rename = "file")]
+    #[deck(key = "file")]
+    pub path: PathBuf,
+    /// Accepted defects.
+    #[serde(default, with = "crate::form")]
+    #[deck(flatten)]
+    pub checks: SurfaceChecks,
+}
+
+/// Accepted defects of a surface.
+#[derive(Serialize, Deserialize, DeckTable)]
+#[serde(remote = "SurfaceChecks", deny_unknown_fields)]
+#[deck(remote = SurfaceChecks)]
+struct SurfaceChecksForm {
+    /// Surface: accept boundary edges (edges with one triangle).
+    #[deck(default = false)]
+    open: bool,
+    /// Surface: accept several connected components.
+    #[serde(rename = "several")]
+    #[deck(key = "several", default = false)]
+    several_components: bool,
+    /// Surface: fix inconsistent triangle orientation.
+    #[deck(default = false)]
+    flip: bool,
+}
+
+described!(SurfaceChecks: SurfaceChecksForm);
+
+/// Triangulated 2-manifolds whose vertices are the points: `icosphere`, `uv-sphere`, `ellipsoid`, `torus`, `capsule`, and
+/// `surface` (read from a file).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, DeckKeys)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
+#[deck(tag = "shape", what = "shape", scope = Frame)]
 pub enum SurfaceFormula {
     /// A subdivided icosahedron.
     Icosphere {
-        /// Number of subdivisions; each halves all edges.
+        /// Icosphere, ellipsoid: number of subdivisions of the icosahedron; each halves all edges.
+        #[deck(range = NUMBERS)]
         level: u32,
-        /// Radius, m.
+        /// Sphere, capsule: radius.
+        ///
+        /// In m.
+        #[deck(quantity = Length, range = POSITIVE)]
         radius: f64,
     },
     /// A sphere of meridians and parallels.
     UvSphere {
-        /// Number of meridians.
+        /// UV-sphere: number of meridians, the vertices per parallel.
+        #[deck(range = NUMBERS)]
         segments: u32,
-        /// Number of parallels, without the poles.
+        /// UV-sphere: number of parallels (circles of latitude), without the poles.
+        #[deck(range = NUMBERS)]
         rings: u32,
-        /// Radius, m.
+        /// Sphere, capsule: radius.
+        ///
+        /// In m.
+        #[deck(quantity = Length, range = POSITIVE)]
         radius: f64,
     },
     /// An icosphere stretched along the axes.
     Ellipsoid {
-        /// Number of subdivisions; each halves all edges.
+        /// Icosphere, ellipsoid: number of subdivisions of the icosahedron; each halves all edges.
+        #[deck(range = NUMBERS)]
         level: u32,
-        /// Half-axes, m.
+        /// Ellipsoid: half-axes.
+        ///
+        /// In m.
+        #[deck(quantity = Length, range = POSITIVE)]
         half_axes: [f64; 3],
     },
     /// A torus about the z axis.
     Torus {
-        /// Radius of the centre line, m.
+        /// Torus: radius of the centre line.
+        ///
+        /// In m.
+        #[deck(key = "major_radius", quantity = Length, range = POSITIVE)]
         major: f64,
-        /// Radius of the tube, m.
+        /// Torus: radius of the tube.
+        ///
+        /// In m.
+        #[deck(key = "minor_radius", quantity = Length, range = POSITIVE)]
         minor: f64,
-        /// Number of vertices along the centre line.
+        /// Torus: number of vertices along the centre line.
+        #[deck(range = NUMBERS)]
         major_segments: u32,
-        /// Number of vertices around the tube.
+        /// Torus: number of vertices around the tube.
+        #[deck(range = NUMBERS)]
         minor_segments: u32,
     },
     /// A cylinder about the z axis with hemispherical caps.
     Capsule {
-        /// Radius, m.
+        /// Sphere, capsule: radius.
+        ///
+        /// In m.
+        #[deck(quantity = Length, range = POSITIVE)]
         radius: f64,
-        /// Length of the cylinder, m.
+        /// Capsule: length of its cylindrical part.
+        ///
+        /// In m.
+        #[deck(quantity = Length, range = POSITIVE)]
         length: f64,
-        /// Number of vertices around the circumference.
+        /// Capsule: number of vertices around its circumference.
+        #[deck(range = NUMBERS)]
         segments: u32,
     },
 }
+
+const NUMBERS: Range = count_to(100_000);
 
 /// Areas of vertices.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -82,17 +145,6 @@ pub enum VertexAreas {
     Rule(#[serde(with = "crate::form")] AreaRule),
     /// The same area for every vertex, m², as some papers use.
     Same(f64),
-}
-
-/// Words of `body.shape` for 2-manifolds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum SurfaceKind {
-    File,
-    Icosphere,
-    UvSphere,
-    Ellipsoid,
-    Torus,
-    Capsule,
 }
 
 impl SurfaceFormula {
@@ -187,95 +239,14 @@ impl SurfaceFormula {
 }
 
 /// Reads the shape of `[body]`, with the mean distance of its vertices unless it comes from a file.
-pub(super) fn shape(table: &Table<'_>, kind: SurfaceKind) -> Option<(SurfaceShape, Option<f64>)> {
-    let length = |key| {
-        table
-            .required(key)
-            .and_then(|item| item.positive(Quantity::Length))
-    };
-    let number = |key| table.required(key).and_then(|item| small_count(&item));
-    let shape = match kind {
-        SurfaceKind::File => return file(table).map(|shape| (shape, None)),
-        SurfaceKind::Icosphere => {
-            let (level, radius) = (number("level"), length("radius"));
-            SurfaceFormula::Icosphere {
-                level: level?,
-                radius: radius?,
-            }
-        }
-        SurfaceKind::UvSphere => {
-            let (segments, rings, radius) = (number("segments"), number("rings"), length("radius"));
-            SurfaceFormula::UvSphere {
-                segments: segments?,
-                rings: rings?,
-                radius: radius?,
-            }
-        }
-        SurfaceKind::Ellipsoid => {
-            let level = number("level");
-            let half_axes = table.required("half_axes").and_then(|item| {
-                let axes = item.components(Some(3), &Quantity::Length.expected())?;
-                let lengths: Vec<Option<f64>> = axes
-                    .iter()
-                    .map(|axis| axis.positive(Quantity::Length))
-                    .collect();
-                let lengths: Option<Vec<f64>> = lengths.into_iter().collect();
-                lengths?.try_into().ok()
-            });
-            SurfaceFormula::Ellipsoid {
-                level: level?,
-                half_axes: half_axes?,
-            }
-        }
-        SurfaceKind::Torus => {
-            let (major, minor) = (length("major_radius"), length("minor_radius"));
-            let (major_segments, minor_segments) =
-                (number("major_segments"), number("minor_segments"));
-            SurfaceFormula::Torus {
-                major: major?,
-                minor: minor?,
-                major_segments: major_segments?,
-                minor_segments: minor_segments?,
-            }
-        }
-        SurfaceKind::Capsule => {
-            let (radius, segments) = (length("radius"), number("segments"));
-            let length = length("length");
-            SurfaceFormula::Capsule {
-                radius: radius?,
-                length: length?,
-                segments: segments?,
-            }
-        }
-    };
+pub(super) fn shape(table: &Table<'_>, is_file: bool) -> Option<(SurfaceShape, Option<f64>)> {
+    if is_file {
+        let file = SurfaceFile::read_keys(table, ())?;
+        return Some((SurfaceShape::File(file), None));
+    }
+    let shape = SurfaceFormula::read_keys(table, Frame::of_model(3))?;
     let spacing = table.accept(shape.spacing().map_err(Into::into))?;
     Some((SurfaceShape::Formula(shape), Some(spacing)))
-}
-
-fn file(table: &Table<'_>) -> Option<SurfaceShape> {
-    let path = table.required("file").and_then(|item| item.text());
-    let allow = |key| table.or(key, false, |item| item.boolean());
-    let (open, several, flip) = (allow("open"), allow("several"), allow("flip"));
-    Some(SurfaceShape::File {
-        path: path?.into(),
-        checks: SurfaceChecks {
-            open: open?,
-            several_components: several?,
-            flip: flip?,
-        },
-    })
-}
-
-/// Reads a whole number from 1 to 100 000.
-fn small_count(item: &Item<'_>) -> Option<u32> {
-    const MOST: u64 = 100_000;
-    let count = item.count()?;
-    if count <= MOST {
-        Some(count as u32)
-    } else {
-        item.out_of_range("a whole number from 1 to 100000");
-        None
-    }
 }
 
 pub(super) fn areas(table: &Table<'_>) -> Option<VertexAreas> {

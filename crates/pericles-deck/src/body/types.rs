@@ -7,6 +7,7 @@ use pericles::space::{Finer, Grid, Region};
 use serde::{Deserialize, Serialize};
 
 use super::positions::Positions;
+use super::rotation::Rotation;
 use super::sources::{FilledShape, MeshFile};
 use super::surface::{SurfaceShape, VertexAreas};
 use crate::key_path::KeyPath;
@@ -225,19 +226,6 @@ pub struct Piece {
     /// Initial velocity, m/s, to which the velocities of `[[initial]]` are added.
     #[serde(default)]
     pub velocity: Option<[f64; 3]>,
-}
-
-/// A rotation about an axis.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Rotation {
-    /// Angle, rad, anticlockwise about the axis.
-    pub angle: f64,
-    /// Direction of the axis, of any length; z in two dimensions.
-    pub axis: [f64; 3],
-    /// A point on the axis, m; the centre of the bounding box of the points if none.
-    #[serde(default)]
-    pub centre: Option<[f64; 3]>,
 }
 
 /// Returns the path of a piece of a body: the first one is `[body]`, the others are `[[body.piece]]`.

@@ -1,19 +1,25 @@
 //! Units of length of files.
 
+use crate::declaration::Check;
 use crate::fault::Fault;
+use crate::key_path::KeyPath;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 use crate::units::{self, UnitError};
 
 /// Reads the required key `unit`; files of meshes and surfaces do not store it.
 pub(crate) fn unit(table: &Table<'_>) -> Option<f64> {
-    table.required("unit").and_then(|item| unit_of(&item))
+    table.required("unit").and_then(|item| unit_of(&item, ()))
 }
 
 /// Reads a unit of length, returned in metres.
-pub(crate) fn unit_of(item: &Item<'_>) -> Option<f64> {
+pub(crate) fn unit_of<S>(item: &Item<'_>, _: S) -> Option<f64> {
     let text = item.text()?;
     length_unit(&text).map_err(|fault| item.report(fault)).ok()
+}
+
+pub(crate) fn check_unit<S>(unit: &f64, path: &KeyPath, _: S, check: &mut Check) {
+    check.positive(path.key("unit"), *unit);
 }
 
 /// Converts a unit of length such as "mm" or "1 mm" to metres.

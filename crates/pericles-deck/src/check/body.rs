@@ -6,22 +6,21 @@ use pericles::material::{
     SurfaceCorrection,
 };
 use pericles::space::{Finer, Region, Shape};
-use pericles_manifold::{PowerMaterial, SurfaceBond};
 
 use crate::body::{
-    Boundary, FilledCells, FilledShape, Lattice, Piece, Positions, Quadrature, SolidShape,
+    Boundary, FilledCells, FilledShape, Lattice, Piece, Quadrature, RotationScope, SolidShape,
     VertexAreas, piece_path,
 };
-use crate::declaration::Check;
+use crate::declaration::{Check, DeckKeys, DeckValue};
 use crate::fault::Fault;
 use crate::interface::InterfaceFailure;
 use crate::key_path::KeyPath;
 use crate::material::{Material, MaterialModel, difference};
 use crate::model::{Model, Solid};
 use crate::remark::Remark;
-use crate::set::bad_name;
+use crate::set::{SetNames, bad_name};
 use crate::state_based::StateBased;
-use crate::surface::SurfaceBody;
+use crate::surface::{SurfaceBody, SurfaceScope};
 
 impl Check {
     pub(super) fn solid(&mut self, key: &KeyPath, solid: &Solid) {
@@ -95,10 +94,8 @@ impl Check {
                 allowed,
             );
             if let Some(rotation) = piece.rotation {
-                let right = rotation.axis.iter().any(|&x| x != 0.0)
-                    && rotation.axis.iter().all(|x| x.is_finite());
-                let allowed = "allowed: a nonzero vector";
-                self.within(right, key.key("rotation").key("axis"), "zero", allowed);
+                let scope = RotationScope::of_piece(Some(first.dimension()));
+                rotation.check(key.key("rotation"), scope, self);
             }
         }
     }
@@ -124,18 +121,12 @@ impl Check {
         self.within(right, key.key("refine"), filled.finer.len(), allowed);
         self.finer(key, &filled.finer);
         self.holes(key, &filled.holes);
-        self.positions(key, filled.positions);
+        filled.positions.check_keys(key, (), self);
     }
 
     fn holes(&mut self, key: &KeyPath, holes: &[Region]) {
         for (k, hole) in holes.iter().enumerate() {
             self.region(&key.key("hole").index(k), hole);
-        }
-    }
-
-    fn positions(&mut self, key: &KeyPath, positions: Positions) {
-        if let Positions::Jittered { jitter, .. } = positions {
-            self.between(key.key("jitter"), jitter, [0.0, 0.5]);
         }
     }
 
@@ -181,7 +172,7 @@ impl Check {
             allowed,
         );
         self.holes(key, &lattice.grid.holes);
-        self.positions(key, lattice.positions);
+        lattice.positions.check_keys(key, (), self);
         let plain = lattice.rectangular.is_none()
             && lattice.finer.is_empty()
             && !lattice.periodic
@@ -376,38 +367,11 @@ impl Check {
         if let VertexAreas::Same(area) = surface.areas {
             self.positive("body.areas".into(), area);
         }
-        let PowerMaterial {
-            density,
-            kappa,
-            alpha,
-            p,
-            horizon,
-            bond,
-            self_interaction,
-            critical_stretch,
-        } = surface.material;
-        let key = KeyPath::from("material");
-        self.positive(key.key("density"), density);
-        self.positive(key.key("kappa"), kappa);
-        self.between(key.key("alpha"), alpha, [0.0, 1.0]);
-        let allowed = "allowed: a number of at least 2";
-        self.within(p >= 2.0 && p.is_finite(), key.key("p"), p, allowed);
-        self.positive(key.key("horizon"), horizon);
-        let laplacian = p == 2.0 && bond == SurfaceBond::Displacement;
-        let allowed = "allowed: false, unless p = 2 and bond = \"displacement\"";
-        self.within(
-            !self_interaction || laplacian,
-            key.key("self_interaction"),
-            "true",
-            allowed,
-        );
-        // Infinity: bonds never break.
-        let right = critical_stretch > 0.0;
-        self.within(
-            right,
-            key.key("critical_stretch"),
-            critical_stretch,
-            "allowed: a positive number",
-        );
+        let sets = SetNames::any();
+        let scope = SurfaceScope {
+            spacing: None,
+            sets: &sets,
+        };
+        surface.material.check("material".into(), scope, self);
     }
 }

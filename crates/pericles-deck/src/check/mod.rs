@@ -4,16 +4,18 @@
 
 mod body;
 mod contact;
-mod course;
 
 use crate::assign::{AssignScope, Assignable};
+use crate::crack::CrackScope;
 use crate::declaration::{Check, DeckValue};
 use crate::exact::ExactScope;
 use crate::key_path::KeyPath;
 use crate::model::{Body, Model};
+use crate::output::OutputScope;
+use crate::region::Frame;
 use crate::remark::BuildError;
 use crate::scope::Scope;
-use crate::set::Members;
+use crate::set::{Members, SetNames};
 use crate::thermal::ThermalScope;
 
 impl Model {
@@ -36,8 +38,21 @@ impl Model {
         }
         check.contact(self);
         Scope::of_model(self.body.dimension(), |scope| check.declared(self, scope));
-        check.time(&self.time);
-        check.output(&self.output, self.body.dimension().clamp(1, 3));
+        let sets = SetNames::any();
+        let cracks = CrackScope {
+            frame: Frame::of_model(self.body.dimension()),
+            sets: &sets,
+        };
+        self.cracks.check("crack".into(), cracks, &mut check);
+        self.time.check("time".into(), &sets, &mut check);
+        let output = OutputScope {
+            dimension: Some(self.body.dimension().clamp(1, 3)),
+            driven: false,
+            surface: self.body.surface().is_some(),
+            mesh: true,
+            sets: &sets,
+        };
+        self.output.check("output".into(), output, &mut check);
         self.checkpoint.check("checkpoint".into(), (), &mut check);
         match check.problems.is_empty() {
             true => Ok(()),

@@ -61,12 +61,6 @@ impl Check {
         self.number(key, value, POSITIVE);
     }
 
-    /// Requires a number to be in an open interval.
-    pub(crate) fn between(&mut self, key: KeyPath, value: f64, [low, high]: [f64; 2]) {
-        let allowed = format!("allowed: a number above {low} and below {high}");
-        self.within(value > low && value < high, key, value, &allowed);
-    }
-
     pub(crate) fn count(&mut self, key: KeyPath, value: impl Into<u64>) {
         self.number(key, value.into() as f64, COUNT);
     }

@@ -59,6 +59,9 @@ pub(crate) trait DeckTable<S>: DeckKeys<S> {
     /// Description of the table.
     const ABOUT: &'static str;
 
+    /// Name of the definition of the table in the schema, if several keys share it.
+    const DEFINITION: Option<&'static str> = None;
+
     /// The key whose texts are unique in a list of tables, with the fault of a text that another table has.
     const UNIQUE: Option<Unique> = None;
 
@@ -69,6 +72,9 @@ pub(crate) trait DeckTable<S>: DeckKeys<S> {
 
     /// Reads a table and reports unknown keys; none after reporting an error.
     fn read_table(table: Table<'_>, scope: S) -> Option<Self> {
+        if let Some(name) = Self::DEFINITION {
+            table.define(name);
+        }
         table.about(Self::ABOUT);
         let read = Self::read_keys(&table, scope);
         table.finish();

@@ -17,6 +17,20 @@ pub(crate) trait Measured<S>: Sized {
     /// Reads the value in SI units; none after reporting an error.
     fn read(item: &Item<'_>, quantity: Quantity, range: Range, scope: S) -> Option<Self>;
 
+    /// Reads the value, or none for a word; the outer option is none after reporting an error.
+    fn read_or(
+        item: &Item<'_>,
+        word: &'static str,
+        quantity: Quantity,
+        range: Range,
+        scope: S,
+    ) -> Option<Option<Self>> {
+        match item.is_number_or(word, quantity)? {
+            true => Self::read(item, quantity, range, scope).map(Some),
+            false => Some(None),
+        }
+    }
+
     /// Checks the range of the value at a path.
     fn check(&self, path: KeyPath, range: Range, scope: S, check: &mut Check);
 }
@@ -32,7 +46,7 @@ impl<S> Measured<S> for f64 {
 }
 
 impl<S> Measured<S> for u32 {
-    /// Reads a whole number of at least one; it has no unit.
+    /// Reads a whole number; it has no unit.
     fn read(item: &Item<'_>, _: Quantity, range: Range, _: S) -> Option<Self> {
         let count = item.count_within(range)?;
         let number = Self::try_from(count);
@@ -47,14 +61,7 @@ impl<S> Measured<S> for u32 {
 /// A vector with one component per dimension of the body.
 impl<S: Spatial> Measured<S> for [f64; 3] {
     fn read(item: &Item<'_>, quantity: Quantity, range: Range, scope: S) -> Option<Self> {
-        let dimension = scope.dimension();
-        let vector = item.vector(quantity, dimension)?;
-        let mut components = vector.iter().take(dimension.unwrap_or(3));
-        if components.any(|&component| !range.contains(component)) {
-            item.out_of_range(&range.words());
-            return None;
-        }
-        Some(vector)
+        item.vector_within(quantity, range, scope.dimension())
     }
 
     fn check(&self, path: KeyPath, range: Range, scope: S, check: &mut Check) {
@@ -89,6 +96,14 @@ impl<S> DeckValue<S> for u64 {
     fn check(&self, path: KeyPath, _: S, check: &mut Check) {
         check.count(path, *self);
     }
+}
+
+impl<S> DeckValue<S> for String {
+    fn read(item: &Item<'_>, _: S) -> Option<Self> {
+        item.text()
+    }
+
+    fn check(&self, _: KeyPath, _: S, _: &mut Check) {}
 }
 
 impl<S> DeckValue<S> for PathBuf {

@@ -1,37 +1,10 @@
-//! Serialised form of 2-manifolds and their materials.
+//! Serialised form of the methods for geodesic distances.
 
 use pericles_manifold::geodesic::GeodesicMethod;
-use pericles_manifold::surface::SurfaceChecks;
-use pericles_manifold::{PowerMaterial, SurfaceBond};
 use serde::de::Error;
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde::{Deserialize, Deserializer, Serializer};
 
-use super::{Described, described};
-
-#[derive(Serialize, Deserialize)]
-#[serde(remote = "PowerMaterial", deny_unknown_fields)]
-struct PowerMaterialForm {
-    density: f64,
-    kappa: f64,
-    alpha: f64,
-    p: f64,
-    horizon: f64,
-    #[serde(with = "crate::form")]
-    bond: SurfaceBond,
-    self_interaction: bool,
-    // Infinity: bonds never break.
-    #[serde(with = "crate::form")]
-    critical_stretch: f64,
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(remote = "SurfaceChecks", deny_unknown_fields)]
-struct SurfaceChecksForm {
-    open: bool,
-    #[serde(rename = "several")]
-    several_components: bool,
-    flip: bool,
-}
+use super::Described;
 
 impl Described for GeodesicMethod {
     fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -45,5 +18,3 @@ impl Described for GeodesicMethod {
         word.parse().map_err(unknown)
     }
 }
-
-described!(PowerMaterial: PowerMaterialForm, SurfaceChecks: SurfaceChecksForm);

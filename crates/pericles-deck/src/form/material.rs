@@ -7,7 +7,6 @@ use pericles::material::{
     GivenConstants, InterfaceRule, InterfaceStiffness, LinearSolid, Modulus, PairLaw,
     StateInfluence, StretchDefinition, TensileStrength,
 };
-use pericles::operator::DamageMeasure;
 use pericles_solids::correspondence::Plasticity;
 use pericles_solids::inelastic::{Inelasticity, ViscousTerm, Yield};
 use serde::{Deserialize, Serialize};
@@ -143,13 +142,6 @@ enum InelasticityForm {
 }
 
 #[derive(Serialize, Deserialize)]
-#[serde(remote = "ViscousTerm", deny_unknown_fields)]
-struct ViscousTermForm {
-    share: f64,
-    time: f64,
-}
-
-#[derive(Serialize, Deserialize)]
 #[serde(remote = "Yield", deny_unknown_fields)]
 struct YieldForm {
     stress: f64,
@@ -175,13 +167,6 @@ struct PlasticityForm {
     hardening: f64,
 }
 
-#[derive(Serialize, Deserialize)]
-#[serde(remote = "DamageMeasure", deny_unknown_fields)]
-struct DamageMeasureForm {
-    count: bool,
-    count_precut: bool,
-}
-
 described!(
     BondMaterial: BondMaterialForm,
     Modulus: ModulusForm,
@@ -193,9 +178,7 @@ described!(
     StateInfluence: StateInfluenceForm,
     BondFailure: BondFailureForm,
     Inelasticity: InelasticityForm,
-    ViscousTerm: ViscousTermForm,
     Yield: YieldForm,
     InterfaceStiffness: InterfaceStiffnessForm,
-    DamageMeasure: DamageMeasureForm,
     Plasticity: PlasticityForm,
 );

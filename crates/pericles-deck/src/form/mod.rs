@@ -8,7 +8,6 @@ mod manifold;
 mod material;
 mod number;
 mod space;
-mod time;
 mod tuned;
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};

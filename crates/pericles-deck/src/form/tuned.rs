@@ -2,9 +2,7 @@
 
 use pericles::kernel::ClassOffset;
 use pericles_dispersion::Stability;
-use pericles_dispersion::tuning::{
-    Assessment, BondClass, Combination, DispersionError, Method, TunedTable, Tuning, Weights,
-};
+use pericles_dispersion::tuning::{Assessment, BondClass, DispersionError, TunedTable, Tuning};
 use serde::{Deserialize, Serialize};
 
 use super::described;
@@ -26,28 +24,6 @@ struct TunedTableForm {
     functionals: Vec<Vec<f64>>,
     #[serde(with = "crate::form")]
     assessment: Assessment,
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(remote = "Tuning", deny_unknown_fields)]
-struct TuningForm {
-    #[serde(with = "crate::form")]
-    method: Method,
-    #[serde(with = "crate::form")]
-    combination: Combination,
-    #[serde(with = "crate::form")]
-    weights: Weights,
-    #[serde(default)]
-    lower_bound: Option<f64>,
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(remote = "Weights", deny_unknown_fields)]
-struct WeightsForm {
-    pressure: f64,
-    shear: f64,
-    #[serde(default)]
-    decay: Option<f64>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -95,8 +71,6 @@ struct StabilityForm {
 
 described!(
     TunedTable: TunedTableForm,
-    Tuning: TuningForm,
-    Weights: WeightsForm,
     BondClass: BondClassForm,
     Assessment: AssessmentForm,
     DispersionError: DispersionErrorForm,

@@ -3,7 +3,7 @@
 use pericles::material::{Approximation, BondMaterial, CubicLaw, PairLaw};
 
 use super::keys::{damage, density, form, horizon, no_fail, setting, volume_correction};
-use super::scatter::scatter;
+use super::scatter::Scatter;
 use super::softening::{
     failure, forbid_failure, forbid_softening, forbid_tensile_strength, softening, tensile_strength,
 };
@@ -13,6 +13,7 @@ use crate::constants::{
     ConstantRules, Sums, fracture, fracture_calibration, modulus, poisson_ratio,
 };
 use crate::correspondence;
+use crate::declaration::DeckValue;
 use crate::influence::{InfluenceRead, influence};
 use crate::reader::Table;
 use crate::set::SetNames;
@@ -59,7 +60,7 @@ pub(super) fn read(
     let fracture = fracture(&table);
     let fracture_calibration = fracture_calibration(&table, body, shared);
     let no_fail = no_fail(&table, sets);
-    let scatter = scatter(&table);
+    let scatter = table.maybe("scatter", |item| Scatter::read(&item, ()));
     let (surface, softening, tensile_strength) = match law {
         None | Some(PairLaw::Linear | PairLaw::BondStretch) => {
             let surface = failure(&table, dimension);

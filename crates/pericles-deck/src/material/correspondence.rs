@@ -4,12 +4,13 @@ use pericles::kernel::Influence;
 use pericles::material::{LinearSolid, StateInfluence, SurfaceCorrection};
 
 use super::keys::{damage, density, form, horizon, no_fail, setting, volume_correction};
-use super::scatter::scatter;
+use super::scatter::Scatter;
 use super::softening::{forbid_softening, forbid_tensile_strength};
 use super::types::Material;
 use crate::body::BodyRead;
 use crate::constants::fracture_calibration;
 use crate::correspondence::{Correspondence, criterion, law, plasticity};
+use crate::declaration::DeckValue;
 use crate::influence::state_influence;
 use crate::reader::Table;
 use crate::set::SetNames;
@@ -46,7 +47,7 @@ pub(super) fn read(
     let law = law(&table, table.has("yield_stress"));
     let stabilisation = table.worded("stabilisation", "stabilisation");
     let no_fail = no_fail(&table, sets);
-    let scatter = scatter(&table);
+    let scatter = table.maybe("scatter", |item| Scatter::read(&item, ()));
     forbid_softening(&table);
     forbid_tensile_strength(&table);
     table.forbid(

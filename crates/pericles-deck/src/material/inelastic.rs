@@ -1,9 +1,12 @@
 //! Reads viscosity and plasticity of state-based materials.
 
 use pericles::material::StressState;
+use pericles_deck_derive::DeckTable;
 use pericles_solids::inelastic::{Inelasticity, ViscousTerm};
+use serde::{Deserialize, Serialize};
 
-use crate::quantity::Quantity;
+use crate::declaration::declared;
+use crate::form::described;
 use crate::reader::Table;
 use crate::state_based::read_yield;
 
@@ -17,8 +20,7 @@ pub(super) fn read(table: &Table<'_>, state: Option<StressState>) -> Option<Inel
                     "a material is either viscous or plastic: remove `viscosity` or this key",
                 );
             }
-            let terms: Vec<_> = table.tables("viscosity").into_iter().map(term).collect();
-            Inelasticity::Viscous(terms.into_iter().collect::<Option<_>>()?)
+            Inelasticity::Viscous(declared(table, "viscosity", ())?)
         }
         false => read_yield(table)?.map_or(Inelasticity::Elastic, Inelasticity::Plastic),
     };
@@ -26,19 +28,17 @@ pub(super) fn read(table: &Table<'_>, state: Option<StressState>) -> Option<Inel
     Some(law)
 }
 
-/// Reads a term of the relaxation function.
-fn term(table: Table<'_>) -> Option<ViscousTerm> {
-    let share = table.required("share").and_then(|item| {
-        item.within(Quantity::Number, "a number between 0 and 1", |share| {
-            share > 0.0 && share < 1.0
-        })
-    });
-    let time = table
-        .required("time")
-        .and_then(|item| item.positive(Quantity::Time));
-    table.finish();
-    Some(ViscousTerm {
-        share: share?,
-        time: time?,
-    })
+/// One term of the relaxation function of a viscoelastic material.
+#[derive(Serialize, Deserialize, DeckTable)]
+#[serde(remote = "ViscousTerm", deny_unknown_fields)]
+#[deck(remote = ViscousTerm)]
+struct ViscousTermForm {
+    /// Share λ of the shear modulus that relaxes.
+    #[deck(range = between(0.0, 1.0).described("a number between 0 and 1"))]
+    share: f64,
+    /// Relaxation time τ.
+    #[deck(quantity = Time, range = POSITIVE)]
+    time: f64,
 }
+
+described!(ViscousTerm: ViscousTermForm);

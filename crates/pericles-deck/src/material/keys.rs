@@ -3,9 +3,13 @@
 use pericles::family::VolumeCorrection;
 use pericles::kernel::{Influence, InfluenceFunction};
 use pericles::operator::DamageMeasure;
+use pericles_deck_derive::DeckTable;
 use pericles_waves::ForceForm;
+use serde::{Deserialize, Serialize};
 
 use crate::body::BodyRead;
+use crate::declaration::DeckTable;
+use crate::form::described;
 use crate::influence::Setting;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
@@ -132,19 +136,28 @@ pub(super) fn horizon<'a>(table: &Table<'a>, frame: Frame) -> Option<Extent<'a>>
     length.map(Extent::Finite)
 }
 
+/// Definition of the damage field.
+#[derive(Serialize, Deserialize, DeckTable)]
+#[serde(remote = "DamageMeasure", deny_unknown_fields)]
+#[deck(remote = DamageMeasure)]
+struct DamageMeasureForm {
+    /// Damage of a point: volume fraction (`volume`) or number fraction (`count`) of its broken bonds.
+    #[deck(flatten, key = "measure", with = counts)]
+    count: bool,
+    /// Count bonds cut by pre-cracks as broken.
+    #[deck(default = false)]
+    count_precut: bool,
+}
+
+described!(DamageMeasure: DamageMeasureForm);
+
+fn counts<S>(table: &Table<'_>, _: S) -> Option<bool> {
+    let words = [("volume", false), ("count", true)];
+    table.choice_or_first("measure", "damage measure", &words)
+}
+
+/// Reads the damage measure, if it is given; its defaults are recorded in any case.
 pub(super) fn damage(table: &Table<'_>) -> Option<Option<DamageMeasure>> {
-    let given = table.has("damage");
-    let table = table.table_or_empty("damage")?;
-    let count = table.choice_or_first(
-        "measure",
-        "damage measure",
-        &[("volume", false), ("count", true)],
-    );
-    let count_precut = table.or("count_precut", false, |item| item.boolean());
-    table.finish();
-    let measure = DamageMeasure {
-        count: count?,
-        count_precut: count_precut?,
-    };
-    Some(given.then_some(measure))
+    let measure = DamageMeasure::read_table(table.table_or_empty("damage")?, ())?;
+    Some(table.has("damage").then_some(measure))
 }

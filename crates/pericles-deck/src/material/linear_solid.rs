@@ -5,13 +5,14 @@ use pericles::material::{LinearSolid, StateInfluence, SurfaceCorrection};
 
 use super::inelastic;
 use super::keys::{damage, density, form, horizon, no_fail, setting, volume_correction};
-use super::scatter::scatter;
+use super::scatter::Scatter;
 use super::softening::{forbid_softening, forbid_tensile_strength};
 use super::types::Material;
 use crate::body::BodyRead;
 use crate::constants::fracture_calibration;
 use crate::correspondence;
 use crate::criterion;
+use crate::declaration::DeckValue;
 use crate::influence::state_influence;
 use crate::reader::Table;
 use crate::set::SetNames;
@@ -54,7 +55,7 @@ pub(super) fn read(
     let (elastic, failure) = (rules.elastic(&table), rules.failure(&table));
     let inelastic = inelastic::read(&table, body.state);
     let no_fail = no_fail(&table, sets);
-    let scatter = scatter(&table);
+    let scatter = table.maybe("scatter", |item| Scatter::read(&item, ()));
     forbid_softening(&table);
     forbid_tensile_strength(&table);
     table.forbid(

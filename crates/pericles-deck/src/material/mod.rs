@@ -12,7 +12,7 @@ mod softening;
 mod types;
 
 pub use scatter::{Scatter, ScatteredStrength};
-pub use softening::{BondSoftening, FailureSurface, SofteningWord};
+pub use softening::{BondSoftening, FailureSurface};
 pub use types::{Material, MaterialModel, NamedMaterial};
 
 pub(crate) use several::{Materials, read};

@@ -1,46 +1,70 @@
 //! `softening`, `tensile_strength` and `failure = "strength"`: bonds that soften before they break, and the strength from
 //! which they do.
 
-use pericles::Result;
 use pericles::material::{
     Criterion, FractureCalibration, SofteningLaw, StrengthSurface, TensileStrength,
 };
+use pericles_deck_derive::{DeckKeys, DeckTable};
 use serde::{Deserialize, Serialize};
 
+use crate::declaration::DeckValue;
 use crate::expression::BondExpression;
 use crate::fault::Fault;
+use crate::form::described;
 use crate::quantity::Quantity;
 use crate::reader::Table;
 use crate::vocabulary::STRENGTHS;
 
-/// Softening of bonds beyond an elastic limit.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+/// Softening of bonds. The force c (1 − d) s of a bond with stretch s decreases with the largest stretch that the bond has
+/// had; ∫ c (1 − d) s ds = ½ c s₀² with the critical stretch s₀, which is given or follows from the fracture energy.
+///
+/// The scope is whether bonds begin to fail by their strength.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, DeckTable)]
 #[serde(deny_unknown_fields)]
+#[deck(scope = bool)]
 pub struct BondSoftening {
     /// The curve.
-    pub law: SofteningWord,
-    /// The stretch at which softening starts; `None` if it follows from the tensile strength of each material.
+    #[serde(with = "crate::form")]
+    #[deck(flatten)]
+    pub law: SofteningLaw,
+    /// Stretch s_e at which softening starts; below the critical stretch. Required unless `tensile_strength` of the
+    /// material determines it. The tensile strength of the material is E s_e in a bar and larger in two and three
+    /// dimensions; `check` prints it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[deck(
+        range = POSITIVE.described("a positive stretch below the critical stretch"),
+        forbid_if(scope, BY_STRENGTH)
+    )]
     pub onset_stretch: Option<f64>,
-    /// Trilinear: the force at the knee over the largest force.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub knee_force: Option<f64>,
-    /// Trilinear: the place of the knee between the onset (0) and the end of the curve (1).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub knee_position: Option<f64>,
 }
 
-/// The curve of bonds that soften.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum SofteningWord {
-    /// A straight line.
+/// `linear`: a straight line to zero; `trilinear`: two straight lines with a knee; `exponential`: s_e exp(−(s − s_e)/s_x),
+/// until the force has decreased to 1 % of its maximum and the bond breaks.
+#[derive(Serialize, Deserialize, DeckKeys)]
+#[serde(
+    remote = "SofteningLaw",
+    rename_all = "snake_case",
+    deny_unknown_fields
+)]
+#[deck(remote = SofteningLaw, tag = "law", what = "softening law")]
+enum SofteningLawForm {
     Linear,
-    /// Two straight lines.
-    Trilinear,
-    /// An exponential function.
+    Trilinear {
+        /// trilinear: force at the knee over the largest force. Default 1/3 (concrete, Petersson 1981).
+        #[deck(range = between(0.0, 1.0), default = 1.0 / 3.0)]
+        knee_force: f64,
+        /// trilinear: position of the knee, 0 at the onset and 1 at the end of the curve. Default 2/9 (concrete, Petersson
+        /// 1981).
+        #[deck(range = between(0.0, 1.0), default = 2.0 / 9.0)]
+        knee_position: f64,
+    },
     Exponential,
 }
+
+described!(SofteningLaw: SofteningLawForm);
+
+/// Why bonds that fail by strength have no onset.
+const BY_STRENGTH: &str = "with failure = \"strength\" a bond softens from its stretch when the stress reaches the strength";
 
 /// Stresses at which the bonds of a point begin to soften or break.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -57,29 +81,12 @@ impl FailureSurface {
     ///
     /// # Errors
     /// A strength that is not positive.
-    pub fn surface(&self, strength: f64) -> Result<StrengthSurface> {
+    pub fn surface(&self, strength: f64) -> pericles::Result<StrengthSurface> {
         match self {
             Self::Rankine => StrengthSurface::rankine(strength),
             Self::Expression(expression) => Ok(StrengthSurface::Function(Criterion::new(
                 expression.clone(),
             ))),
-        }
-    }
-}
-
-/// The defaults of the knee: the curve of concrete by Petersson.
-const KNEE: [f64; 2] = [1.0 / 3.0, 2.0 / 9.0];
-
-impl BondSoftening {
-    /// Converts the curve to the engine's type.
-    pub fn law(&self) -> SofteningLaw {
-        match self.law {
-            SofteningWord::Linear => SofteningLaw::Linear,
-            SofteningWord::Exponential => SofteningLaw::Exponential,
-            SofteningWord::Trilinear => SofteningLaw::Trilinear {
-                knee_force: self.knee_force.unwrap_or(KNEE[0]),
-                knee_position: self.knee_position.unwrap_or(KNEE[1]),
-            },
         }
     }
 }
@@ -205,63 +212,12 @@ pub(super) fn softening(
     table: &Table<'_>,
     surface: Option<&FailureSurface>,
 ) -> Option<Option<BondSoftening>> {
-    let given = table.maybe("softening", |item| read(item.table()?, surface))?;
-    Some(given.or_else(|| {
-        surface.map(|_| BondSoftening {
-            law: SofteningWord::Linear,
-            onset_stretch: None,
-            knee_force: None,
-            knee_position: None,
-        })
-    }))
-}
-
-fn read(table: Table<'_>, surface: Option<&FailureSurface>) -> Option<BondSoftening> {
-    let law = table.required("law").and_then(|item| {
-        item.choice(
-            "softening law",
-            &[
-                ("linear", SofteningWord::Linear),
-                ("trilinear", SofteningWord::Trilinear),
-                ("exponential", SofteningWord::Exponential),
-            ],
-        )
+    let given = table.maybe("softening", |item| {
+        BondSoftening::read(&item, surface.is_some())
+    })?;
+    let usual = surface.map(|_| BondSoftening {
+        law: SofteningLaw::Linear,
+        onset_stretch: None,
     });
-    let onset = match surface {
-        Some(_) => {
-            table.forbid(
-                "onset_stretch",
-                "with failure = \"strength\" a bond softens from its stretch when the stress reaches the strength",
-            );
-            Some(None)
-        }
-        None => table.maybe("onset_stretch", |item| {
-            item.within(
-                Quantity::Number,
-                "a positive stretch below the critical stretch",
-                |stretch| stretch > 0.0,
-            )
-        }),
-    };
-    let mut knee = [Some(None); 2];
-    for (k, key) in ["knee_force", "knee_position"].into_iter().enumerate() {
-        if law != Some(SofteningWord::Trilinear) {
-            table.forbid(key, "it requires law = \"trilinear\"");
-            continue;
-        }
-        let value = table.or(key, KNEE[k], |item| {
-            item.within(Quantity::Number, "a number above 0 and below 1", |value| {
-                value > 0.0 && value < 1.0
-            })
-        });
-        knee[k] = value.map(Some);
-    }
-    table.finish();
-    let [knee_force, knee_position] = knee;
-    Some(BondSoftening {
-        law: law?,
-        onset_stretch: onset?,
-        knee_force: knee_force?,
-        knee_position: knee_position?,
-    })
+    Some(given.or(usual))
 }

@@ -4,14 +4,15 @@ use pericles::observe::{Field, Schedule};
 use pericles_deck_derive::{DeckTable, DeckWords};
 use serde::{Deserialize, Serialize};
 
-use super::FieldComponent;
+use super::{FieldComponent, OutputScope};
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
-use crate::set::SetNames;
+use crate::words::Worded;
 
 /// File formats of fields.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, DeckWords)]
 #[serde(rename_all = "snake_case")]
+#[deck(what = "format")]
 pub enum FieldFormat {
     /// One VTU file per output, and a PVD file that lists them.
     Vtu,
@@ -38,69 +39,6 @@ pub enum FieldBlocks {
     Groups,
     /// Materials of the points.
     Materials,
-}
-
-/// Whether the field files of a body on a grid or of a mesh hold cells, with cell data, or points.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(from = "CellForm", into = "CellForm")]
-pub enum CellChoice {
-    /// Cells for bodies on a grid of at most [`CellChoice::MOST_POINTS`] points.
-    #[default]
-    Auto,
-    /// Cells.
-    Always,
-    /// Points.
-    Never,
-}
-
-impl CellChoice {
-    /// Cells of more points are written only if asked for: their nodes double the size of a file of few fields.
-    pub const MOST_POINTS: usize = 1_000_000;
-
-    const AUTO: &str = "auto";
-}
-
-/// The serialised form of a [`CellChoice`]: as in decks.
-#[derive(Serialize, Deserialize)]
-#[serde(untagged)]
-enum CellForm {
-    Given(bool),
-    Word(String),
-}
-
-impl From<CellForm> for CellChoice {
-    fn from(form: CellForm) -> Self {
-        match form {
-            CellForm::Given(true) => Self::Always,
-            CellForm::Given(false) => Self::Never,
-            CellForm::Word(_) => Self::Auto,
-        }
-    }
-}
-
-impl From<CellChoice> for CellForm {
-    fn from(choice: CellChoice) -> Self {
-        match choice {
-            CellChoice::Auto => Self::Word(CellChoice::AUTO.into()),
-            CellChoice::Always => Self::Given(true),
-            CellChoice::Never => Self::Given(false),
-        }
-    }
-}
-
-/// `[output] cells`.
-pub(super) fn cells(table: &Table<'_>) -> Option<CellChoice> {
-    let Some(item) = table.optional("cells") else {
-        table.record("cells", CellChoice::AUTO);
-        return Some(CellChoice::Auto);
-    };
-    if item.is_keyword(CellChoice::AUTO) {
-        return Some(CellChoice::Auto);
-    }
-    Some(match item.boolean()? {
-        true => CellChoice::Always,
-        false => CellChoice::Never,
-    })
 }
 
 /// Numbers of points that do not change, as arrays of field files.
@@ -154,18 +92,30 @@ impl From<PointNumber> for String {
 }
 
 /// The arrays of field files.
-#[derive(Default)]
-pub(super) struct Names {
-    pub(super) fields: Vec<Field>,
-    pub(super) numbers: Vec<PointNumber>,
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FieldNames {
+    /// Fields.
+    #[serde(with = "crate::form")]
+    pub fields: Vec<Field>,
+    /// Integers of the points.
+    #[serde(default)]
+    pub numbers: Vec<PointNumber>,
+}
+
+impl From<Vec<Field>> for FieldNames {
+    fn from(fields: Vec<Field>) -> Self {
+        let numbers = Vec::new();
+        Self { fields, numbers }
+    }
 }
 
 /// Reads the names of the arrays.
-fn names(table: &Table<'_>, scope: FieldScope<'_>) -> Option<Names> {
+fn names(table: &Table<'_>, scope: OutputScope<'_>) -> Option<FieldNames> {
     let Some(item) = table.optional("names") else {
-        return Some(scope.usual());
+        return Some(usual(scope).into());
     };
-    let FieldScope {
+    let OutputScope {
         dimension, sets, ..
     } = scope;
     let one = |item: &Item<'_>| -> Option<Name> {
@@ -202,7 +152,7 @@ fn names(table: &Table<'_>, scope: FieldScope<'_>) -> Option<Names> {
             }
         }
     };
-    let mut names = Names::default();
+    let mut names = FieldNames::default();
     for name in super::each_once(&item, one)? {
         match name {
             Name::Field(field) => names.fields.push(field),
@@ -219,11 +169,14 @@ enum Name {
 }
 
 /// Field files for ParaView and other viewers.
-#[derive(DeckTable)]
-#[deck(scope = FieldScope<'s>, word_for(super::NEVER, Self::none(scope)))]
-pub(super) struct Fields {
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, DeckTable)]
+#[serde(deny_unknown_fields)]
+#[deck(scope = OutputScope<'s>, word_for(super::NEVER, Self::none(usual(scope))))]
+pub struct FieldOutput {
+    /// Schedule of the files.
+    #[serde(with = "crate::form")]
     #[deck(flatten, scope = Schedule::Count(20))]
-    pub(super) schedule: Schedule,
+    pub schedule: Schedule,
     /// Fields to write. Default: Displacement, Velocity, Force_Density, Damage and Strain_Energy_Density (2-manifolds: also
     /// Kinetic_Energy_Density). Stress and Strain exclude the convolution kernel. Dilatation needs a state-based or
     /// correspondence material, Plastic_Strain and Yield_Flag a `yield_stress`, Temperature the table `[thermal]`,
@@ -233,53 +186,38 @@ pub(super) struct Fields {
     /// `[materials]`, …), `Set_<name>` (1 in the set, 0 elsewhere). Radius is half the cell size. VTU files contain Stress and
     /// Strain as symmetric tensors and their components as scalars.
     #[deck(flatten, key = "names", with = names)]
-    pub(super) names: Names,
+    pub names: FieldNames,
     /// File format or list of formats. `vtu`: fields.pvd and one file per output, read by `pericles plot`, `diff` and
     /// `report`; `exodus`: one file fields.exo with blocks and sets; `vtkhdf`: one file fields.vtkhdf, for ParaView 5.12
     /// and later. All can be read during the run.
+    #[serde(default = "FieldFormat::usual")]
     #[deck(flatten, key = "format", with = formats)]
-    pub(super) formats: Vec<FieldFormat>,
+    pub formats: Vec<FieldFormat>,
     /// Mesh: also write the fields on the mesh elements, cells.pvd.
-    #[deck(
-        key = "cells",
-        default = false,
-        forbid_if(!scope.mesh, "it requires shape = \"mesh\"")
-    )]
-    pub(super) mesh_cells: bool,
+    #[serde(default)]
+    #[deck(default = false, forbid_if(!scope.mesh, "it requires shape = \"mesh\""))]
+    pub cells: bool,
     /// Blocks of Exodus files. `groups`: element groups of a mesh (the first one for elements of several groups), or blocks
     /// of listed points; `materials`: one block per material.
+    #[serde(default)]
     #[deck(default)]
-    pub(super) blocks: FieldBlocks,
+    pub blocks: FieldBlocks,
 }
 
-/// Scope of `[output.fields]`.
-#[derive(Clone, Copy)]
-pub(super) struct FieldScope<'s> {
-    pub(super) dimension: Option<usize>,
-    /// Fields that are written by default.
-    pub(super) usual: &'s [Field],
-    /// Whether the body is a mesh, which has cells.
-    pub(super) mesh: bool,
-    pub(super) sets: &'s SetNames,
+/// Returns the fields that are written by default.
+fn usual(scope: OutputScope<'_>) -> Vec<Field> {
+    let further = scope.surface.then_some(Field::KineticEnergyDensity);
+    Field::USUAL.into_iter().chain(further).collect()
 }
 
-impl FieldScope<'_> {
-    fn usual(self) -> Names {
-        Names {
-            fields: self.usual.to_vec(),
-            numbers: Vec::new(),
-        }
-    }
-}
-
-impl Fields {
-    /// No field files.
-    fn none(scope: FieldScope<'_>) -> Self {
+impl FieldOutput {
+    /// No files.
+    pub(super) fn none(fields: Vec<Field>) -> Self {
         Self {
             schedule: Schedule::Never,
-            names: scope.usual(),
+            names: fields.into(),
             formats: FieldFormat::usual(),
-            mesh_cells: false,
+            cells: false,
             blocks: FieldBlocks::Groups,
         }
     }
@@ -287,17 +225,13 @@ impl Fields {
 
 /// Reads a format or a list of formats.
 fn formats<S>(table: &Table<'_>, _: S) -> Option<Vec<FieldFormat>> {
-    const WORDS: [(&str, FieldFormat); 3] = [
-        ("vtu", FieldFormat::Vtu),
-        ("exodus", FieldFormat::Exodus),
-        ("vtkhdf", FieldFormat::Vtkhdf),
-    ];
+    let words = FieldFormat::words();
     let Some(item) = table.optional("format") else {
-        table.record("format", WORDS[0].0);
+        table.record("format", words[0].0);
         return Some(FieldFormat::usual());
     };
     if !item.is_list() {
-        return Some(vec![item.choice("format", &WORDS)?]);
+        return Some(vec![item.choice("format", &words)?]);
     }
     let items = item.list("a list of formats")?;
     if items.is_empty() {
@@ -306,7 +240,7 @@ fn formats<S>(table: &Table<'_>, _: S) -> Option<Vec<FieldFormat>> {
     }
     let mut formats = Vec::new();
     for item in &items {
-        let format = item.choice("format", &WORDS)?;
+        let format = item.choice("format", &words)?;
         if formats.contains(&format) {
             item.out_of_range("each format once");
             return None;

@@ -7,71 +7,73 @@ mod profile;
 mod schedule;
 
 pub use derived::DerivedQuantity;
-pub use fields::{CellChoice, FieldBlocks, FieldFormat, PointNumber};
+pub use fields::{FieldBlocks, FieldFormat, FieldNames, FieldOutput, PointNumber};
 pub use picture::{Picture, PictureColours, PictureFormat, PictureLook};
 pub use profile::Profile;
 
 use pericles::observe::{Field, Schedule};
-use pericles_deck_derive::{DeckKeys, DeckTable};
+use pericles_deck_derive::{DeckKeys, DeckTable, DeckWords};
 use serde::{Deserialize, Serialize};
 
-use self::fields::{FieldScope, Fields, cells, field_names, quantity};
+use self::fields::{field_names, quantity};
 use crate::component::Variables;
-use crate::declaration::{Check, DeckTable, DeckValue, declared};
+use crate::declaration::{Check, Fallback};
 use crate::key_path::KeyPath;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 use crate::set::SetNames;
 
-/// Output of a run.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// Output files and their schedules: `interval` (simulated time), `every` (steps) or `count` (number over the run), or
+/// "never".
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, DeckTable)]
 #[serde(deny_unknown_fields)]
+#[deck(scope = OutputScope<'s>)]
 pub struct Output {
-    /// Schedule of field files.
-    #[serde(with = "crate::form")]
-    pub fields: Schedule,
-    /// Names of the fields.
-    #[serde(with = "crate::form")]
-    pub names: Vec<Field>,
-    /// Integers of the points written with the fields.
+    /// Field files for ParaView and other viewers.
+    #[deck(or_empty)]
+    pub fields: FieldOutput,
+    /// Whether VTU files contain the cells of the body with cell data (lines, quadrilaterals or hexahedra; Displacement is
+    /// also written at the nodes, as the mean of the adjacent cells) or its points with point data. `auto` (default):
+    /// cells for bodies on a grid of up to 1e6 points, otherwise points; `true`: cells for larger bodies as well, and the
+    /// elements of a mesh; `false`: points.
     #[serde(default)]
-    pub numbers: Vec<PointNumber>,
-    /// File formats of the fields.
-    #[serde(default = "FieldFormat::usual")]
-    pub formats: Vec<FieldFormat>,
-    /// Whether VTU files contain cells or points.
-    #[serde(default)]
-    pub cells: CellChoice,
-    /// Whether fields are also written on the elements of a mesh, in separate files.
-    #[serde(default)]
-    pub mesh_cells: bool,
-    /// Blocks of Exodus files.
-    #[serde(default)]
-    pub blocks: FieldBlocks,
-    /// Schedule of history.csv: energies, probes and reactions.
-    #[serde(with = "crate::form")]
-    pub history: Schedule,
-    /// Fields or components whose minimum and maximum are columns of history.csv.
-    #[serde(default, with = "crate::form")]
-    pub extremes: Vec<(Field, Option<usize>)>,
-    /// The table of crack tips, if given; see [`Output::cracks`].
-    #[serde(default)]
-    pub cracks: Option<CrackOutput>,
-    /// The table of fragments.
+    #[deck(none = "auto", default)]
+    pub cells: Option<bool>,
+    /// Rows of history.csv: energies, probes and reactions.
+    #[deck(or_empty, scope = scope.variables())]
+    pub history: HistoryOutput,
+    /// Rows of the table of crack tips. Default: the schedule of the history.
+    #[deck(or_empty, scope = usual_rows(history))]
+    pub cracks: CrackOutput,
+    /// Rows of the table of fragments, the sets of points connected by intact bonds. Default: "never", because each row
+    /// needs a pass over all bonds.
+    #[deck(default = FragmentOutput::NONE)]
     pub fragments: FragmentOutput,
-    /// Precision of numbers in field files.
+    /// Precision of numbers in field files: 64 bits (`double`) or 32 bits (`single`).
+    #[deck(default)]
     pub precision: Precision,
-    /// Rate ν of the energy bound in history.csv, 1/s; none for no bound.
+    /// Adds an upper bound of kinetic plus elastic energy under the loads, and the margin to it, to history.csv. The value
+    /// is the time scale τ of the bound; the time of interest is best. Not with moving supports. Default: no bound.
+    ///
+    /// In s.
     #[serde(default)]
+    #[deck(
+        quantity = Time,
+        range = POSITIVE,
+        forbid_if(scope.driven, "the bound does not include the work of moving supports")
+    )]
     pub energy_bound: Option<f64>,
     /// Pictures.
     #[serde(default, rename = "picture")]
+    #[deck(key = "picture", scope = scope.variables())]
     pub pictures: Vec<Picture>,
     /// Fields along straight lines at the end of the run.
     #[serde(default, rename = "profile", skip_serializing_if = "Vec::is_empty")]
+    #[deck(key = "profile", scope = scope.variables())]
     pub profiles: Vec<Profile>,
     /// Quantities derived from columns of the tables.
     #[serde(default, rename = "quantity", skip_serializing_if = "Vec::is_empty")]
+    #[deck(key = "quantity")]
     pub quantities: Vec<DerivedQuantity>,
 }
 
@@ -79,24 +81,53 @@ impl Default for Output {
     /// The output of a deck without `[output]`.
     fn default() -> Self {
         Self {
-            fields: Schedule::Count(20),
-            names: Field::USUAL.to_vec(),
-            formats: FieldFormat::usual(),
-            numbers: Vec::new(),
-            cells: CellChoice::Auto,
-            mesh_cells: false,
-            blocks: FieldBlocks::Groups,
-            history: Schedule::Count(200),
-            extremes: Vec::new(),
-            cracks: None,
+            fields: FieldOutput {
+                schedule: Schedule::Count(20),
+                ..FieldOutput::none(Field::USUAL.to_vec())
+            },
+            cells: None,
+            history: HistoryOutput {
+                schedule: usual_rows(None),
+                extremes: Vec::new(),
+            },
+            cracks: CrackOutput::usual(usual_rows(None)),
             fragments: FragmentOutput::NONE,
-            precision: Precision::Double,
+            precision: Precision::default(),
             energy_bound: None,
             pictures: Vec::new(),
             profiles: Vec::new(),
             quantities: Vec::new(),
         }
     }
+}
+
+/// Scope of `[output]`.
+#[derive(Clone, Copy)]
+pub(crate) struct OutputScope<'s> {
+    /// Dimension of the body; none if another error makes it unknown.
+    pub(crate) dimension: Option<usize>,
+    /// Whether supports move.
+    pub(crate) driven: bool,
+    /// Whether the body is a 2-manifold, whose field files contain the kinetic energy density by default.
+    pub(crate) surface: bool,
+    /// Whether the body is a mesh, which has cells.
+    pub(crate) mesh: bool,
+    pub(crate) sets: &'s SetNames,
+}
+
+impl OutputScope<'_> {
+    /// Returns the scope of expressions of position and time.
+    fn variables(self) -> Variables {
+        Variables {
+            dimension: self.dimension,
+            time: true,
+        }
+    }
+}
+
+/// Returns the default schedule of rows: the schedule of the history.
+fn usual_rows(history: Option<&HistoryOutput>) -> Schedule {
+    history.map_or(Schedule::Count(200), |history| history.schedule)
 }
 
 /// Rows of the table of crack tips. Default: the schedule of the history.
@@ -135,6 +166,12 @@ pub struct FragmentOutput {
     pub smallest: f64,
 }
 
+impl<S> Fallback<S> for FragmentOutput {
+    fn missing(self, _: &Table<'_>, _: &'static str, _: S) -> Option<Self> {
+        Some(self)
+    }
+}
+
 impl FragmentOutput {
     /// No table.
     pub const NONE: Self = Self {
@@ -144,18 +181,22 @@ impl FragmentOutput {
 }
 
 /// Rows of history.csv: energies, probes and reactions.
-#[derive(DeckTable)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, DeckTable)]
+#[serde(deny_unknown_fields)]
 #[deck(scope = Variables, word_for(NEVER, Self::NONE))]
-struct History {
-    #[deck(flatten, scope = Schedule::Count(200))]
-    schedule: Schedule,
+pub struct HistoryOutput {
+    /// Schedule of the rows.
+    #[serde(with = "crate::form")]
+    #[deck(flatten, scope = usual_rows(None))]
+    pub schedule: Schedule,
     /// Fields or components, such as "Damage" or "Velocity_y", whose minimum and maximum over all points become columns
     /// `min_…` and `max_…` of history.csv. Vectors and tensors without a component enter by their norm.
-    #[deck(with = extremes)]
-    extremes: Vec<FieldComponent>,
+    #[serde(default, with = "crate::form")]
+    #[deck(with = extremes, check = check_extremes)]
+    pub extremes: Vec<(Field, Option<usize>)>,
 }
 
-impl History {
+impl HistoryOutput {
     /// No history.
     const NONE: Self = Self {
         schedule: Schedule::Never,
@@ -164,13 +205,15 @@ impl History {
 }
 
 /// Precision of numbers in field files.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, DeckWords)]
 #[serde(rename_all = "snake_case")]
+#[deck(what = "precision")]
 pub enum Precision {
+    /// 64 bits.
+    #[default]
+    Double,
     /// 32 bits.
     Single,
-    /// 64 bits.
-    Double,
 }
 
 /// Schedule of checkpoints, from which `pericles resume` continues a stopped run.
@@ -196,111 +239,28 @@ impl Default for Checkpoint {
     }
 }
 
-/// Reads `[output]`. `driven`: whether supports move; `surface`: whether the body is a 2-manifold, whose
-/// field files contain the kinetic energy density by default; `mesh`: whether the body is a mesh, which has
-/// cells.
-pub(crate) fn read(
-    table: Table<'_>,
-    dimension: Option<usize>,
-    driven: bool,
-    surface: bool,
-    mesh: bool,
-    sets: &SetNames,
-) -> Option<Output> {
-    let mut usual = Field::USUAL.to_vec();
-    if surface {
-        usual.push(Field::KineticEnergyDensity);
-    }
-    let scope = Variables {
-        dimension,
-        time: true,
-    };
-    let fields = inner(
-        &table,
-        "fields",
-        FieldScope {
-            dimension,
-            usual: &usual,
-            mesh,
-            sets,
-        },
-    );
-    let cells = cells(&table);
-    let history: Option<History> = inner(&table, "history", scope);
-    let cracks = cracks(&table, history.as_ref().map(|history| history.schedule));
-    let fragments = match table.optional("fragments") {
-        Some(item) => FragmentOutput::read(&item, ()),
-        None => Some(FragmentOutput::NONE),
-    };
-    let precision = table.choice_or_first(
-        "precision",
-        "precision",
-        &[("double", Precision::Double), ("single", Precision::Single)],
-    );
-    if driven {
-        table.forbid(
-            "energy_bound",
-            "the bound does not include the work of moving supports",
-        );
-    }
-    let energy_bound = table.maybe("energy_bound", |item| {
-        item.positive(Quantity::Time).map(f64::recip)
-    });
-    let pictures = declared(&table, "picture", scope);
-    let profiles = declared(&table, "profile", scope);
-    let quantities = declared(&table, "quantity", scope);
-    table.finish();
-    let Fields {
-        schedule,
-        names,
-        formats,
-        mesh_cells,
-        blocks,
-    } = fields?;
-    let History {
-        schedule: history,
-        extremes,
-    } = history?;
-    Some(Output {
-        fields: schedule,
-        names: names.fields,
-        numbers: names.numbers,
-        formats,
-        cells: cells?,
-        mesh_cells,
-        blocks,
-        history,
-        extremes,
-        cracks: cracks?,
-        fragments: fragments?,
-        precision: precision?,
-        energy_bound: energy_bound?,
-        pictures: pictures?,
-        profiles: profiles?,
-        quantities: quantities?,
-    })
-}
-
 /// The word for no output.
 const NEVER: &str = "never";
 
 /// A field, and optionally one of its components.
 type FieldComponent = (Field, Option<usize>);
 
-/// Reads a table of `[output]`, or an empty one if it is missing.
-fn inner<S: Copy, T: DeckTable<S> + DeckValue<S>>(
-    table: &Table<'_>,
-    key: &'static str,
-    scope: S,
-) -> Option<T> {
-    match table.optional(key) {
-        Some(item) => T::read(&item, scope),
-        None => T::read_table(table.table_or_empty(key)?, scope),
-    }
-}
-
 fn extremes(item: &Item<'_>, scope: Variables) -> Option<Vec<FieldComponent>> {
     each_once(item, |item| field(item, scope.dimension))
+}
+
+fn check_extremes(
+    extremes: &[FieldComponent],
+    path: &KeyPath,
+    scope: Variables,
+    check: &mut Check,
+) {
+    for (field, component) in extremes {
+        if let Some(component) = component {
+            let path = path.key("extremes");
+            require_component(*component, path, Some(field), scope, check);
+        }
+    }
 }
 
 /// Reads a list of distinct fields.
@@ -324,6 +284,14 @@ fn each_once<T: PartialEq>(
 }
 
 impl CrackOutput {
+    /// Returns the default table for the schedule of the history.
+    pub fn usual(history: Schedule) -> Self {
+        Self {
+            schedule: history,
+            ..Self::NONE
+        }
+    }
+
     /// The damage on a straight crack is close to 1/2; this value detects cracks without their surroundings.
     const THRESHOLD: f64 = 0.35;
 
@@ -334,27 +302,12 @@ impl CrackOutput {
     };
 }
 
-/// Reads the table of crack tips, if it is given; its defaults are recorded in any case.
-fn cracks(table: &Table<'_>, history: Option<Schedule>) -> Option<Option<CrackOutput>> {
-    let usual = history.unwrap_or(Schedule::Count(200));
-    let cracks = inner(table, "cracks", usual)?;
-    Some(table.has("cracks").then_some(cracks))
-}
-
 impl Output {
-    /// Returns the table of crack tips; the default schedule is the schedule of the history.
-    pub fn cracks(&self) -> CrackOutput {
-        self.cracks.unwrap_or(CrackOutput {
-            schedule: self.history,
-            threshold: CrackOutput::THRESHOLD,
-        })
-    }
-
     /// Returns whether field files may contain cells.
     pub fn writes_cells(&self) -> bool {
-        self.fields != Schedule::Never
-            && self.cells != CellChoice::Never
-            && self.formats.contains(&FieldFormat::Vtu)
+        self.fields.schedule != Schedule::Never
+            && self.cells != Some(false)
+            && self.fields.formats.contains(&FieldFormat::Vtu)
     }
 
     /// Returns whether a field is written.
@@ -369,9 +322,11 @@ impl Output {
 
     fn wants_any(&self, is_wanted: impl Fn(Field) -> bool) -> bool {
         let drawn = self.pictures.iter().map(|picture| picture.field);
-        let extremes = self.extremes.iter().map(|(field, _)| *field);
+        let extremes = self.history.extremes.iter().map(|(field, _)| *field);
         let profiles = self.profiles.iter().map(|profile| profile.field);
-        self.names
+        self.fields
+            .names
+            .fields
             .iter()
             .copied()
             .chain(drawn)
@@ -402,10 +357,20 @@ fn check_component(
     (field, scope): (Option<&Field>, Variables),
     check: &mut Check,
 ) {
+    require_component(*component, path.key("field"), field, scope, check);
+}
+
+fn require_component(
+    component: usize,
+    path: KeyPath,
+    field: Option<&Field>,
+    scope: Variables,
+    check: &mut Check,
+) {
     let components = |field: &Field| field.components(scope.dimension.unwrap_or(3)).len();
     let known = field.map_or(0, components);
     let allowed = format!("allowed: a component below {known}");
-    check.within(*component < known, path.key("field"), component, &allowed);
+    check.within(component < known, path, component, &allowed);
 }
 
 /// Returns the quantity of the values of a field.

@@ -7,7 +7,7 @@ use crate::document::{Entry, Node, Value};
 use crate::fault::Fault;
 use crate::key_path::KeyPath;
 use crate::quantity::Quantity;
-use crate::range::{COUNT, POSITIVE, Range};
+use crate::range::{ANY, COUNT, POSITIVE, Range};
 use crate::source::Place;
 use crate::units::{self, UnitError};
 
@@ -137,15 +137,13 @@ impl<'a> Item<'a> {
         self.count_within(COUNT)
     }
 
-    /// Reads a whole number of at least one in a range.
+    /// Reads a whole number in a range.
     pub(crate) fn count_within(&self, range: Range) -> Option<u64> {
-        self.note(|| Form::Count {
-            allowed: (range != COUNT).then(|| range.words().into_owned()),
-        });
+        self.note(|| Form::Count { range });
         let whole = match self.node.value {
             Value::Integer(integer) => u64::try_from(integer).ok(),
             // Allows 1e6 for a million; a double is not exact beyond 2^53.
-            Value::Float(float) if float.fract() == 0.0 && (1.0..9e15).contains(&float) => {
+            Value::Float(float) if float.fract() == 0.0 && (0.0..9e15).contains(&float) => {
                 Some(float as u64)
             }
             Value::Float(_) => None,
@@ -155,7 +153,7 @@ impl<'a> Item<'a> {
             }
         };
         match whole {
-            Some(count) if count > 0 && range.contains(count as f64) => {
+            Some(count) if range.contains(count as f64) => {
                 self.record(count);
                 Some(count)
             }
@@ -164,6 +162,23 @@ impl<'a> Item<'a> {
                 None
             }
         }
+    }
+
+    /// Returns whether it may be a number instead of the word `word`; none after reporting another word.
+    pub(crate) fn is_number_or(&self, word: &'static str, quantity: Quantity) -> Option<bool> {
+        if self.is_keyword(word) {
+            return Some(false);
+        }
+        let is_text = |text: &str| !text.contains(|c: char| c.is_ascii_digit());
+        if !self.word().is_some_and(is_text) {
+            return Some(true);
+        }
+        self.ledger
+            .report_value(self.place(), |value| Fault::NotANumber {
+                value,
+                expected: format!("{}, or \"{word}\"", quantity.expected()),
+            });
+        None
     }
 
     /// Reads a finite number in SI units.
@@ -372,11 +387,21 @@ impl<'a> Item<'a> {
 
     /// Reads a vector of quantities; missing components are zero.
     pub(crate) fn vector(&self, quantity: Quantity, dimension: Option<usize>) -> Option<[f64; 3]> {
+        self.vector_within(quantity, ANY, dimension)
+    }
+
+    /// Reads a vector whose components are in a range; missing components are zero.
+    pub(crate) fn vector_within(
+        &self,
+        quantity: Quantity,
+        range: Range,
+        dimension: Option<usize>,
+    ) -> Option<[f64; 3]> {
         let items = self.components(dimension, &quantity.expected())?;
         let mut vector = Some([0.0; 3]);
         for (c, item) in items.iter().enumerate() {
             // Continue after an invalid entry to report all of them.
-            match (item.quantity(quantity), &mut vector) {
+            match (item.number(quantity, range), &mut vector) {
                 (Some(value), Some(vector)) => vector[c] = value,
                 _ => vector = None,
             }

@@ -17,7 +17,7 @@ use serde_json::{Map, Value as Json};
 
 pub(crate) use item::Item;
 pub(crate) use survey::{Form, Survey, TableSurvey, below};
-pub(crate) use table::Table;
+pub(crate) use table::{Alternative, Table};
 
 use crate::document::Node;
 use crate::fault::Fault;
@@ -171,6 +171,10 @@ impl Ledger {
         problems.retain(|problem| match problem.subject() {
             Fault::MissingKey { key, table, .. } => {
                 !misspelt.contains(&(key.clone(), table.clone()))
+            }
+            Fault::MissingChoice { table, allowed } => {
+                let is_misspelt = |key: &String| misspelt.contains(&(key.clone(), table.clone()));
+                !allowed.iter().any(is_misspelt)
             }
             _ => true,
         });

@@ -10,16 +10,16 @@ use serde_json::Value as Json;
 
 use crate::key_path::{KeyPath, Step};
 use crate::quantity::Quantity;
+use crate::range::Range;
 
 /// A form of a value.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Form {
     Text,
     Boolean,
-    /// A whole number of at least one.
+    /// A whole number.
     Count {
-        /// The range in words, if it is smaller.
-        allowed: Option<String>,
+        range: Range,
     },
     Number {
         quantity: Quantity,

@@ -11,6 +11,7 @@ use crate::key_path::KeyPath;
 use crate::nearest::nearest;
 use crate::source::Place;
 use crate::vocabulary::{canonical, synonyms};
+use crate::wording::or;
 use crate::words::Worded;
 
 /// A table being read.
@@ -23,6 +24,10 @@ pub(crate) struct Table<'a> {
     allowed: RefCell<Vec<&'static str>>,
     /// Keys that are not reported as unknown.
     settled: RefCell<Vec<&'a str>>,
+    /// Required keys.
+    needed: RefCell<Vec<&'static str>>,
+    /// Keys that are not allowed.
+    forbidden: RefCell<Vec<&'static str>>,
 }
 
 impl<'a> Table<'a> {
@@ -39,6 +44,8 @@ impl<'a> Table<'a> {
             entries,
             allowed: RefCell::default(),
             settled: RefCell::default(),
+            needed: RefCell::default(),
+            forbidden: RefCell::default(),
         }
     }
 
@@ -137,13 +144,13 @@ impl<'a> Table<'a> {
     /// Returns the value of a required key.
     pub(crate) fn required(&self, key: &'static str) -> Option<Item<'a>> {
         let item = self.optional(key);
-        self.ledger.note(|survey| survey.needed(&self.path, key));
+        let mut needed = self.needed.borrow_mut();
+        if !needed.contains(&key) {
+            needed.push(key);
+            self.ledger.note(|survey| survey.needed(&self.path, key));
+        }
         if item.is_none() {
-            self.report(Fault::MissingKey {
-                key: key.into(),
-                synonyms: owned(synonyms(key)),
-                table: self.path.to_string(),
-            });
+            self.requires_one_of(&[key]);
         }
         item
     }
@@ -168,8 +175,9 @@ impl<'a> Table<'a> {
     ) -> Option<Option<(&'static str, Item<'a>)>> {
         self.ledger
             .note(|survey| survey.choice(&self.path, keys, needed));
-        let mut found: Vec<(&'static str, Item<'a>)> = keys
-            .iter()
+        let forbidden = self.forbidden.borrow();
+        let allowed = keys.iter().filter(|key| !forbidden.contains(key));
+        let mut found: Vec<(&'static str, Item<'a>)> = allowed
             .filter_map(|key| Some((*key, self.optional(key)?)))
             .collect();
         if found.len() > 1 {
@@ -197,8 +205,14 @@ impl<'a> Table<'a> {
         keys: &'static [&'static str],
     ) -> Option<(&'static str, Item<'a>)> {
         let found = self.choice_of(keys, true)?;
-        if found.is_none() {
-            self.requires_one_of(keys);
+        let forbidden = self.forbidden.borrow();
+        let (without, allowed): (Vec<&str>, Vec<&str>) = keys
+            .iter()
+            .copied()
+            .partition(|key| forbidden.contains(key));
+        // A key that is not allowed is reported already.
+        if found.is_none() && !without.iter().any(|key| self.has(key)) {
+            self.requires_one_of(&allowed);
         }
         found
     }
@@ -212,9 +226,17 @@ impl<'a> Table<'a> {
 
     /// Reports that none of several keys is given.
     pub(crate) fn requires_one_of(&self, keys: &[&str]) {
-        self.report(Fault::MissingChoice {
-            table: self.path.to_string(),
-            allowed: owned(keys),
+        let table = self.path.to_string();
+        self.report(match keys {
+            [key] => Fault::MissingKey {
+                key: (*key).into(),
+                synonyms: owned(synonyms(key)),
+                table,
+            },
+            _ => Fault::MissingChoice {
+                table,
+                allowed: owned(keys),
+            },
         });
     }
 
@@ -239,6 +261,14 @@ impl<'a> Table<'a> {
                 self.ledger.note(|survey| survey.form(&path, Form::Table));
                 Some(Table::new(self.ledger, path, self.place, &[]))
             }
+        }
+    }
+
+    /// Records a default, of which `none` is recorded as a word.
+    pub(crate) fn record_or<T: Copy + Into<Json>>(&self, key: &str, value: Option<T>, none: &str) {
+        match value {
+            Some(value) => self.record(key, value),
+            None => self.record(key, none),
         }
     }
 
@@ -289,6 +319,7 @@ impl<'a> Table<'a> {
 
     /// Rejects a key that is not allowed in this table, with the reason.
     pub(crate) fn forbid(&self, key: &'static str, allowed: &str) {
+        self.forbidden.borrow_mut().push(key);
         for entry in self
             .entries
             .iter()
@@ -306,18 +337,26 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Rejects keys of other variants, with the reasons, that are not keys of the variant itself.
-    pub(crate) fn forbid_others(&self, own: &[&str], others: &[(Vec<&'static str>, &str)]) {
-        for (keys, reason) in others {
-            for key in keys.iter().filter(|key| !own.contains(key)) {
-                self.forbid(key, reason);
+    /// Rejects keys of other alternatives than the given one; `selector`: what precedes their names in the reasons.
+    pub(crate) fn forbid_others(&self, selector: &str, own: usize, all: &[Alternative]) {
+        for other in all {
+            for (key, reason) in other.keys().filter(|(key, _)| !all[own].has(key)) {
+                match reason {
+                    Some(reason) => self.forbid(key, reason),
+                    None if self.has(key) => {
+                        let with = all.iter().filter(|one| one.has(key)).map(|one| one.name);
+                        self.forbid(key, &format!("it requires {selector}{}", or(with)));
+                    }
+                    None => {}
+                }
             }
         }
     }
 
     /// Marks keys as known whose values depend on an invalid one.
     pub(crate) fn know(&self, keys: &[&'static str]) {
-        for key in keys {
+        let forbidden = self.forbidden.borrow();
+        for key in keys.iter().filter(|key| !forbidden.contains(key)) {
             self.optional(key);
         }
     }
@@ -404,6 +443,24 @@ impl<'a> Item<'a> {
             .iter()
             .filter_map(Item::table)
             .collect()
+    }
+}
+
+/// An alternative of a table: a word or an exclusive key, with the keys that it selects.
+pub(crate) struct Alternative {
+    pub(crate) name: &'static str,
+    /// Groups of keys, and why other alternatives reject them, if the reason is not the choice itself.
+    pub(crate) keys: Vec<(Vec<&'static str>, Option<&'static str>)>,
+}
+
+impl Alternative {
+    fn keys(&self) -> impl Iterator<Item = (&'static str, Option<&'static str>)> {
+        let groups = self.keys.iter();
+        groups.flat_map(|(keys, reason)| keys.iter().map(|key| (*key, *reason)))
+    }
+
+    fn has(&self, wanted: &str) -> bool {
+        self.keys().any(|(key, _)| key == wanted)
     }
 }
 

@@ -21,8 +21,11 @@ impl Descriptions {
             let place = table.replace("[]", "");
             let keys = all.entry(place).or_insert_with(|| Table::new().into());
             if let Some(keys) = keys.as_table_mut() {
-                let other = keys.insert(key.unwrap_or(ABOUT).to_owned(), text.into());
-                assert!(other.is_none(), "two descriptions of {key:?} in [{table}]");
+                let key = key.unwrap_or(ABOUT);
+                // Keys of several tables with one name have several descriptions.
+                let other = keys.get(key).and_then(|other| other.as_str());
+                let text = other.map_or(text.clone(), |other| format!("{other} {text}"));
+                keys.insert(key.to_owned(), text.into());
             }
         }
         Self(all)

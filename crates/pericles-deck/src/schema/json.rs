@@ -104,7 +104,7 @@ impl Schema {
         object(match form {
             Form::Text => json!({ "type": "string" }),
             Form::Boolean => json!({ "type": "boolean" }),
-            Form::Count { .. } => json!({ "type": "integer", "minimum": 1 }),
+            Form::Count { range } => json!({ "type": "integer", "minimum": range.least() as u64 }),
             Form::Number { quantity, allowed } => {
                 reference(&title(*quantity, is_positive(allowed.as_deref())))
             }

@@ -78,7 +78,9 @@ impl Page<'_> {
     }
 
     fn about(&mut self, place: &str) {
-        if let Some(text) = self.schema.descriptions.of_table(place) {
+        let descriptions = &self.schema.descriptions;
+        let text = descriptions.of_table(place);
+        if let Some(text) = text.or_else(|| descriptions.of_key(place)) {
             self.text += &format!("\n{}\n", literal(text));
         }
     }
@@ -168,7 +170,7 @@ impl Page<'_> {
         match form {
             Form::Text => "text".into(),
             Form::Boolean => "`true`, `false`".into(),
-            Form::Count { .. } => "integer ≥ 1".into(),
+            Form::Count { range } => format!("integer ≥ {}", range.least()),
             Form::Number { quantity, allowed } => {
                 let sign = if allowed.as_deref() == Some(POSITIVE_WORDS) {
                     "positive "
@@ -217,7 +219,12 @@ fn anchor(title: &str) -> String {
 /// Returns a default as written in decks.
 fn plain(value: &Json) -> String {
     match value {
-        Json::Array(entries) if !entries.is_empty() => plain(&entries[0]),
+        Json::Array(entries) if !entries.is_empty() => {
+            match entries.iter().all(|entry| *entry == entries[0]) {
+                true => plain(&entries[0]),
+                false => format!("`{value}`"),
+            }
+        }
         Json::Number(number) => match number.as_f64() {
             Some(number) => format!("`{number}`"),
             None => format!("`{number}`"),

@@ -13,6 +13,7 @@ mod markdown;
 mod specimens;
 mod unit;
 
+use std::borrow::Cow;
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::OnceLock;
@@ -164,15 +165,15 @@ impl Schema {
     }
 
     /// Returns the ranges of a value in words, except for those implied by its form.
-    fn ranges(&self, place: &str) -> Vec<&str> {
+    fn ranges(&self, place: &str) -> Vec<Cow<'_, str>> {
         let forms = self.forms(place).into_iter();
-        let mut ranges: Vec<&str> = forms
+        let mut ranges: Vec<Cow<'_, str>> = forms
             .filter_map(|form| match form {
                 Form::Number {
                     allowed: Some(allowed),
                     ..
-                } if allowed != crate::range::POSITIVE_WORDS => Some(allowed.as_str()),
-                Form::Count { allowed } => allowed.as_deref(),
+                } if allowed != crate::range::POSITIVE_WORDS => Some(allowed.into()),
+                Form::Count { range } if *range != crate::range::COUNT => Some(range.words()),
                 _ => None,
             })
             .collect();

@@ -272,7 +272,7 @@ pub(super) const SPECIMENS: &[Specimen] = &[
     specimen(
         PLATE,
         &[
-            "body={ shape = 'plate', size = [10, 4], spacing = 1, plane = 'strain', name = 'target', piece = [{ name = 'a', shape = 'plate', size = [2, 2], origin = [11, 0], material = 'glass', velocity = [-1, 0] }, { name = 'b', shape = 'disc', radius = 2, centre = [-9, 0], rotation = { angle = '30 deg', centre = [0, 0] } }, { name = 'c', shape = 'points', file = 'c.txt', dimension = 2, origin = [0, 9] }, { name = 'd', shape = 'mesh', file = 'd.msh', unit = 'mm', dimension = 2, rotation = { angle = 1, axis = [0, 0, 1] } }, { name = 'e', shape = 'outline', polygons = [[[0, 0], [1, 0], [0, 1]]] }] }",
+            "body={ shape = 'plate', size = [10, 4], spacing = 1, plane = 'strain', name = 'target', piece = [{ name = 'a', shape = 'plate', size = [2, 2], origin = [11, 0], material = 'glass', velocity = [-1, 0] }, { name = 'b', shape = 'disc', radius = 2, centre = [-9, 0], rotation = { angle = '30 deg', centre = [0, 0] } }, { name = 'c', shape = 'points', file = 'c.txt', dimension = 2, origin = [0, 9] }, { name = 'd', shape = 'mesh', file = 'd.msh', unit = 'mm', dimension = 2, rotation = { angle = 1 } }, { name = 'e', shape = 'outline', polygons = [[[0, 0], [1, 0], [0, 1]]] }] }",
             "material.modulus=continuum",
             "material.fracture_calibration=continuum",
         ],

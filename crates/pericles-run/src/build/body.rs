@@ -6,8 +6,8 @@ use pericles::operator::{BondBody, CompositeBody, Feature};
 use pericles::space::PointSet;
 use pericles::{Need, PericlesError, PointScalar};
 use pericles_deck::{
-    BuildError, Caution, CellChoice, ContactPairs, Fault, KeyPath, MaterialModel, ModelWarning,
-    PointNumber, Remark, Solid, SurfaceBody,
+    BuildError, Caution, ContactPairs, Fault, KeyPath, MaterialModel, ModelWarning, PointNumber,
+    Remark, Solid, SurfaceBody,
 };
 use pericles_manifold::PowerMaterial;
 use pericles_manifold::surface::Surface;
@@ -137,7 +137,7 @@ impl Assembler<'_> {
         for caution in surface.cautions(body.material.horizon, neighbours) {
             warnings.push(Remark::new("material.horizon", Caution::Surface(caution)));
         }
-        warnings.extend(mesh_dependence(&body.material, surface));
+        warnings.extend(mesh_dependence(&body.material.power(), surface));
         Ok(BodyParts {
             bonds: AssembledForce {
                 operator,
@@ -208,7 +208,7 @@ impl Assembler<'_> {
             || discretisation.surface.is_some()
             || is_on_grid(self.model, &discretisation.cloud);
         match self.model.output.cells {
-            CellChoice::Always if !has_cells => {
+            Some(true) if !has_cells => {
                 let fault = Fault::OutOfRange {
                     value: "true".into(),
                     allowed: "allowed: \"auto\" and false; the points of this body have no cells"
@@ -222,7 +222,7 @@ impl Assembler<'_> {
 
     /// Rejects `Set_<name>` of an unknown set.
     pub(super) fn check_point_numbers(&self, sets: &Sets) -> Result<(), BuildError> {
-        for number in &self.model.output.numbers {
+        for number in &self.model.output.fields.names.numbers {
             if let PointNumber::Set(name) = number {
                 self.members(sets, name, "output.fields.names")?;
             }
@@ -239,7 +239,16 @@ impl Assembler<'_> {
             .iter()
             .position(|picture| is_meant(picture.field))
         {
-            Some(k) if !self.model.output.names.iter().any(|field| is_meant(*field)) => {
+            Some(k)
+                if !self
+                    .model
+                    .output
+                    .fields
+                    .names
+                    .fields
+                    .iter()
+                    .any(|field| is_meant(*field)) =>
+            {
                 KeyPath::from("output.picture").index(k)
             }
             _ => match self
@@ -249,7 +258,16 @@ impl Assembler<'_> {
                 .iter()
                 .position(|one| is_meant(one.field))
             {
-                Some(k) if !self.model.output.names.iter().any(|field| is_meant(*field)) => {
+                Some(k)
+                    if !self
+                        .model
+                        .output
+                        .fields
+                        .names
+                        .fields
+                        .iter()
+                        .any(|field| is_meant(*field)) =>
+                {
                     KeyPath::from("output.profile").index(k)
                 }
                 _ => "output.fields.names".into(),

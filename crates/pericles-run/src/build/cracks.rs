@@ -1,9 +1,11 @@
 //! Pre-cracks: their surfaces and the bonds that they cut.
 
+use std::path::Path;
+
 use pericles::family::{BondCut, Crack, EndRule};
 use pericles::observe::TrackedCrack;
 use pericles::space::PointCloud;
-use pericles_deck::{BuildError, CrackSurface, Fault, KeyPath, ModelWarning, Remark};
+use pericles_deck::{BuildError, Fault, KeyPath, ModelWarning, Remark};
 
 use super::assembler::Assembler;
 use super::discretisation::{Discretisation, Sets};
@@ -23,38 +25,36 @@ impl Assembler<'_> {
         let cracks = self.model.cracks.iter().enumerate();
         let read = cracks.map(|(k, crack)| {
             let path = KeyPath::from("crack").index(k);
-            let surface = match &crack.surface {
-                CrackSurface::Plane(surface) => surface.clone(),
-                CrackSurface::Layer { layer } => {
-                    let members = self.members(sets, layer, path.key("layer"))?;
-                    let places = members.iter().flat_map(|&i| cloud.point(i as usize));
-                    let places = cloud.domain().collect_everywhere(places.collect()).concat();
-                    let point = |place: &[f64]| std::array::from_fn(|c| place[c]);
-                    Crack::Layer {
-                        points: places.chunks_exact(3).map(point).collect(),
-                        spacing: cloud.spacing(),
-                        dimension: cloud.dimension(),
-                    }
-                }
-                CrackSurface::File { path: file, unit } => {
-                    let key = path.key("file");
-                    let file = resources.beside(file);
-                    let mesh = (resources.read_mesh)(&file, resources.memory);
-                    let mesh = mesh.map_err(|error| {
-                        let fault = error.fault(|reason| Fault::BadCrackFile { reason });
-                        at_path(key.clone(), fault)
-                    })?;
-                    mesh.check().map_err(|error| {
-                        let reason = format!("{}: {error}", file.display());
-                        at_path(key, Fault::BadCrackFile { reason })
-                    })?;
-                    let corner = |node: u32| mesh.nodes[node as usize].map(|x| x * unit);
-                    let triangles = mesh.triangles().into_iter();
-                    Crack::Triangles {
-                        triangles: triangles.map(|corners| corners.map(corner)).collect(),
-                    }
-                }
+            let of_layer = |layer: &str| -> Result<Crack, BuildError> {
+                let members = self.members(sets, layer, path.key("layer"))?;
+                let places = members.iter().flat_map(|&i| cloud.point(i as usize));
+                let places = cloud.domain().collect_everywhere(places.collect()).concat();
+                let point = |place: &[f64]| std::array::from_fn(|c| place[c]);
+                Ok(Crack::Layer {
+                    points: places.chunks_exact(3).map(point).collect(),
+                    spacing: cloud.spacing(),
+                    dimension: cloud.dimension(),
+                })
             };
+            let of_file = |file: &Path, unit: f64| {
+                let key = path.key("file");
+                let file = resources.beside(file);
+                let mesh = (resources.read_mesh)(&file, resources.memory);
+                let mesh = mesh.map_err(|error| {
+                    let fault = error.fault(|reason| Fault::BadCrackFile { reason });
+                    at_path(key.clone(), fault)
+                })?;
+                mesh.check().map_err(|error| {
+                    let reason = format!("{}: {error}", file.display());
+                    at_path(key, Fault::BadCrackFile { reason })
+                })?;
+                let corner = |node: u32| mesh.nodes[node as usize].map(|x| x * unit);
+                let triangles = mesh.triangles().into_iter();
+                Ok(Crack::Triangles {
+                    triangles: triangles.map(|corners| corners.map(corner)).collect(),
+                })
+            };
+            let surface = crack.surface.crack(of_file, of_layer)?;
             // The error of the engine does not contain the number of the crack.
             surface
                 .cutter(crack.ends, 0.0)

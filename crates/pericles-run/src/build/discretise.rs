@@ -174,7 +174,7 @@ impl Assembler<'_> {
         path: &KeyPath,
     ) -> Result<PointSet, BuildError> {
         let (faces, depth) = match members {
-            Members::NearFaces { faces, depth } => (faces, *depth),
+            Members::NearFaces(near) => (&near.faces, near.depth),
             members => return Ok(members.of(cloud).unwrap_or_default()),
         };
         let near = meshes.near_faces(cloud, faces, depth);

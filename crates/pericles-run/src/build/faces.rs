@@ -21,7 +21,7 @@ impl Assembler<'_> {
         let named = self.model.sets.iter().find(|named| named.name == set);
         let faces = match named.map(|named| &named.members) {
             None => set,
-            Some(Members::NearFaces { faces, .. }) => faces,
+            Some(Members::NearFaces(near)) => &near.faces,
             Some(_) => return None,
         };
         meshes.face_set(faces)?.1.area

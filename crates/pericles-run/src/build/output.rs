@@ -13,11 +13,11 @@ const FIELDS: &str = "output.fields";
 impl Assembler<'_> {
     /// Warns of names of sets, materials and fields that an Exodus file shortens.
     pub(super) fn check_names(&self, sets: &Sets) -> Option<ModelWarning> {
-        let output = &self.model.output;
-        if output.fields == Schedule::Never || !output.formats.contains(&FieldFormat::Exodus) {
+        let output = &self.model.output.fields;
+        if output.schedule == Schedule::Never || !output.formats.contains(&FieldFormat::Exodus) {
             return None;
         }
-        let arrays: Vec<String> = output.numbers.iter().map(|one| one.name()).collect();
+        let arrays: Vec<String> = output.names.numbers.iter().map(|one| one.name()).collect();
         let sets = sets.iter().map(|(name, _)| name.as_str());
         let materials = self.model.materials.iter().map(|other| other.name.as_str());
         let materials = materials.filter(|_| output.blocks == FieldBlocks::Materials);
@@ -36,11 +36,11 @@ impl Assembler<'_> {
 
     /// Rejects more outputs than a VTKHDF file can hold.
     pub(super) fn check_outputs(&self, dt: f64, steps: u64) -> Result<(), BuildError> {
-        let output = &self.model.output;
+        let output = &self.model.output.fields;
         if !output.formats.contains(&FieldFormat::Vtkhdf) {
             return Ok(());
         }
-        let outputs = output.fields.most(dt, steps);
+        let outputs = output.schedule.most(dt, steps);
         if outputs <= MOST_OUTPUTS as u64 {
             return Ok(());
         }

@@ -5,7 +5,7 @@ use pericles::boundary::MotionKind;
 use pericles::domain::Domain;
 use pericles::observe::Schedule;
 use pericles::time::State;
-use pericles_deck::{Caution, Model, ModelWarning, Remark, Scheme, Solid};
+use pericles_deck::{Caution, CrackOutput, Model, ModelWarning, Remark, Scheme, Solid};
 
 use super::assembler::Assembler;
 use super::constants::MaterialConstants;
@@ -45,9 +45,9 @@ impl Assembler<'_> {
         let measures_damage = solid.is_some_and(|solid| solid.material.damage.is_some());
         // Bonds cut by pre-cracks count as damage even if no bond breaks later.
         let uncracked = self.model.cracks.is_empty();
-        let writes_cracks = output
-            .cracks
-            .is_some_and(|cracks| cracks.schedule != Schedule::Never);
+        let cracks = output.cracks;
+        let writes_cracks = cracks.schedule != Schedule::Never
+            && cracks != CrackOutput::usual(output.history.schedule);
         let idle = [
             ("material.no_fail", !body.no_fail().is_empty()),
             ("material.damage", measures_damage && uncracked),

@@ -2,9 +2,9 @@
 
 use pericles::observe::Probe;
 use pericles::time::{
-    AdaptiveRungeKutta, DiscreteGradient, Fine, Implicit, Integrator, MultiTimeStep,
-    MultiTimeStepOptions, Newmark, Predictor, Relaxation, Respa, RungeKutta, Tableau,
-    VelocityVerlet,
+    AdaptiveRungeKutta, Damping, DiscreteGradient, Fine, Implicit, ImplicitRule, Integrator,
+    LinearSolver, MultiTimeStep, MultiTimeStepOptions, Newmark, Predictor, Relaxation,
+    RelaxationOptions, Respa, RungeKutta, Tableau, VelocityVerlet,
 };
 use pericles::{PericlesError, System};
 use pericles_deck::{
@@ -48,10 +48,12 @@ impl Assembler<'_> {
             Scheme::MultiTimeStep4 { fine, interface } => {
                 self.two_steps(&Tableau::rk4(), fine, *interface, system, sets)?
             }
-            Scheme::Implicit { rule, solver } => Box::new(
-                Implicit::with_solver(*rule, *solver, system)
-                    .map_err(|error| self.at_scheme(error))?,
-            ),
+            Scheme::ImplicitMidpoint { solver } => {
+                self.implicit(ImplicitRule::Midpoint, *solver, system)?
+            }
+            Scheme::Trapezoidal { solver } => {
+                self.implicit(ImplicitRule::Trapezoidal, *solver, system)?
+            }
             Scheme::Trigonometric(options) => Box::new(
                 Trigonometric::new(*options, system).map_err(|error| self.at_scheme(error))?,
             ),
@@ -61,9 +63,11 @@ impl Assembler<'_> {
             Scheme::DiscreteGradient { tolerance } => Box::new(
                 DiscreteGradient::new(*tolerance, system).map_err(|error| self.at_scheme(error))?,
             ),
-            Scheme::Relaxation(options) => {
-                Box::new(Relaxation::new(*options, system).map_err(|error| self.at_scheme(error))?)
+            Scheme::AdaptiveDynamicRelaxation { damping, limits } => {
+                let damping = damping.map_or(Damping::Adaptive, Damping::Viscous);
+                self.relaxation(limits.with(damping), system)?
             }
+            Scheme::Fire(limits) => self.relaxation(limits.with(Damping::Fire), system)?,
             Scheme::Static(options) => self.statics(options, system, probes)?,
             Scheme::Thermal if system.fields().next().is_none() => {
                 let error = PericlesError::SchemeNotUsable {
@@ -81,6 +85,25 @@ impl Assembler<'_> {
                 )
             }
         })
+    }
+
+    fn implicit(
+        &self,
+        rule: ImplicitRule,
+        solver: LinearSolver,
+        system: &System,
+    ) -> Result<Box<dyn Integrator>, BuildError> {
+        let scheme = Implicit::with_solver(rule, solver, system);
+        Ok(Box::new(scheme.map_err(|error| self.at_scheme(error))?))
+    }
+
+    fn relaxation(
+        &self,
+        options: RelaxationOptions,
+        system: &System,
+    ) -> Result<Box<dyn Integrator>, BuildError> {
+        let scheme = Relaxation::new(options, system);
+        Ok(Box::new(scheme.map_err(|error| self.at_scheme(error))?))
     }
 
     fn two_steps(

@@ -46,7 +46,7 @@ impl Assembler<'_> {
                 Some(_) => reject("a tensile strength", "allowed: with softening bonds"),
             };
         };
-        let law = own.law();
+        let law = own.law;
         if let (Some(surface), Some(given)) = (surface, given) {
             let surface = surface.surface(given.strength);
             let surface = surface.map_err(|error| at(&key, error))?;
@@ -113,7 +113,7 @@ impl Assembler<'_> {
         let first = materials.iter().flatten().next();
         match (first, &solid.material.softening) {
             (None, Some(own)) => {
-                let value = own.law().name().into();
+                let value = own.law.name().into();
                 let allowed = "allowed: with a `fracture_energy` or `critical_stretch`; without them bonds never break".into();
                 let fault = Fault::OutOfRange { value, allowed };
                 Err(at_path("material.softening", fault))

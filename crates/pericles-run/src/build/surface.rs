@@ -25,9 +25,7 @@ impl Assembler<'_> {
         resources: &Resources<'_>,
     ) -> Result<(Surface, PointCloud), BuildError> {
         let surface = match &deck.shape {
-            SurfaceShape::File { path, checks } => {
-                self.surface_of_file(path, *checks, resources)?
-            }
+            SurfaceShape::File(file) => self.surface_of_file(&file.path, file.checks, resources)?,
             SurfaceShape::Formula(shape) => {
                 self.check_vertices(shape.vertices(), resources)?;
                 let made = shape.surface();
@@ -73,9 +71,10 @@ impl Assembler<'_> {
         sets: &Sets,
         cache: &dyn Cache,
     ) -> Result<Box<dyn Force>, BuildError> {
-        let pairs = deck
+        let geodesics = deck.geodesics;
+        let pairs = geodesics
             .ball
-            .pairs(surface, deck.material.horizon, deck.method, cache)
+            .pairs(surface, deck.material.horizon, geodesics.method, cache)
             .map_err(|error| match error {
                 PericlesError::HorizonTooSmall { .. } => at("material.horizon", error),
                 _ => match error.extension() {
@@ -83,13 +82,13 @@ impl Assembler<'_> {
                     _ => at("geodesics", error),
                 },
             })?;
-        let no_fail = self.union_of(sets, &deck.no_fail)?;
+        let no_fail = self.union_of(sets, &deck.material.no_fail)?;
         let stiffness = self.stiffness_of(cloud, sets)?;
         force::SurfaceBody {
             surface,
             cloud,
             pairs: &pairs,
-            material: &deck.material,
+            material: &deck.material.power(),
             stiffness: &stiffness,
             no_fail: &no_fail,
         }

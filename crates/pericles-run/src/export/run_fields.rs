@@ -155,14 +155,18 @@ fn component_major(
 
 /// Returns the file that holds all outputs of a run, with its format.
 fn one_file(results: &Results, model: &Model) -> Option<(PathBuf, ResultFormat)> {
-    let mut formats = model.output.formats.iter();
+    let mut formats = model.output.fields.formats.iter();
     formats.find_map(|format| {
         let (name, format) = match format {
             FieldFormat::Vtu => return None,
             FieldFormat::Exodus => ("fields.exo", ResultFormat::Exodus),
             FieldFormat::Vtkhdf => {
                 let dt = results.number("/model/dt")?;
-                let outputs = model.output.fields.most(dt, results.count("/model/steps"));
+                let outputs = model
+                    .output
+                    .fields
+                    .schedule
+                    .most(dt, results.count("/model/steps"));
                 let outputs = outputs as usize;
                 ("fields.vtkhdf", ResultFormat::VtkHdf { outputs })
             }

@@ -21,16 +21,18 @@ pub(super) fn add_impactors(
     };
     let impactors = signals.names.clone();
     let table = SignalTable::new(folder.file("impactors.csv"), "observer/impactors", signals);
-    simulation.observe(output.history, Box::new(table));
+    simulation.observe(output.history.schedule, Box::new(table));
     let mut names = vec!["impactors.csv".to_owned()];
-    if output.fields != Schedule::Never && output.formats.contains(&FieldFormat::Vtu) {
+    if output.fields.schedule != Schedule::Never
+        && output.fields.formats.contains(&FieldFormat::Vtu)
+    {
         let place = ImpactorSurfaces::FOLDER;
         folder.subfolder(place)?;
         for name in ImpactorSurfaces::file_names(&impactors) {
             names.extend([format!("{name}.pvd"), format!("{place}/{name}_*.vtp")]);
         }
         let surfaces = ImpactorSurfaces::new(folder.path(), &impactors);
-        simulation.observe(output.fields, Box::new(surfaces));
+        simulation.observe(output.fields.schedule, Box::new(surfaces));
     }
     Ok(names)
 }

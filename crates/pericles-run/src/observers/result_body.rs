@@ -12,7 +12,7 @@ pub fn result_body(model: &Model, cloud: &PointCloud, sets: &Sets, meshes: &Mesh
     let named = sets.iter().filter(|(name, _)| name != ALL);
     let named = named.map(|(name, points)| (name.as_str(), points.as_slice()));
     let title = model.title.clone().unwrap_or_default();
-    match (model.output.blocks, model.body.solid()) {
+    match (model.output.fields.blocks, model.body.solid()) {
         (FieldBlocks::Materials, Some(solid)) => {
             let own = solid.material.name();
             let (numbers, names) = material_blocks(model, own, cloud, sets);
@@ -109,7 +109,7 @@ fn point_marks(model: &Model, cloud: &PointCloud, sets: &Sets) -> Vec<PointMark>
             numbers
         }
     };
-    let wanted = model.output.numbers.iter();
+    let wanted = model.output.fields.names.numbers.iter();
     wanted
         .map(|number| PointMark {
             name: number.name(),
@@ -121,7 +121,7 @@ fn point_marks(model: &Model, cloud: &PointCloud, sets: &Sets) -> Vec<PointMark>
 /// Returns the arrays of the field files that a model requests.
 pub(crate) fn field_selection(model: &Model, cloud: &PointCloud, sets: &Sets) -> FieldSelection {
     FieldSelection {
-        fields: model.output.names.clone(),
+        fields: model.output.fields.names.fields.clone(),
         marks: point_marks(model, cloud, sets),
     }
 }

@@ -235,7 +235,7 @@ fn all_numbers_out_of_range_are_reported_at_once() {
     let resources = Resources::default();
     let mut model = parse(PLATE).model;
     model.time.end = f64::NAN;
-    model.output.history = Schedule::Every(0);
+    model.output.history.schedule = Schedule::Every(0);
     let solid = model.body.solid_mut().unwrap();
     solid.material.bonds_mut().unwrap().density = -1.0;
     solid.state = StressState::Spatial;
