@@ -19,8 +19,8 @@ use crate::tensor::{
 /// T⟨ξ⟩ = P K⁻¹ ξ + Z z per unit of ω, and W = ψ(F) + ½ Σ ω z·Z z. The values of a point are the push
 /// P K⁻¹ − Z (F − I), and Z. In plastic flow Z is multiplied by the ratio of the secant shear modulus to the elastic one,
 /// because an elastic control would carry stress beyond the yield stress where the strain varies within the horizon. The
-/// energy that it loses is dissipated. If fewer than D + 1 bonds remain, or the condition number of K exceeds 10⁶, the bonds do not
-/// determine F.
+/// energy that it loses is dissipated. If fewer than D + 1 bonds remain, or the condition number of K exceeds 10⁶, the
+/// bonds do not determine F.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct ForceState<const TENSOR: bool>(pub CorrespondenceConstants);
 
@@ -254,7 +254,6 @@ impl<const TENSOR: bool, const D: usize> Solid<D> for ForceState<TENSOR> {
         self.state_of_moment(at, (&moment, false), out)
     }
 
-    /// The control is constant.
     #[inline(always)]
     fn state_change<T: Lanes>(
         &self,

@@ -1,7 +1,7 @@
 //! Runs of a deck and its variants, and the values that are compared with measured ones.
 
 use std::env;
-use std::path::PathBuf;
+use std::path::Path;
 use std::rc::Rc;
 
 use pericles_io::{IoError, OutputFolder, read_csv};
@@ -34,16 +34,10 @@ impl Experiment {
                 Some(_) => None,
                 None => Some(temporary_folder()?),
             };
-            let folder = match (&temporary, case.context.figures) {
-                (Some(temporary), _) => {
-                    OutputFolder::create(temporary.path().join(variant), false)?
-                }
-                (None, figures) => {
-                    let stem: PathBuf = figures.into_iter().collect();
-                    let name = variant.replace(' ', "-");
-                    OutputFolder::create_numbered(stem.join(name))?
-                }
-            };
+            let kept = temporary.as_ref().map(TempDir::path);
+            let place = kept.or(case.context.figures).unwrap_or(Path::new("."));
+            let name = variant.replace(' ', "-");
+            let folder = OutputFolder::create_numbered(place.join(name))?;
             let means = Means {
                 caching: Caching::Off,
                 ..Means::default()
@@ -81,61 +75,68 @@ fn temporary_folder() -> Result<TempDir, RunError> {
     Ok(folder.map_err(|error| IoError::writing(&env::temp_dir(), error))?)
 }
 
-/// Value of the deck, and of its variants in the long form of the study: `value`, `least`, `greatest`. Also returns the
-/// largest error of the energy balance over the work or the initial energy, `balance`.
-fn over_variants(
-    case: &Case<'_>,
-    value: impl Fn(&Experiment) -> Result<f64, RunError>,
-    mut look: impl FnMut(&str, &Experiment) -> Result<(), RunError>,
-) -> Result<Found, RunError> {
+/// Runs the deck, and in the long form of the study its variants.
+fn runs(case: &Case<'_>) -> Result<Vec<(String, Rc<Experiment>)>, RunError> {
     let mut variants = vec![(BASE.to_owned(), Vec::new())];
     if case.context.full {
         variants.extend(case.lists("variants")?);
     }
-    let mut values = Vec::new();
-    let mut balance = 0.0_f64;
-    for (name, changes) in &variants {
-        let experiment = Experiment::of(case, name, changes)?;
-        values.push(value(&experiment)?);
-        look(name, &experiment)?;
-        let number = |name: &str| experiment.results.number(name).unwrap_or_default();
+    let run = |(name, changes): (String, Vec<String>)| {
+        let run = Experiment::of(case, &name, &changes)?;
+        Ok((name, run))
+    };
+    variants.into_iter().map(run).collect()
+}
+
+/// A value of the first run, `value`, and its spread over several runs, `least` and `greatest`; the largest error of the
+/// energy balance over the work and the initial energy, `balance`.
+fn compared(
+    runs: &[(String, Rc<Experiment>)],
+    value: impl Fn(&Experiment) -> Result<f64, RunError>,
+) -> Result<Found, RunError> {
+    let values: Result<Vec<f64>, RunError> = runs.iter().map(|(_, run)| value(run)).collect();
+    let values = values?;
+    let balance = |run: &Experiment| {
+        let number = |name: &str| run.results.number(name).unwrap_or(f64::NAN);
         let supplied = number("/audit/external_work").abs() + number("/audit/initial_energy");
-        balance = balance.max((number("/audit/balance") / supplied).abs());
-    }
-    let of = |pick: fn(f64, f64) -> f64| values.iter().copied().reduce(pick);
-    let spread = (values.len() > 1).then(|| [of(f64::min), of(f64::max)]);
+        (number("/audit/balance") / supplied).abs()
+    };
+    let errors = runs.iter().map(|(_, run)| balance(run));
+    // A missing number is an error.
+    let worst = errors.fold(0.0, |worst, error| match error <= worst {
+        true => worst,
+        false => error,
+    });
     let found = Found::default()
         .value("value", values[0])
-        .value("balance", balance);
-    Ok(match spread {
-        Some([least, greatest]) => found.value("least", least).value("greatest", greatest),
-        None => found,
-    })
+        .value("balance", worst);
+    if values.len() == 1 {
+        return Ok(found);
+    }
+    let of = |pick: fn(f64, f64) -> f64| values.iter().copied().reduce(pick);
+    Ok(found
+        .value("least", of(f64::min))
+        .value("greatest", of(f64::max)))
 }
 
 /// The argument `scalar` of the runs: the last value of a column, `max:COLUMN`, `min:COLUMN` or a number of `run.json`.
 pub(super) fn scalar(case: &Case<'_>) -> Result<Found, RunError> {
     let name = case.text("scalar")?;
-    over_variants(case, |run| Ok(run.results.scalar(&name)?.0), |_, _| Ok(()))
+    compared(&runs(case)?, |run| Ok(run.results.scalar(&name)?.0))
 }
 
 /// The column `y` where the column `x` reaches `at`, and the curves `model`, one for each run, and `measured`, the
 /// limits `low` and `high` over the places `measured`.
 pub(super) fn curve(case: &Case<'_>) -> Result<Found, RunError> {
     let (x, y, at) = (case.text("x")?, case.text("y")?, case.number("at")?);
-    let mut curves = Vec::new();
-    let found = over_variants(
-        case,
-        |run| Ok(interpolated(&run.column(&x)?, &run.column(&y)?, at)),
-        |name, run| {
-            curves.push((name.to_owned(), run.column(&x)?, run.column(&y)?));
-            Ok(())
-        },
-    )?;
-    let with_curve = |found: Found, (name, x, y): (String, Vec<f64>, Vec<f64>)| {
-        found.labelled("model", Some(name), &x, &y)
-    };
-    let mut found = curves.into_iter().fold(found, with_curve);
+    let runs = runs(case)?;
+    let mut found = compared(&runs, |run| {
+        Ok(interpolated(&run.column(&x)?, &run.column(&y)?, at))
+    })?;
+    for (name, run) in &runs {
+        let (x, y) = (run.column(&x)?, run.column(&y)?);
+        found = found.labelled("model", Some(name.clone()), &x, &y);
+    }
     if case.has("measured_at") {
         let places = case.numbers("measured_at")?;
         for (name, label) in [
@@ -167,38 +168,30 @@ fn interpolated(x: &[f64], y: &[f64], at: f64) -> f64 {
 /// Largest damage at the end of points with x above `beyond`.
 pub(super) fn damage(case: &Case<'_>) -> Result<Found, RunError> {
     let beyond = case.number("beyond")?;
-    over_variants(
-        case,
-        |run| {
-            let last = run.results.fields()?.pop();
-            let fields = last.map(|file| file.read()).transpose()?;
-            let damage = fields.iter().flat_map(|data| {
-                let fields = data.fields.iter().filter(|field| field.name == "Damage");
-                fields.flat_map(|field| data.points.chunks(3).zip(&field.values))
-            });
-            let there = damage.filter(|(place, _)| place[0] > beyond);
-            Ok(there
-                .map(|(_, damage)| *damage)
-                .reduce(f64::max)
-                .unwrap_or(f64::NAN))
-        },
-        |_, _| Ok(()),
-    )
+    compared(&runs(case)?, |run| {
+        let last = run.results.fields()?.pop();
+        let fields = last.map(|file| file.read()).transpose()?;
+        let damage = fields.iter().flat_map(|data| {
+            let fields = data.fields.iter().filter(|field| field.name == "Damage");
+            fields.flat_map(|field| data.points.chunks(3).zip(&field.values))
+        });
+        let there = damage.filter(|(place, _)| place[0] > beyond);
+        Ok(there
+            .map(|(_, damage)| *damage)
+            .reduce(f64::max)
+            .unwrap_or(f64::NAN))
+    })
 }
 
 /// Largest slope of the column `column` over time in a window of `window` seconds.
 pub(super) fn speed(case: &Case<'_>) -> Result<Found, RunError> {
     let (column, window) = (case.text("column")?, case.number("window")?);
-    over_variants(
-        case,
-        |run| {
-            let times = run.column("time")?;
-            let points: Vec<_> = times.into_iter().zip(run.column(&column)?).collect();
-            let speeds = slopes(&points, window).into_iter().map(|speed| speed.1);
-            Ok(speeds.reduce(f64::max).unwrap_or(f64::NAN))
-        },
-        |_, _| Ok(()),
-    )
+    compared(&runs(case)?, |run| {
+        let times = run.column("time")?;
+        let points: Vec<_> = times.into_iter().zip(run.column(&column)?).collect();
+        let speeds = slopes(&points, window).into_iter().map(|speed| speed.1);
+        Ok(speeds.reduce(f64::max).unwrap_or(f64::NAN))
+    })
 }
 
 #[cfg(test)]
