@@ -51,7 +51,7 @@ def interval(pair):
 
 def row(entry):
     note, tolerance = entry["note"], entry["tolerance"]
-    if entry["measured"]:
+    if "measured" in entry:
         case = entry["case"] + (f" ({note})" if note else "")
         computed = number(entry["computed"]) + (f" ({interval(entry['spread'])})" if entry["spread"] else "")
         return f"| {case} | – | {interval(entry['measured'])} | {computed} | measured | {entry['agreement']} |\n"
@@ -107,7 +107,7 @@ class Study:
     @property
     def shown(self):
         rows = self.results["rows"] if self.results else []
-        return [entry for entry in rows if entry["pass"] is not None or entry["measured"]]
+        return [entry for entry in rows if entry["pass"] is not None or "measured" in entry]
 
     @property
     def failing(self):

@@ -170,7 +170,7 @@ impl Row {
 }
 
 /// A one-sided bound is an expected value without a tolerance, and the remark begins with `upper bound` or `lower
-/// bound`. The keys `measured`, `spread` and `agreement` are null in rows that are not compared with measurements.
+/// bound`. Only rows that are compared with measurements have the keys `measured`, `spread` and `agreement`.
 impl Serialize for Row {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let finite = |number: Option<f64>| number.filter(|x| x.is_finite());
@@ -180,7 +180,8 @@ impl Serialize for Row {
             Rule::Measured(range) => Some(range),
             _ => None,
         };
-        let mut row = serializer.serialize_struct("Row", 11)?;
+        let fields = if measured.is_some() { 11 } else { 8 };
+        let mut row = serializer.serialize_struct("Row", fields)?;
         row.serialize_field("case", &self.case)?;
         row.serialize_field("printed", &finite(self.printed))?;
         row.serialize_field("expected", &finite(self.expected))?;
@@ -188,9 +189,11 @@ impl Serialize for Row {
         row.serialize_field("tolerance", &tolerance)?;
         row.serialize_field("absolute", &absolute)?;
         row.serialize_field("pass", &self.pass())?;
-        row.serialize_field("measured", &measured)?;
-        row.serialize_field("spread", &self.spread)?;
-        row.serialize_field("agreement", &self.agreement())?;
+        if let Some(range) = measured {
+            row.serialize_field("measured", &range)?;
+            row.serialize_field("spread", &self.spread)?;
+            row.serialize_field("agreement", &self.agreement())?;
+        }
         row.serialize_field("note", &self.remark())?;
         row.end()
     }
@@ -252,7 +255,7 @@ mod tests {
         assert_eq!(
             serde_json::to_value(judged.note("why")).unwrap(),
             json!({"case": "x", "printed": 1.2, "expected": 1.0, "computed": 2.0, "tolerance": 0.5,
-                   "absolute": true, "pass": false, "measured": null, "spread": null, "agreement": null, "note": "why"})
+                   "absolute": true, "pass": false, "note": "why"})
         );
         let bound = Row::new("z", "", Some(2.0)).judged(1.0, Rule::AtLeast);
         for (row, note) in [
@@ -262,14 +265,14 @@ mod tests {
             assert_eq!(
                 serde_json::to_value(row).unwrap(),
                 json!({"case": "z", "printed": null, "expected": 1.0, "computed": 2.0, "tolerance": null,
-                       "absolute": true, "pass": true, "measured": null, "spread": null, "agreement": null, "note": note})
+                       "absolute": true, "pass": true, "note": note})
             );
         }
         let lost = Row::new("y", "s", Some(f64::NAN));
         assert_eq!(
             serde_json::to_value(lost).unwrap(),
             json!({"case": "y", "printed": null, "expected": null, "computed": null, "tolerance": null,
-                   "absolute": false, "pass": null, "measured": null, "spread": null, "agreement": null, "note": ""})
+                   "absolute": false, "pass": null, "note": ""})
         );
         let measured = Row::new("m", "N", Some(3.0)).measured([1.0, 2.0]);
         let measured = serde_json::to_value(measured).unwrap();
