@@ -111,6 +111,7 @@ pub use processes::shared_folder;
 pub use report::{Report, Span, Status};
 pub use results::{FieldFile, Results, file_name};
 pub use run::{Ending, Run};
+pub use scalar::scalar;
 pub use sets_picture::draw_sets;
 pub use sharing::Sharing;
 pub use signals::SignalRegistry;

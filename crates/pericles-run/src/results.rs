@@ -8,7 +8,6 @@ use serde_json::Value;
 
 use crate::error::RunError;
 use crate::machine;
-use crate::scalar::Scalar;
 use crate::source::SourceRecord;
 
 /// The results of a run.
@@ -147,15 +146,6 @@ impl Results {
     pub fn has_fields(&self) -> bool {
         let files = ["fields.pvd", "fields.exo", "fields.vtkhdf"];
         files.iter().any(|file| self.folder.join(file).exists())
-    }
-
-    /// Returns a scalar of the run and its unit: the last value of a table column, its maximum or minimum (`max:COLUMN`,
-    /// `min:COLUMN`), or a number of `run.json` such as `audit.elastic_energy`.
-    ///
-    /// # Errors
-    /// The run does not have the scalar, or a table is damaged.
-    pub fn scalar(&self, name: &str) -> Result<(f64, String), RunError> {
-        Scalar::named(name).of(self)
     }
 
     /// Returns the tables, sorted by name.

@@ -5,6 +5,15 @@ use pericles_io::read_csv;
 use crate::error::RunError;
 use crate::results::Results;
 
+/// Returns a scalar of a run and its unit: the last value of a table column, its maximum or minimum (`max:COLUMN`,
+/// `min:COLUMN`), or a number of `run.json` such as `audit.elastic_energy`.
+///
+/// # Errors
+/// The run does not have the scalar, or a table is damaged.
+pub fn scalar(results: &Results, name: &str) -> Result<(f64, String), RunError> {
+    Scalar::named(name).of(results)
+}
+
 /// The source of a scalar.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Scalar {

@@ -122,7 +122,9 @@ fn compared(
 /// The argument `scalar` of the runs: the last value of a column, `max:COLUMN`, `min:COLUMN` or a number of `run.json`.
 pub(super) fn scalar(case: &Case<'_>) -> Result<Found, RunError> {
     let name = case.text("scalar")?;
-    compared(&runs(case)?, |run| Ok(run.results.scalar(&name)?.0))
+    compared(&runs(case)?, |run| {
+        Ok(pericles_run::scalar(&run.results, &name)?.0)
+    })
 }
 
 /// The column `y` where the column `x` reaches `at`, and the curves `model`, one for each run, and `measured`, the
@@ -154,13 +156,17 @@ pub(super) fn curve(case: &Case<'_>) -> Result<Found, RunError> {
     Ok(found)
 }
 
-/// Value of y at x on a piecewise linear curve with ascending x; NaN outside.
+/// Value of y at x on a piecewise linear curve with ascending x; NaN outside, but for rounding at its end.
 fn interpolated(x: &[f64], y: &[f64], at: f64) -> f64 {
+    const ROUNDING: f64 = 1e-9;
     let after = x.partition_point(|x| *x < at);
     match after {
         0 if x.first() == Some(&at) => y[0],
         0 => f64::NAN,
-        _ if after == x.len() => f64::NAN,
+        k if k == x.len() => match at <= x[k - 1] * (1.0 + ROUNDING) {
+            true => y[k - 1],
+            false => f64::NAN,
+        },
         k => y[k - 1] + (y[k] - y[k - 1]) * (at - x[k - 1]) / (x[k] - x[k - 1]),
     }
 }
@@ -204,6 +210,7 @@ mod tests {
         assert_eq!(interpolated(&x, &y, 1.0), 10.0);
         assert_eq!(interpolated(&x, &y, 1.5), 15.0);
         assert_eq!(interpolated(&x, &y, 4.0), 0.0);
+        assert_eq!(interpolated(&x, &y, 4.0 + 1e-12), 0.0);
         assert!(interpolated(&x, &y, 0.5).is_nan());
         assert!(interpolated(&x, &y, 4.5).is_nan());
     }
