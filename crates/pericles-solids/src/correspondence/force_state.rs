@@ -118,12 +118,12 @@ impl<const TENSOR: bool> ForceState<TENSOR> {
         out.values[D * D..].fill(0.0);
     }
 
-    /// [`Solid::advance`] from Σ ω η ⊗ ξ and the energy of the control of the elastic material.
+    /// [`Solid::advance`] from Σ ω η ⊗ ξ and Σ ω z ⊗ z.
     #[inline(never)]
     fn advance_of_moment<const D: usize>(
         &self,
         at: &Point<'_, PointShape<D>, D>,
-        (moment, control): (&Matrix<D>, f64),
+        [moment, left]: [&Matrix<D>; 2],
         next: &mut NextHistory<'_>,
     ) -> f64 {
         let gradient = product(moment, &at.shape.inverse);
@@ -131,7 +131,7 @@ impl<const TENSOR: bool> ForceState<TENSOR> {
         let solid = self.0.point.expanded(1.0 + at.thermal);
         let before = self.history_at(at);
         let (mut history, work) = solid.advanced(&f, &before);
-        history.control = control;
+        history.control = 0.5 * at.shape.control.contraction(left);
         history.keep(next.history);
         // With Z in force at both ends of a step, the loss is ½ (Z_before − Z_after) z_before z_after.
         let ratio = |history: &History| self.0.point.secant_ratio(history.accumulated);
@@ -139,12 +139,18 @@ impl<const TENSOR: bool> ForceState<TENSOR> {
         at.shape.share * work + softened * 0.5 * (before.control + history.control)
     }
 
-    /// Energy density of the control of the elastic material, ½ Σ ω z·Z z.
+    /// Returns F − I from Σ ω η ⊗ ξ.
+    #[inline(never)]
+    fn gradient_of_moment<const D: usize>(shape: &PointShape<D>, moment: &Matrix<D>) -> Matrix<D> {
+        product(moment, &shape.inverse)
+    }
+
+    /// Returns Σ ω z ⊗ z, with which the energy density of the control of the elastic material is ½ Z : Σ ω z ⊗ z.
     #[inline(always)]
-    fn control_energy<T: Lanes, const D: usize>(
+    fn unresolved<T: Lanes, const D: usize>(
         at: &Point<'_, PointShape<D>, D>,
         gradient: &Matrix<D>,
-    ) -> f64 {
+    ) -> Matrix<D> {
         let mut sums = [[T::splat(0.0); D]; D];
         for batch in 0..at.family.batches() {
             let bond = at.family.bond::<T>(batch);
@@ -166,7 +172,7 @@ impl<const TENSOR: bool> ForceState<TENSOR> {
                 left[a][b] = F64x8(sums[a][b].to_array()).sum();
             }
         }
-        0.5 * at.shape.control.contraction(&left)
+        left
     }
 
     fn history_at<S, const D: usize>(&self, at: &Point<'_, S, D>) -> History {
@@ -295,7 +301,8 @@ impl<const TENSOR: bool, const D: usize> Solid<D> for ForceState<TENSOR> {
         let history = self.history_at(at);
         let state = solid.stress(&f, &history);
         let ratio = (self.0.point).secant_ratio(history.accumulated + state.flow);
-        shape.share * state.energy + ratio * Self::control_energy::<T, D>(at, &gradient)
+        let control = (shape.control).contraction(&Self::unresolved::<T, D>(at, &gradient));
+        shape.share * state.energy + ratio * 0.5 * control
     }
 
     /// The control is that of the last step.
@@ -308,8 +315,9 @@ impl<const TENSOR: bool, const D: usize> Solid<D> for ForceState<TENSOR> {
         let elastic = solid.stress(&f, &history).energy;
         let (_, work) = solid.advanced(&f, &history);
         let ratio = self.0.point.secant_ratio(history.accumulated);
-        let control = Self::control_energy::<F64x8, D>(at, &gradient);
-        at.shape.share * (elastic + work) + ratio * control
+        let left = Self::unresolved::<F64x8, D>(at, &gradient);
+        let control = at.shape.control.contraction(&left);
+        at.shape.share * (elastic + work) + ratio * 0.5 * control
     }
 
     fn potential_state(&self, at: &Point<'_, PointShape<D>, D>, out: &mut State<'_>) {
@@ -349,14 +357,14 @@ impl<const TENSOR: bool, const D: usize> Solid<D> for ForceState<TENSOR> {
         next: &mut NextHistory<'_>,
     ) -> f64 {
         let moment = at.family.moment::<T>(&at.family);
-        let control = match self.0.point.plasticity {
+        let left = match self.0.point.plasticity {
             Some(_) => {
-                let gradient = product(&moment, &at.shape.inverse);
-                Self::control_energy::<T, D>(at, &gradient)
+                let gradient = Self::gradient_of_moment(at.shape, &moment);
+                Self::unresolved::<T, D>(at, &gradient)
             }
-            None => 0.0,
+            None => [[0.0; D]; D],
         };
-        self.advance_of_moment(at, (&moment, control), next)
+        self.advance_of_moment(at, [&moment, &left], next)
     }
 
     /// The accumulated plastic strain ∫ √(2/3 d_p : d_p) dt.
