@@ -156,7 +156,7 @@ pub(super) fn curve(case: &Case<'_>) -> Result<Found, RunError> {
     Ok(found)
 }
 
-/// Value of y at x on a piecewise linear curve with ascending x; NaN outside, but for rounding at its end.
+/// Value of y at x on a piecewise linear curve with ascending x; NaN outside, except for rounding at its end.
 fn interpolated(x: &[f64], y: &[f64], at: f64) -> f64 {
     const ROUNDING: f64 = 1e-9;
     let after = x.partition_point(|x| *x < at);
