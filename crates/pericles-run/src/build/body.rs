@@ -232,47 +232,18 @@ impl Assembler<'_> {
 
     /// Returns the key that requests the fields.
     fn field_key(&self, is_meant: fn(Field) -> bool) -> KeyPath {
-        match self
-            .model
-            .output
-            .pictures
-            .iter()
-            .position(|picture| is_meant(picture.field))
-        {
-            Some(k)
-                if !self
-                    .model
-                    .output
-                    .fields
-                    .names
-                    .fields
-                    .iter()
-                    .any(|field| is_meant(*field)) =>
-            {
-                KeyPath::from("output.picture").index(k)
-            }
-            _ => match self
-                .model
-                .output
-                .profiles
-                .iter()
-                .position(|one| is_meant(one.field))
-            {
-                Some(k)
-                    if !self
-                        .model
-                        .output
-                        .fields
-                        .names
-                        .fields
-                        .iter()
-                        .any(|field| is_meant(*field)) =>
-                {
-                    KeyPath::from("output.profile").index(k)
-                }
-                _ => "output.fields.names".into(),
-            },
+        let output = &self.model.output;
+        let named = &output.fields.names.fields;
+        let all = KeyPath::from("output.fields.names");
+        if named.iter().any(|field| is_meant(*field)) {
+            return all;
         }
+        let picture = output.pictures.iter().position(|one| is_meant(one.field));
+        if let Some(k) = picture {
+            return KeyPath::from("output.picture").index(k);
+        }
+        let profile = output.profiles.iter().position(|one| is_meant(one.field));
+        profile.map_or(all, |k| KeyPath::from("output.profile").index(k))
     }
 
     /// Returns the points of the sets whose bonds do not break.
