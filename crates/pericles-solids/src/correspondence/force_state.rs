@@ -110,8 +110,12 @@ impl<const TENSOR: bool> ForceState<TENSOR> {
         let f = combination(1.0, &unit::<D>(), 1.0, &gradient);
         let solid = self.0.point.expanded(1.0 + at.thermal);
         let history = self.history_at(at);
-        let accumulated = history.accumulated + solid.stress(&f, &history).flow;
-        let control = shape.control.scaled(self.0.point.secant_ratio(accumulated));
+        let flow = match self.0.point.plasticity {
+            Some(_) => solid.stress(&f, &history).flow,
+            None => 0.0,
+        };
+        let ratio = self.0.point.secant_ratio(history.accumulated + flow);
+        let control = shape.control.scaled(ratio);
         let stress = solid.stress_change(&f, &change, &history);
         shape.values_into(&stress, &change, &control, out.values);
         // The change of the control with the plastic strain is neglected: it would make the tangent unsymmetric.
