@@ -1,5 +1,5 @@
-//! Solvers for implicit schemes: conjugate gradients, Newton–Krylov, Anderson acceleration, banded Cholesky factorisation, and principal
-//! axes and inverses of 3 × 3 matrices.
+//! Solvers for implicit schemes: conjugate gradients, Newton–Krylov, Anderson acceleration, banded Cholesky
+//! factorisation, and principal axes and inverses of 3 × 3 matrices.
 //!
 //! A linear system is given by its matrix–vector products, a nonlinear one by its residual and the products with
 //! its derivative ([`Nonlinear`]). Both must be symmetric and positive definite, as the matrices M + β dt² K of
