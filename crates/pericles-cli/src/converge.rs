@@ -37,7 +37,7 @@ pub(crate) fn converge(args: &ConvergeArgs) -> Result<Exit, CliError> {
     };
     let deck = given::deck(&args.deck, &overrides)?;
     let text = DeckText::of(&deck, args.deck.display().to_string());
-    let plan = Plan::new(text, axes)?;
+    let plan = Plan::new(text, axes, None)?;
     let folder = output_folder(args.out.as_deref(), None, &args.deck, "-converge")?;
     let runs = plan.begin(folder)?;
     let exit = sweep::drive(&runs, &args.options)?;

@@ -249,6 +249,7 @@ pub(crate) fn exit_of(error: &RunError) -> Exit {
         | RunError::Model(_)
         | RunError::Checkpoint { .. }
         | RunError::InputChanged { .. }
+        | RunError::NotExtended { .. }
         | RunError::NoRun { .. }
         | RunError::NoResults { .. }
         | RunError::Mesh(_)
@@ -325,6 +326,9 @@ impl<E: Borrow<RunError> + fmt::Debug> Diagnostic for OfRun<E> {
             RunError::Unknown { hint, .. } => Box::new(hint),
             RunError::Checkpoint { .. } => Box::new(
                 "the folder may have been modified since the run stopped; run the deck again",
+            ),
+            RunError::NotExtended { .. } => Box::new(
+                "a resumed run may only have another `time.end`; `pericles run DECK --from DIR` starts from its state with other conditions",
             ),
             RunError::InputChanged { .. } => {
                 Box::new("restore the original file, or start a new run")

@@ -44,7 +44,10 @@ pub(crate) fn run(args: &RunArgs, processes: &Processes) -> Result<Exit, CliErro
         memory: processes.memory(&args.options.limits.memory),
         ..args.options.means()
     };
-    let assembled = Assembled::of(&source, &means, &mut |event| screen.show(event))?;
+    let origin = args.origin.open(&means)?;
+    let assembled = Assembled::continuing(&source, origin.as_ref(), &means, &mut |event| {
+        screen.show(event);
+    })?;
     let folder = shared_folder(&*means.comm, || {
         output_folder(args.out.as_deref(), Some(args.force), &args.deck, "")
     })?;
@@ -71,7 +74,10 @@ pub(crate) fn resume(args: &ResumeArgs, processes: &Processes) -> Result<Exit, C
         memory: processes.memory(&args.options.limits.memory),
         ..args.options.means()
     };
-    let Some(run) = Run::resume(&args.dir, &means, &mut |event| screen.show(event))? else {
+    let Some(run) = Run::extend(&args.dir, &args.set, &means, &mut |event| {
+        screen.show(event);
+    })?
+    else {
         if shows {
             let path = args.dir.display();
             console::print(format_args!(

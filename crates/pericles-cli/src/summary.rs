@@ -20,6 +20,9 @@ pub(crate) fn opening(report: &Report, folder: &Path) {
         bytes(model.memory_estimate),
         folder.display()
     ));
+    if let Some(start) = &model.start {
+        console::note(format_args!("starting from the {}", start.line()));
+    }
 }
 
 /// Prints the results after the last step.

@@ -20,7 +20,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
     let deck = given::deck(&args.deck, &args.overrides.set)?;
     let text = DeckText::of(&deck, args.deck.display().to_string());
     // Before the folder is created, so that invalid values do not leave half a sweep.
-    let plan = Plan::new(text, args.sweep.clone())?;
+    let plan = Plan::new(text, args.sweep.clone(), args.origin.from.clone())?;
     let folder = output_folder(args.out.as_deref(), None, &args.deck, "-sweep")?;
     drive(&plan.begin(folder)?, &args.options)
 }
@@ -30,6 +30,10 @@ pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
 /// # Errors
 /// The folder does not contain a sweep, or output cannot be written.
 pub(crate) fn resume(args: &ResumeArgs) -> Result<Exit, CliError> {
+    if !args.set.is_empty() {
+        let reason = "it is a sweep; give the folder of one of its runs".into();
+        return Err(RunError::NotExtended { reason }.into());
+    }
     drive(&Sweep::open(&args.dir)?, &args.options)
 }
 

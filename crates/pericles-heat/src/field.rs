@@ -229,6 +229,22 @@ impl State {
     }
 
     /// Returns the values including pending heat.
+    /// Reads the times and values of the accepted interval from an archive.
+    fn read_accepted(&mut self, archive: &Archive) -> Result<()> {
+        let mut times = [0.0; 2];
+        archive.f64_into(TIMES, &mut times)?;
+        let Interval { from, to } = &mut self.accepted;
+        for (k, one) in [from, to].into_iter().enumerate() {
+            one.t = times[k];
+            archive.f64_into(VALUES[k], &mut one.values)?;
+            // A run that starts from this state may be the first with this heat.
+            if self.dissipation.is_some() && archive.arrays().contains_key(PENDING[k]) {
+                archive.f64_into(PENDING[k], &mut one.pending)?;
+            }
+        }
+        Ok(())
+    }
+
     fn values_at(&mut self, t: f64) -> Vec<f64> {
         let mut values = vec![0.0; self.problem.len()];
         self.mix_into(t, |state| &state.values, &mut values);
@@ -372,6 +388,24 @@ impl SecondaryField for DiffusingField {
         Ok(())
     }
 
+    fn take_over(&mut self, archive: &Archive, t: f64) -> Result<()> {
+        if !archive.arrays().contains_key(TIMES) {
+            return Ok(());
+        }
+        let mut state = self.shared.state();
+        state.problem.diffusion.forget_bonds();
+        let first = state.accepted.to.clone();
+        state.read_accepted(archive)?;
+        // The end of a thermal step may lie beyond the end of the run.
+        let values = state.values_at(t);
+        let first = Accepted { values, ..first };
+        state.accepted = Interval {
+            from: first.clone(),
+            to: first,
+        };
+        Ok(())
+    }
+
     fn reads_dissipation(&self) -> bool {
         self.shared.state().dissipation.is_some()
     }
@@ -446,17 +480,11 @@ impl Checkpointed for DiffusingField {
     fn restore(&mut self, archive: &Archive) -> Result<()> {
         let mut state = self.shared.state();
         let state = &mut *state;
-        let mut times = [0.0; 2];
-        archive.f64_into(TIMES, &mut times)?;
         archive.f64_into(CONTENT, std::slice::from_mut(&mut state.initial))?;
+        state.read_accepted(archive)?;
         let Interval { from, to } = &mut state.accepted;
         for (k, one) in [from, to].into_iter().enumerate() {
-            one.t = times[k];
-            archive.f64_into(VALUES[k], &mut one.values)?;
             archive.f64_into(FLOWS[k], &mut one.flows)?;
-            if state.dissipation.is_some() {
-                archive.f64_into(PENDING[k], &mut one.pending)?;
-            }
         }
         let mut effort = [0; 3];
         archive.u64_into(EFFORT, &mut effort)?;

@@ -20,6 +20,7 @@ use crate::error::RunError;
 use crate::event::{Event, Tell};
 use crate::facts::Facts;
 use crate::machine;
+use crate::origin::Origin;
 use crate::source::Source;
 
 /// Cache, memory limit and processes for building and running a model.
@@ -92,9 +93,26 @@ impl Assembled {
     /// # Errors
     /// The deck or model is invalid.
     pub fn of(source: &Source, means: &Means, tell: Tell<'_>) -> Result<Self, RunError> {
+        Self::continuing(source, None, means, tell)
+    }
+
+    /// Assembles the model of a source that starts from the state of another run; as [`Assembled::of`] otherwise.
+    ///
+    /// # Errors
+    /// The deck or model is invalid, or the state belongs to another body.
+    pub fn continuing(
+        source: &Source,
+        origin: Option<&Origin>,
+        means: &Means,
+        tell: Tell<'_>,
+    ) -> Result<Self, RunError> {
         let model = source.model();
         Self::made(source, means, tell, |resources| {
-            assemble(model, discretise(model, resources)?, resources)
+            let resources = Resources {
+                origin,
+                ..*resources
+            };
+            assemble(model, discretise(model, &resources)?, &resources)
         })
     }
 

@@ -5,7 +5,7 @@
 //! long as this takes at most a twentieth of the time), and when a signal stops the run. If a run becomes unstable,
 //! its state is written to `failed.chk` for inspection; `resume` continues from the last regular checkpoint.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -20,6 +20,7 @@ use pericles_io::{
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use crate::body_record::BodyRecord;
 use crate::error::RunError;
 use crate::processes::{agreed, on_first};
 use crate::source::SourceRecord;
@@ -38,6 +39,12 @@ pub struct Metadata {
     pub instruction_set: String,
     /// Number of completed steps.
     pub step: u64,
+    /// The time, s.
+    pub t: f64,
+    /// The time step, s.
+    pub dt: f64,
+    /// The body, for runs that start from this state.
+    pub body: BodyRecord,
     /// Warnings during the run so far.
     pub warnings: Vec<String>,
     /// The deck or the model.
@@ -49,6 +56,7 @@ pub struct Checkpoints {
     folder: CheckpointFolder,
     schedule: Checkpoint,
     source: SourceRecord,
+    body: BodyRecord,
     /// Warnings during the run so far.
     warnings: Vec<String>,
     last: Instant,
@@ -58,11 +66,17 @@ pub struct Checkpoints {
 
 impl Checkpoints {
     /// Creates the checkpoints of a run in its output folder.
-    pub fn new(folder: &OutputFolder, schedule: Checkpoint, source: SourceRecord) -> Self {
+    pub fn new(
+        folder: &OutputFolder,
+        schedule: Checkpoint,
+        source: SourceRecord,
+        body: BodyRecord,
+    ) -> Self {
         Self {
             folder: CheckpointFolder::new(folder.file("checkpoints")),
             schedule,
             source,
+            body,
             warnings: Vec::new(),
             last: Instant::now(),
             cost: Duration::ZERO,
@@ -168,6 +182,9 @@ impl Checkpoints {
             version: env!("CARGO_PKG_VERSION").into(),
             instruction_set: operator.instruction_set().name().into(),
             step: simulation.state().step,
+            t: simulation.state().t,
+            dt: simulation.dt(),
+            body: self.body.clone(),
             warnings: self.warnings.clone(),
             source: self.source.clone(),
         };
@@ -178,7 +195,7 @@ impl Checkpoints {
 }
 
 /// The state in a checkpoint.
-enum Content {
+pub enum Content {
     /// The archive of a body on a single process.
     Whole(Archive),
     /// The archive of a divided body, which the processes read together.
@@ -193,37 +210,54 @@ pub struct Stored {
     pub metadata: Metadata,
     /// Errors of newer checkpoints that cannot be used, on the first process.
     pub rejected: Vec<IoError>,
-    content: Content,
+    pub(crate) content: Content,
 }
 
 impl Stored {
-    /// Reads or opens the newest usable checkpoint of a run; the part of a process may need at most `memory` bytes. All
-    /// processes must call it together.
+    /// Reads or opens a given checkpoint, as [`Stored::latest`].
     ///
     /// # Errors
-    /// No checkpoint is complete, it is from another program, or it needs more memory.
-    pub fn latest(folder: &OutputFolder, memory: u64, comm: &dyn Comm) -> Result<Self, RunError> {
-        let folder = CheckpointFolder::new(folder.file("checkpoints"));
-        let (path, metadata, content, rejected) = if comm.size() > 1 {
-            let (checkpoint, rejected) = folder.latest_divided(memory, comm)?;
-            let path = checkpoint.path().to_path_buf();
-            let metadata = checkpoint.metadata().clone();
-            let content = Content::Divided(Box::new(checkpoint));
-            (path, metadata, content, rejected)
-        } else {
-            let latest = folder.latest_valid(memory)?;
-            let container = latest.container.into_archive();
-            let (metadata, archive) = container.map_err(|reason| RunError::Checkpoint {
-                path: latest.path.clone(),
+    /// The checkpoint is not complete, is from another program, or needs more memory.
+    pub fn open(path: &Path, memory: u64, comm: &dyn Comm) -> Result<Self, RunError> {
+        if comm.size() > 1 {
+            let checkpoint = DividedCheckpoint::open(path, memory, comm)?;
+            return Self::of_divided(checkpoint, Vec::new(), comm);
+        }
+        let container = Container::read(path, memory)?;
+        Self::of_container(path, container, Vec::new(), comm)
+    }
+
+    fn of_divided(
+        checkpoint: DividedCheckpoint,
+        rejected: Vec<IoError>,
+        comm: &dyn Comm,
+    ) -> Result<Self, RunError> {
+        let path = checkpoint.path().to_path_buf();
+        let metadata = checkpoint.metadata().clone();
+        let content = Content::Divided(Box::new(checkpoint));
+        Self::of((path, metadata, content), rejected, comm)
+    }
+
+    fn of_container(
+        path: &Path,
+        container: Container,
+        rejected: Vec<IoError>,
+        comm: &dyn Comm,
+    ) -> Result<Self, RunError> {
+        let (metadata, archive) =
+            (container.into_archive()).map_err(|reason| RunError::Checkpoint {
+                path: path.into(),
                 reason,
             })?;
-            (
-                latest.path,
-                metadata,
-                Content::Whole(archive),
-                latest.rejected,
-            )
-        };
+        let content = Content::Whole(archive);
+        Self::of((path.into(), metadata, content), rejected, comm)
+    }
+
+    fn of(
+        (path, metadata, content): (PathBuf, Value, Content),
+        rejected: Vec<IoError>,
+        comm: &dyn Comm,
+    ) -> Result<Self, RunError> {
         // Other processes may not see the file.
         let read = || {
             serde_json::from_value(metadata).map_err(|error| RunError::Checkpoint {
@@ -239,6 +273,21 @@ impl Stored {
             rejected,
             content,
         })
+    }
+
+    /// Reads or opens the newest usable checkpoint of a run; the part of a process may need at most `memory` bytes. All
+    /// processes must call it together.
+    ///
+    /// # Errors
+    /// No checkpoint is complete, it is from another program, or it needs more memory.
+    pub fn latest(folder: &OutputFolder, memory: u64, comm: &dyn Comm) -> Result<Self, RunError> {
+        let folder = CheckpointFolder::new(folder.file("checkpoints"));
+        if comm.size() > 1 {
+            let (checkpoint, rejected) = folder.latest_divided(memory, comm)?;
+            return Self::of_divided(checkpoint, rejected, comm);
+        }
+        let latest = folder.latest_valid(memory)?;
+        Self::of_container(&latest.path, latest.container, latest.rejected, comm)
     }
 
     /// Restores a simulation. All processes must call it together.

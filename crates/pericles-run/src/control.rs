@@ -54,10 +54,7 @@ impl ControlledQuantity for ControlSignal {
         let mut state = State::of(system);
         state.t = t;
         state.u.copy_from_slice(u);
-        let start = StartEnergy {
-            energy: 0.0,
-            scheme: 0.0,
-        };
+        let start = StartEnergy::default();
         let snapshot = Snapshot::new(system, &state, start, 0.0);
         let value = self.registry.value(&snapshot, self.index);
         value.map_err(PericlesError::Extension)

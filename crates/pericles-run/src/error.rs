@@ -27,6 +27,12 @@ pub enum RunError {
         /// The saved state and checkpoints.
         left: String,
     },
+    /// A run cannot be extended as requested.
+    #[error("the run cannot be extended: {reason}")]
+    NotExtended {
+        /// Why.
+        reason: String,
+    },
     /// Any other error of the simulation.
     #[error("{0}")]
     Simulation(#[source] SimulationError),

@@ -118,10 +118,33 @@ pub struct Facts {
     /// The open boundary.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub open: Option<OpenFacts>,
+    /// The state of another run from which the run starts.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub start: Option<StartFacts>,
     /// Vector instruction set of the force loops.
     pub instruction_set: &'static str,
     /// Warnings about the run.
     pub warnings: Vec<String>,
+}
+
+/// The state of another run from which a run starts.
+#[derive(Debug, Clone, Serialize)]
+pub struct StartFacts {
+    /// The checkpoint.
+    pub checkpoint: String,
+    /// The time in the other run, s.
+    pub t: f64,
+}
+
+impl StartFacts {
+    /// Returns a summary line.
+    pub fn line(&self) -> String {
+        format!(
+            "state of {} at t = {}",
+            self.checkpoint,
+            quantity(self.t, "s")
+        )
+    }
 }
 
 /// The energy of a crack along a lattice plane.
@@ -320,6 +343,10 @@ impl Facts {
             ends: assembly.ends.iter().map(EndFacts::of).collect(),
             open: (assembly.open.as_ref())
                 .map(|open| OpenFacts::of(open, points, assembly.cloud.spacing())),
+            start: assembly.origin.as_ref().map(|(path, t)| StartFacts {
+                checkpoint: path.display().to_string(),
+                t: *t,
+            }),
             instruction_set: operator.instruction_set().name(),
             warnings,
         }

@@ -7,6 +7,7 @@
 //!   `run.json` and checkpoints.
 //! * [`Assembled`] – the assembly of a source with its properties ([`Facts`]), built with a cache and a memory limit
 //!   ([`Means`]).
+//! * [`Origin`] – the state of another run, from which a run [starts](Assembled::continuing).
 //! * [`Run`] – a run with its output folder: [`begin`](Run::begin), or [`resume`](Run::resume) from the last
 //!   checkpoint, then [`drive`](Run::drive) with a callback for [`Event`]s, a [`Cancel`] token and a [`Deadline`]. It
 //!   writes the output of the model, checkpoints, and [`Report`] as `run.json`.
@@ -49,6 +50,7 @@
 mod animations;
 mod assembled;
 mod audit;
+mod body_record;
 mod build;
 mod cancel;
 mod checkpoint;
@@ -63,6 +65,7 @@ pub mod division;
 mod error;
 mod event;
 mod export;
+mod extension;
 mod facts;
 mod heat;
 mod inputs;
@@ -70,6 +73,7 @@ pub mod machine;
 mod mirror;
 mod observers;
 mod open_facts;
+mod origin;
 mod processes;
 pub mod refinement;
 mod report;
@@ -101,12 +105,13 @@ pub use deck_text::DeckText;
 pub use error::RunError;
 pub use event::{Event, Tell};
 pub use export::{ExportFormat, export};
-pub use facts::{EndFacts, Facts, LoadFacts, PlaneFacts};
+pub use facts::{EndFacts, Facts, LoadFacts, PlaneFacts, StartFacts};
 pub use heat::{HeatBalance, HeatFacts, Inflow};
 pub use inputs::Inputs;
 pub use mirror::MirrorError;
 pub use observers::{history_rows, overlay, picture_of, result_body};
 pub use open_facts::{OpenFacts, ReflectionFacts};
+pub use origin::Origin;
 pub use processes::shared_folder;
 pub use report::{Report, Span, Status};
 pub use results::{FieldFile, Results, file_name};

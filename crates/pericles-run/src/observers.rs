@@ -25,6 +25,7 @@ use pericles_manifold::{EnergyInequality, SurfaceMeasure};
 use crate::build::{Assembly, ExactReference, Meshes, Sets, gathered, is_on_grid};
 use crate::checkpoint;
 use crate::error::RunError;
+use crate::origin;
 use crate::signals::{QuantitySignals, history_signals, scales_loads};
 
 use self::impactors::add_impactors;
@@ -77,7 +78,7 @@ pub(crate) fn observed(
     ]
     .map(String::from)
     .to_vec();
-    names.push(format!("checkpoints/{}", checkpoint::FAILED));
+    names.extend([checkpoint::FAILED, origin::START].map(|name| format!("checkpoints/{name}")));
 
     let rows = history_rows(model, &simulation, exact);
     let history = History::new(folder.file("history.csv"), rows);

@@ -13,17 +13,20 @@ use pericles_io::{OutputFolder, PvdSeries, VtuFile};
 use crate::animations;
 use crate::assembled::{Assembled, Means};
 use crate::audit::{Audit, Start};
+use crate::body_record::BodyRecord;
 use crate::cancel::Cancel;
 use crate::checkpoint::{Checkpoints, Stored};
 use crate::deadline::Deadline;
 use crate::error::RunError;
 use crate::event::{Event, Tell};
+use crate::extension::extended;
 use crate::facts::Facts;
 use crate::observers::{self, Observed};
+use crate::origin::Origin;
 use crate::processes::{agreed, any, on_first};
 use crate::report::{Report, Status};
 use crate::sharing::Sharing;
-use crate::source::Source;
+use crate::source::{Source, SourceRecord};
 use crate::units::quantity;
 use crate::watch::{self, Breakage};
 
@@ -62,13 +65,20 @@ impl Run {
         let Assembled { assembly, facts } = assembled;
         let model = source.model();
         let comm = Arc::clone(assembly.system.domain().comm());
+        let body = BodyRecord::of(&assembly.system, assembly.precut_bonds);
+        let origin = assembly.origin.clone();
         let observed = observers::observed(model, assembly, &folder);
         let Observed {
             simulation,
             history,
         } = agreed(&*comm, observed)?;
+        let kept = match (origin, comm.rank()) {
+            (Some((origin, _)), 0) => Origin::keep(&origin, &folder),
+            _ => Ok(()),
+        };
+        agreed(&*comm, kept)?;
         Ok(Self {
-            checkpoints: Checkpoints::new(&folder, model.checkpoint, source.record()),
+            checkpoints: Checkpoints::new(&folder, model.checkpoint, source.record(), body),
             start: Start::of(&simulation),
             simulation,
             history,
@@ -82,24 +92,40 @@ impl Run {
     /// # Errors
     /// There is no usable checkpoint, or it does not match its deck.
     pub fn resume(path: &Path, means: &Means, tell: Tell<'_>) -> Result<Option<Self>, RunError> {
+        Self::extend(path, &[], means, tell)
+    }
+
+    /// Restores a run from its last checkpoint with another end, given by the override `time.end=VALUE`; without changes
+    /// as [`Run::resume`].
+    ///
+    /// # Errors
+    /// There is no usable checkpoint, it does not match its deck, or the run cannot be extended in this way.
+    pub fn extend(
+        path: &Path,
+        changes: &[String],
+        means: &Means,
+        tell: Tell<'_>,
+    ) -> Result<Option<Self>, RunError> {
         let comm = &*means.comm;
         let words = |folder: &Option<OutputFolder>| match folder {
             Some(_) => "unfinished".to_owned(),
             None => String::new(),
         };
-        let (folder, unfinished) = on_first(comm, || opened(path), words)?;
+        let (folder, unfinished) = on_first(comm, || opened(path, !changes.is_empty()), words)?;
         if unfinished.is_empty() {
             return Ok(None);
         }
         let folder = folder.flatten();
         let folder = folder.unwrap_or_else(|| OutputFolder::following(path));
         let stored = Stored::latest(&folder, means.memory, comm)?;
-        let source = agreed(comm, stored.metadata.source.clone().read())?;
+        let origin = Origin::of_run(&folder, means.memory, comm)?;
+        let source = extended(&stored.metadata, changes).and_then(SourceRecord::read);
+        let source = agreed(comm, source)?;
         let model = source.model();
         let Assembled {
             assembly,
             mut facts,
-        } = Assembled::of(&source, means, tell)?;
+        } = Assembled::continuing(&source, origin.as_ref(), means, tell)?;
         let is_first = comm.rank() == 0;
         if is_first {
             facts.warnings.extend(resume_warnings(&stored, &facts));
@@ -111,6 +137,7 @@ impl Run {
         facts.warnings.extend(agreed(comm, gaps)?);
         let warnings = stored.metadata.warnings.clone();
         facts.warnings.extend(warnings.iter().cloned());
+        let body = BodyRecord::of(&assembly.system, assembly.precut_bonds);
         let observed = observers::observed(model, assembly, &folder);
         let Observed {
             mut simulation,
@@ -120,7 +147,7 @@ impl Run {
         let start = Start::of(&simulation);
         stored.restore(&mut simulation)?;
         let step = simulation.state().step;
-        let mut checkpoints = Checkpoints::new(&folder, model.checkpoint, source.record());
+        let mut checkpoints = Checkpoints::new(&folder, model.checkpoint, source.record(), body);
         warnings.into_iter().for_each(|one| checkpoints.warn(one));
         if is_first {
             checkpoints.forget_failed();
@@ -289,9 +316,8 @@ impl Run {
             return Err(error);
         }
         let outcome = outcome.map_err(|error| self.sorted(error))?;
-        if outcome == Outcome::Stopped {
-            self.checkpoints.write(&self.simulation)?;
-        }
+        // Also at the end, because another run may start from it.
+        self.checkpoints.write(&self.simulation)?;
         Ok(outcome)
     }
 
@@ -345,13 +371,13 @@ impl Run {
     }
 }
 
-/// Opens the folder of a run; `None` if it has finished.
-fn opened(path: &Path) -> Result<Option<OutputFolder>, RunError> {
+/// Opens the folder of a run; `None` if it has finished and is not extended.
+fn opened(path: &Path, is_extended: bool) -> Result<Option<OutputFolder>, RunError> {
     if path.is_dir() && !path.join("checkpoints").is_dir() {
         return Err(RunError::NoRun { path: path.into() });
     }
     let folder = OutputFolder::open(path)?;
-    Ok((!is_finished(&folder)).then_some(folder))
+    Ok((is_extended || !is_finished(&folder)).then_some(folder))
 }
 
 /// Returns whether the run has finished according to `run.json`. If it cannot be read, the checkpoints decide.

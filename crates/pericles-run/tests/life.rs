@@ -126,6 +126,96 @@ fn a_stopped_run_may_be_driven_again_and_stops_at_a_deadline() {
 }
 
 #[test]
+fn an_extended_run_equals_one_with_the_later_end() {
+    let place = tempfile::tempdir().unwrap();
+    let (whole, parts) = (place.path().join("whole"), place.path().join("parts"));
+    let source = |overrides: &[&str]| {
+        let overrides: Vec<String> = overrides.iter().map(|&one| one.into()).collect();
+        Source::of_deck(plate(&overrides), "plate.toml".into())
+    };
+    // The automatic step of the shorter run, 4 us in 12 steps, is kept.
+    for [shorter, dt] in [
+        ["time.end=2 us", "time.dt=0.1 us"],
+        ["time.end=4 us", "time.dt=auto"],
+    ] {
+        let mut run = begun_of(&source(&[shorter, dt]), &parts);
+        assert_eq!(
+            run.drive(None, &Cancel::new(), &mut |_| {}).unwrap(),
+            Ending::Finished
+        );
+        let dt = run.simulation().dt();
+        drop(run);
+        let extend = |change: &str| Run::extend(&parts, &[change.into()], &means(), &mut |_| {});
+        let mut run = extend("time.end=8 us")
+            .unwrap()
+            .expect("the run is extended");
+        assert_eq!(
+            run.drive(None, &Cancel::new(), &mut |_| {}).unwrap(),
+            Ending::Finished
+        );
+        let end = run.simulation().state().t;
+        assert!((8e-6..8e-6 + dt).contains(&(end * (1.0 + 1e-12))), "{end}");
+        drop(run);
+        let fixed = [format!("time.end={end:?}"), format!("time.dt={dt:?}")];
+        let mut run = begun_of(&source(&[&fixed[0], &fixed[1]]), &whole);
+        run.drive(None, &Cancel::new(), &mut |_| {}).unwrap();
+        assert_eq!(history(&whole), history(&parts));
+        for (change, expected) in [
+            ("time.end=1 us", "must be later"),
+            ("time.dt=1 us", "`time.dt` cannot be changed"),
+        ] {
+            let error = extend(change).map(|_| ()).unwrap_err().to_string();
+            assert!(error.contains(expected), "{error}");
+        }
+        fs::remove_dir_all(&whole).unwrap();
+        fs::remove_dir_all(&parts).unwrap();
+    }
+}
+
+/// The loads of static runs are multiples of their values at the end.
+#[test]
+fn a_static_run_whose_loads_follow_from_its_end_is_not_extended() {
+    let place = tempfile::tempdir().unwrap();
+    let statics = [
+        "sets.bottom={ layer = { side = \"-y\", cells = 1 } }",
+        "material.critical_stretch=unset",
+        "time.scheme=static",
+        "time.dt=unset",
+        "time.load_steps=2",
+        "time.end=1",
+    ];
+    let [pulled, driven] = [
+        "constraint=[{ set = \"bottom\", displacement = [0, 0] }, { set = \"top\", displacement = [0, \"1 um\"] }]",
+        "constraint=[{ set = \"bottom\", displacement = [0, 0] }, { set = \"top\", displacement = [0, { expression = \"1e-6*t\" }] }]",
+    ];
+    for (constraint, is_extended) in [(pulled, false), (driven, true)] {
+        let folder = place.path().join(is_extended.to_string());
+        let overrides: Vec<String> = statics
+            .iter()
+            .chain([&constraint])
+            .map(|&one| one.into())
+            .collect();
+        let mut run = begun_of(
+            &Source::of_deck(plate(&overrides), "plate.toml".into()),
+            &folder,
+        );
+        run.drive(None, &Cancel::new(), &mut |_| {}).unwrap();
+        drop(run);
+        let extended = Run::extend(&folder, &["time.end=2".into()], &means(), &mut |_| {});
+        match (extended, is_extended) {
+            (Ok(Some(mut run)), true) => {
+                run.drive(None, &Cancel::new(), &mut |_| {}).unwrap();
+                assert_eq!(run.simulation().state().step, 4);
+            }
+            (Err(error), false) => {
+                assert!(error.to_string().contains("changes the past"), "{error}")
+            }
+            (extended, _) => panic!("{constraint}: {:?}", extended.map(|_| ())),
+        }
+    }
+}
+
+#[test]
 fn a_folder_without_a_run_cannot_be_resumed() {
     let place = tempfile::tempdir().unwrap();
     let resumed = Run::resume(place.path(), &means(), &mut |_| {});

@@ -2,7 +2,7 @@
 
 use std::any::Any;
 
-use crate::archive::Checkpointed;
+use crate::archive::{Archive, Checkpointed};
 use crate::error::Result;
 use crate::operator::Force;
 
@@ -32,6 +32,13 @@ pub trait SecondaryField: Any + Checkpointed + Send + Sync {
     /// # Errors
     /// A body of another size; conditions that are not finite.
     fn start(&mut self, forces: &dyn Force) -> Result<()>;
+
+    /// Takes the values at the time t (s) of another run from an archive of the field; keeps its own if there are none.
+    /// [`SecondaryField::start`] follows.
+    ///
+    /// # Errors
+    /// Values of another number of points.
+    fn take_over(&mut self, state: &Archive, t: f64) -> Result<()>;
 
     /// Returns whether [`BodyStep::dissipated`] is needed.
     fn reads_dissipation(&self) -> bool {

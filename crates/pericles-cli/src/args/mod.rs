@@ -20,7 +20,7 @@ pub(crate) use converge::ConvergeArgs;
 pub(crate) use geometry::{ExportArgs, ExportFormat, MeshArgs};
 pub(crate) use modes::ModesArgs;
 pub(crate) use plot::{Format, PlotArgs};
-pub(crate) use shared::{Caching, Execution, Memory, Overrides, RunOptions, Threads};
+pub(crate) use shared::{Caching, Execution, FromRun, Memory, Overrides, RunOptions, Threads};
 pub(crate) use values::{Direction, Length, Pair};
 
 use values::{direction, instruction_set, length, pair, tolerance};
@@ -239,6 +239,8 @@ pub(crate) struct RunArgs {
     #[arg(long, requires = "out")]
     pub(crate) force: bool,
     #[command(flatten)]
+    pub(crate) origin: FromRun,
+    #[command(flatten)]
     pub(crate) overrides: Overrides,
     /// Run a parameter sweep: one run per value of a key, given as a,b,c or start:stop:step; repeat the option for all
     /// combinations. Each run has its own folder in ./<deck's name>-sweep or --out, with a summary table; `resume`
@@ -266,6 +268,8 @@ pub(crate) struct CheckArgs {
     /// each process, without MPI
     #[arg(long, value_name = "COUNTS", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) ranks: Vec<u32>,
+    #[command(flatten)]
+    pub(crate) origin: FromRun,
     #[command(flatten)]
     pub(crate) overrides: Overrides,
     #[command(flatten)]
@@ -336,6 +340,9 @@ pub(crate) struct GeodesicsArgs {
 pub(crate) struct ResumeArgs {
     /// The output folder of the run
     pub(crate) dir: PathBuf,
+    /// Give the run a later end, time.end=TIME, also after it has finished; the time step stays
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub(crate) set: Vec<String>,
     /// Show terminal plots of the time histories when the run ends
     #[arg(long, conflicts_with = "quiet")]
     pub(crate) chart: bool,

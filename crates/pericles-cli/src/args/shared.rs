@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Args;
-use pericles_run::{self as library, Means, RunError, machine};
+use pericles_run::{self as library, Means, Origin, RunError, machine};
 
 use super::values::{threads, wall_time};
 
@@ -15,6 +15,26 @@ pub(crate) struct Overrides {
     /// Override a key of the deck, such as time.dt=auto or crack.0.ends=open; KEY=unset removes it; may be repeated
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
+}
+
+/// The run whose state a run starts from.
+#[derive(Debug, Args)]
+pub(crate) struct FromRun {
+    /// Start from the state at the end of another run of the same points, given by its output folder or one of its
+    /// checkpoints: displacement, velocity, broken bonds, variables of softening and plastic flow, temperature. Time starts at zero
+    #[arg(long, value_name = "DIR")]
+    pub(crate) from: Option<PathBuf>,
+}
+
+impl FromRun {
+    /// Opens the state. All processes must call it together.
+    ///
+    /// # Errors
+    /// The folder contains no usable checkpoint.
+    pub(crate) fn open(&self, means: &Means) -> Result<Option<Origin>, RunError> {
+        let open = |path: &PathBuf| Origin::open(path, means.memory, &*means.comm);
+        self.from.as_ref().map(open).transpose()
+    }
 }
 
 /// Options of a run.

@@ -46,8 +46,11 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
     };
     let source = Source::of_deck(deck, args.deck.display().to_string());
     let mut screen = Screen::new(false);
+    let origin = args.origin.open(&means)?;
     let Assembled { assembly, facts } =
-        Assembled::of(&source, &means, &mut |event| screen.show(event))?;
+        Assembled::continuing(&source, origin.as_ref(), &means, &mut |event| {
+            screen.show(event);
+        })?;
     for warning in &facts.warnings {
         console::note(format_args!("warning: {warning}"));
     }
@@ -67,6 +70,12 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
         (Body::Surface(surface), _) => lines.extend(surface_material(surface)),
     }
     lines.extend(plane_waves(model, &assembly));
+    lines.extend(
+        facts
+            .start
+            .iter()
+            .map(|start| Line::new("start", start.line())),
+    );
     lines.extend(time(&facts));
     /// Largest number of listed loads; `run.json` has all.
     const LOADS: usize = 20;

@@ -320,6 +320,11 @@ impl Diffusion {
         any
     }
 
+    /// Makes [`Diffusion::read_bonds`] read all bonds, because their state was replaced.
+    pub fn forget_bonds(&mut self) {
+        self.read.clear();
+    }
+
     /// Returns a number that changes when bonds change.
     pub fn changes(&self) -> u64 {
         self.changes

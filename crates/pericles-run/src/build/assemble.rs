@@ -79,8 +79,11 @@ pub fn assemble(
         let added = system.add_field(Box::new(field));
         added.map_err(|error| at("thermal", error))?;
     }
-    let state = assembler.initial_state(cloud, sets, resources);
+    let precut_bonds = bonds.cuts.iter().map(|cut| cut.bonds).sum();
+    let state = assembler.first_state((&mut system, precut_bonds), cloud, resources);
     let mut state = discretisation.agreed(state)?;
+    let changed = assembler.add_initial(cloud, sets, resources, &mut state);
+    discretisation.agreed(changed)?;
     discretisation.conditions.start(&mut state)?;
     let exact = assembler.exact_reference(cloud, constants.as_ref(), &mut warnings)?;
     if let (Some(exact), Some(true)) = (&exact, model.exact.map(|exact| exact.start)) {
@@ -161,10 +164,13 @@ pub fn assemble(
         other_materials: others,
         softening,
         form: bonds.form,
-        precut_bonds: bonds.cuts.iter().map(|cut| cut.bonds).sum(),
+        precut_bonds,
         cracks: tracked,
         system,
         state,
+        origin: resources
+            .origin
+            .map(|origin| (origin.path().to_path_buf(), origin.time())),
         integrator,
         frequency: steps.frequency,
         body_frequency: steps.body_frequency,

@@ -1,5 +1,6 @@
 //! The assembled model: equation of motion, state, scheme and time step.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use pericles::observe::{Probe as PointProbe, TrackedCrack};
@@ -48,6 +49,8 @@ pub struct Assembly {
     pub system: System,
     /// The initial state.
     pub state: State,
+    /// The checkpoint of another run that the initial state comes from, and the time there, s.
+    pub origin: Option<(PathBuf, f64)>,
     /// The scheme.
     pub integrator: Box<dyn Integrator>,
     /// The frequency that limits the step at the start: the highest, except for multirate schemes; `None` without

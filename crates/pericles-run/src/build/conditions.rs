@@ -20,14 +20,23 @@ use super::resources::Resources;
 impl Assembler<'_> {
     /// Builds the initial state of the points of a process: the velocities of pieces, then the entries of the deck; later entries
     /// for a point replace earlier ones.
-    pub(super) fn initial_state(
+    /// Returns the state before `[[initial]]`: that of another run, or a body at rest whose pieces may move. All processes
+    /// must call it together.
+    pub(super) fn first_state(
         &self,
+        body: (&mut System, u64),
         cloud: &PointCloud,
-        sets: &Sets,
         resources: &Resources<'_>,
     ) -> Result<State, BuildError> {
-        let (n, whole) = (cloud.len(), cloud.domain().whole_points());
+        let n = cloud.len();
         let mut state = State::at_rest(cloud.dimension() * n);
+        if let Some(origin) = resources.origin {
+            let is_static = self.model.time.scheme.is_static();
+            origin
+                .hand_over(body, &mut state, is_static)
+                .map_err(|error| at("body", error))?;
+            return Ok(state);
+        }
         let shape = self.model.body.solid().map(|solid| &solid.shape);
         let pieces = shape.map_or(&[][..], |shape| shape.pieces());
         for (i, c) in (0..n).flat_map(|i| (0..cloud.dimension()).map(move |c| (i, c))) {
@@ -36,6 +45,18 @@ impl Assembler<'_> {
                 .and_then(|piece| piece.velocity);
             state.v[c * n + i] = velocity.map_or(0.0, |velocity| velocity[c]);
         }
+        Ok(state)
+    }
+
+    /// Applies `[[initial]]` to a state.
+    pub(super) fn add_initial(
+        &self,
+        cloud: &PointCloud,
+        sets: &Sets,
+        resources: &Resources<'_>,
+        state: &mut State,
+    ) -> Result<(), BuildError> {
+        let (n, whole) = (cloud.len(), cloud.domain().whole_points());
         for (k, initial) in self.model.initial.iter().enumerate() {
             let path = KeyPath::from("initial").index(k);
             let points = self.members(sets, &initial.set, path.key("set"))?;
@@ -78,7 +99,7 @@ impl Assembler<'_> {
                 Self::add_random(random, cloud, points, whole, &mut state.v);
             }
         }
-        Ok(state)
+        Ok(())
     }
 
     /// Reads the initial state from a file: displacement, m, and velocity, m/s, of each point in the user's order.

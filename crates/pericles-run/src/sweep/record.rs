@@ -1,5 +1,7 @@
 //! Record of a sweep: the deck, the values of its keys, and the runs of all combinations.
 
+use std::path::PathBuf;
+
 use pericles_io::file_stem;
 use serde::{Deserialize, Serialize};
 
@@ -11,6 +13,9 @@ use crate::deck_text::DeckText;
 pub(super) struct Record {
     pub(super) deck: DeckText,
     pub(super) axes: Vec<Axis>,
+    /// The folder of another run, or its checkpoint, from which all runs start.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) from: Option<PathBuf>,
 }
 
 /// One combination of values.
@@ -84,6 +89,7 @@ mod tests {
                 "body.spacing=1 mm,1/mm".parse().unwrap(),
                 "m=3,4".parse().unwrap(),
             ],
+            from: None,
         };
         let members = record.members();
         let names: Vec<&str> = members.iter().map(|member| member.name.as_str()).collect();

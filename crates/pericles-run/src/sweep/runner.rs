@@ -1,7 +1,7 @@
 //! Execution of sweeps.
 
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::{panic, thread};
 
@@ -17,6 +17,7 @@ use crate::deadline::Deadline;
 use crate::deck_text::DeckText;
 use crate::error::RunError;
 use crate::event::Event;
+use crate::origin::Origin;
 use crate::run::{Ending, Run};
 use crate::source::SourceRecord;
 
@@ -26,12 +27,14 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Plans all combinations of the values of the keys.
+    /// Plans all combinations of the values of the keys; all runs start from the state of the run `from`, if it is given.
     ///
     /// # Errors
     /// The deck is invalid for one of the values. All are checked before the first run.
-    pub fn new(deck: DeckText, axes: Vec<Axis>) -> Result<Self, RunError> {
-        let record = Record { deck, axes };
+    pub fn new(deck: DeckText, axes: Vec<Axis>, from: Option<PathBuf>) -> Result<Self, RunError> {
+        // The sweep may be resumed in another folder.
+        let from = from.map(|path| std::path::absolute(&path).unwrap_or(path));
+        let record = Record { deck, axes, from };
         for member in record.members() {
             member.deck.read()?;
         }
@@ -145,7 +148,8 @@ impl Sweep {
                     return Ok(Ending::Cancelled);
                 }
                 let path = self.folder.file(&member.name);
-                let how = run_member(member, &path, settings, &means, cancel, tell);
+                let from = self.sweep.record.from.as_deref();
+                let how = run_member(member, (from, &path), settings, &means, cancel, tell);
                 tell(SweepEvent::Ended {
                     run: &member.name,
                     how: &how,
@@ -191,7 +195,7 @@ fn is_fine(end: &Result<Ending, RunError>) -> bool {
 /// Runs a member of the sweep on its own threads.
 fn run_member(
     member: &Member,
-    path: &Path,
+    (from, path): (Option<&Path>, &Path),
     settings: &Settings,
     means: &Means,
     cancel: &Cancel,
@@ -217,7 +221,9 @@ fn run_member(
             // A run that was killed before its first checkpoint starts again.
             let folder = OutputFolder::create(path, path.exists())?;
             let source = SourceRecord::Deck(member.deck.clone()).read()?;
-            let assembled = Assembled::of(&source, means, &mut tell)?;
+            let open = |from: &Path| Origin::open(from, means.memory, &*means.comm);
+            let origin = from.map(open).transpose()?;
+            let assembled = Assembled::continuing(&source, origin.as_ref(), means, &mut tell)?;
             Run::begin(&source, assembled, folder)?
         };
         run.drive(deadline, cancel, &mut tell)

@@ -43,6 +43,7 @@ mod static_resume;
 mod stiffness;
 mod strength;
 mod stress;
+mod succession;
 mod thermal;
 mod tuned;
 mod wrong;

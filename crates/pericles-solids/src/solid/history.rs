@@ -65,7 +65,7 @@ saved! {
     impl Checkpointed for History {
         points: by(Laid::per_point("solid/points", start.len() - 1, points.len())),
         bonds: by(Laid::rows("solid/bonds", start, bonds.len())),
-        time: points("solid/time"),
+        time: times("solid/time"),
         size, start: fixed,
     }
 }

@@ -98,7 +98,7 @@ pub(super) fn inequality(case: &Case<'_>) -> Result<Found, RunError> {
     let mut inequality = EnergyInequality::new(1.0 / END);
     let start = StartEnergy {
         energy: body.operator().energy(0.0, &state.u),
-        scheme: 0.0,
+        ..StartEnergy::default()
     };
     let (mut t, mut energy) = (vec![0.0], vec![start.energy]);
     let mut bound = vec![inequality.bound(&Snapshot::new(&body, &state, start, 0.0))];

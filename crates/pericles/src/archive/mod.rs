@@ -49,6 +49,8 @@ pub struct Archive {
     pub(crate) arrays: BTreeMap<String, Values>,
     /// Layouts other than [`Layout::Shared`].
     pub(crate) layouts: BTreeMap<String, Layout>,
+    /// Arrays with times of the run.
+    pub(crate) times: BTreeSet<String>,
 }
 
 impl PartialEq for Archive {
@@ -108,11 +110,41 @@ impl Archive {
         let Self {
             arrays,
             mut layouts,
+            times,
         } = other;
+        let times = times.into_iter().map(|name| format!("{prefix}{name}"));
+        self.times.extend(times);
         for (name, values) in arrays {
             let layout = layouts.remove(&name).unwrap_or_default();
             self.put_as(format!("{prefix}{name}"), values, layout);
         }
+    }
+
+    /// Declares that an array has times of the run. A run that starts from the state of another one starts with its own.
+    pub fn mark_times(&mut self, name: impl Into<String>) {
+        self.times.insert(name.into());
+    }
+
+    /// Replaces arrays by those of the same name in another archive, except [times](Self::mark_times).
+    ///
+    /// # Errors
+    /// [`PericlesError::BadArchive`] if an array has another type or length there.
+    pub fn replace_by(&mut self, other: &Self) -> Result<()> {
+        for (name, values) in &mut self.arrays {
+            let Some(new) = other
+                .arrays
+                .get(name)
+                .filter(|_| !self.times.contains(name))
+            else {
+                continue;
+            };
+            if !new.is_like(values) {
+                return Err(missing(name));
+            }
+            check_length(name, new.len(), values.len())?;
+            values.clone_from(new);
+        }
+        Ok(())
     }
 
     /// Returns the layout of an array.

@@ -9,6 +9,7 @@
 /// |---|---|
 /// | `array("name")` | is an [`Entry`](crate::archive::Entry) stored in the array of this name; several fields share one array. The name is a format string with its arguments, which may use other fields |
 /// | `points("name")` | is an entry like that of `array`, a component-major vector on the own points of a body that may be divided among processes |
+/// | `times("name")` | is like that of `points`, and has times of the run: a run that starts from the state of another one starts with its own |
 /// | `by(storage)` | is saved by the expression `storage`, a [`Storage`](crate::archive::Storage), which may use other fields |
 /// | `part` | implements [`Checkpointed`](crate::Checkpointed) |
 /// | `under("name")` | implements [`SavedUnder`](crate::archive::SavedUnder) and is saved under this name |
@@ -213,6 +214,10 @@ macro_rules! saved {
     (@save $archive:ident [$($field:ident),+] points($($name:tt)*)) => {
         $crate::saved! { @put $archive [$($field),+] Points $($name)* }
     };
+    (@save $archive:ident [$($field:ident),+] times($($name:tt)*)) => {{
+        $crate::saved! { @put $archive [$($field),+] Points $($name)* }
+        $archive.mark_times(::std::fmt::format(::std::format_args!($($name)*)));
+    }};
     (@put $archive:ident [$($field:ident),+] $layout:ident $($name:tt)*) => {{
         let mut numbers = ::std::vec::Vec::with_capacity(0 $(+ $crate::archive::Entry::count($field))+);
         $($crate::archive::Entry::append_to($field, &mut numbers);)+
@@ -221,6 +226,9 @@ macro_rules! saved {
         $archive.put_as(name, $crate::archive::Number::values(numbers), layout);
     }};
     (@restore $archive:ident [$($field:ident),+] points($($name:tt)*)) => {
+        $crate::saved! { @restore $archive [$($field),+] array($($name)*) }
+    };
+    (@restore $archive:ident [$($field:ident),+] times($($name:tt)*)) => {
         $crate::saved! { @restore $archive [$($field),+] array($($name)*) }
     };
     (@restore $archive:ident [$($field:ident),+] array($($name:tt)*)) => {{

@@ -286,6 +286,24 @@ impl Archive {
         Ok(own)
     }
 
+    /// Returns the part of the archive of the whole body as [`Archive::part_of`], with those arrays of the template only
+    /// that `source` has. All processes must call it together.
+    ///
+    /// # Errors
+    /// As for [`Archive::part_of`], except for missing arrays.
+    pub fn available_part_of(
+        mut template: Self,
+        source: &mut dyn ArraySource,
+        domain: &Domain,
+    ) -> Result<Self> {
+        let outline = domain.is_first().then(|| source.outline());
+        let available = shared_outline(outline, domain);
+        let is_available = |name: &String| available.iter().any(|found| &found.name == name);
+        template.arrays.retain(|name, _| is_available(name));
+        template.layouts.retain(|name, _| is_available(name));
+        Self::part_of(&template, source, domain)
+    }
+
     /// Checks that the arrays of the whole body, of which divided ones have these lengths, are among the arrays of an outline.
     fn check_outline(&self, outline: &[ArrayOutline], lengths: &[(&String, usize)]) -> Result<()> {
         for (name, like) in &self.arrays {

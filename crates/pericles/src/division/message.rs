@@ -79,7 +79,7 @@ impl Values {
     }
 
     /// Returns whether both arrays have the same type.
-    pub(super) fn is_like(&self, other: &Self) -> bool {
+    pub(crate) fn is_like(&self, other: &Self) -> bool {
         std::mem::discriminant(self) == std::mem::discriminant(other)
     }
 

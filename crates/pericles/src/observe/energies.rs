@@ -17,7 +17,8 @@ pub struct Energies {
     pub bodies: f64,
     /// Work of loads, constraints, temperature changes and prescribed motions of rigid bodies since the start.
     pub work: f64,
-    /// Kinetic and stored energy at the start, including contact and rigid bodies.
+    /// Kinetic and stored energy at the start, including contact and rigid bodies, and energy that the body had dissipated
+    /// in an earlier run.
     pub initial: f64,
     /// Difference between the energy that the scheme conserves and kinetic + elastic energy, minus that difference
     /// at the start ([`crate::time::Integrator::energy_correction`]).
@@ -40,6 +41,8 @@ impl Energies {
 pub struct StartEnergy {
     /// Kinetic and elastic energy.
     pub energy: f64,
+    /// Energy that the body had dissipated in an earlier run.
+    pub dissipated: f64,
     /// Correction of the scheme.
     pub scheme: f64,
 }

@@ -325,7 +325,7 @@ impl<'a> Snapshot<'a> {
             contact_dissipated: self.system.contact_dissipated(),
             bodies: self.system.body_kinetic_energy(),
             work: self.system.ledger().work,
-            initial: self.start.energy,
+            initial: self.start.energy + self.start.dissipated,
             scheme: self.scheme - self.start.scheme,
         }
     }

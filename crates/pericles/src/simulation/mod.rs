@@ -126,6 +126,7 @@ impl Simulation {
         integrator.start(&mut system, &mut state);
         let start = StartEnergy {
             energy: system.mechanical_energy(state.t, &state.u, &state.v),
+            dissipated: system.operator().dissipated(),
             scheme: integrator.energy_correction(&system, &state, dt),
         };
         Ok(Self {

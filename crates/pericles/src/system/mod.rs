@@ -5,6 +5,7 @@ mod interactions;
 mod loading;
 mod secondary;
 mod stored;
+mod succession;
 mod supports;
 
 use std::sync::Arc;

@@ -91,10 +91,7 @@ fn interior_stress(made: &Made, strain: [f64; 3]) -> f64 {
         u: made.stretched(strain),
         ..State::of(&system)
     };
-    let start = pericles::observe::StartEnergy {
-        energy: 0.0,
-        scheme: 0.0,
-    };
+    let start = pericles::observe::StartEnergy::default();
     let snapshot = pericles::observe::Snapshot::new(&system, &state, start, 0.0);
     let centre = made.cloud.bounds();
     let middle = std::array::from_fn(|c| 0.5 * (centre[0][c] + centre[1][c]));

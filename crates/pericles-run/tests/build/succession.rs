@@ -1,0 +1,230 @@
+//! A run that starts from the state of another one continues it.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+
+use pericles::Values;
+use pericles::domain::{Alone, Comm, Threads};
+use pericles_deck::Deck;
+use pericles_io::{CheckpointFolder, OutputFolder};
+use pericles_run::{Assembled, Ending, Origin, Run, RunError, Source, shared_folder};
+
+use super::common::processes::{assert_same, drive, means};
+
+/// A notched plate that is torn and sheared at constant velocity; MATERIAL and REST are placeholders.
+const PLATE: &str = r#"
+body = { shape = "plate", size = [24, 12], spacing = 1, plane = "strain" }
+material = { density = 1, youngs_modulus = 10, horizon_ratio = 3, MATERIAL }
+sets = { bottom = { layer = { side = "-y", cells = 2 } }, top = { layer = { side = "+y", cells = 2 } } }
+crack = [{ segment = [[-1, 6], [8, 6]] }]
+constraint = [{ set = "bottom", displacement = [0, 0] }, { set = "top", velocity = [0.02, 0.05] }]
+REST
+"#;
+
+fn deck(material: &str, rest: &str, time: &str) -> String {
+    let deck = PLATE.replace("MATERIAL", material).replace("REST", rest);
+    format!("{deck}{time}")
+}
+
+fn run(
+    deck: &str,
+    folder: &Path,
+    from: Option<&Path>,
+    comm: Arc<dyn Comm>,
+) -> Result<Ending, RunError> {
+    let source = Source::of_deck(Deck::parse(deck, "deck.toml", &[])?, "deck.toml".into());
+    let means = means(comm);
+    let open = |from: &Path| Origin::open(from, means.memory, &*means.comm);
+    let origin = from.map(open).transpose()?;
+    let assembled = Assembled::continuing(&source, origin.as_ref(), &means, &mut |_| {})?;
+    let create = || Ok::<_, RunError>(OutputFolder::create(folder, false)?);
+    let folder = shared_folder(&*means.comm, create)?;
+    drive(Run::begin(&source, assembled, folder)?, None)
+}
+
+fn alone(deck: &str, folder: &Path, from: Option<&Path>) {
+    let ending = run(deck, folder, from, Arc::new(Alone));
+    assert_eq!(
+        ending.unwrap_or_else(|error| panic!("{error}\n{deck}")),
+        Ending::Finished
+    );
+}
+
+/// Returns the arrays of the last state.
+fn last(folder: &Path) -> BTreeMap<String, Values> {
+    let checkpoints = CheckpointFolder::new(folder.join("checkpoints"));
+    let container = checkpoints.latest_valid(u64::MAX).unwrap().container;
+    container.into_archive().unwrap().1.into_arrays()
+}
+
+/// Returns the largest difference of two arrays relative to their largest number.
+fn difference(a: &Values, b: &Values) -> f64 {
+    match (a, b) {
+        (Values::F64(a), Values::F64(b)) => {
+            assert_eq!(a.len(), b.len());
+            let scale = a.iter().chain(b).fold(0.0_f64, |most, x| most.max(x.abs()));
+            let pairs = a.iter().zip(b).filter(|(a, b)| a != b);
+            pairs.fold(0.0, |most, (a, b)| f64::max(most, (a - b).abs() / scale))
+        }
+        _ => f64::from(u8::from(a != b)),
+    }
+}
+
+/// Compares a run of 4 with two runs of 2, the second from the state of the first.
+fn check(material: &str, rest: &str, compared: &[&str]) {
+    let place = tempfile::tempdir().unwrap();
+    let [whole, first, second] = ["whole", "first", "second"].map(|name| place.path().join(name));
+    let time = |end: u32| {
+        deck(
+            material,
+            rest,
+            &format!("time = {{ end = {end}, dt = 0.05 }}"),
+        )
+    };
+    alone(&time(4), &whole, None);
+    alone(&time(2), &first, None);
+    alone(&time(2), &second, Some(&first));
+    let (whole, first, second) = (last(&whole), last(&first), last(&second));
+    for name in ["state/u", "state/v"].iter().chain(compared) {
+        let name = *name;
+        assert!(whole.contains_key(name), "{name}: {:?}", whole.keys());
+        let error = difference(&whole[name], &second[name]);
+        // Accelerations at the start are added up in another order than those at the end of a step.
+        assert!(error < 1e-12, "{name}: {error:e}\n{material}");
+        assert!(
+            difference(&first[name], &second[name]) > 0.0,
+            "{name} stays\n{material}"
+        );
+    }
+}
+
+#[test]
+fn two_runs_equal_one_for_every_state_of_a_body() {
+    let plastic = "poisson_ratio = 0.3, yield_stress = 0.05, hardening = 1";
+    for (material, compared) in [
+        ("model = \"linear\", bonds = \"grid\"".into(), &[][..]),
+        ("critical_stretch = 0.02, bonds = \"grid\"".into(), &["operator/grid/bonds"]),
+        ("critical_stretch = 0.02, bonds = \"list\"".into(), &["operator/intact"]),
+        (
+            "critical_stretch = 0.08, softening = { law = \"linear\", onset_stretch = 0.005 }".into(),
+            &["softening/largest"],
+        ),
+        (
+            "model = \"state-based\", poisson_ratio = 0.3, viscosity = [{ share = 0.7, time = 0.2 }]".into(),
+            &["solid/bonds"],
+        ),
+        (format!("model = \"state-based\", critical_stretch = 0.03, {plastic}"), &["solid/bonds"]),
+        (format!("model = \"correspondence\", {plastic}"), &["solid/points"]),
+    ] {
+        check(&material, "", compared);
+    }
+}
+
+#[test]
+fn the_temperature_is_handed_over() {
+    let heat = "thermal = { conductivity = 2, specific_heat = 1, expansion = 1e-4, temperature = 300, reference = 280, condition = [{ set = \"bottom\", temperature = 400 }] }";
+    for material in [
+        "model = \"linear\"",
+        "critical_stretch = 0.02",
+        "model = \"state-based\", poisson_ratio = 0.3",
+    ] {
+        check(material, heat, &["temperature/to"]);
+    }
+    // The first run ends within a thermal step, where the temperature is interpolated.
+    let place = tempfile::tempdir().unwrap();
+    let [first, second] = ["first", "second"].map(|name| place.path().join(name));
+    let heat = heat.replace(
+        "conductivity",
+        "step = 0.4, scheme = \"backward-euler\", conductivity",
+    );
+    let end = |end: f64| {
+        deck(
+            "model = \"linear\"",
+            &heat,
+            &format!("time = {{ end = {end}, dt = 0.05 }}"),
+        )
+    };
+    alone(&end(1.0), &first, None);
+    alone(&end(0.05), &second, Some(&first));
+    let ends = last(&first);
+    let [Values::F64(from), Values::F64(to)] =
+        ["from", "to"].map(|one| ends[&format!("temperature/{one}")].clone())
+    else {
+        panic!("{:?}", ends.keys())
+    };
+    let middle: Vec<f64> = from.iter().zip(&to).map(|(a, b)| 0.5 * (a + b)).collect();
+    assert!(difference(&Values::F64(middle), &last(&second)["temperature/from"]) < 1e-14);
+}
+
+/// The state of a run on some processes is handed over to others.
+#[test]
+fn the_number_of_processes_does_not_matter() {
+    let place = tempfile::tempdir().unwrap();
+    let rest = "output = { history = { every = 1 } }";
+    let deck = deck(
+        "model = \"state-based\", poisson_ratio = 0.3, viscosity = [{ share = 0.7, time = 0.2 }], critical_stretch = 0.03",
+        rest,
+        "time = { end = 2, dt = 0.05 }",
+    );
+    let [first, second] = [1, 2].map(|k| place.path().join(format!("alone-{k}")));
+    alone(&deck, &first, None);
+    alone(&deck, &second, Some(&first));
+    for size in [2, 3] {
+        let [a, b] = [1, 2].map(|k| place.path().join(format!("{size}-{k}")));
+        for (folder, from) in [(&a, None), (&b, Some(&first))] {
+            for ending in Threads::run(size, |comm| {
+                run(&deck, folder, from.map(|p| p.as_path()), comm)
+            }) {
+                assert_eq!(ending.unwrap(), Ending::Finished);
+            }
+        }
+        assert_same(&a, &first, "the first run");
+        assert_same(&b, &second, "the second run");
+    }
+}
+
+/// Returns the message with which a deck rejects the state of a run of another one.
+fn message(first: &str, second: &str) -> String {
+    let place = tempfile::tempdir().unwrap();
+    let [a, b] = [1, 2].map(|k| place.path().join(k.to_string()));
+    alone(first, &a, None);
+    let error = run(second, &b, Some(&a), Arc::new(Alone)).unwrap_err();
+    assert!(!b.exists());
+    error.to_string()
+}
+
+#[test]
+fn states_of_other_bodies_are_rejected() {
+    let time = "time = { end = 0.1, dt = 0.05 }";
+    let brittle = deck("critical_stretch = 0.02", "", time);
+    let softening =
+        "critical_stretch = 0.08, softening = { law = \"linear\", onset_stretch = 0.005 }";
+    let softening = deck(softening, "", time);
+    let elastic = deck("model = \"bond-stretch\"", "", time);
+    for (first, second, expected) in [
+        (
+            &brittle,
+            brittle.replace("[24, 12]", "[24, 13]"),
+            "its points are others",
+        ),
+        (
+            &brittle,
+            brittle.replace("[8, 6]", "[9, 6]"),
+            "both decks must have the same [[crack]]s",
+        ),
+        (
+            &softening,
+            brittle.clone(),
+            "\"softening/largest\" has no place",
+        ),
+    ] {
+        let message = message(first, &second);
+        assert!(message.contains(expected), "{message}");
+    }
+    // Bonds that could not break are intact.
+    let place = tempfile::tempdir().unwrap();
+    let [a, b] = [1, 2].map(|k| place.path().join(k.to_string()));
+    alone(&elastic, &a, None);
+    alone(&brittle, &b, Some(&a));
+}
