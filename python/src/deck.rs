@@ -1,6 +1,7 @@
 //! Decks.
 
 use pericles_run::Source;
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::errors;
@@ -28,8 +29,14 @@ impl Deck {
     #[pyo3(signature = (text, name, overrides, sets))]
     fn parse(text: &str, name: &str, overrides: Vec<String>, sets: Vec<String>) -> PyResult<Self> {
         let deck = pericles_deck::Deck::parse_with_sets(text, name, &overrides, &sets);
+        let deck = deck.map_err(errors::of_deck)?;
+        if !deck.steps().is_empty() {
+            return Err(PyValueError::new_err(format!(
+                "{name}: a deck with [[step]] has several runs; run it with `pericles run {name}` and open its results"
+            )));
+        }
         Ok(Self {
-            source: Source::of_deck(deck.map_err(errors::of_deck)?, name.to_owned()),
+            source: Source::of_deck(deck, name.to_owned()),
         })
     }
 

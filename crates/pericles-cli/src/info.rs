@@ -44,6 +44,7 @@ pub(crate) fn info(args: &InfoArgs) -> Result<Exit, CliError> {
 /// The folder has damaged files.
 pub(crate) fn lines(results: &Results) -> Result<Vec<(&'static str, String)>, CliError> {
     let mut lines = vec![("status", status(results))];
+    lines.extend(steps(results).into_iter().map(|step| ("step", step)));
     lines.extend(origin(results));
     lines.push(("fields", fields(results)?));
     for table in results.tables() {
@@ -65,6 +66,28 @@ pub(crate) fn lines(results: &Results) -> Result<Vec<(&'static str, String)>, Cl
     }
     lines.extend(audit(results));
     Ok(lines)
+}
+
+/// Describes the steps of a run of several steps.
+fn steps(results: &Results) -> Vec<String> {
+    let list = results.value("/steps").and_then(|list| list.as_array());
+    let described = list.into_iter().flatten().map(|step| {
+        let name = step["name"].as_str().unwrap_or_default();
+        let (Some(status), Some(start), Some(duration)) = (
+            step["status"].as_str(),
+            step["start"].as_f64(),
+            step["duration"].as_f64(),
+        ) else {
+            return format!("{name}: not started");
+        };
+        let scheme = step["scheme"].as_str().unwrap_or_default();
+        let times = [start, start + duration].map(|t| quantity(t, "s"));
+        format!(
+            "{name}: {status}; {scheme}, t = {} to {}",
+            times[0], times[1]
+        )
+    });
+    described.collect()
 }
 
 /// Describes a sweep: deck, keys and the table of its runs.

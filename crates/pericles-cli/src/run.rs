@@ -1,8 +1,11 @@
 //! `run` and `resume`: run a simulation in its output folder until its end, a signal or the time limit.
 
+use pericles_run::sequence::{Sequence, is_sequence};
 use pericles_run::sweep::is_sweep;
 use pericles_run::units::{count, quantity};
-use pericles_run::{Assembled, Deadline, Means, Results, Run, Source, shared_folder};
+use pericles_run::{
+    Assembled, Deadline, Means, Results, Run, RunError, Source, SourceRecord, shared_folder,
+};
 
 use crate::args::{ResumeArgs, RunArgs};
 use crate::charts;
@@ -36,6 +39,7 @@ pub(crate) fn run(args: &RunArgs, processes: &Processes) -> Result<Exit, CliErro
     if !quiet && processes.is_first() {
         console::note(format_args!("{file}: building the model"));
     }
+    let has_steps = !deck.steps().is_empty();
     let source = Source::of_deck(deck, file);
     // The folder is created only after the deck has been validated.
     let mut screen = Screen::shared(quiet, processes.is_first());
@@ -44,6 +48,14 @@ pub(crate) fn run(args: &RunArgs, processes: &Processes) -> Result<Exit, CliErro
         memory: processes.memory(&args.options.limits.memory),
         ..args.options.means()
     };
+    if let (true, SourceRecord::Deck(text)) = (has_steps, source.record()) {
+        Sequence::check(&text, &means, &mut |event| screen.show(event))?;
+        let folder = shared_folder(&*means.comm, || {
+            output_folder(args.out.as_deref(), Some(args.force), &args.deck, "")
+        })?;
+        let sequence = Sequence::begin(text, args.origin.from.clone(), folder, &means)?;
+        return drive_steps(&sequence, &means, deadline, (quiet, args.chart), processes);
+    }
     let origin = args.origin.open(&means)?;
     let assembled = Assembled::continuing(&source, origin.as_ref(), &means, &mut |event| {
         screen.show(event);
@@ -74,6 +86,14 @@ pub(crate) fn resume(args: &ResumeArgs, processes: &Processes) -> Result<Exit, C
         memory: processes.memory(&args.options.limits.memory),
         ..args.options.means()
     };
+    if is_sequence(&args.dir) {
+        if !args.set.is_empty() {
+            let reason = "it has several steps; give the folder of its last step".into();
+            return Err(RunError::NotExtended { reason }.into());
+        }
+        let sequence = Sequence::open(&args.dir, &means)?;
+        return drive_steps(&sequence, &means, deadline, (quiet, args.chart), processes);
+    }
     let Some(run) = Run::extend(&args.dir, &args.set, &means, &mut |event| {
         screen.show(event);
     })?
@@ -97,6 +117,39 @@ pub(crate) fn resume(args: &ResumeArgs, processes: &Processes) -> Result<Exit, C
         ));
     }
     drive(run, deadline, (quiet, args.chart), processes)
+}
+
+/// Drives the steps that have not finished.
+///
+/// # Errors
+/// Those of [`drive`].
+fn drive_steps(
+    sequence: &Sequence,
+    means: &Means,
+    deadline: Option<Deadline>,
+    (quiet, chart): (bool, bool),
+    processes: &Processes,
+) -> Result<Exit, CliError> {
+    let shows = !quiet && processes.is_first();
+    let mut screen = Screen::shared(quiet, processes.is_first());
+    while let Some((number, run)) = sequence.next(means, &mut |event| screen.show(event))? {
+        if shows {
+            let (name, count) = (&sequence.names()[number], sequence.names().len());
+            console::note(format_args!("step {} of {count}: {name}", number + 1));
+        }
+        let exit = drive(run, deadline.clone(), (quiet, chart), processes)?;
+        if exit != Exit::Done {
+            return Ok(exit);
+        }
+    }
+    if shows {
+        let folder = sequence.folder().display();
+        console::print(format_args!(
+            "All {} steps have finished; results on one time line in {folder}",
+            sequence.names().len()
+        ))?;
+    }
+    Ok(Exit::Done)
 }
 
 /// Drives a run to its end, a signal or the deadline, and prints a summary.

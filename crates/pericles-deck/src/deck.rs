@@ -29,6 +29,7 @@ use crate::remark::{BuildError, Remark};
 use crate::scope::Scope;
 use crate::set::{self, SetNames};
 use crate::source::Sources;
+use crate::step;
 use crate::subject::Subject;
 use crate::surface::{Geodesics, SurfaceBody, SurfaceMaterial, SurfaceScope};
 use crate::thermal::{Thermal, ThermalScope};
@@ -40,12 +41,16 @@ pub struct Deck {
     /// The model, as plain data.
     pub model: Model,
     record: Record,
+    /// Names of the steps.
+    pub(crate) steps: Vec<String>,
 }
 
 /// The document of a deck with its overrides.
 pub(crate) struct Document {
     pub(crate) root: Node,
     pub(crate) sources: Sources,
+    /// Names of the steps.
+    pub(crate) steps: Vec<String>,
 }
 
 impl Deck {
@@ -74,6 +79,7 @@ impl Deck {
                 let deck = Self {
                     model,
                     record: closed.record,
+                    steps: Vec::new(),
                 };
                 Ok((deck, closed.survey))
             }
@@ -89,6 +95,11 @@ impl Deck {
     /// Returns whether the deck or an override sets a key such as `material.modulus`.
     pub fn gives(&self, key: &str) -> bool {
         self.record.is_given(&key.into())
+    }
+
+    /// Returns the names of the steps; empty for a deck without `[[step]]`.
+    pub fn steps(&self) -> &[String] {
+        &self.steps
     }
 
     /// Returns the text, without overrides.
@@ -243,14 +254,31 @@ fn model(root: Table<'_>, further: &[String]) -> Option<Model> {
 }
 
 impl Document {
+    /// Reads a document; of a deck with steps, the first one.
     pub(crate) fn of(text: &str, file_name: &str, overrides: &[String]) -> Result<Self, DeckError> {
+        Self::of_step(text, file_name, overrides, 0)
+    }
+
+    /// Reads the document of a step.
+    pub(crate) fn of_step(
+        text: &str,
+        file_name: &str,
+        overrides: &[String],
+        number: usize,
+    ) -> Result<Self, DeckError> {
         let mut sources = Sources::new(file_name, text);
         let mut root = document::parse(&sources)?;
         for text in overrides {
             overrides::apply(&mut root, text, &mut sources)?;
         }
+        let steps = step::names(&root, &sources)?;
+        step::select(&mut root, number, &sources)?;
         inherit(&mut root);
-        Ok(Self { root, sources })
+        Ok(Self {
+            root,
+            sources,
+            steps,
+        })
     }
 }
 

@@ -123,6 +123,7 @@ mod set;
 mod source;
 mod state_based;
 mod statics;
+mod step;
 mod stop;
 mod subject;
 mod surface;

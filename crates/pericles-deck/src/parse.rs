@@ -21,7 +21,8 @@ impl Deck {
         Self::parse(&text, &path.display().to_string(), overrides)
     }
 
-    /// Reads a deck from a text; `file_name` is used in messages.
+    /// Reads a deck from a text; `file_name` is used in messages. All steps of a deck with `[[step]]` are read, and the
+    /// first one is returned; [`Deck::parse_step`] returns others.
     ///
     /// # Errors
     /// The text has errors; all errors are reported.
@@ -55,9 +56,28 @@ impl Deck {
         overrides: &[String],
         sets: &[String],
     ) -> Result<Self, DeckError> {
-        let document = Document::of(text, file_name, overrides)?;
+        let deck = Self::parse_step(text, file_name, overrides, sets, 0)?;
+        for number in 1..deck.steps.len() {
+            Self::parse_step(text, file_name, overrides, sets, number)?;
+        }
+        Ok(deck)
+    }
+
+    /// Reads a step of a deck, numbered from zero, as a deck of its own; a deck without steps is its first step.
+    ///
+    /// # Errors
+    /// The text has errors in this step; all errors are reported.
+    pub fn parse_step(
+        text: &str,
+        file_name: &str,
+        overrides: &[String],
+        sets: &[String],
+        number: usize,
+    ) -> Result<Self, DeckError> {
+        let document = Document::of_step(text, file_name, overrides, number)?;
         let ledger = Ledger::new(document.sources, home_of);
-        let (deck, _) = Self::read_with(ledger, &document.root, sets)?;
+        let (mut deck, _) = Self::read_with(ledger, &document.root, sets)?;
+        deck.steps = document.steps;
         deck.reject_unstable_table()?;
         Ok(deck)
     }

@@ -56,6 +56,11 @@ const BODY: &str =
 
 #[rustfmt::skip]
 const WRONG: &[Wrong] = &[
+    // Steps.
+    wrong("[output]", "[[step]]\nmaterial = { density = 1 }\n[output]", (38, 1), "material", &["unknown key `material` in [[step]]", "`time`, `initial`, `constraint`"]),
+    wrong("[output]", "[[step]]\nname = \"a/b\"\n[output]", (38, 8), "\"a/b\"", &["\"a/b\"", "letters, digits, - and _"]),
+    wrong("[output]", "[step]\nname = \"a\"\n[output]", (37, 2), "step", &["expected a list of tables, found a table"]),
+    wrong("[output]", "[[step]]\n[[step.load]]\nset = \"botom\"\ntraction = [0, 1]\n[output]", (39, 7), "\"botom\"", &["botom"]),
     // Keys.
     wrong("spacing =", "spaceing =", (6, 1), "spaceing", &["unknown key `spaceing` in [body]", "did you mean `spacing`?", "`piece`, `shape`, `spacing`, `size`, `origin`, `thickness`, `plane`, `hole`, `refine`, `positions` and `periodic`"]),
     wrong("[time]", "[tme]", (33, 2), "tme", &["unknown key `tme` in the deck", "did you mean `time`?"]),

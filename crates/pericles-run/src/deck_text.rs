@@ -15,6 +15,9 @@ pub struct DeckText {
     pub source: String,
     /// The overrides, `key=value`.
     pub overrides: Vec<String>,
+    /// The step that is run, numbered from zero, of a deck with `[[step]]`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub step: Option<usize>,
     /// The input files of the deck.
     #[serde(default, skip_serializing_if = "Inputs::is_empty")]
     pub inputs: Inputs,
@@ -32,8 +35,28 @@ impl DeckText {
             file,
             source: deck.source().to_owned(),
             overrides: deck.overrides().map(str::to_owned).collect(),
+            step: None,
             amended: Vec::new(),
         }
+    }
+
+    /// Returns the texts of the steps of the deck; of a deck without steps, the deck itself.
+    ///
+    /// # Errors
+    /// The deck has errors.
+    pub fn steps(&self) -> Result<Vec<Self>, RunError> {
+        let count = self.read()?.steps().len();
+        if count == 0 || self.step.is_some() {
+            return Ok(vec![self.clone()]);
+        }
+        let step = |number: usize| {
+            let mut text = self.clone();
+            text.step = Some(number);
+            let deck = text.read()?;
+            text.inputs = Inputs::of(&deck.model, deck.folder());
+            Ok(text)
+        };
+        (0..count).map(step).collect()
     }
 
     /// Reads the deck again, independent of the current folder.
@@ -47,7 +70,10 @@ impl DeckText {
             });
         }
         let file = self.inputs.located(&self.file);
-        let deck = Deck::parse(&self.source, &file, &self.overrides)?;
+        let deck = match self.step {
+            Some(step) => Deck::parse_step(&self.source, &file, &self.overrides, &[], step),
+            None => Deck::parse(&self.source, &file, &self.overrides),
+        }?;
         self.inputs.check(deck.folder())?;
         Ok(deck)
     }

@@ -11,6 +11,7 @@
 //! * [`Run`] – a run with its output folder: [`begin`](Run::begin), or [`resume`](Run::resume) from the last
 //!   checkpoint, then [`drive`](Run::drive) with a callback for [`Event`]s, a [`Cancel`] token and a [`Deadline`]. It
 //!   writes the output of the model, checkpoints, and [`Report`] as `run.json`.
+//! * [`sequence`] – runs of several steps.
 //! * [`Results`] – reads the results of a run from its folder.
 //! * [`sweep`] – parameter sweeps; [`convergence`] – convergence studies.
 //! * [`Vibration`] – natural modes of a body as table, fields and pictures.
@@ -80,6 +81,7 @@ mod report;
 mod results;
 mod run;
 mod scalar;
+pub mod sequence;
 mod sets_picture;
 mod sharing;
 mod signals;

@@ -16,7 +16,9 @@ use pericles_run::refinement::{Comparison, LONGEST, seconds_per_step};
 use pericles_run::units::{
     bytes, count, duration, frequency, percent, quantity, significant, threads,
 };
-use pericles_run::{Assembled, Assembly, Facts, Means, Source, draw_sets};
+use pericles_run::{
+    Assembled, Assembly, DeckText, Facts, Means, Origin, Source, SourceRecord, draw_sets,
+};
 use rayon::prelude::*;
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -44,11 +46,57 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
         memory: args.memory.bytes(),
         ..Means::default()
     };
-    let source = Source::of_deck(deck, args.deck.display().to_string());
+    let mut results = Vec::new();
+    if deck.steps().is_empty() {
+        let source = Source::of_deck(deck, args.deck.display().to_string());
+        let origin = args.origin.open(&means)?;
+        let checked = check_source(
+            args,
+            &source,
+            origin.as_ref(),
+            (&means, count_of_threads),
+            "",
+        )?;
+        results.push(checked);
+    } else {
+        let names = deck.steps().to_vec();
+        let text = DeckText::of(&deck, args.deck.display().to_string());
+        for (step, name) in text.steps()?.into_iter().zip(names) {
+            // Later steps are checked from the state of the deck; the state at their start is not known.
+            let origin = match results.is_empty() {
+                true => args.origin.open(&means)?,
+                false => None,
+            };
+            let source = SourceRecord::Deck(step).read()?;
+            let label = format!(", step {name}");
+            let with = (&means, count_of_threads);
+            results.push(check_source(args, &source, origin.as_ref(), with, &label)?);
+        }
+    }
+    if let Some(path) = &args.json {
+        let results = match <[Value; 1]>::try_from(results) {
+            Ok([result]) => result,
+            Err(steps) => json!({ "deck": args.deck.display().to_string(), "steps": steps }),
+        };
+        console::write_json(path, &results)?;
+    }
+    Ok(Exit::Done)
+}
+
+/// Checks a deck without steps, or one of its steps, and returns its values; null if they are not wanted.
+///
+/// # Errors
+/// The deck is invalid.
+fn check_source(
+    args: &CheckArgs,
+    source: &Source,
+    origin: Option<&Origin>,
+    (means, count_of_threads): (&Means, usize),
+    label: &str,
+) -> Result<Value, CliError> {
     let mut screen = Screen::new(false);
-    let origin = args.origin.open(&means)?;
     let Assembled { assembly, facts } =
-        Assembled::continuing(&source, origin.as_ref(), &means, &mut |event| {
+        Assembled::continuing(source, origin, means, &mut |event| {
             screen.show(event);
         })?;
     for warning in &facts.warnings {
@@ -100,7 +148,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
         let waves = open.reflection.iter();
         lines.extend(waves.map(|waves| Line::new("reflection", waves.line())));
     }
-    let divided = ranks::forecasts(&source, &assembly, &args.ranks)?;
+    let divided = ranks::forecasts(source, &assembly, &args.ranks)?;
     let mut cost = None;
     if model.time.scheme.is_static() {
         // A step leads from one static state to the next: timing one would be the whole run.
@@ -112,19 +160,18 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
         cost = Some(found);
     }
     lines.extend(ranks::lines(&divided, cost));
-    if let Some(path) = &args.json {
-        let results = json_of(&args.deck, model, &facts, &lines)?;
-        console::write_json(path, &results)?;
-    }
     if args.json.as_deref() != Some(Path::new("-")) {
         let title = model.title.as_deref().unwrap_or("no title");
-        let mut text = format!("{}: {title}", args.deck.display());
+        let mut text = format!("{}{label}: {title}", args.deck.display());
         for line in &lines {
             text += &format!("\n  {line}");
         }
         console::print(format_args!("{text}"))?;
     }
-    Ok(Exit::Done)
+    match args.json {
+        Some(_) => json_of(&args.deck, model, &facts, &lines),
+        None => Ok(Value::Null),
+    }
 }
 
 /// Returns all values in SI units: the facts under their keys in `model` of `run.json`, and the values of the lines.

@@ -79,6 +79,21 @@ fn branching() {
     }
 }
 
+/// After the release the end moves with the velocity σ/(ρ c) until the wave from the support arrives.
+#[test]
+fn released_bar() {
+    let (_place, out) = check("statics", "released-bar");
+    let steps = &report(&out)["steps"];
+    assert_eq!(steps[0]["name"], "1-stretch");
+    assert_eq!(steps[1]["start"], 1.0);
+    let probes = table(&out, "probes.csv");
+    let [time, velocity] = ["time", "end_v_x"].map(|name| probes.column(name).unwrap());
+    let speed = 200e6 / (7850.0 * f64::sqrt(200e9 / 7850.0));
+    let within = (0..time.len()).filter(|&k| (1.00006..1.00036).contains(&time[k]));
+    let deviation = within.map(|k| (velocity[k] / -speed - 1.0).abs());
+    assert!(deviation.fold(0.0, f64::max) < 0.01);
+}
+
 #[test]
 fn cooling_bar() {
     let (_place, out) = check("heat", "cooling-bar");

@@ -6,12 +6,14 @@ use super::{Schema, names};
 use crate::quantity::Quantity;
 use crate::range::POSITIVE_WORDS;
 use crate::reader::{Form, below};
+use crate::step::add_to_schema;
 
 /// Regular expression of a decimal number without sign and with an optional unit.
 const DIGITS: &str = r"(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?(\s*[^\s\d,].*)?\s*$";
 
 pub(super) fn document(schema: &Schema) -> Json {
     let mut root = schema.table("");
+    add_to_schema(&mut root);
     let mut definitions = Map::new();
     for (quantity, positive) in schema.quantities() {
         definitions.insert(title(quantity, positive), number(quantity, positive));

@@ -5,6 +5,7 @@ use serde_json::Value as Json;
 use super::{Schema, names};
 use crate::range::POSITIVE_WORDS;
 use crate::reader::{Form, TableSurvey, below};
+use crate::step;
 
 pub(super) fn document(schema: &Schema) -> String {
     let mut page = Page {
@@ -15,6 +16,7 @@ pub(super) fn document(schema: &Schema) -> String {
         ),
     };
     page.section("");
+    page.text += &step::reference();
     page.text += "\n## Shared forms\n\nForms of values shared by several keys.\n";
     for name in schema.survey.definitions() {
         // Tables of the deck have a section above.

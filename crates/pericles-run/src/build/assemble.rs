@@ -93,7 +93,8 @@ pub fn assemble(
     }
     let areas = assembler.add_loads(&mut system, place, &mut warnings)?;
     discretisation.conditions.add_loads(&mut system)?;
-    assembler.add_motions(&mut system, place, &state)?;
+    let continues = resources.origin.is_some();
+    assembler.add_motions(&mut system, place, &state, continues)?;
     discretisation.conditions.add_motions(&mut system)?;
     assembler.check_conditions(&system, cloud, &mut warnings);
     warnings.extend(assembler.check_idle_keys(&system));

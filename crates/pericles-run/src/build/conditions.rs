@@ -10,6 +10,7 @@ use pericles::time::State;
 use pericles::{PericlesError, System};
 use pericles_deck::{
     BuildError, Caution, Fault, KeyPath, ModelWarning, ProbePlace, RandomVelocity, Remark,
+    TimeHistory,
 };
 
 use super::assembler::Assembler;
@@ -145,8 +146,15 @@ impl Assembler<'_> {
         system: &mut System,
         discretisation: &Discretisation,
         state: &State,
+        continues: bool,
     ) -> Result<(), BuildError> {
         let Discretisation { cloud, sets, .. } = discretisation;
+        // The time function of static loads and displacements that the deck does not give.
+        let usual = TimeHistory::Ramp {
+            start: 0.0,
+            duration: self.model.time.end,
+        };
+        let rises = continues && self.model.time.scheme.is_static();
         let mut names: Vec<String> = Vec::new();
         for (k, motion) in self.model.constraints.iter().enumerate() {
             // Several motions of one set (along different axes) need distinct names in tables.
@@ -174,6 +182,9 @@ impl Assembler<'_> {
                 );
                 let mut prescribed = prescribed.map_err(|error| at(&path, error))?;
                 prescribed.until = motion.until;
+                if rises && motion.function == usual {
+                    prescribed = prescribed.rising_from(&state.u, system.points());
+                }
                 let added = system.add_motion(prescribed);
                 added.map_err(|error| match error {
                     PericlesError::PrescribedTwice {

@@ -82,6 +82,7 @@ mod tests {
                 file: "a.toml".into(),
                 source: String::new(),
                 overrides: vec!["time.end=1".into()],
+                step: None,
                 inputs: Inputs::default(),
                 amended: Vec::new(),
             },

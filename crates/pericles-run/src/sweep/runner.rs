@@ -19,6 +19,7 @@ use crate::error::RunError;
 use crate::event::Event;
 use crate::origin::Origin;
 use crate::run::{Ending, Run};
+use crate::sequence::{Sequence, is_sequence};
 use crate::source::SourceRecord;
 
 /// A sweep whose decks are valid, before its folder is created.
@@ -212,6 +213,23 @@ fn run_member(
         }
     };
     pool.install(|| {
+        if is_sequence(path) || !member.deck.read()?.steps().is_empty() {
+            let sequence = match is_sequence(path) {
+                true => Sequence::open(path, means)?,
+                false => {
+                    let folder = OutputFolder::create(path, path.exists())?;
+                    let from = from.map(Path::to_path_buf);
+                    Sequence::begin(member.deck.clone(), from, folder, means)?
+                }
+            };
+            while let Some((_, mut run)) = sequence.next(means, &mut tell)? {
+                match run.drive(deadline.clone(), cancel, &mut tell)? {
+                    Ending::Finished => {}
+                    ending => return Ok(ending),
+                }
+            }
+            return Ok(Ending::Finished);
+        }
         let mut run = if path.join("checkpoints").is_dir() {
             match Run::resume(path, means, &mut tell)? {
                 Some(run) => run,

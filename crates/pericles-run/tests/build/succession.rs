@@ -7,8 +7,11 @@ use std::sync::Arc;
 use pericles::Values;
 use pericles::domain::{Alone, Comm, Threads};
 use pericles_deck::Deck;
-use pericles_io::{CheckpointFolder, OutputFolder};
-use pericles_run::{Assembled, Ending, Origin, Run, RunError, Source, shared_folder};
+use pericles_io::{CheckpointFolder, CsvData, OutputFolder, read_csv};
+use pericles_run::sequence::{Sequence, is_sequence};
+use pericles_run::{
+    Assembled, DeckText, Ending, Origin, Results, Run, RunError, Source, shared_folder,
+};
 
 use super::common::processes::{assert_same, drive, means};
 
@@ -227,4 +230,140 @@ fn states_of_other_bodies_are_rejected() {
     let [a, b] = [1, 2].map(|k| place.path().join(k.to_string()));
     alone(&elastic, &a, None);
     alone(&brittle, &b, Some(&a));
+}
+
+/// Runs the steps of a deck, at most to the given step number of the last one.
+fn run_steps(deck: &str, folder: &Path, comm: Arc<dyn Comm>, stop: Option<u64>) {
+    let means = means(comm);
+    let deck = Deck::parse(deck, "deck.toml", &[]).unwrap_or_else(|error| panic!("{error}"));
+    let text = DeckText::of(&deck, "deck.toml".into());
+    let sequence = match is_sequence(folder) {
+        true => Sequence::open(folder, &means).unwrap(),
+        false => {
+            Sequence::check(&text, &means, &mut |_| {}).unwrap();
+            let create = || Ok::<_, RunError>(OutputFolder::create(folder, false)?);
+            let created = shared_folder(&*means.comm, create).unwrap();
+            Sequence::begin(text, None, created, &means).unwrap()
+        }
+    };
+    let last = sequence.names().len() - 1;
+    while let Some((number, run)) = sequence.next(&means, &mut |_| {}).unwrap() {
+        if drive(run, stop.filter(|_| number == last)).unwrap() != Ending::Finished {
+            return;
+        }
+    }
+}
+
+const BRITTLE: &str = "critical_stretch = 0.02";
+const STEPS: &str = r#"
+[time]
+dt = 0.05
+end = 2
+[output]
+history = { every = 2 }
+fields = { count = 2 }
+[[step]]
+name = "tear"
+[[step]]
+[[step.constraint]]
+set = "bottom"
+displacement = [0, 0]
+"#;
+
+#[test]
+fn steps_equal_runs_that_start_from_each_other() {
+    let place = tempfile::tempdir().unwrap();
+    let [steps, first, second] = ["steps", "first", "second"].map(|name| place.path().join(name));
+    let both = deck(BRITTLE, "", STEPS);
+    run_steps(&both, &steps, Arc::new(Alone), None);
+    let (tables, _) = both.split_once("[[step]]").unwrap();
+    let held = "{ set = \"top\", velocity = [0.02, 0.05] }";
+    alone(tables, &first, None);
+    alone(&tables.replace(held, ""), &second, Some(&first));
+    for (step, run) in [("1-tear", &first), ("2", &second)] {
+        assert_eq!(last(&steps.join(step)), last(run), "{step}");
+    }
+
+    let table = |folder: &Path| read_csv(folder.join("history.csv")).unwrap();
+    let (all, parts) = (table(&steps), [&first, &second].map(|folder| table(folder)));
+    let column = |table: &CsvData, name: &str| table.column(name).unwrap().to_vec();
+    let times = column(&all, "time");
+    assert!(times.is_sorted_by(|a, b| a < b) && times.last() == Some(&4.0));
+    let broken = [&parts[0], &parts[1]].map(|part| column(part, "broken_bonds"));
+    assert_eq!(
+        column(&all, "broken_bonds"),
+        [&broken[0][..], &broken[1][1..]].concat()
+    );
+    // The work of the first step stays in the balance.
+    let work = column(&all, "external_work");
+    let initial = column(&parts[1], "elastic_energy")[0] + column(&parts[1], "kinetic_energy")[0];
+    assert!(work.last() > Some(&(0.9 * initial)), "{work:?} {initial}");
+    let balance = column(&all, "balance");
+    assert!(
+        balance
+            .iter()
+            .all(|error| error.abs() < 2e-3 * work[work.len() - 1]),
+        "{balance:?}"
+    );
+    let results = Results::open(&steps).unwrap();
+    let times: Vec<f64> = results
+        .fields()
+        .unwrap()
+        .iter()
+        .map(|one| one.time)
+        .collect();
+    assert_eq!(times, [0.0, 1.0, 2.0, 3.0, 4.0]);
+    assert!(
+        results
+            .fields()
+            .unwrap()
+            .iter()
+            .all(|one| one.path.is_file())
+    );
+}
+
+#[test]
+fn interrupted_and_divided_steps_have_the_files_of_one_process() {
+    let place = tempfile::tempdir().unwrap();
+    let both = deck(BRITTLE, "", STEPS);
+    let whole = place.path().join("whole");
+    run_steps(&both, &whole, Arc::new(Alone), None);
+    for (before, after) in [(1, 1), (2, 3)] {
+        let folder = place.path().join(format!("{before}-{after}"));
+        Threads::run(before, |comm| run_steps(&both, &folder, comm, Some(13)));
+        assert_eq!(Results::open(&folder).unwrap().text("/status"), "stopped");
+        Threads::run(after, |comm| run_steps(&both, &folder, comm, None));
+        assert_eq!(Results::open(&folder).unwrap().text("/status"), "finished");
+        for name in ["", "1-tear", "2"] {
+            let [found, expected] = [&folder, &whole].map(|folder| folder.join(name));
+            for file in ["history.csv", "fields.pvd", "reactions.csv"] {
+                let read = |folder: &Path| std::fs::read(folder.join(file)).unwrap();
+                assert!(read(&found) == read(&expected), "{name}/{file}");
+            }
+        }
+        assert_same(&folder.join("2"), &whole.join("2"), "the second step");
+    }
+}
+
+/// A prescribed displacement of a static step rises from that of the step before.
+#[test]
+fn static_steps_follow_the_path_of_one_run() {
+    let place = tempfile::tempdir().unwrap();
+    let [steps, whole] = ["steps", "whole"].map(|name| place.path().join(name));
+    let material =
+        "critical_stretch = 0.08, softening = { law = \"linear\", onset_stretch = 0.005 }";
+    let pulled = |to: f64| {
+        let moved = format!("displacement = [{}, {to}]", 0.5 * to);
+        deck(material, "", "").replace("velocity = [0.02, 0.05]", &moved)
+    };
+    let statics = |steps: u32| {
+        format!("time = {{ scheme = \"static\", tolerance = 1e-10, load_steps = {steps} }}\n")
+    };
+    alone(&format!("{}{}", pulled(0.2), statics(4)), &whole, None);
+    let second = "step = [{}, { constraint = [{ set = \"bottom\", displacement = [0, 0] }, { set = \"top\", displacement = [0.1, 0.2] }] }]";
+    let both = format!("{}{}{second}", pulled(0.1), statics(2));
+    run_steps(&both, &steps, Arc::new(Alone), None);
+    let (found, expected) = (last(&steps.join("2")), last(&whole));
+    assert!(difference(&found["softening/largest"], &expected["softening/largest"]) < 1e-8);
+    assert!(difference(&found["state/u"], &expected["state/u"]) < 1e-8);
 }

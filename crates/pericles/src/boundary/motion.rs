@@ -61,7 +61,8 @@ pub struct PrescribedMotion {
     pub function: TimeFunction,
     /// Last time at which the constraint acts, s; afterwards the points are free.
     pub until: Option<f64>,
-    /// Initial displacement of the points, per prescribed axis; zero for prescribed displacements.
+    /// Displacement of the points to which the motion adds, per prescribed axis; zero for prescribed displacements that do
+    /// not [rise from it](Self::rising_from).
     start: Vec<f64>,
     /// Reaction force density on the constrained points at the last accepted state, per prescribed axis.
     pub(super) reaction: Vec<f64>,
@@ -190,6 +191,38 @@ impl PrescribedMotion {
             self.points.iter().map(of_point)
         });
         self.start = entries.collect();
+    }
+
+    /// Makes a displacement amplitude · g(t) start from the displacement `u` of the body instead of zero: it is
+    /// u + (amplitude − u) g(t). Prescribed functions of position and time, and velocities, are unchanged.
+    #[must_use]
+    pub fn rising_from(mut self, u: &[f64], cloud_len: usize) -> Self {
+        if self.kind == MotionKind::Velocity {
+            return self;
+        }
+        let held = self.points.len();
+        let axes: Vec<usize> = self.axes().collect();
+        for (axis, c) in axes.into_iter().enumerate() {
+            let amplitude = |k: usize| match &self.along[c] {
+                Some(AxisMotion::Uniform(amplitude)) => Some(*amplitude),
+                Some(AxisMotion::PerPoint(amplitudes)) => Some(amplitudes[k]),
+                _ => None,
+            };
+            let places = self.points.iter().enumerate();
+            let rises: Option<Vec<[f64; 2]>> = places
+                .map(|(k, &i)| {
+                    let start = u[c * cloud_len + i as usize];
+                    Some([start, amplitude(k)? - start])
+                })
+                .collect();
+            let Some(rises) = rises else { continue };
+            for (k, [start, _]) in rises.iter().enumerate() {
+                self.start[axis * held + k] = *start;
+            }
+            let rises = rises.into_iter().map(|[_, rise]| rise);
+            self.along[c] = Some(AxisMotion::PerPoint(rises.collect()));
+        }
+        self
     }
 
     /// Checks that a constraint fits a body: point numbers, axes, and one amplitude or position per point.

@@ -1,0 +1,201 @@
+//! Runs of several steps: one run after another, each in a folder of its own and from the state of the one before.
+//!
+//! ```text
+//! impact/
+//!   steps.json                  the deck and the names of its steps
+//!   1-preload/  2-impact/       complete results of the steps; time starts at zero in each
+//!   history.csv  fields.pvd …   all steps on one time line
+//!   run.json                    that of the last step, with a list of all steps
+//! ```
+
+mod time_line;
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use pericles_io::{IoError, OutputFolder, write_atomically};
+use serde::{Deserialize, Serialize};
+
+use crate::assembled::{Assembled, Means};
+use crate::deck_text::DeckText;
+use crate::error::RunError;
+use crate::event::Tell;
+use crate::origin::Origin;
+use crate::processes::{agreed, on_first, shared_folder};
+use crate::results::Results;
+use crate::run::Run;
+use crate::source::{Source, SourceRecord};
+
+use self::time_line::write_time_line;
+
+/// The record of the steps in their folder.
+const RECORD: &str = "steps.json";
+
+/// Returns whether a folder contains a run of several steps.
+pub fn is_sequence(folder: &Path) -> bool {
+    folder.join(RECORD).is_file()
+}
+
+/// The content of `steps.json`.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+struct Record {
+    deck: DeckText,
+    steps: Vec<String>,
+    /// The folder of another run, or its checkpoint, from which the first step starts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    from: Option<PathBuf>,
+}
+
+/// A run of several steps in its locked folder.
+pub struct Sequence {
+    record: Record,
+    steps: Vec<DeckText>,
+    folder: OutputFolder,
+}
+
+impl Sequence {
+    /// Checks the steps of a deck by assembling each of them from the state of the deck. All processes must call it together.
+    ///
+    /// # Errors
+    /// A step is invalid.
+    pub fn check(deck: &DeckText, means: &Means, tell: Tell<'_>) -> Result<(), RunError> {
+        for step in deck.steps()? {
+            Assembled::of(&SourceRecord::Deck(step).read()?, means, tell)?;
+        }
+        Ok(())
+    }
+
+    /// Begins the steps of a deck in a folder; the first one starts from the state of the run `from`, if it is given. All
+    /// processes must call it together.
+    ///
+    /// # Errors
+    /// The deck has errors, or the folder cannot be written.
+    pub fn begin(
+        deck: DeckText,
+        from: Option<PathBuf>,
+        folder: OutputFolder,
+        means: &Means,
+    ) -> Result<Self, RunError> {
+        let steps = deck.steps()?;
+        let record = Record {
+            steps: deck.read()?.steps().to_vec(),
+            deck,
+            // The run may be resumed in another folder.
+            from: from.map(|path| std::path::absolute(&path).unwrap_or(path)),
+        };
+        let sequence = Self {
+            record,
+            steps,
+            folder,
+        };
+        let written = match means.comm.rank() {
+            0 => sequence.write_record(),
+            _ => Ok(()),
+        };
+        agreed(&*means.comm, written)?;
+        Ok(sequence)
+    }
+
+    fn write_record(&self) -> Result<(), RunError> {
+        self.folder.claim(&time_line::names(RECORD))?;
+        for name in &self.record.steps {
+            // Results of an earlier run that is replaced.
+            let path = self.folder.file(name);
+            if path.exists() {
+                OutputFolder::create(path, true)?;
+            }
+        }
+        let text = serde_json::to_string_pretty(&self.record)? + "\n";
+        let path = self.folder.file(RECORD);
+        Ok(write_atomically(&path, |file| {
+            file.write_all(text.as_bytes())
+        })?)
+    }
+
+    /// Opens the steps in a folder to resume them. All processes must call it together.
+    ///
+    /// # Errors
+    /// The folder has no record of steps, or it cannot be used.
+    pub fn open(path: &Path, means: &Means) -> Result<Self, RunError> {
+        let read = || -> Result<_, RunError> {
+            let file = path.join(RECORD);
+            let text =
+                std::fs::read_to_string(&file).map_err(|error| IoError::reading(&file, error))?;
+            Ok((OutputFolder::open(path)?, text))
+        };
+        let (folder, text) = on_first(&*means.comm, read, |(_, text)| text.clone())?;
+        let record: Record = serde_json::from_str(&text).map_err(|error| RunError::Damaged {
+            path: path.join(RECORD),
+            reason: error.to_string(),
+        })?;
+        Ok(Self {
+            steps: record.deck.steps()?,
+            record,
+            folder: folder.map_or_else(|| OutputFolder::following(path), |(folder, _)| folder),
+        })
+    }
+
+    /// Returns the folder.
+    pub fn folder(&self) -> &Path {
+        self.folder.path()
+    }
+
+    /// Returns the names of the steps.
+    pub fn names(&self) -> &[String] {
+        &self.record.steps
+    }
+
+    /// Returns the run of the first step that has not finished, and its number; `None` if all have. Results so far are
+    /// written on one time line. All processes must call it together.
+    ///
+    /// # Errors
+    /// A step cannot start or be resumed, or output cannot be written.
+    pub fn next(&self, means: &Means, tell: Tell<'_>) -> Result<Option<(usize, Run)>, RunError> {
+        let comm = &*means.comm;
+        let written = match comm.rank() {
+            0 => write_time_line(self.folder.path(), &self.record.steps),
+            _ => Ok(()),
+        };
+        agreed(comm, written)?;
+        let mut before = self.record.from.clone();
+        for (k, (name, deck)) in self.record.steps.iter().zip(&self.steps).enumerate() {
+            let path = self.folder.file(name);
+            if self.has_checkpoint(&path, means)? {
+                if let Some(run) = Run::resume(&path, means, tell)? {
+                    return Ok(Some((k, run)));
+                }
+            } else {
+                let run = begun(deck, before.as_deref(), &path, means, tell)?;
+                return Ok(Some((k, run)));
+            }
+            before = Some(path);
+        }
+        Ok(None)
+    }
+
+    /// Returns whether a step has begun. A run that was killed before its first checkpoint starts again.
+    fn has_checkpoint(&self, path: &Path, means: &Means) -> Result<bool, RunError> {
+        let has = || {
+            Ok::<_, RunError>(Results::open(path).is_ok_and(|run| !run.checkpoints().is_empty()))
+        };
+        let (_, word) = on_first(&*means.comm, has, bool::to_string)?;
+        Ok(word == "true")
+    }
+}
+
+/// Begins the run of a step from the state of the one before.
+fn begun(
+    deck: &DeckText,
+    from: Option<&Path>,
+    path: &Path,
+    means: &Means,
+    tell: Tell<'_>,
+) -> Result<Run, RunError> {
+    let source: Source = SourceRecord::Deck(deck.clone()).read()?;
+    let open = |from: &Path| Origin::open(from, means.memory, &*means.comm);
+    let origin = from.map(open).transpose()?;
+    let assembled = Assembled::continuing(&source, origin.as_ref(), means, tell)?;
+    let create = || Ok::<_, RunError>(OutputFolder::create(path, path.exists())?);
+    let folder = shared_folder(&*means.comm, create)?;
+    Run::begin(&source, assembled, folder)
+}
