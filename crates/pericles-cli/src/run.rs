@@ -4,7 +4,7 @@ use pericles_run::sequence::{Sequence, is_sequence};
 use pericles_run::sweep::is_sweep;
 use pericles_run::units::{count, quantity};
 use pericles_run::{
-    Assembled, Deadline, Means, Results, Run, RunError, Source, SourceRecord, shared_folder,
+    Assembled, Deadline, Ending, Means, Results, Run, RunError, Source, SourceRecord, shared_folder,
 };
 
 use crate::args::{ResumeArgs, RunArgs};
@@ -64,7 +64,8 @@ pub(crate) fn run(args: &RunArgs, processes: &Processes) -> Result<Exit, CliErro
         output_folder(args.out.as_deref(), Some(args.force), &args.deck, "")
     })?;
     let run = Run::begin(&source, assembled, folder)?;
-    drive(run, deadline, (quiet, args.chart), processes)
+    let (_, exit) = drive(run, deadline, (quiet, args.chart), processes)?;
+    Ok(exit)
 }
 
 /// Resumes a run from its last checkpoint.
@@ -116,7 +117,8 @@ pub(crate) fn resume(args: &ResumeArgs, processes: &Processes) -> Result<Exit, C
             quantity(state.t, "s")
         ));
     }
-    drive(run, deadline, (quiet, args.chart), processes)
+    let (_, exit) = drive(run, deadline, (quiet, args.chart), processes)?;
+    Ok(exit)
 }
 
 /// Drives the steps that have not finished.
@@ -131,28 +133,28 @@ fn drive_steps(
     processes: &Processes,
 ) -> Result<Exit, CliError> {
     let shows = !quiet && processes.is_first();
+    let count = sequence.names().len();
     let mut screen = Screen::shared(quiet, processes.is_first());
-    while let Some((number, run)) = sequence.next(means, &mut |event| screen.show(event))? {
+    let mut exit = Exit::Done;
+    sequence.drive(means, &mut |event| screen.show(event), |number, run| {
         if shows {
-            let (name, count) = (&sequence.names()[number], sequence.names().len());
+            let name = &sequence.names()[number];
             console::note(format_args!("step {} of {count}: {name}", number + 1));
         }
-        let exit = drive(run, deadline.clone(), (quiet, chart), processes)?;
-        if exit != Exit::Done {
-            return Ok(exit);
-        }
-    }
-    if shows {
+        let (ending, status) = drive(run, deadline.clone(), (quiet, chart), processes)?;
+        exit = status;
+        Ok::<_, CliError>(ending)
+    })?;
+    if shows && exit == Exit::Done {
         let folder = sequence.folder().display();
         console::print(format_args!(
-            "All {} steps have finished; results on one time line in {folder}",
-            sequence.names().len()
+            "All {count} steps have finished; results on one time line in {folder}"
         ))?;
     }
-    Ok(Exit::Done)
+    Ok(exit)
 }
 
-/// Drives a run to its end, a signal or the deadline, and prints a summary.
+/// Drives a run to its end, a signal or the deadline, and prints a summary; returns how it ended, and the exit status.
 ///
 /// # Errors
 /// Output cannot be written, or the run becomes unstable.
@@ -161,13 +163,13 @@ fn drive(
     deadline: Option<Deadline>,
     (quiet, chart): (bool, bool),
     processes: &Processes,
-) -> Result<Exit, CliError> {
+) -> Result<(Ending, Exit), CliError> {
     let signals = Signals::watch().map_err(CliError::Signals)?;
     let mut screen = Screen::shared(quiet, processes.is_first());
     let ending = run.drive(deadline, signals.cancel(), &mut |event| screen.show(event))?;
     let exit = signals.exit_of(ending);
     if !processes.is_first() {
-        return Ok(exit);
+        return Ok((ending, exit));
     }
     if !quiet {
         summary::closing(run.report(), run.folder())?;
@@ -179,5 +181,5 @@ fn drive(
             console::print(format_args!("{}", TextChart::of(chart)))?;
         }
     }
-    Ok(exit)
+    Ok((ending, exit))
 }

@@ -140,7 +140,7 @@ pub(crate) fn add_to_schema(deck: &mut Map<String, Json>) {
         return;
     };
     let known = |table: &&str| Some(((*table).to_owned(), properties.get(*table)?.clone()));
-    let mut tables: Map<String, Json> = TABLES.iter().filter_map(|table| known(&table)).collect();
+    let mut tables: Map<String, Json> = TABLES.iter().filter_map(known).collect();
     tables.insert(
         NAME.into(),
         json!({ "type": "string", "description": OF_NAME }),

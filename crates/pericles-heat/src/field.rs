@@ -394,15 +394,12 @@ impl SecondaryField for DiffusingField {
         }
         let mut state = self.shared.state();
         state.problem.diffusion.forget_bonds();
-        let first = state.accepted.to.clone();
+        let mut first = state.accepted.to.clone();
         state.read_accepted(archive)?;
         // The end of a thermal step may lie beyond the end of the run.
-        let values = state.values_at(t);
-        let first = Accepted { values, ..first };
-        state.accepted = Interval {
-            from: first.clone(),
-            to: first,
-        };
+        first.values = state.values_at(t);
+        let (from, to) = (first.clone(), first);
+        state.accepted = Interval { from, to };
         Ok(())
     }
 

@@ -44,7 +44,7 @@ impl BodyRecord {
             .collect();
         (!lost.is_empty()).then(|| {
             format!(
-                "its state {} has no place in the body of this deck: the material model, its softening or plastic flow and the computed temperature must be the same in both decks",
+                "the body of this deck does not have its state {}: the material model, its softening or plastic flow and the computed temperature must be the same in both decks",
                 lost.join(", ")
             )
         })

@@ -1,7 +1,7 @@
 //! Stopped and resumed runs, and runs with different numbers of threads, give bitwise identical results.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
@@ -189,7 +189,7 @@ fn static_run_resumes(scheme: &str) {
         checkpoints
             .last()
             .unwrap()
-            .ends_with("step-000000000003.chk")
+            .ends_with("step-000000000006.chk")
     );
     fs::remove_file(last).unwrap();
     let text = fs::read_to_string(begun.join("run.json")).unwrap();
@@ -199,7 +199,7 @@ fn static_run_resumes(scheme: &str) {
     )
     .unwrap();
     succeed(place.path(), "resume begun --quiet");
-    assert_eq!(report(&begun)["progress"]["first_step"], 3);
+    assert_eq!(report(&begun)["progress"]["first_step"], 6);
     assert_same_results(&place.path().join("whole"), &begun);
     let history = fs::read_to_string(begun.join("history.csv")).unwrap();
     let mut rows = history.lines();
@@ -390,6 +390,7 @@ fn stopped_ring(place: &Path, out: &str) {
     let report = place.join(out).join("run.json");
     let text = fs::read_to_string(&report).unwrap();
     fs::write(&report, text.replacen("\"finished\"", "\"running\"", 1)).unwrap();
+    fs::remove_file(place.join(out).join("checkpoints/step-000000000100.chk")).unwrap();
 }
 
 #[test]
@@ -483,4 +484,91 @@ fn missing_or_truncated_field_files_are_reported_on_resume() {
         said.contains("2 of the 11 field files written so far are missing or truncated, first fields/fields_000001.vtu at t = 1.00 µs"),
         "{said}"
     );
+}
+
+/// Two steps of the plate of the tests.
+const STEPS: &str = r#"
+[[step]]
+name = "pull"
+[step.time]
+end = "2 us"
+dt = "0.1 us"
+[[step]]
+[step.time]
+end = "1 us"
+dt = "0.1 us"
+[[step.load]]
+set = "top"
+traction = [0, 0]
+"#;
+
+#[test]
+fn a_deck_with_steps_is_checked_run_and_replaced() {
+    let place = with_plate();
+    let deck = fs::read_to_string(place.path().join("plate.toml")).unwrap();
+    fs::write(place.path().join("steps.toml"), deck + STEPS).unwrap();
+    let checked = succeed(place.path(), "check steps.toml --json -");
+    let checked: serde_json::Value = serde_json::from_slice(&checked.stdout).unwrap();
+    assert_eq!(checked["steps"][0]["steps"], 20);
+    assert_eq!(checked["steps"][1]["steps"], 10);
+
+    let said = succeed(place.path(), "run steps.toml --out out");
+    assert!(
+        text(&said.stderr).contains("step 2 of 2: 2"),
+        "{}",
+        text(&said.stderr)
+    );
+    let info = succeed(place.path(), "info out");
+    let info = text(&info.stdout);
+    assert!(
+        info.contains("2: finished; velocity-verlet, t = 2.00 µs to 3.00 µs"),
+        "{info}"
+    );
+    let done = succeed(place.path(), "resume out");
+    assert!(text(&done.stdout).contains("All 2 steps have finished"));
+    succeed(place.path(), "plot out --field Damage --out pictures");
+
+    // The results of the former second step are removed.
+    let one = ["--set", "step.1=unset", "--set", "step.0.name=unset"].join(" ");
+    succeed(
+        place.path(),
+        &format!("run steps.toml --quiet --out out --force {one}"),
+    );
+    let files = crate::common::results(&place.path().join("out"));
+    let of_second = |path: &PathBuf| path.starts_with("2") || path.starts_with("1-pull");
+    let left: Vec<&PathBuf> = files.keys().filter(|path| of_second(path)).collect();
+    assert!(
+        left.iter().all(|path| path.ends_with(".manifest")),
+        "{left:?}"
+    );
+
+    let (status, message) = fail(place.path(), "resume out --set time.end=9us");
+    assert_eq!(status, 3);
+    assert!(message.contains("it has several steps"), "{message}");
+}
+
+#[test]
+fn a_run_starts_from_another_one_and_is_extended() {
+    let place = with_plate();
+    succeed(
+        place.path(),
+        "run plate.toml --quiet --out first --set time.end=2us --set time.dt=0.1us",
+    );
+    let second = "plate.toml --set time.end=1us --set time.dt=0.1us --from first";
+    let checked = succeed(place.path(), &format!("check {second}"));
+    assert!(
+        text(&checked.stdout).contains("at t = 2.00 µs"),
+        "{}",
+        text(&checked.stdout)
+    );
+    succeed(place.path(), &format!("run {second} --quiet --out second"));
+    fs::remove_dir_all(place.path().join("first")).unwrap();
+    succeed(place.path(), "resume second --quiet --set time.end=2us");
+    assert_eq!(
+        report(&place.path().join("second"))["progress"]["last_step"],
+        20
+    );
+    let (status, message) = fail(place.path(), &format!("run {second}"));
+    assert_eq!(status, 3);
+    assert!(message.contains("first does not exist"), "{message}");
 }

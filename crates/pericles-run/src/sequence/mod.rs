@@ -13,6 +13,7 @@ mod time_line;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use pericles::PericlesError;
 use pericles_io::{IoError, OutputFolder, write_atomically};
 use serde::{Deserialize, Serialize};
 
@@ -23,7 +24,7 @@ use crate::event::Tell;
 use crate::origin::Origin;
 use crate::processes::{agreed, on_first, shared_folder};
 use crate::results::Results;
-use crate::run::Run;
+use crate::run::{Ending, Run};
 use crate::source::{Source, SourceRecord};
 
 use self::time_line::write_time_line;
@@ -98,10 +99,11 @@ impl Sequence {
 
     fn write_record(&self) -> Result<(), RunError> {
         self.folder.claim(&time_line::names(RECORD))?;
-        for name in &self.record.steps {
-            // Results of an earlier run that is replaced.
-            let path = self.folder.file(name);
-            if path.exists() {
+        // Results of the steps of an earlier run that is replaced.
+        let reading = |error| IoError::reading(self.folder.path(), error);
+        for entry in std::fs::read_dir(self.folder.path()).map_err(reading)? {
+            let path = entry.map_err(reading)?.path();
+            if path.join("run.json").is_file() {
                 OutputFolder::create(path, true)?;
             }
         }
@@ -145,18 +147,20 @@ impl Sequence {
         &self.record.steps
     }
 
-    /// Returns the run of the first step that has not finished, and its number; `None` if all have. Results so far are
-    /// written on one time line. All processes must call it together.
+    /// Writes the results so far on one time line. Only the first process writes.
+    ///
+    /// # Errors
+    /// Results cannot be read or written.
+    fn write_time_line(&self) -> Result<(), RunError> {
+        write_time_line(self.folder.path(), &self.record.steps)
+    }
+
+    /// Returns the run of the first step that has not finished, and its number; `None` if all have. All processes must call it
+    /// together.
     ///
     /// # Errors
     /// A step cannot start or be resumed, or output cannot be written.
-    pub fn next(&self, means: &Means, tell: Tell<'_>) -> Result<Option<(usize, Run)>, RunError> {
-        let comm = &*means.comm;
-        let written = match comm.rank() {
-            0 => write_time_line(self.folder.path(), &self.record.steps),
-            _ => Ok(()),
-        };
-        agreed(comm, written)?;
+    fn next(&self, means: &Means, tell: Tell<'_>) -> Result<Option<(usize, Run)>, RunError> {
         let mut before = self.record.from.clone();
         for (k, (name, deck)) in self.record.steps.iter().zip(&self.steps).enumerate() {
             let path = self.folder.file(name);
@@ -171,6 +175,34 @@ impl Sequence {
             before = Some(path);
         }
         Ok(None)
+    }
+
+    /// Runs the steps that have not finished by `drive`, which is given the number of the step, and returns how the last
+    /// one ended. The results are written on one time line after each. All processes must call it together.
+    ///
+    /// # Errors
+    /// Those of [`Sequence::next`] and of `drive`.
+    pub fn drive<E: From<RunError> + From<PericlesError>>(
+        &self,
+        means: &Means,
+        tell: Tell<'_>,
+        mut drive: impl FnMut(usize, Run) -> Result<Ending, E>,
+    ) -> Result<Ending, E> {
+        let is_first = means.comm.rank() == 0;
+        while let Some((number, run)) = self.next(means, tell)? {
+            let ending = drive(number, run);
+            let written = match is_first {
+                true => self.write_time_line(),
+                false => Ok(()),
+            };
+            // The first error is reported; on a full disk this write fails for the same reason.
+            let ending = ending?;
+            agreed(&*means.comm, written)?;
+            if ending != Ending::Finished {
+                return Ok(ending);
+            }
+        }
+        Ok(Ending::Finished)
     }
 
     /// Returns whether a step has begun. A run that was killed before its first checkpoint starts again.

@@ -222,13 +222,9 @@ fn run_member(
                     Sequence::begin(member.deck.clone(), from, folder, means)?
                 }
             };
-            while let Some((_, mut run)) = sequence.next(means, &mut tell)? {
-                match run.drive(deadline.clone(), cancel, &mut tell)? {
-                    Ending::Finished => {}
-                    ending => return Ok(ending),
-                }
-            }
-            return Ok(Ending::Finished);
+            return sequence.drive(means, &mut tell, |_, mut run| {
+                run.drive(deadline.clone(), cancel, &mut |_| {})
+            });
         }
         let mut run = if path.join("checkpoints").is_dir() {
             match Run::resume(path, means, &mut tell)? {

@@ -296,8 +296,7 @@ impl Archive {
         source: &mut dyn ArraySource,
         domain: &Domain,
     ) -> Result<Self> {
-        let outline = domain.is_first().then(|| source.outline());
-        let available = shared_outline(outline, domain);
+        let available = shared_outline(domain.is_first().then(|| source.outline()), domain);
         let is_available = |name: &String| available.iter().any(|found| &found.name == name);
         template.arrays.retain(|name, _| is_available(name));
         template.layouts.retain(|name, _| is_available(name));
