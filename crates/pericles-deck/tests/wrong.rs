@@ -87,7 +87,7 @@ const WRONG: &[Wrong] = &[
     wrong("[material]", "[[impactor]]\nname = \"a\"\nshape = \"ball\"\nradius = 1\ncentre = [0, 0]\n[material]", (9, 1), "[[impactor]]", &["requires one of `density` and `mass`"]),
     wrong("[material]", "[[impactor]]\nname = \"a\"\nshape = \"cylinder\"\nradius = 1\nheight = 1\ncentre = [0, 0]\ndensity = 1\n[material]", (11, 9), "\"cylinder\"", &["require a 3D body"]),
     // Meshes, random positions, formats.
-    wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "near_faces = { faces = \"a\", depth = 1 }", (16, 14), "{ faces", &["requires shape = \"mesh\"", "`layer`"]),
+    wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "near_faces = { faces = \"a\", depth = 1 }", (16, 1), "near_faces", &["requires shape = \"mesh\"", "`layer`"]),
     wrong("fields = { interval = \"0.5 us\" }", "fields = { cells = true }", (38, 12), "cells", &["`cells` is not allowed in [output.fields]", "requires shape = \"mesh\""]),
     wrong("fields = { interval = \"0.5 us\" }", "fields = { format = \"vtk\" }", (38, 21), "\"vtk\"", &["unknown format `vtk`", "\"exodus\""]),
     wrong("spacing = \"0.25 mm\"", "spacing = \"0.25 mm\"\njitter = 0.1", (7, 1), "jitter", &["`jitter` is not allowed in [body]", "jittered"]),
@@ -335,7 +335,7 @@ const WRONG: &[Wrong] = &[
     wrong("\"+y\"", "\"+z\"", (16, 18), "\"+z\"", &["unknown side `+z`", "\"-x\", \"+x\", \"-y\" and \"+y\""]),
     wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "layer = { side = \"+y\" }", (16, 9), "{ side", &["requires one of `depth` and `cells`"]),
     wrong("layer = {", "all = true\nlayer = {", (17, 9), "{ side", &["`all` and `layer` are given together", "`complement`"]),
-    wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "cylinder = { centre = [0, 0], radius = 1 }", (16, 12), "{ centre", &["needs a body of dimension 3", "dimension 2"]),
+    wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "cylinder = { centre = [0, 0], radius = 1 }", (16, 1), "cylinder", &["`cylinder` requires a 3D body", "a `ball` is a disc"]),
     wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "box = { min = [1, 0], max = [0, 1] }", (16, 29), "[0, 1]", &["not below the lower corner"]),
     wrong("layer = { side = \"+y\", depth = \"0.25 mm\" }", "polygon = { corners = [[0, 0], [1, 1]] }", (16, 23), "[[0, 0]", &["at least 3 corners"]),
     wrong("[time]", "[[probe]]\nname = \"middle\"\nset = \"all\"\n[time]", (34, 8), "\"middle\"", &["the name `middle` cannot be used", "another probe has this name"]),

@@ -1,16 +1,16 @@
 //! Bodies that fill a closed surface or an outline with the cells of a lattice.
 
-use pericles::space::{Finer, Region};
+use pericles::space::Finer;
 
+use super::Positions;
 use super::plane::{section, state};
 use super::sources::{Boundary, FilledCells, FilledShape};
 use super::types::{BodyRead, SolidShape};
 use super::unit::unit;
-use super::{Positions, finer};
-use crate::declaration::DeckKeys;
+use crate::declaration::{DeckKeys, declared};
 use crate::fault::Fault;
 use crate::quantity::Quantity;
-use crate::reader::{Item, Table};
+use crate::reader::Table;
 use crate::region;
 
 /// Reads `[body]` with `shape = "solid"` or `"outline"`.
@@ -25,22 +25,15 @@ pub(super) fn read(table: Table<'_>, dimension: usize, mut read: BodyRead) -> Bo
     read.frame.dimension = Some(dimension);
     let section = section(&table, dimension);
     read.state = state(&table, dimension);
-    let holes: Vec<Option<Region>> = table
-        .tables("hole")
-        .into_iter()
-        .map(|hole| region::read(hole, read.frame))
-        .collect();
+    let holes = declared(&table, "hole", read.frame);
     let positions = Positions::read_keys(&table, ());
     let random = positions.is_some_and(|positions| positions.are_random());
     let cells = cells(&table, random);
-    let finer: Vec<Option<Finer>> = table
-        .tables("refine")
-        .into_iter()
-        .map(|part| finer(part, read.frame))
-        .collect();
-    if !finer.is_empty() && random {
+    let finer = declared::<_, Finer>(&table, "refine", read.frame);
+    let refined = finer.as_ref().is_none_or(|parts| !parts.is_empty());
+    if refined && random {
         table.forbid("refine", "refinement requires positions = \"lattice\"");
-    } else if !finer.is_empty() && cells == Some(FilledCells::Partial) {
+    } else if refined && cells == Some(FilledCells::Partial) {
         table.forbid(
             "refine",
             "refinement requires whole cells: remove `cells` or `refine`",
@@ -53,8 +46,8 @@ pub(super) fn read(table: Table<'_>, dimension: usize, mut read: BodyRead) -> Bo
             boundary: boundary?,
             spacing: read.frame.spacing?,
             section: section?,
-            holes: holes.into_iter().collect::<Option<_>>()?,
-            finer: finer.into_iter().collect::<Option<_>>()?,
+            holes: holes?,
+            finer: finer?,
             cells: cells?,
             positions: positions?,
         }))
@@ -95,10 +88,7 @@ fn polygons(table: &Table<'_>) -> Option<Boundary> {
         });
         return None;
     }
-    let corners = |polygon: &Item<'_>| -> Option<Vec<[f64; 2]>> {
-        let corners = region::corners(polygon, Some(2))?;
-        Some(corners.iter().map(|&[x, y, _]| [x, y]).collect())
-    };
+    let corners = |polygon| region::polygon(polygon, ());
     let read: Vec<Option<Vec<[f64; 2]>>> = polygons.iter().map(corners).collect();
     read.into_iter()
         .collect::<Option<_>>()

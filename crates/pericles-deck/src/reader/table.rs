@@ -312,9 +312,8 @@ impl<'a> Table<'a> {
 
     /// Returns the tables of an array of tables; empty if the key is missing.
     pub(crate) fn tables(&self, key: &'static str) -> Vec<Table<'a>> {
-        self.optional(key)
-            .map(|item| item.tables())
-            .unwrap_or_default()
+        let tables = self.optional(key).and_then(|item| item.tables());
+        tables.into_iter().flatten().flatten().collect()
     }
 
     /// Rejects a key that is not allowed in this table, with the reason.
@@ -436,13 +435,10 @@ impl<'a> Item<'a> {
         ))
     }
 
-    /// Returns the tables of a list of tables.
-    pub(crate) fn tables(&self) -> Vec<Table<'a>> {
-        self.list("a list of tables, written [[…]]")
-            .unwrap_or_default()
-            .iter()
-            .filter_map(Item::table)
-            .collect()
+    /// Returns the tables of a list of tables; none for entries that are not tables.
+    pub(crate) fn tables(&self) -> Option<Vec<Option<Table<'a>>>> {
+        let items = self.list("a list of tables, written [[…]] or [{ … }]")?;
+        Some(items.iter().map(Item::table).collect())
     }
 }
 
