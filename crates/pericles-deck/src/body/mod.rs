@@ -1,12 +1,9 @@
 //! `[body]`: shape, grid and stress state.
 
-mod filled;
 mod kind;
-mod mesh;
 mod outline;
 mod piece;
 mod plane;
-mod points;
 mod positions;
 mod rotation;
 mod sources;
@@ -16,9 +13,9 @@ mod unit;
 
 pub use positions::Positions;
 pub use rotation::Rotation;
-pub use sources::{Boundary, FilledCells, FilledShape, MeshFile};
+pub use sources::{Boundary, FilledCells, FilledShape, MeshFile, PointsFile};
 pub use surface::{SurfaceFile, SurfaceFormula, SurfaceShape, VertexAreas};
-pub use types::{Lattice, Piece, PointsFile, Quadrature, SolidShape, piece_path};
+pub use types::{Lattice, Piece, Quadrature, SolidShape, piece_path};
 pub use unit::length_unit;
 
 pub(crate) use rotation::RotationScope;
@@ -54,10 +51,28 @@ fn one_piece(table: Table<'_>) -> BodyRead {
     match kind {
         Some(Kind::Surface) => return surface(table, false, read),
         Some(Kind::SurfaceFile) => return surface(table, true, read),
-        Some(Kind::Points) => return points::read(table, read),
-        Some(Kind::Mesh) => return mesh::read(table, read),
+        Some(Kind::Points) => {
+            let shape = PointsFile::read_keys(&table, ()).map(SolidShape::Points);
+            return from_file(table, shape, read.frame);
+        }
+        Some(Kind::Mesh) => {
+            let shape = MeshFile::read_keys(&table, ()).map(SolidShape::Mesh);
+            let frame = Frame {
+                mesh: true,
+                cells: false,
+                ..read.frame
+            };
+            return from_file(table, shape, frame);
+        }
         Some(kind @ (Kind::Solid | Kind::Outline)) => {
-            return filled::read(table, kind.dimension(), read);
+            let shape = FilledShape::read_keys(&table, kind.dimension());
+            let cells = shape.as_ref().is_none_or(FilledShape::is_on_lattice);
+            let frame = Frame {
+                cells,
+                dimension: Some(kind.dimension()),
+                ..read.frame
+            };
+            return from_file(table, shape.map(SolidShape::Filled), frame);
         }
         _ => {}
     }
@@ -75,8 +90,8 @@ fn one_piece(table: Table<'_>) -> BodyRead {
     };
     read.frame.dimension = Some(kind.dimension());
     let outline = shape(&table, kind);
-    let section = section(&table, kind.dimension());
-    read.state = state(&table, kind.dimension());
+    let section = section(&table, read.frame.dimension);
+    read.state = state(&table, read.frame.dimension);
     let holes = declared(&table, "hole", read.frame);
     let finer = declared::<_, Finer>(&table, "refine", read.frame);
     let has_none = |holes: &Vec<Region>| holes.is_empty();
@@ -103,6 +118,25 @@ fn one_piece(table: Table<'_>) -> BodyRead {
         })
     });
     read
+}
+
+/// Completes a body from a file. Other tables know its dimension and spacing even if another key is invalid.
+fn from_file(table: Table<'_>, shape: Option<SolidShape>, frame: Frame) -> BodyRead {
+    let given = table.number("dimension");
+    let given = (1..=3).find(|&dimension| given == Some(dimension as f64));
+    let frame = Frame {
+        dimension: frame.dimension.or(given),
+        spacing: table.number("spacing").filter(|spacing| *spacing > 0.0),
+        ..frame
+    };
+    let state = state(&table, frame.dimension);
+    table.finish();
+    BodyRead {
+        shape,
+        frame,
+        state,
+        ..BodyRead::default()
+    }
 }
 
 /// Reads the positions of points; random positions need equal spacings along all axes and no refinement.

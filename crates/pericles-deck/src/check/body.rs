@@ -8,8 +8,8 @@ use pericles::material::{
 use pericles::space::Shape;
 
 use crate::body::{
-    Boundary, FilledCells, FilledShape, Lattice, Piece, Quadrature, RotationScope, SolidShape,
-    VertexAreas, piece_path,
+    FilledCells, FilledShape, Lattice, Piece, Quadrature, RotationScope, SolidShape, VertexAreas,
+    piece_path,
 };
 use crate::declaration::{Check, DeckKeys, DeckValue};
 use crate::fault::Fault;
@@ -45,29 +45,10 @@ impl Check {
     }
 
     fn shape(&mut self, key: &KeyPath, shape: &SolidShape) {
-        if let Some(spacing) = shape.spacing() {
-            self.positive(key.key("spacing"), spacing);
-        }
-        let frame = Frame::of_model(shape.dimension());
-        for (k, hole) in shape.holes().iter().enumerate() {
-            hole.check(key.key("hole").index(k), frame, self);
-        }
-        for (k, part) in shape.finer().iter().enumerate() {
-            part.check(key.key("refine").index(k), frame, self);
-        }
         match shape {
             SolidShape::Lattice(lattice) => self.lattice(key, lattice),
-            SolidShape::Points(_) => {}
-            SolidShape::Mesh(mesh) => {
-                self.positive(key.key("unit"), mesh.unit);
-                let right = mesh.dimension >= 2;
-                self.within(
-                    right,
-                    key.key("dimension"),
-                    mesh.dimension,
-                    "allowed: 2 or 3",
-                );
-            }
+            SolidShape::Points(points) => points.check_keys(key, (), self),
+            SolidShape::Mesh(mesh) => mesh.check_keys(key, (), self),
             SolidShape::Filled(filled) => self.filled(key, filled),
             SolidShape::Pieces(pieces) => self.pieces(key, pieces),
         }
@@ -109,28 +90,21 @@ impl Check {
     }
 
     fn filled(&mut self, key: &KeyPath, filled: &FilledShape) {
-        match &filled.boundary {
-            Boundary::Surface { unit, .. } | Boundary::PolygonFile { unit, .. } => {
-                self.positive(key.key("unit"), *unit);
-            }
-            Boundary::Polygons(polygons) => {
-                for (k, polygon) in polygons.iter().enumerate() {
-                    let (right, key) = (polygon.len() >= 3, key.key("polygons").index(k));
-                    self.within(right, key, polygon.len(), "allowed: at least 3 corners");
-                }
-            }
-        }
-        let right = filled.cells == FilledCells::Whole || !filled.positions.are_random();
+        filled.check_keys(key, filled.dimension, self);
+        let random = filled.positions.are_random();
+        let right = filled.cells == FilledCells::Whole || !random;
         let allowed = "allowed: \"whole\" with random positions";
         self.within(right, key.key("cells"), "partial", allowed);
-        let whole = filled.cells == FilledCells::Whole && !filled.positions.are_random();
+        let right = filled.is_on_lattice() || filled.finer.is_empty();
         let allowed = "allowed: with whole cells on a lattice";
-        let right = whole || filled.finer.is_empty();
         self.within(right, key.key("refine"), filled.finer.len(), allowed);
-        filled.positions.check_keys(key, (), self);
     }
 
     fn lattice(&mut self, key: &KeyPath, lattice: &Lattice) {
+        self.positive(key.key("spacing"), lattice.grid.spacing);
+        let frame = Frame::of_model(lattice.grid.dimension());
+        lattice.grid.holes.check(key.key("hole"), frame, self);
+        lattice.finer.check(key.key("refine"), frame, self);
         match &lattice.grid.shape {
             Shape::Box { size, .. } => {
                 for (k, side) in size.iter().enumerate() {

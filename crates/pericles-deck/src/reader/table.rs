@@ -108,6 +108,11 @@ impl<'a> Table<'a> {
             .map(|entry| entry.node.place)
     }
 
+    /// Returns the number that was read from a key, in SI units; also one out of range.
+    pub(crate) fn number(&self, key: &str) -> Option<f64> {
+        self.ledger.number(&self.path.key(key))
+    }
+
     /// Returns the value of an optional key.
     pub(crate) fn optional(&self, key: &'static str) -> Option<Item<'a>> {
         let mut allowed = self.allowed.borrow_mut();
