@@ -73,7 +73,7 @@ pub(crate) struct Attributes {
     pub(crate) otherwise: Option<Code>,
     /// The type that a struct or enum declares, if it is not the struct or enum itself.
     pub(crate) remote: Option<Path>,
-    /// The name of the definition of the table.
+    /// The name of the definition of the table, or of the value of a variant's key.
     pub(crate) define: Option<LitStr>,
     /// A function that checks the values of a table together.
     pub(crate) verify: Option<Path>,
@@ -111,7 +111,7 @@ pub(crate) const OF_FIELD: &[&str] = &[
     "otherwise",
 ];
 /// Names of the attributes of variants.
-pub(crate) const OF_VARIANT: &[&str] = &["word", "key", "table", "allow_if"];
+pub(crate) const OF_VARIANT: &[&str] = &["word", "key", "table", "define", "allow_if"];
 /// Names of the attributes of structs.
 pub(crate) const OF_STRUCT: &[&str] = &[
     "scope",

@@ -75,6 +75,11 @@ fn inside<'a>(ty: &'a Type, wrapper: &str) -> Option<&'a Type> {
 }
 
 impl Field {
+    /// Returns the type of a value whose keys are keys of the table.
+    pub(crate) fn flattened(&self) -> Option<&Type> {
+        self.attributes.flatten.then_some(&self.ty)
+    }
+
     /// Returns the variable of the value that was read, an option.
     fn read_name(&self) -> Ident {
         format_ident!("read_{}", self.name, span = here())

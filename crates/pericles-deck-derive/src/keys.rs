@@ -2,11 +2,11 @@
 
 use proc_macro2::{Literal, TokenStream};
 use quote::quote_spanned;
-use syn::{Data, DeriveInput, Error, Fields, Ident, Path, Result};
+use syn::{Data, DeriveInput, Error, Fields, Ident, Path, Result, Type};
 
 use crate::attributes::{Attributes, Fallback, OF_ENUM, OF_VARIANT};
 use crate::fields::{Field, fields, here, scope};
-use crate::table::{implementation, target};
+use crate::table::{implementation, scoped, target};
 use crate::words::{spelt, what};
 
 /// A variant with its keys.
@@ -47,13 +47,15 @@ pub(crate) fn derive(input: DeriveInput) -> Result<TokenStream> {
             check(&target, Some(&tag.value()), &variants),
         ),
         (None, true) => {
-            let names = with_keys(&variants).map(|variant| variant.named('_'));
             let further = variants.iter().flat_map(Variant::further).map(Field::keys);
-            (
-                quote_spanned!(here()=> [::std::vec![#(#names),*], #(#further),*].concat()),
-                exclusive(&target, &attributes, &variants)?,
-                check(&target, None, &variants),
-            )
+            let keys = quote_spanned!(here()=>
+                [<Self as crate::declaration::Exclusive>::choices().to_vec(), #(#further),*].concat()
+            );
+            let read = exclusive(&target, &attributes, &variants);
+            let mut code = choice(&target, &attributes, &variants)?;
+            let check = check(&target, None, &variants);
+            code.extend(implementation(&attributes, &target, &keys, &read, &check));
+            return Ok(code);
         }
         _ => {
             let message = "add #[deck(tag = \"…\")] or #[deck(exclusive)]";
@@ -150,65 +152,11 @@ fn tagged(
     ))
 }
 
-/// Reads the one key that is given, then further keys of its variant.
-fn exclusive(
-    target: &Path,
-    attributes: &Attributes,
-    variants: &[Variant<'_>],
-) -> Result<TokenStream> {
-    let keys: Vec<String> = with_keys(variants)
-        .map(|variant| variant.named('_'))
-        .collect();
-    let abouts = with_keys(variants).map(Variant::about);
-    let conditions = with_keys(variants).zip(&keys).flat_map(|(variant, key)| {
-        let conditions = variant.attributes.allowed.iter();
-        conditions.map(move |(condition, reason)| {
-            quote_spanned!(here()=> if !(#condition) {
-                table.forbid(#key, #reason);
-            })
-        })
-    });
-    let arms = with_keys(variants)
-        .zip(&keys)
-        .enumerate()
-        .map(|(number, (variant, key))| {
-            let made = variant.made(target);
-            let body = if variant.attributes.table {
-                let reads = variant
-                    .fields
-                    .iter()
-                    .map(Field::read)
-                    .collect::<Result<Vec<_>>>()?;
-                let values = variant.fields.iter().map(|field| {
-                    let (name, value) = (&field.name, field.value());
-                    quote_spanned!(here()=> #name: #value)
-                });
-                let name = variant.name;
-                quote_spanned!(here()=>
-                    let inner = item.table()?;
-                    let table = &inner;
-                    #(#reads)*
-                    inner.finish();
-                    Some(#target::#name { #(#values),* })
-                )
-            } else {
-                let first = &variant.fields[0];
-                let value = first.bound(&first.rule());
-                let reads = variant
-                    .further()
-                    .map(Field::read)
-                    .collect::<Result<Vec<_>>>()?;
-                quote_spanned!(here()=> #value #(#reads)* Some(#made))
-            };
-            Ok(quote_spanned!(here()=> Some((#key, item)) => {
-                table.forbid_others("", #number, &alternatives);
-                #body
-            }))
-        })
-        .collect::<Result<Vec<TokenStream>>>()?;
+/// Reads the one key that is given.
+fn exclusive(target: &Path, attributes: &Attributes, variants: &[Variant<'_>]) -> TokenStream {
     let scope = scope();
     let found = match &attributes.default {
-        None => quote_spanned!(here()=> table.exactly_one(KEYS)),
+        None => quote_spanned!(here()=> table.exactly_one(keys)),
         Some(usual) => {
             let usual = match usual {
                 Fallback::OfType => quote_spanned!(here()=> ::core::default::Default::default()),
@@ -224,7 +172,7 @@ fn exclusive(
                     }),
                 }
             });
-            quote_spanned!(here()=> match table.at_most_one(KEYS) {
+            quote_spanned!(here()=> match table.at_most_one(keys) {
                 Some(None) => {
                     let usual: #target = #usual;
                     return match usual { #(#record),* };
@@ -234,27 +182,120 @@ fn exclusive(
             })
         }
     };
-    let name = |variant: &Variant<'_>| format!("`{}`", variant.named('_'));
-    let alternatives = alternatives(with_keys(variants), name, Variant::further);
-    Ok(quote_spanned!(here()=>
-        const KEYS: &[&str] = &[#(#keys),*];
-        let alternatives = #alternatives;
-        #(table.describe(#keys, #abouts);)*
-        #(#conditions)*
-        let found = #found;
-        match found {
-            #(#arms)*
-            _ => {
+    quote_spanned!(here()=>
+        let keys = <Self as crate::declaration::Exclusive>::choices();
+        <Self as crate::declaration::DeckChoice<_>>::prepare(table, #scope);
+        match #found {
+            Some((key, item)) => {
+                crate::declaration::DeckChoice::read_choice(table, key, &item, #scope)
+            }
+            None => {
                 table.know(&<Self as crate::declaration::Keyed>::keys());
                 None
+            }
+        }
+    )
+}
+
+/// Implements `Exclusive` and `DeckChoice`, which read the value of the key that is given, then further keys of its
+/// variant.
+fn choice(target: &Path, attributes: &Attributes, variants: &[Variant<'_>]) -> Result<TokenStream> {
+    let scope = scope();
+    let keys = with_keys(variants).map(|variant| match variant.inner() {
+        Some(ty) => {
+            quote_spanned!(here()=> <#ty as crate::declaration::Exclusive>::choices().to_vec())
+        }
+        None => {
+            let key = variant.named('_');
+            quote_spanned!(here()=> ::std::vec![#key])
+        }
+    });
+    let prepared = with_keys(variants).map(|variant| {
+        if let Some(ty) = variant.inner() {
+            return quote_spanned!(here()=>
+                <#ty as crate::declaration::DeckChoice<_>>::prepare(table, #scope);
+            );
+        }
+        let (key, about) = (variant.named('_'), variant.about());
+        // A definition has its own description.
+        let describe = match &variant.attributes.define {
+            Some(_) => TokenStream::new(),
+            None => quote_spanned!(here()=> table.describe(#key, #about);),
+        };
+        let conditions = variant
+            .attributes
+            .allowed
+            .iter()
+            .map(|(condition, reason)| {
+                quote_spanned!(here()=> if !(#condition) {
+                    table.forbid(#key, #reason);
+                })
+            });
+        quote_spanned!(here()=> #describe #(#conditions)*)
+    });
+    let arms = with_keys(variants)
+        .enumerate()
+        .map(|(number, variant)| {
+            let (name, key) = (variant.name, variant.named('_'));
+            if let Some(ty) = variant.inner() {
+                return Ok(quote_spanned!(here()=>
+                    key if <#ty as crate::declaration::Exclusive>::choices().contains(&key) => {
+                        crate::declaration::DeckChoice::read_choice(table, key, item, #scope)
+                            .map(#target::#name)
+                    }
+                ));
+            }
+            let define = variant.attributes.define.as_ref().map(|name| {
+                let about = variant.about();
+                quote_spanned!(here()=> item.define(#name, #about);)
+            });
+            let body = variant.read_value(target)?;
+            Ok(quote_spanned!(here()=> #key => {
+                #define
+                table.forbid_others("", #number, &alternatives);
+                #body
+            }))
+        })
+        .collect::<Result<Vec<TokenStream>>>()?;
+    let name = |variant: &Variant<'_>| format!("`{}`", variant.named('_'));
+    let alternatives = alternatives(with_keys(variants), name, Variant::further);
+    let (generics, ty) = scoped(attributes);
+    Ok(quote_spanned!(here()=>
+        impl crate::declaration::Exclusive for #target {
+            fn choices() -> &'static [&'static str] {
+                static KEYS: ::std::sync::OnceLock<::std::vec::Vec<&'static str>> =
+                    ::std::sync::OnceLock::new();
+                KEYS.get_or_init(|| [#(#keys),*].concat())
+            }
+        }
+
+        #[allow(unused_variables)]
+        impl #generics crate::declaration::DeckChoice<#ty> for #target {
+            fn prepare(table: &crate::reader::Table<'_>, #scope: #ty) {
+                #(#prepared)*
+            }
+
+            fn read_choice(
+                table: &crate::reader::Table<'_>,
+                key: &'static str,
+                item: &crate::reader::Item<'_>,
+                #scope: #ty,
+            ) -> ::core::option::Option<Self> {
+                let alternatives = #alternatives;
+                match key {
+                    #(#arms)*
+                    _ => None,
+                }
             }
         }
     ))
 }
 
-/// Returns the variants with a key: those with a value.
+/// Returns the variants with a key: those with a value, and those without one that name a key.
 fn with_keys<'a, 'b>(variants: &'a [Variant<'b>]) -> impl Iterator<Item = &'a Variant<'b>> {
-    variants.iter().filter(|variant| !variant.fields.is_empty())
+    let has_key =
+        |variant: &&Variant<'_>| !variant.fields.is_empty() || variant.attributes.name.is_some();
+    variants.iter().filter(has_key)
 }
 
 /// Lists the alternatives of a choice with the keys that others reject.
@@ -329,6 +370,46 @@ impl Variant<'_> {
             }
             _ => &self.attributes.about,
         }
+    }
+
+    /// Returns the type of exclusive keys that are keys of this variant.
+    fn inner(&self) -> Option<&Type> {
+        let first = self.fields.first();
+        first.and_then(Field::flattened)
+    }
+
+    /// Returns the code that reads the value of an exclusive key, then further keys.
+    fn read_value(&self, target: &Path) -> Result<TokenStream> {
+        let made = self.made(target);
+        if self.attributes.table {
+            let reads = self
+                .fields
+                .iter()
+                .map(Field::read)
+                .collect::<Result<Vec<_>>>()?;
+            return Ok(quote_spanned!(here()=>
+                let inner = item.table()?;
+                let table = &inner;
+                #(#reads)*
+                inner.finish();
+                Some(#made)
+            ));
+        }
+        let Some(first) = self.fields.first() else {
+            return Ok(quote_spanned!(here()=> match item.boolean()? {
+                true => Some(#made),
+                false => {
+                    item.out_of_range("true; remove the key for another choice");
+                    None
+                }
+            }));
+        };
+        let value = first.bound(&first.rule());
+        let reads = self
+            .further()
+            .map(Field::read)
+            .collect::<Result<Vec<_>>>()?;
+        Ok(quote_spanned!(here()=> #value #(#reads)* Some(#made)))
     }
 
     fn fields(&self) -> impl Iterator<Item = &Field> {

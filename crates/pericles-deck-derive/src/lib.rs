@@ -6,7 +6,7 @@
 //! |---|---|---|
 //! | `DeckTable` | a struct | a table; each field is a key |
 //! | `DeckKeys` | an enum with `#[deck(tag = "shape")]` | a key whose word selects the variant, and the keys of that variant |
-//! | `DeckKeys` | an enum with `#[deck(exclusive)]` | keys of which one is given, which selects the variant; variants without fields have no key |
+//! | `DeckKeys` | an enum with `#[deck(exclusive)]` | keys of which one is given, which selects the variant; variants without fields have no key, unless they name one, whose value is `true` |
 //! | `DeckWords` | an enum of variants without fields | a word |
 //!
 //! # Attributes of fields
@@ -22,7 +22,7 @@
 //! | `required_if(condition)` | of an `Option` or with a default: the key is required if the condition holds |
 //! | `with = function` | reader of the value: a function of the item and the scope; with `flatten` of the table and the scope |
 //! | `check = function` | range check of a value with a reader of its own: a function of the value, the path of the table, the scope and the collector |
-//! | `flatten` | the field is a `DeckKeys` enum or `DeckTable` struct whose keys are in this table, or has a reader of the table (`with`); with `key`, the documentation of the field describes this key |
+//! | `flatten` | the field is a `DeckKeys` enum or `DeckTable` struct whose keys are in this table, or has a reader of the table (`with`); with `key`, the documentation of the field describes this key. In an exclusive enum, the field is one as well, whose keys are further choices |
 //! | `keys("cells", "thickness")` | of a field with a reader of the table: the keys that it reads, if not the name of the field |
 //! | `scope = expression` | scope of the value, instead of the scope of the table |
 //! | `forbid_if(condition, "reason")` | the key is not allowed if the condition holds; the field then has its default |
@@ -40,7 +40,7 @@
 //! |---|---|
 //! | `scope = Space<'s>` | type of the scope: what keys depend on in addition to the fields above; without it, any scope |
 //! | `remote = Type` | declares a type of another crate, whose fields or variants are repeated |
-//! | `define = "function"` | the name of the definition of the table in the schema, if several keys share it |
+//! | `define = "function"` | the name of the definition of the table, or of the value of an exclusive key, in the schema, if several keys share it |
 //! | `default` | of a struct whose fields all have defaults: implements `Default` |
 //! | `at_least_one("mass", "stiffness")`, `exactly_one("temperature", "file")` | of a struct: how many of these keys are given; the first one is the key of a field |
 //! | `verify = function` | of a struct: function of the table, the value and the scope that reports values that do not fit together |

@@ -110,6 +110,17 @@ pub(crate) fn target(input: &DeriveInput, attributes: &Attributes) -> Path {
     attributes.remote.clone().unwrap_or_else(own)
 }
 
+/// Returns the generic parameters of implementations, and the type of the scope.
+pub(crate) fn scoped(attributes: &Attributes) -> (TokenStream, TokenStream) {
+    match &attributes.scope_type {
+        Some(ty) => (quote_spanned!(here()=> <'s>), quote_spanned!(here()=> #ty)),
+        None => (
+            quote_spanned!(here()=> <S: ::core::marker::Copy>),
+            quote_spanned!(here()=> S),
+        ),
+    }
+}
+
 /// Implements `DeckKeys` by the code of its functions, and from it the other traits of tables.
 pub(crate) fn implementation(
     attributes: &Attributes,
@@ -142,13 +153,7 @@ pub(crate) fn implementation(
             const DEFINITION: ::core::option::Option<&'static str> = Some(#name);
         )
     });
-    let (generics, ty) = match &attributes.scope_type {
-        Some(ty) => (quote_spanned!(here()=> <'s>), quote_spanned!(here()=> #ty)),
-        None => (
-            quote_spanned!(here()=> <S: ::core::marker::Copy>),
-            quote_spanned!(here()=> S),
-        ),
-    };
+    let (generics, ty) = scoped(attributes);
     quote_spanned!(here()=>
         impl crate::declaration::Keyed for #target {
             fn keys() -> ::std::vec::Vec<&'static str> {

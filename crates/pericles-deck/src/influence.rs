@@ -1,13 +1,13 @@
 //! The influence function of a material.
 
 use pericles::family::VolumeCorrection;
-use pericles::kernel::{ClassOffset, ClassTable, Influence, InfluenceFunction};
-use pericles::material::{StateInfluence, StressState};
-use pericles_deck_derive::DeckTable;
+use pericles::kernel::{ActsOn, ClassOffset, ClassTable, Influence, InfluenceFunction};
+use pericles::material::StressState;
+use pericles_deck_derive::{DeckKeys, DeckTable, DeckWords};
 use pericles_dispersion::tuning::{Combination, Method, ScalingModel, TunedTable, Tuning, Weights};
 use serde::{Deserialize, Serialize};
 
-use crate::declaration::DeckKeys;
+use crate::declaration::DeckTable;
 use crate::fault::Fault;
 use crate::form::described;
 use crate::quantity::Quantity;
@@ -15,6 +15,7 @@ use crate::range::{POSITIVE, Range};
 use crate::reader::{Item, Table};
 
 /// Discretisation for which an influence function is made; none where the deck is invalid.
+#[derive(Clone, Copy)]
 pub(crate) struct Setting {
     pub(crate) dimension: Option<usize>,
     pub(crate) state: Option<StressState>,
@@ -27,221 +28,214 @@ pub(crate) struct Setting {
     /// Horizon, m.
     pub(crate) horizon: Option<f64>,
     pub(crate) correction: Option<VolumeCorrection>,
+    /// Whether the function weights the bond extensions of a state-based or correspondence material.
+    pub(crate) is_state_based: bool,
 }
 
-/// The influence function of a material.
-pub(crate) struct InfluenceRead {
-    pub(crate) influence: Influence,
-    /// The tuning result, if it is tuned.
-    pub(crate) tuned: Option<TunedTable>,
-}
-
-/// Reads the influence function of a material.
-pub(crate) fn influence(table: &Table<'_>, setting: &Setting) -> Option<InfluenceRead> {
-    let table = table.table_or_empty("influence")?;
-    let mut tuned = None;
-    let function = function(&table, setting, &mut tuned);
-    let acts_on = table.worded("acts_on", "argument");
-    // Without the function, the allowed keys are unknown.
-    let influence = Influence {
-        function: function?,
-        acts_on: acts_on?,
-    };
-    if let (Some(dimension), Some(horizon)) = (setting.dimension, setting.horizon) {
+/// Reads the influence function of a material, with the tuning result if it is tuned; no function if it follows from the
+/// lattice.
+pub(crate) fn influence(
+    table: &Table<'_>,
+    setting: &Setting,
+) -> Option<(Option<Influence>, Option<TunedTable>)> {
+    let inner = || table.table_or_empty("influence");
+    let given = GivenInfluence::read_table(inner()?, setting)?;
+    let (table, mut tuned) = (inner()?, None);
+    let function = given.function.made(&table, setting, &mut tuned)?;
+    let influence = function.map(|function| Influence {
+        function,
+        acts_on: given.acts_on,
+    });
+    if let (Some(influence), Some(dimension), Some(horizon)) =
+        (&influence, setting.dimension, setting.horizon)
+    {
         table.accept(influence.check(dimension, horizon));
     }
-    table.finish();
-    Some(InfluenceRead { influence, tuned })
+    Some((influence, tuned))
 }
 
-/// Reads the influence function of a state-based material. The default is the conical one, which is nearest
-/// to isotropic on most lattices.
-pub(crate) fn state_influence(table: &Table<'_>, setting: &Setting) -> Option<StateInfluence> {
-    const FORMS: [(&str, Option<Form>); 7] = [
-        ("conical", Some(Form::Conical)),
-        ("constant", Some(Form::Constant)),
-        ("inverse", Some(Form::Inverse)),
-        ("power", Some(Form::Power)),
-        ("gaussian", Some(Form::Gaussian)),
-        ("tabulated", Some(Form::Tabulated)),
-        ("isotropic", None),
-    ];
-    let table = table.table_or_empty("influence")?;
-    table.forbid(
-        "acts_on",
-        "the influence function of a state-based material multiplies the bond extension; remove the key",
-    );
-    let form = table.choice_or_first("function", "influence function", &FORMS);
-    let influence = match form? {
-        None => StateInfluence::Isotropic,
-        Some(form) => {
-            let function = of_form(form, &table, setting, &mut None)?;
-            if let (Some(dimension), Some(horizon)) = (setting.dimension, setting.horizon) {
-                let influence = Influence {
-                    function: function.clone(),
-                    ..Influence::default()
-                };
-                table.accept(influence.check(dimension, horizon));
-            }
-            StateInfluence::Function(function)
-        }
-    };
-    table.finish();
-    Some(influence)
+/// Influence function: weight of a bond as a function of its length.
+#[derive(DeckTable)]
+#[deck(scope = &'s Setting)]
+struct GivenInfluence {
+    #[deck(flatten)]
+    function: GivenFunction,
+    /// Quantity that the influence function multiplies: the bond stretch or the relative displacement.
+    #[deck(
+        default = ActsOn::Stretch,
+        forbid_if(
+            scope.is_state_based,
+            "the influence function of a state-based material multiplies the bond extension; remove the key"
+        )
+    )]
+    acts_on: ActsOn,
 }
 
-#[derive(Clone, Copy)]
-enum Form {
+/// Influence function α(r) for bond length r ≤ δ. `constant`: 1; `conical`: 1 − r/δ; `inverse`: 1/r; `power`:
+/// (r/δ)^exponent; `gaussian`: exp(−(r/length)²); `tabulated`: piecewise linear; `cosines`: a0 + Σ a_j cos(j ·
+/// wavenumber · r); `lattice-classes`: one value per class of equivalent lattice bonds; `tuned`: lattice classes
+/// optimised for low numerical dispersion on this grid and horizon; `isotropic`, state-based only: 1 − c r/δ with c
+/// such that the shear modulus on square or cubic grids is isotropic. State-based materials have no `cosines`,
+/// `lattice-classes` and `tuned`; their default is `conical`.
+#[derive(DeckKeys)]
+#[deck(
+    tag = "function",
+    what = "influence function",
+    scope = &'s Setting,
+    // The conical function is nearest to isotropic on most lattices.
+    default = Some(if scope.is_state_based { "conical" } else { "constant" })
+)]
+enum GivenFunction {
     Constant,
     Conical,
     Inverse,
-    Power,
-    Gaussian,
-    Tabulated,
-    Cosines,
-    Classes,
-    Tuned,
+    Power {
+        /// power: exponent of α = (r/δ)^exponent. The elastic modulus must be finite: above −2 in 1D, −3 in 2D, −4 in
+        /// 3D.
+        #[deck(quantity = Number)]
+        exponent: f64,
+    },
+    Gaussian {
+        /// gaussian: length l of α = exp(−(r/l)²).
+        #[deck(quantity = Length, range = POSITIVE)]
+        length: f64,
+        /// gaussian: largest bond length. Default: the horizon.
+        #[deck(quantity = Length, range = POSITIVE)]
+        cutoff: Option<f64>,
+    },
+    Tabulated {
+        /// tabulated, cosines: unit of r and 1/wavenumber: metres, spacings or horizons.
+        #[deck(default = LengthUnit::Length)]
+        r: LengthUnit,
+        /// tabulated: pairs [r, value].
+        #[deck(key = "table", required, with = pairs, scope = r.copied())]
+        pairs: Vec<(f64, f64)>,
+    },
+    #[deck(allow_if(!scope.is_state_based, OF_LENGTH))]
+    Cosines {
+        /// tabulated, cosines: unit of r and 1/wavenumber: metres, spacings or horizons.
+        #[deck(
+            default = LengthUnit::Spacing,
+            allow_if(r != Some(&LengthUnit::Length), "\"spacing\" or \"horizon\"")
+        )]
+        r: LengthUnit,
+        /// cosines: lowest wave number, in rad per unit `r`.
+        #[deck(range = POSITIVE)]
+        wavenumber: f64,
+        /// cosines: coefficients a0, a1, …
+        #[deck(required, with = numbers)]
+        coefficients: Vec<f64>,
+    },
+    #[deck(word = "lattice-classes", allow_if(!scope.is_state_based, OF_LENGTH), allow_if(scope.cells, NO_CLASSES))]
+    Classes {
+        /// lattice-classes: pairs [[i, j, …], value] with the bond vector in spacings.
+        #[deck(key = "table", required, with = classes)]
+        classes: Vec<(ClassOffset, f64)>,
+    },
+    #[deck(allow_if(!scope.is_state_based, OF_LENGTH), allow_if(scope.cells, NO_CLASSES))]
+    Tuned(#[deck(flatten, scope = scope.dimension)] Tuning),
+    #[deck(allow_if(scope.is_state_based, "another function; `isotropic` requires model = \"state-based\" or \"correspondence\""))]
+    Isotropic,
 }
 
-fn function(
-    table: &Table<'_>,
-    setting: &Setting,
-    tuned_table: &mut Option<TunedTable>,
-) -> Option<InfluenceFunction> {
-    const FORMS: [(&str, Form); 9] = [
-        ("constant", Form::Constant),
-        ("conical", Form::Conical),
-        ("inverse", Form::Inverse),
-        ("power", Form::Power),
-        ("gaussian", Form::Gaussian),
-        ("tabulated", Form::Tabulated),
-        ("cosines", Form::Cosines),
-        ("lattice-classes", Form::Classes),
-        ("tuned", Form::Tuned),
-    ];
-    let form = table.choice_or_first("function", "influence function", &FORMS)?;
-    of_form(form, table, setting, tuned_table)
+/// Unit of the lengths in a table.
+#[derive(Debug, Clone, Copy, PartialEq, DeckWords)]
+#[deck(what = "unit of lengths")]
+enum LengthUnit {
+    Length,
+    Spacing,
+    Horizon,
 }
 
-/// Reads the keys of a kind of function.
-fn of_form(
-    form: Form,
-    table: &Table<'_>,
-    setting: &Setting,
-    tuned_table: &mut Option<TunedTable>,
-) -> Option<InfluenceFunction> {
-    match form {
-        Form::Constant => Some(InfluenceFunction::Constant),
-        Form::Conical => Some(InfluenceFunction::Conical),
-        Form::Inverse => Some(InfluenceFunction::Inverse),
-        Form::Power => Some(InfluenceFunction::Power {
-            exponent: table.required("exponent")?.quantity(Quantity::Number)?,
-        }),
-        Form::Gaussian => {
-            let length = table
-                .required("length")
-                .and_then(|item| item.positive(Quantity::Length));
-            let cutoff = table.maybe("cutoff", |item| item.positive(Quantity::Length));
-            Some(InfluenceFunction::Gaussian {
-                length: length?,
-                cutoff: cutoff?,
-            })
-        }
-        Form::Tabulated => tabulated(table, setting),
-        Form::Cosines => cosines(table, setting),
-        Form::Classes | Form::Tuned if !setting.cells => {
-            if let Some(item) = table.optional("function") {
-                item.out_of_range(
-                    "a function of the bond length; bond classes require square and cubic cells, with one `spacing` for all axes",
-                );
+const OF_LENGTH: &str = "\"conical\", \"constant\", \"inverse\", \"power\", \"gaussian\", \"tabulated\" or \"isotropic\" with model = \"state-based\" and \"correspondence\"";
+const NO_CLASSES: &str = "a function of the bond length; bond classes require square and cubic cells, with one `spacing` for all axes";
+
+impl GivenFunction {
+    /// Returns the function in metres; none if it follows from the lattice. The outer option is none after reporting an error.
+    fn made(
+        self,
+        table: &Table<'_>,
+        setting: &Setting,
+        tuned_table: &mut Option<TunedTable>,
+    ) -> Option<Option<InfluenceFunction>> {
+        Some(Some(match self {
+            Self::Constant => InfluenceFunction::Constant,
+            Self::Conical => InfluenceFunction::Conical,
+            Self::Inverse => InfluenceFunction::Inverse,
+            Self::Power { exponent } => InfluenceFunction::Power { exponent },
+            Self::Gaussian { length, cutoff } => InfluenceFunction::Gaussian { length, cutoff },
+            Self::Tabulated { r, pairs } => {
+                let scale = r.metres(table, setting)?;
+                let table = pairs.iter().map(|(r, value)| (r * scale, *value)).collect();
+                InfluenceFunction::Tabulated { table }
             }
-            None
+            Self::Cosines {
+                r,
+                wavenumber,
+                coefficients,
+            } => InfluenceFunction::Cosines {
+                wavenumber: wavenumber / r.metres(table, setting)?,
+                coefficients,
+            },
+            Self::Classes { classes } => {
+                let classes = ClassTable::new(setting.dimension?, setting.spacing?, &classes);
+                InfluenceFunction::Classes(table.accept(classes)?)
+            }
+            Self::Tuned(tuning) => {
+                let found = tuned(table, tuning, setting)?;
+                let made = found.influence(setting.dimension?, setting.spacing?);
+                let function = table.accept(made)?.function;
+                *tuned_table = Some(found);
+                function
+            }
+            Self::Isotropic => return Some(None),
+        }))
+    }
+}
+
+impl LengthUnit {
+    /// Returns the unit in metres. Spacings are rejected if they are unknown before a mesh is read.
+    fn metres(self, table: &Table<'_>, setting: &Setting) -> Option<f64> {
+        if setting.automatic && self == Self::Spacing {
+            table.report(Fault::OutOfRange {
+                value: "spacing".into(),
+                allowed: "another unit `r`, or a `spacing` in [body]; the spacing of this mesh is unknown before the mesh is read".into(),
+            });
         }
-        Form::Classes => classes(table, setting),
-        Form::Tuned => {
-            let found = tuned(table, setting)?;
-            let influence = table.accept(found.influence(setting.dimension?, setting.spacing?))?;
-            *tuned_table = Some(found);
-            Some(influence.function)
+        match self {
+            Self::Length => Some(1.0),
+            Self::Spacing => setting.spacing,
+            Self::Horizon => setting.horizon,
         }
     }
 }
 
-/// Reads the unit of lengths in a table, m, and the quantity of its numbers.
-fn unit(table: &Table<'_>, setting: &Setting) -> Option<(Option<f64>, Quantity)> {
-    const UNITS: [(&str, usize); 3] = [("length", 0), ("spacing", 1), ("horizon", 2)];
-    let unit = table.choice_or_first("r", "unit of lengths", &UNITS)?;
-    reject_spacing(table, setting, unit == 1);
-    let quantity = if unit == 0 {
-        Quantity::Length
-    } else {
-        Quantity::Number
+/// Reads pairs of a length and a value.
+fn pairs(item: &Item<'_>, unit: Option<LengthUnit>) -> Option<Vec<(f64, f64)>> {
+    let rows = item.list("a list of pairs [r, value]")?;
+    let quantity = match unit? {
+        LengthUnit::Length => Quantity::Length,
+        LengthUnit::Spacing | LengthUnit::Horizon => Quantity::Number,
     };
-    Some((
-        [Some(1.0), setting.spacing, setting.horizon][unit],
-        quantity,
-    ))
+    let pairs: Vec<Option<(f64, f64)>> = rows.iter().map(|row| pair(row, quantity)).collect();
+    pairs.into_iter().collect()
 }
 
-/// Rejects lengths in spacings if the spacing is unknown before a mesh is read.
-fn reject_spacing(table: &Table<'_>, setting: &Setting, counts_spacings: bool) {
-    if setting.automatic && counts_spacings {
-        table.report(Fault::OutOfRange {
-            value: "spacing".into(),
-            allowed: "another unit `r`, or a `spacing` in [body]; the spacing of this mesh is unknown before the mesh is read".into(),
-        });
-    }
-}
-
-/// Reads a table whose first column is a length, in metres, spacings or horizons.
-fn tabulated(table: &Table<'_>, setting: &Setting) -> Option<InfluenceFunction> {
-    let unit = unit(table, setting);
-    let rows = table
-        .required("table")
-        .and_then(|item| item.list("a list of pairs [r, value]"));
-    let (scale, quantity) = unit?;
-    let pairs: Vec<Option<(f64, f64)>> = rows?.iter().map(|row| pair(row, quantity)).collect();
-    let pairs: Vec<(f64, f64)> = pairs.into_iter().collect::<Option<_>>()?;
-    let scale = scale?;
-    Some(InfluenceFunction::Tabulated {
-        table: pairs.iter().map(|(r, value)| (r * scale, *value)).collect(),
-    })
-}
-
-/// Reads a₀ + Σ a_j cos(j w r/unit).
-fn cosines(table: &Table<'_>, setting: &Setting) -> Option<InfluenceFunction> {
-    const UNITS: [(&str, usize); 2] = [("spacing", 0), ("horizon", 1)];
-    let unit = table.choice_or_first("r", "unit of lengths", &UNITS);
-    reject_spacing(table, setting, unit == Some(0));
-    let wavenumber = table
-        .required("wavenumber")
-        .and_then(|item| item.positive(Quantity::Number));
-    let list = table
-        .required("coefficients")
-        .and_then(|item| item.list("a list of numbers a0, a1, …"));
-    let coefficients: Vec<Option<f64>> = list?
+fn numbers<S>(item: &Item<'_>, _: S) -> Option<Vec<f64>> {
+    let items = item.list("a list of numbers a0, a1, …")?;
+    let numbers: Vec<Option<f64>> = items
         .iter()
         .map(|item| item.quantity(Quantity::Number))
         .collect();
-    let coefficients = coefficients.into_iter().collect::<Option<_>>();
-    let scale = [setting.spacing, setting.horizon][unit?]?;
-    Some(InfluenceFunction::Cosines {
-        wavenumber: wavenumber? / scale,
-        coefficients: coefficients?,
-    })
+    numbers.into_iter().collect()
 }
 
 /// Reads a value per class of lattice bonds, such as `[[[1, 0], 3.7], [[1, 1], 2.9]]`.
-fn classes(table: &Table<'_>, setting: &Setting) -> Option<InfluenceFunction> {
-    let rows = table
-        .required("table")?
-        .list("a list of pairs [[i, j, …], value]")?;
+fn classes(item: &Item<'_>, setting: &Setting) -> Option<Vec<(ClassOffset, f64)>> {
+    let rows = item.list("a list of pairs [[i, j, …], value]")?;
     let entries: Vec<Option<(ClassOffset, f64)>> =
         rows.iter().map(|row| class(row, setting)).collect();
-    let entries: Vec<(ClassOffset, f64)> = entries.into_iter().collect::<Option<_>>()?;
-    let (dimension, spacing) = (setting.dimension?, setting.spacing?);
-    let classes = table.accept(ClassTable::new(dimension, spacing, &entries))?;
-    Some(InfluenceFunction::Classes(classes))
+    entries.into_iter().collect()
 }
 
 fn class(row: &Item<'_>, setting: &Setting) -> Option<(ClassOffset, f64)> {
@@ -336,9 +330,8 @@ fn lower_bound<S>(table: &Table<'_>, _: S) -> Option<Option<f64>> {
     }
 }
 
-/// Reads the tuning options and optimises the coefficients for this grid.
-fn tuned(table: &Table<'_>, setting: &Setting) -> Option<TunedTable> {
-    let tuning = Tuning::read_keys(table, setting.dimension)?;
+/// Optimises the coefficients for this grid.
+fn tuned(table: &Table<'_>, tuning: Tuning, setting: &Setting) -> Option<TunedTable> {
     let bound = table.optional("lower_bound");
     let is_automatic = bound.is_none_or(|item| item.word() == Some(AUTO));
     let spacing = setting.spacing?;

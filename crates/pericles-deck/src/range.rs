@@ -106,7 +106,7 @@ impl Range {
     }
 
     /// Returns the whole numbers of the range.
-    const fn whole(self) -> Self {
+    pub(crate) const fn whole(self) -> Self {
         Self {
             is_whole: true,
             ..self

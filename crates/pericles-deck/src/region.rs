@@ -1,15 +1,17 @@
 //! Regions of space in sets, holes and refinements.
 
-use pericles::PericlesError;
-use pericles::space::{Face, Point, Region};
-use pericles_deck_derive::DeckKeys;
+use pericles::space::{Face, Finer, Point, Region};
+use pericles_deck_derive::{DeckKeys, DeckTable};
 use serde::{Deserialize, Serialize};
 
-use crate::declaration::{DeckKeys, Spatial};
+use crate::declaration::{Check, DeckKeys, DeckValue, Spatial};
 use crate::fault::Fault;
+use crate::form::described;
+use crate::key_path::KeyPath;
 use crate::quantity::Quantity;
+use crate::range::{Range, from_to};
 use crate::reader::{Item, Table};
-use crate::vocabulary::REGIONS;
+use crate::words::Worded;
 
 /// Reference of a region: dimension and spacing of the body.
 #[derive(Clone, Copy)]
@@ -71,102 +73,167 @@ impl Depth {
     }
 }
 
-/// Reads a table with exactly one key, the kind of region.
-pub(crate) fn read(table: Table<'_>, frame: Frame) -> Option<Region> {
-    table.define("region");
-    read_among_others(table, frame)
+/// Region of space.
+#[derive(Serialize, Deserialize, DeckKeys)]
+#[serde(remote = "Region", rename_all = "snake_case", deny_unknown_fields)]
+#[deck(exclusive, remote = Region, define = "region", scope = Frame)]
+enum RegionForm {
+    /// All of space.
+    #[deck(key = "all", define = "all")]
+    All,
+    /// Axis-aligned box. A missing corner, or an entry "open", means no bound.
+    #[deck(table, define = "box")]
+    Box {
+        /// Lower corner.
+        #[serde(with = "crate::form")]
+        #[deck(with = lower_corner, default = [f64::NEG_INFINITY; 3])]
+        min: Point,
+        /// Upper corner.
+        #[serde(with = "crate::form")]
+        #[deck(
+            with = upper_corner,
+            default = [f64::INFINITY; 3],
+            allow_if(
+                are_ordered(min, max),
+                "an upper corner `max` not below the lower corner `min` along any axis"
+            )
+        )]
+        max: Point,
+    },
+    /// Ball (3D) or disc (2D).
+    #[deck(table, define = "ball")]
+    Ball {
+        /// Centre.
+        #[deck(quantity = Length)]
+        centre: Point,
+        /// Radius.
+        #[deck(quantity = Length, range = POSITIVE)]
+        radius: f64,
+    },
+    /// 3D: infinite circular cylinder.
+    #[deck(
+        table,
+        define = "cylinder",
+        allow_if(scope.dimension.is_none_or(|own| own == 3), "`cylinder` requires a 3D body; in 2D, a `ball` is a disc")
+    )]
+    Cylinder {
+        /// Point on the axis.
+        #[deck(quantity = Length)]
+        centre: Point,
+        /// Direction of the axis.
+        #[deck(flatten, key = "axis", with = axis, check = check_axis)]
+        axis: usize,
+        /// Radius.
+        #[deck(quantity = Length, range = POSITIVE)]
+        radius: f64,
+    },
+    /// Half-space on the side of a plane opposite to its normal.
+    #[deck(table, define = "half_space")]
+    HalfSpace {
+        /// Point on the plane.
+        #[deck(quantity = Length)]
+        point: Point,
+        /// Outward normal vector, of any length.
+        #[deck(with = normal)]
+        normal: Point,
+    },
+    /// Layer at one side of the body's bounding box. Give `depth` or `cells`.
+    #[deck(table, define = "layer")]
+    Layer {
+        /// Side of the bounding box.
+        #[serde(rename = "side", with = "crate::form")]
+        #[deck(key = "side", with = side)]
+        face: Face,
+        #[deck(flatten, with = layer_depth, keys("depth", "cells"), check = check_depth)]
+        depth: f64,
+    },
+    /// 2D, 3D: polygon in the x–y plane; infinite along z in 3D.
+    #[deck(
+        table,
+        define = "polygon",
+        allow_if(scope.dimension != Some(1), "`polygon` requires a 2D or 3D body; in 1D, a `box` is an interval")
+    )]
+    Polygon {
+        /// Corners in order, at least three.
+        #[deck(required, with = polygon, check = check_corners)]
+        corners: Vec<[f64; 2]>,
+    },
+    /// Union of regions.
+    #[deck(define = "union")]
+    Union(
+        #[serde(with = "crate::form")]
+        #[deck(allow_if(value0.is_none_or(|parts| !parts.is_empty()), "at least one region"))]
+        Vec<Region>,
+    ),
+    /// Intersection of regions.
+    #[deck(define = "intersection")]
+    Intersection(
+        #[serde(with = "crate::form")]
+        #[deck(allow_if(value0.is_none_or(|parts| !parts.is_empty()), "at least one region"))]
+        Vec<Region>,
+    ),
+    /// Complement of a region.
+    #[deck(define = "complement")]
+    Complement(#[serde(with = "crate::form")] Box<Region>),
 }
 
-/// Reads the kind of region in a table with other keys.
-pub(crate) fn read_among_others(table: Table<'_>, frame: Frame) -> Option<Region> {
-    let found = table.exactly_one(REGIONS);
-    table.finish();
-    let (kind, item) = found?;
-    of_kind(kind, &item, frame)
+/// Regions with a smaller spacing and horizon, for analytic shapes, filled surfaces and outlines with whole lattice
+/// cells. Any number of tables; where they overlap, the last one counts. Refined bodies use a neighbour list, and the
+/// fracture energy determines one critical stretch per cell size. A bond exists within the larger horizon of its end
+/// points; its force is the mean of both end points' force laws.
+#[derive(Serialize, Deserialize, DeckTable)]
+#[serde(remote = "Finer", deny_unknown_fields)]
+#[deck(remote = Finer, scope = Frame)]
+struct FinerForm {
+    /// Number of parts into which cells with their centre in the region are divided along each axis. The horizon shrinks by
+    /// the same factor.
+    #[deck(range = RATIOS)]
+    ratio: u32,
+    #[serde(with = "crate::form")]
+    #[deck(flatten)]
+    region: Region,
 }
 
-/// Reads a region of a kind.
-pub(crate) fn of_kind(kind: &'static str, item: &Item<'_>, frame: Frame) -> Option<Region> {
-    item.define(kind);
-    match kind {
-        "all" => everything(item),
-        "box" => axis_parallel_box(item.table()?, frame),
-        "ball" => ball(item.table()?, frame),
-        "cylinder" => cylinder(item, frame),
-        "half_space" => half_space(item.table()?, frame),
-        "layer" => layer(item.table()?, frame),
-        "polygon" => polygon(item, frame),
-        "union" => Some(Region::Union(several(item, frame)?)),
-        "intersection" => Some(Region::Intersection(several(item, frame)?)),
-        _ => Some(Region::Complement(Box::new(read(item.table()?, frame)?))),
+described!(Region: RegionForm, Finer: FinerForm);
+
+impl DeckValue<Frame> for Box<Region> {
+    fn read(item: &Item<'_>, frame: Frame) -> Option<Self> {
+        Region::read(item, frame).map(Self::new)
+    }
+
+    fn check(&self, path: KeyPath, frame: Frame, check: &mut Check) {
+        (**self).check(path, frame, check);
     }
 }
 
-fn everything(item: &Item<'_>) -> Option<Region> {
-    if item.boolean()? {
-        return Some(Region::All);
-    }
-    item.out_of_range("true; remove the table for no region");
-    None
+/// Larger ratios would make time steps that differ as much.
+const RATIOS: Range = from_to(2.0, 16.0).whole();
+
+fn lower_corner(item: &Item<'_>, frame: Frame) -> Option<Point> {
+    corner(item, frame, f64::NEG_INFINITY)
 }
 
-fn several(item: &Item<'_>, frame: Frame) -> Option<Vec<Region>> {
-    let parts = item.list("a list of regions")?;
-    if parts.is_empty() {
-        item.report(Fault::WrongLength {
-            value: "[]".into(),
-            found: 0,
-            allowed: "allowed: at least one region".into(),
-        });
-        return None;
-    }
-    let read: Vec<Option<Region>> = parts
-        .iter()
-        .map(|part| part.table().and_then(|table| read(table, frame)))
-        .collect();
-    read.into_iter().collect()
-}
-
-fn axis_parallel_box(table: Table<'_>, frame: Frame) -> Option<Region> {
-    let bound = |item: Option<Item<'_>>, open: f64| match item {
-        None => Some([open; 3]),
-        Some(item) => bounds(&item, frame, open),
-    };
-    let upper = table.optional("max");
-    let (min, max) = (
-        bound(table.optional("min"), f64::NEG_INFINITY),
-        bound(upper.clone(), f64::INFINITY),
-    );
-    table.finish();
-    let (min, max) = (min?, max?);
-    if let Some(item) = upper
-        && (0..3).any(|c| min[c] > max[c])
-    {
-        item.out_of_range("an upper corner `max` not below the lower corner `min` along any axis");
-        return None;
-    }
-    Some(Region::Box { min, max })
+fn upper_corner(item: &Item<'_>, frame: Frame) -> Option<Point> {
+    corner(item, frame, f64::INFINITY)
 }
 
 /// Reads a corner whose entries may be open.
-fn bounds(item: &Item<'_>, frame: Frame, open: f64) -> Option<Point> {
-    let items = item.components(
-        frame.dimension,
-        &format!("{}, or \"open\"", Quantity::Length.expected()),
-    )?;
+fn corner(item: &Item<'_>, frame: Frame, open: f64) -> Option<Point> {
+    let words = [
+        ("open", open),
+        ("inf", f64::INFINITY),
+        ("+inf", f64::INFINITY),
+        ("-inf", f64::NEG_INFINITY),
+    ];
+    let expected = format!("{}, or \"open\"", Quantity::Length.expected());
+    let items = item.components(frame.dimension, &expected)?;
     let mut corner = Some([open; 3]);
     for (c, entry) in items.iter().enumerate() {
-        let words = [
-            ("open", open),
-            ("inf", f64::INFINITY),
-            ("+inf", f64::INFINITY),
-            ("-inf", f64::NEG_INFINITY),
-        ];
-        let value = words
-            .into_iter()
-            .find(|(word, _)| entry.is_keyword(word))
-            .map(|(_, bound)| bound)
-            .or_else(|| entry.quantity(Quantity::Length));
+        let word = words.iter().find(|(word, _)| entry.is_keyword(word));
+        let value = word.map_or_else(
+            || entry.quantity(Quantity::Length),
+            |(_, bound)| Some(*bound),
+        );
         match (value, &mut corner) {
             (Some(value), Some(corner)) => corner[c] = value,
             _ => corner = None,
@@ -175,61 +242,23 @@ fn bounds(item: &Item<'_>, frame: Frame, open: f64) -> Option<Point> {
     corner
 }
 
-fn ball(table: Table<'_>, frame: Frame) -> Option<Region> {
-    let centre = point(&table, "centre", frame);
-    let radius = table
-        .required("radius")
-        .and_then(|item| item.positive(Quantity::Length));
-    table.finish();
-    Some(Region::Ball {
-        centre: centre?,
-        radius: radius?,
-    })
-}
-
-fn cylinder(item: &Item<'_>, frame: Frame) -> Option<Region> {
-    let table = item.table()?;
-    if let Some(dimension) = frame.dimension
-        && dimension != 3
-    {
-        item.report(
-            PericlesError::WrongDimension {
-                what: "a cylinder as a region",
-                needed: "3 (a ball is a disc in two dimensions)",
-                dimension,
-            }
-            .into(),
-        );
-        return None;
-    }
-    let centre = point(&table, "centre", frame);
-    let axis = axis(&table);
-    let radius = table
-        .required("radius")
-        .and_then(|item| item.positive(Quantity::Length));
-    table.finish();
-    Some(Region::Cylinder {
-        centre: centre?,
-        axis: axis?,
-        radius: radius?,
-    })
+/// Returns whether an upper corner, if both are known, is not below a lower one.
+fn are_ordered(min: Option<&Point>, max: Option<&Point>) -> bool {
+    let corners = min.zip(max);
+    corners.is_none_or(|(min, max)| (0..3).all(|c| min[c] <= max[c]))
 }
 
 /// Reads the axis of a cylinder; the default is z.
-pub(crate) fn axis(table: &Table<'_>) -> Option<usize> {
+pub(crate) fn axis<S>(table: &Table<'_>, _: S) -> Option<usize> {
     table.choice_or_first("axis", "axis", &[("z", 2), ("x", 0), ("y", 1)])
 }
 
-fn half_space(table: Table<'_>, frame: Frame) -> Option<Region> {
-    let point = point(&table, "point", frame);
-    let normal = table
-        .required("normal")
-        .and_then(|item| direction(&item, frame.dimension));
-    table.finish();
-    Some(Region::HalfSpace {
-        point: point?,
-        normal: normal?,
-    })
+fn check_axis<S>(axis: &usize, path: &KeyPath, _: S, check: &mut Check) {
+    check.axis(path.key("axis"), *axis);
+}
+
+fn normal(item: &Item<'_>, frame: Frame) -> Option<Point> {
+    direction(item, frame.dimension)
 }
 
 /// Reads a nonzero vector.
@@ -242,64 +271,43 @@ pub(crate) fn direction(item: &Item<'_>, dimension: Option<usize>) -> Option<Poi
     Some(vector)
 }
 
-fn layer(table: Table<'_>, frame: Frame) -> Option<Region> {
-    const SIDES: [(&str, usize); 6] = [
-        ("-x", 1),
-        ("+x", 1),
-        ("-y", 2),
-        ("+y", 2),
-        ("-z", 3),
-        ("+z", 3),
-    ];
-    // Only sides within the dimension of the body are allowed.
-    let sides: Vec<(&'static str, &'static str)> = SIDES
-        .iter()
-        .filter(|(_, needs)| *needs <= frame.dimension.unwrap_or(3))
-        .map(|(side, _)| (*side, *side))
-        .collect();
-    let side = table
-        .required("side")
-        .and_then(|item| item.choice("side", &sides));
-    let depth = match Depth::read_keys(&table, ()) {
-        Some(Depth::Cells(_)) if !frame.cells => {
+/// Reads a side within the dimension of the body.
+fn side(item: &Item<'_>, frame: Frame) -> Option<Face> {
+    let sides = Face::words();
+    item.choice(Face::WHAT, &sides[..2 * frame.dimension.unwrap_or(3)])
+}
+
+fn layer_depth(table: &Table<'_>, frame: Frame) -> Option<f64> {
+    match Depth::read_keys(table, ())? {
+        Depth::Cells(_) if !frame.cells => {
             if let Some(item) = table.optional("cells") {
                 item.out_of_range("`depth` instead; this body has no uniform spacing");
             }
             None
         }
-        Some(Depth::Cells(cells)) => frame.spacing.map(|spacing| cells * spacing),
-        Some(Depth::Length(length)) => Some(length),
-        None => None,
-    };
-    table.finish();
-    Some(Region::Layer {
-        face: Face::named(side?)?,
-        depth: depth?,
-    })
+        Depth::Cells(cells) => frame.spacing.map(|spacing| cells * spacing),
+        Depth::Length(length) => Some(length),
+    }
 }
 
-fn polygon(item: &Item<'_>, frame: Frame) -> Option<Region> {
-    let table = item.table()?;
-    if frame.dimension == Some(1) {
-        item.report(
-            PericlesError::WrongDimension {
-                what: "a polygon as a region",
-                needed: "2 or 3 (a box or a ball is an interval in one dimension)",
-                dimension: 1,
-            }
-            .into(),
-        );
-        return None;
-    }
-    let corners = table
-        .required("corners")
-        .and_then(|item| corners(&item, Some(2)));
-    table.finish();
-    let flat = corners?
-        .iter()
-        .map(|corner| [corner[0], corner[1]])
-        .collect();
-    Some(Region::Polygon { corners: flat })
+fn check_depth<S>(depth: &f64, path: &KeyPath, _: S, check: &mut Check) {
+    check.positive(path.key("depth"), *depth);
+}
+
+/// Reads at least three corners in the plane.
+pub(crate) fn polygon<S>(item: &Item<'_>, _: S) -> Option<Vec<[f64; 2]>> {
+    let corners = corners(item, Some(2))?;
+    Some(corners.iter().map(|&[x, y, _]| [x, y]).collect())
+}
+
+fn check_corners<S>(corners: &[[f64; 2]], path: &KeyPath, _: S, check: &mut Check) {
+    let allowed = "allowed: at least 3 corners";
+    check.within(
+        corners.len() >= 3,
+        path.key("corners"),
+        corners.len(),
+        allowed,
+    );
 }
 
 /// Reads at least three points.
@@ -318,10 +326,4 @@ pub(crate) fn corners(item: &Item<'_>, dimension: Option<usize>) -> Option<Vec<P
         .map(|corner| corner.vector(Quantity::Length, dimension))
         .collect();
     read.into_iter().collect()
-}
-
-fn point(table: &Table<'_>, key: &'static str, frame: Frame) -> Option<Point> {
-    table
-        .required(key)?
-        .vector(Quantity::Length, frame.dimension)
 }

@@ -1,7 +1,7 @@
 //! `[sets.NAME]`: named sets of points and references to them.
 
 use pericles::space::{PointCloud, PointSet, Region};
-use pericles_deck_derive::DeckTable;
+use pericles_deck_derive::{DeckKeys, DeckTable};
 use serde::{Deserialize, Serialize};
 
 use crate::declaration::DeckValue;
@@ -9,8 +9,7 @@ use crate::expression::{Condition, VARIABLES};
 use crate::fault::Fault;
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
-use crate::region::{self, Depth, Frame};
-use crate::vocabulary::SELECTIONS;
+use crate::region::{Depth, Frame};
 
 /// Name of the set of all points, which always exists.
 pub const ALL: &str = "all";
@@ -25,17 +24,30 @@ pub struct NamedSet {
     pub members: Members,
 }
 
-/// Selection of the points of a set.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// Set of points, given by a region, a condition, blocks, or the distance from faces of a mesh. Element groups, face sets and
+/// node sets of a mesh are sets under their own names.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, DeckKeys)]
 #[serde(rename_all = "snake_case")]
+#[deck(exclusive, scope = Frame)]
 pub enum Members {
     /// Points in a region.
-    Region(#[serde(with = "crate::form")] Region),
-    /// Points that satisfy a condition on x, y, z and block.
-    Where(Condition),
-    /// Points of some blocks.
-    Blocks(Vec<u32>),
-    /// Points near the faces of a face set of a mesh.
+    Region(
+        #[serde(with = "crate::form")]
+        #[deck(flatten)]
+        Region,
+    ),
+    /// Condition on x, y, z (m) and block, such as "x > 0.01 && (x - 0.02)^2 + y^2 <= 1e-6 || block == 2".
+    Where(#[deck(with = condition)] Condition),
+    /// Block number, or list of numbers. Points of grids are in block 1; listed points carry their block; mesh elements have
+    /// the number of their group, counted from 1 in the order that `pericles mesh` prints, or 0 without a group.
+    #[deck(key = "block")]
+    Blocks(#[deck(with = blocks)] Vec<u32>),
+    /// Mesh: points within a distance of the faces of a face set, for supports and loads that act on a layer of horizon
+    /// thickness.
+    #[deck(allow_if(
+        scope.mesh || scope.dimension.is_none(),
+        "`near_faces` requires shape = \"mesh\"; other bodies have regions such as `layer`"
+    ))]
     NearFaces(NearFaces),
 }
 
@@ -143,7 +155,7 @@ pub(crate) fn read(
             sets = None;
         }
         names.names.push(name.into());
-        let members = item.table().and_then(|table| members(table, frame));
+        let members = Members::read(&item, frame);
         match (members, &mut sets) {
             (Some(members), Some(sets)) => sets.push(NamedSet {
                 name: name.into(),
@@ -155,33 +167,9 @@ pub(crate) fn read(
     (sets, names)
 }
 
-/// Reads a table with exactly one key: a kind of region, `where`, `block` or `near_faces`.
-fn members(table: Table<'_>, frame: Frame) -> Option<Members> {
-    let found = table.exactly_one(SELECTIONS);
-    table.finish();
-    let (kind, item) = found?;
-    match kind {
-        "where" => condition(&item, frame.dimension).map(Members::Where),
-        "block" => blocks(&item).map(Members::Blocks),
-        "near_faces" => near_faces(&item, frame),
-        kind => region::of_kind(kind, &item, frame).map(Members::Region),
-    }
-}
-
-/// A distance from the faces of a mesh.
-fn near_faces(item: &Item<'_>, frame: Frame) -> Option<Members> {
-    if frame.dimension.is_some() && !frame.mesh {
-        item.out_of_range(
-            "another kind of set, such as `layer`; `near_faces` requires shape = \"mesh\"",
-        );
-        return None;
-    }
-    NearFaces::read(item, ()).map(Members::NearFaces)
-}
-
-fn condition(item: &Item<'_>, dimension: Option<usize>) -> Option<Condition> {
+fn condition(item: &Item<'_>, frame: Frame) -> Option<Condition> {
     let text = item.text()?;
-    let mut variables = VARIABLES[..dimension.unwrap_or(3)].to_vec();
+    let mut variables = VARIABLES[..frame.dimension.unwrap_or(3)].to_vec();
     variables.push("block");
     let read = Condition::parse(&text, &variables);
     read.map_err(|malformed| {
@@ -196,7 +184,7 @@ fn condition(item: &Item<'_>, dimension: Option<usize>) -> Option<Condition> {
 }
 
 /// Reads a block number or a list of block numbers.
-pub(crate) fn blocks(item: &Item<'_>) -> Option<Vec<u32>> {
+fn blocks<S>(item: &Item<'_>, _: S) -> Option<Vec<u32>> {
     let block = |item: &Item<'_>| {
         let allowed = "a whole number of at least 0, or a list of such numbers";
         let number = item.within(Quantity::Number, allowed, |number| {

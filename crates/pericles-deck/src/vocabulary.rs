@@ -14,24 +14,6 @@ const SYNONYMS: [(&str, &[&str]); 10] = [
     ("critical_stretch", &["s0"]),
 ];
 
-/// Keys that define a set: regions, a condition, blocks, faces of a mesh.
-pub(crate) const SELECTIONS: &[&str] = &[
-    "all",
-    "box",
-    "ball",
-    "cylinder",
-    "half_space",
-    "layer",
-    "polygon",
-    "union",
-    "intersection",
-    "complement",
-    "where",
-    "block",
-    "near_faces",
-];
-/// Kinds of region: keys that define a set, without conditions, blocks and faces, which need the points of the body.
-pub(crate) const REGIONS: &[&str] = SELECTIONS.split_at(SELECTIONS.len() - 3).0;
 /// Elastic moduli.
 pub(crate) const MODULI: &[&str] = &["youngs_modulus", "bulk_modulus", "shear_modulus"];
 /// Keys of the horizon.

@@ -1,12 +1,9 @@
 //! `[body]`: shape, grid and stress state.
 
-mod filled;
 mod kind;
-mod mesh;
 mod outline;
 mod piece;
 mod plane;
-mod points;
 mod positions;
 mod rotation;
 mod sources;
@@ -16,9 +13,9 @@ mod unit;
 
 pub use positions::Positions;
 pub use rotation::Rotation;
-pub use sources::{Boundary, FilledCells, FilledShape, MeshFile};
+pub use sources::{Boundary, FilledCells, FilledShape, MeshFile, PointsFile};
 pub use surface::{SurfaceFile, SurfaceFormula, SurfaceShape, VertexAreas};
-pub use types::{Lattice, Piece, PointsFile, Quadrature, SolidShape, piece_path};
+pub use types::{Lattice, Piece, Quadrature, SolidShape, piece_path};
 pub use unit::length_unit;
 
 pub(crate) use rotation::RotationScope;
@@ -31,10 +28,10 @@ use pericles::space::{Finer, Grid, Region};
 use self::kind::{KINDS, Kind};
 use self::outline::{Outline, shape};
 use self::plane::{section, state};
-use crate::declaration::DeckKeys;
+use crate::declaration::{DeckKeys, declared};
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
-use crate::region::{self, Frame};
+use crate::region::Frame;
 
 /// Reads `[body]`.
 pub(crate) fn read(table: Option<Table<'_>>) -> BodyRead {
@@ -54,10 +51,28 @@ fn one_piece(table: Table<'_>) -> BodyRead {
     match kind {
         Some(Kind::Surface) => return surface(table, false, read),
         Some(Kind::SurfaceFile) => return surface(table, true, read),
-        Some(Kind::Points) => return points::read(table, read),
-        Some(Kind::Mesh) => return mesh::read(table, read),
+        Some(Kind::Points) => {
+            let shape = PointsFile::read_keys(&table, ()).map(SolidShape::Points);
+            return from_file(table, shape, read.frame);
+        }
+        Some(Kind::Mesh) => {
+            let shape = MeshFile::read_keys(&table, ()).map(SolidShape::Mesh);
+            let frame = Frame {
+                mesh: true,
+                cells: false,
+                ..read.frame
+            };
+            return from_file(table, shape, frame);
+        }
         Some(kind @ (Kind::Solid | Kind::Outline)) => {
-            return filled::read(table, kind.dimension(), read);
+            let shape = FilledShape::read_keys(&table, kind.dimension());
+            let cells = shape.as_ref().is_none_or(FilledShape::is_on_lattice);
+            let frame = Frame {
+                cells,
+                dimension: Some(kind.dimension()),
+                ..read.frame
+            };
+            return from_file(table, shape.map(SolidShape::Filled), frame);
         }
         _ => {}
     }
@@ -75,29 +90,23 @@ fn one_piece(table: Table<'_>) -> BodyRead {
     };
     read.frame.dimension = Some(kind.dimension());
     let outline = shape(&table, kind);
-    let section = section(&table, kind.dimension());
-    read.state = state(&table, kind.dimension());
-    let holes: Vec<Option<Region>> = table
-        .tables("hole")
-        .into_iter()
-        .map(|hole| region::read(hole, read.frame))
-        .collect();
-    let finer: Vec<Option<Finer>> = table
-        .tables("refine")
-        .into_iter()
-        .map(|part| finer(part, read.frame))
-        .collect();
+    let section = section(&table, read.frame.dimension);
+    read.state = state(&table, read.frame.dimension);
+    let holes = declared(&table, "hole", read.frame);
+    let finer = declared::<_, Finer>(&table, "refine", read.frame);
+    let has_none = |holes: &Vec<Region>| holes.is_empty();
+    let refined = finer.as_ref().is_none_or(|parts| !parts.is_empty());
     let plain = rectangular.is_none();
-    if !plain && !finer.is_empty() {
+    if !plain && refined {
         table.forbid(
             "refine",
             "refinement requires equal spacings along all axes",
         );
     }
-    let positions = positions(&table, plain, &finer);
+    let positions = positions(&table, plain, refined);
     let random = positions.is_some_and(|positions| positions.are_random());
     read.frame.cells &= !random;
-    let whole = !random && holes.is_empty() && finer.is_empty();
+    let whole = !random && holes.as_ref().is_some_and(has_none) && !refined;
     let rules = rules(&table, kind, whole);
     table.finish();
     let lattice = assemble(&read, outline, section, holes, finer, rules);
@@ -111,8 +120,27 @@ fn one_piece(table: Table<'_>) -> BodyRead {
     read
 }
 
+/// Completes a body from a file. Other tables know its dimension and spacing even if another key is invalid.
+fn from_file(table: Table<'_>, shape: Option<SolidShape>, frame: Frame) -> BodyRead {
+    let given = table.number("dimension");
+    let given = (1..=3).find(|&dimension| given == Some(dimension as f64));
+    let frame = Frame {
+        dimension: frame.dimension.or(given),
+        spacing: table.number("spacing").filter(|spacing| *spacing > 0.0),
+        ..frame
+    };
+    let state = state(&table, frame.dimension);
+    table.finish();
+    BodyRead {
+        shape,
+        frame,
+        state,
+        ..BodyRead::default()
+    }
+}
+
 /// Reads the positions of points; random positions need equal spacings along all axes and no refinement.
-fn positions(table: &Table<'_>, plain: bool, finer: &[Option<Finer>]) -> Option<Positions> {
+fn positions(table: &Table<'_>, plain: bool, refined: bool) -> Option<Positions> {
     let positions = Positions::read_keys(table, ())?;
     if positions.are_random() && !plain {
         table.forbid(
@@ -120,7 +148,7 @@ fn positions(table: &Table<'_>, plain: bool, finer: &[Option<Finer>]) -> Option<
             "random positions require equal spacings along all axes",
         );
     }
-    if positions.are_random() && !finer.is_empty() {
+    if positions.are_random() && refined {
         table.forbid("refine", "refinement requires positions = \"lattice\"");
     }
     Some(positions)
@@ -160,35 +188,17 @@ fn spacings(item: &Item<'_>, kind: Option<Kind>) -> Option<Vec<f64>> {
     lengths.into_iter().collect()
 }
 
-fn finer(table: Table<'_>, frame: Frame) -> Option<Finer> {
-    /// Larger ratios would make time steps that differ as much.
-    const MOST: u64 = 16;
-    let ratio = table.required("ratio").and_then(|item| {
-        let ratio = item.count()?;
-        if (2..=MOST).contains(&ratio) {
-            return Some(ratio as u32);
-        }
-        item.out_of_range("a whole number from 2 to 16, the number of parts along each axis");
-        None
-    });
-    let region = region::read_among_others(table, frame);
-    Some(Finer {
-        region: region?,
-        ratio: ratio?,
-    })
-}
-
 fn assemble(
     read: &BodyRead,
     outline: Option<Outline>,
     section: Option<f64>,
-    holes: Vec<Option<Region>>,
-    finer: Vec<Option<Finer>>,
+    holes: Option<Vec<Region>>,
+    finer: Option<Vec<Finer>>,
     rules: Option<(bool, Quadrature)>,
 ) -> Option<Lattice> {
     let (periodic, quadrature) = rules?;
     let outline = outline?;
-    let mut holes = holes.into_iter().collect::<Option<Vec<Region>>>()?;
+    let mut holes = holes?;
     holes.extend(outline.bore);
     Some(Lattice {
         grid: Grid {
@@ -197,7 +207,7 @@ fn assemble(
             section: section?,
             holes,
         },
-        finer: finer.into_iter().collect::<Option<_>>()?,
+        finer: finer?,
         periodic,
         quadrature,
         rectangular: None,

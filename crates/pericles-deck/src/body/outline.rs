@@ -56,7 +56,7 @@ pub(super) fn shape(table: &Table<'_>, kind: Kind) -> Option<Outline> {
         | Kind::SurfaceFile => None,
         Kind::Cylinder => {
             let base = place(table, "base", dimension);
-            let axis = region::axis(table);
+            let axis = region::axis(table, ());
             let radius = radius();
             let inner = inner_radius(table, radius);
             let height = table

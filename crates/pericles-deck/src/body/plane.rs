@@ -6,7 +6,11 @@ use crate::quantity::Quantity;
 use crate::reader::Table;
 
 /// Reads the area of a bar or the thickness of a plate; 1 in 3D.
-pub(super) fn section(table: &Table<'_>, dimension: usize) -> Option<f64> {
+pub(super) fn section(table: &Table<'_>, dimension: Option<usize>) -> Option<f64> {
+    let Some(dimension) = dimension else {
+        table.know(&["area", "thickness"]);
+        return None;
+    };
     if dimension != 1 {
         table.forbid("area", "only a bar has an area");
     }
@@ -20,7 +24,11 @@ pub(super) fn section(table: &Table<'_>, dimension: usize) -> Option<f64> {
     }
 }
 
-pub(super) fn state(table: &Table<'_>, dimension: usize) -> Option<StressState> {
+pub(super) fn state(table: &Table<'_>, dimension: Option<usize>) -> Option<StressState> {
+    let Some(dimension) = dimension else {
+        table.know(&["plane"]);
+        return None;
+    };
     const PLANES: [(&str, StressState); 2] = [
         ("stress", StressState::PlaneStress),
         ("strain", StressState::PlaneStrain),

@@ -1,6 +1,6 @@
 //! Data types of `[body]`.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use pericles::material::StressState;
 use pericles::space::{Finer, Grid, Region};
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::positions::Positions;
 use super::rotation::Rotation;
-use super::sources::{FilledShape, MeshFile};
+use super::sources::{FilledShape, MeshFile, PointsFile};
 use super::surface::{SurfaceShape, VertexAreas};
 use crate::key_path::KeyPath;
 use crate::region::Frame;
@@ -120,7 +120,7 @@ impl SolidShape {
             Self::Lattice(lattice) => lattice.grid.dimension(),
             Self::Points(file) => file.dimension,
             Self::Mesh(mesh) => mesh.dimension,
-            Self::Filled(filled) => filled.boundary.dimension(),
+            Self::Filled(filled) => filled.dimension,
             // A list without pieces is rejected.
             Self::Pieces(_) => self.first().map_or(3, Self::dimension),
         }
@@ -300,19 +300,4 @@ impl Default for BodyRead {
 pub(crate) struct SurfaceRead {
     pub(crate) shape: Option<SurfaceShape>,
     pub(crate) areas: Option<VertexAreas>,
-}
-
-/// A file of points.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PointsFile {
-    /// Path of the file; a relative path starts at the deck's folder.
-    #[serde(rename = "file")]
-    pub path: PathBuf,
-    /// Dimension of the body.
-    pub dimension: usize,
-    /// Spacing of the points, m.
-    pub spacing: f64,
-    /// Area of a bar (m²), thickness of a 2D body (m); 1 in 3D.
-    pub section: f64,
 }

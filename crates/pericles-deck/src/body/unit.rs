@@ -4,13 +4,8 @@ use crate::declaration::Check;
 use crate::fault::Fault;
 use crate::key_path::KeyPath;
 use crate::quantity::Quantity;
-use crate::reader::{Item, Table};
+use crate::reader::Item;
 use crate::units::{self, UnitError};
-
-/// Reads the required key `unit`; files of meshes and surfaces do not store it.
-pub(crate) fn unit(table: &Table<'_>) -> Option<f64> {
-    table.required("unit").and_then(|item| unit_of(&item, ()))
-}
 
 /// Reads a unit of length, returned in metres.
 pub(crate) fn unit_of<S>(item: &Item<'_>, _: S) -> Option<f64> {

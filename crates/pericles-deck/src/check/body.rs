@@ -5,11 +5,11 @@ use pericles::material::{
     BondFailure, ElasticModulus, Fracture, InterfaceStiffness, Modulus, StressState,
     SurfaceCorrection,
 };
-use pericles::space::{Finer, Region, Shape};
+use pericles::space::Shape;
 
 use crate::body::{
-    Boundary, FilledCells, FilledShape, Lattice, Piece, Quadrature, RotationScope, SolidShape,
-    VertexAreas, piece_path,
+    FilledCells, FilledShape, Lattice, Piece, Quadrature, RotationScope, SolidShape, VertexAreas,
+    piece_path,
 };
 use crate::declaration::{Check, DeckKeys, DeckValue};
 use crate::fault::Fault;
@@ -17,6 +17,7 @@ use crate::interface::InterfaceFailure;
 use crate::key_path::KeyPath;
 use crate::material::{Material, MaterialModel, difference};
 use crate::model::{Model, Solid};
+use crate::region::Frame;
 use crate::remark::Remark;
 use crate::set::{SetNames, bad_name};
 use crate::state_based::StateBased;
@@ -44,22 +45,10 @@ impl Check {
     }
 
     fn shape(&mut self, key: &KeyPath, shape: &SolidShape) {
-        if let Some(spacing) = shape.spacing() {
-            self.positive(key.key("spacing"), spacing);
-        }
         match shape {
             SolidShape::Lattice(lattice) => self.lattice(key, lattice),
-            SolidShape::Points(_) => {}
-            SolidShape::Mesh(mesh) => {
-                self.positive(key.key("unit"), mesh.unit);
-                let right = mesh.dimension >= 2;
-                self.within(
-                    right,
-                    key.key("dimension"),
-                    mesh.dimension,
-                    "allowed: 2 or 3",
-                );
-            }
+            SolidShape::Points(points) => points.check_keys(key, (), self),
+            SolidShape::Mesh(mesh) => mesh.check_keys(key, (), self),
             SolidShape::Filled(filled) => self.filled(key, filled),
             SolidShape::Pieces(pieces) => self.pieces(key, pieces),
         }
@@ -101,36 +90,21 @@ impl Check {
     }
 
     fn filled(&mut self, key: &KeyPath, filled: &FilledShape) {
-        match &filled.boundary {
-            Boundary::Surface { unit, .. } | Boundary::PolygonFile { unit, .. } => {
-                self.positive(key.key("unit"), *unit);
-            }
-            Boundary::Polygons(polygons) => {
-                for (k, polygon) in polygons.iter().enumerate() {
-                    let (right, key) = (polygon.len() >= 3, key.key("polygons").index(k));
-                    self.within(right, key, polygon.len(), "allowed: at least 3 corners");
-                }
-            }
-        }
-        let right = filled.cells == FilledCells::Whole || !filled.positions.are_random();
+        filled.check_keys(key, filled.dimension, self);
+        let random = filled.positions.are_random();
+        let right = filled.cells == FilledCells::Whole || !random;
         let allowed = "allowed: \"whole\" with random positions";
         self.within(right, key.key("cells"), "partial", allowed);
-        let whole = filled.cells == FilledCells::Whole && !filled.positions.are_random();
+        let right = filled.is_on_lattice() || filled.finer.is_empty();
         let allowed = "allowed: with whole cells on a lattice";
-        let right = whole || filled.finer.is_empty();
         self.within(right, key.key("refine"), filled.finer.len(), allowed);
-        self.finer(key, &filled.finer);
-        self.holes(key, &filled.holes);
-        filled.positions.check_keys(key, (), self);
-    }
-
-    fn holes(&mut self, key: &KeyPath, holes: &[Region]) {
-        for (k, hole) in holes.iter().enumerate() {
-            self.region(&key.key("hole").index(k), hole);
-        }
     }
 
     fn lattice(&mut self, key: &KeyPath, lattice: &Lattice) {
+        self.positive(key.key("spacing"), lattice.grid.spacing);
+        let frame = Frame::of_model(lattice.grid.dimension());
+        lattice.grid.holes.check(key.key("hole"), frame, self);
+        lattice.finer.check(key.key("refine"), frame, self);
         match &lattice.grid.shape {
             Shape::Box { size, .. } => {
                 for (k, side) in size.iter().enumerate() {
@@ -171,7 +145,6 @@ impl Check {
             "gauss",
             allowed,
         );
-        self.holes(key, &lattice.grid.holes);
         lattice.positions.check_keys(key, (), self);
         let plain = lattice.rectangular.is_none()
             && lattice.finer.is_empty()
@@ -180,39 +153,6 @@ impl Check {
         let right = plain || !lattice.positions.are_random();
         let allowed = "allowed: \"lattice\" in periodic bodies, with Gauss nodes and with cells of several sizes";
         self.within(right, key.key("positions"), "random", allowed);
-        self.finer(key, &lattice.finer);
-    }
-
-    fn finer(&mut self, key: &KeyPath, finer: &[Finer]) {
-        for (k, part) in finer.iter().enumerate() {
-            let key = key.key("refine").index(k);
-            let right = (2..=16).contains(&part.ratio);
-            let allowed = "allowed: a whole number from 2 to 16";
-            self.within(right, key.key("ratio"), part.ratio, allowed);
-            self.region(&key, &part.region);
-        }
-    }
-
-    pub(super) fn region(&mut self, key: &KeyPath, region: &Region) {
-        match region {
-            Region::Cylinder { axis, .. } => self.axis(key.key("axis"), *axis),
-            Region::Polygon { corners } => {
-                let allowed = "allowed: at least 3 corners";
-                let right = corners.len() >= 3;
-                self.within(right, key.key("corners"), corners.len(), allowed);
-            }
-            Region::Union(parts) | Region::Intersection(parts) => {
-                for part in parts {
-                    self.region(key, part);
-                }
-            }
-            Region::Complement(part) => self.region(key, part),
-            Region::All
-            | Region::Box { .. }
-            | Region::Ball { .. }
-            | Region::HalfSpace { .. }
-            | Region::Layer { .. } => {}
-        }
     }
 
     fn material(&mut self, material: &Material, state: StressState, dimension: usize) {

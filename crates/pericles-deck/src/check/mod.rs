@@ -15,7 +15,7 @@ use crate::output::OutputScope;
 use crate::region::Frame;
 use crate::remark::BuildError;
 use crate::scope::Scope;
-use crate::set::{Members, SetNames};
+use crate::set::SetNames;
 use crate::thermal::ThermalScope;
 
 impl Model {
@@ -31,18 +31,15 @@ impl Model {
             Body::Surface(surface) => check.surface(surface),
         }
         check.several(self);
+        let frame = Frame::of_model(self.body.dimension());
         for set in &self.sets {
-            if let Members::Region(region) = &set.members {
-                check.region(&KeyPath::from("sets").key(&set.name), region);
-            }
+            let path = KeyPath::from("sets").key(&set.name);
+            set.members.check(path, frame, &mut check);
         }
         check.contact(self);
         Scope::of_model(self.body.dimension(), |scope| check.declared(self, scope));
         let sets = SetNames::any();
-        let cracks = CrackScope {
-            frame: Frame::of_model(self.body.dimension()),
-            sets: &sets,
-        };
+        let cracks = CrackScope { frame, sets: &sets };
         self.cracks.check("crack".into(), cracks, &mut check);
         self.time.check("time".into(), &sets, &mut check);
         let output = OutputScope {

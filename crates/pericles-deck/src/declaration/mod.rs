@@ -54,6 +54,22 @@ pub(crate) trait DeckKeys<S>: Sized {
     fn check_keys(&self, path: &KeyPath, scope: S, check: &mut Check);
 }
 
+/// Keys of which one is given.
+pub(crate) trait Exclusive {
+    /// Returns these keys.
+    fn choices() -> &'static [&'static str];
+}
+
+/// Keys of which one is given, which may be choices among further keys.
+pub(crate) trait DeckChoice<S>: Exclusive + Sized {
+    /// Describes the keys and rejects those that are not allowed.
+    fn prepare(table: &Table<'_>, scope: S);
+
+    /// Reads the value of the key that is given; none after reporting an error.
+    fn read_choice(table: &Table<'_>, key: &'static str, item: &Item<'_>, scope: S)
+    -> Option<Self>;
+}
+
 /// A complete table.
 pub(crate) trait DeckTable<S>: DeckKeys<S> {
     /// Description of the table.

@@ -2,7 +2,7 @@
 
 use pericles_deck_derive::{DeckKeys, DeckTable, DeckWords};
 
-use super::{Check, DeckKeys, DeckTable, Keyed};
+use super::{Check, DeckKeys, DeckTable, Exclusive, Keyed};
 use crate::document;
 use crate::key_path::KeyPath;
 use crate::reader::{Closed, Ledger, Survey};
@@ -55,14 +55,38 @@ fn is_odd(coils: Option<&u32>) -> bool {
     coils.is_none_or(|coils| coils % 2 == 1)
 }
 
+/// Support of a spring.
+#[derive(Debug, PartialEq, DeckKeys)]
+#[deck(exclusive)]
+enum Support {
+    /// Rigid support.
+    #[deck(key = "rigid")]
+    Rigid,
+    /// Length of an elastic support.
+    Elastic(#[deck(quantity = Length, range = POSITIVE)] f64),
+}
+
+/// End of a spring.
+#[derive(Debug, PartialEq, DeckKeys)]
+#[deck(exclusive)]
+enum Fixture {
+    Support(#[deck(flatten)] Support),
+    /// Name of a neighbour.
+    Neighbour(String),
+}
+
 fn read(text: &str) -> (Option<Spring>, Closed) {
+    read_as(text)
+}
+
+fn read_as<T: DeckTable<()>>(text: &str) -> (Option<T>, Closed) {
     let sources = Sources::new("spring.toml", text);
     let root = document::parse(&sources).unwrap();
     let ledger = Ledger::surveyed(sources, Survey::default());
-    let spring = ledger
+    let value = ledger
         .root(&root)
-        .and_then(|table| Spring::read_table(table, ()));
-    (spring, ledger.close())
+        .and_then(|table| T::read_table(table, ()));
+    (value, ledger.close())
 }
 
 /// Returns the messages about a text, with their advice.
@@ -118,6 +142,38 @@ fn values_have_units_words_and_ranges() {
         problems("law = \"cubic\"\nexponent = 2\nlength = 1").len(),
         1
     );
+}
+
+#[test]
+fn exclusive_keys_may_be_choices_among_further_ones() {
+    assert_eq!(Fixture::choices(), ["rigid", "elastic", "neighbour"]);
+    for (text, expected) in [
+        ("rigid = true", Fixture::Support(Support::Rigid)),
+        (
+            "elastic = \"2 mm\"",
+            Fixture::Support(Support::Elastic(2e-3)),
+        ),
+        ("neighbour = \"a\"", Fixture::Neighbour("a".into())),
+    ] {
+        assert_eq!(read_as::<Fixture>(text).0, Some(expected), "{text}");
+    }
+    for (text, expected) in [
+        ("", "requires one of `rigid`, `elastic` and `neighbour`"),
+        ("rigid = false", "`false` is out of range"),
+        ("elastic = 0", "`0` is out of range"),
+        ("rigid = true\nneighbour = \"a\"", "are given together"),
+    ] {
+        let (fixture, closed) = read_as::<Fixture>(text);
+        let problem = closed.problems[0].to_string();
+        assert!(
+            fixture.is_none() && problem.contains(expected),
+            "{text}: {problem}"
+        );
+    }
+    let mut check = Check::default();
+    let wrong = Fixture::Support(Support::Elastic(0.0));
+    wrong.check_keys(&KeyPath::from("end"), (), &mut check);
+    assert!(check.problems[0].line().starts_with("end.elastic: "));
 }
 
 #[test]

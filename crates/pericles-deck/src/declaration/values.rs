@@ -146,10 +146,11 @@ macro_rules! recorded {
 
 recorded!(f64, bool, u32, u64, String);
 
-/// Zero is not recorded, because the dimension of the body determines the number of components.
+/// Zero is not recorded, because the dimension of the body determines the number of components; no bound is not recorded
+/// either.
 impl<S> Fallback<S> for [f64; 3] {
     fn missing(self, table: &Table<'_>, key: &'static str, _: S) -> Option<Self> {
-        if self != [0.0; 3] {
+        if self != [0.0; 3] && self.iter().all(|x| x.is_finite()) {
             table.record(key, self.to_vec());
         }
         Some(self)
@@ -169,9 +170,10 @@ impl<S: Copy, T: DeckTable<S>> DeckValue<S> for Vec<T> {
     fn read(item: &Item<'_>, scope: S) -> Option<Self> {
         let mut known = Vec::new();
         let read: Vec<Option<T>> = item
-            .tables()
+            .tables()?
             .into_iter()
             .map(|table| {
+                let table = table?;
                 let is_unique =
                     T::UNIQUE.is_none_or(|unique| is_unique(&table, &unique, &mut known));
                 T::read_table(table, scope).filter(|_| is_unique)

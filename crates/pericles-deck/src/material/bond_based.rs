@@ -14,7 +14,7 @@ use crate::constants::{
 };
 use crate::correspondence;
 use crate::declaration::DeckValue;
-use crate::influence::{InfluenceRead, influence};
+use crate::influence::influence;
 use crate::reader::Table;
 use crate::set::SetNames;
 use crate::vocabulary::BY_STATE;
@@ -51,11 +51,8 @@ pub(super) fn read(
     let volume_correction = volume_correction(&table);
     let surface_correction = table.worded("surface_correction", "surface correction");
     poisson_ratio(&table, body.state);
-    let influence = influence(&table, &setting(body, extent.as_ref(), volume_correction));
-    let (influence, tuned) = match influence {
-        Some(InfluenceRead { influence, tuned }) => (Some(influence), tuned),
-        None => (None, None),
-    };
+    let setting = setting(body, extent.as_ref(), volume_correction);
+    let (influence, tuned) = influence(&table, &setting).unwrap_or_default();
     let horizon = extent.and_then(|extent| extent.with(influence.as_ref(), dimension));
     let fracture = fracture(&table);
     let fracture_calibration = fracture_calibration(&table, body, shared);

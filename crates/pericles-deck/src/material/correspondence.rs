@@ -1,6 +1,5 @@
 //! Reads correspondence materials.
 
-use pericles::kernel::Influence;
 use pericles::material::{LinearSolid, StateInfluence, SurfaceCorrection};
 
 use super::keys::{damage, density, form, horizon, no_fail, setting, volume_correction};
@@ -11,7 +10,7 @@ use crate::body::BodyRead;
 use crate::constants::fracture_calibration;
 use crate::correspondence::{Correspondence, criterion, law, plasticity};
 use crate::declaration::DeckValue;
-use crate::influence::state_influence;
+use crate::influence::{Setting, influence};
 use crate::reader::Table;
 use crate::set::SetNames;
 use crate::state_based::SolidRules;
@@ -29,15 +28,13 @@ pub(super) fn read(
     let density = density(&table);
     let extent = horizon(&table, body.frame);
     let volume_correction = volume_correction(&table);
-    let influence = state_influence(&table, &setting(body, extent.as_ref(), volume_correction));
-    let given = match &influence {
-        Some(StateInfluence::Function(function)) => Some(Influence {
-            function: function.clone(),
-            ..Influence::default()
-        }),
-        _ => None,
+    let setting = Setting {
+        is_state_based: true,
+        ..setting(body, extent.as_ref(), volume_correction)
     };
-    let horizon = extent.and_then(|extent| extent.with(given.as_ref(), body.frame.dimension));
+    let influence = influence(&table, &setting).map(|(influence, _)| influence);
+    let given = influence.as_ref().and_then(Option::as_ref);
+    let horizon = extent.and_then(|extent| extent.with(given, body.frame.dimension));
     let calibration = fracture_calibration(&table, body, shared);
     let criterion = criterion(&table, body.frame.dimension);
     let by_state = !matches!(criterion, Some(None));
@@ -61,7 +58,9 @@ pub(super) fn read(
         density: density?,
         elastic: elastic?,
         horizon: horizon?,
-        influence: influence?,
+        influence: influence?.map_or(StateInfluence::Isotropic, |given| {
+            StateInfluence::Function(given.function)
+        }),
         volume_correction: volume_correction?,
         failure: failure?,
     };

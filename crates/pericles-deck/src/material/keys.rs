@@ -45,6 +45,7 @@ pub(super) fn setting(
         automatic: body.frame.is_automatic(),
         horizon: extent.and_then(Extent::length),
         correction,
+        is_state_based: false,
     }
 }
 

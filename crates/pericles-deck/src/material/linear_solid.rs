@@ -1,6 +1,5 @@
 //! Reads state-based materials.
 
-use pericles::kernel::Influence;
 use pericles::material::{LinearSolid, StateInfluence, SurfaceCorrection};
 
 use super::inelastic;
@@ -13,7 +12,7 @@ use crate::constants::fracture_calibration;
 use crate::correspondence;
 use crate::criterion;
 use crate::declaration::DeckValue;
-use crate::influence::state_influence;
+use crate::influence::{Setting, influence};
 use crate::reader::Table;
 use crate::set::SetNames;
 use crate::state_based::{SolidRules, StateBased};
@@ -35,15 +34,13 @@ pub(super) fn read(
     let extent = horizon(&table, body.frame);
     let volume_correction = volume_correction(&table);
     let surface_correction = solid_surface(&table);
-    let influence = state_influence(&table, &setting(body, extent.as_ref(), volume_correction));
-    let given = match &influence {
-        Some(StateInfluence::Function(function)) => Some(Influence {
-            function: function.clone(),
-            ..Influence::default()
-        }),
-        _ => None,
+    let setting = Setting {
+        is_state_based: true,
+        ..setting(body, extent.as_ref(), volume_correction)
     };
-    let horizon = extent.and_then(|extent| extent.with(given.as_ref(), body.frame.dimension));
+    let influence = influence(&table, &setting).map(|(influence, _)| influence);
+    let given = influence.as_ref().and_then(Option::as_ref);
+    let horizon = extent.and_then(|extent| extent.with(given, body.frame.dimension));
     let criterion = criterion::read(&table, body.frame.dimension);
     let by_state = !matches!(criterion, Some(None));
     let rules = SolidRules::read(
@@ -69,7 +66,9 @@ pub(super) fn read(
         density: density?,
         elastic: elastic?,
         horizon: horizon?,
-        influence: influence?,
+        influence: influence?.map_or(StateInfluence::Isotropic, |given| {
+            StateInfluence::Function(given.function)
+        }),
         volume_correction: volume_correction?,
         failure: failure?,
     };

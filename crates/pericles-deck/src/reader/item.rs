@@ -60,9 +60,12 @@ impl<'a> Item<'a> {
         self.ledger.note(|survey| survey.form(&self.path, form()));
     }
 
-    /// Notes in the survey that the form of this value is the shared definition `name`.
-    pub(crate) fn define(&self, name: &'static str) {
-        self.ledger.note(|survey| survey.define(&self.path, name));
+    /// Notes in the survey that the form of this value is the shared definition `name`, with its description.
+    pub(crate) fn define(&self, name: &'static str, about: &'static str) {
+        self.ledger.note(|survey| {
+            survey.define(&self.path, name);
+            survey.about(&self.path, about);
+        });
     }
 
     /// Returns the string, if it is one; for values that may be a word or something else.

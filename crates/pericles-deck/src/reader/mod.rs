@@ -164,6 +164,12 @@ impl Ledger {
         *slot = value;
     }
 
+    /// Returns the number that was recorded at a path.
+    fn number(&self, path: &KeyPath) -> Option<f64> {
+        let pointer: String = path.steps().iter().map(|step| format!("/{step}")).collect();
+        self.json.borrow().pointer(&pointer)?.as_f64()
+    }
+
     /// Returns problems and record.
     pub(crate) fn close(self) -> Closed {
         let mut problems = self.problems.into_inner();

@@ -246,6 +246,9 @@ impl Survey {
     }
 
     pub(super) fn choice(&mut self, table: &KeyPath, keys: &'static [&'static str], needed: bool) {
+        for key in keys {
+            self.key(table, key);
+        }
         let choices = &mut self.table_at(table).choices;
         let needed = usize::from(needed);
         match choices.iter_mut().find(|(known, _)| *known == keys) {

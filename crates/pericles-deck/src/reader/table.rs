@@ -108,6 +108,11 @@ impl<'a> Table<'a> {
             .map(|entry| entry.node.place)
     }
 
+    /// Returns the number that was read from a key, in SI units; also one out of range.
+    pub(crate) fn number(&self, key: &str) -> Option<f64> {
+        self.ledger.number(&self.path.key(key))
+    }
+
     /// Returns the value of an optional key.
     pub(crate) fn optional(&self, key: &'static str) -> Option<Item<'a>> {
         let mut allowed = self.allowed.borrow_mut();
@@ -312,9 +317,8 @@ impl<'a> Table<'a> {
 
     /// Returns the tables of an array of tables; empty if the key is missing.
     pub(crate) fn tables(&self, key: &'static str) -> Vec<Table<'a>> {
-        self.optional(key)
-            .map(|item| item.tables())
-            .unwrap_or_default()
+        let tables = self.optional(key).and_then(|item| item.tables());
+        tables.into_iter().flatten().flatten().collect()
     }
 
     /// Rejects a key that is not allowed in this table, with the reason.
@@ -436,13 +440,10 @@ impl<'a> Item<'a> {
         ))
     }
 
-    /// Returns the tables of a list of tables.
-    pub(crate) fn tables(&self) -> Vec<Table<'a>> {
-        self.list("a list of tables, written [[…]]")
-            .unwrap_or_default()
-            .iter()
-            .filter_map(Item::table)
-            .collect()
+    /// Returns the tables of a list of tables; none for entries that are not tables.
+    pub(crate) fn tables(&self) -> Option<Vec<Option<Table<'a>>>> {
+        let items = self.list("a list of tables, written [[…]] or [{ … }]")?;
+        Some(items.iter().map(Item::table).collect())
     }
 }
 

@@ -24,7 +24,7 @@ impl Assembler<'_> {
     ) -> Result<GradedCloud, BuildError> {
         let enclosure = self.enclosure(shape, resources, warnings)?;
         let bounds = enclosure.bounds();
-        let (dimension, spacing) = (shape.boundary.dimension(), shape.spacing);
+        let (dimension, spacing) = (shape.dimension, shape.spacing);
         let cells: f64 = (0..dimension)
             .map(|c| ((bounds[1][c] - bounds[0][c]) / spacing).ceil().max(1.0))
             .product();
@@ -59,7 +59,7 @@ impl Assembler<'_> {
         holes: &Holes<'_>,
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<PointCloud, BuildError> {
-        let (dimension, spacing) = (shape.boundary.dimension(), shape.spacing);
+        let (dimension, spacing) = (shape.dimension, shape.spacing);
         let rejected = |error| self.no_fill(shape, error);
         if shape.cells == FilledCells::Partial {
             let cells = enclosure.fill_partially(spacing).map_err(rejected)?;
@@ -118,7 +118,7 @@ impl Assembler<'_> {
     ) -> Result<Enclosure, BuildError> {
         let rejected = |error| self.no_fill(shape, error);
         match &shape.boundary {
-            Boundary::Surface { path, unit, open } => {
+            Boundary::File { path, unit, open } if shape.dimension == 3 => {
                 let mesh = self.read_mesh("body.file", &resources.beside(path), resources)?;
                 let surface = TriangleSurface::of_mesh(&mesh, *unit).map_err(rejected)?;
                 let (surface, reversed) = surface.repaired();
@@ -135,7 +135,7 @@ impl Assembler<'_> {
                 let outline = Outline::new(polygons.clone()).map_err(rejected)?;
                 Ok(Enclosure::Outline(outline))
             }
-            Boundary::PolygonFile { path, unit } => {
+            Boundary::File { path, unit, .. } => {
                 let path = resources.beside(path);
                 let polygons = (resources.read_outline)(&path, resources.memory);
                 let polygons = polygons.map_err(|error| {

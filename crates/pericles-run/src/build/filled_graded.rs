@@ -82,7 +82,7 @@ impl Assembler<'_> {
     ) -> Result<GradedCells, BuildError> {
         let (enclosure, holes, enclosed) = filled;
         let rejected = |error| self.no_fill(shape, error);
-        let dimension = shape.boundary.dimension();
+        let dimension = shape.dimension;
         let division = Division {
             dimension,
             spacing: shape.spacing,

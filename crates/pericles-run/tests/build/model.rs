@@ -254,7 +254,7 @@ fn all_numbers_out_of_range_are_reported_at_once() {
     assert_eq!(
         keys,
         [
-            "body.hole.0.axis",
+            "body.hole.0.cylinder.axis",
             "body.plane",
             "material.density",
             "time.end",
