@@ -53,11 +53,11 @@ pub(crate) fn run(args: &RunArgs, processes: &Processes) -> Result<Exit, CliErro
         let folder = shared_folder(&*means.comm, || {
             output_folder(args.out.as_deref(), Some(args.force), &args.deck, "")
         })?;
-        let sequence = Sequence::begin(text, args.origin.from.clone(), folder, &means)?;
+        let sequence = Sequence::begin(text, args.origin.path()?, folder, &means)?;
         return drive_steps(&sequence, &means, deadline, (quiet, args.chart), processes);
     }
     let origin = args.origin.open(&means)?;
-    let assembled = Assembled::continuing(&source, origin.as_ref(), &means, &mut |event| {
+    let assembled = Assembled::starting(&source, origin.as_ref().into(), &means, &mut |event| {
         screen.show(event);
     })?;
     let folder = shared_folder(&*means.comm, || {

@@ -20,7 +20,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Exit, CliError> {
     let deck = given::deck(&args.deck, &args.overrides.set)?;
     let text = DeckText::of(&deck, args.deck.display().to_string());
     // Before the folder is created, so that invalid values do not leave half a sweep.
-    let plan = Plan::new(text, args.sweep.clone(), args.origin.from.clone())?;
+    let plan = Plan::new(text, args.sweep.clone(), args.origin.path()?)?;
     let folder = output_folder(args.out.as_deref(), None, &args.deck, "-sweep")?;
     drive(&plan.begin(folder)?, &args.options)
 }

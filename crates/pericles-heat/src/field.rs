@@ -228,7 +228,6 @@ impl State {
         }
     }
 
-    /// Returns the values including pending heat.
     /// Reads the times and values of the accepted interval from an archive.
     fn read_accepted(&mut self, archive: &Archive) -> Result<()> {
         let mut times = [0.0; 2];
@@ -245,6 +244,7 @@ impl State {
         Ok(())
     }
 
+    /// Returns the values including pending heat.
     fn values_at(&mut self, t: f64) -> Vec<f64> {
         let mut values = vec![0.0; self.problem.len()];
         self.mix_into(t, |state| &state.values, &mut values);

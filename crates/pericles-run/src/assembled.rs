@@ -20,7 +20,7 @@ use crate::error::RunError;
 use crate::event::{Event, Tell};
 use crate::facts::Facts;
 use crate::machine;
-use crate::origin::Origin;
+use crate::origin::InitialState;
 use crate::source::Source;
 
 /// Cache, memory limit and processes for building and running a model.
@@ -93,23 +93,23 @@ impl Assembled {
     /// # Errors
     /// The deck or model is invalid.
     pub fn of(source: &Source, means: &Means, tell: Tell<'_>) -> Result<Self, RunError> {
-        Self::continuing(source, None, means, tell)
+        Self::starting(source, InitialState::Model, means, tell)
     }
 
-    /// Assembles the model of a source that starts from the state of another run; as [`Assembled::of`] otherwise.
+    /// Assembles the model of a source with an initial state; as [`Assembled::of`] otherwise.
     ///
     /// # Errors
     /// The deck or model is invalid, or the state belongs to another body.
-    pub fn continuing(
+    pub fn starting(
         source: &Source,
-        origin: Option<&Origin>,
+        start: InitialState<'_>,
         means: &Means,
         tell: Tell<'_>,
     ) -> Result<Self, RunError> {
         let model = source.model();
         Self::made(source, means, tell, |resources| {
             let resources = Resources {
-                origin,
+                start,
                 ..*resources
             };
             assemble(model, discretise(model, &resources)?, &resources)

@@ -7,7 +7,7 @@
 //!   `run.json` and checkpoints.
 //! * [`Assembled`] – the assembly of a source with its properties ([`Facts`]), built with a cache and a memory limit
 //!   ([`Means`]).
-//! * [`Origin`] – the state of another run, from which a run [starts](Assembled::continuing).
+//! * [`Origin`] – the state of another run, from which a run [starts](Assembled::starting).
 //! * [`Run`] – a run with its output folder: [`begin`](Run::begin), or [`resume`](Run::resume) from the last
 //!   checkpoint, then [`drive`](Run::drive) with a callback for [`Event`]s, a [`Cancel`] token and a [`Deadline`]. It
 //!   writes the output of the model, checkpoints, and [`Report`] as `run.json`.
@@ -113,7 +113,7 @@ pub use inputs::Inputs;
 pub use mirror::MirrorError;
 pub use observers::{history_rows, overlay, picture_of, result_body};
 pub use open_facts::{OpenFacts, ReflectionFacts};
-pub use origin::Origin;
+pub use origin::{InitialState, Origin};
 pub use processes::shared_folder;
 pub use report::{Report, Span, Status};
 pub use results::{FieldFile, Results, file_name};

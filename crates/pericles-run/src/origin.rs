@@ -18,9 +18,43 @@ use pericles_io::{DividedCheckpoint, IoError, OutputFolder};
 use crate::body_record::BodyRecord;
 use crate::checkpoint::{Content, Metadata, Stored};
 use crate::error::RunError;
+use crate::processes::on_first;
 
 /// The copy of the state in the folder of checkpoints of the run that starts from it.
 pub(crate) const START: &str = "start.chk";
+
+/// Where the initial state of a run comes from.
+#[derive(Clone, Copy, Default)]
+pub enum InitialState<'a> {
+    /// The deck or model.
+    #[default]
+    Model,
+    /// The state of another run.
+    Of(&'a Origin),
+    /// A run that has not been made yet: a step is checked from the state of its deck, without warnings about that state.
+    Pending,
+}
+
+impl<'a> InitialState<'a> {
+    /// Returns the other run, if it has been made.
+    pub(crate) fn origin(self) -> Option<&'a Origin> {
+        match self {
+            Self::Of(origin) => Some(origin),
+            Self::Model | Self::Pending => None,
+        }
+    }
+
+    /// Returns whether the run continues another one.
+    pub(crate) fn continues(self) -> bool {
+        !matches!(self, Self::Model)
+    }
+}
+
+impl<'a> From<Option<&'a Origin>> for InitialState<'a> {
+    fn from(origin: Option<&'a Origin>) -> Self {
+        origin.map_or(Self::Model, Self::Of)
+    }
+}
 
 /// The state of another run.
 pub struct Origin {
@@ -36,15 +70,20 @@ impl Origin {
     /// # Errors
     /// There is no usable checkpoint.
     pub fn open(path: &Path, memory: u64, comm: &dyn Comm) -> Result<Self, RunError> {
+        // Other processes may not see the folder.
+        let is_folder = || match path.is_dir() {
+            true if !path.join("checkpoints").is_dir() => {
+                Err(RunError::NoRun { path: path.into() })
+            }
+            is_folder => Ok(is_folder),
+        };
+        let (_, word) = on_first(comm, is_folder, bool::to_string)?;
         let Stored {
             path,
             metadata,
             content,
             ..
-        } = match path.is_dir() {
-            true if !path.join("checkpoints").is_dir() => {
-                return Err(RunError::NoRun { path: path.into() });
-            }
+        } = match word == "true" {
             true => Stored::latest(&OutputFolder::following(path), memory, comm)?,
             false => Stored::open(path, memory, comm)?,
         };

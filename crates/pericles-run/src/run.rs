@@ -125,7 +125,7 @@ impl Run {
         let Assembled {
             assembly,
             mut facts,
-        } = Assembled::continuing(&source, origin.as_ref(), means, tell)?;
+        } = Assembled::starting(&source, origin.as_ref().into(), means, tell)?;
         let is_first = comm.rank() == 0;
         if is_first {
             facts.warnings.extend(resume_warnings(&stored, &facts));

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Args;
+use pericles_run::sequence::last_step;
 use pericles_run::{self as library, Means, Origin, RunError, machine};
 
 use super::values::{threads, wall_time};
@@ -27,13 +28,21 @@ pub(crate) struct FromRun {
 }
 
 impl FromRun {
+    /// Returns the folder or checkpoint: the last step of a run of several steps.
+    ///
+    /// # Errors
+    /// The record of the steps cannot be read.
+    pub(crate) fn path(&self) -> Result<Option<PathBuf>, RunError> {
+        self.from.as_deref().map(last_step).transpose()
+    }
+
     /// Opens the state. All processes must call it together.
     ///
     /// # Errors
     /// The folder contains no usable checkpoint.
     pub(crate) fn open(&self, means: &Means) -> Result<Option<Origin>, RunError> {
-        let open = |path: &PathBuf| Origin::open(path, means.memory, &*means.comm);
-        self.from.as_ref().map(open).transpose()
+        let open = |path: PathBuf| Origin::open(&path, means.memory, &*means.comm);
+        self.path()?.map(open).transpose()
     }
 }
 

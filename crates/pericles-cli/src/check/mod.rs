@@ -17,7 +17,7 @@ use pericles_run::units::{
     bytes, count, duration, frequency, percent, quantity, significant, threads,
 };
 use pericles_run::{
-    Assembled, Assembly, DeckText, Facts, Means, Origin, Source, SourceRecord, draw_sets,
+    Assembled, Assembly, DeckText, Facts, InitialState, Means, Source, SourceRecord, draw_sets,
 };
 use rayon::prelude::*;
 use serde::Serialize;
@@ -53,7 +53,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
         let checked = check_source(
             args,
             &source,
-            origin.as_ref(),
+            origin.as_ref().into(),
             (&means, count_of_threads),
             "",
         )?;
@@ -61,16 +61,14 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
     } else {
         let names = deck.steps().to_vec();
         let text = DeckText::of(&deck, args.deck.display().to_string());
+        let origin = args.origin.open(&means)?;
+        let mut start = InitialState::from(origin.as_ref());
         for (step, name) in text.steps()?.into_iter().zip(names) {
-            // Later steps are checked from the state of the deck; the state at their start is not known.
-            let origin = match results.is_empty() {
-                true => args.origin.open(&means)?,
-                false => None,
-            };
             let source = SourceRecord::Deck(step).read()?;
             let label = format!(", step {name}");
             let with = (&means, count_of_threads);
-            results.push(check_source(args, &source, origin.as_ref(), with, &label)?);
+            results.push(check_source(args, &source, start, with, &label)?);
+            start = InitialState::Pending;
         }
     }
     if let Some(path) = &args.json {
@@ -90,15 +88,14 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
 fn check_source(
     args: &CheckArgs,
     source: &Source,
-    origin: Option<&Origin>,
+    start: InitialState<'_>,
     (means, count_of_threads): (&Means, usize),
     label: &str,
 ) -> Result<Value, CliError> {
     let mut screen = Screen::new(false);
-    let Assembled { assembly, facts } =
-        Assembled::continuing(source, origin, means, &mut |event| {
-            screen.show(event);
-        })?;
+    let Assembled { assembly, facts } = Assembled::starting(source, start, means, &mut |event| {
+        screen.show(event);
+    })?;
     for warning in &facts.warnings {
         console::note(format_args!("warning: {warning}"));
     }

@@ -511,6 +511,9 @@ fn a_deck_with_steps_is_checked_run_and_replaced() {
     let checked: serde_json::Value = serde_json::from_slice(&checked.stdout).unwrap();
     assert_eq!(checked["steps"][0]["steps"], 20);
     assert_eq!(checked["steps"][1]["steps"], 10);
+    // The load of the second step is zero, but it starts from a moving body.
+    let warnings = checked["steps"][1]["warnings"].to_string();
+    assert!(!warnings.contains("nothing acts"), "{warnings}");
 
     let said = succeed(place.path(), "run steps.toml --out out");
     assert!(

@@ -93,13 +93,13 @@ pub fn assemble(
     }
     let areas = assembler.add_loads(&mut system, place, &mut warnings)?;
     discretisation.conditions.add_loads(&mut system)?;
-    let continues = resources.origin.is_some();
+    let continues = resources.start.continues();
     assembler.add_motions(&mut system, place, &state, continues)?;
     discretisation.conditions.add_motions(&mut system)?;
     assembler.check_conditions(&system, cloud, &mut warnings);
     warnings.extend(assembler.check_idle_keys(&system));
     warnings.extend(assembler.check_dissipation(&system));
-    if discretisation.conditions.is_empty() {
+    if discretisation.conditions.is_empty() && !continues {
         warnings.extend(assembler.check_rest(system.domain(), &state));
     }
     let contact = assembler.add_contact(
@@ -170,7 +170,8 @@ pub fn assemble(
         system,
         state,
         origin: resources
-            .origin
+            .start
+            .origin()
             .map(|origin| (origin.path().to_path_buf(), origin.time())),
         integrator,
         frequency: steps.frequency,

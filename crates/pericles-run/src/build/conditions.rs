@@ -31,7 +31,7 @@ impl Assembler<'_> {
     ) -> Result<State, BuildError> {
         let n = cloud.len();
         let mut state = State::at_rest(cloud.dimension() * n);
-        if let Some(origin) = resources.origin {
+        if let Some(origin) = resources.start.origin() {
             let is_static = self.model.time.scheme.is_static();
             origin
                 .hand_over(body, &mut state, is_static)

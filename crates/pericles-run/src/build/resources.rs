@@ -10,7 +10,7 @@ use pericles_deck::Fault;
 use pericles_manifold::surface::Surface;
 use pericles_mesh::RawMesh;
 
-use crate::origin::Origin;
+use crate::origin::InitialState;
 
 /// Error of an input file, as a message with the file and the location in it.
 #[derive(Debug, Clone, PartialEq)]
@@ -77,8 +77,8 @@ pub struct Resources<'a> {
     pub folder: &'a Path,
     /// Communication with the processes among which the body is divided; `None` for a single process.
     pub comm: Option<&'a Arc<dyn Comm>>,
-    /// The state from which the run starts; `None` for the state of the model.
-    pub origin: Option<&'a Origin>,
+    /// Where the initial state comes from.
+    pub start: InitialState<'a>,
     /// Memory limit in bytes: models with a larger estimate are rejected before large allocations.
     pub memory: u64,
 }
@@ -107,7 +107,7 @@ impl Default for Resources<'_> {
             read_table: &|_, _, _, _| Err(no_reader("tables")),
             folder: Path::new(""),
             comm: None,
-            origin: None,
+            start: InitialState::Model,
             memory: u64::MAX,
         }
     }

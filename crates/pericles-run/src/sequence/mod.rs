@@ -21,7 +21,7 @@ use crate::assembled::{Assembled, Means};
 use crate::deck_text::DeckText;
 use crate::error::RunError;
 use crate::event::Tell;
-use crate::origin::Origin;
+use crate::origin::{InitialState, Origin};
 use crate::processes::{agreed, on_first, shared_folder};
 use crate::results::Results;
 use crate::run::{Ending, Run};
@@ -31,6 +31,19 @@ use self::time_line::write_time_line;
 
 /// The record of the steps in their folder.
 const RECORD: &str = "steps.json";
+
+/// Returns the folder of the last step of a run of several steps, from whose state a further run can start; the folder
+/// itself for other runs.
+///
+/// # Errors
+/// The record of the steps cannot be read.
+pub fn last_step(folder: &Path) -> Result<PathBuf, RunError> {
+    if !is_sequence(folder) {
+        return Ok(folder.into());
+    }
+    let steps = Record::of(folder, &Record::text(folder)?)?.steps;
+    Ok(steps.last().map_or(folder.into(), |last| folder.join(last)))
+}
 
 /// Returns whether a folder contains a run of several steps.
 pub fn is_sequence(folder: &Path) -> bool {
@@ -47,6 +60,20 @@ struct Record {
     from: Option<PathBuf>,
 }
 
+impl Record {
+    fn text(folder: &Path) -> Result<String, RunError> {
+        let file = folder.join(RECORD);
+        Ok(std::fs::read_to_string(&file).map_err(|error| IoError::reading(&file, error))?)
+    }
+
+    fn of(folder: &Path, text: &str) -> Result<Self, RunError> {
+        serde_json::from_str(text).map_err(|error| RunError::Damaged {
+            path: folder.join(RECORD),
+            reason: error.to_string(),
+        })
+    }
+}
+
 /// A run of several steps in its locked folder.
 pub struct Sequence {
     record: Record,
@@ -60,8 +87,10 @@ impl Sequence {
     /// # Errors
     /// A step is invalid.
     pub fn check(deck: &DeckText, means: &Means, tell: Tell<'_>) -> Result<(), RunError> {
+        let mut start = InitialState::Model;
         for step in deck.steps()? {
-            Assembled::of(&SourceRecord::Deck(step).read()?, means, tell)?;
+            Assembled::starting(&SourceRecord::Deck(step).read()?, start, means, tell)?;
+            start = InitialState::Pending;
         }
         Ok(())
     }
@@ -119,17 +148,9 @@ impl Sequence {
     /// # Errors
     /// The folder has no record of steps, or it cannot be used.
     pub fn open(path: &Path, means: &Means) -> Result<Self, RunError> {
-        let read = || -> Result<_, RunError> {
-            let file = path.join(RECORD);
-            let text =
-                std::fs::read_to_string(&file).map_err(|error| IoError::reading(&file, error))?;
-            Ok((OutputFolder::open(path)?, text))
-        };
+        let read = || Ok::<_, RunError>((OutputFolder::open(path)?, Record::text(path)?));
         let (folder, text) = on_first(&*means.comm, read, |(_, text)| text.clone())?;
-        let record: Record = serde_json::from_str(&text).map_err(|error| RunError::Damaged {
-            path: path.join(RECORD),
-            reason: error.to_string(),
-        })?;
+        let record = Record::of(path, &text)?;
         Ok(Self {
             steps: record.deck.steps()?,
             record,
@@ -226,7 +247,7 @@ fn begun(
     let source: Source = SourceRecord::Deck(deck.clone()).read()?;
     let open = |from: &Path| Origin::open(from, means.memory, &*means.comm);
     let origin = from.map(open).transpose()?;
-    let assembled = Assembled::continuing(&source, origin.as_ref(), means, tell)?;
+    let assembled = Assembled::starting(&source, origin.as_ref().into(), means, tell)?;
     let create = || Ok::<_, RunError>(OutputFolder::create(path, path.exists())?);
     let folder = shared_folder(&*means.comm, create)?;
     Run::begin(&source, assembled, folder)

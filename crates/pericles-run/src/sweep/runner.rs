@@ -237,7 +237,7 @@ fn run_member(
             let source = SourceRecord::Deck(member.deck.clone()).read()?;
             let open = |from: &Path| Origin::open(from, means.memory, &*means.comm);
             let origin = from.map(open).transpose()?;
-            let assembled = Assembled::continuing(&source, origin.as_ref(), means, &mut tell)?;
+            let assembled = Assembled::starting(&source, origin.as_ref().into(), means, &mut tell)?;
             Run::begin(&source, assembled, folder)?
         };
         run.drive(deadline, cancel, &mut tell)

@@ -40,7 +40,7 @@ fn run(
     let means = means(comm);
     let open = |from: &Path| Origin::open(from, means.memory, &*means.comm);
     let origin = from.map(open).transpose()?;
-    let assembled = Assembled::continuing(&source, origin.as_ref(), &means, &mut |_| {})?;
+    let assembled = Assembled::starting(&source, origin.as_ref().into(), &means, &mut |_| {})?;
     let create = || Ok::<_, RunError>(OutputFolder::create(folder, false)?);
     let folder = shared_folder(&*means.comm, create)?;
     drive(Run::begin(&source, assembled, folder)?, None)
