@@ -4,7 +4,8 @@ use pericles_run::sequence::{Sequence, is_sequence};
 use pericles_run::sweep::is_sweep;
 use pericles_run::units::{count, quantity};
 use pericles_run::{
-    Assembled, Deadline, Ending, Means, Results, Run, RunError, Source, SourceRecord, shared_folder,
+    Assembled, Deadline, Ending, InitialState, Means, Results, Run, RunError, Source, SourceRecord,
+    shared_folder,
 };
 
 use crate::args::{ResumeArgs, RunArgs};
@@ -48,16 +49,17 @@ pub(crate) fn run(args: &RunArgs, processes: &Processes) -> Result<Exit, CliErro
         memory: processes.memory(&args.options.limits.memory),
         ..args.options.means()
     };
+    let origin = args.origin.open(&means)?;
+    let start = InitialState::from(origin.as_ref());
     if let (true, SourceRecord::Deck(text)) = (has_steps, source.record()) {
-        Sequence::check(&text, &means, &mut |event| screen.show(event))?;
+        Sequence::check(&text, start, &means, &mut |event| screen.show(event))?;
         let folder = shared_folder(&*means.comm, || {
             output_folder(args.out.as_deref(), Some(args.force), &args.deck, "")
         })?;
         let sequence = Sequence::begin(text, args.origin.path()?, folder, &means)?;
         return drive_steps(&sequence, &means, deadline, (quiet, args.chart), processes);
     }
-    let origin = args.origin.open(&means)?;
-    let assembled = Assembled::starting(&source, origin.as_ref().into(), &means, &mut |event| {
+    let assembled = Assembled::starting(&source, start, &means, &mut |event| {
         screen.show(event);
     })?;
     let folder = shared_folder(&*means.comm, || {

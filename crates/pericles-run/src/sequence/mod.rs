@@ -23,7 +23,7 @@ use crate::error::RunError;
 use crate::event::Tell;
 use crate::origin::{InitialState, Origin};
 use crate::processes::{agreed, on_first, shared_folder};
-use crate::results::Results;
+use crate::results::{Results, file_name};
 use crate::run::{Ending, Run};
 use crate::source::{Source, SourceRecord};
 
@@ -82,12 +82,17 @@ pub struct Sequence {
 }
 
 impl Sequence {
-    /// Checks the steps of a deck by assembling each of them from the state of the deck. All processes must call it together.
+    /// Checks the steps of a deck by assembling them: the first one with its initial state, the others from the state of the
+    /// deck. All processes must call it together.
     ///
     /// # Errors
     /// A step is invalid.
-    pub fn check(deck: &DeckText, means: &Means, tell: Tell<'_>) -> Result<(), RunError> {
-        let mut start = InitialState::Model;
+    pub fn check(
+        deck: &DeckText,
+        mut start: InitialState<'_>,
+        means: &Means,
+        tell: Tell<'_>,
+    ) -> Result<(), RunError> {
         for step in deck.steps()? {
             Assembled::starting(&SourceRecord::Deck(step).read()?, start, means, tell)?;
             start = InitialState::Pending;
@@ -132,7 +137,7 @@ impl Sequence {
         let reading = |error| IoError::reading(self.folder.path(), error);
         for entry in std::fs::read_dir(self.folder.path()).map_err(reading)? {
             let path = entry.map_err(reading)?.path();
-            if path.join("run.json").is_file() {
+            if is_step(&path) && path.join("run.json").is_file() {
                 OutputFolder::create(path, true)?;
             }
         }
@@ -234,6 +239,13 @@ impl Sequence {
         let (_, word) = on_first(&*means.comm, has, bool::to_string)?;
         Ok(word == "true")
     }
+}
+
+/// Returns whether a folder has the name of a step: a number, or a number and a name.
+fn is_step(path: &Path) -> bool {
+    let name = file_name(path);
+    let number = name.split('-').next().unwrap_or_default();
+    !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit())
 }
 
 /// Begins the run of a step from the state of the one before.

@@ -10,7 +10,8 @@ use pericles_deck::Deck;
 use pericles_io::{CheckpointFolder, CsvData, OutputFolder, read_csv};
 use pericles_run::sequence::{Sequence, is_sequence};
 use pericles_run::{
-    Assembled, DeckText, Ending, Origin, Results, Run, RunError, Source, shared_folder,
+    Assembled, DeckText, Ending, InitialState, Origin, Results, Run, RunError, Source,
+    shared_folder,
 };
 
 use super::common::processes::{assert_same, drive, means};
@@ -236,7 +237,7 @@ fn run_steps(deck: &str, folder: &Path, comm: Arc<dyn Comm>, stop: Option<u64>) 
     let sequence = match is_sequence(folder) {
         true => Sequence::open(folder, &means).unwrap(),
         false => {
-            Sequence::check(&text, &means, &mut |_| {}).unwrap();
+            Sequence::check(&text, InitialState::Model, &means, &mut |_| {}).unwrap();
             let create = || Ok::<_, RunError>(OutputFolder::create(folder, false)?);
             let created = shared_folder(&*means.comm, create).unwrap();
             Sequence::begin(text, None, created, &means).unwrap()
