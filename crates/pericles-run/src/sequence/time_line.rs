@@ -89,8 +89,7 @@ fn write_table(folder: &Path, name: &str, done: &[Done<'_>]) -> Result<(), RunEr
     for (column, values) in columns.iter().zip(&mut rows) {
         let mut total = 0.0;
         for (step, part) in &parts {
-            // The first row of a step repeats the last state of the one before.
-            let skipped = usize::from(step.steps > 0 && part.rows() > 1);
+            let skipped = repeated_rows(step, part);
             let place = (part.columns.iter()).position(|own| own.name() == column.name());
             let own = place.map(|place| &part.values[place]);
             let offset = match column.name() {
@@ -133,6 +132,16 @@ fn write_table(folder: &Path, name: &str, done: &[Done<'_>]) -> Result<(), RunEr
         table.append(&cells)?;
     }
     Ok(table.flush()?)
+}
+
+/// Returns the number of rows at the start of a step, which repeat the last state of the step before.
+fn repeated_rows(step: &Done<'_>, part: &CsvData) -> usize {
+    let times = part.column(TIME).unwrap_or_default();
+    let at_start = times.iter().take_while(|time| **time == 0.0).count();
+    match step.steps > 0 && at_start < times.len() {
+        true => at_start,
+        false => 0,
+    }
 }
 
 /// Writes the series of the fields of all steps.

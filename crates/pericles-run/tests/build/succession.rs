@@ -21,7 +21,7 @@ const PLATE: &str = r#"
 body = { shape = "plate", size = [24, 12], spacing = 1, plane = "strain" }
 material = { density = 1, youngs_modulus = 10, horizon_ratio = 3, MATERIAL }
 sets = { bottom = { layer = { side = "-y", cells = 2 } }, top = { layer = { side = "+y", cells = 2 } } }
-crack = [{ segment = [[-1, 6], [8, 6]] }]
+crack = [{ segment = [[-1, 6], [8, 6]] }, { segment = [[20, 4], [25, 4]] }]
 constraint = [{ set = "bottom", displacement = [0, 0] }, { set = "top", velocity = [0.02, 0.05] }]
 REST
 "#;
@@ -290,6 +290,9 @@ fn steps_equal_runs_that_start_from_each_other() {
         column(&all, "broken_bonds"),
         [&broken[0][..], &broken[1][1..]].concat()
     );
+    // A table with a row for each crack and time.
+    let rows = |folder: &Path| read_csv(folder.join("cracks.csv")).unwrap().rows();
+    assert_eq!(rows(&steps), rows(&first) + rows(&second) - 2);
     // The work of the first step stays in the balance.
     let work = column(&all, "external_work");
     let initial = column(&parts[1], "elastic_energy")[0] + column(&parts[1], "kinetic_energy")[0];
