@@ -126,7 +126,7 @@ pub(crate) fn resume(args: &ResumeArgs, processes: &Processes) -> Result<Exit, C
 /// Drives the steps that have not finished.
 ///
 /// # Errors
-/// Those of [`drive`].
+/// A step cannot start or be resumed, output cannot be written, or a run becomes unstable.
 fn drive_steps(
     sequence: &Sequence,
     means: &Means,

@@ -207,7 +207,7 @@ impl Sequence {
     /// one ended. The results are written on one time line after each. All processes must call it together.
     ///
     /// # Errors
-    /// Those of [`Sequence::next`] and of `drive`.
+    /// A step cannot start or be resumed, output cannot be written, and those of `drive`.
     pub fn drive<E: From<RunError> + From<PericlesError>>(
         &self,
         means: &Means,
