@@ -1,8 +1,8 @@
 //! Reads correspondence materials.
 
-use pericles::material::{LinearSolid, StateInfluence, SurfaceCorrection};
+use pericles::material::{LinearSolid, SurfaceCorrection};
 
-use super::keys::{damage, density, form, horizon, no_fail, setting, volume_correction};
+use super::keys::{SolidFamily, damage, density, form, no_fail};
 use super::scatter::Scatter;
 use super::softening::{forbid_softening, forbid_tensile_strength};
 use super::types::Material;
@@ -10,7 +10,6 @@ use crate::body::BodyRead;
 use crate::constants::fracture_calibration;
 use crate::correspondence::{Correspondence, criterion, law, plasticity};
 use crate::declaration::DeckValue;
-use crate::influence::{Setting, influence};
 use crate::reader::Table;
 use crate::set::SetNames;
 use crate::state_based::SolidRules;
@@ -26,15 +25,7 @@ pub(super) fn read(
     }
     let name = table.maybe("name", |item| item.text());
     let density = density(&table);
-    let extent = horizon(&table, body.frame);
-    let volume_correction = volume_correction(&table);
-    let setting = Setting {
-        is_state_based: true,
-        ..setting(body, extent.as_ref(), volume_correction)
-    };
-    let influence = influence(&table, &setting).map(|(influence, _)| influence);
-    let given = influence.as_ref().and_then(Option::as_ref);
-    let horizon = extent.and_then(|extent| extent.with(given, body.frame.dimension));
+    let family = SolidFamily::read(&table, body);
     let calibration = fracture_calibration(&table, body, shared);
     let criterion = criterion(&table, body.frame.dimension);
     let by_state = !matches!(criterion, Some(None));
@@ -57,11 +48,9 @@ pub(super) fn read(
     let solid = LinearSolid {
         density: density?,
         elastic: elastic?,
-        horizon: horizon?,
-        influence: influence?.map_or(StateInfluence::Isotropic, |given| {
-            StateInfluence::Function(given.function)
-        }),
-        volume_correction: volume_correction?,
+        horizon: family.horizon?,
+        influence: family.influence?,
+        volume_correction: family.volume_correction?,
         failure: failure?,
     };
     Some(Material {

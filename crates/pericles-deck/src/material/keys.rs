@@ -2,6 +2,7 @@
 
 use pericles::family::VolumeCorrection;
 use pericles::kernel::{Influence, InfluenceFunction};
+use pericles::material::StateInfluence;
 use pericles::operator::DamageMeasure;
 use pericles_deck_derive::DeckTable;
 use pericles_waves::ForceForm;
@@ -10,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use crate::body::BodyRead;
 use crate::declaration::DeckTable;
 use crate::form::described;
-use crate::influence::Setting;
+use crate::influence::{Setting, influence};
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 use crate::region::Frame;
@@ -46,6 +47,36 @@ pub(super) fn setting(
         horizon: extent.and_then(Extent::length),
         correction,
         is_state_based: false,
+    }
+}
+
+/// Horizon, influence function and volume correction of a state-based or correspondence material.
+pub(super) struct SolidFamily {
+    pub(super) horizon: Option<f64>,
+    pub(super) influence: Option<StateInfluence>,
+    pub(super) volume_correction: Option<VolumeCorrection>,
+}
+
+impl SolidFamily {
+    /// Reads the keys of a table.
+    pub(super) fn read(table: &Table<'_>, body: &BodyRead) -> Self {
+        let extent = horizon(table, body.frame);
+        let volume_correction = volume_correction(table);
+        let setting = Setting {
+            is_state_based: true,
+            ..setting(body, extent.as_ref(), volume_correction)
+        };
+        let influence = influence(table, &setting).map(|(influence, _)| influence);
+        let given = influence.as_ref().and_then(Option::as_ref);
+        Self {
+            horizon: extent.and_then(|extent| extent.with(given, body.frame.dimension)),
+            influence: influence.map(|given| {
+                given.map_or(StateInfluence::Isotropic, |given| {
+                    StateInfluence::Function(given.function)
+                })
+            }),
+            volume_correction,
+        }
     }
 }
 

@@ -1,9 +1,9 @@
 //! Reads state-based materials.
 
-use pericles::material::{LinearSolid, StateInfluence, SurfaceCorrection};
+use pericles::material::{LinearSolid, SurfaceCorrection};
 
 use super::inelastic;
-use super::keys::{damage, density, form, horizon, no_fail, setting, volume_correction};
+use super::keys::{SolidFamily, damage, density, form, no_fail};
 use super::scatter::Scatter;
 use super::softening::{forbid_softening, forbid_tensile_strength};
 use super::types::Material;
@@ -12,7 +12,6 @@ use crate::constants::fracture_calibration;
 use crate::correspondence;
 use crate::criterion;
 use crate::declaration::DeckValue;
-use crate::influence::{Setting, influence};
 use crate::reader::Table;
 use crate::set::SetNames;
 use crate::state_based::{SolidRules, StateBased};
@@ -31,16 +30,8 @@ pub(super) fn read(
     let name = table.maybe("name", |item| item.text());
     let strains = table.worded("strains", "strains");
     let density = density(&table);
-    let extent = horizon(&table, body.frame);
-    let volume_correction = volume_correction(&table);
+    let family = SolidFamily::read(&table, body);
     let surface_correction = solid_surface(&table);
-    let setting = Setting {
-        is_state_based: true,
-        ..setting(body, extent.as_ref(), volume_correction)
-    };
-    let influence = influence(&table, &setting).map(|(influence, _)| influence);
-    let given = influence.as_ref().and_then(Option::as_ref);
-    let horizon = extent.and_then(|extent| extent.with(given, body.frame.dimension));
     let criterion = criterion::read(&table, body.frame.dimension);
     let by_state = !matches!(criterion, Some(None));
     let rules = SolidRules::read(
@@ -65,11 +56,9 @@ pub(super) fn read(
     let solid = LinearSolid {
         density: density?,
         elastic: elastic?,
-        horizon: horizon?,
-        influence: influence?.map_or(StateInfluence::Isotropic, |given| {
-            StateInfluence::Function(given.function)
-        }),
-        volume_correction: volume_correction?,
+        horizon: family.horizon?,
+        influence: family.influence?,
+        volume_correction: family.volume_correction?,
         failure: failure?,
     };
     Some(Material {
