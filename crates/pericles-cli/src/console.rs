@@ -7,7 +7,7 @@ use std::io::{self, ErrorKind, Write};
 use std::path::Path;
 
 use pericles_deck::is_invisible;
-use pericles_io::{IoError, write_atomically};
+use pericles_io::IoError;
 use pericles_run::RunError;
 use serde::Serialize;
 
@@ -29,11 +29,11 @@ pub(crate) fn print(text: Arguments<'_>) -> Result<(), IoError> {
 /// # Errors
 /// The file cannot be written.
 pub(crate) fn write_json(path: &Path, results: &impl Serialize) -> Result<(), RunError> {
-    let text = serde_json::to_string_pretty(results)?;
     if path == Path::new("-") {
+        let text = serde_json::to_string_pretty(results)?;
         return Ok(print(format_args!("{text}"))?);
     }
-    Ok(write_atomically(path, |file| writeln!(file, "{text}"))?)
+    pericles_run::write_json(path, results)
 }
 
 /// Prints a line on standard error.

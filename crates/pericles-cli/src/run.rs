@@ -1,6 +1,6 @@
 //! `run` and `resume`: run a simulation in its output folder until its end, a signal or the time limit.
 
-use pericles_run::sequence::{Sequence, is_sequence};
+use pericles_run::sequence::{Plan, Sequence, is_sequence};
 use pericles_run::sweep::is_sweep;
 use pericles_run::units::{count, quantity};
 use pericles_run::{
@@ -40,7 +40,6 @@ pub(crate) fn run(args: &RunArgs, processes: &Processes) -> Result<Exit, CliErro
     if !quiet && processes.is_first() {
         console::note(format_args!("{file}: building the model"));
     }
-    let has_steps = !deck.steps().is_empty();
     let source = Source::of_deck(deck, file);
     // The folder is created only after the deck has been validated.
     let mut screen = Screen::shared(quiet, processes.is_first());
@@ -51,12 +50,16 @@ pub(crate) fn run(args: &RunArgs, processes: &Processes) -> Result<Exit, CliErro
     };
     let origin = args.origin.open(&means)?;
     let start = InitialState::from(origin.as_ref());
-    if let (true, SourceRecord::Deck(text)) = (has_steps, source.record()) {
-        Sequence::check(&text, start, &means, &mut |event| screen.show(event))?;
+    let steps = match source.record() {
+        SourceRecord::Deck(text) => Plan::new(text, args.origin.path()?)?,
+        SourceRecord::Model(_) => None,
+    };
+    if let Some(plan) = steps {
+        plan.check(start, &means, &mut |event| screen.show(event))?;
         let folder = shared_folder(&*means.comm, || {
             output_folder(args.out.as_deref(), Some(args.force), &args.deck, "")
         })?;
-        let sequence = Sequence::begin(text, args.origin.path()?, folder, &means)?;
+        let sequence = plan.begin(folder, &means)?;
         return drive_steps(&sequence, &means, deadline, (quiet, args.chart), processes);
     }
     let assembled = Assembled::starting(&source, start, &means, &mut |event| {
@@ -140,7 +143,7 @@ fn drive_steps(
     let mut exit = Exit::Done;
     sequence.drive(means, &mut |event| screen.show(event), |number, run| {
         if shows {
-            let name = &sequence.names()[number];
+            let name = sequence.names().nth(number).unwrap_or_default();
             console::note(format_args!("step {} of {count}: {name}", number + 1));
         }
         let (ending, status) = drive(run, deadline.clone(), (quiet, chart), processes)?;

@@ -1,6 +1,6 @@
 //! The deck as stored with a run, sufficient to read it again without its file.
 
-use pericles_deck::Deck;
+use pericles_deck::{Deck, DeckError};
 use serde::{Deserialize, Serialize};
 
 use crate::error::RunError;
@@ -40,23 +40,22 @@ impl DeckText {
         }
     }
 
-    /// Returns the texts of the steps of the deck; of a deck without steps, the deck itself.
+    /// Returns the steps of the deck with their names; none for a deck without `[[step]]`.
     ///
     /// # Errors
-    /// The deck has errors.
-    pub fn steps(&self) -> Result<Vec<Self>, RunError> {
-        let count = self.read()?.steps().len();
-        if count == 0 || self.step.is_some() {
-            return Ok(vec![self.clone()]);
-        }
-        let step = |number: usize| {
-            let mut text = self.clone();
-            text.step = Some(number);
-            let deck = text.read()?;
+    /// Those of [`DeckText::read`].
+    pub fn steps(&self) -> Result<Vec<(String, Self)>, RunError> {
+        let names = self.read()?.steps().to_vec();
+        let step = |(number, name): (usize, String)| {
+            let mut text = Self {
+                step: Some(number),
+                ..self.clone()
+            };
+            let deck = text.parsed()?;
             text.inputs = Inputs::of(&deck.model, deck.folder());
-            Ok(text)
+            Ok((name, text))
         };
-        (0..count).map(step).collect()
+        names.into_iter().enumerate().map(step).collect()
     }
 
     /// Reads the deck again, independent of the current folder.
@@ -69,12 +68,16 @@ impl DeckText {
                 amended: self.amended.join(", "),
             });
         }
-        let file = self.inputs.located(&self.file);
-        let deck = match self.step {
-            Some(step) => Deck::parse_step(&self.source, &file, &self.overrides, &[], step),
-            None => Deck::parse(&self.source, &file, &self.overrides),
-        }?;
+        let deck = self.parsed()?;
         self.inputs.check(deck.folder())?;
         Ok(deck)
+    }
+
+    fn parsed(&self) -> Result<Deck, DeckError> {
+        let file = self.inputs.located(&self.file);
+        match self.step {
+            Some(step) => Deck::parse_step(&self.source, &file, &self.overrides, &[], step),
+            None => Deck::parse(&self.source, &file, &self.overrides),
+        }
     }
 }

@@ -5,6 +5,7 @@
 
 use pericles_deck::{Model, Scheme, TimeHistory, TimeStep};
 
+use crate::build::whole_steps;
 use crate::checkpoint::Metadata;
 use crate::deck_text::DeckText;
 use crate::error::RunError;
@@ -13,8 +14,6 @@ use crate::units::quantity;
 
 /// The only key that may change.
 const END: &str = "time.end";
-/// Relative tolerance for a whole number of steps.
-const WHOLE: f64 = 1e-9;
 
 /// Returns the source of a run with changed keys, for a run that resumes from a checkpoint.
 ///
@@ -43,10 +42,12 @@ pub(crate) fn extended(metadata: &Metadata, changes: &[String]) -> Result<Source
         overrides: [&text.overrides[..], changes].concat(),
         ..text.clone()
     };
-    let old = text.read()?.model;
+    let old = text.read()?;
+    let gives_safety = old.gives("time.safety");
+    let old = old.model;
     let end = with(changes).read()?.model.time.end;
     let dt = metadata.dt;
-    let steps = (end / dt * (1.0 - WHOLE)).ceil();
+    let steps = whole_steps(end / dt);
     if steps <= metadata.step as f64 {
         return Err(rejected(format!(
             "the run has reached t = {} already; `{END}` must be later",
@@ -58,7 +59,7 @@ pub(crate) fn extended(metadata: &Metadata, changes: &[String]) -> Result<Source
         TimeStep::Auto { .. } | TimeStep::Fixed(_) => format!("time.dt={dt:?}"),
     };
     let safety = match old.time.step {
-        TimeStep::Auto { .. } if text.read()?.gives("time.safety") => Some("time.safety=unset"),
+        TimeStep::Auto { .. } if gives_safety => Some("time.safety=unset"),
         _ => None,
     };
     let changes: Vec<String> = [format!("{END}={:?}", steps * dt), step]

@@ -1,16 +1,15 @@
 //! `run.json`: source, model, progress, and balance of energy and momentum.
 
-use std::io::Write;
 use std::path::Path;
 
 use pericles::Simulation;
-use pericles_io::write_atomically;
 use serde::Serialize;
 
 use crate::audit::Audit;
 use crate::deck_text::DeckText;
 use crate::error::RunError;
 use crate::facts::Facts;
+use crate::json::write_json;
 use crate::machine;
 use crate::sharing::Sharing;
 use crate::source::{ModelData, Source};
@@ -158,10 +157,6 @@ impl Report {
     /// # Errors
     /// The file cannot be written.
     pub(crate) fn write(&self, path: &Path) -> Result<(), RunError> {
-        let mut text = serde_json::to_string_pretty(self)?;
-        text.push('\n');
-        Ok(write_atomically(path, |file| {
-            file.write_all(text.as_bytes())
-        })?)
+        write_json(path, self)
     }
 }

@@ -8,7 +8,7 @@ use std::time::Instant;
 use pericles::observe::{Observer, Schedule};
 use pericles::{Archive, Checkpointed, Control, Interrupt, Outcome, Simulation, SimulationError};
 use pericles_io::observers::History;
-use pericles_io::{OutputFolder, PvdSeries, VtuFile};
+use pericles_io::{CheckpointFolder, OutputFolder, PvdSeries, VtuFile};
 
 use crate::animations;
 use crate::assembled::{Assembled, Means};
@@ -17,13 +17,14 @@ use crate::body_record::BodyRecord;
 use crate::cancel::Cancel;
 use crate::checkpoint::{Checkpoints, Stored};
 use crate::deadline::Deadline;
+use crate::deck_text::DeckText;
 use crate::error::RunError;
 use crate::event::{Event, Tell};
 use crate::extension::extended;
 use crate::facts::Facts;
 use crate::observers::{self, Observed};
 use crate::origin::Origin;
-use crate::processes::{agreed, any, on_first};
+use crate::processes::{agreed, any, on_first, shared_folder};
 use crate::report::{Report, Status};
 use crate::sharing::Sharing;
 use crate::source::{Source, SourceRecord};
@@ -160,6 +161,34 @@ impl Run {
             report: Report::new(&source, facts, step),
             folder,
         }))
+    }
+
+    /// Resumes the run of a deck in a folder, or begins it, from the state of the run `from` if that is given; `None` if it
+    /// has finished. A run that was killed before its first checkpoint begins again. All processes must call it together.
+    ///
+    /// # Errors
+    /// Those of [`Assembled::starting`], [`Run::begin`] and [`Run::resume`].
+    pub(crate) fn resume_or_begin(
+        path: &Path,
+        deck: &DeckText,
+        from: Option<&Path>,
+        means: &Means,
+        tell: Tell<'_>,
+    ) -> Result<Option<Self>, RunError> {
+        let comm = &*means.comm;
+        let checkpoints = CheckpointFolder::new(path.join("checkpoints"));
+        let has_begun = || Ok::<_, RunError>(checkpoints.steps().is_ok_and(|all| !all.is_empty()));
+        let (_, word) = on_first(comm, has_begun, bool::to_string)?;
+        if word == "true" {
+            return Self::resume(path, means, tell);
+        }
+        let source = SourceRecord::Deck(deck.clone()).read()?;
+        let open = |from: &Path| Origin::open(from, means.memory, comm);
+        let origin = from.map(open).transpose()?;
+        let assembled = Assembled::starting(&source, origin.as_ref().into(), means, tell)?;
+        let create = || Ok::<_, RunError>(OutputFolder::create(path, path.exists())?);
+        let folder = shared_folder(comm, create)?;
+        Self::begin(&source, assembled, folder).map(Some)
     }
 
     /// Returns the simulation.

@@ -17,7 +17,7 @@ use pericles_run::units::{
     bytes, count, duration, frequency, percent, quantity, significant, threads,
 };
 use pericles_run::{
-    Assembled, Assembly, DeckText, Facts, InitialState, Means, Source, SourceRecord, draw_sets,
+    Assembled, Assembly, Facts, InitialState, Means, Source, SourceRecord, draw_sets,
 };
 use rayon::prelude::*;
 use serde::Serialize;
@@ -46,30 +46,28 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
         memory: args.memory.bytes(),
         ..Means::default()
     };
+    let origin = args.origin.open(&means)?;
+    let mut start = InitialState::from(origin.as_ref());
     let mut results = Vec::new();
-    if deck.steps().is_empty() {
-        let source = Source::of_deck(deck, args.deck.display().to_string());
-        let origin = args.origin.open(&means)?;
-        let checked = check_source(
+    let with = (&means, count_of_threads);
+    let source = Source::of_deck(deck, args.deck.display().to_string());
+    let steps = match source.record() {
+        SourceRecord::Deck(text) => text.steps()?,
+        SourceRecord::Model(_) => Vec::new(),
+    };
+    if steps.is_empty() {
+        results.push(check_source(args, &source, start, with, "")?);
+    }
+    for (name, step) in steps {
+        let source = SourceRecord::Deck(step).read()?;
+        results.push(check_source(
             args,
             &source,
-            origin.as_ref().into(),
-            (&means, count_of_threads),
-            "",
-        )?;
-        results.push(checked);
-    } else {
-        let names = deck.steps().to_vec();
-        let text = DeckText::of(&deck, args.deck.display().to_string());
-        let origin = args.origin.open(&means)?;
-        let mut start = InitialState::from(origin.as_ref());
-        for (step, name) in text.steps()?.into_iter().zip(names) {
-            let source = SourceRecord::Deck(step).read()?;
-            let label = format!(", step {name}");
-            let with = (&means, count_of_threads);
-            results.push(check_source(args, &source, start, with, &label)?);
-            start = InitialState::Pending;
-        }
+            start,
+            with,
+            &format!(", step {name}"),
+        )?);
+        start = InitialState::Pending;
     }
     if let Some(path) = &args.json {
         let results = match <[Value; 1]>::try_from(results) {

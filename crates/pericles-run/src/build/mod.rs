@@ -75,3 +75,4 @@ pub use resources::{
     TableReader,
 };
 pub use softening::MaterialSoftening;
+pub(crate) use step::whole_steps;

@@ -197,9 +197,13 @@ impl Assembler<'_> {
             };
             return Err(at_path("time.dt", fault));
         }
-        // An integer up to rounding.
-        Ok((ratio * (1.0 - WHOLE)).ceil().max(1.0) as u64)
+        Ok(whole_steps(ratio) as u64)
     }
+}
+
+/// Returns the number of steps in a time of `ratio` steps: rounded up, except for an integer up to rounding, and at least one.
+pub(crate) fn whole_steps(ratio: f64) -> f64 {
+    (ratio * (1.0 - WHOLE)).ceil().max(1.0)
 }
 
 /// Returns the largest stable step of velocity Verlet with a damping rate σ (1/s) applied to the velocity of the

@@ -10,22 +10,22 @@
 
 mod time_line;
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use pericles::PericlesError;
-use pericles_io::{IoError, OutputFolder, write_atomically};
+use pericles_io::{IoError, OutputFolder};
 use serde::{Deserialize, Serialize};
 
 use crate::assembled::{Assembled, Means};
 use crate::deck_text::DeckText;
 use crate::error::RunError;
 use crate::event::Tell;
-use crate::origin::{InitialState, Origin};
-use crate::processes::{agreed, on_first, shared_folder};
-use crate::results::{Results, file_name};
+use crate::json::write_json;
+use crate::origin::InitialState;
+use crate::processes::{agreed, on_first};
+use crate::results::file_name;
 use crate::run::{Ending, Run};
-use crate::source::{Source, SourceRecord};
+use crate::source::SourceRecord;
 
 use self::time_line::write_time_line;
 
@@ -66,6 +66,19 @@ impl Record {
         Ok(std::fs::read_to_string(&file).map_err(|error| IoError::reading(&file, error))?)
     }
 
+    /// Writes the record to a folder, in which the results of earlier steps are removed.
+    fn write(&self, folder: &OutputFolder) -> Result<(), RunError> {
+        folder.claim(&time_line::names(RECORD))?;
+        let reading = |error| IoError::reading(folder.path(), error);
+        for entry in std::fs::read_dir(folder.path()).map_err(reading)? {
+            let path = entry.map_err(reading)?.path();
+            if is_step(&path) && path.join("run.json").is_file() {
+                OutputFolder::create(path, true)?;
+            }
+        }
+        write_json(&folder.file(RECORD), self)
+    }
+
     fn of(folder: &Path, text: &str) -> Result<Self, RunError> {
         serde_json::from_str(text).map_err(|error| RunError::Damaged {
             path: folder.join(RECORD),
@@ -74,80 +87,75 @@ impl Record {
     }
 }
 
-/// A run of several steps in its locked folder.
-pub struct Sequence {
+/// The steps of a deck, before their folder is created.
+pub struct Plan {
     record: Record,
-    steps: Vec<DeckText>,
-    folder: OutputFolder,
+    steps: Vec<(String, DeckText)>,
 }
 
-impl Sequence {
-    /// Checks the steps of a deck by assembling them: the first one with its initial state, the others from the state of the
-    /// deck. All processes must call it together.
+impl Plan {
+    /// Plans the steps of a deck; the first one starts from the state of the run `from`, if it is given. `None` for a deck
+    /// without steps.
+    ///
+    /// # Errors
+    /// The deck has errors.
+    pub fn new(deck: DeckText, from: Option<PathBuf>) -> Result<Option<Self>, RunError> {
+        let steps = deck.steps()?;
+        let record = Record {
+            deck,
+            steps: steps.iter().map(|(name, _)| name.clone()).collect(),
+            // The run may be resumed in another folder.
+            from: from.map(|path| std::path::absolute(&path).unwrap_or(path)),
+        };
+        Ok((!steps.is_empty()).then_some(Self { record, steps }))
+    }
+
+    /// Checks the steps by assembling them: the first one with its initial state, the others from the state of the deck. All
+    /// processes must call it together.
     ///
     /// # Errors
     /// A step is invalid.
     pub fn check(
-        deck: &DeckText,
+        &self,
         mut start: InitialState<'_>,
         means: &Means,
         tell: Tell<'_>,
     ) -> Result<(), RunError> {
-        for step in deck.steps()? {
-            Assembled::starting(&SourceRecord::Deck(step).read()?, start, means, tell)?;
+        for (_, step) in &self.steps {
+            let source = SourceRecord::Deck(step.clone()).read()?;
+            Assembled::starting(&source, start, means, tell)?;
             start = InitialState::Pending;
         }
         Ok(())
     }
 
-    /// Begins the steps of a deck in a folder; the first one starts from the state of the run `from`, if it is given. All
-    /// processes must call it together.
+    /// Begins the steps in a folder. All processes must call it together.
     ///
     /// # Errors
-    /// The deck has errors, or the folder cannot be written.
-    pub fn begin(
-        deck: DeckText,
-        from: Option<PathBuf>,
-        folder: OutputFolder,
-        means: &Means,
-    ) -> Result<Self, RunError> {
-        let steps = deck.steps()?;
-        let record = Record {
-            steps: deck.read()?.steps().to_vec(),
-            deck,
-            // The run may be resumed in another folder.
-            from: from.map(|path| std::path::absolute(&path).unwrap_or(path)),
-        };
-        let sequence = Self {
-            record,
-            steps,
-            folder,
-        };
+    /// The folder cannot be written.
+    pub fn begin(self, folder: OutputFolder, means: &Means) -> Result<Sequence, RunError> {
         let written = match means.comm.rank() {
-            0 => sequence.write_record(),
+            0 => self.record.write(&folder),
             _ => Ok(()),
         };
         agreed(&*means.comm, written)?;
-        Ok(sequence)
+        let Self { record, steps } = self;
+        Ok(Sequence {
+            from: record.from,
+            steps,
+            folder,
+        })
     }
+}
 
-    fn write_record(&self) -> Result<(), RunError> {
-        self.folder.claim(&time_line::names(RECORD))?;
-        // Results of the steps of an earlier run that is replaced.
-        let reading = |error| IoError::reading(self.folder.path(), error);
-        for entry in std::fs::read_dir(self.folder.path()).map_err(reading)? {
-            let path = entry.map_err(reading)?.path();
-            if is_step(&path) && path.join("run.json").is_file() {
-                OutputFolder::create(path, true)?;
-            }
-        }
-        let text = serde_json::to_string_pretty(&self.record)? + "\n";
-        let path = self.folder.file(RECORD);
-        Ok(write_atomically(&path, |file| {
-            file.write_all(text.as_bytes())
-        })?)
-    }
+/// A run of several steps in its locked folder.
+pub struct Sequence {
+    from: Option<PathBuf>,
+    steps: Vec<(String, DeckText)>,
+    folder: OutputFolder,
+}
 
+impl Sequence {
     /// Opens the steps in a folder to resume them. All processes must call it together.
     ///
     /// # Errors
@@ -158,7 +166,7 @@ impl Sequence {
         let record = Record::of(path, &text)?;
         Ok(Self {
             steps: record.deck.steps()?,
-            record,
+            from: record.from,
             folder: folder.map_or_else(|| OutputFolder::following(path), |(folder, _)| folder),
         })
     }
@@ -169,16 +177,8 @@ impl Sequence {
     }
 
     /// Returns the names of the steps.
-    pub fn names(&self) -> &[String] {
-        &self.record.steps
-    }
-
-    /// Writes the results so far on one time line. Only the first process writes.
-    ///
-    /// # Errors
-    /// Results cannot be read or written.
-    fn write_time_line(&self) -> Result<(), RunError> {
-        write_time_line(self.folder.path(), &self.record.steps)
+    pub fn names(&self) -> impl ExactSizeIterator<Item = &str> {
+        self.steps.iter().map(|(name, _)| name.as_str())
     }
 
     /// Returns the run of the first step that has not finished, and its number; `None` if all have. All processes must call it
@@ -187,16 +187,12 @@ impl Sequence {
     /// # Errors
     /// A step cannot start or be resumed, or output cannot be written.
     fn next(&self, means: &Means, tell: Tell<'_>) -> Result<Option<(usize, Run)>, RunError> {
-        let mut before = self.record.from.clone();
-        for (k, (name, deck)) in self.record.steps.iter().zip(&self.steps).enumerate() {
+        let mut before = self.from.clone();
+        for (number, (name, deck)) in self.steps.iter().enumerate() {
             let path = self.folder.file(name);
-            if self.has_checkpoint(&path, means)? {
-                if let Some(run) = Run::resume(&path, means, tell)? {
-                    return Ok(Some((k, run)));
-                }
-            } else {
-                let run = begun(deck, before.as_deref(), &path, means, tell)?;
-                return Ok(Some((k, run)));
+            let run = Run::resume_or_begin(&path, deck, before.as_deref(), means, tell)?;
+            if let Some(run) = run {
+                return Ok(Some((number, run)));
             }
             before = Some(path);
         }
@@ -218,7 +214,7 @@ impl Sequence {
         while let Some((number, run)) = self.next(means, tell)? {
             let ending = drive(number, run);
             let written = match is_first {
-                true => self.write_time_line(),
+                true => write_time_line(self.folder.path(), self.names()),
                 false => Ok(()),
             };
             // The first error is reported; on a full disk this write fails for the same reason.
@@ -230,15 +226,6 @@ impl Sequence {
         }
         Ok(Ending::Finished)
     }
-
-    /// Returns whether a step has begun. A run that was killed before its first checkpoint starts again.
-    fn has_checkpoint(&self, path: &Path, means: &Means) -> Result<bool, RunError> {
-        let has = || {
-            Ok::<_, RunError>(Results::open(path).is_ok_and(|run| !run.checkpoints().is_empty()))
-        };
-        let (_, word) = on_first(&*means.comm, has, bool::to_string)?;
-        Ok(word == "true")
-    }
 }
 
 /// Returns whether a folder has the name of a step: a number, or a number and a name.
@@ -246,21 +233,4 @@ fn is_step(path: &Path) -> bool {
     let name = file_name(path);
     let number = name.split('-').next().unwrap_or_default();
     !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit())
-}
-
-/// Begins the run of a step from the state of the one before.
-fn begun(
-    deck: &DeckText,
-    from: Option<&Path>,
-    path: &Path,
-    means: &Means,
-    tell: Tell<'_>,
-) -> Result<Run, RunError> {
-    let source: Source = SourceRecord::Deck(deck.clone()).read()?;
-    let open = |from: &Path| Origin::open(from, means.memory, &*means.comm);
-    let origin = from.map(open).transpose()?;
-    let assembled = Assembled::starting(&source, origin.as_ref().into(), means, tell)?;
-    let create = || Ok::<_, RunError>(OutputFolder::create(path, path.exists())?);
-    let folder = shared_folder(&*means.comm, create)?;
-    Run::begin(&source, assembled, folder)
 }

@@ -1,13 +1,13 @@
 //! The results of several steps on one time line.
 
 use std::collections::BTreeSet;
-use std::io::Write;
 use std::path::Path;
 
-use pericles_io::{Cell, Column, CsvData, CsvTable, PvdSeries, read_csv, write_atomically};
+use pericles_io::{Cell, Column, CsvData, CsvTable, PvdSeries, read_csv};
 use serde_json::{Value, json};
 
 use crate::error::RunError;
+use crate::json::write_json;
 use crate::results::{Results, file_name};
 
 const TIME: &str = "time";
@@ -36,10 +36,14 @@ struct Done<'a> {
 ///
 /// # Errors
 /// Results cannot be read or written.
-pub(super) fn write_time_line(folder: &Path, names: &[String]) -> Result<(), RunError> {
+pub(super) fn write_time_line<'a>(
+    folder: &Path,
+    names: impl Iterator<Item = &'a str>,
+) -> Result<(), RunError> {
+    let names: Vec<&str> = names.collect();
     let (mut time, mut steps) = (0.0, 0);
     let mut done = Vec::new();
-    for name in names {
+    for &name in &names {
         let Ok(results) = Results::open(&folder.join(name)) else {
             break;
         };
@@ -63,7 +67,7 @@ pub(super) fn write_time_line(folder: &Path, names: &[String]) -> Result<(), Run
         write_table(folder, table, &done)?;
     }
     write_series(folder, &done)?;
-    write_report(folder, names, &done, last)
+    write_report(folder, &names, &done, last)
 }
 
 /// Writes a table of all steps that have it; a cell is empty in steps without its column.
@@ -107,28 +111,24 @@ fn write_table(folder: &Path, name: &str, done: &[Done<'_>]) -> Result<(), RunEr
             }
         }
     }
-    let is_whole = |values: &[f64]| {
-        values
-            .iter()
-            .all(|value| value.fract() == 0.0 && value.abs() < 1e15)
-    };
-    let headers: Vec<Column> = (columns.iter().zip(&rows))
-        .map(
-            |(column, values)| match column.unit().is_empty() && is_whole(values) {
-                true => Column::integer(column.name()),
-                false => Column::real(column.name(), column.unit()),
-            },
-        )
+    let is_whole = |value: &f64| value.fract() == 0.0 && value.abs() < 1e15;
+    let integers: Vec<bool> = (columns.iter().zip(&rows))
+        .map(|(column, values)| column.unit().is_empty() && values.iter().all(is_whole))
+        .collect();
+    let headers: Vec<Column> = (columns.iter().zip(&integers))
+        .map(|(column, integer)| match integer {
+            true => Column::integer(column.name()),
+            false => Column::real(column.name(), column.unit()),
+        })
         .collect();
     let mut table = CsvTable::create(folder.join(name), &headers)?;
     for row in 0..rows.first().map_or(0, Vec::len) {
-        let cell = |(column, values): (&&Column, &Vec<f64>)| match column.unit().is_empty()
-            && is_whole(values)
-        {
-            true => Cell::Integer(values[row] as i64),
-            false => Cell::Real(values[row]),
-        };
-        let cells: Vec<Cell> = columns.iter().zip(&rows).map(cell).collect();
+        let cells: Vec<Cell> = (rows.iter().zip(&integers))
+            .map(|(values, integer)| match integer {
+                true => Cell::Integer(values[row] as i64),
+                false => Cell::Real(values[row]),
+            })
+            .collect();
         table.append(&cells)?;
     }
     Ok(table.flush()?)
@@ -171,7 +171,7 @@ fn write_series(folder: &Path, done: &[Done<'_>]) -> Result<(), RunError> {
 /// Writes the report of the last step, with the list of all steps.
 fn write_report(
     folder: &Path,
-    names: &[String],
+    names: &[&str],
     done: &[Done<'_>],
     last: &Done<'_>,
 ) -> Result<(), RunError> {
@@ -203,8 +203,5 @@ fn write_report(
     if done.len() < names.len() && report["status"] == "finished" {
         report["status"] = "stopped".into();
     }
-    let text = serde_json::to_string_pretty(&report)? + "\n";
-    Ok(write_atomically(&folder.join("run.json"), |file| {
-        file.write_all(text.as_bytes())
-    })?)
+    write_json(&folder.join("run.json"), &report)
 }

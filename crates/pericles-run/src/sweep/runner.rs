@@ -1,26 +1,24 @@
 //! Execution of sweeps.
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::{panic, thread};
 
-use pericles_io::{OutputFolder, write_atomically};
+use pericles_io::OutputFolder;
 
 use super::axis::Axis;
 use super::record::{Member, Record};
 use super::results::SweepResults;
 use super::table::Table;
-use crate::assembled::{Assembled, Means};
+use crate::assembled::Means;
 use crate::cancel::Cancel;
 use crate::deadline::Deadline;
 use crate::deck_text::DeckText;
 use crate::error::RunError;
 use crate::event::Event;
-use crate::origin::Origin;
+use crate::json::write_json;
 use crate::run::{Ending, Run};
-use crate::sequence::{Sequence, is_sequence};
-use crate::source::SourceRecord;
+use crate::sequence::{self, Sequence, is_sequence};
 
 /// A sweep whose decks are valid, before its folder is created.
 pub struct Plan {
@@ -47,9 +45,7 @@ impl Plan {
     /// # Errors
     /// The record cannot be written.
     pub fn begin(self, folder: OutputFolder) -> Result<Sweep, RunError> {
-        let text = serde_json::to_string_pretty(&self.record)?;
-        let file = SweepResults::record_file(folder.path());
-        write_atomically(&file, |file| writeln!(file, "{text}"))?;
+        write_json(&SweepResults::record_file(folder.path()), &self.record)?;
         Ok(Sweep {
             sweep: SweepResults::of(self.record, folder.path()),
             folder,
@@ -213,33 +209,21 @@ fn run_member(
         }
     };
     pool.install(|| {
-        if is_sequence(path) || !member.deck.read()?.steps().is_empty() {
-            let sequence = match is_sequence(path) {
-                true => Sequence::open(path, means)?,
-                false => {
-                    let folder = OutputFolder::create(path, path.exists())?;
-                    let from = from.map(Path::to_path_buf);
-                    Sequence::begin(member.deck.clone(), from, folder, means)?
-                }
-            };
+        let sequence = match is_sequence(path) {
+            true => Some(Sequence::open(path, means)?),
+            false => match sequence::Plan::new(member.deck.clone(), from.map(Path::to_path_buf))? {
+                Some(plan) => Some(plan.begin(OutputFolder::create(path, path.exists())?, means)?),
+                None => None,
+            },
+        };
+        if let Some(sequence) = sequence {
             return sequence.drive(means, &mut tell, |_, mut run| {
                 run.drive(deadline.clone(), cancel, &mut |_| {})
             });
         }
-        let mut run = if path.join("checkpoints").is_dir() {
-            match Run::resume(path, means, &mut tell)? {
-                Some(run) => run,
-                None => return Ok(Ending::Finished),
-            }
-        } else {
-            // A run that was killed before its first checkpoint starts again.
-            let folder = OutputFolder::create(path, path.exists())?;
-            let source = SourceRecord::Deck(member.deck.clone()).read()?;
-            let open = |from: &Path| Origin::open(from, means.memory, &*means.comm);
-            let origin = from.map(open).transpose()?;
-            let assembled = Assembled::starting(&source, origin.as_ref().into(), means, &mut tell)?;
-            Run::begin(&source, assembled, folder)?
-        };
-        run.drive(deadline, cancel, &mut tell)
+        match Run::resume_or_begin(path, &member.deck, from, means, &mut tell)? {
+            Some(mut run) => run.drive(deadline, cancel, &mut tell),
+            None => Ok(Ending::Finished),
+        }
     })
 }

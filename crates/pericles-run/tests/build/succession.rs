@@ -8,7 +8,7 @@ use pericles::Values;
 use pericles::domain::{Alone, Comm, Threads};
 use pericles_deck::Deck;
 use pericles_io::{CheckpointFolder, CsvData, OutputFolder, read_csv};
-use pericles_run::sequence::{Sequence, is_sequence};
+use pericles_run::sequence::{Plan, Sequence, is_sequence};
 use pericles_run::{
     Assembled, DeckText, Ending, InitialState, Origin, Results, Run, RunError, Source,
     shared_folder,
@@ -237,10 +237,12 @@ fn run_steps(deck: &str, folder: &Path, comm: Arc<dyn Comm>, stop: Option<u64>) 
     let sequence = match is_sequence(folder) {
         true => Sequence::open(folder, &means).unwrap(),
         false => {
-            Sequence::check(&text, InitialState::Model, &means, &mut |_| {}).unwrap();
+            let plan = Plan::new(text, None).unwrap().expect("the deck has steps");
+            plan.check(InitialState::Model, &means, &mut |_| {})
+                .unwrap();
             let create = || Ok::<_, RunError>(OutputFolder::create(folder, false)?);
-            let created = shared_folder(&*means.comm, create).unwrap();
-            Sequence::begin(text, None, created, &means).unwrap()
+            plan.begin(shared_folder(&*means.comm, create).unwrap(), &means)
+                .unwrap()
         }
     };
     let last = sequence.names().len() - 1;
