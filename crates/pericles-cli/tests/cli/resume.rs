@@ -531,7 +531,7 @@ fn a_deck_with_steps_is_checked_run_and_replaced() {
     assert!(text(&done.stdout).contains("All 2 steps have finished"));
     succeed(place.path(), "plot out --field Damage --out pictures");
 
-    // The results of the former second step are removed.
+    // The results of steps that the new deck does not have are removed.
     let one = ["--set", "step.1=unset", "--set", "step.0.name=unset"].join(" ");
     succeed(
         place.path(),
