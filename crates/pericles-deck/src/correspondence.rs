@@ -8,10 +8,9 @@ use pericles_solids::correspondence::{
 use pericles_solids::inelastic::{Inelasticity, Yield};
 use serde::{Deserialize, Serialize};
 
-use crate::criterion::{self, FailureCriterion};
+use crate::criterion::FailureCriterion;
 use crate::reader::Table;
 use crate::state_based::{StateBased, read_yield};
-use crate::vocabulary::BY_STATE;
 
 /// A correspondence material.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -69,18 +68,6 @@ pub(crate) fn forbid_keys(table: &Table<'_>) {
     for key in OWN_KEYS {
         table.forbid(key, "it requires model = \"correspondence\"");
     }
-}
-
-/// Reads `failure` and its criterion of stress and strain; `Some(None)` for bonds that break by their stretch.
-pub(crate) fn criterion(
-    table: &Table<'_>,
-    dimension: Option<usize>,
-) -> Option<Option<FailureCriterion>> {
-    let by_state = BY_STATE.map(|(word, _)| (word, ()));
-    let words: Vec<_> = [("stretch", ())].into_iter().chain(by_state).collect();
-    let known = table.choice_or_first("failure", "failure criterion", &words);
-    let read = criterion::read(table, dimension);
-    known.and(read)
 }
 
 /// Reads the elastic law; plastic materials have the logarithmic one.

@@ -1,7 +1,7 @@
 //! `[[interface]]`: bonds between two materials.
 
 use pericles::material::{
-    BondFailure, Fracture, FractureCalibration, InterfaceRule, InterfaceStiffness, StressState,
+    BondFailure, Fracture, InterfaceRule, InterfaceStiffness, StretchDefinition,
 };
 use serde::{Deserialize, Serialize};
 
@@ -111,15 +111,17 @@ fn interface(
                     "each end point of a bond contributes the constants of its own material",
                 );
             }
-            let failure = match model {
+            let only = match model {
                 MaterialModel::Correspondence(_) => {
-                    for key in ["failure", "stretch_definition"] {
-                        table.forbid(key, "it requires model = \"state-based\"");
-                    }
-                    SolidRules::closing(state, calibration, false).failure(&table)
+                    table.forbid(
+                        "stretch_definition",
+                        "it requires model = \"state-based\"; correspondence materials use the definition `closing`",
+                    );
+                    Some(StretchDefinition::Closing)
                 }
-                _ => state_based_failure(&table, state, calibration),
+                _ => None,
             };
+            let failure = SolidRules::interface(&table, state, calibration, only).failure(&table);
             (Some(None), failure.map(InterfaceFailure::StateBased))
         }
     };
@@ -129,14 +131,6 @@ fn interface(
         stiffness: stiffness?,
         failure: Some(failure?).filter(|_| breaks),
     })
-}
-
-fn state_based_failure(
-    table: &Table<'_>,
-    state: Option<StressState>,
-    calibration: Option<FractureCalibration>,
-) -> Option<BondFailure> {
-    SolidRules::interface(table, state, calibration).failure(table)
 }
 
 /// Reads the rule or modulus from which the bond constant follows.

@@ -71,37 +71,52 @@ const LIMITS: [(&str, Criterion); 2] = [
 
 impl SolidRules {
     /// Reads the rules of a material; `calibration` follows from the body. `shared`: other materials inherit them.
-    /// `by_state`: its bonds break by stress or strain.
+    /// `by_state`: its bonds break by stress or strain. `only`: the definition of the critical stretch of models that have
+    /// one.
     pub(crate) fn read(
         table: &Table<'_>,
         state: Option<StressState>,
         calibration: Option<FractureCalibration>,
         [shared, by_state]: [bool; 2],
+        only: Option<StretchDefinition>,
     ) -> Self {
-        if shared || by_state {
-            let by_state = BY_STATE.map(|(word, _)| (word, Criterion::ByState));
-            let words: Vec<_> = LIMITS.into_iter().chain(by_state).collect();
-            return Self::of_words(table, state, calibration, &words);
+        let words = BY_STATE.map(|(word, _)| (word, Criterion::ByState));
+        let words: Vec<_> = LIMITS.into_iter().chain(words).collect();
+        match shared || by_state {
+            true => Self::of_words(table, state, calibration, &words, only),
+            false => Self::of_breaking_bonds(table, state, calibration, &words, only),
         }
-        Self::interface(table, state, calibration)
     }
 
-    /// Reads the rules of bonds between two materials, and of further materials, which break by stretch or energy.
+    /// Reads the rules of bonds between two materials, which break by stretch or energy.
     pub(crate) fn interface(
         table: &Table<'_>,
         state: Option<StressState>,
         calibration: Option<FractureCalibration>,
+        only: Option<StretchDefinition>,
+    ) -> Self {
+        Self::of_breaking_bonds(table, state, calibration, &LIMITS, only)
+    }
+
+    /// Reads the rules of bonds that break only with a fracture energy or a critical stretch.
+    fn of_breaking_bonds(
+        table: &Table<'_>,
+        state: Option<StressState>,
+        calibration: Option<FractureCalibration>,
+        words: &[(&'static str, Criterion)],
+        only: Option<StretchDefinition>,
     ) -> Self {
         if STRENGTHS.iter().any(|key| table.has(key)) {
-            return Self::of_words(table, state, calibration, &LIMITS);
+            return Self::of_words(table, state, calibration, words, only);
         }
-        for key in ["failure", "stretch_definition"] {
+        let definition = only.is_none().then_some("stretch_definition");
+        for key in ["failure"].into_iter().chain(definition) {
             table.forbid(key, "bonds without `fracture_energy` never break");
         }
         Self {
             state,
             criterion: Some(Criterion::Stretch),
-            definition: Some(StretchDefinition::default()),
+            definition: Some(only.unwrap_or_default()),
             calibration,
         }
     }
@@ -111,9 +126,11 @@ impl SolidRules {
         state: Option<StressState>,
         calibration: Option<FractureCalibration>,
         words: &[(&'static str, Criterion)],
+        only: Option<StretchDefinition>,
     ) -> Self {
         let criterion = table.choice_or_first("failure", "failure criterion", words);
         let definition = match criterion {
+            _ if only.is_some() => only,
             Some(Criterion::BondEnergy) => {
                 table.forbid(
                     "stretch_definition",
@@ -128,23 +145,6 @@ impl SolidRules {
             state,
             criterion,
             definition,
-            calibration,
-        }
-    }
-
-    /// Returns the fixed rules of materials whose bonds break by stretch, with the definition `closing`.
-    pub(crate) fn closing(
-        state: Option<StressState>,
-        calibration: Option<FractureCalibration>,
-        by_state: bool,
-    ) -> Self {
-        Self {
-            state,
-            criterion: Some(match by_state {
-                true => Criterion::ByState,
-                false => Criterion::Stretch,
-            }),
-            definition: Some(StretchDefinition::Closing),
             calibration,
         }
     }

@@ -252,7 +252,7 @@ const WRONG: &[Wrong] = &[
     wrong("youngs_modulus = \"72 GPa\"\n", "model = \"correspondence\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nyield_stress = \"100 MPa\"\nlaw = \"neo-hooke\"\n", (15, 7), "\"neo-hooke\"", &["out of range", "logarithmic strains"]),
     wrong("youngs_modulus = \"72 GPa\"\n", "model = \"correspondence\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nstrains = \"small\"\n", (14, 1), "strains", &["not allowed", "finite strains"]),
     wrong("youngs_modulus = \"72 GPa\"\n", "model = \"correspondence\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nsurface_correction = \"energy\"\n", (14, 1), "surface_correction", &["not allowed", "shape tensor"]),
-    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"correspondence\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nfailure = \"bond-energy\"\n", (14, 11), "\"bond-energy\"", &["unknown failure criterion `bond-energy`", "\"principal-stress\""]),
+    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"correspondence\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nfailure = \"energy\"\n", (14, 11), "\"energy\"", &["unknown failure criterion `energy`", "\"bond-energy\"", "\"principal-stress\""]),
     wrong("youngs_modulus = \"72 GPa\"\n", "model = \"correspondence\"\nyoungs_modulus = \"72 GPa\"\npoisson_ratio = 0.3\nstrength = \"1 MPa\"\n", (14, 1), "strength", &["not allowed", "principal-stress"]),
     wrong("fracture_energy = \"135 J/m2\"\n", "model = \"correspondence\"\npoisson_ratio = 0.3\nfailure = \"principal-stress\"\nstrength = 0\n", (16, 12), "0", &["out of range", "positive"]),
     wrong("youngs_modulus = \"72 GPa\"\n", "youngs_modulus = \"72 GPa\"\nstrength = \"1 MPa\"\n", (12, 1), "strength", &["not allowed", "correspondence"]),

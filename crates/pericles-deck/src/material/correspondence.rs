@@ -1,6 +1,6 @@
 //! Reads correspondence materials.
 
-use pericles::material::{LinearSolid, SurfaceCorrection};
+use pericles::material::{LinearSolid, StretchDefinition, SurfaceCorrection};
 
 use super::keys::{SolidFamily, damage, density, form, no_fail};
 use super::scatter::Scatter;
@@ -8,7 +8,8 @@ use super::softening::{forbid_softening, forbid_tensile_strength};
 use super::types::Material;
 use crate::body::BodyRead;
 use crate::constants::fracture_calibration;
-use crate::correspondence::{Correspondence, criterion, law, plasticity};
+use crate::correspondence::{Correspondence, law, plasticity};
+use crate::criterion;
 use crate::declaration::DeckValue;
 use crate::reader::Table;
 use crate::set::SetNames;
@@ -27,9 +28,10 @@ pub(super) fn read(
     let density = density(&table);
     let family = SolidFamily::read(&table, body);
     let calibration = fracture_calibration(&table, body, shared);
-    let criterion = criterion(&table, body.frame.dimension);
+    let criterion = criterion::read(&table, body.frame.dimension);
     let by_state = !matches!(criterion, Some(None));
-    let rules = SolidRules::closing(body.state, calibration, by_state);
+    let closing = Some(StretchDefinition::Closing);
+    let rules = SolidRules::read(&table, body.state, calibration, [shared, by_state], closing);
     let (elastic, failure) = (rules.elastic(&table), rules.failure(&table));
     let plasticity = plasticity(&table);
     let law = law(&table, table.has("yield_stress"));

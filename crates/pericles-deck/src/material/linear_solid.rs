@@ -39,6 +39,7 @@ pub(super) fn read(
         body.state,
         fracture_calibration(&table, body, shared),
         [shared, by_state],
+        None,
     );
     let (elastic, failure) = (rules.elastic(&table), rules.failure(&table));
     let inelastic = inelastic::read(&table, body.state);

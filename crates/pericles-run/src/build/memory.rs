@@ -339,18 +339,21 @@ impl Assembler<'_> {
 
     /// Returns the bytes per bond of a list during the neighbour search.
     fn bytes_of_listed_bond(&self, solid: &Solid) -> f64 {
-        if solid.material.correspondence().is_some() {
-            return LISTED + NUMBER;
-        }
         let by_energy = |failure: &BondFailure| matches!(failure, BondFailure::BondEnergy { .. });
-        let worked = self.breaks(solid, &by_energy);
+        let worked = match self.breaks(solid, &by_energy) {
+            true => WORKED,
+            false => 0.0,
+        };
+        if solid.material.correspondence().is_some() {
+            return LISTED + NUMBER + worked;
+        }
         let kept = match solid.material.state_based() {
             Some(_) => solid.material.surface_correction != Default::default(),
             None => !self.is_on_one_grid(solid),
         };
         let softens = solid.material.softening.is_some();
         let history = self.history_of_bond(solid) + if softens { NUMBER } else { 0.0 };
-        LISTED + if kept { KEPT } else { 0.0 } + if worked { WORKED } else { 0.0 } + history
+        LISTED + if kept { KEPT } else { 0.0 } + worked + history
     }
 
     /// Returns the bytes per bond of the history of viscous and plastic materials.
@@ -415,12 +418,12 @@ impl Assembler<'_> {
     /// Returns whether the failure of some bonds of a state-based body is of a kind.
     fn breaks(&self, solid: &Solid, is: &dyn Fn(&BondFailure) -> bool) -> bool {
         let others = self.model.materials.iter().map(|other| &other.model);
-        let own = solid.material.state_based();
-        own.is_some_and(|own| is(&own.solid.failure))
-            || others.into_iter().any(|model| match model {
-                MaterialModel::StateBased(state) => is(&state.solid.failure),
-                MaterialModel::Bonds(_) | MaterialModel::Correspondence(_) => false,
-            })
+        let mut models = std::iter::once(&solid.material.model).chain(others);
+        models.any(|model| match model {
+            MaterialModel::StateBased(state) => is(&state.solid.failure),
+            MaterialModel::Correspondence(own) => is(&own.solid.failure),
+            MaterialModel::Bonds(_) => false,
+        })
             || self.model.interfaces.iter().any(|interface| {
                 matches!(&interface.failure, Some(InterfaceFailure::StateBased(failure)) if is(failure))
             })

@@ -13,7 +13,7 @@ initial = [{ set = "left", velocity = [0.04, 0] }]
 time = { end = 120, TIME }
 "#;
 
-const MATERIALS: [&str; 10] = [
+const MATERIALS: [&str; 13] = [
     "model = \"state-based\", poisson_ratio = 0.25, critical_stretch = 0.001, bonds = \"grid\"",
     "model = \"state-based\", poisson_ratio = 0.25, critical_stretch = 0.001, bonds = \"list\"",
     "model = \"state-based\", poisson_ratio = 0.4, critical_stretch = 0.001",
@@ -24,6 +24,9 @@ const MATERIALS: [&str; 10] = [
     "model = \"correspondence\", poisson_ratio = 0.25, critical_stretch = 0.001",
     "model = \"correspondence\", poisson_ratio = 0.3, yield_stress = 0.01, critical_stretch = 0.001",
     "model = \"correspondence\", poisson_ratio = 0.25, failure = \"principal-stress\", strength = 0.001",
+    "model = \"correspondence\", poisson_ratio = 0.25, fracture_energy = 1e-5, failure = \"bond-energy\"",
+    "model = \"correspondence\", poisson_ratio = 0.3, yield_stress = 0.01, fracture_energy = 1e-5, failure = \"bond-energy\"",
+    "model = \"state-based\", poisson_ratio = 0.3, viscosity = [{ share = 0.5, time = 10 }], fracture_energy = 1e-5, failure = \"bond-energy\"",
 ];
 
 /// At the default step a bond that is compressed at the start of a step may be beyond its limit at the end.

@@ -23,7 +23,7 @@ time = { TIME }
 "#;
 
 /// Materials that dissipate energy, with every kind of force kernel and every mechanism.
-const MODELS: [&str; 12] = [
+const MODELS: [&str; 14] = [
     "model = \"linear\", critical_stretch = 0.03, bonds = \"grid\"",
     "model = \"linear\", critical_stretch = 0.03, bonds = \"list\"",
     "model = \"bond-stretch\", critical_stretch = 0.03",
@@ -36,6 +36,8 @@ const MODELS: [&str; 12] = [
     "model = \"correspondence\", poisson_ratio = 0.3, critical_stretch = 0.05",
     "model = \"correspondence\", poisson_ratio = 0.3, yield_stress = 0.1, hardening = 1",
     "model = \"correspondence\", poisson_ratio = 0.3, yield_stress = 0.1, critical_stretch = 0.06",
+    "model = \"correspondence\", poisson_ratio = 0.3, fracture_energy = 0.05, failure = \"bond-energy\"",
+    "model = \"state-based\", poisson_ratio = 0.3, yield_stress = 0.1, hardening = 1, fracture_energy = 0.05, failure = \"bond-energy\"",
 ];
 
 /// The material whose failure does not include thermal strain.

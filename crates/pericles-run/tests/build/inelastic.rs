@@ -113,11 +113,6 @@ fn unsupported_features_of_inelastic_materials_are_rejected() {
             "the surface correction of viscous and plastic materials is not supported",
         ),
         (
-            "horizon_ratio = 3",
-            "horizon_ratio = 3, fracture_energy = 1, failure = \"bond-energy\"",
-            "break by stretch only",
-        ),
-        (
             "yield_stress = 0.2, hardening = 1",
             "viscosity = [{ share = 0.1, time = 1 }]",
             "only materials with a `yield_stress`",

@@ -18,7 +18,7 @@ time = { end = 1, TIME }
 "#;
 
 /// Elastic materials with every failure criterion, and whether their forces are linear.
-const CRITERIA: [&str; 12] = [
+const CRITERIA: [&str; 13] = [
     "model = \"linear\", critical_stretch = 0.01",
     "model = \"linear\", critical_stretch = 0.01, bonds = \"list\"",
     "model = \"bond-stretch\", fracture_energy = 2e-3",
@@ -31,14 +31,16 @@ const CRITERIA: [&str; 12] = [
     "model = \"correspondence\", poisson_ratio = 0.3, critical_stretch = 0.01",
     "model = \"correspondence\", poisson_ratio = 0.3, failure = \"principal-stress\", strength = 0.1",
     "model = \"correspondence\", poisson_ratio = 0.3, failure = \"expression\", criterion = \"strain_1 / 0.01\"",
+    "model = \"correspondence\", poisson_ratio = 0.3, fracture_energy = 2e-3, failure = \"bond-energy\"",
 ];
 
 /// Materials whose forces depend on the history.
-const WITH_HISTORY: [&str; 4] = [
+const WITH_HISTORY: [&str; 5] = [
     "model = \"bond-stretch\", critical_stretch = 0.02, softening = { law = \"linear\", onset_stretch = 0.01 }",
     "model = \"state-based\", poisson_ratio = 0.3, yield_stress = 0.09, critical_stretch = 0.01",
     "model = \"correspondence\", poisson_ratio = 0.3, yield_stress = 0.09, critical_stretch = 0.01",
     "model = \"correspondence\", poisson_ratio = 0.3, yield_stress = 0.09, failure = \"expression\", criterion = \"strain_1 / 0.01\"",
+    "model = \"correspondence\", poisson_ratio = 0.3, yield_stress = 0.09, fracture_energy = 2e-3, failure = \"bond-energy\"",
 ];
 
 fn deck(material: &str, rise: f64, time: &str) -> String {

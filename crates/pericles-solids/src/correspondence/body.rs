@@ -49,10 +49,6 @@ const LIMITS: &[Limit] = &[
         Feature::GaussNodes,
         "Gauss nodes require a linear bond-based bar; remove `quadrature`",
     ),
-    Limit::new(
-        Feature::BondEnergy,
-        "bonds of correspondence materials break by their stretch; remove `failure` or set it to \"stretch\"",
-    ),
 ];
 
 /// Features that stencils do not support.

@@ -360,14 +360,12 @@ impl<const TENSOR: bool, const D: usize> Solid<D> for ForceState<TENSOR> {
         at: &Point<'_, PointShape<D>, D>,
         next: &mut NextHistory<'_>,
     ) -> f64 {
+        if self.0.point.plasticity.is_none() {
+            return 0.0;
+        }
         let moment = at.family.moment::<T>(&at.family);
-        let left = match self.0.point.plasticity {
-            Some(_) => {
-                let gradient = Self::gradient_of_moment(at.shape, &moment);
-                Self::unresolved::<T, D>(at, &gradient)
-            }
-            None => [[0.0; D]; D],
-        };
+        let gradient = Self::gradient_of_moment(at.shape, &moment);
+        let left = Self::unresolved::<T, D>(at, &gradient);
         self.advance_of_moment(at, [&moment, &left], next)
     }
 

@@ -19,7 +19,7 @@ use crate::tensor::{Matrix, combination, contraction, in_body, product, symmetri
 #[derive(Debug, Clone, PartialEq)]
 pub struct CorrespondenceMaterial {
     /// Density, elastic constants, horizon, influence function, partial volumes and failure criterion, as for
-    /// a linear peridynamic solid. Bonds break by their stretch.
+    /// a linear peridynamic solid.
     pub solid: LinearSolid,
     /// Elastic law; materials with plasticity always use [`ElasticLaw::Hencky`].
     pub law: ElasticLaw,
@@ -58,8 +58,7 @@ impl CorrespondenceMaterial {
     /// Returns the constants for bonds of `cloud`.
     ///
     /// # Errors
-    /// The errors of [`LinearSolid::constants`]; a failure criterion other than the closing stretch; plastic
-    /// constants out of range.
+    /// The errors of [`LinearSolid::constants`]; a stretch definition other than `closing`; plastic constants out of range.
     pub fn constants(
         &self,
         cloud: &PointCloud,
@@ -68,8 +67,13 @@ impl CorrespondenceMaterial {
         if let Some(plasticity) = &self.plasticity {
             plasticity.check()?;
         }
+        // The critical bond energy follows from the lattice alone, the critical stretch from the stress.
+        let failure = match self.solid.failure {
+            energy @ BondFailure::BondEnergy { .. } => energy,
+            _ => BondFailure::Unbreakable,
+        };
         let unbroken = LinearSolid {
-            failure: BondFailure::Unbreakable,
+            failure,
             ..self.solid.clone()
         };
         let mut solid = unbroken.constants(cloud, state)?;
@@ -105,7 +109,7 @@ impl CorrespondenceMaterial {
         state: StressState,
     ) -> Result<BondLimits> {
         // 1/s₀² is the crack energy at unit stretch over the fracture energy.
-        let limit = |material: &Self| -> Result<f64> {
+        let limit = |material: &Self| -> Result<BondLimits> {
             let solid = LinearSolid {
                 failure,
                 ..material.solid.clone()
@@ -114,13 +118,12 @@ impl CorrespondenceMaterial {
                 solid,
                 ..material.clone()
             };
-            Ok(material.constants(cloud, state)?.solid.limits.stretch)
+            Ok(material.constants(cloud, state)?.solid.limits)
         };
         let [a, b] = [limit(self)?, limit(other)?];
-        let stretch = (0.5 * (a.powi(-2) + b.powi(-2))).powf(-0.5);
         Ok(BondLimits {
-            stretch,
-            ..BondLimits::NONE
+            stretch: (0.5 * (a.stretch.powi(-2) + b.stretch.powi(-2))).powf(-0.5),
+            energy: 0.5 * (a.energy + b.energy),
         })
     }
 
@@ -134,8 +137,9 @@ impl CorrespondenceMaterial {
         let sides = cloud.cell_sides();
         let planes = |fine: bool| constants.crack_planes(&self.solid, cloud, fine);
         let (stretch, energy, calibration) = match self.solid.failure {
-            BondFailure::Unbreakable | BondFailure::ByCriterion => return Ok(()),
-            BondFailure::BondEnergy { .. } => return Err(no_such_failure("the bond energy")),
+            BondFailure::Unbreakable
+            | BondFailure::ByCriterion
+            | BondFailure::BondEnergy { .. } => return Ok(()),
             BondFailure::CriticalStretch(stretch) => {
                 let stretch = positive("the critical stretch", stretch)?;
                 let unit = CrackPlane::mean(&planes(true));
@@ -145,9 +149,7 @@ impl CorrespondenceMaterial {
                 definition: StretchDefinition::Bond | StretchDefinition::Isotropic,
                 ..
             } => {
-                return Err(no_such_failure(
-                    "a stretch definition other than \"closing\"",
-                ));
+                return Err(no_such_definition());
             }
             BondFailure::Stretch {
                 fracture_energy,
@@ -181,11 +183,9 @@ impl CorrespondenceMaterial {
     }
 }
 
-fn no_such_failure(what: &str) -> PericlesError {
+fn no_such_definition() -> PericlesError {
     PericlesError::ElasticConstants {
-        reason: format!(
-            "bonds of correspondence materials break by their stretch with the \"closing\" stretch definition; {what} is not supported"
-        ),
+        reason: "the critical stretch of correspondence materials has the definition \"closing\"; \"bond\" and \"iso\" are not supported".into(),
     }
 }
 

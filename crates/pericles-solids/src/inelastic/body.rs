@@ -22,16 +22,10 @@ pub struct InelasticSolidBody<'a> {
 }
 
 /// Features that inelastic bodies do not support.
-const LIMITS: &[Limit] = &[
-    Limit::new(
-        Feature::SurfaceCorrection,
-        "the surface correction of viscous and plastic materials is not supported: its factors hold for elastic bonds; omit `surface_correction`",
-    ),
-    Limit::new(
-        Feature::BondEnergy,
-        "bonds of viscous and plastic materials break by stretch only; use failure = \"stretch\"",
-    ),
-];
+const LIMITS: &[Limit] = &[Limit::new(
+    Feature::SurfaceCorrection,
+    "the surface correction of viscous and plastic materials is not supported: its factors hold for elastic bonds; omit `surface_correction`",
+)];
 
 /// Reason why stencil kernels are not available.
 const ON_LATTICE: &str = "viscous and plastic materials store the history of each bond of a neighbour list; use bonds = \"list\" or omit `bonds`";
@@ -46,7 +40,7 @@ impl InelasticSolidBody<'_> {
     ///
     /// # Errors
     /// Errors of [`LinearSolidBody::operator`] and of [`Inelasticity::check`]; a kernel other than a list,
-    /// surface correction, failure by bond energy, a number of laws that is not the number of materials; a
+    /// surface correction, a number of laws that is not the number of materials; a
     /// body divided among processes.
     pub fn operator(&self, form: BondForm) -> Result<AssembledBonds> {
         match (self.elastic.strains, self.elastic.cloud.dimension()) {

@@ -39,18 +39,26 @@ pub(super) type Entries = Vec<(usize, usize)>;
 const WATCH: f64 = 1.0 - 1e-9;
 
 impl<S: Solid<D>, const D: usize> SolidForce<S, D> {
-    /// Breaks the bonds of the points `on` that exceed their critical stretch or strength, and all bonds of points whose
-    /// remaining bonds do not determine a force state. Adds the dissipated energy. All processes must call it together.
+    /// Breaks the bonds of the points `on` that exceed their critical stretch, energy or strength, and all bonds of
+    /// points whose remaining bonds do not determine a force state. Adds the dissipated energy. All processes must call it together.
     pub(super) fn break_bonds(&mut self, step: &StepEnd<'_>, u: Field<'_>, on: &PointSubset<'_>) {
         let domain = self.cloud.domain().clone();
         let heat = self.heat_at(step.t);
         let packed = self.packed(u);
         let mut found = self.beyond(step.t, &packed, on, &heat, 1.0);
-        if domain.all(found.is_empty()) {
-            return;
-        }
-        let rows = packed.to_vec();
+        let worked = self.worked(step.t, &packed, on, &heat, 1.0);
+        let numbers = worked.map(|(numbers, over)| {
+            found.extend(over);
+            numbers
+        });
+        let rows = (!domain.all(found.is_empty())).then(|| packed.to_vec());
         drop(packed);
+        if let Some(numbers) = numbers {
+            self.history.bonds = numbers;
+        }
+        let Some(rows) = rows else {
+            return;
+        };
         let mut before = BTreeMap::new();
         while !domain.all(found.is_empty()) {
             let others = self.other_ends(&found);
@@ -124,7 +132,7 @@ impl<S: Solid<D>, const D: usize> SolidForce<S, D> {
         heat: &Heat,
         fraction: f64,
     ) -> Entries {
-        if self.weakest.is_infinite() {
+        if self.weakest.stretch.is_infinite() {
             return Entries::new();
         }
         if self.expansion.is_some() {
@@ -133,7 +141,7 @@ impl<S: Solid<D>, const D: usize> SolidForce<S, D> {
                 family.for_each(|bond| self.check(i, bond, heat, fraction, found));
             });
         }
-        let threshold = WATCH * threshold::<S, D>(fraction * self.weakest);
+        let threshold = WATCH * threshold::<S, D>(fraction * self.weakest.stretch);
         let mut blocks: Vec<Vec<(usize, usize, u8)>> =
             vec![Vec::new(); self.cloud.len().div_ceil(BLOCK)];
         let (list, n) = (self.bonds.list(), self.cloud.len());
@@ -403,7 +411,10 @@ impl<S: Solid<D>, const D: usize> Breakable for SolidForce<S, D> {
         let ghosts = self.cloud.domain().ghosts(u);
         let rows = self.packed(Field::new(u, &ghosts));
         let (heat, all) = (self.latest_heat(), PointSubset::All);
-        let found = self.beyond(self.latest_time(), &rows, &all, &heat, fraction);
+        let t = self.latest_time();
+        let mut found = self.beyond(t, &rows, &all, &heat, fraction);
+        let worked = self.worked(t, &rows, &all, &heat, fraction);
+        found.extend(worked.into_iter().flat_map(|(_, over)| over));
         for (i, _) in found {
             marks[i] = true;
         }

@@ -3,10 +3,10 @@
 use pericles::ThermalExpansion;
 use pericles::domain::Field;
 use pericles::lanes::{F64x8, Row};
-use pericles::operator::PointSubset;
 use pericles::operator::pool::Lent;
 use pericles::operator::records::pack_sites;
 use pericles::operator::rows::Rows;
+use pericles::operator::{PointSubset, with_neighbours};
 use pericles::parallel::{BLOCK, for_each_part};
 use rayon::prelude::*;
 
@@ -73,6 +73,28 @@ impl<S: Solid<D>, const D: usize> SolidForce<S, D> {
         );
         self.opposite.exchange(list, &mut states.of_bonds);
         states
+    }
+
+    /// Computes the values of the points `on` and of their neighbours, which the bonds of the points read. All processes must
+    /// call it together.
+    pub(super) fn states_of_ends(
+        &self,
+        t: f64,
+        heat: &Heat,
+        u: &[Row],
+        on: &PointSubset<'_>,
+    ) -> Lent<'_, States> {
+        let needed = match on {
+            PointSubset::All => None,
+            part => Some(with_neighbours(self.cloud.domain(), part, &|i, visit| {
+                self.bonds.list().for_each_neighbour(i, visit);
+            })),
+        };
+        let needed = match &needed {
+            None => PointSubset::All,
+            Some(points) => PointSubset::Set(points),
+        };
+        self.states(t, heat, u, None, &needed)
     }
 
     /// Returns values of own points with those of ghosts, component-major. All processes must call it together.

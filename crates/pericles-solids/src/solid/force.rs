@@ -5,7 +5,7 @@ use std::sync::Arc;
 use pericles::archive::{Laid, Layout};
 use pericles::family::{BondCut, BondList, Crack, EndRule};
 use pericles::lanes::{LANES, Row};
-use pericles::material::Materials;
+use pericles::material::{BondLimits, Materials};
 use pericles::operator::pool::Pool;
 use pericles::operator::{AssembledBonds, BondForm, InstructionSet};
 use pericles::parallel::for_each_point;
@@ -17,7 +17,7 @@ use super::body::SolidBody;
 use super::bonds::Bonds;
 use super::family::{Family, Point};
 use super::heat::Heat;
-use super::history::{History, HistorySize};
+use super::history::{BondWork, History, HistorySize};
 use super::opposite::Opposites;
 use super::shape::ShapeTensor;
 use crate::error::SingularShape;
@@ -27,18 +27,21 @@ use crate::error::SingularShape;
 /// When a bond of a point breaks, [`Solid::shape`] is computed from the remaining bonds; if it is `None`, the point loses
 /// all its bonds.
 ///
-/// Memory: 11 bytes per directed bond, and 8 for each number that the material stores per bond.
+/// Memory: 11 bytes per directed bond, and 8 for each number that is stored per bond: those of the material, and three if
+/// bonds break by their energy.
 pub struct SolidForce<S: Solid<D>, const D: usize> {
     pub(super) cloud: Arc<PointCloud>,
     pub(super) bonds: Bonds,
     /// Materials with numbers by site.
     pub(super) materials: Materials<S>,
-    pub(super) weakest: f64,
+    pub(super) weakest: BondLimits,
     pub(super) shapes: Vec<Option<S::Shape>>,
     /// Shapes of the undamaged points; empty if no bond can break.
     pub(super) undamaged: Vec<Option<S::Shape>>,
     pub(super) history: History,
     pub(super) history_size: HistorySize,
+    /// Place of the work of each bond among its stored numbers, if bonds break by their energy.
+    pub(super) work: Option<BondWork>,
     /// Number of points that lost all bonds because the remaining ones did not determine a force state.
     pub(super) dropped: u64,
     /// First point whose volume was not positive at the end of the last step, and its dilatation.
@@ -57,7 +60,7 @@ saved! {
     impl<S: Solid<D>, const D: usize> Checkpointed for SolidForce<S, D> {
         bonds, history: part,
         dropped: by(Laid::new("operator/dropped", Layout::Count)),
-        cloud, materials, weakest, undamaged, history_size, expansion, opposite, set: fixed,
+        cloud, materials, weakest, undamaged, history_size, work, expansion, opposite, set: fixed,
         shapes: rebuilt,
         inverted: set(None),
         displaced, states, planes: scratch,
@@ -85,30 +88,29 @@ impl<S: Solid<D>, const D: usize> SolidForce<S, D> {
             D,
             "the dimension of the force equals the dimension of the cloud"
         );
-        if body.materials.weakest().energy.is_finite() {
-            return Err(PericlesError::FormNotUsable {
-                form: "list",
-                reason: "bonds of these materials break by their stretch, by stress or by strain; a critical bond energy is not supported",
-            });
-        }
         list.hold(body.no_fail);
         let mut all = body.materials.all().iter();
-        let reads_influence = all.any(|material| Solid::<D>::reads_influence(material));
+        let weakest = body.materials.weakest();
+        let by_energy = weakest.energy.is_finite();
+        let reads_influence =
+            by_energy || all.any(|material| Solid::<D>::reads_influence(material));
         let influence = (body.influence, body.horizon);
         let bonds = Bonds::new(list, body.damage, influence, reads_influence);
         let sites = bonds.list().sites();
         let (n, site_count) = (cloud.len(), sites.len());
         let materials = body.materials.on_sites(sites);
         let sizes = materials.all().iter().map(Solid::history);
-        let history_size = sizes.fold(HistorySize::default(), HistorySize::max);
+        let mut history_size = sizes.fold(HistorySize::default(), HistorySize::max);
+        let work = by_energy.then(|| BondWork::behind(&mut history_size));
         let opposite = match S::BOND_VALUES {
             true => Opposites::new(bonds.list())?,
             false => Opposites::default(),
         };
         let places = opposite.places();
         let mut force = Self {
-            weakest: materials.weakest().stretch,
+            weakest,
             materials,
+            work,
             shapes: Vec::new(),
             undamaged: Vec::new(),
             history: History::new(bonds.list(), history_size),
@@ -265,7 +267,7 @@ impl<S> SolidBody<'_, S> {
     ///
     /// # Errors
     /// A horizon without neighbours; an invalid crack; materials for another number of points; points whose bonds do not
-    /// determine a force state ([`SingularShape`](crate::SingularShape)); limits of the bond energy.
+    /// determine a force state ([`SingularShape`](crate::SingularShape)).
     ///
     /// # Panics
     /// If the dimension of the body is not D.

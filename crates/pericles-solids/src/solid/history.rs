@@ -32,6 +32,22 @@ impl HistorySize {
     }
 }
 
+/// Place of the work of a bond among its stored numbers: the work, and force and stretch at the end of the last step.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct BondWork {
+    /// The first of the three numbers, behind those of the material.
+    pub first: usize,
+}
+
+impl BondWork {
+    /// Adds the numbers of the work to those of the material.
+    pub fn behind(size: &mut HistorySize) -> Self {
+        let first = size.per_bond;
+        size.per_bond += 3;
+        Self { first }
+    }
+}
+
 /// Output of [`Solid::advance`](super::Solid::advance): the stored numbers at the end of a step.
 pub struct NextHistory<'a> {
     /// Stored numbers of the point, which are those at the end of the last step until they are set.

@@ -143,6 +143,54 @@ impl Ends<'_> {
     }
 }
 
+impl<S: Solid<D>, const D: usize> SecondLoop<'_, S, D> {
+    /// Returns the values that the bonds of a point read at the point.
+    #[inline(always)]
+    pub fn here<T: Lanes>(&self, site: usize) -> End<T> {
+        self.ends.here(site, self.u.len(), S::VALUES)
+    }
+
+    /// Returns T_i⟨ξ⟩ − T_j⟨−ξ⟩ of the intact bonds of a batch, or its derivative. `group` is the number of the batch in the
+    /// list.
+    #[inline(always)]
+    pub fn pull<T: Lanes>(
+        &self,
+        family: &Family<'_, D>,
+        batch: usize,
+        group: usize,
+        here: &mut End<T>,
+        bond: &Bond<T, D>,
+    ) -> [T; D] {
+        let (sites, width) = (self.u.len(), S::VALUES);
+        let opposite = self.force.opposite.of_entry();
+        let mut there = self.ends.there::<T, D>(family, batch, sites, width);
+        if S::BOND_VALUES {
+            self.ends.of_batch(group, opposite, [here, &mut there]);
+        }
+        let pulls = match &self.change {
+            None => [S::pull(here, bond), S::pull(&there, bond)],
+            Some((direction, ends)) => {
+                let mut change_here = ends.here::<T>(family.site(), sites, width);
+                let mut change_there = ends.there::<T, D>(family, batch, sites, width);
+                if S::BOND_VALUES {
+                    let changes = [&mut change_here, &mut change_there];
+                    ends.of_batch(group, opposite, changes);
+                }
+                let moved = family.at(direction).eta(batch);
+                [
+                    S::pull_change(here, &change_here, bond, moved),
+                    S::pull_change(&there, &change_there, bond, moved),
+                ]
+            }
+        };
+        let mut pull = [T::splat(0.0); D];
+        for c in 0..D {
+            pull[c] = (pulls[0][c] + pulls[1][c]).masked(family.intact(batch));
+        }
+        pull
+    }
+}
+
 #[inline(always)]
 fn force_rows_body<T: Lanes, S: Solid<D>, const D: usize>(
     second: &SecondLoop<'_, S, D>,
@@ -150,47 +198,23 @@ fn force_rows_body<T: Lanes, S: Solid<D>, const D: usize>(
     rows: &Rows<'_>,
     out: &mut [&mut [f64]; D],
 ) {
-    let (force, width) = (second.force, S::VALUES);
-    let list = force.bonds.list();
-    let (start, sites) = (list.start(), second.u.len());
+    let force = second.force;
+    let start = force.bonds.list().start();
     for k in 0..rows.count() {
         let i = rows.at(k);
-        let (site, first) = (list.site(i), start[i]);
+        let first = start[i];
         let bits = &intact[first - start[rows.first]..start[i + 1] - start[rows.first]];
         let family = Family::new(&force.bonds, i, bits, second.u);
-        let mut here = second.ends.here::<T>(site, sites, width);
+        let mut here = second.here::<T>(family.site());
         let mut sum = [T::splat(0.0); D];
         for batch in 0..bits.len() {
             if bits[batch] == 0 {
                 continue;
             }
             let bond: Bond<T, D> = family.bond(batch);
-            let mut there = second.ends.there::<T, D>(&family, batch, sites, width);
-            if S::BOND_VALUES {
-                let ends = [&mut here, &mut there];
-                second
-                    .ends
-                    .of_batch(first + batch, force.opposite.of_entry(), ends);
-            }
-            let pulls = match &second.change {
-                None => [S::pull(&here, &bond), S::pull(&there, &bond)],
-                Some((direction, ends)) => {
-                    let mut change_here = ends.here::<T>(site, sites, width);
-                    let mut change_there = ends.there::<T, D>(&family, batch, sites, width);
-                    if S::BOND_VALUES {
-                        let changes = [&mut change_here, &mut change_there];
-                        ends.of_batch(first + batch, force.opposite.of_entry(), changes);
-                    }
-                    let moved = family.at(direction).eta(batch);
-                    [
-                        S::pull_change(&here, &change_here, &bond, moved),
-                        S::pull_change(&there, &change_there, &bond, moved),
-                    ]
-                }
-            };
+            let pull = second.pull(&family, batch, first + batch, &mut here, &bond);
             for c in 0..D {
-                let pull = (pulls[0][c] + pulls[1][c]).masked(bits[batch]);
-                sum[c] = bond.weight.mul_add(pull, sum[c]);
+                sum[c] = bond.weight.mul_add(pull[c], sum[c]);
             }
         }
         for c in 0..D {

@@ -12,7 +12,7 @@
 //! | `force`, `loops`, `evaluation`, `operator` | the force operator and its loops |
 //! | `shape` | shape tensors |
 //! | `history`, `opposite` | variables stored per bond and per point; reverse entries |
-//! | `breaking`, `criterion` | failure of bonds by stretch, stress and strain |
+//! | `breaking`, `criterion`, `work` | failure of bonds by stretch, by stress and strain, and by energy |
 //! | `heat`, `view` | thermal stretches; access for output |
 //!
 //! The example `maxwell` of this crate defines a viscoelastic material in one file.
@@ -31,6 +31,7 @@ mod operator;
 mod opposite;
 mod shape;
 mod view;
+mod work;
 
 use pericles::lanes::{F64x8, Lanes, Real};
 use pericles::operator::Kinematics;

@@ -3,7 +3,7 @@
 use pericles::domain::Field;
 use pericles::operator::{
     Breakable, Capabilities, DilatationView, Force, InstructionSet, Inversion, LocalForce,
-    PointSubset, StressView, with_neighbours,
+    PointSubset, StressView,
 };
 use pericles::parallel::for_each_chunk_of;
 use pericles::{Expandable, Result, StepEnd, ThermalExpansion};
@@ -19,18 +19,8 @@ impl<S: Solid<D>, const D: usize> SolidForce<S, D> {
         on: &PointSubset<'_>,
         out: &mut [f64],
     ) -> Option<(usize, f64)> {
-        let needed = match on {
-            PointSubset::All => None,
-            part => Some(with_neighbours(self.cloud.domain(), part, &|i, visit| {
-                self.bonds.list().for_each_neighbour(i, visit);
-            })),
-        };
-        let needed = match &needed {
-            None => PointSubset::All,
-            Some(points) => PointSubset::Set(points),
-        };
         let (heat, rows) = (self.heat_at(t), self.packed(u));
-        let states = self.states(t, &heat, &rows, None, &needed);
+        let states = self.states_of_ends(t, &heat, &rows, on);
         self.add_bonds(on, &rows, &states, None, out);
         let mut inverted = None;
         on.for_each(self.cloud.len(), |i| {
@@ -115,7 +105,7 @@ impl<S: Solid<D>, const D: usize> Force for SolidForce<S, D> {
         if self.can_lose_bonds() {
             self.break_bonds(step, u, &on);
         }
-        if !self.history_size.is_empty() {
+        if !self.material_history().is_empty() {
             self.advance(step, u, &on);
         }
         self.inverted = self.add_forces(step.t, u, &on, out);
@@ -132,7 +122,7 @@ impl<S: Solid<D>, const D: usize> Force for SolidForce<S, D> {
             dilatation: Some(self),
             stress: S::HAS_STRESS.then_some(self as &dyn StressView),
             plastic: yields.then_some(self),
-            path_dependent: !self.history_size.is_empty(),
+            path_dependent: !self.material_history().is_empty(),
             thermal: self.expansion.as_ref(),
             ..Capabilities::default()
         }

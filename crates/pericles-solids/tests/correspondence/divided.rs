@@ -8,6 +8,7 @@ use pericles::space::PointCloud;
 use pericles::{Archive, Checkpointed, Control, Simulation};
 
 use crate::bodies::lattice;
+use crate::fracture::{BY_ENERGY, BY_STRETCH};
 use crate::{fracture, plastic};
 
 /// Bonds of three cells.
@@ -42,8 +43,17 @@ fn proceed(run: &mut Simulation, end: u64) -> Archive {
 #[test]
 fn states_and_checkpoints_do_not_depend_on_the_division() {
     type Make = fn(Arc<PointCloud>) -> Simulation;
-    let cases: [(&[f64], Make, u64); 2] = [
-        (&[18.0, 16.0], |cloud| fracture::torn_on(cloud, 1.0), 30),
+    let cases: [(&[f64], Make, u64); 3] = [
+        (
+            &[18.0, 16.0],
+            |cloud| fracture::torn_on(cloud, 1.0, BY_STRETCH),
+            30,
+        ),
+        (
+            &[18.0, 16.0],
+            |cloud| fracture::torn_on(cloud, 1.0, BY_ENERGY),
+            30,
+        ),
         (&[10.0, 8.0], |cloud| plastic::thrown_on(cloud, 1.0), 9),
     ];
     for (sides, make, pause) in cases {

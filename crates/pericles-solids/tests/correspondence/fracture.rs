@@ -19,18 +19,29 @@ use crate::bodies::{lattice, material};
 
 const G0: f64 = 2e-3;
 
-fn breaking(calibration: FractureCalibration) -> CorrespondenceMaterial {
+/// Failure by stretch and by energy, calibrated on the lattice.
+pub const BY_STRETCH: BondFailure = by_stretch(FractureCalibration::Lattice);
+pub const BY_ENERGY: BondFailure = BondFailure::BondEnergy {
+    fracture_energy: G0,
+    calibration: FractureCalibration::Lattice,
+};
+
+const fn by_stretch(calibration: FractureCalibration) -> BondFailure {
+    BondFailure::Stretch {
+        fracture_energy: G0,
+        definition: StretchDefinition::Closing,
+        calibration,
+    }
+}
+
+fn breaking(failure: BondFailure) -> CorrespondenceMaterial {
     let mut material = material(
         0.3,
         3.0 * (1.0 + 1e-6),
         ElasticLaw::NeoHooke,
         Stabilisation::Isotropic,
     );
-    material.solid.failure = BondFailure::Stretch {
-        fracture_energy: G0,
-        definition: StretchDefinition::Closing,
-        calibration,
-    };
+    material.solid.failure = failure;
     material
 }
 
@@ -43,11 +54,11 @@ fn critical_stretches_follow_from_the_fracture_energy() {
         (&[7.0, 7.0, 7.0], StressState::Spatial),
     ] {
         let cloud = lattice(sides);
-        let constants = |calibration| breaking(calibration).constants(&cloud, state).unwrap();
-        let own = constants(FractureCalibration::Lattice).solid;
+        let constants = |failure| breaking(failure).constants(&cloud, state).unwrap();
+        let own = constants(BY_STRETCH).solid;
         let mean = CrackPlane::mean(&own.crack_planes);
         assert!((mean / G0 - 1.0).abs() < 1e-12, "{mean}");
-        let continuum = constants(FractureCalibration::Continuum).solid;
+        let continuum = constants(by_stretch(FractureCalibration::Continuum)).solid;
         let ratio = own.limits.stretch / continuum.limits.stretch;
         assert!((ratio - 1.0).abs() < 0.25, "{ratio}");
     }
@@ -58,7 +69,7 @@ fn critical_stretches_follow_from_the_fracture_energy() {
 #[test]
 fn dissipated_energy_of_a_closing_deformation_is_the_calibrated_energy() {
     let cloud = lattice(&[9.0, 16.0]);
-    let constants = breaking(FractureCalibration::Lattice)
+    let constants = breaking(BY_STRETCH)
         .constants(&cloud, StressState::PlaneStrain)
         .unwrap();
     let plane = constants.solid.crack_planes[0].clone();
@@ -93,8 +104,8 @@ fn dissipated_energy_of_a_closing_deformation_is_the_calibrated_energy() {
 }
 
 /// The force of a plate with a notch, or of a part of it.
-fn notched(cloud: &Arc<PointCloud>) -> Box<dyn Force> {
-    let material = breaking(FractureCalibration::Lattice);
+fn notched(cloud: &Arc<PointCloud>, failure: BondFailure) -> Box<dyn Force> {
+    let material = breaking(failure);
     let constants = material.constants(cloud, StressState::PlaneStrain).unwrap();
     let notch = Crack::Segment {
         from: [0.0, 8.0],
@@ -113,12 +124,12 @@ fn notched(cloud: &Arc<PointCloud>) -> Box<dyn Force> {
 
 /// The plate in tension: initial velocities of the upper and lower half are opposite.
 fn torn(part: f64) -> Simulation {
-    torn_on(lattice(&[18.0, 16.0]), part)
+    torn_on(lattice(&[18.0, 16.0]), part, BY_STRETCH)
 }
 
 /// The plate in tension, or a part of it.
-pub fn torn_on(cloud: Arc<PointCloud>, part: f64) -> Simulation {
-    let operator = notched(&cloud);
+pub fn torn_on(cloud: Arc<PointCloud>, part: f64, failure: BondFailure) -> Simulation {
+    let operator = notched(&cloud, failure);
     let system = System::new(cloud.clone(), operator, PointScalar::Uniform(1.0)).unwrap();
     let n = cloud.len();
     let mut start = State::at_rest(2 * n);
@@ -187,7 +198,7 @@ fn results_do_not_depend_on_the_number_of_threads() {
 #[test]
 fn points_with_too_few_bonds_lose_all_bonds() {
     let cloud = lattice(&[8.0, 8.0]);
-    let material = breaking(FractureCalibration::Lattice);
+    let material = breaking(BY_STRETCH);
     let constants = material
         .constants(&cloud, StressState::PlaneStrain)
         .unwrap();
