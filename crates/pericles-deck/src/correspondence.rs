@@ -8,9 +8,12 @@ use pericles_solids::correspondence::{
 use pericles_solids::inelastic::{Inelasticity, Yield};
 use serde::{Deserialize, Serialize};
 
+use crate::anisotropy::Anisotropy;
 use crate::criterion::FailureCriterion;
+use crate::declaration::DeckValue;
 use crate::reader::Table;
 use crate::state_based::{StateBased, read_yield};
+use crate::vocabulary::MODULI;
 
 /// A correspondence material.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -28,6 +31,10 @@ pub struct Correspondence {
     /// Plasticity; none for elastic materials.
     #[serde(default, with = "crate::form")]
     pub plasticity: Option<Plasticity>,
+    /// Elastic constants and axes of an anisotropic material; the elastic constants of `solid` are then those of Voigt's
+    /// average.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub anisotropy: Option<Box<Anisotropy>>,
     /// Failure criterion of stress and strain, if bonds break by them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub criterion: Option<FailureCriterion>,
@@ -47,27 +54,44 @@ impl Correspondence {
     /// Returns the material of `pericles-solids`.
     ///
     /// # Errors
-    /// A strength that is not positive.
+    /// A strength that is not positive; anisotropic constants for which a strain has no positive energy.
     pub fn material(&self) -> Result<CorrespondenceMaterial> {
-        let criterion = self.criterion.as_ref();
+        let (criterion, anisotropy) = (self.criterion.as_ref(), self.anisotropy.as_ref());
         Ok(CorrespondenceMaterial {
             solid: self.solid.clone(),
             law: self.law,
             stabilisation: self.stabilisation,
             plasticity: self.plasticity,
+            anisotropy: anisotropy.map(|own| own.stiffness()).transpose()?,
             criterion: criterion.map(FailureCriterion::criterion).transpose()?,
         })
     }
 }
 
 /// Keys of correspondence materials only.
-const OWN_KEYS: [&str; 2] = ["law", "stabilisation"];
+const OWN_KEYS: [&str; 3] = ["law", "stabilisation", "anisotropy"];
 
 /// Rejects these keys in the table of another model.
 pub(crate) fn forbid_keys(table: &Table<'_>) {
     for key in OWN_KEYS {
         table.forbid(key, "it requires model = \"correspondence\"");
     }
+}
+
+/// Reads `anisotropy`, which replaces other elastic constants and requires an elastic material.
+pub(crate) fn anisotropy(table: &Table<'_>) -> Option<Option<Anisotropy>> {
+    let read = table.maybe("anisotropy", |item| DeckValue::read(&item, ()));
+    if table.has("anisotropy") {
+        for &key in MODULI.iter().chain(&["poisson_ratio"]) {
+            table.forbid(key, "`anisotropy` contains all elastic constants");
+        }
+        table.forbid("yield_stress", "materials with `anisotropy` are elastic");
+        table.forbid(
+            "law",
+            "with `anisotropy` it is St Venant–Kirchhoff's law with the anisotropic stiffness",
+        );
+    }
+    read
 }
 
 /// Reads the elastic law; plastic materials have the logarithmic one.

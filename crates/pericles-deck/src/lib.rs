@@ -75,6 +75,7 @@
 //!
 #![doc = include_str!("language.md")]
 
+mod anisotropy;
 mod assign;
 mod body;
 mod boundary;
@@ -134,6 +135,7 @@ mod vocabulary;
 mod wording;
 mod words;
 
+pub use anisotropy::Anisotropy;
 pub use assign::Assignment;
 pub use body::{
     Boundary, FilledCells, FilledShape, Lattice, MeshFile, Piece, PointsFile, Positions,

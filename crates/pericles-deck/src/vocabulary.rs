@@ -33,6 +33,7 @@ pub(crate) const OWN_CONSTANTS: &[&str] = &[
     "bulk_modulus",
     "shear_modulus",
     "poisson_ratio",
+    "anisotropy",
     "fracture_energy",
     "critical_stretch",
     "tensile_strength",

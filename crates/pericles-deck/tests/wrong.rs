@@ -264,6 +264,14 @@ const WRONG: &[Wrong] = &[
     wrong("fracture_energy = \"135 J/m2\"\n", "model = \"state-based\"\npoisson_ratio = 0.3\nfailure = \"expression\"\nstrength = 1\ncriterion = \"stress_1/1e6\"\n", (16, 1), "strength", &["not allowed", "requires failure = \"principal-stress\""]),
     wrong("youngs_modulus = \"72 GPa\"\n", "youngs_modulus = \"72 GPa\"\ncriterion = \"stress_1\"\n", (12, 1), "criterion", &["not allowed", "state-based"]),
     wrong("youngs_modulus = \"72 GPa\"\n", "youngs_modulus = \"72 GPa\"\nlaw = \"neo-hooke\"\n", (12, 1), "law", &["not allowed", "correspondence"]),
+    // Anisotropy.
+    wrong("youngs_modulus = \"72 GPa\"\n", "youngs_modulus = \"72 GPa\"\nanisotropy = { stiffness = 1 }\n", (12, 1), "anisotropy", &["not allowed", "correspondence"]),
+    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"correspondence\"\nyoungs_modulus = 1\nanisotropy = { youngs_modulus = [2, 1, 1], poisson_ratio = [0.1, 0.1, 0.1], shear_modulus = [1, 1, 1] }\n", (12, 1), "youngs_modulus", &["not allowed", "`anisotropy` contains all elastic constants"]),
+    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"correspondence\"\nanisotropy = { youngs_modulus = [2, 1, 1], shear_modulus = [1, 1, 1] }\n", (12, 14), "{ youngs_modulus = [2, 1, 1], shear_modulus = [1, 1, 1] }", &["requires `poisson_ratio`"]),
+    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"correspondence\"\nanisotropy = { youngs_modulus = [2, 1, 1], poisson_ratio = [2, 0.1, 0.1], shear_modulus = [1, 1, 1] }\n", (12, 14), "{ youngs_modulus = [2, 1, 1], poisson_ratio = [2, 0.1, 0.1], shear_modulus = [1, 1, 1] }", &["positive energy"]),
+    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"correspondence\"\nanisotropy = { youngs_modulus = [2, 1, 1], poisson_ratio = [0.1, 0.1, 0.1], shear_modulus = [1, 1] }\n", (12, 93), "[1, 1]", &["three moduli"]),
+    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"correspondence\"\nanisotropy = { stiffness = [[1, 0], [0, 1]] }\n", (12, 28), "[[1, 0], [0, 1]]", &["six rows of six moduli"]),
+    wrong("youngs_modulus = \"72 GPa\"\n", "model = \"correspondence\"\nyield_stress = 1\nanisotropy = { youngs_modulus = [2, 1, 1], poisson_ratio = [0.1, 0.1, 0.1], shear_modulus = [1, 1, 1] }\n", (12, 1), "yield_stress", &["not allowed", "elastic"]),
     // Stop conditions.
     wrong("[output]", "[[time.stop_when]]\nset = \"top\"\n[output]", (37, 1), "[[time.stop_when]]", &["[time.stop_when.0] requires one of `reaction_below`, `damage_above` and `condition`"]),
     wrong("[output]", "[[time.stop_when]]\nset = \"tip\"\ndamage_above = 0.9\n[output]", (38, 7), "\"tip\"", &["unknown set `tip`", "did you mean `top`?"]),

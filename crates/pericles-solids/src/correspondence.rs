@@ -16,6 +16,7 @@ mod force_state;
 mod law;
 mod material;
 mod plasticity;
+mod stiffness;
 
 pub use body::CorrespondenceBody;
 pub use classical::{ClassicalSolid, Expanded, PointState};
@@ -23,5 +24,6 @@ pub use control::{Control, Stabilisation};
 pub use law::{ElasticLaw, Moduli};
 pub use material::{CorrespondenceConstants, CorrespondenceMaterial};
 pub use plasticity::{History, Plasticity};
+pub use stiffness::{Orthotropy, Stiffness};
 
 pub use crate::solid::LARGEST_CONDITION;

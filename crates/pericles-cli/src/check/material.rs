@@ -136,7 +136,11 @@ fn correspondence(
     constants: &CorrespondenceConstants,
     facts: &Facts,
 ) -> Vec<Line> {
+    let anisotropic = material.anisotropy.is_some();
     let law = match constants.point.law {
+        ElasticLaw::StVenantKirchhoff if anisotropic => {
+            "St Venant–Kirchhoff with an anisotropic stiffness, of which elastic constants and wave speeds are Voigt's average"
+        }
         ElasticLaw::StVenantKirchhoff => {
             "St Venant–Kirchhoff: for small strain and any rotation; softens in compression"
         }

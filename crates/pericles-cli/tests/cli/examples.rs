@@ -229,6 +229,11 @@ fn a_state_based_plate_has_the_given_poissons_ratio() {
     check("state-based", "plate-with-hole");
 }
 
+#[test]
+fn a_ply_with_a_hole_has_the_displacements_of_an_orthotropic_plate() {
+    check("state-based", "ply-with-hole");
+}
+
 /// The force relaxes monotonically, and the energy balance of the static states closes.
 #[test]
 fn a_viscous_bar_relaxes_to_its_slow_modulus() {

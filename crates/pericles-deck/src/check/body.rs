@@ -183,6 +183,11 @@ impl Check {
             MaterialModel::StateBased(solid) => self.state_based(key, solid, state, dimension),
             MaterialModel::Correspondence(given) => {
                 self.state_based(key, &given.as_state_based(), state, dimension);
+                if let Some(anisotropy) = &given.anisotropy {
+                    let path = key.key("anisotropy");
+                    anisotropy.check_keys(&path, (), self);
+                    self.engine(path, anisotropy.stiffness());
+                }
                 if let Some(plasticity) = &given.plasticity {
                     self.engine(key.key("yield_stress"), plasticity.check());
                 }

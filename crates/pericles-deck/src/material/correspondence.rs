@@ -1,6 +1,7 @@
 //! Reads correspondence materials.
 
 use pericles::material::{LinearSolid, StretchDefinition, SurfaceCorrection};
+use pericles_solids::correspondence::ElasticLaw;
 
 use super::keys::{SolidFamily, damage, density, form, no_fail};
 use super::scatter::Scatter;
@@ -8,7 +9,7 @@ use super::softening::{forbid_softening, forbid_tensile_strength};
 use super::types::Material;
 use crate::body::BodyRead;
 use crate::constants::fracture_calibration;
-use crate::correspondence::{Correspondence, law, plasticity};
+use crate::correspondence::{Correspondence, anisotropy, law, plasticity};
 use crate::criterion;
 use crate::declaration::DeckValue;
 use crate::reader::Table;
@@ -32,9 +33,18 @@ pub(super) fn read(
     let by_state = !matches!(criterion, Some(None));
     let closing = Some(StretchDefinition::Closing);
     let rules = SolidRules::read(&table, body.state, calibration, [shared, by_state], closing);
-    let (elastic, failure) = (rules.elastic(&table), rules.failure(&table));
+    let anisotropy = anisotropy(&table);
+    let elastic = match &anisotropy {
+        Some(None) => rules.elastic(&table),
+        Some(Some(anisotropy)) => table.accept(anisotropy.average()),
+        None => None,
+    };
+    let failure = rules.failure(&table);
     let plasticity = plasticity(&table);
-    let law = law(&table, table.has("yield_stress"));
+    let law = match anisotropy {
+        Some(None) => law(&table, table.has("yield_stress")),
+        _ => Some(ElasticLaw::StVenantKirchhoff),
+    };
     let stabilisation = table.worded("stabilisation", "stabilisation");
     let no_fail = no_fail(&table, sets);
     let scatter = table.maybe("scatter", |item| Scatter::read(&item, ()));
@@ -67,6 +77,7 @@ pub(super) fn read(
             law: law?,
             stabilisation: stabilisation?,
             plasticity: plasticity?,
+            anisotropy: anisotropy?.map(Box::new),
             criterion: criterion?,
         })
     })

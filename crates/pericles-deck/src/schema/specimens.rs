@@ -425,6 +425,8 @@ pub(super) const SPECIMENS: &[Specimen] = &[
     specimen(BAR, &["material.softening={ law = 'trilinear', onset_stretch = 1e-4 }"]),
     specimen(PLATE, &["material={ model = 'correspondence', density = 1, youngs_modulus = 2, poisson_ratio = 0.3, horizon_ratio = 3, failure = 'principal-stress', strength = 1 }"]),
     specimen(PLATE, &["material={ model = 'correspondence', density = 1, youngs_modulus = 2, poisson_ratio = 0.3, horizon_ratio = 3, failure = 'expression', criterion = 'stress_1' }"]),
+    specimen(PLATE, &["material={ model = 'correspondence', density = 1, anisotropy = { youngs_modulus = [2, 1, 1], poisson_ratio = [0.1, 0.1, 0.1], shear_modulus = [1, 1, 1], angle = 1 }, horizon_ratio = 3 }"]),
+    specimen(PLATE, &["material={ model = 'correspondence', density = 1, anisotropy = { stiffness = [[1, 0, 0, 0, 0, 0], [0, 1, 0, 0, 0, 0], [0, 0, 1, 0, 0, 0], [0, 0, 0, 1, 0, 0], [0, 0, 0, 0, 1, 0], [0, 0, 0, 0, 0, 1]], axis = [0, 0, 2] }, horizon_ratio = 3 }"]),
     specimen(PLATE, &["material={ model = 'state-based', density = 1, youngs_modulus = 2, poisson_ratio = 0.3, horizon_ratio = 3, failure = 'principal-stress', strength = 1 }"]),
     specimen(PLATE, &["material={ model = 'state-based', density = 1, youngs_modulus = 2, poisson_ratio = 0.3, horizon_ratio = 3, failure = 'expression', criterion = 'stress_1' }"]),
     specimen(BAR, &["material.softening={ law = 'exponential', onset_stretch = 1e-4 }"]),

@@ -15,7 +15,7 @@ pub enum MaterialConstants {
     /// Constants of a state-based material.
     StateBased(LinearSolidConstants),
     /// Constants of a correspondence material.
-    Correspondence(CorrespondenceConstants),
+    Correspondence(Box<CorrespondenceConstants>),
 }
 
 impl MaterialConstants {

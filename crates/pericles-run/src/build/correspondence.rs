@@ -77,7 +77,9 @@ impl Assembler<'_> {
             .unwrap_or_default();
         let bonds = body.operator(form).map_err(at_material)?;
         let cracks = self.tracked_cracks(&bonds.cuts, discretisation, warnings);
-        let mut all = all.into_iter().map(MaterialConstants::Correspondence);
+        let mut all = all
+            .into_iter()
+            .map(|own| MaterialConstants::Correspondence(Box::new(own)));
         let constants = all.next();
         if let Some(constants) = &constants {
             warnings.extend(self.check_speed(solid, constants));

@@ -4,7 +4,9 @@ use pericles::material::StressState;
 
 use super::law::{ElasticLaw, Moduli, stress, stress_change};
 use super::plasticity::{History, Plasticity, returned};
-use crate::tensor::{Matrix, combination, determinant, diagonal, in_body, in_space, trace, unit};
+use crate::tensor::{
+    Matrix, combination, determinant, diagonal, in_body, in_space, symmetric, trace, unit,
+};
 
 /// A solid under a state of stress: F₃₃ = 1 in plane strain; P₃₃ = 0 in plane stress; P₂₂ = P₃₃ = 0 with
 /// F₂₂ = F₃₃ in a bar.
@@ -12,7 +14,7 @@ use crate::tensor::{Matrix, combination, determinant, diagonal, in_body, in_spac
 pub struct ClassicalSolid {
     /// The state of stress.
     pub state: StressState,
-    /// Elastic law; [`ElasticLaw::Hencky`] for solids with plasticity.
+    /// Elastic law; [`ElasticLaw::Hencky`] for solids with plasticity, [`ElasticLaw::StVenantKirchhoff`] for anisotropic ones.
     pub law: ElasticLaw,
     /// Elastic moduli.
     pub moduli: Moduli,
@@ -150,13 +152,16 @@ impl ClassicalSolid {
         state.advanced(plasticity, full, history)
     }
 
-    /// Returns the stress of linear elasticity in the dimension of the body, λ̂ tr(ε) I + 2 G ε, Pa.
+    /// Returns the stress of linear elasticity in the dimension of the body, λ̂ tr(ε) I + 2 G ε or C : ε, Pa.
     pub fn linear_stress<const D: usize>(&self, strain: &Matrix<D>) -> Matrix<D> {
+        if let Some(stiffness) = &self.moduli.stiffness {
+            return stiffness.body_stress(self.state, strain);
+        }
         let pressure = self.plane_lame() * trace(strain);
         combination(pressure, &unit(), 2.0 * self.moduli.shear, strain)
     }
 
-    /// Returns λ̂, Pa: λ, in plane stress 2 λ G/(λ + 2 G), in a bar E − 2 G.
+    /// Returns λ̂ of an isotropic solid, Pa: λ, in plane stress 2 λ G/(λ + 2 G), in a bar E − 2 G.
     pub fn plane_lame(&self) -> f64 {
         let Moduli { lame, shear, .. } = self.moduli;
         match self.state {
@@ -166,8 +171,14 @@ impl ClassicalSolid {
         }
     }
 
-    /// Returns the dilatation modulus κ = λ̂ + 2 G/D, Pa.
+    /// Returns the dilatation modulus κ = λ̂ + 2 G/D, tr(C : I)/D² of an anisotropic solid, Pa.
     pub fn dilatation_modulus(&self) -> f64 {
+        if let Some(stiffness) = &self.moduli.stiffness {
+            return match self.state.dimension() {
+                2 => trace(&stiffness.body_stress::<2>(self.state, &unit())) / 4.0,
+                _ => trace(&stiffness.body_stress::<3>(self.state, &unit())) / 9.0,
+            };
+        }
         self.plane_lame() + 2.0 * self.moduli.shear / self.state.dimension() as f64
     }
 
@@ -209,6 +220,10 @@ impl ClassicalSolid {
     fn first_guess<const D: usize>(&self, f: &Matrix<D>, history: &History) -> f64 {
         if self.plasticity.is_some() {
             return history.across;
+        }
+        if let Some(stiffness) = &self.moduli.stiffness {
+            let strain = combination(1.0, f, -1.0, &unit());
+            return (1.0 + stiffness.strain_across(&symmetric(&strain))).clamp(0.2, 5.0);
         }
         let Moduli { lame, shear, .. } = self.moduli;
         let strain = trace(f) - D as f64;

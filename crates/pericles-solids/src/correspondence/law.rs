@@ -1,5 +1,6 @@
 //! Elastic laws at finite strain: energy density, first Piola–Kirchhoff stress and its derivative.
 
+use super::stiffness::Stiffness;
 use crate::tensor::{
     Matrix, combination, contraction, determinant, inverse, product, trace, transpose, unit,
 };
@@ -8,8 +9,8 @@ use crate::tensor::{
 /// stress P = ∂ψ/∂F. All laws agree with linear elasticity at small strain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ElasticLaw {
-    /// St Venant–Kirchhoff: S = λ tr(E) I + 2 G E with E = ½ (FᵀF − I), P = F S. For small strains and any
-    /// rotation; the law softens in compression and does not resist J → 0.
+    /// St Venant–Kirchhoff: S = λ tr(E) I + 2 G E with E = ½ (FᵀF − I), P = F S; S = C : E of an anisotropic solid. For
+    /// small strains and any rotation; the law softens in compression and does not resist J → 0.
     #[default]
     StVenantKirchhoff,
     /// Neo-Hookean: ψ = ½ G (tr FᵀF − 3) − G ln J + ½ λ (ln J)².
@@ -21,7 +22,7 @@ pub enum ElasticLaw {
     Hencky,
 }
 
-/// Lamé constant λ, shear modulus G and bulk modulus K of a solid, Pa.
+/// Lamé constant λ, shear modulus G and bulk modulus K of a solid, Pa; of an anisotropic one those of Voigt's average.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Moduli {
     /// λ
@@ -30,6 +31,8 @@ pub struct Moduli {
     pub shear: f64,
     /// K
     pub bulk: f64,
+    /// The stiffness of an anisotropic solid, whose law is [`ElasticLaw::StVenantKirchhoff`].
+    pub stiffness: Option<Stiffness>,
 }
 
 impl Moduli {
@@ -39,6 +42,25 @@ impl Moduli {
             lame: bulk - 2.0 / 3.0 * shear,
             shear,
             bulk,
+            stiffness: None,
+        }
+    }
+
+    /// Returns the moduli of an anisotropic solid.
+    pub fn anisotropic(stiffness: Stiffness) -> Self {
+        let [bulk, shear] = stiffness.average();
+        Self {
+            stiffness: Some(stiffness),
+            ..Self::new(bulk, shear)
+        }
+    }
+
+    /// Returns the moduli of the isotropic solid, of an anisotropic one those of Voigt's average.
+    #[must_use]
+    pub fn isotropic(self) -> Self {
+        Self {
+            stiffness: None,
+            ..self
         }
     }
 }
@@ -46,7 +68,9 @@ impl Moduli {
 /// Returns ψ (J/m³) and P (Pa) of a law other than [`ElasticLaw::Hencky`], which is computed from principal
 /// strains. NaN for J ≤ 0.
 pub(super) fn stress(law: ElasticLaw, moduli: &Moduli, f: &Matrix<3>) -> (f64, Matrix<3>) {
-    let Moduli { lame, shear, bulk } = *moduli;
+    let Moduli {
+        lame, shear, bulk, ..
+    } = *moduli;
     let j = determinant(f);
     if j.is_nan() || j <= 0.0 {
         return (f64::NAN, [[f64::NAN; 3]; 3]);
@@ -93,7 +117,9 @@ pub(super) fn stress_change(
     f: &Matrix<3>,
     df: &Matrix<3>,
 ) -> Matrix<3> {
-    let Moduli { lame, shear, bulk } = *moduli;
+    let Moduli {
+        lame, shear, bulk, ..
+    } = *moduli;
     if law == ElasticLaw::StVenantKirchhoff {
         let second = second_stress(moduli, &green_strain(f));
         let half = product(&transpose(f), df);
@@ -132,8 +158,11 @@ fn green_strain(f: &Matrix<3>) -> Matrix<3> {
     combination(0.5, &sum, 0.5, &square)
 }
 
-/// Returns λ tr(E) I + 2 G E.
+/// Returns λ tr(E) I + 2 G E, or C : E of an anisotropic solid.
 fn second_stress(moduli: &Moduli, strain: &Matrix<3>) -> Matrix<3> {
+    if let Some(stiffness) = &moduli.stiffness {
+        return stiffness.stress(strain);
+    }
     let pressure = moduli.lame * trace(strain);
     combination(pressure, &unit(), 2.0 * moduli.shear, strain)
 }

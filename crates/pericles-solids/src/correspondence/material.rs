@@ -12,6 +12,7 @@ use super::classical::ClassicalSolid;
 use super::control::{Stabilisation, spring_of_horizon};
 use super::law::{ElasticLaw, Moduli};
 use super::plasticity::Plasticity;
+use super::stiffness::Stiffness;
 use crate::tensor::{Matrix, combination, contraction, in_body, product, symmetric};
 
 /// A correspondence material (Silling, Epton, Weckner, Xu & Askari, J. Elasticity 88, 2007): the force state
@@ -27,6 +28,9 @@ pub struct CorrespondenceMaterial {
     pub stabilisation: Stabilisation,
     /// Plasticity; `None` for elastic materials.
     pub plasticity: Option<Plasticity>,
+    /// Stiffness of an anisotropic material in the axes of the body; the elastic constants of `solid` are then those of Voigt's
+    /// average ([`Stiffness::average`]).
+    pub anisotropy: Option<Stiffness>,
     /// Criterion of the Cauchy stress and of the strain, if bonds break by them.
     pub criterion: Option<Criterion>,
 }
@@ -51,6 +55,7 @@ impl CorrespondenceMaterial {
             law,
             stabilisation,
             plasticity: None,
+            anisotropy: None,
             criterion: None,
         }
     }
@@ -76,6 +81,15 @@ impl CorrespondenceMaterial {
             failure,
             ..self.solid.clone()
         };
+        if let Some(stiffness) = &self.anisotropy {
+            stiffness.check(state)?;
+            if self.plasticity.is_some() || self.law != ElasticLaw::StVenantKirchhoff {
+                return Err(PericlesError::ElasticConstants {
+                    reason: "an anisotropic material is elastic with the law St Venant–Kirchhoff"
+                        .into(),
+                });
+            }
+        }
         let mut solid = unbroken.constants(cloud, state)?;
         solid.lattice_shear = None;
         solid.criterion = self.criterion.clone();
@@ -86,7 +100,10 @@ impl CorrespondenceMaterial {
                     Some(_) => ElasticLaw::Hencky,
                     None => self.law,
                 },
-                moduli: Moduli::new(solid.elastic.bulk(), solid.elastic.shear()),
+                moduli: match self.anisotropy {
+                    Some(stiffness) => Moduli::anisotropic(stiffness),
+                    None => Moduli::new(solid.elastic.bulk(), solid.elastic.shear()),
+                },
                 plasticity: self.plasticity,
             },
             stabilisation: self.stabilisation,
@@ -248,18 +265,23 @@ impl CorrespondenceConstants {
 
     /// Returns the energy density (J/m³) of a point whose bonds across a crack have unit stretch, η = ξ, and
     /// whose other bonds are unstretched: with the moment M of the former and the shape tensor K, the
-    /// displacement gradient is H = M K⁻¹, and Σ w z ⊗ z = M − M K⁻¹ M.
+    /// displacement gradient is H = M K⁻¹, and Σ w z ⊗ z = M − M K⁻¹ M. Of anisotropic materials that of Voigt's average, because
+    /// planes that are equivalent on the lattice have different energies.
     fn closing_energy<const D: usize>(&self, layer: &LayerMoments) -> f64 {
         let whole: Matrix<D> = in_body(&layer.whole);
         let crossing: Matrix<D> = in_body(&layer.crossing);
         let inverse = crate::solid::inverse_of(&whole);
         let gradient = product(&crossing, &inverse);
         let strain = symmetric(&gradient);
-        let stress = self.point.linear_stress(&strain);
+        let point = ClassicalSolid {
+            moduli: self.point.moduli.isotropic(),
+            ..self.point
+        };
+        let stress = point.linear_stress(&strain);
         let left = combination(1.0, &crossing, -1.0, &product(&gradient, &crossing));
         let spring = self.spring() / layer.weight;
         // Moments are in units of the cell volume; the penalty does not depend on it.
-        let control = self.stabilisation.control(&self.point, &inverse, spring);
+        let control = self.stabilisation.control(&point, &inverse, spring);
         0.5 * contraction(&stress, &strain) + 0.5 * control.contraction(&symmetric(&left))
     }
 
@@ -267,6 +289,9 @@ impl CorrespondenceConstants {
     pub(super) fn stiffest(&self) -> f64 {
         let dimension = self.point.state.dimension() as f64;
         let bulk = dimension * self.point.dilatation_modulus();
+        if let Some(stiffness) = &self.point.moduli.stiffness {
+            return stiffness.largest();
+        }
         match self.point.state {
             StressState::Uniaxial => bulk,
             _ => bulk.max(2.0 * self.point.moduli.shear),

@@ -3,6 +3,8 @@
 use pericles::material::StressState;
 use pericles_solids::correspondence::{ClassicalSolid, ElasticLaw, History, Moduli, Plasticity};
 
+use crate::anisotropy::{in_plane, oblique};
+
 const F: [[f64; 3]; 3] = [[1.1, 0.05, -0.02], [0.03, 0.95, 0.04], [0.01, -0.06, 1.02]];
 const PLANE: [[f64; 2]; 2] = [[1.1, 0.05], [0.03, 0.95]];
 
@@ -64,7 +66,7 @@ fn energies_and_stresses_match_an_independent_code() {
     }
 }
 
-/// All laws, and a plastic solid that continues to yield.
+/// All laws, an anisotropic solid, and a plastic solid that continues to yield.
 fn solids(state: StressState) -> Vec<(ClassicalSolid, History)> {
     let laws = [
         ElasticLaw::StVenantKirchhoff,
@@ -76,6 +78,18 @@ fn solids(state: StressState) -> Vec<(ClassicalSolid, History)> {
         .into_iter()
         .map(|law| (solid(law, state), History::default()))
         .collect();
+    let stiffness = match state {
+        StressState::Uniaxial => None,
+        StressState::Spatial => Some(oblique()),
+        _ => Some(in_plane(0.4)),
+    };
+    solids.extend(stiffness.map(|stiffness| {
+        let anisotropic = ClassicalSolid {
+            moduli: Moduli::anisotropic(stiffness),
+            ..solid(ElasticLaw::StVenantKirchhoff, state)
+        };
+        (anisotropic, History::default())
+    }));
     let yielding = ClassicalSolid {
         plasticity: Some(Plasticity {
             yield_stress: 0.3,

@@ -1,5 +1,6 @@
 //! Correspondence materials: reference values, identities, bond failure and plastic flow.
 
+mod anisotropy;
 mod bodies;
 mod divided;
 mod fracture;
