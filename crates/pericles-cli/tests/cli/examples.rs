@@ -95,6 +95,21 @@ fn released_bar() {
 }
 
 #[test]
+fn standard_tests() {
+    let names = [
+        "three-point-bending",
+        "brazilian-disc",
+        "semicircular-bend",
+        "laminate",
+        "quench",
+    ];
+    for name in names {
+        check("standard-tests", name);
+    }
+    check("geometry", "tensile-test");
+}
+
+#[test]
 fn cooling_bar() {
     let (_place, out) = check("heat", "cooling-bar");
     let heat = &report(&out)["audit"]["heat"];
