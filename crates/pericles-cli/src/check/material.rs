@@ -2,10 +2,12 @@
 
 use pericles::kernel::ActsOn;
 use pericles::material::{
-    BondConstants, BondMaterial, Calibration, LinearSolidConstants, StateInfluence,
+    BondConstants, BondFailure, BondMaterial, Calibration, Fracture, LinearSolidConstants,
+    StateInfluence,
 };
 use pericles_deck::{
-    Correspondence, MaterialModel, NamedMaterial, Solid, StateBased, SurfaceBody, VertexAreas,
+    Correspondence, InterfaceFailure, MaterialInterface, MaterialModel, NamedMaterial, Solid,
+    StateBased, SurfaceBody, VertexAreas,
 };
 use pericles_manifold::SurfaceBond;
 use pericles_manifold::geodesic::Ball;
@@ -207,6 +209,52 @@ fn other_material(other: &NamedMaterial, own: &MaterialConstants) -> Line {
         entry["critical_bond_energy"] = finite(own.critical_bond_energy()).into();
     }
     Line::new("material", text).with_entry("materials", entry)
+}
+
+/// The line of an interface: how the bonds between two materials break.
+pub(super) fn interface(interface: &MaterialInterface) -> Line {
+    let pair = match &interface.between {
+        Some([a, b]) => format!("{a} and {b}"),
+        None => "all pairs of materials".into(),
+    };
+    let (stretch, energy) = match interface.failure {
+        Some(
+            InterfaceFailure::Bonds(Fracture::CriticalStretch(stretch))
+            | InterfaceFailure::StateBased(BondFailure::CriticalStretch(stretch)),
+        ) => (Some(stretch), None),
+        Some(
+            InterfaceFailure::Bonds(Fracture::Energy { energy, .. })
+            | InterfaceFailure::StateBased(
+                BondFailure::Stretch {
+                    fracture_energy: energy,
+                    ..
+                }
+                | BondFailure::BondEnergy {
+                    fracture_energy: energy,
+                    ..
+                },
+            ),
+        ) => (None, Some(energy)),
+        Some(
+            InterfaceFailure::Bonds(Fracture::Unbreakable)
+            | InterfaceFailure::StateBased(BondFailure::Unbreakable | BondFailure::ByCriterion),
+        )
+        | None => (None, None),
+    };
+    let fails = match (stretch, energy) {
+        (Some(stretch), _) => format!("at stretch {}", significant(stretch, 4)),
+        (_, Some(energy)) => format!("by a fracture energy of {}", quantity(energy, "J/m²")),
+        _ => "as that of the weaker material".into(),
+    };
+    let text = format!("{pair}: bond failure {fails}");
+    Line::new("interface", text).with_entry(
+        "interfaces",
+        json!({
+            "between": interface.between,
+            "critical_stretch": stretch,
+            "fracture_energy": energy,
+        }),
+    )
 }
 
 /// Formats a speed in whole metres per second, or with three digits if it is small.

@@ -31,7 +31,7 @@ use crate::given;
 use crate::screen::Screen;
 
 use self::line::Line;
-use self::material::{material, surface_material};
+use self::material::{interface, material, surface_material};
 use self::waves::plane_waves;
 
 /// Checks a deck.
@@ -108,6 +108,7 @@ fn check_source(
         (Body::Solid(solid), Some(constants)) => {
             let others = (&model.materials[..], &assembly.other_materials[..]);
             lines.extend(material(solid, constants, &facts, others));
+            lines.extend(model.interfaces.iter().map(interface));
         }
         (Body::Solid(_), None) => {}
         (Body::Surface(surface), _) => lines.extend(surface_material(surface)),

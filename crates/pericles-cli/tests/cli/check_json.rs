@@ -186,3 +186,27 @@ fn json_on_standard_output_is_the_only_output_and_has_the_keys_of_run_json() {
         }
     }
 }
+
+/// Two materials that never break may be joined by an interface that does.
+#[test]
+fn interfaces_state_how_their_bonds_break() {
+    let place = tempfile::tempdir().unwrap();
+    let deck = "body = { shape = \"bar\", length = 20, spacing = 1 }\n\
+        material = { name = \"left\", density = 1, youngs_modulus = 10, horizon_ratio = 3 }\n\
+        materials.right = { density = 1, youngs_modulus = 20 }\n\
+        sets.right = { where = \"x > 10\" }\n\
+        assign = [{ set = \"right\", material = \"right\" }]\n\
+        interface = [{ between = [\"left\", \"right\"], fracture_energy = 2 }]\n\
+        time = { end = 1, dt = 0.05 }\n";
+    std::fs::write(place.path().join("deck.toml"), deck).unwrap();
+    let output = succeed(place.path(), "check deck.toml");
+    let printed = text(&output.stdout);
+    assert!(
+        printed.contains("left and right: bond failure by a fracture energy of 2"),
+        "{printed}"
+    );
+    let output = succeed(place.path(), "check deck.toml --json -");
+    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(json["interfaces"][0]["fracture_energy"], 2.0);
+    assert_eq!(json["interfaces"][0]["between"][1], "right");
+}

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use pericles::boundary::TimeFunction;
-use pericles::material::StressState;
+use pericles::material::{StressState, SurfaceCorrection};
 use pericles::operator::{Feature, Features};
 use pericles::parallel::for_each_point;
 use pericles::space::PointCloud;
@@ -93,6 +93,12 @@ impl Assembler<'_> {
         let Some(expansion) = thermal.expansion.filter(|_| self.expands()) else {
             return Ok(());
         };
+        if solid.material.surface_correction == SurfaceCorrection::Ghosts {
+            let value = "\"ghosts\"".into();
+            let allowed = "allowed: a correction without ghost points, which have no temperature, for bodies with thermal expansion".into();
+            let fault = Fault::OutOfRange { value, allowed };
+            return Err(at_path("material.surface_correction", fault));
+        }
         let path = KeyPath::from("thermal");
         let Some(reference) = thermal.reference else {
             let (table, allowed) = ("[thermal]".into(), vec!["reference".into()]);

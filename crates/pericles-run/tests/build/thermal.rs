@@ -152,6 +152,9 @@ fn thermal_expansion_is_rejected_where_it_is_not_supported() {
             .to_string()
             .contains("does not include thermal strain")
     );
+    let ghosts = PLATE.replace("MODEL", "surface_correction = \"ghosts\"");
+    let error = rejection(&ghosts).to_string();
+    assert!(error.contains("ghost points"), "{error}");
     let cold = PLATE.replace("MODEL", "").replace(
         "thermal = { expansion = 1e-5, temperature = 303, reference = 293 }\n",
         "",
