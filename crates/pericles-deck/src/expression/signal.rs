@@ -10,29 +10,39 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use super::condition::Test;
 use super::unit::{UnitOperators, UnitValue};
 use super::{Compiled, Malformed, grammar};
-use crate::units;
+use crate::units::{self, Measure};
 
 const NO_COLUMN: &str = "it refers to no column of the tables, such as tip.u_x";
 
 /// A compiled function of named scalars of a run.
 ///
 /// The names are those of columns, such as `tip_u_x` or `tip.u_x`. Names with other characters than letters, digits and
-/// `_` are written in single quotes: `'left edge'.u_x`.
+/// `_` are written in single quotes: `'left edge'.u_x`. Numbers with units are written in single quotes as well:
+/// `top.y / '10 mm2'`.
 #[derive(Clone)]
 pub struct SignalExpression {
     text: Arc<str>,
     grouped: Arc<str>,
     compiled: Arc<Compiled>,
     names: Arc<[String]>,
-    /// Indices in `names` of the variables of the compiled expression, in their order.
-    order: Arc<[usize]>,
+    /// The variables of the compiled expression, in their order.
+    operands: Arc<[Operand]>,
+}
+
+/// What a variable of a compiled expression stands for.
+#[derive(Debug, Clone, Copy)]
+enum Operand {
+    /// The name of this index.
+    Name(usize),
+    /// A number with a unit.
+    Number(Measure),
 }
 
 impl SignalExpression {
     /// What decks may contain.
     pub(crate) const ALLOWED: &str = "such as expression = \"tip.u_x - base.u_x\": columns of the tables, numbers in \
-                                      SI units, functions; names with other characters than letters, digits and `_` \
-                                      in single quotes";
+                                      SI units, functions; numbers with units, and names with other characters than \
+                                      letters, digits and `_`, in single quotes";
 
     /// Parses an expression; its names are not checked.
     pub(crate) fn parse(text: &str) -> Result<Self, Malformed> {
@@ -51,12 +61,24 @@ impl SignalExpression {
         let compiled = Compiled::parse(&grouped).map_err(|error| Malformed {
             reason: format!("it is not a valid expression: {error}"),
         })?;
+        let mut own = Vec::new();
+        let variables: Vec<Operand> = names
+            .into_iter()
+            .map(|name| match units::parse(&name) {
+                Ok(measure) => Operand::Number(measure),
+                Err(_) => {
+                    own.push(name);
+                    Operand::Name(own.len() - 1)
+                }
+            })
+            .collect();
+        let operands = order(compiled.var_names()).map(|k| variables[k]).collect();
         Ok(Self {
             text: text.trim().into(),
             grouped: grouped.into(),
-            order: order(compiled.var_names()),
+            operands,
             compiled: compiled.into(),
-            names: names.into(),
+            names: own.into(),
         })
     }
 
@@ -72,7 +94,11 @@ impl SignalExpression {
 
     /// Returns the value for the values of its [`names`](Self::names); NaN where it is undefined.
     pub fn value(&self, values: &[f64]) -> f64 {
-        let given: Vec<f64> = self.order.iter().map(|&k| values[k]).collect();
+        let of = |operand: &Operand| match operand {
+            Operand::Name(k) => values[*k],
+            Operand::Number(measure) => measure.value,
+        };
+        let given: Vec<f64> = self.operands.iter().map(of).collect();
         // The number of values is right, which is the only possible error.
         self.compiled.eval(&given).unwrap_or(f64::NAN)
     }
@@ -98,7 +124,11 @@ impl SignalExpression {
             .map(|unit| UnitValue::of_unit(unit))
             .collect();
         let known = known?;
-        let given: Vec<UnitValue> = self.order.iter().map(|&k| known[k].clone()).collect();
+        let of = |operand: &Operand| match operand {
+            Operand::Name(k) => known[*k].clone(),
+            Operand::Number(measure) => UnitValue::of_measure(measure),
+        };
+        let given: Vec<UnitValue> = self.operands.iter().map(of).collect();
         let compiled = FlatEx::<UnitValue, UnitOperators>::parse(&self.grouped);
         let value = compiled.and_then(|compiled| compiled.eval(&given));
         value.map_err(|error| error.to_string())
@@ -106,9 +136,9 @@ impl SignalExpression {
 }
 
 /// Returns the numbers of the variables `v0`, `v1` … of an expression, in the order of their values.
-fn order(names: &[String]) -> Arc<[usize]> {
+fn order(names: &[String]) -> impl Iterator<Item = usize> {
     let number = |name: &String| name.trim_start_matches('v').parse().unwrap_or_default();
-    names.iter().map(number).collect()
+    names.iter().map(number)
 }
 
 /// A compiled condition on named scalars of a run.
@@ -244,6 +274,19 @@ mod tests {
             .collect();
         let units: Vec<&str> = units.iter().map(String::as_str).collect();
         expression.unit(&units)
+    }
+
+    #[test]
+    fn quoted_numbers_have_units() {
+        let text = "top_y / '10 mm2' + 2*top_y/'1 cm'^2 - '3 MPa'";
+        let expression = SignalExpression::parse(text).unwrap();
+        assert_eq!(expression.names(), ["top_y"]);
+        let expected = 50.0 / 1e-5 + 100.0 / 1e-4 - 3e6;
+        assert!((expression.value(&[50.0]) / expected - 1.0).abs() < 1e-14);
+        assert_eq!(unit(text).unwrap(), "Pa");
+        assert!(unit("top_y / '1 mm' - '3 MPa'").is_err());
+        assert!(SignalExpression::parse("2*'3 mm'").is_err());
+        assert_eq!(unit("a_u_x/'2 mm'").unwrap(), "");
     }
 
     #[test]

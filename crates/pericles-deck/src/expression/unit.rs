@@ -6,7 +6,7 @@ use std::str::FromStr;
 use exmex::{BinOp, MakeOperators, Operator};
 
 use crate::dimension::Dimension;
-use crate::units;
+use crate::units::{self, Measure};
 
 /// The unit of a value.
 #[derive(Debug, Clone, Default)]
@@ -24,6 +24,15 @@ impl UnitValue {
         Self {
             dimension: Some(dimension),
             ..Self::default()
+        }
+    }
+
+    /// Returns the value of a number with a unit.
+    pub(super) fn of_measure(measure: &Measure) -> Self {
+        Self {
+            dimension: measure.dimension,
+            number: Some(measure.value),
+            mistake: None,
         }
     }
 

@@ -21,7 +21,8 @@ pub struct DerivedQuantity {
     /// without unit, of the tips of cracks `crack_1_tip_x` and `crack_1_advance`, of `time`, and of the quantities above
     /// it, such as "mouth_right.u_x - mouth_left.u_x". Dots may separate the probe, set or impactor from its component,
     /// and the word `probe`, `reaction` or `impactor` from both: `tip.u_x`, `reaction.top.y`. Names with other characters
-    /// than letters, digits and `_` are written in single quotes. Values and numbers are in SI units.
+    /// than letters, digits and `_` are written in single quotes. Values and numbers are in SI units, unless they have a unit
+    /// in single quotes: "reaction.top.y / '10 mm2'".
     #[deck(with = expression)]
     pub expression: SignalExpression,
     /// Unit of the column. Default: the SI unit that follows from the expression; required if none follows.
