@@ -198,6 +198,7 @@ fn style_of(look: &PictureLook) -> PictureStyle {
     PictureStyle {
         titled: look.title,
         transparent: look.transparent,
+        edges: look.edges,
         colours: look.colour_map.map(|colours| match colours {
             PictureColours::Viridis => ColourMap::Viridis,
             PictureColours::CoolToWarm => ColourMap::Diverging,
